@@ -41,7 +41,14 @@ fn main() -> Result<()> {
 }
 
 fn compare(scene: &Scene, lights: usize) -> Result<()> {
-    let job = |count| RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 1, count };
+    let job = |count| RenderJob {
+        scene: scene.clone(),
+        view: View::Shaded,
+        seed: 0,
+        threads: 1,
+        count,
+        reuse: false,
+    };
     let full = |count| solutions::Kit.door().render(&job(count), &Unwatched).expect("not cancelled");
     let caster = Caster::new(scene);
 

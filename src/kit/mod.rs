@@ -98,6 +98,9 @@ pub struct RenderJob {
     pub threads: usize,
     /// Whether work is counted. Rays and pixels are the same either way.
     pub count: bool,
+    /// Whether the acceleration structures of an earlier job in the same process may be used again, if it had the same
+    /// scene and kept them. Pixels, counts and the reported build time are the same either way.
+    pub reuse: bool,
 }
 
 impl RenderJob {

@@ -3,6 +3,7 @@
 use super::camera_sampler::CameraSampler;
 use super::interaction::Looks;
 use super::intersector::Intersector;
+use super::kept::{self, Built};
 use super::path_tracer::IndirectLight;
 use super::plan::Plan;
 use super::texture_filter::Pyramids;
@@ -12,6 +13,7 @@ use crate::frame::{FrameSettings, Watch};
 use crate::kit::{Limits, RenderJob, StudentFunctions};
 use crate::scene::Quality;
 use crate::world::World;
+use std::sync::Arc;
 
 /// Everything that the rays of a frame need. It is built once and shared by all threads.
 pub struct Frame<'a, F> {
@@ -22,7 +24,9 @@ pub struct Frame<'a, F> {
     /// Makes camera rays from samples, and colours of pixels from the colours of samples.
     pub camera: CameraSampler<F>,
     /// Finds the hits of rays in the flattened scene.
-    pub intersector: Intersector<F>,
+    pub intersector: Arc<Intersector<F>>,
+    /// The seconds that an earlier frame took to build the structures that this one uses again; 0 if they were built now.
+    pub earlier_seconds: f64,
     /// By which functions and with which normals hits become surface interactions.
     pub looks: Looks,
     /// The smaller copies of all images, if images are filtered.
@@ -40,15 +44,18 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
         let scene = &job.scene;
         let quality = &scene.quality;
         let plan = Plan::new(job, written);
-        let world = World::new(scene, &plan.effects, &plan.world);
-        let pyramids = plan.mipmaps.then(|| Pyramids::new(&world, &plan.effects));
-        let indirect = plan.paths.as_ref().map(|paths| IndirectLight::new(scene, &world, paths));
-        let n_primitives = world.primitives.len() as u64;
-        let intersector = building::watched(watch, n_primitives, || Intersector::new(world, &plan, quality));
+        let Built { intersector, earlier_seconds } = kept::built(job, &plan, written, false, || {
+            let world = World::new(scene, &plan.effects, &plan.world);
+            let n_primitives = world.primitives.len() as u64;
+            building::watched(watch, n_primitives, || Intersector::new(world, &plan, quality))
+        });
+        let world = &intersector.scene.world;
+        let pyramids = plan.mipmaps.then(|| Pyramids::new(world, &plan.effects));
+        let indirect = plan.paths.as_ref().map(|paths| IndirectLight::new(scene, world, paths));
         let camera = CameraSampler::new(scene, &plan);
         let looks = Looks { tests: plan.tests, smooth: plan.smooth, facing: plan.facing };
         let limits = Limits { max_depth: quality.max_depth, min_contribution: quality.min_contribution };
-        Frame { job, plan, camera, intersector, looks, pyramids, indirect, limits }
+        Frame { job, plan, camera, intersector, earlier_seconds, looks, pyramids, indirect, limits }
     }
 
     /// The quality settings of the scene that is rendered.

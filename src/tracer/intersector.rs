@@ -34,7 +34,7 @@ pub struct Intersector<F> {
     /// What the user should know about the structures, at most one sentence.
     pub notes: Vec<String>,
     accelerator: Option<Accelerator>,
-    functions: PhantomData<F>,
+    functions: PhantomData<fn() -> F>,
 }
 
 impl<F: StudentFunctions> Intersector<F> {
@@ -76,6 +76,12 @@ impl<F: StudentFunctions> Intersector<F> {
             world,
         };
         Intersector { scene, notes, accelerator: plan.accelerator, functions: PhantomData }
+    }
+
+    /// The number of primitives of the scene and of all its shared meshes.
+    pub fn n_primitives(&self) -> usize {
+        let world = &self.scene.world;
+        world.primitives.len() + world.shared_meshes.iter().map(|mesh| mesh.primitives.len()).sum::<usize>()
     }
 
     /// Bytes of memory that the structures of all shared meshes take.

@@ -3,7 +3,7 @@
 //!
 //! [`Renderer`] renders the frames of a kit. `plan` decides what is computed, and what replaces functions
 //! that are not written. `frame` puts together `camera_sampler`, which makes camera rays, and `intersector`,
-//! which finds their hits. The intersector searches a `structure` through a `probe`, which tests triangles
+//! which finds their hits; measurements use the intersectors again that `kept` keeps. The intersector searches a `structure` through a `probe`, which tests triangles
 //! and spheres by `intersection` and shapes in spaces of their own by `solids`. `grid_resolution` chooses the
 //! cells of a grid, and `large_leaves` notes where a tree could not be divided as asked. `path` follows a ray
 //! through the tree of its secondary rays, from `interaction` to interaction. With indirect light `path_tracer`
@@ -21,6 +21,7 @@ mod hit;
 mod interaction;
 mod intersection;
 mod intersector;
+mod kept;
 mod large_leaves;
 mod motion;
 mod outlines;
@@ -51,6 +52,7 @@ use gamma2::decoded;
 use glam::Vec3;
 use hit::{Hit, Target};
 use intersector::Intersector;
+use kept::Built;
 use packets::PACKET;
 use path::{Path, Scratch};
 use plan::Plan;
@@ -128,7 +130,7 @@ fn render<F: StudentFunctions>(
     // Build the acceleration structures.
     let started = Instant::now();
     let frame = Frame::new(job, written, watch);
-    let build_seconds = started.elapsed().as_secs_f64();
+    let build_seconds = started.elapsed().as_secs_f64() + frame.earlier_seconds;
     // Render the pixels, with or without counts.
     let started = Instant::now();
     let (film, counts) =
@@ -211,7 +213,9 @@ fn first_hits<F: StudentFunctions>(
 ) -> Vec<Option<PrimitiveHit>> {
     // Build the structure of the scene's quality over the plain world.
     let plan = Plan::new(job, written);
-    let intersector = Intersector::<F>::new(World::plain(&job.scene), &plan, &job.scene.quality);
+    let Built { intersector, .. } = kept::built(job, &plan, written, true, || {
+        Intersector::<F>::new(World::plain(&job.scene), &plan, &job.scene.quality)
+    });
     let n_primitives = intersector.scene.world.primitives.len() as u32;
     // Number the planes after the primitives.
     let primitive_of = |hit: Hit| match hit.target {

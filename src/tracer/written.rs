@@ -25,6 +25,11 @@ impl<F: StudentFunctions> Written<F> {
         functions.iter().all(|&function| self.has(function))
     }
 
+    /// The functions that have been excluded.
+    pub fn left_out(&self) -> &[Function] {
+        &self.left_out
+    }
+
     /// Excludes `function` from now on; returns `false` if it was excluded before.
     pub fn leave_out(&mut self, function: Function) -> bool {
         let new = !self.left_out.contains(&function);

@@ -12,7 +12,7 @@ const SAMPLERS: [Sampler; 5] =
     [Sampler::Center, Sampler::Random, Sampler::Jittered, Sampler::Gaussian, Sampler::LowDiscrepancy];
 
 fn job(scene: &Scene, threads: usize) -> RenderJob {
-    RenderJob { scene: scene.clone(), view: View::Shaded, seed: 5, threads, count: true }
+    RenderJob { scene: scene.clone(), view: View::Shaded, seed: 5, threads, count: true, reuse: false }
 }
 
 fn render(scene: &Scene) -> Rendering {

@@ -10,7 +10,7 @@ use raykata::kit::{RenderJob, Rendering, StudentKit, View};
 use raykata::scene::{Accelerator, Scene, Split};
 
 fn render_with(scene: &Scene, threads: usize, count: bool) -> Rendering {
-    let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads, count };
+    let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads, count, reuse: false };
     solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled")
 }
 

@@ -266,7 +266,14 @@ fn everything() -> Scene {
 #[test]
 fn threads_change_no_pixel_and_no_count_of_indirect_light() {
     let frame = |threads: usize| {
-        let job = RenderJob { scene: everything(), view: View::Shaded, seed: 5, threads, count: true };
+        let job = RenderJob {
+            scene: everything(),
+            view: View::Shaded,
+            seed: 5,
+            threads,
+            count: true,
+            reuse: false,
+        };
         let rendering = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
         (rendering.film, rendering.counts)
     };
@@ -281,7 +288,7 @@ fn threads_change_no_pixel_and_no_count_of_indirect_light() {
 fn the_counts_of_paths_are_those_of_their_rays() {
     let mut scene = everything();
     scene.quality.samples_per_pixel = 1;
-    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: true };
+    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: true, reuse: false };
     let door = solutions::Kit.door();
     let counts = door.render(&job, &Unwatched).expect("not cancelled").counts;
     let pixels = (0..30).flat_map(|y| (0..40).map(move |x| (x, y)));

@@ -19,7 +19,14 @@ fn file(name: &str, width: u32, height: u32) -> Scene {
 }
 
 fn render(scene: &Scene) -> Rendering {
-    let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 1, count: true };
+    let job = RenderJob {
+        scene: scene.clone(),
+        view: View::Shaded,
+        seed: 0,
+        threads: 1,
+        count: true,
+        reuse: false,
+    };
     solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled")
 }
 
@@ -57,7 +64,7 @@ fn any_number_of_threads_asks_the_same_questions() {
         let with = |threads: usize| {
             let mut scene = scene.clone();
             scene.quality.accelerator = accelerator;
-            let job = RenderJob { scene, view: View::Shaded, seed: 0, threads, count: true };
+            let job = RenderJob { scene, view: View::Shaded, seed: 0, threads, count: true, reuse: false };
             let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
             (frame.film, frame.counts)
         };
@@ -127,7 +134,8 @@ fn no_placed_shape_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
             );
             let scene = lone(shape, &steps, size);
             let frame = render(&scene);
-            let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
+            let job =
+                RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false, reuse: false };
             let normals = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled").film;
             let light = Vec3::new(1.0, 1.1, 0.9).normalize();
             let mut lit = 0;

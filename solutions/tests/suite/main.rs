@@ -11,6 +11,7 @@ mod frames;
 mod heckbert;
 mod indirect;
 mod instances;
+mod kept;
 mod leaks;
 mod light;
 mod methods;

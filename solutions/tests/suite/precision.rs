@@ -14,7 +14,7 @@ use std::path::Path;
 fn in_precision(scene: &Scene, precision: Precision) -> Rendering {
     let mut scene = scene.clone();
     scene.quality.precision = precision;
-    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: true };
+    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: true, reuse: false };
     let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
     assert!(frame.notes.is_empty(), "{:?}", frame.notes);
     frame

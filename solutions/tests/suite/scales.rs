@@ -124,7 +124,8 @@ fn first_hits_do_not_depend_on_the_size_of_the_scene() {
         let hits = |k: i32| {
             let mut scene = scaled(k);
             scene.quality.accelerator = accelerator;
-            let job = RenderJob { scene, view: View::Shaded, seed: 1, threads: 1, count: false };
+            let job =
+                RenderJob { scene, view: View::Shaded, seed: 1, threads: 1, count: false, reuse: false };
             let size = 2f32.powi(k);
             // Directions keep their lengths, so t has the size of the scene.
             let rays: Vec<Ray> = rays.iter().map(|ray| Ray::new(size * ray.origin, ray.direction)).collect();

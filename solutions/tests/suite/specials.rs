@@ -112,8 +112,14 @@ fn numbers_that_break_formulas_break_no_picture() {
         scene.materials.iter_mut().for_each(|material| material.texture = Some(0));
         for accelerator in [Accelerator::Bvh, Accelerator::BruteForce] {
             scene.quality.accelerator = accelerator;
-            let job =
-                RenderJob { scene: scene.clone(), view: View::Shaded, seed: n, threads: 1, count: true };
+            let job = RenderJob {
+                scene: scene.clone(),
+                view: View::Shaded,
+                seed: n,
+                threads: 1,
+                count: true,
+                reuse: false,
+            };
             let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
             let bad = frame.film.pixels.iter().filter(|pixel| !pixel.is_finite()).count();
             assert_eq!(bad, 0, "{bad} pixels are not finite, {accelerator:?}\n{text}");

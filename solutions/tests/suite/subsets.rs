@@ -83,7 +83,7 @@ fn frame(set: Set) -> Frame {
 }
 
 fn frame_of(scene: Scene) -> Frame {
-    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: true };
+    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: true, reuse: false };
     let rendering = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
     let film = job.scene.film;
     let pixels = (0..film.height).flat_map(|y| (0..film.width).map(move |x| (x, y)));

@@ -107,6 +107,7 @@ pub fn run(options: &Options) -> Result<()> {
         seed: options.seed,
         threads: options.threads.count(),
         count: !options.no_counts,
+        reuse: false,
     };
     let bar = FrameBar::new("");
     let rendering = kit_error::catch(|| kit.render(&job, &bar))?.context("the frame was cancelled")?;

@@ -92,7 +92,7 @@ pub fn run(options: &Options) -> Result<()> {
         "picture", "reflected rays", "refracted rays", "indirect rays", "seconds"
     );
     for (column, (what, scene)) in pictures.into_iter().enumerate() {
-        let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true };
+        let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true, reuse: true };
         let rendering =
             kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
         let (counts, seconds) = (rendering.counts, rendering.render_seconds);

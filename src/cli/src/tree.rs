@@ -85,7 +85,7 @@ pub fn run(options: &Options) -> Result<()> {
     }
     let root = root()?;
     let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
-    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false };
+    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false, reuse: false };
     let rays = kit_error::catch(|| source.fresh().trace(&job, x, y))?;
     say(format_args!("{}", show(&rays, options.format)?));
     Ok(())

@@ -125,7 +125,7 @@ impl Scenes {
 fn primitives_of(scene: &Scene, reference: &dyn Kit) -> Result<u64> {
     let mut scene = scene.clone();
     (scene.film.width, scene.film.height) = (1, 1);
-    let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
+    let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false, reuse: false };
     let frame = kit_error::catch(|| reference.render(&job, &Unwatched))?;
     Ok(frame.context("the frame is not cancelled")?.primitives)
 }
@@ -190,7 +190,14 @@ fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
 }
 
 fn shown(name: &str, scene: &Scene, kit: &dyn Kit) -> Shown {
-    let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads: 1, count: true };
+    let job = RenderJob {
+        scene: scene.clone(),
+        view: View::Shaded,
+        seed: 1,
+        threads: 1,
+        count: true,
+        reuse: false,
+    };
     let normals = RenderJob { view: View::Normals, count: false, ..job.clone() };
     let normals =
         kit_error::catch(|| kit.render(&normals, &Unwatched)).ok().flatten().map(|frame| bits(&frame));

@@ -99,7 +99,7 @@ fn a_frame_through_the_pipe_is_the_frame_that_is_linked() {
     let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/stage2.toml"));
     let mut scene = raykata::scene::load::load(file).expect("the scene");
     (scene.film.width, scene.film.height) = (40, 25);
-    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 2, count: true };
+    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 2, count: true, reuse: false };
 
     struct Seen(AtomicU64);
     impl Watch for Seen {
@@ -126,7 +126,7 @@ fn a_frame_that_is_no_longer_wanted_ends() {
     }
     let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/stage1.toml"));
     let scene = raykata::scene::load::load(file).expect("the scene");
-    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: false };
+    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: false, reuse: false };
     let door = door();
     assert_eq!(door.render(&job, &Unwanted), None);
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));

@@ -24,7 +24,7 @@ pub fn write(out: &Path, kit: &dyn Kit, scene: &Scene, rows: &[Measured], depth:
         scene.quality = row.row.quality;
         (scene.film.width, scene.film.height) = (row.film.width, row.film.height);
         let file = |what: &str| out.join(format!("{what}-{}.png", file_name(&row.name)));
-        let job = RenderJob { scene, view: View::Work, seed: 0, threads: 0, count: true };
+        let job = RenderJob { scene, view: View::Work, seed: 0, threads: 0, count: true, reuse: false };
         let edges = kit_error::catch(|| kit.outlines(&job, depth))?;
         if !edges.is_empty() {
             save(&with_edges(&row.film, &camera_for(&job.scene), &edges), &file("cells"))?;

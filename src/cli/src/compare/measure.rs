@@ -185,7 +185,8 @@ impl Bench<'_> {
         scene.quality = row.quality;
         scene.film.width = (scene.film.width / slice).max(1);
         scene.film.height = (scene.film.height / slice).max(1);
-        let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: self.threads, count };
+        let job =
+            RenderJob { scene, view: View::Shaded, seed: 0, threads: self.threads, count, reuse: false };
         kit_error::catch(|| self.kit.render(&job, &Unwatched))?.context("the frame was cancelled")
     }
 }

@@ -47,7 +47,14 @@ pub fn judge(root: &Path, bench: &Bench<'_>, scene: &Scene, measured: &mut Measu
         }
         let point = &mut measured.points[index];
         let scene = point.setting.apply(scene);
-        let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: bench.threads, count: false };
+        let job = RenderJob {
+            scene,
+            view: View::Shaded,
+            seed: 0,
+            threads: bench.threads,
+            count: false,
+            reuse: true,
+        };
         let hits = kit_error::catch(|| bench.kit.first_hits(&job, &rays))?;
         judge.send(&hits)?;
         point.hits = Some(judge.receive().context("the judge has no verdict on first hits")?);

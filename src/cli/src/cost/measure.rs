@@ -154,7 +154,14 @@ impl Bench<'_> {
     }
 
     pub fn job(&self, scene: &Scene, seed: u64, count: bool) -> RenderJob {
-        RenderJob { scene: scene.clone(), view: View::Shaded, seed, threads: self.threads, count }
+        RenderJob {
+            scene: scene.clone(),
+            view: View::Shaded,
+            seed,
+            threads: self.threads,
+            count,
+            reuse: true,
+        }
     }
 
     /// The same with a deadline, and with a progress bar.

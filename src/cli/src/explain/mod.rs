@@ -58,8 +58,8 @@ pub struct Options {
 const MEASURED_SAMPLES: u32 = 4;
 
 /// The most samples of a picture that is measured, without `--full`. With five rounds and ten effects, the scene of the README
-/// then takes about 15 s on two cores.
-const MEASURED_WORK: f64 = 300_000.0;
+/// then takes about 10 s on two cores.
+const MEASURED_WORK: f64 = 150_000.0;
 
 impl Options {
     /// Reads the arguments and options.
@@ -185,7 +185,7 @@ fn asked(explained: &Explained<'_>) {
 
 /// The counts and the time of a picture.
 fn render(kit: &dyn Kit, scene: Scene) -> Result<(Counts, f64)> {
-    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true };
+    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true, reuse: true };
     let rendering = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
     Ok((rendering.counts, rendering.render_seconds))
 }

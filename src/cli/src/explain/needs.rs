@@ -54,7 +54,14 @@ pub fn samples(explained: &Explained<'_>) -> Result<()> {
     // Render the picture twice with different random numbers. The difference of two independent pixels has twice the
     // variance of one.
     let film = |seed| -> Result<Film> {
-        let job = RenderJob { scene: (*scene).clone(), view: View::Shaded, seed, threads: 0, count: false };
+        let job = RenderJob {
+            scene: (*scene).clone(),
+            view: View::Shaded,
+            seed,
+            threads: 0,
+            count: false,
+            reuse: true,
+        };
         Ok(kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?.film)
     };
     let (one, other) = (film(1)?, film(2)?);

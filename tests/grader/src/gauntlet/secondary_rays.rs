@@ -74,7 +74,7 @@ impl Pane {
 /// Renders a frame of the pane and returns its cost. Every camera ray must hit the pane and spawn two secondary rays.
 fn counts(kit: &dyn Kit, scene: &str) -> Result<Counts> {
     let scene = load::parse(Path::new("pane.toml"), scene).map_err(|error| anyhow!("{error}"))?;
-    let job = RenderJob { scene, view: View::Shaded, seed: 1, threads: 1, count: true };
+    let job = RenderJob { scene, view: View::Shaded, seed: 1, threads: 1, count: true, reuse: false };
     let counts = kit.render(&job, &Unwatched).map_or_else(Counts::default, |frame| frame.counts);
     ensure!(
         counts.reflection == counts.primary && counts.transmission == counts.primary,

@@ -112,7 +112,7 @@ fn a_frame_in_a_sandbox_is_the_frame_outside() {
     let mut scene = raykata::scene::load::load(file).expect("the scene");
     (scene.film.width, scene.film.height) = (40, 25);
     // Ask for two threads. A sandbox allows none.
-    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 2, count: true };
+    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 2, count: true, reuse: false };
     let watch: &dyn Watch = &Unwatched;
     let kit = sandboxed(misbehaving(), 10);
     let sandboxed = kit.render(&job, watch).expect("the frame is not cancelled");

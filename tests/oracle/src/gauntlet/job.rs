@@ -33,5 +33,5 @@ pub fn job(triangles: &[Triangle], quality: Quality) -> RenderJob {
         scene.nodes = vec![Node { shape: Some(Shape::Mesh(0)), ..Node::default() }];
         scene.roots = vec![0];
     }
-    RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false }
+    RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false, reuse: false }
 }
