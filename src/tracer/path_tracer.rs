@@ -121,18 +121,11 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 return color + path.weight * self.background_of_path(indirect, direction, pdf, scratch);
             };
             // Compute the surface interaction and its material.
-            scratch.note(Event::Hit);
-            let world = &self.intersector.scene.world;
-            let at = SurfaceInteraction::new::<F>(world, self.looks, &path.ray, &found);
-            let number = record.hit(&path, found.t, at.material);
+            let (at, number) = self.surface_at(&path, &found, scratch, record);
             let material = self.material(&path, &found, &at, &mut scratch.tally);
             // Add the light of `[[lights]]`, which no ray finds by chance, without ambient light.
             if !self.plan.effects.materials[at.material].lights.is_empty() {
-                self.sample_lights(&path, &at, scratch);
-                let light = self.shade(&path, &at, &material, scratch, |ray, blocked| {
-                    record.shadow(&path, number, ray, blocked);
-                });
-                color += path.weight * light;
+                color += path.weight * self.direct_light(&path, number, &at, &material, scratch, record);
             }
             // Let the student's `step` collect other light and choose how the path continues.
             let (bounces, max_depth) = self.depth_of_step(path.depth);
@@ -173,12 +166,8 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 }
                 return color;
             };
-            let Some(next_path) = self.next_path(&next, &path, &found, number, &at, &material, scratch)
-            else {
-                return color;
-            };
             (origin, pdf) = (at.surface.point, next.pdf);
-            path = next_path;
+            path = self.next_path(&next, &path, &found, number, &at, &material, scratch);
             hit = self.closest_hit(&path.ray, scratch);
         }
     }
@@ -320,15 +309,13 @@ impl<F: StudentFunctions> Frame<'_, F> {
         };
         let sample = LightSample { direction, distance, radiance };
         let Some(ray) = F::shadow_ray(&at.surface, &sample) else { return Vec3::ZERO };
-        scratch.note(Event::Shadow);
-        let ray = self.off_surface(at, Ray { time: path.ray.time, ..ray });
-        let blocked = self.intersector.any_hit(&ray, &mut scratch.tally);
-        record(&ray, blocked);
-        if blocked { Vec3::ZERO } else { radiance }
+        match self.is_blocked(&ray, path, at, &mut scratch.tally, &mut record) {
+            true => Vec3::ZERO,
+            false => radiance,
+        }
     }
 
-    /// The path along the ray `next`. `None` if a diffuse ray would start into the surface, which happens where the shading
-    /// normal differs from the geometric one.
+    /// The path along the ray `next`, which the student's `step` has chosen.
     #[allow(clippy::too_many_arguments)]
     fn next_path<T: Tally>(
         &self,
@@ -339,7 +326,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         at: &SurfaceInteraction,
         material: &Material,
         scratch: &mut Scratch<T>,
-    ) -> Option<Path> {
+    ) -> Path {
         let takes = &self.plan.effects.materials[at.material];
         let NextRay { lobe, direction, weight, .. } = *next;
         let bounce = lobe.bounce();
@@ -349,9 +336,6 @@ impl<F: StudentFunctions> Frame<'_, F> {
             Lobe::Reflection => (Event::Reflection, RayKind::Reflection),
             Lobe::Transmission => (Event::Transmission, RayKind::Transmission),
         };
-        if lobe == Lobe::Diffuse && direction.dot(at.surface.geometric_normal) <= 0.0 {
-            return None;
-        }
         // Spread the ideal reflected or refracted ray of a rough surface.
         if lobe != Lobe::Diffuse && takes.glossy {
             scratch.note(Event::RandomNumber);
@@ -367,6 +351,6 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let ray = self.off_surface(at, Ray { time: path.ray.time, ..ray });
         let cone = self.cone_beyond(path, hit, at, material, bounce);
         let (points, depth) = (path.points.beyond_vertex(), path.depth + 1);
-        Some(Path { ray, points, weight: secondary.weight, depth, kind, parent: Some(number), cone })
+        Path { ray, points, weight: secondary.weight, depth, kind, parent: Some(number), cone }
     }
 }
