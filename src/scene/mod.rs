@@ -16,7 +16,7 @@ mod triangulate;
 pub use background::{Background, EnvironmentMap, Gradient};
 pub use gamma2::{ColorPlace, Gamma2, GradientColor, MaterialColor};
 pub use quality::{
-    Accelerator, Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
+    Accelerator, NextEvent, Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
 };
 pub use shown::Shown;
 

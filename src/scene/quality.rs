@@ -226,6 +226,27 @@ impl TextureFilter {
         [("bilinear", TextureFilter::Bilinear), ("mipmap", TextureFilter::Mipmap)];
 }
 
+/// With indirect light: how paths find the light of emitters and of an environment map (stage 11). All three give the same
+/// picture with enough samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NextEvent {
+    /// Diffuse rays find them by chance.
+    Off,
+    /// Each diffuse surface of a path samples one of them (next-event estimation). A diffuse ray that finds a sampled light by
+    /// chance adds nothing.
+    Only,
+    /// Both, with the weights of multiple importance sampling.
+    #[default]
+    On,
+}
+
+impl NextEvent {
+    /// All three, with their names in scene files.
+    pub const ALL: [(&str, NextEvent); 3] =
+        [("off", NextEvent::Off), ("only", NextEvent::Only), ("on", NextEvent::On)];
+}
+
 /// Floating-point precision of the ray tests against triangles and spheres (stage 10).
 ///
 /// Rays and shapes themselves are stored in single precision. Infinite planes, boxes, cylinders, cones, disks
@@ -261,9 +282,8 @@ pub struct Quality {
     /// A secondary ray is not traced if its weight in the pixel is below this in every channel, `0..=1`
     /// (stage 5); 0.001 by default.
     pub min_contribution: f32,
-    /// With indirect light: whether each vertex of a path samples an emitter or the environment map (next-event
-    /// estimation, stage 11); `true` by default. Otherwise paths find emitters by chance only.
-    pub next_event: bool,
+    /// With indirect light: how paths find emitters and an environment map (stage 11); by samples and by chance by default.
+    pub next_event: NextEvent,
     /// With indirect light: the number of bounces from which on Russian roulette ends paths, at least 2 (stage 11); 3 by
     /// default. From `max_depth` on it never does.
     pub roulette_from: u32,
@@ -305,7 +325,7 @@ impl Default for Quality {
             texture_filter: TextureFilter::default(),
             max_depth: 5,
             min_contribution: 0.001,
-            next_event: true,
+            next_event: NextEvent::default(),
             roulette_from: 3,
             clamp: 0.0,
             accelerator: Accelerator::default(),

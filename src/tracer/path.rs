@@ -143,15 +143,10 @@ impl<F: StudentFunctions> Frame<'_, F> {
         record: &mut impl Record,
     ) -> Vec3 {
         // Compute the surface interaction and its material.
-        scratch.note(Event::Hit);
-        let at = SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.looks, &path.ray, hit);
-        let number = record.hit(path, hit.t, at.material);
+        let (at, number) = self.surface_at(path, hit, scratch, record);
         let material = self.material(path, hit, &at, &mut scratch.tally);
         // Shade the point with direct light, tracing shadow rays.
-        self.sample_lights(path, &at, scratch);
-        let mut color = self.shade(path, &at, &material, scratch, |ray, blocked| {
-            record.shadow(path, number, ray, blocked);
-        });
+        let mut color = self.direct_light(path, number, &at, &material, scratch, record);
         // Add the light that the surface emits by itself. The plan knows whether any surface does.
         if self.plan.emission {
             color += material.emission;
@@ -159,6 +154,36 @@ impl<F: StudentFunctions> Frame<'_, F> {
         // Queue the secondary rays.
         self.scatter(path, hit, number, &at, &material, scratch);
         color
+    }
+
+    /// The surface interaction at `hit`, and the index of the path in the record.
+    #[inline(always)]
+    pub(super) fn surface_at<T: Tally>(
+        &self,
+        path: &Path,
+        hit: &Hit,
+        scratch: &mut Scratch<T>,
+        record: &mut impl Record,
+    ) -> (SurfaceInteraction, usize) {
+        scratch.note(Event::Hit);
+        let at = SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.looks, &path.ray, hit);
+        let number = record.hit(path, hit.t, at.material);
+        (at, number)
+    }
+
+    /// The light of `[[lights]]` that the surface sends back along the path; `number` is the index of the path in the record.
+    #[inline(always)]
+    pub(super) fn direct_light<T: Tally>(
+        &self,
+        path: &Path,
+        number: usize,
+        at: &SurfaceInteraction,
+        material: &Material,
+        scratch: &mut Scratch<T>,
+        record: &mut impl Record,
+    ) -> Vec3 {
+        self.sample_lights(path, at, scratch);
+        self.shade(path, at, material, scratch, |ray, blocked| record.shadow(path, number, ray, blocked))
     }
 
     /// The material of the surface, with `ambient` and `diffuse` multiplied by its image.
@@ -231,12 +256,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
 
     /// Puts a sample of each light that can reach the surface into `scratch.lights`.
     #[inline(always)]
-    pub(super) fn sample_lights<T: Tally>(
-        &self,
-        path: &Path,
-        at: &SurfaceInteraction,
-        scratch: &mut Scratch<T>,
-    ) {
+    fn sample_lights<T: Tally>(&self, path: &Path, at: &SurfaceInteraction, scratch: &mut Scratch<T>) {
         scratch.lights.clear();
         scratch.shadows.clear();
         let effects = &self.plan.effects;
@@ -271,7 +291,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
     /// Direct light by the student's `shade`, which asks for a shadow ray per light; `record` receives those
     /// that are traced.
     #[inline(always)]
-    pub(super) fn shade<T: Tally>(
+    fn shade<T: Tally>(
         &self,
         path: &Path,
         at: &SurfaceInteraction,
@@ -283,15 +303,25 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let to_viewer = -self.unit(path.ray.direction);
         let ambient = self.plan.ambient;
         F::shade(&at.surface, to_viewer, material, ambient, lights, |light, shadow_ray| {
-            if !shadows[light] {
-                return true;
-            }
-            tally.note(Event::Shadow);
-            let ray = self.off_surface(at, Ray { time: path.ray.time, ..*shadow_ray });
-            let blocked = self.intersector.any_hit(&ray, tally);
-            record(&ray, blocked);
-            !blocked
+            !shadows[light] || !self.is_blocked(shadow_ray, path, at, tally, &mut record)
         })
+    }
+
+    /// Whether an object blocks the shadow ray `ray` that leaves the surface `at`; `record` receives the ray that is traced.
+    #[inline(always)]
+    pub(super) fn is_blocked<T: Tally>(
+        &self,
+        ray: &Ray,
+        path: &Path,
+        at: &SurfaceInteraction,
+        tally: &mut T,
+        record: &mut impl FnMut(&Ray, bool),
+    ) -> bool {
+        tally.note(Event::Shadow);
+        let ray = self.off_surface(at, Ray { time: path.ray.time, ..*ray });
+        let blocked = self.intersector.any_hit(&ray, tally);
+        record(&ray, blocked);
+        blocked
     }
 
     /// Adds the secondary rays of a surface to the waiting rays; `number` is the index of the path in the
@@ -375,9 +405,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
             record.miss(path);
             return self.background(path.ray.direction, scratch);
         };
-        scratch.note(Event::Hit);
-        let at = SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.looks, &path.ray, &hit);
-        record.hit(path, hit.t, at.material);
+        let (at, _) = self.surface_at(path, &hit, scratch, record);
         0.5 * at.surface.shading_normal + 0.5
     }
 }

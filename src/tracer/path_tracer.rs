@@ -10,6 +10,7 @@ use super::path::{Path, Scratch};
 use super::random_choices::{before_emitter, sample_rough_surface};
 use super::record::Record;
 use crate::count::{Event, Tally};
+use crate::emitter::{AreaEmitter, EmitterSample};
 use crate::kit::{LightSample, Limits, RayKind, SecondaryRay, StudentFunctions};
 use crate::light_path::{
     ChosenEmitter, LightCandidate, Lobe, NextRay, PathEffects, PathState, PathVertex, Scattering,
@@ -18,7 +19,7 @@ use crate::light_path::{
 use crate::material::Material;
 use crate::random::{Points, Purpose};
 use crate::ray::Ray;
-use crate::scene::{Background, EnvironmentMap, Scene};
+use crate::scene::{Background, EnvironmentMap, NextEvent, Scene};
 use crate::world::World;
 use glam::{Vec2, Vec3};
 
@@ -32,10 +33,16 @@ pub struct IndirectLight {
     diffuse: Vec<bool>,
     /// For each material whether it is that of a visible light, which `shade` samples.
     is_light: Vec<bool>,
+    /// Whether light that is sampled is never added when a ray finds it by chance.
+    samples_only: bool,
 }
 
 /// The limits of `scatter` for a path, whose length `step` limits.
 const UNLIMITED: Limits = Limits { max_depth: u32::MAX, min_contribution: 0.0 };
+
+/// The factor by which light that is only sampled is scaled, with its density, a power of two. So one sample adds what it adds
+/// otherwise, and its weight in multiple importance sampling is 1, as if the density of diffuse rays were 0.
+const DENSE: f32 = 4_294_967_296.0;
 
 /// The number of bounces at which the student's `survives` begins to end paths.
 const ROULETTE_BEGINS: u32 = 3;
@@ -47,7 +54,7 @@ impl IndirectLight {
         for visible in &scene.visible_lights {
             is_light[visible.material] = true;
         }
-        let samples = scene.quality.next_event;
+        let samples = scene.quality.next_event != NextEvent::Off;
         let is_sampled =
             |material: usize| samples && paths.sampled.get(material) == Some(&true) && !is_light[material];
         let emitters = Emitters::new(world, is_sampled);
@@ -59,7 +66,13 @@ impl IndirectLight {
             }
             _ => None,
         };
-        IndirectLight { emitters, environment, diffuse: paths.diffuse.clone(), is_light }
+        IndirectLight {
+            emitters,
+            environment,
+            diffuse: paths.diffuse.clone(),
+            is_light,
+            samples_only: scene.quality.next_event == NextEvent::Only,
+        }
     }
 
     /// The probability with which a vertex samples the environment map and not an emitter.
@@ -78,6 +91,21 @@ impl IndirectLight {
     /// Whether there is more than one light to choose from.
     fn has_choice(&self) -> bool {
         self.emitters.len() + usize::from(self.environment.is_some()) > 1
+    }
+}
+
+/// The same light with a density and a radiance that are [`DENSE`] times as large.
+fn alone(light: LightCandidate) -> LightCandidate {
+    match light {
+        LightCandidate::Environment(sample) => LightCandidate::Environment(EmitterSample {
+            radiance: DENSE * sample.radiance,
+            pdf: DENSE * sample.pdf,
+            ..sample
+        }),
+        LightCandidate::Emitter(ChosenEmitter { emitter, probability }) => {
+            let emitter = AreaEmitter { radiance: DENSE * emitter.radiance, ..emitter };
+            LightCandidate::Emitter(ChosenEmitter { emitter, probability: DENSE * probability })
+        }
     }
 }
 
@@ -121,18 +149,11 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 return color + path.weight * self.background_of_path(indirect, direction, pdf, scratch);
             };
             // Compute the surface interaction and its material.
-            scratch.note(Event::Hit);
-            let world = &self.intersector.scene.world;
-            let at = SurfaceInteraction::new::<F>(world, self.looks, &path.ray, &found);
-            let number = record.hit(&path, found.t, at.material);
+            let (at, number) = self.surface_at(&path, &found, scratch, record);
             let material = self.material(&path, &found, &at, &mut scratch.tally);
             // Add the light of `[[lights]]`, which no ray finds by chance, without ambient light.
             if !self.plan.effects.materials[at.material].lights.is_empty() {
-                self.sample_lights(&path, &at, scratch);
-                let light = self.shade(&path, &at, &material, scratch, |ray, blocked| {
-                    record.shadow(&path, number, ray, blocked);
-                });
-                color += path.weight * light;
+                color += path.weight * self.direct_light(&path, number, &at, &material, scratch, record);
             }
             // Let the student's `step` collect other light and choose how the path continues.
             let (bounces, max_depth) = self.depth_of_step(path.depth);
@@ -155,6 +176,12 @@ impl<F: StudentFunctions> Frame<'_, F> {
             let by_chance = emitter.is_some() && emitter == left;
             left = emitter;
             let emitter = if by_chance { None } else { emitter };
+            // Where light is only sampled, a diffuse ray adds none of it, and its samples have the weight 1.
+            let is_sampled = indirect.samples_only && emitter.is_some() && pdf < f32::INFINITY;
+            let emission = if is_sampled { Vec3::ZERO } else { emission };
+            if indirect.samples_only {
+                light = light.map(alone);
+            }
             let vertex = PathVertex { surface: at.surface, scattering, emission, emitter, light };
             let step = F::step(&state, &vertex, max_depth, &numbers);
             color += step.light;
@@ -173,12 +200,8 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 }
                 return color;
             };
-            let Some(next_path) = self.next_path(&next, &path, &found, number, &at, &material, scratch)
-            else {
-                return color;
-            };
             (origin, pdf) = (at.surface.point, next.pdf);
-            path = next_path;
+            path = self.next_path(&next, &path, &found, number, &at, &material, scratch);
             hit = self.closest_hit(&path.ray, scratch);
         }
     }
@@ -296,6 +319,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let background = self.background(direction, scratch);
         match &indirect.environment {
             None => background,
+            Some(_) if indirect.samples_only && pdf < f32::INFINITY => Vec3::ZERO,
             Some((_, table, share)) => F::emitted_contribution(background, pdf, share * table.pdf(direction)),
         }
     }
@@ -320,15 +344,13 @@ impl<F: StudentFunctions> Frame<'_, F> {
         };
         let sample = LightSample { direction, distance, radiance };
         let Some(ray) = F::shadow_ray(&at.surface, &sample) else { return Vec3::ZERO };
-        scratch.note(Event::Shadow);
-        let ray = self.off_surface(at, Ray { time: path.ray.time, ..ray });
-        let blocked = self.intersector.any_hit(&ray, &mut scratch.tally);
-        record(&ray, blocked);
-        if blocked { Vec3::ZERO } else { radiance }
+        match self.is_blocked(&ray, path, at, &mut scratch.tally, &mut record) {
+            true => Vec3::ZERO,
+            false => radiance,
+        }
     }
 
-    /// The path along the ray `next`. `None` if a diffuse ray would start into the surface, which happens where the shading
-    /// normal differs from the geometric one.
+    /// The path along the ray `next`, which the student's `step` has chosen.
     #[allow(clippy::too_many_arguments)]
     fn next_path<T: Tally>(
         &self,
@@ -339,7 +361,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         at: &SurfaceInteraction,
         material: &Material,
         scratch: &mut Scratch<T>,
-    ) -> Option<Path> {
+    ) -> Path {
         let takes = &self.plan.effects.materials[at.material];
         let NextRay { lobe, direction, weight, .. } = *next;
         let bounce = lobe.bounce();
@@ -349,9 +371,6 @@ impl<F: StudentFunctions> Frame<'_, F> {
             Lobe::Reflection => (Event::Reflection, RayKind::Reflection),
             Lobe::Transmission => (Event::Transmission, RayKind::Transmission),
         };
-        if lobe == Lobe::Diffuse && direction.dot(at.surface.geometric_normal) <= 0.0 {
-            return None;
-        }
         // Spread the ideal reflected or refracted ray of a rough surface.
         if lobe != Lobe::Diffuse && takes.glossy {
             scratch.note(Event::RandomNumber);
@@ -367,6 +386,6 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let ray = self.off_surface(at, Ray { time: path.ray.time, ..ray });
         let cone = self.cone_beyond(path, hit, at, material, bounce);
         let (points, depth) = (path.points.beyond_vertex(), path.depth + 1);
-        Some(Path { ray, points, weight: secondary.weight, depth, kind, parent: Some(number), cone })
+        Path { ray, points, weight: secondary.weight, depth, kind, parent: Some(number), cone }
     }
 }

@@ -8,7 +8,7 @@ use raykata::film::Film;
 use raykata::frame::Unwatched;
 use raykata::kit::{RayKind, RenderJob, StudentKit, TracedRay, View};
 use raykata::material::{Texture, Wrap};
-use raykata::scene::{Background, EnvironmentMap, Scene};
+use raykata::scene::{Background, EnvironmentMap, NextEvent, Scene};
 use std::sync::Arc;
 
 /// A small picture with indirect light, with what `rest` adds.
@@ -54,14 +54,15 @@ fn furnace() -> Scene {
 #[test]
 fn a_furnace_has_the_light_of_all_bounces() {
     for (depth, next_event, roulette_from) in [
-        (0, true, 3),
-        (1, true, 3),
-        (2, false, 3),
-        (3, true, 3),
-        (6, false, 2),
-        (12, true, 3),
-        (12, true, 8),
-        (12, false, 1000),
+        (0, NextEvent::On, 3),
+        (1, NextEvent::On, 3),
+        (2, NextEvent::Off, 3),
+        (3, NextEvent::On, 3),
+        (3, NextEvent::Only, 3),
+        (6, NextEvent::Off, 2),
+        (12, NextEvent::On, 3),
+        (12, NextEvent::On, 8),
+        (12, NextEvent::Off, 1000),
     ] {
         let mut scene = furnace();
         let quality = &mut scene.quality;
@@ -73,7 +74,7 @@ fn a_furnace_has_the_light_of_all_bounces() {
         // A rounding of each of the bounces can add up where there is no noise.
         assert!((mean - expected).abs() <= LARGEST_SCORE * error + 1e-6, "{case}");
         let counts = rendering.counts;
-        assert_eq!(counts.shadow > 0, next_event && depth > 0, "{case}");
+        assert_eq!(counts.shadow > 0, next_event != NextEvent::Off && depth > 0, "{case}");
         assert_eq!(counts.absorbed > 0, roulette_from <= depth && depth >= 3, "{case}");
         assert!(counts.indirect <= u64::from(depth) * counts.primary, "{case}");
     }
@@ -123,21 +124,25 @@ fn bright_patch() -> (Texture, EnvironmentMap) {
     (texture, EnvironmentMap { texture: 0, rotation: 0.4, scale: 1.5 })
 }
 
-/// With and without samples of emitters the means agree: light that both techniques find counts once.
+/// With samples of emitters, without them and with samples alone the means agree: light that both techniques find counts once.
 #[track_caller]
 fn techniques_agree(scene: &Scene, case: &str) {
-    let film = |next_event: bool| {
+    let film = |next_event: NextEvent| {
         let mut scene = scene.clone();
         (scene.quality.next_event, scene.quality.samples_per_pixel) = (next_event, 256);
         render(&scene).film
     };
-    let [with, without] = [true, false].map(film);
-    let differences: Vec<f64> = channels(&with).zip(channels(&without)).map(|(a, b)| a - b).collect();
-    let (difference, error) = mean(differences.iter().copied());
+    let without = film(NextEvent::Off);
     let (brightness, _) = mean(channels(&without));
-    assert!(difference.abs() <= LARGEST_SCORE * error, "{difference} ± {error} of {brightness}: {case}");
-    // The test is sharp: it sees 8 % of the light. And sampling helps where emitters are sampled.
-    assert!(LARGEST_SCORE * error < 0.08 * brightness, "± {error} of {brightness}: {case}");
+    for next_event in [NextEvent::On, NextEvent::Only] {
+        let with = film(next_event);
+        let differences: Vec<f64> = channels(&with).zip(channels(&without)).map(|(a, b)| a - b).collect();
+        let (difference, error) = mean(differences.iter().copied());
+        let case = format!("of {brightness}: {case}, {next_event:?}");
+        assert!(difference.abs() <= LARGEST_SCORE * error, "{difference} ± {error} {case}");
+        // The test is sharp: it sees 8 % of the light.
+        assert!(LARGEST_SCORE * error < 0.08 * brightness, "± {error} {case}");
+    }
 }
 
 #[test]

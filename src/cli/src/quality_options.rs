@@ -5,7 +5,8 @@ use anyhow::{Result, anyhow};
 use raykata::film::ToneCurve;
 use raykata::scene::load::Limits;
 use raykata::scene::{
-    Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter, TriangleMethod,
+    Accelerator, NextEvent, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter,
+    TriangleMethod,
 };
 
 /// The number of threads that render, the same for all commands.
@@ -103,7 +104,7 @@ pub struct QualityOptions {
     spheres: Option<SphereMethod>,
     precision: Option<Precision>,
     min_contribution: Option<f32>,
-    next_event: Option<bool>,
+    next_event: Option<NextEvent>,
     roulette_from: Option<u32>,
     clamp: Option<f32>,
     memory: Memory,
@@ -158,8 +159,6 @@ const SPHERES: [(&str, SphereMethod); 3] = [
     ("stable-roots", SphereMethod::StableRoots),
 ];
 
-const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
-
 const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
 
 impl QualityOptions {
@@ -188,8 +187,12 @@ impl QualityOptions {
         Opt::value("--spheres", "NAME", "Ray/sphere test.").choices(&names(&SPHERES)),
         Opt::value("--precision", "NAME", "Precision of ray/shape tests.").choices(&names(&PRECISIONS)),
         Opt::value("--min-contribution", "X", "Weight below which rays are not traced, 0 to 1."),
-        Opt::value("--next-event", "NAME", "Whether paths of indirect light sample emitters.")
-            .choices(&names(&SWITCH)),
+        Opt::value(
+            "--next-event",
+            "NAME",
+            "Whether paths of indirect light find emitters by chance, by samples only, or by both with weights.",
+        )
+        .choices(&names(&NextEvent::ALL)),
         Opt::value("--roulette-from", "N", "Bounces from which on Russian roulette ends paths."),
         Opt::value("--clamp", "X", "The largest channel of a sample of indirect light; 0 sets no limit."),
         Memory::OPTION,
@@ -213,7 +216,7 @@ impl QualityOptions {
             spheres: given.choice("--spheres", &SPHERES)?,
             precision: given.choice("--precision", &PRECISIONS)?,
             min_contribution: given.parsed("--min-contribution", parse_share)?,
-            next_event: given.choice("--next-event", &SWITCH)?,
+            next_event: given.choice("--next-event", &NextEvent::ALL)?,
             roulette_from: given.number("--roulette-from", 2..=1000)?,
             clamp: given.parsed("--clamp", parse_clamp)?,
             memory: Memory::read(given)?,
@@ -228,6 +231,11 @@ impl QualityOptions {
     /// Whether a size was given.
     pub fn names_a_size(&self) -> bool {
         self.size.is_some()
+    }
+
+    /// Whether a number of samples per pixel was given.
+    pub fn names_samples(&self) -> bool {
+        self.spp.is_some()
     }
 
     /// Sets the given parameters in the scene. Fails if a picture of the given size needs more memory than the limit.
@@ -273,7 +281,7 @@ pub fn arguments(own: &Quality, wanted: &Quality) -> String {
             ("--texture-filter", named(serde_json::to_value(quality.texture_filter))),
             ("--depth", quality.max_depth.to_string()),
             ("--min-contribution", quality.min_contribution.to_string()),
-            ("--next-event", if quality.next_event { "on" } else { "off" }.to_owned()),
+            ("--next-event", named(serde_json::to_value(quality.next_event))),
             ("--roulette-from", quality.roulette_from.to_string()),
             ("--clamp", quality.clamp.to_string()),
             ("--triangles", named(serde_json::to_value(quality.triangle_method))),
@@ -362,7 +370,7 @@ mod tests {
             texture_filter: TextureFilter::Mipmap,
             max_depth: 9,
             min_contribution: 0.03,
-            next_event: false,
+            next_event: NextEvent::Only,
             roulette_from: 8,
             clamp: 10.0,
             triangle_method: TriangleMethod::InsideByDirection,

@@ -1,8 +1,9 @@
-//! `raykata strip`: one scene at growing depths of recursion (lecture "Example: Reflection", "Example: Refraction"), or
-//! with each sampler ("Antialiasing", "Generate pixel samples"), side by side.
+//! `raykata strip`: one scene at growing depths of recursion (lecture "Example: Reflection", "Example: Refraction"), with
+//! each sampler ("Antialiasing", "Generate pixel samples"), or with the levels of its hierarchy, side by side.
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names, whole_number};
 use crate::caption;
+use crate::compare::with_edges;
 use crate::kits::{Choice, Need, Source, root};
 use crate::quality_options::{QualityOptions, SAMPLERS, ToneOptions};
 use crate::render::write_png;
@@ -12,6 +13,7 @@ use raykata::film::Film;
 use raykata::frame::Unwatched;
 use raykata::kit::{RenderJob, View, kit_error};
 use raykata::scene::{Quality, Sampler, Scene};
+use raykata::world::camera_for;
 use std::path::{Path, PathBuf};
 
 /// Pixels between two pictures.
@@ -20,7 +22,8 @@ const GAP: u32 = 4;
 /// `raykata strip`.
 pub static SPEC: Spec = Spec {
     name: "raykata strip",
-    about: "Render a scene at growing depths of recursion, or with each sampler, side by side.",
+    about: "Render a scene at growing depths of recursion, with each sampler, or with the boxes of its acceleration \
+            structure, side by side.",
     arguments: &[Argument::required("SCENE", "The scene, a TOML file.")],
     options: &[
         &[
@@ -33,6 +36,13 @@ pub static SPEC: Spec = Spec {
             Opt::value("--samplers", "LIST", "Instead of depths: the samplers, one picture each.")
                 .choices(&names(&SAMPLERS))
                 .many(),
+            Opt::value(
+                "--levels",
+                "LIST",
+                "Instead of depths: levels of the acceleration structure, whose boxes or cells are drawn over one \
+                 picture each. Level 0 is the root.",
+            )
+            .many(),
             Opt::value("--out", "FILE", "The PNG file [default: out/NAME-strip.png].").short("-o"),
         ],
         Choice::OPTIONS,
@@ -41,11 +51,12 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// The scene, and the depths or samplers.
+/// The scene, and the depths, samplers or levels.
 pub struct Options {
     scene: PathBuf,
     depths: Vec<u32>,
     samplers: Vec<Sampler>,
+    levels: Vec<u32>,
     quality: QualityOptions,
     tone: ToneOptions,
     out: Option<PathBuf>,
@@ -56,6 +67,8 @@ impl Options {
     /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--samplers", "--depths")?;
+        given.exclude("--levels", "--depths")?;
+        given.exclude("--levels", "--samplers")?;
         let mut depths = given.list("--depths", |text| whole_number(text, &(0..=1000)))?;
         if depths.is_empty() {
             depths = vec![1, 2, 5, 10];
@@ -64,6 +77,7 @@ impl Options {
             scene: given.required(0)?.into(),
             depths,
             samplers: given.choices("--samplers", &SAMPLERS)?,
+            levels: given.list("--levels", |text| whole_number(text, &(0..=1000)))?,
             quality: QualityOptions::read(given)?,
             tone: ToneOptions::read(given)?,
             out: given.path("--out"),
@@ -72,7 +86,7 @@ impl Options {
     }
 }
 
-/// Renders the strip, with the depth or sampler below each picture, and prints what each picture cost.
+/// Renders the strip, with the depth, sampler or level below each picture, and prints what each picture cost.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene, options.quality.limits())?;
     options.quality.apply(&mut scene)?;
@@ -84,14 +98,15 @@ pub fn run(options: &Options) -> Result<()> {
     let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
     let kit = source.fresh();
     let pictures = pictures(options, &scene);
-    let (width, height) = (scene.film.width, scene.film.height);
+    let (width, height, tone) = (scene.film.width, scene.film.height, scene.film.tone);
     let n = pictures.len() as u32;
     let mut strip = Film::new(n * width + (n - 1) * GAP, height + caption::HEIGHT);
     println!(
         "{:>15}  {:>14}  {:>14}  {:>14}  {:>9}",
         "picture", "reflected rays", "refracted rays", "indirect rays", "seconds"
     );
-    for (column, (what, scene)) in pictures.into_iter().enumerate() {
+    for (column, Picture { what, scene, level }) in pictures.into_iter().enumerate() {
+        let camera = camera_for(&scene);
         let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true, reuse: true };
         let rendering =
             kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
@@ -103,29 +118,56 @@ pub fn run(options: &Options) -> Result<()> {
             Thousands(counts.indirect)
         );
         let left = column as u32 * (width + GAP);
-        paste(&rendering.film, &mut strip, left);
+        // Draw the boxes of the level over the picture.
+        let film = match level {
+            Some(level) => with_edges(
+                &rendering.film.toned(tone),
+                &camera,
+                &kit_error::catch(|| kit.outlines(&job, level))?,
+            ),
+            None => rendering.film.toned(tone),
+        };
+        paste(&film, &mut strip, left);
         caption::write(&mut strip, &what, [left, height], width);
     }
-    write_png(&strip.toned(scene.film.tone), &out, scene.film.encoding, &*kit)
+    write_png(&strip, &out, scene.film.encoding, &*kit)
         .with_context(|| format!("cannot write {}", out.display()))?;
     println!("{}", out.display());
     Ok(())
 }
 
-/// The scene once for each depth or sampler, with its name.
-fn pictures(options: &Options, scene: &Scene) -> Vec<(String, Scene)> {
+/// A picture of the strip.
+struct Picture {
+    /// Its caption.
+    what: String,
+    scene: Scene,
+    /// The level of the acceleration structure that is drawn over it.
+    level: Option<u32>,
+}
+
+/// The scene once for each depth, sampler or level.
+fn pictures(options: &Options, scene: &Scene) -> Vec<Picture> {
     let with = |change: &dyn Fn(&mut Quality)| {
         let mut scene = scene.clone();
         change(&mut scene.quality);
         scene
     };
+    if !options.levels.is_empty() {
+        let of = |&level: &u32| Picture {
+            what: format!("level {level}"),
+            scene: scene.clone(),
+            level: Some(level),
+        };
+        return options.levels.iter().map(of).collect();
+    }
+    let picture = |what: String, scene: Scene| Picture { what, scene, level: None };
     if options.samplers.is_empty() {
-        let depths = options.depths.iter();
-        return depths.map(|&n| (format!("depth {n}"), with(&|quality| quality.max_depth = n))).collect();
+        let of = |&depth: &u32| picture(format!("depth {depth}"), with(&|quality| quality.max_depth = depth));
+        return options.depths.iter().map(of).collect();
     }
     let named = |sampler: &Sampler| {
         let name = SAMPLERS.iter().find(|(_, one)| one == sampler).map_or("", |(name, _)| name);
-        (name.to_owned(), with(&|quality| quality.sampler = *sampler))
+        picture(name.to_owned(), with(&|quality| quality.sampler = *sampler))
     };
     options.samplers.iter().map(named).collect()
 }

@@ -10,7 +10,7 @@ use crate::partition::KdHeuristics;
 use crate::scene::error::LoadError;
 use crate::scene::{
     Accelerator, Background, ColorPlace, Encoding, EnvironmentMap, FilmSettings, Gradient, GradientColor,
-    Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
+    NextEvent, Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
 };
 use glam::Vec3;
 
@@ -234,7 +234,7 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
             }
             "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
             "min_contribution" => quality.min_contribution = value.share()?,
-            "next_event" => quality.next_event = value.truth()?,
+            "next_event" => quality.next_event = value.choice(&NextEvent::ALL)?,
             "roulette_from" => quality.roulette_from = value.whole(2..=MAX_DEPTH)?,
             "clamp" => quality.clamp = value.not_negative()?,
             "accelerator" => {

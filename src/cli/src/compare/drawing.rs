@@ -73,7 +73,7 @@ fn heat_color(tests: f32, most: f32) -> Vec3 {
 }
 
 /// The picture, darker, with edges drawn over it.
-fn with_edges(film: &Film, camera: &Camera, edges: &[[Vec3; 2]]) -> Film {
+pub fn with_edges(film: &Film, camera: &Camera, edges: &[[Vec3; 2]]) -> Film {
     let mut drawn = Film::new(film.width, film.height);
     drawn.pixels = film.pixels.iter().map(|pixel| 0.25 * pixel.clamp(Vec3::ZERO, Vec3::ONE)).collect();
     for edge in edges.iter().take(MOST_EDGES) {

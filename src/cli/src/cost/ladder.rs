@@ -5,7 +5,8 @@ use super::setting::Setting;
 use crate::report::Thousands;
 use raykata::effects::Effect;
 use raykata::scene::{
-    Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter, TriangleMethod,
+    Accelerator, NextEvent, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter,
+    TriangleMethod,
 };
 use serde::Serialize;
 
@@ -25,7 +26,7 @@ pub enum Parameter {
     Depth,
     /// The weight below which rays are not traced.
     MinContribution,
-    /// Whether paths sample emitters.
+    /// How paths find emitters.
     NextEvent,
     /// The number of bounces from which on Russian roulette ends paths.
     RouletteFrom,
@@ -142,6 +143,13 @@ impl Parameter {
         )
     }
 
+    /// Whether `--equal-time` measures the parameter, if it names `turned`: samples and samplers have times of their own, and
+    /// structures and tests, which do not change the picture, are measured only if they are named.
+    pub fn has_equal_time(self, turned: &[Parameter]) -> bool {
+        let is_about_samples = matches!(self, Parameter::Samples | Parameter::Sampler);
+        !is_about_samples && (!self.is_geometric() || turned.contains(&self))
+    }
+
     /// The ladders of the parameter for this scene, or the reason why it changes nothing there.
     pub fn ladders(self, called: &Called<'_>) -> Result<Vec<Ladder>, String> {
         let Called { scene, effects, primitives, most_samples } = called;
@@ -201,9 +209,13 @@ impl Parameter {
             }
             Parameter::NextEvent => {
                 needs(indirect, "the scene has no indirect light")?;
-                let all = [("off", false), ("on", true)];
+                let all = [
+                    ("off: by chance", NextEvent::Off),
+                    ("only: by samples", NextEvent::Only),
+                    ("on: both, weighted", NextEvent::On),
+                ];
                 let with =
-                    |(name, next_event): (&str, bool)| (name.to_owned(), Quality { next_event, ..quality });
+                    |(name, next_event): (&str, _)| (name.to_owned(), Quality { next_event, ..quality });
                 vec![ladder(all.into_iter().map(with).collect())]
             }
             Parameter::RouletteFrom => {

@@ -3,11 +3,12 @@
 //! `options` (the command line) · `called`, `ladder` and `setting` (the parameters and their values) ·
 //! `reference` (the converged picture) · `error` (differences from it) · `hits` (exact verdicts) · `measure`
 //! (counts, times) · `slope` (how fast the error falls) · `advice` and `greedy` (the best settings for a time
-//! or an error) · `table`, `page`, `plot`, `files` (the report) · `headline` and `landscape` (brute force
+//! or an error) · `equal_time` (values with equal times) · `table`, `page`, `plot`, `files` (the report) · `headline` and `landscape` (brute force
 //! against a hierarchy)
 
 mod advice;
 mod called;
+mod equal_time;
 mod error;
 mod files;
 mod greedy;
@@ -130,7 +131,15 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     let as_written = full.quality;
     options.quality.apply(&mut full)?;
     let pixels = options.pixels();
-    let small = if options.quality.names_a_size() { full.clone() } else { with_at_most(pixels, &full) };
+    let mut small = if options.quality.names_a_size() { full.clone() } else { with_at_most(pixels, &full) };
+    let has_goal = options.budget.is_some() || options.error.is_some();
+    if !(options.full || has_goal || options.quality.names_samples()) {
+        let samples = &mut small.quality.samples_per_pixel;
+        if *samples > options.most_samples() {
+            println!("with {} samples per pixel in place of {samples}", options.most_samples());
+            *samples = options.most_samples();
+        }
+    }
     let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
 
@@ -149,6 +158,10 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     }
     let code = fingerprint(&source)?;
     let cache = Path::new("out").join("references");
+    if options.equal_time {
+        let reference = |scene: &Scene| reference::reference(&bench, scene, options.reference, &cache, &code);
+        return equal_time::run(&bench, &small, &ladders, &options.light_sizes, &out, reference);
+    }
     let Some(right) = reference::reference(&bench, &small, options.reference, &cache, &code)? else {
         println!("stopped; the next run continues this reference");
         return Ok(false);
@@ -233,6 +246,7 @@ fn ladders(
     let (mut ladders, mut not_offered) = (Vec::new(), Vec::new());
     for (_, parameter) in Parameter::NAMES {
         match parameter.ladders(&called) {
+            Ok(_) if options.equal_time && !parameter.has_equal_time(turned) => {}
             Ok(these) if turned.is_empty() || turned.contains(&parameter) => ladders.extend(these),
             Ok(_) => {}
             Err(why) if turned.contains(&parameter) => {

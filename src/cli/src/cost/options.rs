@@ -52,9 +52,21 @@ pub static SPEC: Spec = Spec {
             ),
             Opt::flag(
                 "--full",
-                "Measure pictures of 10,000 pixels instead of 2,500, up to 64 samples per pixel instead of \
-                 16, in more rounds, and against a better reference. That takes minutes.",
+                "Measure pictures of 10,000 pixels instead of 2,500, with the samples per pixel of the scene instead of at most 16, \
+                 in more rounds, and against a better reference. That takes minutes.",
             ),
+            Opt::flag(
+                "--equal-time",
+                "Instead of the report: compare the values of each parameter with as many samples per pixel as fit into \
+                 the same time.",
+            ),
+            Opt::value(
+                "--light-sizes",
+                "LIST",
+                "With `--equal-time`: factors for the size of spheres and polygons that emit light, which keep \
+                 their power [default: 1].",
+            )
+            .many(),
             Opt::value("--seed", "N", "Seed of the random numbers [default: 0]."),
             Opt::value(
                 "--out",
@@ -81,6 +93,9 @@ pub struct Options {
     pub(super) reference: u32,
     pub(super) rounds: u32,
     pub(super) full: bool,
+    pub(super) equal_time: bool,
+    /// Factors for the size of the lights, above 0; at least one.
+    pub(super) light_sizes: Vec<f32>,
     pub(super) threads: Threads,
     pub(super) seed: u64,
     pub(super) quality: QualityOptions,
@@ -100,6 +115,17 @@ impl Options {
             return Err(given.misuse("`--most` goes with `--headline`"));
         }
         given.exclude("--budget", "--error")?;
+        given.exclude("--equal-time", "--budget")?;
+        given.exclude("--equal-time", "--error")?;
+        given.exclude("--equal-time", "--headline")?;
+        let mut light_sizes = given.list("--light-sizes", parse_size)?;
+        let equal_time = given.has("--equal-time");
+        if !(light_sizes.is_empty() || equal_time) {
+            return Err(given.misuse("`--light-sizes` goes with `--equal-time`"));
+        }
+        if light_sizes.is_empty() {
+            light_sizes = vec![1.0];
+        }
         let full = given.has("--full");
         Ok(Options {
             scene,
@@ -111,6 +137,8 @@ impl Options {
             reference: given.number("--reference", 128..=1_048_576)?.unwrap_or(if full { 1024 } else { 256 }),
             rounds: given.number("--rounds", 1..=1000)?.unwrap_or(if full { 5 } else { 3 }),
             full,
+            equal_time,
+            light_sizes,
             threads: Threads::read(given)?,
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
             quality: QualityOptions::read(given)?,
@@ -138,6 +166,13 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
     match units.into_iter().find_map(number) {
         Some(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
         _ => Err("a time is a number above 0 with the unit s, ms or m, such as 60s".into()),
+    }
+}
+
+fn parse_size(text: &str) -> Result<f32, String> {
+    match text.trim().parse::<f32>() {
+        Ok(size) if (0.001..=1000.0).contains(&size) => Ok(size),
+        _ => Err("a size is a number from 0.001 to 1000, such as 0.5".into()),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::report::bar_of_steps;
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};
 use raykata::film::{Film, write_atomically};
-use raykata::scene::{Accelerator, Quality, Sampler, Scene, Split, TextureFilter};
+use raykata::scene::{Accelerator, NextEvent, Quality, Sampler, Scene, Split, TextureFilter};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -50,7 +50,7 @@ pub fn converged(scene: &Scene) -> Scene {
         texture_filter: TextureFilter::Bilinear,
         max_depth: scene.quality.max_depth.max(least_depth(&scene)),
         min_contribution: scene.quality.min_contribution.min(0.0003),
-        next_event: true,
+        next_event: NextEvent::On,
         clamp: 0.0,
         accelerator: Accelerator::Bvh,
         split: Split::SurfaceArea,

@@ -8,7 +8,7 @@ use crate::report::Thousands;
 use anyhow::Result;
 use glam::Vec3;
 use raykata::kit::{KitError, kit_error};
-use raykata::scene::Background;
+use raykata::scene::{Background, NextEvent};
 
 /// Prints which surfaces send diffuse rays on and which lights are sampled, and what is not computed for that reason.
 pub fn asked(explained: &Explained<'_>) {
@@ -19,8 +19,10 @@ pub fn asked(explained: &Explained<'_>) {
             wanted.map(|index| material(scene, index)).collect()
         };
         let diffuse = materials(&paths.diffuse);
-        let mut sampled = if scene.quality.next_event { materials(&paths.sampled) } else { Vec::new() };
-        if paths.environment && scene.quality.next_event && matches!(scene.background, Background::Map(_)) {
+        let mut sampled =
+            if scene.quality.next_event != NextEvent::Off { materials(&paths.sampled) } else { Vec::new() };
+        let samples_map = scene.quality.next_event != NextEvent::Off && paths.environment;
+        if samples_map && matches!(scene.background, Background::Map(_)) {
             sampled.push("environment map".into());
         }
         let line = |what: &str, parts: &[String], none: &str| {
@@ -55,7 +57,7 @@ pub fn bounds(explained: &Explained<'_>) -> Result<()> {
         casting.map(|light| u64::from(light.samples)).sum::<u64>()
     });
     let of_lights = of_lights.max().unwrap_or(0);
-    let of_emitters = any(diffuse && sampled && quality.next_event);
+    let of_emitters = any(diffuse && sampled && quality.next_event != NextEvent::Off);
     let shadow = camera.saturating_mul(1 + bounces).saturating_mul(of_lights).saturating_add(of_emitters);
     println!("{:<16}  {:>20}  {:>13}", "rays", "at most, predicted", "counted");
     bounds_table(&[
