@@ -21,6 +21,7 @@ pub mod quality_options;
 pub mod queue;
 pub mod render;
 pub mod report;
+pub mod slides;
 pub mod strip;
 pub mod svg;
 pub mod tree;
