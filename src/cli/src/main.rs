@@ -26,7 +26,7 @@ const COMMANDS: [Command; 12] = [
     }),
     (&list::HINT, hint),
     (&list::GAUNTLET, gauntlet),
-    (&figures::SPEC, |given| figures::run(&figures::Options::read(given)?).map(ended)),
+    (&figures::SPEC, |given| figures::run(&figures::Options::read(given)?)),
     (&slides::SPEC, |given| slides::run(&slides::Options::read(given)?).map(|()| ExitCode::SUCCESS)),
 ];
 

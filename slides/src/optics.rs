@@ -1,11 +1,11 @@
 //! Diagrams of refraction and of the thin lens.
 
-use crate::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
 use anyhow::Result;
 use glam::{Vec2, Vec3, vec3};
 use raykata::camera::{Camera, Lens};
 use raykata::kit::{Kit, LensQuery, RefractQuery};
 use raykata::ray::Ray;
+use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
 
 /// Rays that meet a surface at three angles, from air into glass and from glass into air.
 pub fn snell(kit: &dyn Kit) -> Result<String> {

@@ -1,11 +1,11 @@
 //! Diagrams of rays and boxes.
 
-use crate::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{Kit, SlabQuery};
 use raykata::ray::Ray;
+use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
 
 /// Larger than everything in a diagram.
 const FAR: f32 = 1000.0;

@@ -1,6 +1,5 @@
 //! Diagrams of acceleration structures: the steps of a ray through them, and the costs of cuts.
 
-use crate::svg::{Anchor, Drawing, Ink, Pen, SMALL, TEXT, View};
 use anyhow::{Context, Result};
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
@@ -8,6 +7,7 @@ use raykata::bvh::PrimitiveRef;
 use raykata::kit::{CellsAnswer, CellsQuery, GridQuery, KdQuery, Kit};
 use raykata::partition::{KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
+use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, SMALL, TEXT, View};
 
 /// Boxes in the plane, in a square of 8 by 5 units.
 const BOXES: [[f32; 4]; 11] = [

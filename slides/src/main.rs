@@ -1,58 +1,25 @@
-//! `raykata figures`: makes the figures of the slides, and checks that they are what the kit makes today.
+//! The program that makes the figures of the slides, and checks that they are what the kit makes today: `figures ROOT WORKER
+//! RAYKATA make|check DECK NAME…`. `raykata figures` starts it.
 //!
 //! `slides/figures.toml` lists them, each with the command that makes it. Diagrams are drawn here from the answers of a kit's own
-//! functions, so a figure cannot contradict the code: `intersection`, `optics`, `structures` and `sampling` draw them by
-//! name. Other commands of this program make pictures and plots.
+//! functions, so a figure cannot contradict the code: `intersection`, `optics` and `structures` draw them by name. Other
+//! commands of `raykata` make pictures and plots.
 
 mod intersection;
 mod list;
 mod optics;
 mod structures;
 
-use crate::args::{Argument, Given, Misuse, Opt, Spec, did_you_mean};
-use crate::kits::{Choice, Need, Source, root};
-use crate::report::{bar_of_steps, make_folder_of};
 use anyhow::{Context, Result, bail};
 use list::{Exact, Figure};
 use raykata::film::write_atomically;
 use raykata::kit::{Kit, kit_error};
+use raykata_cli::args::did_you_mean;
+use raykata_cli::kits::{Source, Which};
+use raykata_cli::report::{bar_of_steps, make_folder_of, say};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-
-/// `raykata figures`.
-pub static SPEC: Spec = Spec {
-    name: "raykata figures",
-    about: "Make the figures of the slides, as slides/figures.toml lists them.",
-    arguments: &[Argument::optional("NAME", "The figures to make, without the ending [default: all].").many()],
-    options: &[
-        &[
-            Opt::flag("--check", "Make them again and compare: pixels, counts and drawings, but no times."),
-            Opt::value("--deck", "NAME", "Only the figures of this deck, such as stage03."),
-        ],
-        Choice::OPTIONS,
-    ],
-};
-
-/// Which figures are made.
-pub struct Options {
-    names: Vec<String>,
-    check: bool,
-    deck: Option<String>,
-    kit: Choice,
-}
-
-impl Options {
-    /// Reads the arguments and options.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        Ok(Options {
-            names: given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned()).collect(),
-            check: given.has("--check"),
-            deck: given.path("--deck").map(|deck| deck.to_string_lossy().into_owned()),
-            kit: Choice::read(given)?,
-        })
-    }
-}
+use std::process::{Command, ExitCode, Stdio};
 
 /// Draws a diagram from the answers of a kit.
 type Draw = fn(&dyn Kit) -> Result<String>;
@@ -67,22 +34,37 @@ const DIAGRAMS: &[(&str, Draw)] = &[
     ("sah-cuts", structures::sah_cuts),
 ];
 
+fn main() -> ExitCode {
+    match run(&std::env::args().skip(1).collect::<Vec<_>>()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(1)
+        }
+    }
+}
+
 /// Makes or checks figures. `Ok(false)` if one of them differs.
-pub fn run(options: &Options) -> Result<bool> {
+fn run(words: &[String]) -> Result<bool> {
+    let [root, worker, raykata, what, deck, names @ ..] = words else {
+        bail!("`raykata figures` starts this program; it is not started by hand");
+    };
+    let (root, is_check) = (Path::new(root), what == "check");
     // Choose the figures.
-    let root = root()?;
-    let all = list::read(&root)?;
-    let chosen = choose(&all, options)?;
+    let all = list::read(root)?;
+    let chosen = choose(&all, deck, names)?;
     // Make each, and write it or compare it.
-    let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
+    let source = Source { which: Which::Solutions, program: worker.into() };
     let kit = &*source.fresh();
     let bar = bar_of_steps(chosen.len());
     let mut differences = Vec::new();
     for figure in &chosen {
         bar.set_message(figure.file.clone());
-        let made = make(figure, kit, &root).with_context(|| format!("{} cannot be made", figure.file))?;
+        let made =
+            make(figure, kit, root, raykata).with_context(|| format!("{} cannot be made", figure.file))?;
         let file = root.join("slides/figures").join(&figure.file);
-        if options.check {
+        if is_check {
             differences.extend(difference(figure, &made, &file));
         } else {
             make_folder_of(&file)?;
@@ -94,38 +76,38 @@ pub fn run(options: &Options) -> Result<bool> {
     bar.finish_and_clear();
     // Say what differs.
     for line in &differences {
-        println!("{line}");
+        say(format_args!("{line}\n"));
     }
     let n = chosen.len();
-    match (options.check, differences.len()) {
-        (false, _) => println!("{n} figures in slides/figures"),
-        (true, 0) => println!("{n} figures are what the kit makes"),
+    match (is_check, differences.len()) {
+        (false, _) => say(format_args!("{n} figures in slides/figures\n")),
+        (true, 0) => say(format_args!("{n} figures are what the kit makes\n")),
         (true, different) => {
-            println!("{different} of {n} figures differ; `raykata figures` makes them again")
+            say(format_args!("{different} of {n} figures differ; `raykata figures` makes them again\n"))
         }
     }
     Ok(differences.is_empty())
 }
 
-fn choose<'a>(all: &'a [Figure], options: &Options) -> Result<Vec<&'a Figure>> {
+/// The figures of a deck, or of all if `deck` is empty, with these names, or all if there are none.
+fn choose<'a>(all: &'a [Figure], deck: &str, names: &[String]) -> Result<Vec<&'a Figure>> {
     let known: Vec<&str> = all.iter().map(Figure::name).collect();
-    for name in &options.names {
+    for name in names {
         if !known.contains(&name.as_str()) {
             bail!("there is no figure `{name}` in slides/figures.toml{}", did_you_mean(name, &known));
         }
     }
-    let named =
-        |figure: &&Figure| options.names.is_empty() || options.names.iter().any(|name| name == figure.name());
-    let of_deck = |figure: &&Figure| options.deck.as_ref().is_none_or(|deck| *deck == figure.deck);
+    let named = |figure: &&Figure| names.is_empty() || names.iter().any(|name| name == figure.name());
+    let of_deck = |figure: &&Figure| deck.is_empty() || *deck == figure.deck;
     let chosen: Vec<&Figure> = all.iter().filter(named).filter(of_deck).collect();
     if chosen.is_empty() {
-        bail!("no figure of slides/figures.toml is of this deck");
+        bail!("slides/figures.toml has no such figure of the deck `{deck}`");
     }
     Ok(chosen)
 }
 
 /// The bytes of a figure.
-fn make(figure: &Figure, kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
+fn make(figure: &Figure, kit: &dyn Kit, root: &Path, raykata: &str) -> Result<Vec<u8>> {
     let words: Vec<&str> = figure.command.split_whitespace().collect();
     match words.as_slice() {
         ["raykata", "figures", name] => {
@@ -135,26 +117,26 @@ fn make(figure: &Figure, kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
                 .with_context(|| format!("`raykata figures` draws no diagram `{name}`"))?;
             Ok(kit_error::catch(|| draw(kit))??.into_bytes())
         }
-        ["raykata", rest @ ..] => by_command(figure, rest, root),
+        ["raykata", rest @ ..] => by_command(figure, rest, root, raykata),
         _ => bail!("its command does not begin with `raykata`: {}", figure.command),
     }
 }
 
-/// Runs another command of this program, and takes the file that it writes.
-fn by_command(figure: &Figure, words: &[&str], root: &Path) -> Result<Vec<u8>> {
+/// Runs another command of `raykata`, and takes the file that it writes.
+fn by_command(figure: &Figure, words: &[&str], root: &Path, raykata: &str) -> Result<Vec<u8>> {
     let folder = root.join("out/figures");
     let out = match &figure.take {
         Some(_) => folder.join(figure.name()),
         None => folder.join(&figure.file),
     };
-    let output = Command::new(std::env::current_exe()?)
+    let output = Command::new(raykata)
         .args(words)
         .arg("--out")
         .arg(&out)
         .current_dir(root)
         .stdin(Stdio::null())
         .output()
-        .context("this program cannot be started again")?;
+        .context("raykata cannot be started")?;
     if !output.status.success() {
         bail!("`{}` failed:\n{}", figure.command, String::from_utf8_lossy(&output.stderr).trim_end());
     }
