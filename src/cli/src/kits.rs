@@ -137,6 +137,9 @@ impl Program {
     /// The program that runs the checks.
     pub const JUDGE: Program = Program { package: "judge", name: "judge", feature: None };
 
+    /// The program that makes the figures of the slides.
+    pub const FIGURES: Program = Program { package: "figures", name: "figures", feature: None };
+
     fn file(&self) -> String {
         format!("{}{}", self.name, std::env::consts::EXE_SUFFIX)
     }

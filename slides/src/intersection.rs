@@ -1,0 +1,79 @@
+//! Diagrams of rays and boxes.
+
+use anyhow::{Context, Result};
+use glam::{Vec3, vec3};
+use raykata::aabb::Aabb;
+use raykata::kit::{Kit, SlabQuery};
+use raykata::ray::Ray;
+use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
+
+/// Larger than everything in a diagram.
+const FAR: f32 = 1000.0;
+
+/// A ray through a box in the plane: the two slabs, where the ray enters and leaves each, and their common interval.
+pub fn slab_intervals(kit: &dyn Kit) -> Result<String> {
+    // Ask the slab test about the box, and about each slab alone: a box that is long in all other directions.
+    let ray = Ray::new(vec3(0.5, 0.3, 0.0), vec3(1.0, 0.42, 0.0));
+    let (low, high) = (vec3(2.0, 0.7, -1.0), vec3(5.2, 2.7, 1.0));
+    let slab = |axis: usize| {
+        let axis = Vec3::AXES[axis];
+        Aabb::new(axis * low - FAR * (Vec3::ONE - axis), axis * high + FAR * (Vec3::ONE - axis))
+    };
+    let queries = [slab(0), slab(1), Aabb::new(low, high)].map(|bounds| SlabQuery { ray, bounds });
+    let intervals: Option<Vec<(f32, f32)>> = kit.slab(&queries).into_iter().collect();
+    let intervals = intervals.context("`slab` does not find this box")?;
+
+    let mut drawing =
+        Drawing::new("A ray through two slabs, and the interval that both have in common", 1000.0, 620.0);
+    let view = View { origin: [40.0, 370.0], scale: 105.0 };
+    let at = |point: Vec3| view.at(f64::from(point.x), f64::from(point.y));
+    let point = |t: f32| at(ray.at(t));
+    let (x_slab, y_slab, both) = (Ink::Color(4), Ink::Color(1), Ink::Color(2));
+
+    // Draw the slabs as bands, and the box where they overlap.
+    let (left, right, bottom, top) = (0.0, 8.9, 0.0, 3.4);
+    let [x0, x1, y0, y1] = [low.x, high.x, low.y, high.y].map(f64::from);
+    drawing.rectangle(view.at(x0, bottom), view.at(x1, top), x_slab, 0.16);
+    drawing.rectangle(view.at(left, y0), view.at(right, y1), y_slab, 0.16);
+    drawing.frame(at(low), at(high), Pen::new(Ink::Text));
+    drawing.text(view.at(x1 + 0.1, top - 0.28), Anchor::Start, TEXT, x_slab, "slab of x");
+    drawing.text(view.at(right, y0 + 0.12), Anchor::End, TEXT, y_slab, "slab of y");
+
+    // Draw the ray, and where it enters and leaves the slabs.
+    drawing.arrow(at(ray.origin), point(7.4), Pen::new(Ink::Text));
+    drawing.dot(at(ray.origin), 7.0, Ink::Text);
+    drawing.text(offset(at(ray.origin), [4.0, 34.0]), Anchor::Start, TEXT, Ink::Text, "o");
+    for (&(enter, leave), ink) in intervals.iter().zip([x_slab, y_slab]) {
+        for t in [enter, leave] {
+            drawing.dot(point(t), 8.0, ink);
+        }
+    }
+
+    // Draw the three intervals over t.
+    let axis = |t: f32| 130.0 + 105.0 * f64::from(t);
+    let rows = [("x", 440.0, x_slab), ("y", 495.0, y_slab), ("box", 550.0, both)];
+    for (&(enter, leave), (name, y, ink)) in intervals.iter().zip(rows) {
+        drawing.text([40.0, y + 9.0], Anchor::Start, TEXT, ink, name);
+        drawing.line([axis(0.0), y], [axis(7.8), y], Pen::new(Ink::Faint).wide(1.5));
+        drawing.line([axis(enter), y], [axis(leave), y], Pen::new(ink).wide(14.0));
+        drawing.text([axis(enter), y - 14.0], Anchor::Middle, SMALL, ink, &format!("{enter:.2}"));
+        drawing.text([axis(leave), y - 14.0], Anchor::Middle, SMALL, ink, &format!("{leave:.2}"));
+    }
+    drawing.text([axis(7.8) + 8.0, 559.0], Anchor::Start, TEXT, Ink::Text, "t");
+    let (enter, leave) = intervals[2];
+    for t in [enter, leave] {
+        drawing.line([axis(t), 430.0], [axis(t), 575.0], Pen::new(both).wide(2.0).dashed());
+    }
+    drawing.text(
+        [axis(0.0), 605.0],
+        Anchor::Start,
+        SMALL,
+        Ink::Text,
+        "the last entry and the first exit: the ray meets the box",
+    );
+    Ok(drawing.svg())
+}
+
+fn offset(point: Point, by: Point) -> Point {
+    [point[0] + by[0], point[1] + by[1]]
+}

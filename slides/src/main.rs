@@ -1,0 +1,162 @@
+//! The program that makes the figures of the slides, and checks that they are what the kit makes today: `figures ROOT WORKER
+//! RAYKATA make|check DECK NAME…`. `raykata figures` starts it.
+//!
+//! `slides/figures.toml` lists them, each with the command that makes it. Diagrams are drawn here from the answers of a kit's own
+//! functions, so a figure cannot contradict the code: `intersection`, `optics` and `structures` draw them by name. Other
+//! commands of `raykata` make pictures and plots.
+
+mod intersection;
+mod list;
+mod optics;
+mod structures;
+
+use anyhow::{Context, Result, bail};
+use list::{Exact, Figure};
+use raykata::film::write_atomically;
+use raykata::kit::{Kit, kit_error};
+use raykata_cli::args::did_you_mean;
+use raykata_cli::kits::{Source, Which};
+use raykata_cli::report::{bar_of_steps, make_folder_of, say};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+
+/// Draws a diagram from the answers of a kit.
+type Draw = fn(&dyn Kit) -> Result<String>;
+
+/// All diagrams, by name.
+const DIAGRAMS: &[(&str, Draw)] = &[
+    ("slab-intervals", intersection::slab_intervals),
+    ("snell", optics::snell),
+    ("thin-lens", optics::thin_lens),
+    ("dda-steps", structures::dda_steps),
+    ("kd-traversal", structures::kd_traversal),
+    ("sah-cuts", structures::sah_cuts),
+];
+
+fn main() -> ExitCode {
+    match run(&std::env::args().skip(1).collect::<Vec<_>>()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+/// Makes or checks figures. `Ok(false)` if one of them differs.
+fn run(words: &[String]) -> Result<bool> {
+    let [root, worker, raykata, what, deck, names @ ..] = words else {
+        bail!("`raykata figures` starts this program; it is not started by hand");
+    };
+    let (root, is_check) = (Path::new(root), what == "check");
+    // Choose the figures.
+    let all = list::read(root)?;
+    let chosen = choose(&all, deck, names)?;
+    // Make each, and write it or compare it.
+    let source = Source { which: Which::Solutions, program: worker.into() };
+    let kit = &*source.fresh();
+    let bar = bar_of_steps(chosen.len());
+    let mut differences = Vec::new();
+    for figure in &chosen {
+        bar.set_message(figure.file.clone());
+        let made =
+            make(figure, kit, root, raykata).with_context(|| format!("{} cannot be made", figure.file))?;
+        let file = root.join("slides/figures").join(&figure.file);
+        if is_check {
+            differences.extend(difference(figure, &made, &file));
+        } else {
+            make_folder_of(&file)?;
+            write_atomically(&file, |out| out.write_all(&made))
+                .with_context(|| format!("cannot write {}", file.display()))?;
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    // Say what differs.
+    for line in &differences {
+        say(format_args!("{line}\n"));
+    }
+    let n = chosen.len();
+    match (is_check, differences.len()) {
+        (false, _) => say(format_args!("{n} figures in slides/figures\n")),
+        (true, 0) => say(format_args!("{n} figures are what the kit makes\n")),
+        (true, different) => {
+            say(format_args!("{different} of {n} figures differ; `raykata figures` makes them again\n"))
+        }
+    }
+    Ok(differences.is_empty())
+}
+
+/// The figures of a deck, or of all if `deck` is empty, with these names, or all if there are none.
+fn choose<'a>(all: &'a [Figure], deck: &str, names: &[String]) -> Result<Vec<&'a Figure>> {
+    let known: Vec<&str> = all.iter().map(Figure::name).collect();
+    for name in names {
+        if !known.contains(&name.as_str()) {
+            bail!("there is no figure `{name}` in slides/figures.toml{}", did_you_mean(name, &known));
+        }
+    }
+    let named = |figure: &&Figure| names.is_empty() || names.iter().any(|name| name == figure.name());
+    let of_deck = |figure: &&Figure| deck.is_empty() || *deck == figure.deck;
+    let chosen: Vec<&Figure> = all.iter().filter(named).filter(of_deck).collect();
+    if chosen.is_empty() {
+        bail!("slides/figures.toml has no such figure of the deck `{deck}`");
+    }
+    Ok(chosen)
+}
+
+/// The bytes of a figure.
+fn make(figure: &Figure, kit: &dyn Kit, root: &Path, raykata: &str) -> Result<Vec<u8>> {
+    let words: Vec<&str> = figure.command.split_whitespace().collect();
+    match words.as_slice() {
+        ["raykata", "figures", name] => {
+            let (_, draw) = DIAGRAMS
+                .iter()
+                .find(|(known, _)| known == name)
+                .with_context(|| format!("`raykata figures` draws no diagram `{name}`"))?;
+            Ok(kit_error::catch(|| draw(kit))??.into_bytes())
+        }
+        ["raykata", rest @ ..] => by_command(figure, rest, root, raykata),
+        _ => bail!("its command does not begin with `raykata`: {}", figure.command),
+    }
+}
+
+/// Runs another command of `raykata`, and takes the file that it writes.
+fn by_command(figure: &Figure, words: &[&str], root: &Path, raykata: &str) -> Result<Vec<u8>> {
+    let folder = root.join("out/figures");
+    let out = match &figure.take {
+        Some(_) => folder.join(figure.name()),
+        None => folder.join(&figure.file),
+    };
+    let output = Command::new(raykata)
+        .args(words)
+        .arg("--out")
+        .arg(&out)
+        .current_dir(root)
+        .stdin(Stdio::null())
+        .output()
+        .context("raykata cannot be started")?;
+    if !output.status.success() {
+        bail!("`{}` failed:\n{}", figure.command, String::from_utf8_lossy(&output.stderr).trim_end());
+    }
+    let file: PathBuf = figure.take.as_ref().map_or(out.clone(), |name| out.join(name));
+    std::fs::read(&file).with_context(|| format!("`{}` wrote no {}", figure.command, file.display()))
+}
+
+/// How a figure that was made now differs from the one in `file`; `None` if it does not.
+fn difference(figure: &Figure, made: &[u8], file: &Path) -> Option<String> {
+    let Ok(kept) = std::fs::read(file) else {
+        return Some(format!("{}: there is no such file", figure.file));
+    };
+    let differs = match figure.exact {
+        Exact::All => kept != made,
+        Exact::Pixels => pixels(&kept) != pixels(made) || pixels(made).is_none(),
+        Exact::Nothing => false,
+    };
+    differs.then(|| format!("{}: differs from what `{}` makes", figure.file, figure.command))
+}
+
+fn pixels(png: &[u8]) -> Option<image::RgbImage> {
+    Some(image::load_from_memory(png).ok()?.into_rgb8())
+}

@@ -1,0 +1,218 @@
+//! Diagrams of acceleration structures: the steps of a ray through them, and the costs of cuts.
+
+use anyhow::{Context, Result};
+use glam::{UVec3, Vec3, vec3};
+use raykata::aabb::Aabb;
+use raykata::bvh::PrimitiveRef;
+use raykata::kit::{CellsAnswer, CellsQuery, GridQuery, KdQuery, Kit};
+use raykata::partition::{KdHeuristics, KdNode, KdTree};
+use raykata::ray::Ray;
+use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, SMALL, TEXT, View};
+
+/// Boxes in the plane, in a square of 8 by 5 units.
+const BOXES: [[f32; 4]; 11] = [
+    [0.4, 0.5, 1.0, 1.1],
+    [0.7, 3.1, 1.5, 3.9],
+    [1.9, 0.3, 2.6, 0.8],
+    [2.3, 4.0, 2.9, 4.7],
+    [2.9, 1.1, 3.5, 1.6],
+    [3.6, 3.2, 4.1, 3.7],
+    [4.4, 0.5, 5.3, 1.0],
+    [5.2, 4.1, 5.7, 4.6],
+    [6.0, 2.9, 6.8, 3.6],
+    [6.4, 0.6, 7.0, 1.3],
+    [7.2, 4.2, 7.8, 4.8],
+];
+
+fn boxes() -> Vec<Aabb> {
+    BOXES.iter().map(|[x0, y0, x1, y1]| Aabb::new(vec3(*x0, *y0, 0.0), vec3(*x1, *y1, 1.0))).collect()
+}
+
+/// The ray of the diagrams, and the `t` at which it enters each box.
+fn ray_and_hits(kit: &dyn Kit) -> (Ray, Vec<f32>) {
+    let ray = Ray::new(vec3(-0.6, 1.35, 0.5), vec3(1.0, 0.29, 0.0));
+    let queries: Vec<_> = boxes().into_iter().map(|bounds| raykata::kit::SlabQuery { ray, bounds }).collect();
+    let hits =
+        kit.slab(&queries).into_iter().map(|hit| hit.map_or(f32::INFINITY, |(enter, _)| enter)).collect();
+    (ray, hits)
+}
+
+const VIEW: View = View { origin: [100.0, 560.0], scale: 104.0 };
+
+fn at(point: Vec3) -> [f64; 2] {
+    VIEW.at(f64::from(point.x), f64::from(point.y))
+}
+
+/// Draws boxes and ray; the boxes that the search tested are filled darker.
+fn draw_search(drawing: &mut Drawing, ray: &Ray, answer: &CellsAnswer) {
+    for (index, bounds) in (0..).zip(boxes()) {
+        let tested = answer.tests.contains(&index);
+        let ink = if tested { Ink::Color(1) } else { Ink::Faint };
+        drawing.rectangle(at(bounds.min), at(bounds.max), ink, if tested { 0.55 } else { 0.35 });
+        drawing.frame(at(bounds.min), at(bounds.max), Pen::new(ink).wide(2.0));
+    }
+    let end = answer.hit.map_or(9.2, |hit| hit.t);
+    drawing.arrow(at(ray.origin), at(ray.at(end)), Pen::new(Ink::Text).wide(3.5));
+    if answer.hit.is_some() {
+        drawing.dot(at(ray.at(end)), 9.0, Ink::Text);
+    }
+}
+
+/// Marks a cell, and writes when it was visited.
+fn draw_visit(drawing: &mut Drawing, bounds: &Aabb, step: usize) {
+    drawing.rectangle(at(bounds.min), at(bounds.max), Ink::Color(4), 0.2);
+    let [x, y] = at(vec3(bounds.min.x, bounds.max.y, 0.0));
+    drawing.text([x + 8.0, y + 24.0], Anchor::Start, SMALL, Ink::Color(4), &step.to_string());
+}
+
+/// A ray through a uniform grid: the cells that it visits, numbered, up to the first hit.
+pub fn dda_steps(kit: &dyn Kit) -> Result<String> {
+    let (ray, hits) = ray_and_hits(kit);
+    let query = GridQuery { bounds: boxes(), resolution: UVec3::new(8, 5, 1) };
+    let grid = kit.grid_build(&[query]).remove(0);
+    let answer = kit.grid_search(&[CellsQuery { cells: grid.clone(), ray, hits }]).remove(0);
+
+    let mut drawing = Drawing::new("The cells of a grid that a ray visits, in order", 1000.0, 620.0);
+    for (step, &visited) in (1..).zip(&answer.visits) {
+        let [x, y] = [visited % grid.resolution.x, visited / grid.resolution.x];
+        draw_visit(&mut drawing, &grid.cell(UVec3::new(x, y, 0)).to_box(), step);
+    }
+    for (axis, count) in [(0, grid.resolution.x), (1, grid.resolution.y)] {
+        for index in 0..=count {
+            let plane = grid.plane(axis, index) as f32;
+            let end =
+                |limit: Vec3| if axis == 0 { vec3(plane, limit.y, 0.0) } else { vec3(limit.x, plane, 0.0) };
+            drawing.line(at(end(grid.bounds.min)), at(end(grid.bounds.max)), Pen::new(Ink::Faint).wide(1.5));
+        }
+    }
+    draw_search(&mut drawing, &ray, &answer);
+    caption(&mut drawing, "cells", &answer);
+    Ok(drawing.svg())
+}
+
+fn caption(drawing: &mut Drawing, what: &str, answer: &CellsAnswer) {
+    let text = format!("{} {what} visited, {} boxes tested", answer.visits.len(), answer.tests.len());
+    drawing.text([100.0, 604.0], Anchor::Start, TEXT, Ink::Text, &text);
+}
+
+/// A ray through a kd-tree: its leaves in the order of the visits, up to the first hit.
+pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
+    let (ray, hits) = ray_and_hits(kit);
+    let query = KdQuery { bounds: boxes(), heuristics: KdHeuristics::default(), leaf_size: 2 };
+    let tree = kit.kd_build(&[query]).remove(0);
+    let answer = kit.kd_search(&[CellsQuery { cells: tree.clone(), ray, hits }]).remove(0);
+
+    let mut drawing = Drawing::new("The leaves of a kd-tree that a ray visits, in order", 1000.0, 620.0);
+    let cells = leaves(&tree);
+    let visited = answer.visits.iter().filter_map(|node| cells.iter().find(|(leaf, _)| leaf == node));
+    for (step, (_, cell)) in (1..).zip(visited) {
+        draw_visit(&mut drawing, cell, step);
+    }
+    for (_, cell) in &cells {
+        drawing.frame(at(cell.min), at(cell.max), Pen::new(Ink::Faint).wide(2.0));
+    }
+    draw_search(&mut drawing, &ray, &answer);
+    let n_leaves = answer.visits.iter().filter(|&node| cells.iter().any(|(leaf, _)| leaf == node)).count();
+    let text = format!(
+        "{n_leaves} of {} leaves and {} inner nodes visited, {} boxes tested",
+        cells.len(),
+        answer.visits.len() - n_leaves,
+        answer.tests.len()
+    );
+    drawing.text([100.0, 604.0], Anchor::Start, TEXT, Ink::Text, &text);
+    Ok(drawing.svg())
+}
+
+/// All leaves, each with its cell.
+fn leaves(tree: &KdTree) -> Vec<(u32, Aabb)> {
+    let mut found = Vec::new();
+    let mut open = vec![(0u32, tree.bounds)];
+    while let Some((node, cell)) = open.pop() {
+        match tree.nodes[node as usize] {
+            KdNode::Leaf { .. } => found.push((node, cell)),
+            KdNode::Inner { axis, at, left, right } => {
+                let (mut below, mut above) = (cell, cell);
+                below.max[usize::from(axis)] = at;
+                above.min[usize::from(axis)] = at;
+                open.extend([(right, above), (left, below)]);
+            }
+        }
+    }
+    found
+}
+
+/// The cost of each cut of twelve boxes along x by the surface area heuristic, and the cuts at both medians.
+pub fn sah_cuts(kit: &dyn Kit) -> Result<String> {
+    // Many small boxes stand at the left, a larger one in the middle, and two large ones at the right.
+    let small = (0..9).map(|i| {
+        let (x, y) = (0.2 + 0.28 * i as f32, 0.4 + 0.9 * ((i * 5) % 9) as f32 / 9.0);
+        [x, x + 0.2, y, y + 0.2]
+    });
+    let large = [[3.1, 3.8, 0.3, 1.5], [5.6, 6.5, 0.2, 1.6], [7.2, 8.1, 0.2, 1.6]];
+    let boxes: Vec<Aabb> = small
+        .chain(large)
+        .map(|[x0, x1, y0, y1]| Aabb::new(vec3(x0, y0, 0.0), vec3(x1, y1, y1 - y0)))
+        .collect();
+    let n = boxes.len();
+
+    // Ask for the areas of both sides of each cut, and for the cut that the heuristic chooses.
+    let around = |part: &[Aabb]| part.iter().skip(1).fold(part[0], |all, one| kit.union(&[(all, *one)])[0]);
+    let area = |part: &[Aabb]| f64::from(kit.surface_area(&[around(part)])[0]);
+    let whole = area(&boxes);
+    let costs: Vec<f64> = (1..n)
+        .map(|cut| (area(&boxes[..cut]) * cut as f64 + area(&boxes[cut..]) * (n - cut) as f64) / whole)
+        .collect();
+    let primitives: Vec<PrimitiveRef> = (0..)
+        .zip(&boxes)
+        .map(|(id, bounds)| PrimitiveRef { id, bounds: *bounds, centroid: (bounds.min + bounds.max) / 2.0 })
+        .collect();
+    let chosen = kit
+        .split_surface_area(&[primitives.clone()])
+        .remove(0)
+        .middle
+        .context("`split_surface_area` makes a leaf")?;
+    let spatial =
+        kit.split_spatial_median(&[primitives.clone()]).remove(0).middle.context("no spatial median")?;
+    let object = kit.split_object_median(&[primitives]).remove(0).middle.context("no object median")?;
+
+    // Draw the boxes, and under them the cost of each cut.
+    let mut drawing = Drawing::new("The cost of each cut by the surface area heuristic", 1000.0, 620.0);
+    let view = View { origin: [70.0, 240.0], scale: 108.0 };
+    let at = |x: f32, y: f32| view.at(f64::from(x), f64::from(y));
+    for bounds in &boxes {
+        drawing.rectangle(at(bounds.min.x, bounds.min.y), at(bounds.max.x, bounds.max.y), Ink::Faint, 0.35);
+        drawing.frame(
+            at(bounds.min.x, bounds.min.y),
+            at(bounds.max.x, bounds.max.y),
+            Pen::new(Ink::Text).wide(2.0),
+        );
+    }
+    let place = |cut: usize| view.at(f64::from((boxes[cut - 1].max.x + boxes[cut].min.x) / 2.0), 0.0)[0];
+    let most = costs.iter().copied().fold(0.0, f64::max);
+    let height = |cost: f64| 560.0 - 230.0 * cost / most;
+    drawing.line([70.0, 560.0], [960.0, 560.0], Pen::new(Ink::Text).wide(2.0));
+    let points: Vec<[f64; 2]> =
+        costs.iter().zip(1..).map(|(&cost, cut)| [place(cut), height(cost)]).collect();
+    drawing.polyline(&points, Pen::new(Ink::Color(0)).wide(4.0));
+    for point in points {
+        drawing.dot(point, 7.0, Ink::Color(0));
+    }
+    let cuts = [
+        (spatial, "spatial median", Ink::Color(3)),
+        (object, "object median", Ink::Color(2)),
+        (chosen, "surface area", Ink::Color(1)),
+    ];
+    for (row, (cut, name, ink)) in cuts.into_iter().enumerate() {
+        drawing.line([place(cut), 60.0], [place(cut), 560.0], Pen::new(ink).dashed());
+        let text = format!("{name}: {:.2}", costs[cut - 1]);
+        drawing.text([350.0, 330.0 + 34.0 * row as f64], Anchor::Start, TEXT, ink, &text);
+    }
+    drawing.text(
+        [70.0, 600.0],
+        Anchor::Start,
+        SMALL,
+        Ink::Text,
+        "expected primitive tests of a ray that meets the box, for each cut",
+    );
+    Ok(drawing.svg())
+}

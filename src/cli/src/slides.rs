@@ -1,0 +1,213 @@
+//! `raykata slides`: builds the decks of slides as web pages, or as PDF.
+//!
+//! The decks are Markdown for Marp, a program for Node.js. `slides/package.json` names its version, and npm installs it there.
+
+use crate::args::{Argument, Given, Misuse, Opt, Spec, did_you_mean};
+use crate::html::escape;
+use crate::kits::root;
+use crate::report::make_folder;
+use anyhow::{Context, Result, bail};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// `raykata slides`.
+pub static SPEC: Spec = Spec {
+    name: "raykata slides",
+    about: "Build the slides as web pages, with speaker notes. Needs Node.js.",
+    arguments: &[Argument::optional("DECK", "The decks to build, such as stage03 [default: all].").many()],
+    options: &[&[
+        Opt::flag("--pdf", "Also write PDF files. Needs Chromium, Chrome, Edge or Firefox."),
+        Opt::value("--out", "FOLDER", "The folder for the pages [default: out/slides].").short("-o"),
+    ]],
+};
+
+/// Which decks are built.
+pub struct Options {
+    decks: Vec<String>,
+    pdf: bool,
+    out: Option<PathBuf>,
+}
+
+impl Options {
+    /// Reads the arguments and options.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options {
+            decks: given.arguments(0).iter().map(|deck| deck.to_string_lossy().into_owned()).collect(),
+            pdf: given.has("--pdf"),
+            out: given.path("--out"),
+        })
+    }
+}
+
+/// A deck: its name, and what its first lines say.
+struct Deck {
+    name: String,
+    title: String,
+    minutes: Option<u32>,
+}
+
+/// Builds the decks, and prints where they are.
+pub fn run(options: &Options) -> Result<()> {
+    // Find the decks.
+    let slides = root()?.join("slides");
+    let all = decks(&slides)?;
+    let known: Vec<&str> = all.iter().map(|deck| deck.name.as_str()).collect();
+    for name in &options.decks {
+        if !known.contains(&name.as_str()) {
+            bail!("there is no deck `{name}` in {}{}", slides.display(), did_you_mean(name, &known));
+        }
+    }
+    let chosen: Vec<&Deck> =
+        all.iter().filter(|deck| options.decks.is_empty() || options.decks.contains(&deck.name)).collect();
+    let marp = installed(&slides)?;
+
+    // Copy decks and figures to one folder, because the pages name the figures by their place beside them.
+    let out = match &options.out {
+        Some(out) => out.clone(),
+        None => root()?.join("out/slides"),
+    };
+    make_folder(&out.join("figures"))?;
+    for figure in fs::read_dir(slides.join("figures")).context("slides/figures cannot be read")? {
+        let figure = figure?.path();
+        if let Some(name) = figure.file_name() {
+            copy(&figure, &out.join("figures").join(name))?;
+        }
+    }
+    copy(&slides.join("raykata.css"), &out.join("raykata.css"))?;
+    for deck in &chosen {
+        let file = format!("{}.md", deck.name);
+        copy(&slides.join(&file), &out.join(&file))?;
+    }
+    // Build the pages, and an index of them.
+    for pdf in [false, true].into_iter().take(1 + usize::from(options.pdf)) {
+        let mut command = Command::new(&marp);
+        command
+            .current_dir(&out)
+            .args(["--theme-set", "raykata.css", "--allow-local-files"])
+            .stdin(Stdio::null());
+        if pdf {
+            command.args(["--pdf", "--pdf-notes"]);
+        }
+        let status = command.args(chosen.iter().map(|deck| format!("{}.md", deck.name))).status();
+        let status = status.with_context(|| format!("{} cannot be started", marp.display()))?;
+        if !status.success() {
+            bail!("Marp could not build the slides: its messages are above");
+        }
+    }
+    let index = out.join("index.html");
+    fs::write(&index, page(&chosen, options.pdf))
+        .with_context(|| format!("cannot write {}", index.display()))?;
+    println!("{} decks: {}", chosen.len(), index.display());
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs::copy(from, to).with_context(|| format!("cannot copy {} to {}", from.display(), to.display()))?;
+    Ok(())
+}
+
+/// All decks in this folder, in the order of the course.
+fn decks(slides: &Path) -> Result<Vec<Deck>> {
+    let mut found = Vec::new();
+    for file in fs::read_dir(slides).with_context(|| format!("{} cannot be read", slides.display()))? {
+        let file = file?.path();
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if file.extension().is_some_and(|ending| ending == "md") {
+            let text =
+                fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+            found.extend(deck(name, &text));
+        }
+    }
+    // The introduction comes first, then the stages, then everything else.
+    let place = |name: &str| match name {
+        "introduction" => 0,
+        name if name.starts_with("stage") => 1,
+        _ => 2,
+    };
+    found.sort_by(|a, b| (place(&a.name), &a.name).cmp(&(place(&b.name), &b.name)));
+    Ok(found)
+}
+
+/// The deck with this text; `None` for a file that is no deck.
+fn deck(name: String, text: &str) -> Option<Deck> {
+    let (head, _) = text.strip_prefix("---\n")?.split_once("\n---\n")?;
+    let value = |key: &str| {
+        let line = head.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(':'));
+        line.map(|value| value.trim().trim_matches('"').to_owned())
+    };
+    (value("marp")? == "true").then_some(())?;
+    Some(Deck {
+        title: value("title")?,
+        minutes: value("minutes").and_then(|minutes| minutes.parse().ok()),
+        name,
+    })
+}
+
+/// The program `marp`, which npm installs the first time.
+fn installed(slides: &Path) -> Result<PathBuf> {
+    let marp = slides.join("node_modules/.bin").join(if cfg!(windows) { "marp.cmd" } else { "marp" });
+    if marp.is_file() {
+        return Ok(marp);
+    }
+    let npm = if cfg!(windows) { "npm.cmd" } else { "npm" };
+    eprintln!("installing Marp into {} …", slides.join("node_modules").display());
+    let status = match Command::new(npm).arg("ci").current_dir(slides).status() {
+        Ok(status) => status,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => bail!(
+            "the slides are built by Node.js, which is not installed: install Node.js 20 or newer \
+             (https://nodejs.org), then run this command again. Without it, read the decks as text in slides/"
+        ),
+        Err(error) => return Err(error).context("npm cannot be started"),
+    };
+    if !status.success() {
+        bail!("npm could not install Marp: its messages are above");
+    }
+    Ok(marp)
+}
+
+/// The page that links to all decks.
+fn page(decks: &[&Deck], pdf: bool) -> String {
+    let row = |deck: &&Deck| {
+        let minutes = deck.minutes.map_or(String::new(), |minutes| format!("{minutes} min"));
+        let pdf = if pdf { format!("<a href=\"{}.pdf\">PDF</a>", deck.name) } else { String::new() };
+        format!(
+            "<tr><td><a href=\"{}.html\">{}</a></td><td>{minutes}</td><td>{pdf}</td></tr>\n",
+            deck.name,
+            escape(&deck.title)
+        )
+    };
+    format!(
+        "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\
+         <title>Slides</title>\n<style>:root{{color-scheme:light dark}}body{{font:18px/1.6 sans-serif;max-width:40em;margin:2em \
+         auto;padding:0 1em}}td{{padding-right:2em}}</style>\n<h1>Slides</h1>\n<p>In a deck, the key P opens the window with the \
+         speaker notes, F fills the screen.</p>\n<table>\n{}</table>\n</html>\n",
+        decks.iter().map(row).collect::<String>()
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_deck_says_what_it_is() {
+        let text = "---\nmarp: true\ntitle: \"Stage 1: rays & shapes\"\nminutes: 60\n---\n\n# Rays\n";
+        let deck = deck("stage01".into(), text).unwrap();
+        assert_eq!((&*deck.title, deck.minutes), ("Stage 1: rays & shapes", Some(60)));
+        assert!(page(&[&deck], true).contains("<a href=\"stage01.html\">Stage 1: rays &amp; shapes</a>"));
+        assert!(super::deck("README".into(), "# Slides\n").is_none());
+    }
+
+    #[test]
+    fn the_introduction_comes_first_and_cost_after_the_stages() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["stage10", "cost", "stage02", "introduction"] {
+            let text = "---\nmarp: true\ntitle: x\n---\n";
+            fs::write(folder.path().join(format!("{name}.md")), text).unwrap();
+        }
+        fs::write(folder.path().join("plan.md"), "# Plan\n").unwrap();
+        let names: Vec<String> = decks(folder.path()).unwrap().into_iter().map(|deck| deck.name).collect();
+        assert_eq!(names, ["introduction", "stage02", "stage10", "cost"]);
+    }
+}

@@ -1,0 +1,292 @@
+//! Drawings as SVG, for slides and reports. The same calls give the same file.
+//!
+//! Colours are Paul Tol's, which colour-blind readers can distinguish. Each is given twice, for light and for dark pages:
+//! the file follows the setting of the reader's system.
+
+use std::fmt::Write;
+
+/// A position in a drawing, from its upper left corner.
+pub type Point = [f64; 2];
+
+/// The size of letters. A drawing is 1,000 units wide or less and fills most of a slide, so that these are 20 and 16 points
+/// or more there, legible from the last row.
+pub const TEXT: f64 = 26.0;
+
+/// The size of small letters, for ticks and remarks.
+pub const SMALL: f64 = 21.0;
+
+/// What something is drawn with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ink {
+    /// The colour of text.
+    Text,
+    /// Grey, for axes, grids and what is less important.
+    Faint,
+    /// One of the eight colours of lines and areas; larger numbers begin again.
+    Color(usize),
+}
+
+/// The colours on light and on dark paper: text, faint, paper, then the eight others.
+const LIGHT: [&str; 11] = [
+    "#1a1a1a", "#767676", "#ffffff", "#332288", "#cc3311", "#117733", "#997700", "#0077bb", "#aa3377",
+    "#44aa99", "#555555",
+];
+const DARK: [&str; 11] = [
+    "#f0f0f0", "#9a9a9a", "#141414", "#99aaff", "#ff7766", "#66cc77", "#ddcc66", "#66ccee", "#ee88bb",
+    "#77ddcc", "#bbbbbb",
+];
+
+impl Ink {
+    fn class(self) -> String {
+        match self {
+            Ink::Text => "0".into(),
+            Ink::Faint => "1".into(),
+            Ink::Color(index) => (3 + index % 8).to_string(),
+        }
+    }
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Pen {
+    /// Its colour.
+    pub ink: Ink,
+    /// Its width.
+    pub width: f64,
+    /// Whether it is dashed.
+    pub dashed: bool,
+}
+
+impl Pen {
+    /// A line of this colour, 3 wide.
+    pub const fn new(ink: Ink) -> Pen {
+        Pen { ink, width: 3.0, dashed: false }
+    }
+
+    /// The same with another width.
+    pub const fn wide(self, width: f64) -> Pen {
+        Pen { width, ..self }
+    }
+
+    /// The same, dashed.
+    pub const fn dashed(self) -> Pen {
+        Pen { dashed: true, ..self }
+    }
+
+    fn attributes(self) -> String {
+        let dashes = if self.dashed { " stroke-dasharray=\"9 8\"" } else { "" };
+        format!("class=\"l{}\" stroke-width=\"{}\"{dashes}", self.ink.class(), number(self.width))
+    }
+}
+
+/// Which point of a text its position is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// The left end.
+    Start,
+    /// The middle.
+    Middle,
+    /// The right end.
+    End,
+}
+
+/// A drawing that grows call by call; later calls cover earlier ones.
+pub struct Drawing {
+    width: f64,
+    height: f64,
+    title: String,
+    body: String,
+}
+
+impl Drawing {
+    /// An empty drawing of this size. `title` is read aloud by screen readers.
+    pub fn new(title: &str, width: f64, height: f64) -> Drawing {
+        Drawing { width, height, title: title.into(), body: String::new() }
+    }
+
+    /// A line from `a` to `b`.
+    pub fn line(&mut self, a: Point, b: Point, pen: Pen) {
+        self.polyline(&[a, b], pen);
+    }
+
+    /// Lines from point to point.
+    pub fn polyline(&mut self, points: &[Point], pen: Pen) {
+        let _ = writeln!(
+            self.body,
+            "<polyline points=\"{}\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\" {}/>",
+            list(points),
+            pen.attributes()
+        );
+    }
+
+    /// A line with an arrow head at `b`.
+    pub fn arrow(&mut self, a: Point, b: Point, pen: Pen) {
+        let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+        let length = dx.hypot(dy);
+        if length == 0.0 {
+            return;
+        }
+        // The head is an arrow of 5 widths, and the line ends inside it.
+        let (ux, uy) = (dx / length, dy / length);
+        let (head, half) = (5.0 * pen.width.max(2.0), 1.9 * pen.width.max(2.0));
+        let back = [b[0] - head * ux, b[1] - head * uy];
+        self.line(a, back, pen);
+        let sides = [[back[0] - half * uy, back[1] + half * ux], [back[0] + half * uy, back[1] - half * ux]];
+        self.area(&[b, sides[0], sides[1]], pen.ink, 1.0);
+    }
+
+    /// A polygon filled with a colour, `0..=1` opaque.
+    pub fn area(&mut self, corners: &[Point], ink: Ink, opacity: f64) {
+        let _ = writeln!(
+            self.body,
+            "<polygon points=\"{}\" class=\"f{}\" fill-opacity=\"{}\"/>",
+            list(corners),
+            ink.class(),
+            number(opacity)
+        );
+    }
+
+    /// A filled rectangle between two opposite corners.
+    pub fn rectangle(&mut self, a: Point, b: Point, ink: Ink, opacity: f64) {
+        self.area(&[a, [b[0], a[1]], b, [a[0], b[1]]], ink, opacity);
+    }
+
+    /// The outline of a rectangle between two opposite corners.
+    pub fn frame(&mut self, a: Point, b: Point, pen: Pen) {
+        self.polyline(&[a, [b[0], a[1]], b, [a[0], b[1]], a], pen);
+    }
+
+    /// A circle.
+    pub fn circle(&mut self, center: Point, radius: f64, pen: Pen) {
+        let [x, y] = center.map(number);
+        let _ = writeln!(
+            self.body,
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" fill=\"none\" {}/>",
+            number(radius),
+            pen.attributes()
+        );
+    }
+
+    /// A filled circle.
+    pub fn dot(&mut self, center: Point, radius: f64, ink: Ink) {
+        let [x, y] = center.map(number);
+        let _ = writeln!(
+            self.body,
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" class=\"f{}\"/>",
+            number(radius),
+            ink.class()
+        );
+    }
+
+    /// Text whose baseline is at `at`.
+    pub fn text(&mut self, at: Point, anchor: Anchor, size: f64, ink: Ink, text: &str) {
+        let [x, y] = at.map(number);
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let _ = writeln!(
+            self.body,
+            "<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" font-size=\"{}\" class=\"f{}\">{}</text>",
+            number(size),
+            ink.class(),
+            escaped(text)
+        );
+    }
+
+    /// Text that is read from below, with its middle at `at`.
+    pub fn text_upwards(&mut self, at: Point, size: f64, ink: Ink, text: &str) {
+        let [x, y] = at.map(number);
+        let _ = writeln!(
+            self.body,
+            "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" font-size=\"{}\" class=\"f{}\" transform=\"rotate(-90 \
+             {x} {y})\">{}</text>",
+            number(size),
+            ink.class(),
+            escaped(text)
+        );
+    }
+
+    /// The file.
+    pub fn svg(self) -> String {
+        let Drawing { width, height, title, body } = self;
+        let styles = |colors: &[&str; 11]| -> String {
+            let one = |(index, color): (usize, &&str)| {
+                format!(".l{index}{{stroke:{color}}}.f{index}{{fill:{color}}}")
+            };
+            colors.iter().enumerate().map(one).collect()
+        };
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" role=\"img\">\n\
+             <title>{}</title>\n<style>{}@media(prefers-color-scheme:dark){{{}}}</style>\n\
+             <rect width=\"100%\" height=\"100%\" class=\"f2\"/>\n{body}</svg>\n",
+            number(width),
+            number(height),
+            escaped(&title),
+            styles(&LIGHT),
+            styles(&DARK)
+        )
+    }
+}
+
+fn list(points: &[Point]) -> String {
+    points.iter().map(|[x, y]| format!("{},{}", number(*x), number(*y))).collect::<Vec<_>>().join(" ")
+}
+
+/// A coordinate with one digit after the point, which is a fifth of a pixel or less, and without the digit if it is 0.
+fn number(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".into() } else { text.into() }
+}
+
+/// The text with the characters replaced that mean something in SVG.
+pub fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// Maps coordinates of a diagram to positions in a drawing: the same scale on both axes, and y upwards.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Where the origin of the diagram stands in the drawing.
+    pub origin: Point,
+    /// Positions per unit.
+    pub scale: f64,
+}
+
+impl View {
+    /// The position of a point of the diagram.
+    pub fn at(&self, x: f64, y: f64) -> Point {
+        [self.origin[0] + self.scale * x, self.origin[1] - self.scale * y]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drawing_holds_what_was_drawn() {
+        let mut drawing = Drawing::new("a < b", 100.0, 50.0);
+        let view = View { origin: [10.0, 40.0], scale: 10.0 };
+        drawing.arrow(view.at(0.0, 0.0), view.at(3.0, 0.0), Pen::new(Ink::Color(9)));
+        drawing.rectangle(view.at(1.0, 1.0), view.at(2.0, 3.0), Ink::Faint, 0.25);
+        drawing.circle([50.0, 25.0], 10.0, Pen::new(Ink::Text).wide(1.5).dashed());
+        drawing.text([5.0, 12.0], Anchor::Start, TEXT, Ink::Text, "t & u");
+        drawing.text_upwards([5.0, 25.0], SMALL, Ink::Faint, "up");
+        insta::assert_snapshot!(drawing.svg());
+    }
+
+    #[test]
+    fn an_arrow_without_length_is_not_drawn() {
+        let mut drawing = Drawing::new("", 10.0, 10.0);
+        drawing.arrow([1.0, 1.0], [1.0, 1.0], Pen::new(Ink::Text));
+        assert!(!drawing.svg().contains("polygon"));
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!([1.0, -0.001, 2.5, 3.456].map(number), ["1", "0", "2.5", "3.46"]);
+    }
+}
