@@ -1,0 +1,262 @@
+//! The decks are whole: every slide has a heading and a note, every row of the lectures and every slide that a check refers to has
+//! its place, figures exist, and signatures are those of the exercises.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("slides/ is in a folder").to_path_buf()
+}
+
+struct Deck {
+    name: String,
+    /// The settings at its top.
+    head: BTreeMap<String, String>,
+    slides: Vec<String>,
+}
+
+impl Deck {
+    fn stage(&self) -> Option<u8> {
+        self.head.get("stage").map(|stage| stage.parse().expect("a number of a stage"))
+    }
+
+    fn text(&self) -> String {
+        self.slides.concat()
+    }
+}
+
+/// All decks, by name.
+fn decks() -> Vec<Deck> {
+    let mut decks = Vec::new();
+    for file in fs::read_dir(root().join("slides")).unwrap().map(|file| file.unwrap().path()) {
+        if file.extension().is_none_or(|ending| ending != "md") {
+            continue;
+        }
+        let text = fs::read_to_string(&file).unwrap();
+        let Some((head, slides)) =
+            text.strip_prefix("---\nmarp: true\n").and_then(|rest| rest.split_once("\n---\n"))
+        else {
+            continue;
+        };
+        let pair = |line: &str| {
+            let (key, value) = line.split_once(": ").unwrap_or_else(|| panic!("{}: {line}", file.display()));
+            (key.to_owned(), value.trim_matches('"').to_owned())
+        };
+        decks.push(Deck {
+            name: file.file_stem().unwrap().to_string_lossy().into_owned(),
+            head: head.lines().map(pair).collect(),
+            slides: slides.split("\n---\n").map(str::to_owned).collect(),
+        });
+    }
+    decks.sort_by(|a, b| a.name.cmp(&b.name));
+    decks
+}
+
+fn heading(slide: &str) -> Option<&str> {
+    slide.lines().find_map(|line| line.strip_prefix("## ").or_else(|| line.strip_prefix("# ")))
+}
+
+/// The speaker note: the last comment.
+fn note(slide: &str) -> Option<&str> {
+    slide.trim_end().strip_suffix("-->")?.rsplit_once("<!--").map(|(_, note)| note.trim())
+}
+
+/// The texts between each pair of `before` and `after`.
+fn between<'a>(text: &'a str, before: &str, after: &str) -> Vec<&'a str> {
+    text.split(before).skip(1).filter_map(|rest| rest.split(after).next()).collect()
+}
+
+#[test]
+fn every_deck_says_what_it_needs() {
+    let decks = decks();
+    let names: BTreeSet<&str> = decks.iter().map(|deck| deck.name.as_str()).collect();
+    for Deck { name, head, .. } in &decks {
+        let value = |key: &str| head.get(key).unwrap_or_else(|| panic!("{name} has no `{key}`")).as_str();
+        assert_eq!(
+            [value("theme"), value("math"), value("paginate")],
+            ["raykata", "mathjax", "true"],
+            "{name}"
+        );
+        let minutes: u32 = value("minutes").parse().unwrap();
+        assert!((5..=180).contains(&minutes), "{name}: {minutes} minutes");
+        let needed = value("prerequisites").trim_start_matches('[').trim_end_matches(']');
+        for one in needed.split(", ").filter(|one| !one.is_empty()) {
+            assert!(names.contains(one), "{name} needs {one}, which is no deck");
+        }
+    }
+    let stages: Vec<u8> = decks.iter().filter_map(Deck::stage).collect();
+    assert_eq!(stages, (1..=stages.len() as u8).collect::<Vec<_>>(), "one deck per stage");
+}
+
+#[test]
+fn every_slide_has_a_heading_and_a_note() {
+    for Deck { name, slides, .. } in &decks() {
+        let mut headings = BTreeSet::new();
+        for (slide, number) in slides.iter().zip(1..) {
+            let heading = heading(slide).unwrap_or_else(|| panic!("{name}, slide {number}: no heading"));
+            assert!(headings.insert(heading), "{name}: two slides are called {heading}");
+            let note = note(slide).unwrap_or_else(|| panic!("{name}, {heading}: no speaker note"));
+            assert!(note.len() > 40, "{name}, {heading}: {note}");
+        }
+    }
+}
+
+#[test]
+fn a_stage_has_twenty_to_forty_slides() {
+    for deck in decks().iter().filter(|deck| deck.stage().is_some()) {
+        let n = deck.slides.len();
+        assert!((20..=40).contains(&n), "{} has {n} slides", deck.name);
+    }
+}
+
+#[test]
+fn every_row_of_the_lectures_stands_on_a_slide() {
+    let notes: Vec<String> = decks()
+        .iter()
+        .flat_map(|deck| {
+            deck.slides.iter().filter_map(|slide| note(slide).map(str::to_owned)).collect::<Vec<_>>()
+        })
+        .collect();
+    let rows = [('R', 10), ('X', 15), ('M', 8), ('C', 12)];
+    let missing: Vec<String> = rows
+        .iter()
+        .flat_map(|&(part, n)| (1..=n).map(move |row| format!("{part}{row}")))
+        .filter(|row| !notes.iter().any(|note| names_row(note, row)))
+        .collect();
+    assert_eq!(missing, Vec::<String>::new());
+}
+
+/// Whether a note begins with `row R5` or `rows R5, R6`.
+fn names_row(note: &str, row: &str) -> bool {
+    let Some(rest) = note.strip_prefix("rows ").or_else(|| note.strip_prefix("row ")) else { return false };
+    let list = rest.split('.').next().unwrap_or_default();
+    list.split([',', ' ']).any(|one| one == row)
+}
+
+#[test]
+fn every_slide_that_a_check_refers_to_is_in_the_deck_of_its_stage() {
+    let decks = decks();
+    let mut missing = BTreeSet::new();
+    for (stage, list) in all_checks::STAGES {
+        let Some(deck) = decks.iter().find(|deck| deck.stage() == Some(*stage)) else {
+            missing.insert(format!("stage {stage} has no deck"));
+            continue;
+        };
+        let text = deck.text();
+        for check in *list {
+            let slide = &checks::rubric::entry(*stage, check.name).slide;
+            if !text.contains(&format!("slide \"{slide}\"")) {
+                missing.insert(format!("{}: slide \"{slide}\"", deck.name));
+            }
+        }
+    }
+    assert_eq!(missing, BTreeSet::new());
+}
+
+#[test]
+fn signatures_are_those_of_the_exercises() {
+    let without_spaces = |text: &str| text.split_whitespace().collect::<String>().replace(",)", ")");
+    let mut exercises = String::new();
+    for file in fs::read_dir(root().join("exercises/src")).unwrap() {
+        exercises += &without_spaces(&fs::read_to_string(file.unwrap().path()).unwrap());
+    }
+    for deck in &decks() {
+        for signature in between(&deck.text(), "```rust signature\n", "\n```") {
+            for one in signature.split("\n\n") {
+                assert!(
+                    exercises.contains(&without_spaces(one)),
+                    "{}: no exercise has this signature:\n{one}",
+                    deck.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn every_figure_is_listed_and_used() {
+    let list = fs::read_to_string(root().join("slides/figures.toml")).unwrap();
+    let listed: BTreeSet<&str> = between(&list, "\nfile = \"", "\"").into_iter().collect();
+    let mut used = BTreeSet::new();
+    for deck in &decks() {
+        let text = deck.text();
+        for picture in between(&text, "](figures/", ")") {
+            assert!(listed.contains(picture), "{}: slides/figures.toml does not list {picture}", deck.name);
+            assert!(
+                root().join("slides/figures").join(picture).is_file(),
+                "{}: there is no {picture}",
+                deck.name
+            );
+            used.insert(picture.to_owned());
+        }
+        // Whoever cannot see a figure reads what it shows.
+        for words in between(&text, "![", "](figures/") {
+            assert!(words.len() > 20, "{}: a figure without a description: {words}", deck.name);
+        }
+    }
+    let unused: Vec<&str> = listed.into_iter().filter(|file| !used.contains(*file)).collect();
+    assert_eq!(unused, Vec::<&str>::new());
+}
+
+/// The quoted outputs: the deck, the source, and the text.
+fn quotes() -> Vec<(String, String, String)> {
+    let mut quotes = Vec::new();
+    for deck in &decks() {
+        for rest in deck.text().split("<!-- from: ").skip(1) {
+            let (source, rest) = rest.split_once(" -->\n").unwrap_or_else(|| panic!("{}: {rest}", deck.name));
+            // A table is quoted from a command; only blocks of text are compared.
+            if let Some((text, _)) = rest.strip_prefix("```text\n").and_then(|rest| rest.split_once("\n```"))
+            {
+                quotes.push((deck.name.clone(), source.to_owned(), text.to_owned()));
+            }
+        }
+    }
+    quotes
+}
+
+/// The first line of a quote that the source does not have, where spaces do not count, `…` leaves out anything, and the lines
+/// have the order of the source.
+fn missing_line<'a>(quote: &'a str, source: &str) -> Option<&'a str> {
+    let squeezed = |text: &str| text.split_whitespace().collect::<String>();
+    let source = squeezed(source);
+    let mut from = 0;
+    for line in quote.lines() {
+        for part in squeezed(line).split('…').filter(|part| !part.is_empty()) {
+            match source[from..].find(part) {
+                Some(at) => from += at + part.len(),
+                None => return Some(line),
+            }
+        }
+    }
+    None
+}
+
+#[test]
+fn quoted_messages_are_those_of_the_kit() {
+    let quotes = quotes();
+    assert!(quotes.len() > 20);
+    for (deck, source, quote) in quotes.iter().filter(|(_, source, _)| source.starts_with("tests/")) {
+        let text = fs::read_to_string(root().join(source))
+            .unwrap_or_else(|_| panic!("{deck}: there is no {source}"));
+        assert_eq!(missing_line(quote, &text), None, "{deck}: {source} has no such line");
+    }
+}
+
+/// Runs every command that a slide quotes. This takes minutes, so it runs only with `CI_LONG=1`.
+#[test]
+fn quoted_outputs_are_those_of_their_commands() {
+    if std::env::var_os("CI_LONG").is_none() {
+        return println!("run only with CI_LONG=1");
+    }
+    for (deck, source, quote) in quotes() {
+        let Some(words) = source.strip_prefix("cargo ") else { continue };
+        let output = std::process::Command::new(env!("CARGO"))
+            .current_dir(root())
+            .args(words.split_whitespace())
+            .output()
+            .expect("cargo starts");
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(missing_line(&quote, &said), None, "{deck}: `{source}` prints no such line");
+    }
+}
