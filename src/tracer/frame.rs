@@ -44,7 +44,8 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
         let pyramids = plan.mipmaps.then(|| Pyramids::new(&world, &plan.effects));
         let indirect = plan.paths.as_ref().map(|paths| IndirectLight::new(scene, &world, paths));
         let n_primitives = world.primitives.len() as u64;
-        let intersector = building::watched(watch, n_primitives, || Intersector::new(world, &plan, quality));
+        let intersector =
+            building::watched(watch, n_primitives, || Intersector::new(world, &plan, quality, job.threads));
         let camera = CameraSampler::new(scene, &plan);
         let looks = Looks { tests: plan.tests, smooth: plan.smooth, facing: plan.facing };
         let limits = Limits { max_depth: quality.max_depth, min_contribution: quality.min_contribution };
