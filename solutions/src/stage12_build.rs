@@ -7,12 +7,15 @@
 //! of work in parallel and logs it; the costs [`NODE_COST`] and [`BLOCK_COST`]; [`DEEPEST_SPLIT`].
 
 use raykata::aabb::Aabb;
-use raykata::wide::{BLOCK, BLOCK_COST, BinGrid, BinSplit, Bins, FlatTree, Forks, PrimitiveBox};
+use raykata::bvh::DEEPEST_SPLIT;
+use raykata::wide::{
+    BLOCK, BLOCK_COST, BinGrid, BinSplit, Bins, FlatTree, Fork, ForkKind, Forks, MAX_BINS, MAX_LEAF, NODE_COST,
+    PrimitiveBox,
+};
 
 // <solution>
 use glam::{Vec3, Vec3A};
-use raykata::bvh::DEEPEST_SPLIT;
-use raykata::wide::{Bin, BoxA, FlatNode, Fork, ForkKind, MAX_BINS, MAX_LEAF, NODE_COST};
+use raykata::wide::{Bin, BoxA, FlatNode};
 // </solution>
 
 /// Sorts primitives into bins: per axis, each bin gets the number of the primitives whose centroid lies in it, and the box

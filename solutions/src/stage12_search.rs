@@ -8,11 +8,10 @@
 
 use raykata::bvh::PrimitiveHit;
 use raykata::ray::Ray;
-use raykata::wide::WideProbe;
+use raykata::wide::{BLOCK, Child, ChildContents, Stack, WideProbe};
 
 // <solution>
 use crate::stage3_traversal::keep_closest;
-use raykata::wide::{BLOCK, Child, ChildContents, Stack};
 // </solution>
 
 /// The closest hit in a wide tree with at least one node, or `None`: the same hit as that of stage 3, also for two hits at the

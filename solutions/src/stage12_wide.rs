@@ -5,11 +5,11 @@
 //! Given: [`FlatTree`], a binary tree with nodes of 32 bytes; [`WideTree`], a tree whose nodes have eight children.
 
 use raykata::bvh::Bvh;
-use raykata::wide::{FlatTree, WideTree};
+use raykata::wide::{BLOCK, Child, FlatTree, NO_PRIMITIVE, WideNode, WideTree};
 
 // <solution>
 use raykata::bvh::Contents;
-use raykata::wide::{BLOCK, Child, FlatNode, NO_PRIMITIVE, WideNode};
+use raykata::wide::FlatNode;
 // </solution>
 
 /// Copies a hierarchy of stage 3 into the layout of [`FlatTree`]: nodes of 32 bytes, the two children of a node next to each
