@@ -11,6 +11,10 @@ use raykata::rounding::{UNIT_ROUNDOFF, gamma};
 use raykata::wide::simd::{F32x4, F32x8, Level};
 use raykata::wide::{Entered, TriangleBlock, WideNode, WideRay};
 
+// <solution>
+use glam::Vec3;
+// </solution>
+
 /// Which of the eight boxes of a node a ray enters, by the slab test of stage 3, eight boxes at once.
 ///
 /// For each box, the result is the same as that of the reference's `slab`, bit for bit, for a ray with the range
@@ -25,12 +29,11 @@ use raykata::wide::{Entered, TriangleBlock, WideNode, WideRay};
 #[inline(always)]
 pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f32) -> Entered {
     // <solution>
-    let splat = |number: f32| F32x8::splat(level, number);
-    let (mut near, mut far) = (splat(f32::NEG_INFINITY), splat(f32::INFINITY));
+    let (mut near, mut far) = (F32x8::splat(level, f32::NEG_INFINITY), F32x8::splat(level, f32::INFINITY));
     for axis in 0..3 {
         // Compute the t of the near and of the far plane of all eight boxes. `& 1` tells the compiler that the index is in
         // range.
-        let (origin, inverse) = (splat(ray.origin[axis]), splat(ray.inverse_direction[axis]));
+        let (origin, inverse) = (F32x8::splat(level, ray.origin[axis]), F32x8::splat(level, ray.inverse_direction[axis]));
         let side = ray.near_side[axis] & 1;
         let enter = (F32x8::load(level, &node.bounds[axis][side]) - origin) * inverse;
         let leave = (F32x8::load(level, &node.bounds[axis][1 - side]) - origin) * inverse;
@@ -40,8 +43,8 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
     }
     // Widen the interval by the rounding errors: outwards from 0 is earlier for an entry and later for an exit that counts,
     // because t is not negative within the range.
-    let near = (near * splat(1.0 - 2.0 * gamma(3))).max(splat(ray.t_min));
-    let far = (far * splat(1.0 + 2.0 * gamma(3))).min(splat(t_max));
+    let near = (near * F32x8::splat(level, 1.0 - 2.0 * gamma(3))).max(F32x8::splat(level, ray.t_min));
+    let far = (far * F32x8::splat(level, 1.0 + 2.0 * gamma(3))).min(F32x8::splat(level, t_max));
     Entered { mask: near.le(far).bits(), t: near.to_array() }
     // <stub> todo!("the slab test with eight lanes: near planes, far planes, minimum, maximum, widen, compare")
     // </solution>
@@ -64,14 +67,12 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
 #[inline(always)]
 pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: f32) -> u32 {
     // <solution>
-    let splat = |number: f32| F32x4::splat(level, number);
-    let load = |corner: usize| block.corners[corner].each_ref().map(|lanes| F32x4::load(level, lanes));
-    let (a, b, c) = (load(0), load(1), load(2));
-    let direction = ray.direction.to_array().map(splat);
+    let [a, b, c] = [load(level, &block.corners[0]), load(level, &block.corners[1]), load(level, &block.corners[2])];
+    let (origin, direction) = (splat(level, ray.origin), splat(level, ray.direction));
 
     // Compute the edges from corner a, the normal, and a - o.
     let (edge_b, edge_c) = (minus(b, a), minus(c, a));
-    let to_a = minus(a, ray.origin.to_array().map(splat));
+    let to_a = minus(a, origin);
     let normal = cross(edge_b, edge_c);
 
     // Compute U, V, W and both parts of t.
@@ -84,26 +85,26 @@ pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: 
     // Bound the rounding errors.
     let size = largest(edge_b).max(largest(edge_c));
     let far_away = largest(to_a);
-    let fastest = splat(ray.direction.abs().max_element());
-    let tiny = splat(UNDERFLOW);
-    let one = splat(1.0);
+    let fastest = F32x4::splat(level, ray.direction.abs().max_element());
+    let tiny = F32x4::splat(level, UNDERFLOW);
+    let one = F32x4::splat(level, 1.0);
     let edge_error =
-        splat(EDGE_ERROR) * fastest * size * (far_away + size) + tiny * (one + fastest + size + far_away);
-    let t_error = |t: F32x4<L>| {
-        splat(T_ERROR) * size * size * (far_away + t * fastest) + tiny * (one + far_away + t + t * fastest)
-    };
+        F32x4::splat(level, EDGE_ERROR) * fastest * size * (far_away + size) + tiny * (one + fastest + size + far_away);
+    let area = F32x4::splat(level, T_ERROR) * size * size;
 
     // Reject what is certain. Each comparison is false for a NaN, which rejects nothing.
-    let v = splat(0.0) - minus_v;
+    let v = F32x4::splat(level, 0.0) - minus_v;
     let (least, most) = (w.min(u.min(v)), w.max(u.max(v)));
-    let outside = least.lt(splat(0.0) - edge_error) & edge_error.lt(most);
+    let outside = least.lt(F32x4::splat(level, 0.0) - edge_error) & edge_error.lt(most);
     // Beyond t_max: `distance / slope` has the sign of `distance · slope`.
     let (along, steep) = (distance * one.copysign(slope), slope.abs());
-    let t_max = splat(t_max);
-    let beyond = t_error(t_max).lt(along - t_max * steep);
+    let t_max = F32x4::splat(level, t_max);
+    let t_error = area * (far_away + t_max * fastest) + tiny * (one + far_away + t_max + t_max * fastest);
+    let beyond = t_error.lt(along - t_max * steep);
     // A hit before t_min needs a slope whose sign is certain. Beyond t_max it does not: with the other sign, t is negative.
-    let t_min = splat(ray.t_min);
-    let before = along.lt(t_min * steep - t_error(t_min)) & edge_error.lt(steep);
+    let t_min = F32x4::splat(level, ray.t_min);
+    let t_error = area * (far_away + t_min * fastest) + tiny * (one + far_away + t_min + t_min * fastest);
+    let before = along.lt(t_min * steep - t_error) & edge_error.lt(steep);
     !(outside | beyond | before).bits() & 15
     // <stub> todo!("compute U, V and W with four lanes, bound their errors, and reject what is certain")
     // </solution>
@@ -132,7 +133,19 @@ const T_ERROR: f32 = 64.0 * UNIT_ROUNDOFF;
 /// multiplied by e, 6 by m, 6 by h and 9 by nothing: together at most `2⁻¹⁴⁶ (1 + m + e + h)`. The last one is rounded itself.
 const UNDERFLOW: f32 = f32::from_bits(1 << 6); // 2⁻¹⁴³
 
+/// Four vectors, one per lane. Functions with a level are `#[inline(always)]`, and closures are avoided, because a closure may be
+/// compiled without the instructions of the level: measured, a closure in `may_hit` made searches twice as slow.
 type Vector<L> = [F32x4<L>; 3];
+
+#[inline(always)]
+fn load<L: Level>(level: L, corner: &[[f32; 4]; 3]) -> Vector<L> {
+    [F32x4::load(level, &corner[0]), F32x4::load(level, &corner[1]), F32x4::load(level, &corner[2])]
+}
+
+#[inline(always)]
+fn splat<L: Level>(level: L, p: Vec3) -> Vector<L> {
+    [F32x4::splat(level, p.x), F32x4::splat(level, p.y), F32x4::splat(level, p.z)]
+}
 
 #[inline(always)]
 fn minus<L: Level>(p: Vector<L>, q: Vector<L>) -> Vector<L> {
@@ -141,8 +154,11 @@ fn minus<L: Level>(p: Vector<L>, q: Vector<L>) -> Vector<L> {
 
 #[inline(always)]
 fn cross<L: Level>(p: Vector<L>, q: Vector<L>) -> Vector<L> {
-    let difference = |i: usize, j: usize| p[i].mul_sub(q[j], p[j] * q[i]);
-    [difference(1, 2), difference(2, 0), difference(0, 1)]
+    [
+        p[1].mul_sub(q[2], p[2] * q[1]),
+        p[2].mul_sub(q[0], p[0] * q[2]),
+        p[0].mul_sub(q[1], p[1] * q[0]),
+    ]
 }
 
 #[inline(always)]

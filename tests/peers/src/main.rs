@@ -106,8 +106,8 @@ fn measure(scene: &Scene, folder: Option<&str>, alone: bool) {
         wide.bytes() as f64 / triangles.len() as f64,
         build.as_secs_f64()
     );
-    for (name, rays) in ["primary", "diffuse"].iter().zip(&rays) {
-        let per_ray = wide.counts(rays).map(|count| count as f64 / rays.len() as f64);
+    for (name, rays) in ["primary", "diffuse", "shadow"].iter().zip(&rays) {
+        let per_ray = wide.counts(rays, *name == "shadow").map(|count| count as f64 / rays.len() as f64);
         println!("  {name}: {:.2} nodes, {:.2} blocks, {:.2} exact tests per ray", per_ray[0], per_ray[1], per_ray[2]);
     }
     if let Some(folder) = folder {

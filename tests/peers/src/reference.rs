@@ -40,9 +40,9 @@ impl Wide {
         self.instructions.run(Any(self, rays, found));
     }
 
-    /// Node visits, blocks, and exact tests of closest hits.
-    pub fn counts(&self, rays: &[Ray]) -> [u64; 3] {
-        struct Counting<'a>(&'a Wide, &'a [Ray]);
+    /// Node visits, blocks, and exact tests of closest hits or of any hits.
+    pub fn counts(&self, rays: &[Ray], any: bool) -> [u64; 3] {
+        struct Counting<'a>(&'a Wide, &'a [Ray], bool);
         impl Vectorized for Counting<'_> {
             type Output = [u64; 3];
 
@@ -51,7 +51,11 @@ impl Wide {
                 let mut sum = [0; 3];
                 for ray in self.1 {
                     let mut probe = Triangles { wide: self.0, ray: WideRay::new(ray), level, counts: [0; 3] };
-                    let _ = stage12_search::wide_closest_hit(&mut probe, ray);
+                    if self.2 {
+                        let _ = stage12_search::wide_any_hit(&mut probe, ray);
+                    } else {
+                        let _ = stage12_search::wide_closest_hit(&mut probe, ray);
+                    }
                     for i in 0..3 {
                         sum[i] += probe.counts[i];
                     }
@@ -59,7 +63,7 @@ impl Wide {
                 sum
             }
         }
-        self.instructions.run(Counting(self, rays))
+        self.instructions.run(Counting(self, rays, any))
     }
 }
 
