@@ -130,8 +130,9 @@ const EDGE_ERROR: f32 = 128.0 * UNIT_ROUNDOFF;
 const T_ERROR: f32 = 64.0 * UNIT_ROUNDOFF;
 
 /// Where a product underflows, it has an error of up to 2⁻¹⁵⁰ more. In U, V, W, d·n and n·(a - o) at most 12 of these are
-/// multiplied by e, 6 by m, 6 by h and 9 by nothing: together at most `2⁻¹⁴⁶ (1 + m + e + h)`. The last one is rounded itself.
-const UNDERFLOW: f32 = f32::from_bits(1 << 6); // 2⁻¹⁴³
+/// multiplied by e, 6 by m, 6 by h and 9 by nothing: together at most `2⁻¹⁴⁶ (1 + m + e + h)`. A larger number
+/// serves as well, and products of this one are not subnormal, which some processors compute slowly.
+const UNDERFLOW: f32 = f32::MIN_POSITIVE; // 2⁻¹²⁶
 
 /// Four vectors, one per lane. Functions with a level are `#[inline(always)]`, and closures are avoided, because a closure may be
 /// compiled without the instructions of the level: measured, a closure in `may_hit` made searches twice as slow.
