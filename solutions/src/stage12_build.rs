@@ -9,8 +9,8 @@
 use raykata::aabb::Aabb;
 use raykata::bvh::DEEPEST_SPLIT;
 use raykata::wide::{
-    BLOCK, BLOCK_COST, BinGrid, BinSplit, Bins, FlatTree, Fork, ForkKind, Forks, MAX_BINS, MAX_LEAF, NODE_COST,
-    PrimitiveBox,
+    BLOCK, BLOCK_COST, BinGrid, BinSplit, Bins, FlatTree, Fork, ForkKind, Forks, MAX_BINS, MAX_LEAF,
+    NODE_COST, PrimitiveBox,
 };
 
 // <solution>

@@ -213,13 +213,15 @@ pub struct WideTree {
 /// The largest coordinate for which triangles are tested four at once: a product of three such numbers does not overflow.
 pub const LARGEST: f32 = (1u64 << 40) as f32;
 
-/// Four triangles as a structure of arrays, in 160 bytes.
+/// Four triangles as a structure of arrays, in 176 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[repr(C, align(32))]
+#[repr(C, align(16))]
 pub struct TriangleBlock {
     /// `corners[corner][axis][lane]`. A lane has NaN if its primitive is not a triangle, if the lane is free, or if
     /// a coordinate is above [`LARGEST`].
     pub corners: [[[f32; BLOCK]; 3]; 3],
+    /// For each lane the largest coordinate of `b - a` and `c - a`, without its sign, by which rounding errors are bounded.
+    pub size: [f32; BLOCK],
     /// The numbers of the primitives.
     pub ids: BlockIds,
 }
@@ -228,18 +230,20 @@ impl TriangleBlock {
     /// The block of the primitives `ids`; `triangle` returns the triangle of a primitive, or `None` if it is another shape.
     pub fn new(ids: BlockIds, triangle: impl Fn(u32) -> Option<Triangle>) -> TriangleBlock {
         let mut corners = [[[f32::NAN; BLOCK]; 3]; 3];
+        let mut size = [f32::NAN; BLOCK];
         for (lane, &id) in ids.iter().enumerate().filter(|(_, id)| **id != NO_PRIMITIVE) {
             let Some(Triangle { a, b, c }) = triangle(id) else { continue };
             if !(a.abs().max(b.abs()).max(c.abs()).max_element() <= LARGEST) {
                 continue;
             }
+            size[lane] = (b - a).abs().max((c - a).abs()).max_element();
             for (corner, point) in [a, b, c].into_iter().enumerate() {
                 for axis in 0..3 {
                     corners[corner][axis][lane] = point[axis];
                 }
             }
         }
-        TriangleBlock { corners, ids }
+        TriangleBlock { corners, size, ids }
     }
 
     /// The triangle of a lane; its coordinates are NaN if the lane holds none.

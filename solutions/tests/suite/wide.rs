@@ -12,8 +12,8 @@ use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::shape::Triangle;
 use raykata::wide::{
-    BLOCK, Child, ChildContents, FlatTree, Fork, Forks, LARGEST, MAX_LEAF, NO_PRIMITIVE, TriangleBlock, WideNode,
-    WideTree,
+    BLOCK, Child, ChildContents, FlatTree, Fork, Forks, LARGEST, MAX_LEAF, NO_PRIMITIVE, TriangleBlock,
+    WideNode, WideTree,
 };
 use solutions::stage3_boxes::slab;
 use solutions::stage3_build::build;
@@ -50,7 +50,12 @@ fn eight_boxes_answer_as_one_box_does() {
         // The other places hold other boxes, or nothing.
         let mut node = Box::new(WideNode::EMPTY);
         let boxes: Vec<Aabb> = std::iter::once(first)
-            .chain(std::iter::repeat_with(|| hard_boxes(&mut random)).take(5).flatten().map(|(_, bounds)| bounds))
+            .chain(
+                std::iter::repeat_with(|| hard_boxes(&mut random))
+                    .take(5)
+                    .flatten()
+                    .map(|(_, bounds)| bounds),
+            )
             .collect();
         for (place, bounds) in boxes.iter().enumerate() {
             node.set(place, bounds, Child::leaf(place as u32, 1));
@@ -59,7 +64,8 @@ fn eight_boxes_answer_as_one_box_does() {
         if (0..3).any(|axis| ray.direction[axis] != 0.0 && !ray.direction[axis].recip().is_finite()) {
             continue;
         }
-        expected.push(boxes.iter().map(|bounds| slab(&ray, ray.direction.recip(), bounds)).collect::<Vec<_>>());
+        expected
+            .push(boxes.iter().map(|bounds| slab(&ray, ray.direction.recip(), bounds)).collect::<Vec<_>>());
         queries.push(WideBoxesQuery { node, ray });
     }
     let answers = solutions::Kit.door().enter_boxes(&queries);
@@ -123,12 +129,20 @@ fn few_triangles_remain_that_are_not_hit() {
         });
         let ray = Ray::new(2.0 * random.direction(), Vec3::X);
         let ray = Ray { direction: 0.1 * random.in_cube() - ray.origin, ..ray };
-        (BlockQuery { block: Box::new(TriangleBlock::new([0, 1, 2, 3], |id| Some(triangles[id as usize]))), ray }, triangles)
+        (
+            BlockQuery {
+                block: Box::new(TriangleBlock::new([0, 1, 2, 3], |id| Some(triangles[id as usize]))),
+                ray,
+            },
+            triangles,
+        )
     };
     let queries: Vec<_> = (0..50_000).map(|_| query()).collect();
     let hits: usize = queries
         .iter()
-        .map(|(q, triangles)| triangles.iter().filter(|triangle| watertight(&q.ray, triangle).is_some()).count())
+        .map(|(q, triangles)| {
+            triangles.iter().filter(|triangle| watertight(&q.ray, triangle).is_some()).count()
+        })
         .sum();
     let queries: Vec<_> = queries.into_iter().map(|(query, _)| query).collect();
     let passed: u32 = solutions::Kit.door().may_hit(&queries).into_iter().map(u32::count_ones).sum();
@@ -179,7 +193,10 @@ fn check_flat(name: &str, bounds: &[Aabb], tree: &FlatTree) -> f64 {
             assert!(node.count as usize <= MAX_LEAF, "{name}");
             listed += node.count as usize;
             for &primitive in &tree.order[node.first as usize..listed] {
-                assert!(bounds[primitive as usize].is_empty() || node.bounds().contains_box(&bounds[primitive as usize]));
+                assert!(
+                    bounds[primitive as usize].is_empty()
+                        || node.bounds().contains_box(&bounds[primitive as usize])
+                );
             }
             cost += area(&node.bounds()) * f64::from(node.count.div_ceil(BLOCK as u32));
         } else {
@@ -210,8 +227,10 @@ fn binned_trees_contain_everything_once_and_cost_little_more_than_a_sweep() {
 #[test]
 fn a_parallel_build_gives_the_same_tree_and_the_same_log() {
     let mut random = Random::new(12, 4);
-    let bounds: Vec<Aabb> =
-        (0..100_000).map(|_| random.in_cube()).map(|center| Aabb::new(center - 0.01, center + 0.01)).collect();
+    let bounds: Vec<Aabb> = (0..100_000)
+        .map(|_| random.in_cube())
+        .map(|center| Aabb::new(center - 0.01, center + 0.01))
+        .collect();
     let log = |in_parallel: bool| -> (FlatTree, Vec<Fork>) {
         let mut forks = Forks::new(in_parallel);
         let tree = build_parallel(&bounds, &mut forks);
@@ -319,4 +338,3 @@ fn vectors_have_the_rules_of_their_comments() {
     }
     Instructions::detect().run(Rules);
 }
-

@@ -35,7 +35,10 @@ impl Contestant for crate::reference::Wide {
 
 fn obvhs_triangles(triangles: &[Triangle]) -> Vec<obvhs::triangle::Triangle> {
     let point = |p: glam::Vec3| p.to_array().into();
-    triangles.iter().map(|t| obvhs::triangle::Triangle { v0: point(t.a), v1: point(t.b), v2: point(t.c) }).collect()
+    triangles
+        .iter()
+        .map(|t| obvhs::triangle::Triangle { v0: point(t.a), v1: point(t.b), v2: point(t.c) })
+        .collect()
 }
 
 fn obvhs_ray(ray: &Ray) -> obvhs::ray::Ray {
@@ -66,14 +69,16 @@ impl Contestant for Obvhs2 {
     fn closest(&self, rays: &[Ray], found: &mut [f32]) {
         for (ray, found) in rays.iter().zip(found) {
             let mut hit = RayHit::none();
-            let any = self.tree.ray_traverse(obvhs_ray(ray), &mut hit, |ray, id| self.triangles[id].intersect(ray));
+            let any =
+                self.tree.ray_traverse(obvhs_ray(ray), &mut hit, |ray, id| self.triangles[id].intersect(ray));
             *found = if any { hit.t } else { f32::INFINITY };
         }
     }
 
     fn any(&self, rays: &[Ray], found: &mut [bool]) {
         for (ray, found) in rays.iter().zip(found) {
-            *found = !self.tree.ray_traverse_miss(obvhs_ray(ray), |ray, id| self.triangles[id].intersect(ray));
+            *found =
+                !self.tree.ray_traverse_miss(obvhs_ray(ray), |ray, id| self.triangles[id].intersect(ray));
         }
     }
 }
@@ -101,14 +106,16 @@ impl Contestant for ObvhsWide {
     fn closest(&self, rays: &[Ray], found: &mut [f32]) {
         for (ray, found) in rays.iter().zip(found) {
             let mut hit = RayHit::none();
-            let any = self.tree.ray_traverse(obvhs_ray(ray), &mut hit, |ray, id| self.triangles[id].intersect(ray));
+            let any =
+                self.tree.ray_traverse(obvhs_ray(ray), &mut hit, |ray, id| self.triangles[id].intersect(ray));
             *found = if any { hit.t } else { f32::INFINITY };
         }
     }
 
     fn any(&self, rays: &[Ray], found: &mut [bool]) {
         for (ray, found) in rays.iter().zip(found) {
-            *found = !self.tree.ray_traverse_miss(obvhs_ray(ray), |ray, id| self.triangles[id].intersect(ray));
+            *found =
+                !self.tree.ray_traverse_miss(obvhs_ray(ray), |ray, id| self.triangles[id].intersect(ray));
         }
     }
 }
@@ -185,7 +192,11 @@ impl Bvh {
     }
 
     /// The hits of one ray. The crate's own triangle test misses back faces, so that of `obvhs` is used.
-    fn hits<'a>(&'a self, ray: &'a bvh::ray::Ray<f32, 3>, other: &'a obvhs::ray::Ray) -> impl Iterator<Item = f32> + 'a {
+    fn hits<'a>(
+        &'a self,
+        ray: &'a bvh::ray::Ray<f32, 3>,
+        other: &'a obvhs::ray::Ray,
+    ) -> impl Iterator<Item = f32> + 'a {
         let shapes = self.tree.traverse_iterator(ray, &self.shapes);
         shapes.map(|shape| shape.obvhs.intersect(other)).filter(|&t| t < other.tmax && t > other.tmin)
     }

@@ -86,11 +86,21 @@ fn rays(scene: &Scene, wide: &Wide) -> [Vec<Ray>; 3] {
 fn dump(folder: &str, scene: &Scene, rays: &[Vec<Ray>; 3]) {
     let write = |name: &str, numbers: Vec<f32>| {
         let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
-        std::fs::write(format!("{folder}/{}-{name}.bin", scene.name), bytes).expect("a folder that can be written");
+        std::fs::write(format!("{folder}/{}-{name}.bin", scene.name), bytes)
+            .expect("a folder that can be written");
     };
-    write("triangles", scene.triangles.iter().flat_map(|t| [t.a, t.b, t.c]).flat_map(|p| p.to_array()).collect());
+    write(
+        "triangles",
+        scene.triangles.iter().flat_map(|t| [t.a, t.b, t.c]).flat_map(|p| p.to_array()).collect(),
+    );
     for (name, rays) in ["primary", "diffuse", "shadow"].iter().zip(rays) {
-        let numbers = |ray: &Ray| [ray.origin.to_array(), ray.direction.to_array()].concat().into_iter().chain([ray.t_max]).collect::<Vec<_>>();
+        let numbers = |ray: &Ray| {
+            [ray.origin.to_array(), ray.direction.to_array()]
+                .concat()
+                .into_iter()
+                .chain([ray.t_max])
+                .collect::<Vec<_>>()
+        };
         write(name, rays.iter().flat_map(numbers).collect());
     }
 }
@@ -108,12 +118,16 @@ fn measure(scene: &Scene, folder: Option<&str>, alone: bool) {
     );
     for (name, rays) in ["primary", "diffuse", "shadow"].iter().zip(&rays) {
         let per_ray = wide.counts(rays, *name == "shadow").map(|count| count as f64 / rays.len() as f64);
-        println!("  {name}: {:.2} nodes, {:.2} blocks, {:.2} exact tests per ray", per_ray[0], per_ray[1], per_ray[2]);
+        println!(
+            "  {name}: {:.2} nodes, {:.2} blocks, {:.2} exact tests per ray",
+            per_ray[0], per_ray[1], per_ray[2]
+        );
     }
     if let Some(folder) = folder {
         dump(folder, scene, &rays);
     }
-    let mut contestants: Vec<(&str, Box<dyn Contestant>, Duration)> = vec![("reference", Box::new(wide), build)];
+    let mut contestants: Vec<(&str, Box<dyn Contestant>, Duration)> =
+        vec![("reference", Box::new(wide), build)];
     if !alone {
         fn boxed<C: Contestant + 'static>((built, time): (C, Duration)) -> (Box<dyn Contestant>, Duration) {
             (Box::new(built), time)
@@ -156,18 +170,33 @@ fn compare(contestants: &[(&str, Box<dyn Contestant>, Duration)], rays: &[Vec<Ra
                     expected.push(answers);
                 } else {
                     let close = |p: f32, q: f32| p == q || (p - q).abs() <= 1e-3 * p.abs();
-                    differ[i][kind] = answers.iter().zip(&expected[kind]).filter(|&(&p, &q)| !close(p, q)).count();
+                    differ[i][kind] =
+                        answers.iter().zip(&expected[kind]).filter(|&(&p, &q)| !close(p, q)).count();
                 }
             }
         }
     }
-    println!("  {:<16} {:>8}   {:^29}   {:^23}   {:^17}", "", "build s", "million rays per second", "the reference is faster", "other answers");
+    println!(
+        "  {:<16} {:>8}   {:^29}   {:^23}   {:^17}",
+        "", "build s", "million rays per second", "the reference is faster", "other answers"
+    );
     for (i, (name, _, build)) in contestants.iter().enumerate() {
         let rate = |kind: usize| rays[kind].len() as f64 / median(times[i][kind].clone()) / 1e6;
-        let ratio = |kind: usize| median(times[i][kind].iter().zip(&times[0][kind]).map(|(t, own)| t / own).collect());
+        let ratio = |kind: usize| {
+            median(times[i][kind].iter().zip(&times[0][kind]).map(|(t, own)| t / own).collect())
+        };
         println!(
             "  {name:<16} {:>8.3}   {:>9.3} {:>9.3} {:>9.3}   {:>7.2} {:>7.2} {:>7.2}   {:>5} {:>5} {:>5}",
-            build.as_secs_f64(), rate(0), rate(1), rate(2), ratio(0), ratio(1), ratio(2), differ[i][0], differ[i][1], differ[i][2],
+            build.as_secs_f64(),
+            rate(0),
+            rate(1),
+            rate(2),
+            ratio(0),
+            ratio(1),
+            ratio(2),
+            differ[i][0],
+            differ[i][1],
+            differ[i][2],
         );
     }
 }

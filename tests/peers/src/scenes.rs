@@ -97,15 +97,41 @@ impl Random {
 fn icosphere(n: usize, center: Vec3, radius: f32) -> Vec<Triangle> {
     let g = (1.0 + 5f32.sqrt()) / 2.0;
     let p = [
-        [-1.0, g, 0.0], [1.0, g, 0.0], [-1.0, -g, 0.0], [1.0, -g, 0.0],
-        [0.0, -1.0, g], [0.0, 1.0, g], [0.0, -1.0, -g], [0.0, 1.0, -g],
-        [g, 0.0, -1.0], [g, 0.0, 1.0], [-g, 0.0, -1.0], [-g, 0.0, 1.0],
+        [-1.0, g, 0.0],
+        [1.0, g, 0.0],
+        [-1.0, -g, 0.0],
+        [1.0, -g, 0.0],
+        [0.0, -1.0, g],
+        [0.0, 1.0, g],
+        [0.0, -1.0, -g],
+        [0.0, 1.0, -g],
+        [g, 0.0, -1.0],
+        [g, 0.0, 1.0],
+        [-g, 0.0, -1.0],
+        [-g, 0.0, 1.0],
     ]
     .map(Vec3::from_array);
     let faces = [
-        [0, 11, 5], [0, 5, 1], [0, 1, 7], [0, 7, 10], [0, 10, 11], [1, 5, 9], [5, 11, 4], [11, 10, 2], [10, 7, 6],
-        [7, 1, 8], [3, 9, 4], [3, 4, 2], [3, 2, 6], [3, 6, 8], [3, 8, 9], [4, 9, 5], [2, 4, 11], [6, 2, 10],
-        [8, 6, 7], [9, 8, 1],
+        [0, 11, 5],
+        [0, 5, 1],
+        [0, 1, 7],
+        [0, 7, 10],
+        [0, 10, 11],
+        [1, 5, 9],
+        [5, 11, 4],
+        [11, 10, 2],
+        [10, 7, 6],
+        [7, 1, 8],
+        [3, 9, 4],
+        [3, 4, 2],
+        [3, 2, 6],
+        [3, 6, 8],
+        [3, 8, 9],
+        [4, 9, 5],
+        [2, 4, 11],
+        [6, 2, 10],
+        [8, 6, 7],
+        [9, 8, 1],
     ];
     let bump = |p: Vec3| {
         let d = p.normalize();
@@ -115,7 +141,8 @@ fn icosphere(n: usize, center: Vec3, radius: f32) -> Vec<Triangle> {
     let mut triangles = Vec::new();
     for [a, b, c] in faces {
         let (a, b, c) = (p[a], p[b], p[c]);
-        let at = |i: usize, j: usize| bump(a + (b - a) * (i as f32 / n as f32) + (c - a) * (j as f32 / n as f32));
+        let at =
+            |i: usize, j: usize| bump(a + (b - a) * (i as f32 / n as f32) + (c - a) * (j as f32 / n as f32));
         for i in 0..n {
             for j in 0..n - i {
                 triangles.push(Triangle { a: at(i, j), b: at(i + 1, j), c: at(i, j + 1) });
@@ -131,7 +158,8 @@ fn icosphere(n: usize, center: Vec3, radius: f32) -> Vec<Triangle> {
 /// The lower half of a sphere.
 fn bowl(n: usize, m: usize, radius: f32) -> Vec<Triangle> {
     let at = |i: usize, j: usize| {
-        let (phi, theta) = (i as f32 / n as f32 * std::f32::consts::TAU, j as f32 / m as f32 * std::f32::consts::FRAC_PI_2);
+        let (phi, theta) =
+            (i as f32 / n as f32 * std::f32::consts::TAU, j as f32 / m as f32 * std::f32::consts::FRAC_PI_2);
         radius * Vec3::new(phi.cos() * theta.cos(), -theta.sin(), phi.sin() * theta.cos())
     };
     grid(n, m, at)
@@ -177,7 +205,9 @@ fn terrain(n: usize) -> Vec<Triangle> {
         let mut height = 0.0;
         for octave in 0..8 {
             let f = (1 << octave) as f32;
-            height += 0.12 / f * (3.1 * f * p.x + 1.7 * octave as f32).sin() * (2.7 * f * p.y + 0.9 * octave as f32).cos();
+            height += 0.12 / f
+                * (3.1 * f * p.x + 1.7 * octave as f32).sin()
+                * (2.7 * f * p.y + 0.9 * octave as f32).cos();
         }
         height
     };
