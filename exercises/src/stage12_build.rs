@@ -7,7 +7,11 @@
 //! of work in parallel and logs it; the costs [`NODE_COST`] and [`BLOCK_COST`]; [`DEEPEST_SPLIT`].
 
 use raykata::aabb::Aabb;
-use raykata::wide::{BLOCK, BLOCK_COST, BinGrid, BinSplit, Bins, FlatTree, Forks, PrimitiveBox};
+use raykata::bvh::DEEPEST_SPLIT;
+use raykata::wide::{
+    BLOCK, BLOCK_COST, BinGrid, BinSplit, Bins, FlatTree, Fork, ForkKind, Forks, MAX_BINS, MAX_LEAF,
+    NODE_COST, PrimitiveBox,
+};
 
 /// Sorts primitives into bins: per axis, each bin gets the number of the primitives whose centroid lies in it, and the box
 /// around their boxes.
@@ -60,7 +64,8 @@ pub fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &B
 /// any order.
 ///
 /// The tree has the layout of [`FlatTree`]. A box of NaN goes into some leaf and does not change other boxes. The cost of the
-/// tree by the surface area heuristic is at most 1.05 times that of a full sweep (stage 3).
+/// tree by the surface area heuristic is at most 1.05 times that of a full sweep (stage 3), where the sizes of the boxes differ
+/// by a factor of less than a million: equal bins cannot separate boxes that each are half as large as the one before.
 ///
 /// Pitfall: with `1 / extent` as scale, an axis along which all centroids are equal gives 0 · ∞.
 pub fn build_binned(bounds: &[Aabb]) -> FlatTree {

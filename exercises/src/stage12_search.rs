@@ -8,7 +8,7 @@
 
 use raykata::bvh::PrimitiveHit;
 use raykata::ray::Ray;
-use raykata::wide::WideProbe;
+use raykata::wide::{BLOCK, Child, ChildContents, Stack, WideProbe};
 
 /// The closest hit in a wide tree with at least one node, or `None`: the same hit as that of stage 3, also for two hits at the
 /// same `t`, of which the smaller primitive number wins.

@@ -4,10 +4,11 @@
 //! 2013; Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997; Higham, "Accuracy and Stability of
 //! Numerical Algorithms", 2002.
 //!
-//! Given: [`F32x8`] and [`F32x4`] with `+`, `-`, `*`, `min`, `max`, `abs`, `le`, `lt` per lane; masks with `&`, `|` and `bits`;
+//! Given: [`gamma`] and [`UNIT_ROUNDOFF`]; [`F32x8`] and [`F32x4`] with `+`, `-`, `*`, `min`, `max`, `abs`, `le`, `lt` per lane; masks with `&`, `|` and `bits`;
 //! [`WideRay`] with `1 / direction` and the near side of boxes on each axis.
 
-use raykata::wide::simd::Level;
+use raykata::rounding::{UNIT_ROUNDOFF, gamma};
+use raykata::wide::simd::{F32x4, F32x8, Level};
 use raykata::wide::{Entered, TriangleBlock, WideNode, WideRay};
 
 /// Which of the eight boxes of a node a ray enters, by the slab test of stage 3, eight boxes at once.
@@ -30,8 +31,8 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
 /// `i`, or certainly hits it outside of `ray.t_min..t_max`.
 ///
 /// Frames test only the remaining triangles with the watertight test of stage 10, in double precision. So this function may
-/// not reject any triangle that the watertight test hits, for any finite input. It should reject nearly all others: of the
-/// triangles that are missed by more than 512 roundings, all. A lane with NaN is never rejected, because its primitive is not a
+/// not reject any triangle that the watertight test hits, for any finite input. It should reject nearly all others,
+/// because each triangle that remains costs about as much as a whole block. A lane with NaN is never rejected, because its primitive is not a
 /// triangle. Coordinates and directions are at most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing overflows.
 ///
 /// The signs of three numbers decide: `U = ((a - o) × d)·(c - a)`, `V = -((a - o) × d)·(b - a)` and `W = d·n - U - V` with

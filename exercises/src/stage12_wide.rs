@@ -5,7 +5,7 @@
 //! Given: [`FlatTree`], a binary tree with nodes of 32 bytes; [`WideTree`], a tree whose nodes have eight children.
 
 use raykata::bvh::Bvh;
-use raykata::wide::{FlatTree, WideTree};
+use raykata::wide::{BLOCK, Child, FlatTree, NO_PRIMITIVE, WideNode, WideTree};
 
 /// Copies a hierarchy of stage 3 into the layout of [`FlatTree`]: nodes of 32 bytes, the two children of a node next to each
 /// other, and the nodes below the first child before those below the second.
