@@ -7,7 +7,7 @@ use oracle::gauntlet::boxes::{at_a_corner, of_any_size};
 use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Contents, DEEPEST_SPLIT};
-use raykata::kit::{BlockQuery, Speed, StudentKit, WideBoxesQuery};
+use raykata::kit::{BlockQuery, StudentKit, WideBoxesQuery};
 use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::shape::Triangle;
