@@ -90,6 +90,9 @@ impl AddAssign for Counts {
 
 /// Counts events, or ignores them at no cost. Each tile of a frame is counted by a tally of its own.
 pub trait Tally: Default + Send {
+    /// Whether events are counted. Work that is only for counting is left out otherwise.
+    const COUNTS: bool;
+
     /// Counts one event.
     fn note(&mut self, event: Event);
 
@@ -98,6 +101,8 @@ pub trait Tally: Default + Send {
 }
 
 impl Tally for Counts {
+    const COUNTS: bool = true;
+
     #[inline]
     fn note(&mut self, event: Event) {
         *match event {
@@ -126,6 +131,8 @@ impl Tally for Counts {
 pub struct Uncounted;
 
 impl Tally for Uncounted {
+    const COUNTS: bool = false;
+
     #[inline(always)]
     fn note(&mut self, _: Event) {}
 

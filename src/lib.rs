@@ -45,5 +45,6 @@ pub mod rubric;
 pub mod scene;
 pub mod shape;
 pub mod tracer;
+pub mod wide;
 pub mod worker;
 pub mod world;

@@ -3,6 +3,10 @@
 pub mod stage10_stability;
 pub mod stage11_light_transport;
 pub mod stage11_paths;
+pub mod stage12_build;
+pub mod stage12_search;
+pub mod stage12_simd;
+pub mod stage12_wide;
 pub mod stage1_shapes;
 pub mod stage2_triangles;
 pub mod stage3_boxes;

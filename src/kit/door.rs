@@ -15,6 +15,7 @@ use crate::random::Stratum;
 use crate::ray::Ray;
 use crate::scene::{Sampler, Scene, Split};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
+use crate::wide::{BinSplit, Bins, Entered, FlatTree, ForkedTree, WideTree};
 use glam::{Affine3A, UVec3, Vec2, Vec3};
 
 /// Carries a request to the process that contains the student's code, and brings back the answer.
@@ -46,6 +47,7 @@ pub trait Kit:
     + Partitions
     + Stability
     + LightTransport
+    + Speed
     + Frames
     + Sync
 {
@@ -62,6 +64,7 @@ impl<T> Kit for T where
         + Partitions
         + Stability
         + LightTransport
+        + Speed
         + Frames
         + Sync
 {

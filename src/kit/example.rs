@@ -229,5 +229,24 @@ examples! {
         max_depth: 0,
         numbers: StepNumbers { light: Vec2::ZERO, bsdf: Vec3::ZERO, roulette: 0.0 },
     };
+    Bvh => Bvh::default();
+    FlatTree => FlatTree::default();
+    Vec<Aabb> => Vec::new();
+    BinGrid => BinGrid { low: glam::Vec3A::ZERO, scale: glam::Vec3A::ONE, n_bins: 2 };
+    BinsQuery => BinsQuery { primitives: Vec::new(), grid: example() };
+    BinSplitQuery => BinSplitQuery { bins: Box::new(Bins::EMPTY), n_bins: 2 };
+    PartitionQuery => PartitionQuery {
+        primitives: Vec::new(),
+        grid: example(),
+        split: BinSplit { axis: 0, bin: 1, cost: 1.0 },
+    };
+    WideBoxesQuery => WideBoxesQuery { node: Box::new(WideNode::EMPTY), ray: example() };
+    BlockQuery => BlockQuery { block: Box::new(TriangleBlock::new([0; 4], |_| Some(example()))), ray: example() };
+    WideQuery => WideQuery {
+        tree: WideTree { nodes: vec![WideNode::EMPTY], blocks: Vec::new() },
+        ray: example(),
+        entries: vec![[f32::INFINITY; 8]],
+        hits: Vec::new(),
+    };
     RouletteQuery => RouletteQuery { weight: Vec3::ONE, bounce: 0, u: 0.5 };
 }

@@ -745,6 +745,100 @@ macro_rules! student_functions {
                     = stage11_paths::paths_called_for;
                 |q: Scene| -> PathEffects { F::paths_called_for(q) }
             }
+
+            /// Stage 12: speed. Each function gives one answer per query, in the same order, and panics if the
+            /// student's function does.
+            12 trait Speed {
+                /// A hierarchy of stage 3 in the layout of a flat tree: all nodes in one array, children side by
+                /// side, depth first.
+                Flatten fn flatten(bvh: &Bvh) -> FlatTree
+                    = stage12_wide::flatten;
+                |q: Bvh| -> FlatTree { F::flatten(q) }
+                /// The number of primitives in each bin, and the box around them, along all three axes.
+                FillBins fn fill_bins(primitives: &[PrimitiveBox], grid: &BinGrid) -> Bins
+                    = stage12_build::fill_bins;
+                |q: BinsQuery| -> Box<Bins> { Box::new(F::fill_bins(&q.primitives, &q.grid)) }
+                /// The cost of a leaf, which pays for whole blocks of four.
+                BlockCost fn block_cost(n_primitives: u32) -> f32
+                    = stage12_build::block_cost;
+                |n_primitives: u32| -> f32 { F::block_cost(*n_primitives) }
+                /// The cheapest split between two bins, by the surface area heuristic; `None` if every split
+                /// leaves one side empty.
+                CheapestSplit fn cheapest_split(bins: &Bins, n_bins: u32) -> Option<BinSplit>
+                    = stage12_build::cheapest_split;
+                |q: BinSplitQuery| -> Option<BinSplit> { F::cheapest_split(&q.bins, q.n_bins) }
+                /// Reorders primitives so that those of the left side come first, and returns their number.
+                PartitionBins fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &BinSplit) -> usize
+                    = stage12_build::partition_bins;
+                |q: PartitionQuery| -> SplitAnswer {
+                    let mut primitives = q.primitives.clone();
+                    let middle = F::partition_bins(&mut primitives, &q.grid, &q.split);
+                    SplitAnswer { order: primitives.iter().map(PrimitiveBox::id).collect(), middle: Some(middle) }
+                }
+                /// A binary hierarchy over primitives with these boxes, built with bins.
+                BuildBinned fn build_binned(bounds: &[Aabb]) -> FlatTree
+                    = stage12_build::build_binned;
+                |bounds: Vec<Aabb>| -> FlatTree { F::build_binned(bounds) }
+                /// The same tree, built in parallel.
+                BuildParallel fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree
+                    = stage12_build::build_parallel;
+                |bounds: Vec<Aabb>| -> ForkedTree {
+                    let mut forks = Forks::new(false);
+                    let tree = F::build_parallel(bounds, &mut forks);
+                    ForkedTree { tree, forks: forks.into_log() }
+                }
+                /// A tree with eight children per node, made of a binary one.
+                Collapse fn collapse(tree: &FlatTree) -> WideTree
+                    = stage12_wide::collapse;
+                |q: FlatTree| -> WideTree { F::collapse(q) }
+                /// Which of the eight boxes of a node a ray enters, and where.
+                EnterBoxes fn enter_boxes[L: Level](level: L, node: &WideNode, ray: &WideRay, t_max: f32) -> Entered
+                    = stage12_simd::enter_boxes;
+                |q: WideBoxesQuery| -> Entered {
+                    struct Work<'a, F>(&'a WideBoxesQuery, std::marker::PhantomData<F>);
+                    impl<F: StudentFunctions> Vectorized for Work<'_, F> {
+                        type Output = Entered;
+
+                        #[inline(always)]
+                        fn run<L: Level>(self, level: L) -> Entered {
+                            F::enter_boxes(level, &self.0.node, &WideRay::new(&self.0.ray), self.0.ray.t_max)
+                        }
+                    }
+                    Instructions::detect().run(Work::<F>(q, std::marker::PhantomData))
+                }
+                /// Which of four triangles a ray may hit, as bits.
+                MayHit fn may_hit[L: Level](level: L, block: &TriangleBlock, ray: &WideRay, t_max: f32) -> u32
+                    = stage12_simd::may_hit;
+                |q: BlockQuery| -> u32 {
+                    struct Work<'a, F>(&'a BlockQuery, std::marker::PhantomData<F>);
+                    impl<F: StudentFunctions> Vectorized for Work<'_, F> {
+                        type Output = u32;
+
+                        #[inline(always)]
+                        fn run<L: Level>(self, level: L) -> u32 {
+                            F::may_hit(level, &self.0.block, &WideRay::new(&self.0.ray), self.0.ray.t_max)
+                        }
+                    }
+                    Instructions::detect().run(Work::<F>(q, std::marker::PhantomData))
+                }
+                /// The closest hit in a wide tree, nearest child first; `None` if nothing is hit. Of two hits at
+                /// the same `t` the smaller primitive number wins.
+                WideClosestHit fn wide_closest_hit[P: WideProbe](probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
+                    = stage12_search::wide_closest_hit;
+                |q: WideQuery| -> WideAnswer {
+                    let mut probe = WideTableProbe::new(q);
+                    let hit = F::wide_closest_hit(&mut probe, &q.ray);
+                    probe.answer(hit, hit.is_some())
+                }
+                /// Whether the ray hits any primitive of a wide tree in its range (shadow rays).
+                WideAnyHit fn wide_any_hit[P: WideProbe](probe: &mut P, ray: &Ray) -> bool
+                    = stage12_search::wide_any_hit;
+                |q: WideQuery| -> WideAnswer {
+                    let mut probe = WideTableProbe::new(q);
+                    let found = F::wide_any_hit(&mut probe, &q.ray);
+                    probe.answer(None, found)
+                }
+            }
         }
     };
 }

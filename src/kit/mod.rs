@@ -20,6 +20,7 @@ mod recursion;
 mod scene_graph;
 mod shading;
 mod shapes;
+mod speed;
 mod stability;
 mod table;
 mod traced;
@@ -34,7 +35,7 @@ pub use distribution::{
 };
 pub use door::{
     Answer, Distribution, Door, EffectsAnalysis, Frames, Hierarchies, Kit, LightTransport, Partitions,
-    Recursion, Request, SceneGraph, Shading, Shapes, Stability, Transport, Triangles,
+    Recursion, Request, SceneGraph, Shading, Shapes, Speed, Stability, Transport, Triangles,
 };
 pub use effects_analysis::{
     BoundQuery, HitsQuery, LightQuery, MaterialHits, MaterialQuery, RayCounts, TexelQuery, TextureQuery,
@@ -59,6 +60,10 @@ pub use scene_graph::{
 };
 pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowProbe, ShadowQuery, Surface, TermQuery};
 pub use shapes::{PlaneEquationQuery, PlaneQuery, RootQuery, SphereQuery};
+pub use speed::{
+    BinSplitQuery, BinsQuery, BlockQuery, PartitionQuery, WideAnswer, WideBoxesQuery, WideQuery,
+    WideTableProbe,
+};
 pub use stability::OffsetQuery;
 pub use table::{
     BuildQuery, SearchAnswer, SearchQuery, SlabQuery, SplitAnswer, SplitQuery, Table, TableProbe,

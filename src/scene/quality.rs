@@ -20,6 +20,8 @@ pub enum Accelerator {
     /// A bounding volume hierarchy (stage 3).
     #[default]
     Bvh,
+    /// A bounding volume hierarchy with eight children per node, whose boxes are tested at once (stage 12).
+    WideBvh,
     /// A bounding volume hierarchy whose search visits both children of every node that the ray enters, in any order:
     /// the baseline that shows what the order and the shorter ray save (stage 3). Shadow rays stop at the first hit,
     /// as with [`Accelerator::Bvh`].
@@ -48,7 +50,7 @@ pub enum Accelerator {
 impl Accelerator {
     /// Every accelerator once: brute force, the volumes of the scene graph, the hierarchies, then the
     /// structures that divide space.
-    pub const ALL: [Accelerator; 15] = [
+    pub const ALL: [Accelerator; 16] = [
         Accelerator::BruteForce,
         Accelerator::BoundingBoxes,
         Accelerator::BoundingSpheres,
@@ -57,6 +59,7 @@ impl Accelerator {
         Accelerator::BvhBothChildren,
         Accelerator::CachedBvh,
         Accelerator::PacketBvh,
+        Accelerator::WideBvh,
         Accelerator::Grid,
         Accelerator::Octree,
         Accelerator::OctreeByCells,
@@ -85,6 +88,7 @@ impl Accelerator {
             Accelerator::BvhBothChildren => "bvh_both_children",
             Accelerator::CachedBvh => "cached_bvh",
             Accelerator::PacketBvh => "packet_bvh",
+            Accelerator::WideBvh => "wide_bvh",
             Accelerator::Grid => "grid",
             Accelerator::Octree => "octree",
             Accelerator::OctreeByCells => "octree_by_cells",

@@ -47,7 +47,7 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
         let Built { intersector, earlier_seconds } = kept::built(job, &plan, written, false, || {
             let world = World::new(scene, &plan.effects, &plan.world);
             let n_primitives = world.primitives.len() as u64;
-            building::watched(watch, n_primitives, || Intersector::new(world, &plan, quality))
+            building::watched(watch, n_primitives, || Intersector::new(world, &plan, quality, job.threads))
         });
         let world = &intersector.scene.world;
         let pyramids = plan.mipmaps.then(|| Pyramids::new(world, &plan.effects));

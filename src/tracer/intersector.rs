@@ -7,12 +7,14 @@ use super::plan::Plan;
 use super::probe::{GramTable, Notes, PacketProbe, SceneProbe, Structured};
 use super::solids::{bounds_of_solid, placed_bounds};
 use super::structure::Structure;
+use super::wide::Wide;
 use crate::aabb::Aabb;
 use crate::count::{Event, Tally};
 use crate::graph::{ChildCache, Graph};
 use crate::kit::StudentFunctions;
 use crate::ray::Ray;
 use crate::scene::{Accelerator, Quality};
+use crate::shape::Triangle;
 use crate::world::{Geometry, InfinitePlane, Primitive, World};
 use glam::Vec3;
 use std::marker::PhantomData;
@@ -38,8 +40,9 @@ pub struct Intersector<F> {
 }
 
 impl<F: StudentFunctions> Intersector<F> {
-    /// Builds the acceleration structures of `plan` over `world` and over each of its shared meshes.
-    pub fn new(mut world: World, plan: &Plan, quality: &Quality) -> Self {
+    /// Builds the acceleration structures of `plan` over `world` and over each of its shared meshes, on `threads` threads; 0
+    /// takes one per core. Only wide trees are built in parallel.
+    pub fn new(mut world: World, plan: &Plan, quality: &Quality, threads: usize) -> Self {
         let graph = world.graph.take();
         // Bound the shared meshes first, because the box of an instance follows from that of its mesh. Brute
         // force needs no boxes.
@@ -56,6 +59,11 @@ impl<F: StudentFunctions> Intersector<F> {
         // Build one structure over the scene and one over each shared mesh.
         let mut notes = Vec::new();
         let mut over = |bounds: &[Aabb], primitives: &[Primitive], graph: Option<Graph>| {
+            if plan.accelerator == Some(Accelerator::WideBvh) {
+                let triangle = |index: u32| still_triangle(&primitives[index as usize]);
+                let build = || Wide::build::<F>(bounds, triangle, plan.wide, quality);
+                return Structure::Wide(on_threads(threads, build));
+            }
             let hull = |index: usize| hull(&primitives[index]);
             Structure::build::<F>(bounds, graph, hull, plan.accelerator, quality, &mut notes)
         };
@@ -71,6 +79,7 @@ impl<F: StudentFunctions> Intersector<F> {
             gram: gram(&world.primitives),
             mesh_gram: world.shared_meshes.iter().map(|mesh| gram(&mesh.primitives)).collect(),
             tests: plan.tests,
+            may_hit: plan.wide.may_hit,
             conservative: plan.conservative,
             savings: quality.savings,
             world,
@@ -191,6 +200,25 @@ fn intersect_plane<F: StudentFunctions>(plane: &InfinitePlane, ray: &Ray) -> Opt
 fn hull(primitive: &Primitive) -> Option<Vec<Vec3>> {
     let still = primitive.end.get().is_none();
     primitive.geometry.triangle().filter(|_| still).map(|triangle| vec![triangle.a, triangle.b, triangle.c])
+}
+
+/// The triangle of a primitive that can be hit from both sides and does not move; `None` for any other primitive.
+fn still_triangle(primitive: &Primitive) -> Option<Triangle> {
+    match primitive.geometry {
+        Geometry::Triangle(triangle) if primitive.end.get().is_none() => Some(triangle),
+        _ => None,
+    }
+}
+
+/// Runs `build` on a pool of this number of threads. Where no thread can be started, as in a sandbox, this thread does all the
+/// work.
+fn on_threads<R: Send>(threads: usize, build: impl FnOnce() -> R + Send) -> R {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    let pool = if threads == 1 { pool.use_current_thread().build() } else { pool.build() };
+    match pool {
+        Ok(pool) => pool.install(build),
+        Err(_) => build(),
+    }
 }
 
 /// The box around all positions of the primitive between times 0 and 1.

@@ -3,9 +3,10 @@
 //!
 //! [`Renderer`] renders the frames of a kit. `plan` decides what is computed, and what replaces functions
 //! that are not written. `frame` puts together `camera_sampler`, which makes camera rays, and `intersector`,
-//! which finds their hits; measurements use the intersectors again that `kept` keeps. The intersector searches a `structure` through a `probe`, which tests triangles
-//! and spheres by `intersection` and shapes in spaces of their own by `solids`. `grid_resolution` chooses the
-//! cells of a grid, and `large_leaves` notes where a tree could not be divided as asked. `path` follows a ray
+//! which finds their hits; measurements use the intersectors again that `kept` keeps. The intersector searches
+//! a `structure` through a `probe`, which tests triangles and spheres by `intersection` and shapes in spaces of
+//! their own by `solids`. `grid_resolution` chooses the cells of a grid, `large_leaves` notes where a tree could
+//! not be divided as asked, and `wide` holds and searches trees with eight children per node. `path` follows a ray
 //! through the tree of its secondary rays, from `interaction` to interaction. With indirect light `path_tracer`
 //! follows one random path in place of the tree; `emitters` and `environment` choose the lights that it samples.
 //! `record` stores the rays of a pixel, `outlines` draws structures, `gamma2` decodes colours, and
@@ -35,6 +36,7 @@ mod record;
 mod solids;
 mod structure;
 mod texture_filter;
+mod wide;
 mod written;
 
 use crate::bvh::PrimitiveHit;
@@ -214,7 +216,7 @@ fn first_hits<F: StudentFunctions>(
     // Build the structure of the scene's quality over the plain world.
     let plan = Plan::new(job, written);
     let Built { intersector, .. } = kept::built(job, &plan, written, true, || {
-        Intersector::<F>::new(World::plain(&job.scene), &plan, &job.scene.quality)
+        Intersector::<F>::new(World::plain(&job.scene), &plan, &job.scene.quality, job.threads)
     });
     let n_primitives = intersector.scene.world.primitives.len() as u32;
     // Number the planes after the primitives.

@@ -18,6 +18,7 @@ pub fn outlines(structure: &Structure, depth: usize) -> Vec<[Vec3; 2]> {
     let edges = |boxes: Vec<Aabb>| boxes.iter().filter(|one| !one.is_empty()).flat_map(edges_of).collect();
     match structure {
         Structure::List | Structure::Painter => Vec::new(),
+        Structure::Wide(wide) => edges(wide.boxes_at(depth)),
         Structure::Hierarchy(bvh) | Structure::BothChildren(bvh) => edges(boxes_at(bvh, depth)),
         Structure::Graph { graph, volumes: Volumes::Boxes(boxes) } => {
             edges(nodes_at(graph, depth).into_iter().map(|node| boxes[node as usize]).collect())

@@ -60,6 +60,8 @@ pub struct Scratch<T> {
 }
 
 impl<T: Tally> Tally for Scratch<T> {
+    const COUNTS: bool = T::COUNTS;
+
     fn note(&mut self, event: Event) {
         self.tally.note(event);
     }

@@ -29,6 +29,8 @@ pub struct Plan {
     pub offsets: bool,
     /// Whether `safe_normalize` of stage 10 normalizes the directions of rays.
     pub safe_units: bool,
+    /// Which functions of stage 12 a wide tree uses.
+    pub wide: WidePlan,
     /// What a pixel shows: light, normals or work. If `shade` is not written, it shows normals.
     pub view: View,
     /// The student functions that the world is made with, and the kinds of shapes that are shown.
@@ -60,6 +62,17 @@ pub struct Plan {
     pub notes: Vec<String>,
 }
 
+/// Which functions of stage 12 are written, beside those without which there is no wide tree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WidePlan {
+    /// Whether `build_parallel` is written.
+    pub parallel: bool,
+    /// Whether `build_binned` is written. Without both, the tree of stage 3 is flattened.
+    pub binned: bool,
+    /// Whether `may_hit` is written; otherwise each triangle of a leaf is tested.
+    pub may_hit: bool,
+}
+
 impl Plan {
     /// The plan of `job`, if only the functions of `written` may be called.
     pub fn new<F: StudentFunctions>(job: &RenderJob, written: &Written<F>) -> Plan {
@@ -76,6 +89,11 @@ impl Plan {
             conservative: written.has(Function::conservative_slab),
             offsets: written.has(Function::offset_origin),
             safe_units: written.has(Function::safe_normalize),
+            wide: WidePlan {
+                parallel: written.has(Function::build_parallel),
+                binned: written.has(Function::build_binned),
+                may_hit: written.has(Function::may_hit),
+            },
             view: choose_view(job.view, written, &mut notes),
             world: WorldFunctions::of::<F>(&|function| written.has(function)),
             smooth: written.has_all(&[Function::shading_normal, Function::interpolate]),
@@ -449,6 +467,16 @@ fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
             (8, &[Function::closest_hit_in_graph, Function::closest_hit_with_child_cache])
         }
         Accelerator::CachedBvh => (9, &[Function::cached_search]),
+        Accelerator::WideBvh => (
+            12,
+            &[
+                Function::flatten,
+                Function::collapse,
+                Function::enter_boxes,
+                Function::wide_closest_hit,
+                Function::wide_any_hit,
+            ],
+        ),
         Accelerator::PacketBvh => (9, &[Function::packet_search]),
         Accelerator::Grid => (
             9,

@@ -5,6 +5,7 @@ use super::intersection::{ShapeTests, TriangleTest};
 use super::motion::geometry_at;
 use super::solids::intersect_solid;
 use super::structure::{Primitives, Structure};
+use super::wide::Wide;
 use crate::bvh::{Contents, Node, PrimitiveHit, Probe};
 use crate::count::{Event, Tally};
 use crate::graph::Savings;
@@ -30,6 +31,8 @@ pub struct Structured {
     pub mesh_gram: Vec<GramTable>,
     /// Which student functions test rays against triangles and spheres.
     pub tests: ShapeTests,
+    /// Whether `may_hit` of stage 12 sorts out triangles of wide trees; otherwise each is tested.
+    pub may_hit: bool,
     /// Whether `conservative_slab` of stage 10 tests the boxes of hierarchies; otherwise `slab` of stage 3.
     pub conservative: bool,
     /// Which shortcuts a search of the scene graph takes.
@@ -63,12 +66,16 @@ pub struct SceneProbe<'a, F, T> {
     primitives: &'a [Primitive],
     world: &'a World,
     gram: &'a [GramScalars],
-    tests: ShapeTests,
+    /// Which student functions test rays against triangles and spheres.
+    pub(super) tests: ShapeTests,
+    /// Whether `may_hit` of stage 12 is written.
+    pub(super) may_hit: bool,
     conservative: bool,
     inverse_direction: Vec3,
     tally: &'a mut T,
     scene: &'a Structured,
-    notes: &'a mut Notes,
+    /// What is remembered of the hits that were reported.
+    pub(super) notes: &'a mut Notes,
     functions: PhantomData<F>,
 }
 
@@ -78,7 +85,7 @@ pub struct Notes {
     /// Whether any hit is enough; otherwise the closest is needed.
     any_will_do: bool,
     /// The last hit that was reported: the primitive, and what its test found.
-    last: (u32, Detail),
+    pub(super) last: (u32, Detail),
     /// The closest hit with an instance: the hit, the primitive of the shared mesh, and what its test found.
     instance: Option<(PrimitiveHit, u32, Detail)>,
 }
@@ -124,6 +131,7 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
             world: &scene.world,
             gram: &gram.0,
             tests: scene.tests,
+            may_hit: scene.may_hit,
             conservative: scene.conservative,
             inverse_direction: ray.direction.recip(),
             tally,
@@ -205,9 +213,21 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
         Some(hit.t)
     }
 
+    /// Counts one event.
+    #[inline(always)]
+    pub(super) fn note(&mut self, event: Event) {
+        self.tally.note(event);
+    }
+
     #[inline(always)]
     fn test(&mut self, index: u32, ray: &Ray) -> Option<f32> {
         self.tally.note(Event::PrimitiveTest);
+        self.test_uncounted(index, ray)
+    }
+
+    /// The `t` of the hit with a primitive in the range of the ray.
+    #[inline(always)]
+    pub(super) fn test_uncounted(&mut self, index: u32, ray: &Ray) -> Option<f32> {
         let primitive = &self.primitives[index as usize];
         match primitive.end.get() {
             None => self.intersect(index, ray, &primitive.geometry, self.gram.get(index as usize)),
@@ -290,6 +310,16 @@ impl<F: StudentFunctions, T: Tally> Primitives for SceneProbe<'_, F, T> {
     #[inline]
     fn inverse_direction(&self) -> Vec3 {
         self.inverse_direction
+    }
+
+    #[inline(always)]
+    fn closest_in_wide(&mut self, wide: &Wide, ray: &Ray) -> Option<PrimitiveHit> {
+        wide.closest_hit(self, ray)
+    }
+
+    #[inline(always)]
+    fn any_in_wide(&mut self, wide: &Wide, ray: &Ray) -> bool {
+        wide.any_hit(self, ray)
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::grid_resolution::grid_resolution;
 use super::large_leaves::large_leaves;
+use super::wide::Wide;
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, Probe};
 use crate::count::Event;
@@ -52,6 +53,8 @@ pub enum Structure {
         /// The bounding box of all primitives.
         around: Aabb,
     },
+    /// A bounding volume hierarchy with eight children per node.
+    Wide(Wide),
     /// A binary space partition with the polygons in its nodes.
     PolygonBsp {
         /// The nodes of the BSP tree.
@@ -95,6 +98,12 @@ pub trait Primitives: Probe + Cells {
 
     /// The reciprocal of each component of the direction of the ray; infinite where a component is 0.
     fn inverse_direction(&self) -> Vec3;
+
+    /// The closest hit of `ray` in a wide tree over these primitives, or `None`.
+    fn closest_in_wide(&mut self, wide: &Wide, ray: &Ray) -> Option<PrimitiveHit>;
+
+    /// Whether `ray` hits anything in a wide tree over these primitives.
+    fn any_in_wide(&mut self, wide: &Wide, ray: &Ray) -> bool;
 }
 
 /// The deepest level of an octree: octants there are a millionth of the scene wide.
@@ -162,6 +171,7 @@ impl Structure {
             (
                 Some(
                     Accelerator::Bvh
+                    | Accelerator::WideBvh
                     | Accelerator::CachedBvh
                     | Accelerator::PacketBvh
                     | Accelerator::BoundingBoxes
@@ -186,6 +196,7 @@ impl Structure {
         savings: Savings,
     ) -> Option<PrimitiveHit> {
         match self {
+            Structure::Wide(wide) => probe.closest_in_wide(wide, ray),
             Structure::Hierarchy(bvh) => F::closest_hit(bvh, probe, ray),
             Structure::BothChildren(bvh) => F::closest_hit_both(bvh, probe, ray),
             Structure::Graph { graph, volumes } => {
@@ -234,6 +245,7 @@ impl Structure {
         savings: Savings,
     ) -> bool {
         match self {
+            Structure::Wide(wide) => probe.any_in_wide(wide, ray),
             Structure::Hierarchy(bvh) | Structure::BothChildren(bvh) => F::any_hit(bvh, probe, ray),
             Structure::List | Structure::Painter => last_hit(probe, ray).is_some(),
             other => other.closest_hit::<F, P>(probe, ray, savings).is_some(),
@@ -259,6 +271,7 @@ impl Structure {
         }
         let (nodes, levels, references, bytes) = match self {
             Structure::List | Structure::Painter => return None,
+            Structure::Wide(wide) => return Some(wide.size()),
             Structure::Hierarchy(bvh) | Structure::BothChildren(bvh) => {
                 tree(&bvh.nodes, bvh.depth(), &bvh.order)
             }

@@ -27,3 +27,4 @@ mod subsets;
 mod textbook;
 mod texture_filter;
 mod watertight;
+mod wide;

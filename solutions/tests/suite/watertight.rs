@@ -89,9 +89,11 @@ fn check(name: &str, ray: &Ray, triangle: &Triangle) -> bool {
     true
 }
 
-#[test]
-fn watertight_answers_as_exact_arithmetic_does() {
-    type Draw = fn(&mut Random) -> (Ray, Triangle);
+/// Draws a ray and a triangle.
+pub type Draw = fn(&mut Random) -> (Ray, Triangle);
+
+/// All kinds of rays and triangles, by name.
+pub fn kinds() -> Vec<(&'static str, Draw)> {
     let own: [(&str, Draw); 7] = [
         ("lattice", lattice),
         ("mixed sizes, 2^±10", |random| mixed(random, 10)),
@@ -105,8 +107,12 @@ fn watertight_answers_as_exact_arithmetic_does() {
         ("edge-on", edge_on),
         ("thin", thin),
     ];
-    let all = DISTRIBUTIONS.iter().map(|distribution| (distribution.name, distribution.draw)).chain(own);
-    for (index, (name, draw)) in all.enumerate() {
+    DISTRIBUTIONS.iter().map(|distribution| (distribution.name, distribution.draw)).chain(own).collect()
+}
+
+#[test]
+fn watertight_answers_as_exact_arithmetic_does() {
+    for (index, (name, draw)) in kinds().into_iter().enumerate() {
         let mut random = Random::new(1, index as u64);
         let mut hits = 0;
         for _ in 0..20_000 {

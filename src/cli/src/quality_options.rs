@@ -125,7 +125,7 @@ const SPLITS: [(&str, Split); 3] = [
     ("surface-area", Split::SurfaceArea),
 ];
 
-pub(crate) const ACCELERATORS: [(&str, Accelerator); 15] = [
+pub(crate) const ACCELERATORS: [(&str, Accelerator); 16] = [
     ("brute-force", Accelerator::BruteForce),
     ("bounding-boxes", Accelerator::BoundingBoxes),
     ("bounding-spheres", Accelerator::BoundingSpheres),
@@ -134,6 +134,7 @@ pub(crate) const ACCELERATORS: [(&str, Accelerator); 15] = [
     ("bvh-both-children", Accelerator::BvhBothChildren),
     ("cached-bvh", Accelerator::CachedBvh),
     ("packet-bvh", Accelerator::PacketBvh),
+    ("wide-bvh", Accelerator::WideBvh),
     ("grid", Accelerator::Grid),
     ("octree", Accelerator::Octree),
     ("octree-by-cells", Accelerator::OctreeByCells),

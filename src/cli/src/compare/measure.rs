@@ -146,7 +146,8 @@ impl Bench<'_> {
             Accelerator::Bvh
             | Accelerator::BvhBothChildren
             | Accelerator::CachedBvh
-            | Accelerator::PacketBvh => return Ok(Some(1)),
+            | Accelerator::PacketBvh
+            | Accelerator::WideBvh => return Ok(Some(1)),
             // A ray may test all primitives, or all in a node or a cell.
             Accelerator::BruteForce
             | Accelerator::BoundingBoxes

@@ -92,6 +92,7 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
                 with("bvh", &|quality| quality.accelerator = Accelerator::Bvh),
                 with("bvh, last hit first", &|quality| quality.accelerator = Accelerator::CachedBvh),
                 with("bvh, packets of 8", &|quality| quality.accelerator = Accelerator::PacketBvh),
+                with("bvh, 8 children per node", &|quality| quality.accelerator = Accelerator::WideBvh),
             ]
         }
         Of::Heuristics => {

@@ -122,6 +122,8 @@ fields! {
     ShadowQuestion { direction, distance, light }
     PathStep { light, shadow, next }
     PathEffects { diffuse, sampled, environment }
+    BinSplit { axis, bin, cost }
+    Entered { mask, t }
 }
 
 impl Constant for Bounce {
@@ -149,6 +151,9 @@ macro_rules! empty {
 
 empty! {
     Bvh => Bvh::default();
+    FlatTree => FlatTree::default();
+    WideTree => WideTree::default();
+    Bins => Bins::EMPTY;
     Bsp => Bsp::default();
     PolygonBsp => PolygonBsp::default();
     KdTree => KdTree::new(Aabb::EMPTY);

@@ -149,6 +149,7 @@ fn structures(with: impl Fn(Accelerator, u32) -> Quality) -> Vec<(String, Qualit
     structures.push(("BSP tree of polygons".into(), with(Accelerator::PolygonBsp, 2)));
     structures.push(("hierarchy, last hit first".into(), with(Accelerator::CachedBvh, 2)));
     structures.push(("hierarchy, packets".into(), with(Accelerator::PacketBvh, 2)));
+    structures.push(("wide hierarchy".into(), with(Accelerator::WideBvh, 2)));
     structures
 }
 

@@ -63,7 +63,7 @@ struct Structure {
 }
 
 /// Every structure that finds hits of single rays in another way.
-const STRUCTURES: [Structure; 14] = {
+const STRUCTURES: [Structure; 16] = {
     const fn new(name: &'static str, accelerator: Accelerator, split: Split) -> Structure {
         Structure { name, accelerator, split }
     }
@@ -75,6 +75,8 @@ const STRUCTURES: [Structure; 14] = {
         new("bvh, both children", Accelerator::BvhBothChildren, Split::SurfaceArea),
         new("bvh, last hit first", Accelerator::CachedBvh, Split::SurfaceArea),
         new("bvh, packets of eight", Accelerator::PacketBvh, Split::SurfaceArea),
+        new("bvh, eight children", Accelerator::WideBvh, Split::SurfaceArea),
+        new("bvh, eight children, object median", Accelerator::WideBvh, Split::ObjectMedian),
         new("grid", Accelerator::Grid, Split::SurfaceArea),
         new("octree", Accelerator::Octree, Split::SurfaceArea),
         new("octree by cells", Accelerator::OctreeByCells, Split::SurfaceArea),

@@ -1,0 +1,331 @@
+//! Stage 12 · a builder that is as fast as its trees: bins in place of sorting, leaves that pay for whole blocks, and work
+//! that several threads share.
+//!
+//! Slides: "Surface Area Heuristic". Source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007.
+//!
+//! Given: [`PrimitiveBox`], a primitive with its box in 32 bytes; [`BinGrid`] and [`Bins`]; [`Forks`], which runs two pieces
+//! of work in parallel and logs it; the costs [`NODE_COST`] and [`BLOCK_COST`]; [`DEEPEST_SPLIT`].
+
+use raykata::aabb::Aabb;
+use raykata::bvh::DEEPEST_SPLIT;
+use raykata::wide::{
+    BLOCK, BLOCK_COST, BinGrid, BinSplit, Bins, FlatTree, Fork, ForkKind, Forks, MAX_BINS, MAX_LEAF,
+    NODE_COST, PrimitiveBox,
+};
+
+// <solution>
+use glam::{Vec3, Vec3A};
+use raykata::wide::{Bin, BoxA, FlatNode};
+// </solution>
+
+/// Sorts primitives into bins: per axis, each bin gets the number of the primitives whose centroid lies in it, and the box
+/// around their boxes.
+///
+/// Along an axis, a primitive with `c = primitive.twice_centroid()` belongs to bin `⌊(c - grid.low) · grid.scale⌋`. A bin below
+/// 0 or a NaN counts as bin 0, and a bin above the last one as the last one. The empty box changes no box of a bin, but its
+/// primitive is counted.
+///
+/// One pass over the primitives is enough, and it must be one pass: the builder does it at each node.
+pub fn fill_bins(primitives: &[PrimitiveBox], grid: &BinGrid) -> Bins {
+    // <solution>
+    let mut bins = Bins::EMPTY;
+    for primitive in primitives {
+        let place = (primitive.twice_centroid() - grid.low) * grid.scale;
+        for axis in 0..3 {
+            let bin = &mut bins.0[axis][bin_at(place[axis], grid)];
+            bin.bounds = bin.bounds.and(primitive);
+            bin.count += 1;
+        }
+    }
+    bins
+    // <stub> todo!("find the bin of each primitive along each axis; extend its box and count the primitive")
+    // </solution>
+}
+
+// <solution>
+/// The bin at a place in units of bins: the conversion rounds down, and makes 0 of a NaN.
+#[inline(always)]
+fn bin_at(place: f32, grid: &BinGrid) -> usize {
+    // The minimum with MAX_BINS - 1 tells the compiler that the index is in range.
+    (place as usize).min(grid.n_bins as usize - 1).min(MAX_BINS - 1)
+}
+
+/// Boxes that grow.
+trait Grow {
+    /// The box around this box and that of a primitive.
+    fn and(self, primitive: &PrimitiveBox) -> Self;
+
+    /// The box around two boxes.
+    fn union(self, other: &Self) -> Self;
+
+    /// Half of the surface area: the area of three faces. 0 for the empty box.
+    fn half_area(&self) -> f32;
+}
+
+impl Grow for BoxA {
+    #[inline(always)]
+    fn and(self, primitive: &PrimitiveBox) -> BoxA {
+        BoxA { low: primitive.low().min(self.low), high: primitive.high().max(self.high) }
+    }
+
+    #[inline(always)]
+    fn union(self, other: &BoxA) -> BoxA {
+        BoxA { low: other.low.min(self.low), high: other.high.max(self.high) }
+    }
+
+    #[inline(always)]
+    fn half_area(&self) -> f32 {
+        // The extent of the empty box is -∞.
+        let size = (self.high - self.low).max(Vec3A::ZERO);
+        size.x * size.y + size.y * size.z + size.z * size.x
+    }
+}
+// </solution>
+
+/// The cost of a leaf with this number of primitives: `BLOCK_COST · ⌈n / BLOCK⌉`.
+///
+/// A ray tests four triangles at once, so it pays for whole blocks. A leaf of five costs as much as one of eight.
+pub fn block_cost(n_primitives: u32) -> f32 {
+    // <solution>
+    BLOCK_COST * n_primitives.div_ceil(BLOCK as u32) as f32
+    // <stub> todo!("round up to whole blocks")
+    // </solution>
+}
+
+/// The cheapest split between two bins, of all three axes, by the surface area heuristic: the one with the smallest
+/// `A(L) c(L) + A(R) c(R)`, with half the surface area `A` of the box around a side, and the cost `c` of its primitives as a
+/// leaf ([`block_cost`]).
+///
+/// `n_bins` bins per axis are in use. Returns `None` if every split leaves one side without primitives. Of splits with the
+/// same cost any one is right. The box of a side is the box around its bins. The result has the cost of the split.
+///
+/// Two passes per axis are enough: one from the right that stores the cost of each right side, and one from the left.
+pub fn cheapest_split(bins: &Bins, n_bins: u32) -> Option<BinSplit> {
+    // <solution>
+    let n_bins = (n_bins as usize).min(MAX_BINS);
+    let mut best: Option<BinSplit> = None;
+    for (axis, bins) in bins.0.iter().enumerate() {
+        // Compute the cost of all right sides: right_cost[i] belongs to the bins from i on.
+        let mut right_cost = [f32::INFINITY; MAX_BINS];
+        let mut right = Bin::EMPTY;
+        for i in (1..n_bins).rev() {
+            right = join(&right, &bins[i]);
+            right_cost[i] = cost_of(&right);
+        }
+        // Add the cost of the left side, and keep the cheapest split.
+        let mut left = Bin::EMPTY;
+        for i in 1..n_bins {
+            left = join(&left, &bins[i - 1]);
+            let cost = cost_of(&left) + right_cost[i];
+            if cost < best.map_or(f32::INFINITY, |best| best.cost) {
+                best = Some(BinSplit { axis: axis as u32, bin: i as u32, cost });
+            }
+        }
+    }
+    best
+    // <stub> todo!("for each axis: add up bins from the right and from the left, and compare the costs")
+    // </solution>
+}
+
+// <solution>
+fn join(one: &Bin, other: &Bin) -> Bin {
+    Bin { bounds: one.bounds.union(&other.bounds), count: one.count + other.count }
+}
+
+/// The cost of one side of a split; infinite for a side without primitives.
+fn cost_of(side: &Bin) -> f32 {
+    if side.count == 0 { f32::INFINITY } else { side.bounds.half_area() * block_cost(side.count) }
+}
+// </solution>
+
+/// Reorders primitives so that those of the left side of `split` come first, and returns their number.
+///
+/// The bin of a primitive is that of [`fill_bins`]. The order within a side is free. No memory is needed beside the slice.
+///
+/// Pitfall: a different formula for the bin may round differently. Then the sides are not those whose cost was compared,
+/// and one may be empty.
+pub fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &BinSplit) -> usize {
+    // <solution>
+    let axis = split.axis as usize;
+    let is_left = |primitive: &PrimitiveBox| {
+        let place = (primitive.twice_centroid()[axis] - grid.low[axis]) * grid.scale[axis];
+        bin_at(place, grid) < split.bin as usize
+    };
+    // Move inwards from both ends, and swap each pair of primitives that are on the wrong sides.
+    let (mut left, mut right) = (0, primitives.len());
+    loop {
+        while left < right && is_left(&primitives[left]) {
+            left += 1;
+        }
+        while left < right && !is_left(&primitives[right - 1]) {
+            right -= 1;
+        }
+        if left == right {
+            return left;
+        }
+        primitives.swap(left, right - 1);
+    }
+    // <stub> todo!("swap primitives in place until all of the left side come first")
+    // </solution>
+}
+
+/// Builds a binary hierarchy over primitives with these boxes, top down, with bins in place of sorting.
+///
+/// Primitive `i` has the box `bounds[i]`. A node of at most [`BLOCK`] primitives becomes a leaf. A larger node is split at its
+/// cheapest split between [`MAX_BINS`] equal bins per axis, over the box around the centroids of its primitives, unless
+/// a leaf is not more expensive: `NODE_COST · A + A(L) c(L) + A(R) c(R) ≥ A · c` with `c` for [`block_cost`]. Only a node of at
+/// most [`MAX_LEAF`] primitives may become a leaf. A node with fewer primitives than bins may use fewer bins. Where no split is
+/// possible, because all centroids are equal, and at depth [`DEEPEST_SPLIT`], the primitives are divided in half in
+/// any order.
+///
+/// The tree has the layout of [`FlatTree`]. A box of NaN goes into some leaf and does not change other boxes. The cost of the
+/// tree by the surface area heuristic is at most 1.05 times that of a full sweep (stage 3), where the sizes of the boxes differ
+/// by a factor of less than a million: equal bins cannot separate boxes that each are half as large as the one before.
+///
+/// Pitfall: with `1 / extent` as scale, an axis along which all centroids are equal gives 0 · ∞.
+pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
+    // <solution>
+    build_parallel(bounds, &mut Forks::new(false))
+    // <stub> todo!("make a leaf or fill bins, choose a split, partition, and build both sides")
+    // </solution>
+}
+
+/// Builds the tree of [`build_binned`] with forks: where both sides of a split are large, they are built in parallel
+/// by [`Forks::join`].
+///
+/// The tree is the same, bit for bit. The *work* is the time on one thread, and the *span* the time on any number of
+/// threads: for a node, its own primitives plus the larger span of its two sides if they are built in parallel, and plus both
+/// spans if not. With forks at all nodes above 2,000 primitives, the span at 100,000 primitives is less than a fifth of the
+/// work.
+///
+/// Pitfall: each side needs an array of its own for its nodes, and indices shift when the arrays are joined.
+///
+/// Source: Blumofe and Leiserson, "Scheduling Multithreaded Computations by Work Stealing", 1999.
+pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {
+    // <solution>
+    if bounds.is_empty() {
+        return FlatTree::default();
+    }
+    let number = |(id, bounds): (usize, &Aabb)| PrimitiveBox::new(id as u32, bounds);
+    let mut primitives: Vec<PrimitiveBox> = bounds.iter().enumerate().map(number).collect();
+
+    // Reserve what a tree with leaves of three primitives needs, which is usual.
+    let mut nodes = Vec::with_capacity(2 * bounds.len() / 3 + 1);
+    // The root comes first, and is known last.
+    nodes.push(LEAF);
+    nodes[0] = build_node(&mut primitives, 0, 0, &mut nodes, forks);
+    FlatTree { nodes, order: primitives.iter().map(PrimitiveBox::id).collect() }
+    // <stub> todo!("build as before; where both sides are large, join them by a fork")
+    // </solution>
+}
+
+// <solution>
+/// From this number of primitives on, the two sides of a node are built in parallel.
+const FORK_FROM: usize = 2048;
+
+const LEAF: FlatNode = FlatNode { low: Vec3::ZERO, first: 0, high: Vec3::ZERO, count: 0 };
+
+/// The node over these primitives, of which the first is at position `first` of the finished order. All nodes below it are
+/// appended to `nodes`.
+fn build_node(
+    primitives: &mut [PrimitiveBox],
+    first: u32,
+    depth: usize,
+    nodes: &mut Vec<FlatNode>,
+    forks: &mut Forks,
+) -> FlatNode {
+    // Find the box around all primitives, and the box around their centroids.
+    let (bounds, centroids) = bounds_of(primitives);
+    let node =
+        |first: u32, count: u32| FlatNode { low: bounds.low.into(), first, high: bounds.high.into(), count };
+
+    // Make a leaf, or divide the primitives.
+    let Some(middle) = divide(primitives, &bounds, &centroids, depth) else {
+        return node(first, primitives.len() as u32);
+    };
+    let fork = Fork { first, count: primitives.len() as u32, kind: ForkKind::Children };
+    let in_parallel = primitives.len() >= FORK_FROM;
+    let (below, above) = primitives.split_at_mut(middle);
+    let first_above = first + middle as u32;
+
+    // Build both sides. The two children come first, then all nodes below the left one, then those below the right one.
+    let pair = nodes.len();
+    nodes.extend([LEAF, LEAF]);
+    if in_parallel {
+        let ((mut left, mut nodes_left), (mut right, mut nodes_right)) = forks.join(
+            fork,
+            |forks| {
+                let mut nodes = Vec::with_capacity(2 * below.len() / 3 + 1);
+                (build_node(below, first, depth + 1, &mut nodes, forks), nodes)
+            },
+            |forks| {
+                let mut nodes = Vec::with_capacity(2 * above.len() / 3 + 1);
+                (build_node(above, first_above, depth + 1, &mut nodes, forks), nodes)
+            },
+        );
+        for (child, below) in [(&mut left, &mut nodes_left), (&mut right, &mut nodes_right)] {
+            // Indices start at 0 in the array of each side.
+            let shift = nodes.len() as u32;
+            for inner in below.iter_mut().chain([child]).filter(|node| !node.is_leaf()) {
+                inner.first += shift;
+            }
+            nodes.append(below);
+        }
+        (nodes[pair], nodes[pair + 1]) = (left, right);
+    } else {
+        nodes[pair] = build_node(below, first, depth + 1, nodes, forks);
+        nodes[pair + 1] = build_node(above, first_above, depth + 1, nodes, forks);
+    }
+    node(pair as u32, 0)
+}
+
+/// The box around all primitives, and the box around twice their centroids.
+fn bounds_of(primitives: &[PrimitiveBox]) -> (BoxA, BoxA) {
+    let (mut bounds, mut centroids) = (BoxA::EMPTY, BoxA::EMPTY);
+    for primitive in primitives {
+        bounds = bounds.and(primitive);
+        let centroid = primitive.twice_centroid();
+        // A NaN as first operand changes nothing.
+        centroids.low = centroid.min(centroids.low);
+        centroids.high = centroid.max(centroids.high);
+    }
+    (bounds, centroids)
+}
+
+/// Divides the primitives of a node in two and returns the number of the first side; `None` for a leaf.
+fn divide(primitives: &mut [PrimitiveBox], bounds: &BoxA, centroids: &BoxA, depth: usize) -> Option<usize> {
+    let count = primitives.len();
+    if count <= BLOCK {
+        return None;
+    }
+    let in_half = Some(count / 2);
+    if depth >= DEEPEST_SPLIT {
+        return in_half;
+    }
+    // Place the bins over the centroids, and find the cheapest split.
+    let n_bins = bins_for(count);
+    let extent = centroids.high - centroids.low;
+    // The last bin must contain the largest centroid, and an axis without extent has one bin.
+    let scale = extent.to_array().map(|extent| {
+        let scale = 0.999_99 * n_bins as f32 / extent;
+        if scale.is_finite() { scale } else { 0.0 }
+    });
+    let grid = BinGrid { low: centroids.low, scale: scale.into(), n_bins };
+    let split = cheapest_split(&fill_bins(primitives, &grid), n_bins);
+    let Some(split) = split else { return if count <= MAX_LEAF { None } else { in_half } };
+
+    // A leaf is better if it is not more expensive.
+    let area = bounds.half_area();
+    let as_leaf = area * block_cost(count as u32);
+    if count <= MAX_LEAF && !(NODE_COST * area + split.cost < as_leaf) {
+        return None;
+    }
+    Some(partition_bins(primitives, &grid, &split))
+}
+
+/// The number of bins for a node: small nodes use fewer, because at a node of ten primitives the bins take longer than the
+/// primitives.
+fn bins_for(count: usize) -> u32 {
+    (4 + count / 8).min(MAX_BINS) as u32
+}
+// </solution>

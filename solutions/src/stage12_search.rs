@@ -1,0 +1,164 @@
+//! Stage 12 · searching a tree with eight children per node: nearest child first, without recursion.
+//!
+//! Slides: "Sort Bounding Volume Intersections". Source: Wald, Benthin and Boulos, "Getting Rid of Packets", 2008.
+//!
+//! Given: [`WideProbe`] with `enter` (which children of a node the ray enters, and where), `children`, `candidates` (which
+//! lanes of a block may be hit) and `hit` (the exact test of one lane); [`Child`] and its keys, which sort by distance;
+//! [`Stack`].
+
+use raykata::bvh::PrimitiveHit;
+use raykata::ray::Ray;
+use raykata::wide::{BLOCK, Child, ChildContents, Stack, WideProbe};
+
+// <solution>
+use crate::stage3_traversal::keep_closest;
+// </solution>
+
+/// The closest hit in a wide tree with at least one node, or `None`: the same hit as that of stage 3, also for two hits at the
+/// same `t`, of which the smaller primitive number wins.
+///
+/// Start at [`Child::ROOT`]. Of the children that the ray enters, visit the nearest first, and keep the others on a stack, the
+/// nearest on top. A child that is entered at the best `t` so far or beyond is skipped when it comes from the stack. `t_max` in
+/// the calls of the probe is the end of the shortened ray, one float above the best `t`, as in stage 3.
+///
+/// In most nodes the ray enters one or two children. Treat these cases first: one child needs no stack, and two need one
+/// comparison.
+///
+/// Pitfall: a child that was nearest when its node was opened need not be nearest now.
+#[inline(always)]
+pub fn wide_closest_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> Option<PrimitiveHit> {
+    // <solution>
+    let mut ray = *ray;
+    let mut closest = None;
+    let mut stack = Stack::new();
+    stack.push(Child::ROOT.key(ray.t_min + 0.0));
+    while let Some(key) = stack.pop() {
+        // Skip a place beyond the best hit.
+        let (mut child, t) = Child::of_key(key);
+        if !(t < ray.t_max) {
+            continue;
+        }
+        // Go down to a leaf, always to the nearest child.
+        let leaf = loop {
+            match child.contents() {
+                ChildContents::Leaf { block, count } => break Some((block, count)),
+                ChildContents::Inner(node) => match nearest_child(probe, node, ray.t_max, &mut stack) {
+                    Some(nearest) => child = nearest,
+                    None => break None,
+                },
+            }
+        };
+        // Test its blocks. Each hit shortens the ray.
+        let Some((first, count)) = leaf else { continue };
+        for (block, n) in blocks(first, count) {
+            let mut lanes = probe.candidates(block, n, ray.t_max);
+            while lanes != 0 {
+                if let Some(hit) = probe.hit(block, lanes.trailing_zeros(), &ray) {
+                    keep_closest(&mut closest, &mut ray, hit);
+                }
+                lanes &= lanes - 1;
+            }
+        }
+    }
+    closest
+    // <stub> todo!("visit the nearest child, push the others in order, and skip what lies beyond the best hit")
+    // </solution>
+}
+
+// <solution>
+/// The nearest child of `node` that the ray enters, or `None`. The others are pushed, the nearest last.
+#[inline(always)]
+fn nearest_child(probe: &mut impl WideProbe, node: u32, t_max: f32, stack: &mut Stack) -> Option<Child> {
+    let entered = probe.enter(node, t_max);
+    let children = probe.children(node);
+    let mut mask = entered.mask;
+    // The key of the next child in the mask, which is then removed.
+    let mut next = || {
+        let i = mask.trailing_zeros() as usize & 7;
+        mask &= mask - 1;
+        (children[i].key(entered.t[i]), mask == 0)
+    };
+    if entered.mask == 0 {
+        return None;
+    }
+    // With one child there is nothing to compare.
+    let (first, was_last) = next();
+    if was_last {
+        return Some(Child::of_key(first).0);
+    }
+    // With two children one comparison is enough.
+    let (second, was_last) = next();
+    let (mut near, far) = if first < second { (first, second) } else { (second, first) };
+    if was_last {
+        stack.push(far);
+        return Some(Child::of_key(near).0);
+    }
+    // Sort three or more by insertion, the farthest first.
+    let mut keys = [0; 8];
+    keys[0] = far;
+    let mut n = 1;
+    loop {
+        let (key, was_last) = next();
+        let other = key.max(near);
+        near = key.min(near);
+        let mut place = n;
+        while place > 0 && keys[(place - 1) & 7] < other {
+            keys[place & 7] = keys[(place - 1) & 7];
+            place -= 1;
+        }
+        keys[place & 7] = other;
+        n += 1;
+        if was_last {
+            break;
+        }
+    }
+    for &key in &keys[..n.min(8)] {
+        stack.push(key);
+    }
+    Some(Child::of_key(near).0)
+}
+
+/// The blocks of a leaf, each with the number of its primitives.
+#[inline(always)]
+fn blocks(first: u32, count: u32) -> impl Iterator<Item = (u32, u32)> {
+    let n_blocks = count.div_ceil(BLOCK as u32);
+    (0..n_blocks).map(move |i| (first + i, (count - i * BLOCK as u32).min(BLOCK as u32)))
+}
+// </solution>
+
+/// Whether any primitive of a wide tree with at least one node is hit within the range of the ray (shadow rays).
+///
+/// The search ends at the first hit. The order of the children is free, so nothing is sorted.
+#[inline(always)]
+pub fn wide_any_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> bool {
+    // <solution>
+    let mut stack = Stack::new();
+    stack.push(Child::ROOT.key(0.0));
+    while let Some(key) = stack.pop() {
+        match Child::of_key(key).0.contents() {
+            ChildContents::Inner(node) => {
+                // Push all children that the ray enters.
+                let mut mask = probe.enter(node, ray.t_max).mask;
+                let children = probe.children(node);
+                while mask != 0 {
+                    stack.push(children[mask.trailing_zeros() as usize & 7].key(0.0));
+                    mask &= mask - 1;
+                }
+            }
+            ChildContents::Leaf { block, count } => {
+                for (block, n) in blocks(block, count) {
+                    let mut lanes = probe.candidates(block, n, ray.t_max);
+                    while lanes != 0 {
+                        if probe.hit(block, lanes.trailing_zeros(), ray).is_some() {
+                            return true;
+                        }
+                        lanes &= lanes - 1;
+                    }
+                }
+            }
+        }
+    }
+    false
+    // <stub> todo!("push all children that the ray enters, and stop at the first hit")
+    // </solution>
+}

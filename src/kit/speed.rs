@@ -1,0 +1,131 @@
+//! Stage 12, speed: queries and answers.
+
+use crate::bvh::PrimitiveHit;
+use crate::ray::Ray;
+use crate::wide::{
+    BinGrid, BinSplit, Bins, Child, Entered, PrimitiveBox, TriangleBlock, WideNode, WideProbe, WideTree,
+};
+use serde::{Deserialize, Serialize};
+
+/// Asks for the bins of primitives.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BinsQuery {
+    /// The primitives.
+    pub primitives: Vec<PrimitiveBox>,
+    /// Where the bins lie.
+    pub grid: BinGrid,
+}
+
+/// Asks for the cheapest split between bins.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BinSplitQuery {
+    /// The bins of all three axes.
+    pub bins: Box<Bins>,
+    /// The number of bins per axis that are in use, `2..=MAX_BINS`.
+    pub n_bins: u32,
+}
+
+/// Asks for the two sides of a split.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PartitionQuery {
+    /// The primitives.
+    pub primitives: Vec<PrimitiveBox>,
+    /// Where the bins lie.
+    pub grid: BinGrid,
+    /// Which bins belong to the left side.
+    pub split: BinSplit,
+}
+
+/// Asks which boxes of a node a ray enters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WideBoxesQuery {
+    /// The node.
+    pub node: Box<WideNode>,
+    /// The ray, with `t_min >= 0`.
+    pub ray: Ray,
+}
+
+/// Asks which triangles of a block a ray may hit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BlockQuery {
+    /// The triangles.
+    pub block: Box<TriangleBlock>,
+    /// The ray, with `t_min >= 0`.
+    pub ray: Ray,
+}
+
+/// Asks for a hit in a wide tree whose boxes and primitives are a table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WideQuery {
+    /// The tree. Its boxes are not read.
+    pub tree: WideTree,
+    /// The ray.
+    pub ray: Ray,
+    /// For each node the `t` at which the ray enters each child, not negative; ∞ for a child that it misses.
+    pub entries: Vec<[f32; 8]>,
+    /// For each primitive the `t` of the hit; ∞ for a miss.
+    pub hits: Vec<f32>,
+}
+
+/// The hit of a search in a wide tree, and what it cost.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WideAnswer {
+    /// The hit.
+    pub hit: Option<PrimitiveHit>,
+    /// Whether anything was hit.
+    pub found: bool,
+    /// The nodes whose boxes were tested, in order.
+    pub nodes: Vec<u32>,
+    /// The blocks that were tested, in order.
+    pub blocks: Vec<u32>,
+    /// The primitives that were tested exactly, in order.
+    pub primitives: Vec<u32>,
+}
+
+/// The probe that answers from the table of a [`WideQuery`] and lists all calls.
+#[derive(Debug)]
+pub struct WideTableProbe<'a> {
+    query: &'a WideQuery,
+    nodes: Vec<u32>,
+    blocks: Vec<u32>,
+    primitives: Vec<u32>,
+}
+
+impl<'a> WideTableProbe<'a> {
+    /// A probe without calls.
+    pub fn new(query: &'a WideQuery) -> Self {
+        WideTableProbe { query, nodes: Vec::new(), blocks: Vec::new(), primitives: Vec::new() }
+    }
+
+    /// The answer with the lists of all calls.
+    pub fn answer(self, hit: Option<PrimitiveHit>, found: bool) -> WideAnswer {
+        WideAnswer { hit, found, nodes: self.nodes, blocks: self.blocks, primitives: self.primitives }
+    }
+}
+
+impl WideProbe for WideTableProbe<'_> {
+    fn enter(&mut self, node: u32, t_max: f32) -> Entered {
+        self.nodes.push(node);
+        let t = self.query.entries[node as usize];
+        let entered = |i: &usize| t[*i] < f32::INFINITY && t[*i] <= t_max;
+        Entered { mask: (0..8).filter(entered).map(|i| 1 << i).sum(), t }
+    }
+
+    fn children(&self, node: u32) -> &[Child; 8] {
+        &self.query.tree.nodes[node as usize].children
+    }
+
+    fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
+        self.blocks.push(block);
+        let ids = &self.query.tree.blocks[block as usize];
+        let may_hit = |lane: &u32| self.query.hits[ids[*lane as usize] as usize] < t_max;
+        (0..n).filter(may_hit).map(|lane| 1 << lane).sum()
+    }
+
+    fn hit(&mut self, block: u32, lane: u32, ray: &Ray) -> Option<PrimitiveHit> {
+        let primitive = self.query.tree.blocks[block as usize][lane as usize];
+        self.primitives.push(primitive);
+        let t = self.query.hits[primitive as usize];
+        ray.contains(t).then_some(PrimitiveHit { t, primitive })
+    }
+}

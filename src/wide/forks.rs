@@ -1,0 +1,68 @@
+//! Work in parallel, with a log from which work and span follow.
+
+use serde::{Deserialize, Serialize};
+
+/// A place in a parallel build where two pieces of work may run at the same time.
+///
+/// The primitives of the forked node identify it: no two nodes of a tree with two children each have the same range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fork {
+    /// The position of the node's first primitive in the order of the finished tree.
+    pub first: u32,
+    /// The number of the node's primitives.
+    pub count: u32,
+    /// What is done in parallel.
+    pub kind: ForkKind,
+}
+
+/// What is done in parallel at a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ForkKind {
+    /// The trees below its two children are built in parallel.
+    Children,
+    /// Its primitives are sorted into bins in this number of equal pieces, in parallel.
+    Binning {
+        /// The number of pieces, at least 2.
+        pieces: u32,
+    },
+}
+
+/// Runs pieces of work in parallel, and keeps a log of them.
+///
+/// The log is the same for every number of threads, because it is in the order of the tree and not of time.
+#[derive(Debug)]
+pub struct Forks {
+    in_parallel: bool,
+    log: Vec<Fork>,
+}
+
+impl Forks {
+    /// An empty log. If `in_parallel` is false, forks are logged, and this thread does all the work.
+    pub fn new(in_parallel: bool) -> Forks {
+        Forks { in_parallel, log: Vec::new() }
+    }
+
+    /// The log so far.
+    pub fn into_log(self) -> Vec<Fork> {
+        self.log
+    }
+
+    /// Logs `fork`, and runs `left` and `right` at the same time if a thread is free. Each gets a log of its own, which is
+    /// then appended to this one, that of `left` first.
+    pub fn join<A: Send, B: Send>(
+        &mut self,
+        fork: Fork,
+        left: impl FnOnce(&mut Forks) -> A + Send,
+        right: impl FnOnce(&mut Forks) -> B + Send,
+    ) -> (A, B) {
+        self.log.push(fork);
+        if !self.in_parallel {
+            return (left(self), right(self));
+        }
+        let [mut log_left, mut log_right] = [true, true].map(Forks::new);
+        let results = rayon::join(|| left(&mut log_left), || right(&mut log_right));
+        self.log.append(&mut log_left.log);
+        self.log.append(&mut log_right.log);
+        results
+    }
+}

@@ -1,0 +1,222 @@
+//! The published crates, each as its documentation shows.
+
+use bvh::aabb::{Aabb, Bounded};
+use bvh::bounding_hierarchy::BHShape;
+use nalgebra::Point3;
+use obvhs::BvhBuildParams;
+use obvhs::bvh2::Bvh2;
+use obvhs::cwbvh::CwBvh;
+use obvhs::ray::RayHit;
+use parry3d::math::Vector;
+use parry3d::query::RayCast;
+use parry3d::shape::TriMesh;
+use raykata::ray::Ray;
+use raykata::shape::Triangle;
+use std::time::Duration;
+
+/// Finds hits of rays with triangles.
+pub trait Contestant {
+    /// The `t` of the closest hit of each ray; ∞ for a miss.
+    fn closest(&self, rays: &[Ray], found: &mut [f32]);
+
+    /// Whether each ray hits anything.
+    fn any(&self, rays: &[Ray], found: &mut [bool]);
+}
+
+impl Contestant for crate::reference::Wide {
+    fn closest(&self, rays: &[Ray], found: &mut [f32]) {
+        self.closest(rays, found);
+    }
+
+    fn any(&self, rays: &[Ray], found: &mut [bool]) {
+        self.any(rays, found);
+    }
+}
+
+fn obvhs_triangles(triangles: &[Triangle]) -> Vec<obvhs::triangle::Triangle> {
+    let point = |p: glam::Vec3| p.to_array().into();
+    triangles
+        .iter()
+        .map(|t| obvhs::triangle::Triangle { v0: point(t.a), v1: point(t.b), v2: point(t.c) })
+        .collect()
+}
+
+fn obvhs_ray(ray: &Ray) -> obvhs::ray::Ray {
+    obvhs::ray::Ray::new(ray.origin.to_array().into(), ray.direction.to_array().into(), ray.t_min, ray.t_max)
+}
+
+/// `obvhs`: a binary tree.
+pub struct Obvhs2 {
+    tree: Bvh2,
+    triangles: Vec<obvhs::triangle::Triangle>,
+}
+
+impl Obvhs2 {
+    pub fn build(triangles: &[Triangle]) -> Self {
+        let triangles = obvhs_triangles(triangles);
+        let tree = obvhs::bvh2::builder::build_bvh2_from_tris(
+            &triangles,
+            BvhBuildParams::medium_build(),
+            &mut Duration::default(),
+        );
+        // In the order of the tree, as its documentation recommends.
+        let triangles = tree.primitive_indices.iter().map(|&i| triangles[i as usize]).collect();
+        Obvhs2 { tree, triangles }
+    }
+}
+
+impl Contestant for Obvhs2 {
+    fn closest(&self, rays: &[Ray], found: &mut [f32]) {
+        for (ray, found) in rays.iter().zip(found) {
+            let mut hit = RayHit::none();
+            let any =
+                self.tree.ray_traverse(obvhs_ray(ray), &mut hit, |ray, id| self.triangles[id].intersect(ray));
+            *found = if any { hit.t } else { f32::INFINITY };
+        }
+    }
+
+    fn any(&self, rays: &[Ray], found: &mut [bool]) {
+        for (ray, found) in rays.iter().zip(found) {
+            *found =
+                !self.tree.ray_traverse_miss(obvhs_ray(ray), |ray, id| self.triangles[id].intersect(ray));
+        }
+    }
+}
+
+/// `obvhs`: the compressed tree with eight children per node.
+pub struct ObvhsWide {
+    tree: CwBvh,
+    triangles: Vec<obvhs::triangle::Triangle>,
+}
+
+impl ObvhsWide {
+    pub fn build(triangles: &[Triangle]) -> Self {
+        let triangles = obvhs_triangles(triangles);
+        let tree = obvhs::cwbvh::builder::build_cwbvh_from_tris(
+            &triangles,
+            BvhBuildParams::medium_build(),
+            &mut Duration::default(),
+        );
+        let triangles = tree.primitive_indices.iter().map(|&i| triangles[i as usize]).collect();
+        ObvhsWide { tree, triangles }
+    }
+}
+
+impl Contestant for ObvhsWide {
+    fn closest(&self, rays: &[Ray], found: &mut [f32]) {
+        for (ray, found) in rays.iter().zip(found) {
+            let mut hit = RayHit::none();
+            let any =
+                self.tree.ray_traverse(obvhs_ray(ray), &mut hit, |ray, id| self.triangles[id].intersect(ray));
+            *found = if any { hit.t } else { f32::INFINITY };
+        }
+    }
+
+    fn any(&self, rays: &[Ray], found: &mut [bool]) {
+        for (ray, found) in rays.iter().zip(found) {
+            *found =
+                !self.tree.ray_traverse_miss(obvhs_ray(ray), |ray, id| self.triangles[id].intersect(ray));
+        }
+    }
+}
+
+/// `parry3d`.
+pub struct Parry(TriMesh);
+
+impl Parry {
+    pub fn build(triangles: &[Triangle]) -> Self {
+        let point = |p: glam::Vec3| Vector::new(p.x, p.y, p.z);
+        let vertices = triangles.iter().flat_map(|t| [t.a, t.b, t.c].map(point)).collect();
+        let indices = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Parry(TriMesh::new(vertices, indices).expect("a mesh"))
+    }
+
+    fn cast(&self, ray: &Ray) -> Option<f32> {
+        let vector = |p: glam::Vec3| Vector::new(p.x, p.y, p.z);
+        let cast = parry3d::query::Ray::new(vector(ray.origin), vector(ray.direction));
+        self.0.cast_local_ray(&cast, ray.t_max, false)
+    }
+}
+
+impl Contestant for Parry {
+    fn closest(&self, rays: &[Ray], found: &mut [f32]) {
+        for (ray, found) in rays.iter().zip(found) {
+            *found = self.cast(ray).unwrap_or(f32::INFINITY);
+        }
+    }
+
+    fn any(&self, rays: &[Ray], found: &mut [bool]) {
+        // It has no search for any hit.
+        for (ray, found) in rays.iter().zip(found) {
+            *found = self.cast(ray).is_some();
+        }
+    }
+}
+
+/// `bvh`.
+pub struct Bvh {
+    tree: bvh::bvh::Bvh<f32, 3>,
+    shapes: Vec<Shape>,
+}
+
+struct Shape {
+    triangle: Triangle,
+    obvhs: obvhs::triangle::Triangle,
+    node: usize,
+}
+
+impl Bounded<f32, 3> for Shape {
+    fn aabb(&self) -> Aabb<f32, 3> {
+        let Triangle { a, b, c } = self.triangle;
+        let point = |p: glam::Vec3| Point3::new(p.x, p.y, p.z);
+        Aabb::with_bounds(point(a.min(b).min(c)), point(a.max(b).max(c)))
+    }
+}
+
+impl BHShape<f32, 3> for Shape {
+    fn set_bh_node_index(&mut self, index: usize) {
+        self.node = index;
+    }
+
+    fn bh_node_index(&self) -> usize {
+        self.node
+    }
+}
+
+impl Bvh {
+    pub fn build(triangles: &[Triangle]) -> Self {
+        let shape = |(&triangle, obvhs)| Shape { triangle, obvhs, node: 0 };
+        let mut shapes: Vec<Shape> = triangles.iter().zip(obvhs_triangles(triangles)).map(shape).collect();
+        let tree = bvh::bvh::Bvh::build(&mut shapes);
+        Bvh { tree, shapes }
+    }
+
+    /// The hits of one ray. The crate's own triangle test misses back faces, so that of `obvhs` is used.
+    fn hits<'a>(
+        &'a self,
+        ray: &'a bvh::ray::Ray<f32, 3>,
+        other: &'a obvhs::ray::Ray,
+    ) -> impl Iterator<Item = f32> + 'a {
+        let shapes = self.tree.traverse_iterator(ray, &self.shapes);
+        shapes.map(|shape| shape.obvhs.intersect(other)).filter(|&t| t < other.tmax && t > other.tmin)
+    }
+}
+
+fn bvh_ray(ray: &Ray) -> bvh::ray::Ray<f32, 3> {
+    let (o, d) = (ray.origin, ray.direction);
+    bvh::ray::Ray::new(Point3::new(o.x, o.y, o.z), nalgebra::Vector3::new(d.x, d.y, d.z))
+}
+
+impl Contestant for Bvh {
+    fn closest(&self, rays: &[Ray], found: &mut [f32]) {
+        for (ray, found) in rays.iter().zip(found) {
+            *found = self.hits(&bvh_ray(ray), &obvhs_ray(ray)).fold(f32::INFINITY, f32::min);
+        }
+    }
+
+    fn any(&self, rays: &[Ray], found: &mut [bool]) {
+        for (ray, found) in rays.iter().zip(found) {
+            *found = self.hits(&bvh_ray(ray), &obvhs_ray(ray)).next().is_some();
+        }
+    }
+}
