@@ -21,6 +21,9 @@ pub struct Figure {
     pub take: Option<String>,
     /// What of it is the same on every machine.
     pub exact: Exact,
+    /// Whether the figure is not drawn yet. A deck then shows its description in its place.
+    #[serde(default)]
+    pub planned: bool,
 }
 
 /// What `raykata figures --check` compares.
@@ -31,7 +34,7 @@ pub enum Exact {
     All,
     /// Every pixel of a picture.
     Pixels,
-    /// Nothing, because it shows times. `--check` tests only that it can be made.
+    /// Nothing, because it shows times. It is made only by its name.
     Nothing,
 }
 

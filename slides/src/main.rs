@@ -97,7 +97,11 @@ fn choose<'a>(all: &'a [Figure], deck: &str, names: &[String]) -> Result<Vec<&'a
             bail!("there is no figure `{name}` in slides/figures.toml{}", did_you_mean(name, &known));
         }
     }
-    let named = |figure: &&Figure| names.is_empty() || names.iter().any(|name| name == figure.name());
+    // Figures that are not drawn yet, or that hold times, are made only by their names.
+    let named = |figure: &&Figure| match names {
+        [] => !figure.planned && figure.exact != Exact::Nothing,
+        names => names.iter().any(|name| name == figure.name()),
+    };
     let of_deck = |figure: &&Figure| deck.is_empty() || *deck == figure.deck;
     let chosen: Vec<&Figure> = all.iter().filter(named).filter(of_deck).collect();
     if chosen.is_empty() {
@@ -118,7 +122,7 @@ fn make(figure: &Figure, kit: &dyn Kit, root: &Path, raykata: &str) -> Result<Ve
             Ok(kit_error::catch(|| draw(kit))??.into_bytes())
         }
         ["raykata", rest @ ..] => by_command(figure, rest, root, raykata),
-        _ => bail!("its command does not begin with `raykata`: {}", figure.command),
+        _ => bail!("it is made by `cargo run --release -p {}`", figure.command.replacen(' ', " -- ", 1)),
     }
 }
 

@@ -167,12 +167,15 @@ pub fn sah_cuts(kit: &dyn Kit) -> Result<String> {
         .map(|(id, bounds)| PrimitiveRef { id, bounds: *bounds, centroid: (bounds.min + bounds.max) / 2.0 })
         .collect();
     let chosen = kit
-        .split_surface_area(&[primitives.clone()])
+        .split_surface_area(std::slice::from_ref(&primitives))
         .remove(0)
         .middle
         .context("`split_surface_area` makes a leaf")?;
-    let spatial =
-        kit.split_spatial_median(&[primitives.clone()]).remove(0).middle.context("no spatial median")?;
+    let spatial = kit
+        .split_spatial_median(std::slice::from_ref(&primitives))
+        .remove(0)
+        .middle
+        .context("no spatial median")?;
     let object = kit.split_object_median(&[primitives]).remove(0).middle.context("no object median")?;
 
     // Draw the boxes, and under them the cost of each cut.
