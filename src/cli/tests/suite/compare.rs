@@ -31,6 +31,7 @@ fn structures_are_compared_side_by_side() {
         "bvh both children",
         "cached bvh",
         "packet bvh",
+        "wide bvh",
         "grid",
         "octree",
         "octree by cells",

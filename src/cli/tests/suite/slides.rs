@@ -1,4 +1,4 @@
-//! Every slide with a figure names the command that makes it, and every command on a slide exists.
+//! Every measured table on a slide names the command that makes it, every command exists, and no slide is too long.
 
 use std::fs;
 use std::path::Path;
@@ -23,36 +23,43 @@ fn slides(root: &Path) -> Vec<(String, String)> {
     slides
 }
 
-/// The commands in backticks.
+/// The commands in backticks and in blocks of commands.
 fn commands(slide: &str) -> Vec<&str> {
-    slide.split('`').skip(1).step_by(2).filter(|code| code.starts_with("cargo run")).collect()
+    let inline = slide
+        .split('`')
+        .skip(1)
+        .step_by(2)
+        .filter(|code| code.starts_with("cargo run") && !code.contains('…'));
+    let blocks = slide.split("```sh\n").skip(1).filter_map(|rest| rest.split("\n```").next());
+    inline.chain(blocks.flat_map(str::lines).filter(|line| line.starts_with("cargo run"))).collect()
 }
 
-/// The files of the pictures.
-fn pictures(slide: &str) -> Vec<&str> {
-    slide.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect()
-}
-
-fn has_figures(slide: &str) -> bool {
+/// Whether a table holds numbers.
+fn has_numbers(slide: &str) -> bool {
     let rows = slide.lines().filter(|line| line.starts_with('|'));
-    !pictures(slide).is_empty() || rows.into_iter().any(|row| row.chars().any(|c| c.is_ascii_digit()))
+    rows.into_iter().any(|row| row.chars().any(|c| c.is_ascii_digit()))
 }
 
 #[test]
-fn whoever_shows_a_figure_says_how_to_make_it() {
+fn measured_tables_say_how_to_make_them() {
     let root = raykata_cli::kits::root().unwrap();
     let slides = slides(&root);
-    assert!(slides.len() > 5 && slides.iter().filter(|(_, slide)| has_figures(slide)).count() > 3);
-    for (place, slide) in &slides {
-        assert!(
-            !has_figures(slide) || !commands(slide).is_empty(),
-            "{place} shows figures and names no command"
-        );
-        for picture in pictures(slide) {
-            assert!(root.join("slides").join(picture).is_file(), "{place}: there is no {picture}");
-        }
-        // A 16:9 page at the usual font size has room for 18 lines.
-        let lines = slide.lines().filter(|line| !line.trim().is_empty()).count();
+    // Most tables of other decks follow from a formula.
+    let measured = |(place, slide): &&(String, String)| place.starts_with("cost.md") && has_numbers(slide);
+    assert!(slides.iter().filter(measured).count() > 3);
+    for (place, slide) in slides.iter().filter(measured) {
+        assert!(!commands(slide).is_empty(), "{place} shows numbers and names no command");
+    }
+}
+
+#[test]
+fn slides_are_short_enough() {
+    let root = raykata_cli::kits::root().unwrap();
+    for (place, slide) in slides(&root) {
+        // A 16:9 page at the usual font size has room for 18 lines. The note and the settings at the top are not on it.
+        let shown =
+            slide.split("<!--").map(|part| part.rsplit("-->").next().unwrap_or_default()).collect::<String>();
+        let lines = shown.lines().filter(|line| !line.trim().is_empty()).count();
         assert!(lines <= 18, "{place}: {lines} lines do not fit");
     }
 }
@@ -63,10 +70,14 @@ fn commands_are_understood() {
     for (place, slide) in slides(&root) {
         for command in commands(&slide) {
             let words: Vec<&str> = command.split_whitespace().collect();
-            // The grader takes `cost` with the same options.
             let words = match words[..] {
                 ["cargo", "run", "--release", "--", ..] => &words[4..],
+                ["cargo", "run", "--", ..] => &words[3..],
+                ["cargo", "run"] => continue,
+                // The grader takes `cost` with the same options; its other commands have tests of their own.
                 ["cargo", "run", "--release", "-p", "grader", "--", "cost", ..] => &words[6..],
+                ["cargo", "run", "--release", "-p", "grader", "--", ..]
+                | ["cargo", "run", "-p", "grader", "--", ..] => continue,
                 _ => panic!("{place}: {command}"),
             };
             let mut asked = Command::new(env!("CARGO_BIN_EXE_raykata"));

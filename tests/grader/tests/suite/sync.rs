@@ -25,8 +25,13 @@ fn no_line_of_an_answer_is_in_an_exercise() {
             match line {
                 "// <solution>" => inside = true,
                 "// </solution>" => inside = false,
-                // Skip short lines, such as brackets, and parameters and fields. They are not answers.
-                _ if inside && line.len() > 12 && !is_parameter(line) && !line.starts_with("// <stub>") => {
+                // Skip short lines, such as brackets, parameters, fields and attributes. They are not answers.
+                _ if inside
+                    && line.len() > 12
+                    && !is_parameter(line)
+                    && !line.starts_with("#[")
+                    && !line.starts_with("// <stub>") =>
+                {
                     let left = exercise.stub.lines().any(|stub| stub.trim() == line);
                     assert!(!left, "{}: {line}", exercise.path.display());
                 }
