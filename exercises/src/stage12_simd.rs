@@ -16,7 +16,7 @@ use raykata::wide::{Entered, TriangleBlock, WideNode, WideRay};
 /// For each box, the result is the same as that of the reference's `slab`, bit for bit, for a ray with the range
 /// `ray.t_min..=t_max`, `t_min >= 0`: intersect the intervals of the three axes, move the entry earlier and the exit later by
 /// twice γ₃, and intersect with the range. So no box is missed that a ray meets, and the entry is never NaN. Where
-/// `inverse_direction` is NaN, the axis is ignored. An empty place is not entered if any axis counts.
+/// `inverse_direction` is NaN, the axis is ignored. An empty place is never entered: `node.occupied` has a bit per child.
 ///
 /// `ray.near_side[axis]` says which of the two coordinates the ray passes first, so nothing is compared or swapped.
 ///

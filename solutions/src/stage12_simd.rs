@@ -20,7 +20,7 @@ use glam::Vec3;
 /// For each box, the result is the same as that of the reference's `slab`, bit for bit, for a ray with the range
 /// `ray.t_min..=t_max`, `t_min >= 0`: intersect the intervals of the three axes, move the entry earlier and the exit later by
 /// twice γ₃, and intersect with the range. So no box is missed that a ray meets, and the entry is never NaN. Where
-/// `inverse_direction` is NaN, the axis is ignored. An empty place is not entered if any axis counts.
+/// `inverse_direction` is NaN, the axis is ignored. An empty place is never entered: `node.occupied` has a bit per child.
 ///
 /// `ray.near_side[axis]` says which of the two coordinates the ray passes first, so nothing is compared or swapped.
 ///
@@ -46,7 +46,8 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
     // because t is not negative within the range.
     let near = (near * F32x8::splat(level, 1.0 - 2.0 * gamma(3))).max(F32x8::splat(level, ray.t_min));
     let far = (far * F32x8::splat(level, 1.0 + 2.0 * gamma(3))).min(F32x8::splat(level, t_max));
-    Entered { mask: near.le(far).bits(), t: near.to_array() }
+    // Leave out the empty places: where all three axes are ignored, their boxes are entered as well.
+    Entered { mask: near.le(far).bits() & node.occupied, t: near.to_array() }
     // <stub> todo!("the slab test with eight lanes: near planes, far planes, minimum, maximum, widen, compare")
     // </solution>
 }

@@ -339,3 +339,14 @@ fn vectors_have_the_rules_of_their_comments() {
     }
     Instructions::detect().run(Rules);
 }
+
+#[test]
+fn a_tiny_direction_enters_no_empty_place() {
+    // `1 / d` overflows on all three axes, so no box decides anything. An empty place would lead back to the root, for ever.
+    let kit = solutions::Kit.door();
+    let mut node = WideNode::EMPTY;
+    node.set(0, &Aabb::new(Vec3::splat(-1e-38), Vec3::splat(1e-38)), Child::leaf(0, 1));
+    let ray = Ray::new(Vec3::ZERO, Vec3::splat(1e-39));
+    let entered = kit.enter_boxes(&[WideBoxesQuery { node: Box::new(node), ray }]);
+    assert_eq!(entered[0].mask, 1);
+}
