@@ -16,7 +16,7 @@ fn circle() -> impl Iterator<Item = Vec3> {
 /// A ray in the world and in the space of an object: the hit has the same t.
 pub fn ray_to_object(kit: &dyn Kit) -> Result<String> {
     let to_world = Affine3A::from_rotation_z(0.5) * Affine3A::from_scale(vec3(1.7, 0.8, 1.0));
-    let ray = Ray::new(vec3(-2.3, -0.9, 0.0), vec3(0.75, 0.34, 0.0));
+    let ray = Ray::new(vec3(-2.3, -0.9, 0.0), vec3(0.5, 0.23, 0.0));
     let to_object = to_world.inverse();
     let object_ray = kit.ray_to_object(&[ObjectRayQuery { ray, to_object }])[0];
     let sphere = Sphere { center: Vec3::ZERO, radius: 1.0 };
@@ -29,7 +29,7 @@ pub fn ray_to_object(kit: &dyn Kit) -> Result<String> {
         let outline: Vec<Point> = circle().map(|v| at(shape.transform_point3(v))).collect();
         drawing.area(&outline, Ink::Color(4), 0.16);
         drawing.polyline(&outline, Pen::new(Ink::Color(4)));
-        drawing.arrow(at(ray.origin), at(ray.at(4.6)), Pen::new(Ink::Text));
+        drawing.arrow(at(ray.origin), at(ray.at(6.6)), Pen::new(Ink::Text));
         for mark in [1.0, 2.0, 3.0] {
             drawing.dot(at(ray.at(mark)), 6.0, Ink::Text);
             let label = offset(at(ray.at(mark)), [8.0, 28.0]);
@@ -55,12 +55,12 @@ pub fn normal_transform(kit: &dyn Kit) -> Result<String> {
     };
     type Turn<'a> = &'a dyn Fn(Vec3) -> Vec3;
     let columns: [(f64, Affine3A, Turn<'_>, &str, Ink); 3] = [
-        (130.0, Affine3A::IDENTITY, &|normal| normal, "object", Ink::Text),
-        (430.0, stretch, &like_points, "like points: wrong", Ink::Color(1)),
-        (800.0, stretch, &right, "normal_to_world", Ink::Color(2)),
+        (120.0, Affine3A::IDENTITY, &|normal| normal, "object", Ink::Text),
+        (440.0, stretch, &like_points, "like points: wrong", Ink::Color(1)),
+        (810.0, stretch, &right, "normal_to_world", Ink::Color(2)),
     ];
     for (x, shape, turn, name, ink) in columns {
-        let view = View { origin: [x, 190.0], scale: 72.0 };
+        let view = View { origin: [x, 190.0], scale: 61.0 };
         let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
         let outline: Vec<Point> = circle().map(|v| at(shape.transform_point3(v))).collect();
         drawing.polyline(&outline, Pen::new(Ink::Faint).wide(4.0));

@@ -131,7 +131,7 @@ pub fn circle_of_confusion(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
         let value = f64::from(wide / z) * pixels;
         let dot = plot.at(f64::from(z), value);
         drawing.dot(dot, 9.0, Ink::Color(1));
-        drawing.text(offset(dot, [14.0, -16.0]), Anchor::Start, TEXT, Ink::Color(1), &format!("{value:.1}"));
+        drawing.text(offset(dot, [22.0, -16.0]), Anchor::Start, TEXT, Ink::Color(1), &format!("{value:.1}"));
     }
     Ok(drawing.svg().into_bytes())
 }

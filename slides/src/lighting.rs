@@ -53,7 +53,7 @@ pub fn face_forward(kit: &dyn Kit) -> Result<String> {
 /// The vectors of the Phong model at a surface.
 pub fn phong_vectors(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("The vectors of the Phong model", 1000.0, 520.0);
-    let center = [500.0, 450.0];
+    let center = [440.0, 450.0];
     let view = View { origin: center, scale: 380.0 };
     let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
     draw_surface(&mut drawing, 450.0, [80.0, 920.0]);
@@ -97,7 +97,7 @@ pub fn lambert(kit: &dyn Kit) -> Result<String> {
         let diffuse = kit.diffuse_term(&[query])[0];
         let view = View { origin: [x, 400.0], scale: 150.0 };
         let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
-        draw_surface(&mut drawing, 400.0, [x - 215.0, x + 270.0]);
+        draw_surface(&mut drawing, 400.0, [x - 215.0, x + 230.0]);
         // The beam has width 1, so it lights 1 / cos θ of the surface.
         let half = 0.5 / to_light.dot(Vec3::Y);
         let ends = [vec3(-half, 0.0, 0.0), vec3(half, 0.0, 0.0)];
@@ -111,7 +111,7 @@ pub fn lambert(kit: &dyn Kit) -> Result<String> {
         drawing.line(at(far[0]), at(far[1]), Pen::new(Ink::Text).wide(2.0));
         let label: Point = offset(at(2.0 * to_light), [0.0, -14.0]);
         let (anchor, label) =
-            if degrees > 0.0 { (Anchor::Start, offset(label, [26.0, 0.0])) } else { (Anchor::Middle, label) };
+            if degrees > 0.0 { (Anchor::End, offset(label, [-16.0, 0.0])) } else { (Anchor::Middle, label) };
         drawing.text(label, anchor, SMALL, Ink::Text, "1 wide");
         drawing.line(at(ends[0]), at(ends[1]), Pen::new(Ink::Color(1)).wide(9.0));
         let text = format!("lit length {:.0}", 2.0 * half);

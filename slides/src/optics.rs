@@ -101,7 +101,7 @@ pub fn critical_angle(kit: &dyn Kit) -> Result<String> {
             thinned.map(|(_, value)| *value).chain([last]),
             Pen::new(ink).wide(4.0),
         );
-        let y = 150.0 + 130.0 * row as f64;
+        let y = 100.0 + 90.0 * row as f64;
         if values.len() < 9000 {
             plot.draw_mark(&mut drawing, last[0], Pen::new(ink).wide(2.0).dashed());
             drawing.text([760.0, y], Anchor::Start, TEXT, ink, name);
@@ -184,7 +184,7 @@ pub fn reflection(kit: &dyn Kit) -> Result<String> {
     drawing.arrow(at(-direction), center, Pen::new(before).wide(4.0));
     drawing.arrow(center, at(reflected), Pen::new(after).wide(4.0));
     drawing.text(offset(at(-direction), [-12.0, 0.0]), Anchor::End, TEXT, before, "d");
-    drawing.text(offset(at(reflected), [12.0, 0.0]), Anchor::Start, TEXT, after, "d' = reflect(d, n)");
+    drawing.text(offset(at(reflected), [12.0, 0.0]), Anchor::Start, TEXT, after, "d'");
     for (degrees, ink) in [([90.0, 140.0], before), ([40.0, 90.0], after)] {
         arc(&mut drawing, center, 90.0, degrees, Pen::new(ink).wide(2.0));
     }
@@ -211,7 +211,7 @@ pub fn reflection(kit: &dyn Kit) -> Result<String> {
         let label = offset(at(vec3(x, 0.0, 0.0)), [0.0, 30.0]);
         drawing.text(label, Anchor::Middle, SMALL, ink, &format!("along the surface: {value:.2}"));
     }
-    let text = format!("d' - d = {length:.2} n = -2 n (d·n)");
+    let text = format!("d' = reflect(d, n): d' - d = {length:.2} n = -2 n (d·n)");
     drawing.text([500.0, 530.0], Anchor::Middle, TEXT, part, &text);
     Ok(drawing.svg())
 }

@@ -46,8 +46,11 @@ pub fn ray_tree(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
         let (place, ink) = (at(index), ink_of(ray.kind));
         drawing.dot(place, if ray.kind == RayKind::Shadow { 7.0 } else { 10.0 }, ink);
         if ray.kind != RayKind::Shadow {
-            let label = offset(place, [15.0, -8.0]);
-            drawing.text(label, Anchor::Start, SMALL, ink, &format!("{:.3}", ray.weight.max_element()));
+            // The line to the parent is on the other side.
+            let is_left = ray.parent.is_some_and(|parent| columns[parent] > columns[index]);
+            let (anchor, x) = if is_left { (Anchor::End, -15.0) } else { (Anchor::Start, 15.0) };
+            let label = offset(place, [x, -8.0]);
+            drawing.text(label, anchor, SMALL, ink, &format!("{:.3}", ray.weight.max_element()));
         }
     }
     drawing.text([60.0, 50.0], Anchor::Start, TEXT, Ink::Text, "pixel 430, 240");

@@ -51,7 +51,7 @@ pub fn gaussian_weight(kit: &dyn Kit) -> Result<String> {
         let end = curve.iter().copied().filter(|[x, y]| (1.2..=1.7).contains(x) && *y <= 0.06);
         inset.draw_curve(&mut drawing, end, pen);
     }
-    drawing.text([660.0, 90.0], Anchor::Start, SMALL, Ink::Color(0), "gaussian_weight, / its maximum");
+    drawing.text([660.0, 90.0], Anchor::Start, SMALL, Ink::Color(0), "gaussian_weight, scaled");
     drawing.text([660.0, 130.0], Anchor::Start, SMALL, Ink::Color(1), "exp(-2 x²), cut off at 1.5:");
     drawing.text([660.0, 158.0], Anchor::Start, SMALL, Ink::Color(1), &format!("a step of {step:.3}"));
     Ok(drawing.svg())

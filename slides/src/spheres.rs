@@ -40,7 +40,10 @@ pub fn sphere_roots(kit: &dyn Kit) -> Result<String> {
             } else {
                 drawing.circle(place, 8.0, Pen::new(ink));
             }
-            drawing.text(offset(place, [0.0, -16.0]), Anchor::Middle, SMALL, ink, &format!("{t:.2}"));
+            // Write beside the circle: outside of its upper half, inside of its lower half.
+            let by = 30.0 * f64::from((x + t) * y.signum()).signum();
+            let by = if square == 0.0 { 0.0 } else { by };
+            drawing.text(offset(place, [by, -16.0]), Anchor::Middle, SMALL, ink, &format!("{t:.2}"));
         }
         let text = hit.map_or("None".into(), |t| format!("Some({t:.2})"));
         drawing.text(offset(view.at(2.0, f64::from(y)), [10.0, 9.0]), Anchor::Start, TEXT, ink, &text);
@@ -110,7 +113,7 @@ pub fn sphere_cancellation(kit: &dyn Kit) -> Result<String> {
         x: Axis::logarithmic(10.0, 1e6),
         y: Axis::linear(0.0, 100.0),
         corner: [90.0, 530.0],
-        size: [860.0, 460.0],
+        size: [810.0, 460.0],
     };
     let x =
         [(10.0, "10"), (100.0, "100"), (1e3, "1,000"), (1e4, "10,000"), (1e5, "100,000"), (1e6, "1,000,000")];

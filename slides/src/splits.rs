@@ -47,7 +47,7 @@ pub fn sah_cuts(kit: &dyn Kit) -> Result<String> {
     let spatial = cut(kit.split_spatial_median(std::slice::from_ref(&primitives)))?;
     let chosen = cut(kit.split_surface_area(&[primitives]))?;
 
-    let mut drawing = Drawing::new("The cost of each cut by the surface area heuristic", 1000.0, 620.0);
+    let mut drawing = Drawing::new("The cost of each cut by the surface area heuristic", 1000.0, 660.0);
     let plot = Plot {
         x: Axis::logarithmic(0.9, 90.0),
         y: Axis::linear(0.0, 2600.0),
@@ -64,7 +64,7 @@ pub fn sah_cuts(kit: &dyn Kit) -> Result<String> {
         let below = [(a[0] + b[0]) / 2.0, b[1] + 26.0];
         drawing.text(below, Anchor::Middle, SMALL, Ink::Text, &format!("{}", bounds.min.x));
     }
-    drawing.text([962.0, 612.0], Anchor::End, SMALL, Ink::Text, "x of each box, logarithmic");
+    drawing.text([962.0, 646.0], Anchor::End, SMALL, Ink::Text, "x of each box, logarithmic");
     // Draw a bar above the gap of each cut.
     let marks = [
         (object, "object", "median", Ink::Color(2)),
@@ -77,7 +77,10 @@ pub fn sah_cuts(kit: &dyn Kit) -> Result<String> {
         let mark = marks.iter().find(|mark| mark.0 == cut);
         let ink = mark.map_or(Ink::Color(0), |mark| mark.3);
         drawing.rectangle(offset(top, [-17.0, 0.0]), offset(plot.at(gap, 0.0), [17.0, 0.0]), ink, 0.9);
-        drawing.text(offset(top, [0.0, -9.0]), Anchor::Middle, SMALL, ink, &format!("{cost:.0}"));
+        // The number of a bar that ends just under the dashed line stands beside the bar.
+        let is_high = (0.9 * leaf..leaf).contains(&cost);
+        let (anchor, by) = if is_high { (Anchor::End, [-24.0, 28.0]) } else { (Anchor::Middle, [0.0, -9.0]) };
+        drawing.text(offset(top, by), anchor, SMALL, ink, &format!("{cost:.0}"));
         if let Some((_, first, second, _)) = mark {
             drawing.text(offset(top, [0.0, -60.0]), Anchor::Middle, SMALL, ink, first);
             drawing.text(offset(top, [0.0, -36.0]), Anchor::Middle, SMALL, ink, second);

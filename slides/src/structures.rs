@@ -90,7 +90,7 @@ pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
 }
 
 fn caption(drawing: &mut Drawing, what: &str, answer: &CellsAnswer) {
-    let text = format!("{} {what} visited, {} boxes tested", answer.visits.len(), answer.tests.len());
+    let text = format!("{} {what} visited, boxes tested: {}", answer.visits.len(), answer.tests.len());
     drawing.text([100.0, 604.0], Anchor::Start, TEXT, Ink::Text, &text);
 }
 

@@ -1,7 +1,7 @@
 //! Diagrams of triangles, and of the order in which boxes are searched.
 
 use crate::sketch::offset;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{InsideQuery, Kit, SlabQuery};
@@ -31,7 +31,7 @@ pub fn barycentric(kit: &dyn Kit) -> Result<String> {
         drawing.dot(at(corner), 8.0, Ink::Text);
         drawing.text(offset(at(corner), by), Anchor::Middle, TEXT, Ink::Text, name);
     }
-    // Ask for the signs at one point of each region.
+    // Ask whether one point of each region is inside.
     let point = |beta: f32, gamma: f32| a + beta * (b - a) + gamma * (c - a);
     let ray = Ray::new(Vec3::Z, -Vec3::Z);
     let places =
@@ -39,10 +39,11 @@ pub fn barycentric(kit: &dyn Kit) -> Result<String> {
     for (beta, gamma) in places {
         let point = point(beta, gamma);
         let answer = kit.inside_by_areas(&[InsideQuery { ray, point, triangle }])[0];
-        let coordinates = answer.context("this triangle has no area")?;
         let sign = |x: f32| if x < 0.0 { "-" } else { "+" };
-        let [alpha, beta, gamma] = coordinates.to_array().map(sign);
+        let [alpha, beta, gamma] = [1.0 - beta - gamma, beta, gamma].map(sign);
         let text = format!("({alpha} {beta} {gamma})");
+        // The test of the kit must find the point inside exactly if no coordinate is negative.
+        ensure!(answer.is_some() == !text.contains('-'), "`inside_by_areas` contradicts {text}");
         drawing.text(offset(at(point), [0.0, 9.0]), Anchor::Middle, TEXT, Ink::Text, &text);
     }
     drawing.text([700.0, 60.0], Anchor::Start, SMALL, Ink::Text, "signs of (α β γ)");
@@ -77,7 +78,7 @@ pub fn traversal_order(kit: &dyn Kit) -> Result<String> {
             Anchor::End,
             SMALL,
             ink,
-            &format!("t = {enter}"),
+            &format!("t = {enter:.2}"),
         );
         // The triangle is seen from its edge.
         drawing.line(at(t - 0.12, 1.05), at(t + 0.12, 1.95), Pen::new(ink).wide(7.0));
@@ -85,9 +86,9 @@ pub fn traversal_order(kit: &dyn Kit) -> Result<String> {
         drawing.text(offset(at(t, 1.5), [20.0, 32.0]), Anchor::Start, SMALL, ink, &format!("hit t = {t}"));
     }
     let steps = [
-        format!("1. A is entered first, at t = {}.", entries[0]),
+        format!("1. A is entered first, at t = {:.2}.", entries[0]),
         "2. Its triangle is hit: t_max = 6.".to_owned(),
-        format!("3. B is entered at t = {}, before t_max: search it, too.", entries[1]),
+        format!("3. B is entered at t = {:.2}, before t_max: search it, too.", entries[1]),
         "4. Its triangle is hit at t = 4, which is closer.".to_owned(),
     ];
     for (row, step) in steps.iter().enumerate() {
