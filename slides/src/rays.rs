@@ -49,7 +49,10 @@ pub fn ray_tree(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
             // The line to the parent is on the other side.
             let is_left = ray.parent.is_some_and(|parent| columns[parent] > columns[index]);
             let (anchor, x) = if is_left { (Anchor::End, -15.0) } else { (Anchor::Start, 15.0) };
-            let label = offset(place, [x, -8.0]);
+            // A ray at whose hit the tree ends has its label below.
+            let is_last = !rays.iter().any(|one| one.parent == Some(index));
+            let (anchor, by) = if is_last { (Anchor::Middle, [0.0, 34.0]) } else { (anchor, [x, -8.0]) };
+            let label = offset(place, by);
             drawing.text(label, anchor, SMALL, ink, &format!("{:.3}", ray.weight.max_element()));
         }
     }
