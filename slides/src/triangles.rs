@@ -35,7 +35,7 @@ pub fn barycentric(kit: &dyn Kit) -> Result<String> {
     let point = |beta: f32, gamma: f32| a + beta * (b - a) + gamma * (c - a);
     let ray = Ray::new(Vec3::Z, -Vec3::Z);
     let places =
-        [(0.33, 0.33), (0.95, 0.75), (-0.7, 0.7), (0.55, -0.42), (-0.5, -0.4), (1.75, -0.4), (-0.17, 1.35)];
+        [(0.375, 0.125), (0.95, 0.75), (-0.7, 0.7), (0.55, -0.42), (-0.5, -0.4), (1.75, -0.4), (-0.17, 1.35)];
     for (beta, gamma) in places {
         let point = point(beta, gamma);
         let answer = kit.inside_by_areas(&[InsideQuery { ray, point, triangle }])[0];
