@@ -134,12 +134,16 @@ pub fn sampling_101(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
 
 /// The boxes of the hierarchy over a mesh at several levels.
 pub fn hierarchy_levels(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let scene = load(root, "hierarchy.toml")?;
+    let mut scene = load(root, "hierarchy.toml")?;
+    (scene.film.width, scene.film.height) = (220, 220);
     let film = shown(kit, &scene)?;
     let panel = |level: u32| {
         let edges = kit.outlines(&job(&scene), level);
         // Each box has twelve edges.
-        let text = format!("level {level}: {} boxes", edges.len() / 12);
+        let text = match edges.len() / 12 {
+            1 => format!("level {level}: 1 box"),
+            n => format!("level {level}: {n} boxes"),
+        };
         (with_edges(&film, &camera_for(&scene), &edges), text)
     };
     panels(&[0, 2, 4, 6, 8, 10].map(panel), 3)
@@ -148,7 +152,7 @@ pub fn hierarchy_levels(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
 /// The cells of four partitions of space over the same scene.
 pub fn four_partitions(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let mut scene = load(root, "stage9.toml")?;
-    (scene.film.width, scene.film.height) = (480, 300);
+    (scene.film.width, scene.film.height) = (400, 250);
     let film = shown(kit, &scene)?;
     let camera = camera_for(&scene);
     let mut parts = Vec::new();
@@ -174,7 +178,7 @@ pub fn tiles(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
         let rendering = render(kit, &scene)?;
         let film = rendering.film.toned(scene.film.tone);
         let text = format!("{name}: {} image reads", rendering.counts.texture_reads);
-        parts.push((crop(&film, [0, 0], [film.width, film.height / 2]), text));
+        parts.push((magnified(&crop(&film, [0, 150], [320, 150]), 2), text));
     }
     panels(&parts, 2)
 }
@@ -271,7 +275,7 @@ pub fn kd_easy_and_five(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
 /// The tests of each pixel with the three splits, on one logarithmic scale.
 pub fn split_heatmaps(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let mut scene = load(root, "stage3.toml")?;
-    (scene.film.width, scene.film.height) = (400, 250);
+    (scene.film.width, scene.film.height) = (300, 188);
     let mut films = Vec::new();
     for (split, name) in [
         (Split::ObjectMedian, "object median"),
