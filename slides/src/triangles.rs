@@ -43,7 +43,7 @@ pub fn barycentric(kit: &dyn Kit) -> Result<String> {
         let [alpha, beta, gamma] = [1.0 - beta - gamma, beta, gamma].map(sign);
         let text = format!("({alpha} {beta} {gamma})");
         // The test of the kit must find the point inside exactly if no coordinate is negative.
-        ensure!(answer.is_some() == !text.contains('-'), "`inside_by_areas` contradicts {text}");
+        ensure!(answer.is_some() != text.contains('-'), "`inside_by_areas` contradicts {text}");
         drawing.text(offset(at(point), [0.0, 9.0]), Anchor::Middle, TEXT, Ink::Text, &text);
     }
     drawing.text([700.0, 60.0], Anchor::Start, SMALL, Ink::Text, "signs of (α β γ)");
