@@ -1,11 +1,12 @@
 //! Diagrams of rays and boxes.
 
+use crate::sketch::offset;
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{Kit, SlabQuery};
 use raykata::ray::Ray;
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
+use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, SMALL, TEXT, View};
 
 /// Larger than everything in a diagram.
 const FAR: f32 = 1000.0;
@@ -72,8 +73,4 @@ pub fn slab_intervals(kit: &dyn Kit) -> Result<String> {
         "the last entry and the first exit: the ray meets the box",
     );
     Ok(drawing.svg())
-}
-
-fn offset(point: Point, by: Point) -> Point {
-    [point[0] + by[0], point[1] + by[1]]
 }

@@ -2,13 +2,25 @@
 //! RAYKATA make|check DECK NAME…`. `raykata figures` starts it.
 //!
 //! `slides/figures.toml` lists them, each with the command that makes it. Diagrams are drawn here from the answers of a kit's own
-//! functions, so a figure cannot contradict the code: `intersection`, `optics` and `structures` draw them by name. Other
-//! commands of `raykata` make pictures and plots.
+//! functions, so a figure cannot contradict the code. [`DIAGRAMS`] and [`FROM_SCENES`] list them by name. Other commands of
+//! `raykata` make pictures and plots.
 
+mod camera_frame;
+mod curves;
 mod intersection;
+mod lens;
+mod lighting;
 mod list;
 mod optics;
+mod pictures;
+mod pipeline;
+mod rays;
+mod sampling;
+mod sketch;
+mod spheres;
+mod splits;
 mod structures;
+mod triangles;
 
 use anyhow::{Context, Result, bail};
 use list::{Exact, Figure};
@@ -27,11 +39,59 @@ type Draw = fn(&dyn Kit) -> Result<String>;
 /// All diagrams, by name.
 const DIAGRAMS: &[(&str, Draw)] = &[
     ("slab-intervals", intersection::slab_intervals),
+    ("camera-frame", camera_frame::camera_frame),
+    ("sphere-roots", spheres::sphere_roots),
+    ("sphere-geometry", spheres::sphere_geometry),
+    ("sphere-cancellation", spheres::sphere_cancellation),
+    ("barycentric", triangles::barycentric),
+    ("traversal-order", triangles::traversal_order),
+    ("judge-and-worker", pipeline::judge_and_worker),
+    ("face-forward", lighting::face_forward),
+    ("phong-vectors", lighting::phong_vectors),
+    ("lambert", lighting::lambert),
+    ("phong-exponents", lighting::phong_exponents),
+    ("tone-curves", lighting::tone_curves),
+    ("reflection", optics::reflection),
     ("snell", optics::snell),
-    ("thin-lens", optics::thin_lens),
-    ("dda-steps", structures::dda_steps),
+    ("critical-angle", optics::critical_angle),
+    ("fresnel", optics::fresnel),
+    ("ray-tree-bound", rays::ray_tree_bound),
+    ("gaussian-weight", sampling::gaussian_weight),
+    ("disk-samples", sampling::disk_samples),
+    ("penumbra", sampling::penumbra),
+    ("motion-bounds", sampling::motion_bounds),
+    ("thin-lens", lens::thin_lens),
+    ("sah-cuts", splits::sah_cuts),
+    ("object-median-problem", splits::object_median_problem),
+    ("spatial-median-corner", splits::spatial_median_corner),
+    ("grid-steps", structures::grid_steps),
     ("kd-traversal", structures::kd_traversal),
-    ("sah-cuts", structures::sah_cuts),
+    ("ray-to-object", curves::ray_to_object),
+    ("normal-transform", curves::normal_transform),
+    ("de-casteljau", curves::de_casteljau),
+    ("bspline-basis", curves::bspline_basis),
+];
+
+/// Makes the bytes of a figure from the scenes of the kit at a path.
+type FromScenes = fn(&dyn Kit, &Path) -> Result<Vec<u8>>;
+
+/// All figures that are made from scenes, by name.
+const FROM_SCENES: &[(&str, FromScenes)] = &[
+    ("circle-of-confusion", lens::circle_of_confusion),
+    ("ray-tree", rays::ray_tree),
+    ("grid-resolution", rays::grid_resolution),
+    ("antialias-crops", pictures::antialias_crops),
+    ("sampler-strip", pictures::sampler_strip),
+    ("sampling-101", pictures::sampling_101),
+    ("hierarchy-levels", pictures::hierarchy_levels),
+    ("four-partitions", pictures::four_partitions),
+    ("kd-easy-and-five", pictures::kd_easy_and_five),
+    ("split-heatmaps", pictures::split_heatmaps),
+    ("cramer-determinant", pictures::cramer_determinant),
+    ("tiles", pictures::tiles),
+    ("heckbert", pictures::heckbert),
+    ("gamma-steps", pictures::gamma_steps),
+    ("three-scales", pictures::three_scales),
 ];
 
 fn main() -> ExitCode {
@@ -115,6 +175,9 @@ fn make(figure: &Figure, kit: &dyn Kit, root: &Path, raykata: &str) -> Result<Ve
     let words: Vec<&str> = figure.command.split_whitespace().collect();
     match words.as_slice() {
         ["raykata", "figures", name] => {
+            if let Some((_, make)) = FROM_SCENES.iter().find(|(known, _)| known == name) {
+                return kit_error::catch(|| make(kit, root))?;
+            }
             let (_, draw) = DIAGRAMS
                 .iter()
                 .find(|(known, _)| known == name)
@@ -163,4 +226,30 @@ fn difference(figure: &Figure, made: &[u8], file: &Path) -> Option<String> {
 
 fn pixels(png: &[u8]) -> Option<image::RgbImage> {
     Some(image::load_from_memory(png).ok()?.into_rgb8())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_drawing_is_listed() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("slides/ is in a folder");
+        let listed = list::read(root).unwrap();
+        let drawn = DIAGRAMS.iter().map(|one| one.0).chain(FROM_SCENES.iter().map(|one| one.0));
+        for name in drawn {
+            let command = format!("raykata figures {name}");
+            assert!(listed.iter().any(|figure| figure.command == command), "{name} is not listed");
+        }
+    }
+
+    #[test]
+    fn every_figure_that_is_not_planned_can_be_made() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("slides/ is in a folder");
+        for figure in list::read(root).unwrap().iter().filter(|figure| !figure.planned) {
+            let Some(name) = figure.command.strip_prefix("raykata figures ") else { continue };
+            let names = DIAGRAMS.iter().map(|one| one.0).chain(FROM_SCENES.iter().map(|one| one.0));
+            assert!(names.into_iter().any(|known| known == name), "there is no drawing {name}");
+        }
+    }
 }

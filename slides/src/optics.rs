@@ -1,149 +1,217 @@
-//! Diagrams of refraction and of the thin lens.
+//! Diagrams of reflection and refraction.
 
-use anyhow::Result;
-use glam::{Vec2, Vec3, vec3};
-use raykata::camera::{Camera, Lens};
-use raykata::kit::{Kit, LensQuery, RefractQuery};
-use raykata::ray::Ray;
+use crate::sketch::{Axis, Plot, arc, offset, steps};
+use anyhow::{Context, Result};
+use glam::{Vec3, vec3};
+use raykata::kit::{FresnelQuery, Kit, RefractQuery};
 use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
 
-/// Rays that meet a surface at three angles, from air into glass and from glass into air.
+const GLASS: f32 = 1.5;
+
+/// A ray from air into glass and one from glass into air, with their angles and their parts along the surface.
 pub fn snell(kit: &dyn Kit) -> Result<String> {
-    let mut drawing = Drawing::new("Refraction into glass and out of glass, at three angles", 1000.0, 560.0);
-    panel(
-        kit,
-        &mut drawing,
-        [250.0, 275.0],
-        (1.0, 1.5),
-        [25.0, 50.0, 75.0],
-        ("air, n = 1", "glass, n = 1.5"),
-    );
-    panel(
-        kit,
-        &mut drawing,
-        [750.0, 275.0],
-        (1.5, 1.0),
-        [20.0, 36.0, 55.0],
-        ("glass, n = 1.5", "air, n = 1"),
-    );
+    let mut drawing = Drawing::new("Refraction from air into glass and from glass into air", 1000.0, 560.0);
+    panel(kit, &mut drawing, [250.0, 280.0], 50.0, true)?;
+    panel(kit, &mut drawing, [750.0, 280.0], 30.0, false)?;
     Ok(drawing.svg())
 }
 
-/// One surface around `center`, with the medium `n1` above it and `n2` below.
-fn panel(
-    kit: &dyn Kit,
-    drawing: &mut Drawing,
-    center: Point,
-    (n1, n2): (f32, f32),
-    degrees: [f32; 3],
-    (above, below): (&str, &str),
-) {
+/// A ray that meets the surface of glass around `center` at an angle, from above or from below.
+fn panel(kit: &dyn Kit, drawing: &mut Drawing, center: Point, degrees: f32, from_above: bool) -> Result<()> {
     let view = View { origin: center, scale: 190.0 };
     let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
-    // Shade the glass, and draw surface and normal.
-    let glass = if n1 < n2 { view.at(1.25, -1.3) } else { view.at(1.25, 1.3) };
-    drawing.rectangle(view.at(-1.25, 0.0), glass, Ink::Color(4), 0.14);
-    drawing.line(view.at(-1.25, 0.0), view.at(1.25, 0.0), Pen::new(Ink::Text));
-    drawing.line(view.at(0.0, 1.25), view.at(0.0, -1.25), Pen::new(Ink::Faint).wide(2.0).dashed());
-    drawing.text(view.at(-1.22, 0.07), Anchor::Start, SMALL, Ink::Text, above);
-    drawing.text(view.at(-1.22, -0.16), Anchor::Start, SMALL, Ink::Text, below);
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let up = if from_above { 1.0 } else { -1.0 };
+    let (direction, normal) = (vec3(sin, -up * cos, 0.0), vec3(0.0, up, 0.0));
+    let (n1, n2) = if from_above { (1.0, GLASS) } else { (GLASS, 1.0) };
+    let refracted =
+        kit.refract(&[RefractQuery { direction, normal, n1, n2 }])[0].context("no refracted ray")?;
 
-    // Ask for the refracted and the reflected direction of each ray.
-    for (index, degrees) in degrees.into_iter().enumerate() {
-        let pen = Pen::new(Ink::Color([0, 1, 2][index])).wide(4.0);
-        let (sin, cos) = degrees.to_radians().sin_cos();
-        let direction = vec3(sin, -cos, 0.0);
-        drawing.arrow(at(-1.15 * direction), at(-0.55 * direction), pen);
-        drawing.line(at(-0.6 * direction), at(Vec3::ZERO), pen);
-        drawing.text(
-            shifted(at(-1.15 * direction), [-6.0, -8.0]),
-            Anchor::Middle,
-            SMALL,
-            pen.ink,
-            &format!("{degrees}°"),
-        );
-        let refracted = kit.refract(&[RefractQuery { direction, normal: Vec3::Y, n1, n2 }])[0];
-        let (way, pen, words) = match refracted {
-            Some(refracted) => {
-                let angle = refracted.x.atan2(-refracted.y).to_degrees();
-                (refracted, pen, format!("{angle:.1}°"))
-            }
-            None => (kit.reflect(&[(direction, Vec3::Y)])[0], pen.dashed(), "all reflected".into()),
+    // Shade the glass, and draw surface and normal.
+    drawing.rectangle(view.at(-1.22, 0.0), view.at(1.22, -1.35), Ink::Color(4), 0.14);
+    drawing.line(view.at(-1.22, 0.0), view.at(1.22, 0.0), Pen::new(Ink::Text));
+    drawing.line(view.at(0.0, 1.35), view.at(0.0, -1.35), Pen::new(Ink::Faint).wide(2.0).dashed());
+    drawing.text(view.at(1.2, 0.06), Anchor::End, SMALL, Ink::Text, "air, n = 1");
+    drawing.text(view.at(-1.2, -0.15), Anchor::Start, SMALL, Ink::Text, "glass, n = 1.5");
+
+    // Draw both rays with their angles, and their parts along the surface.
+    for (name, way, end, ink) in
+        [("1", direction, -direction, Ink::Color(0)), ("2", refracted, refracted, Ink::Color(1))]
+    {
+        let foot = vec3(0.0, end.y, 0.0);
+        drawing.line(at(foot), at(end), Pen::new(Ink::Color(2)).wide(5.0));
+        let below = if end.y > 0.0 { -12.0 } else { 28.0 };
+        let middle = offset(at((foot + end) / 2.0), [0.0, below]);
+        let (anchor, middle) = if end.x > 0.0 {
+            (Anchor::Start, [at(foot)[0] + 8.0, middle[1]])
+        } else {
+            (Anchor::End, [at(foot)[0] - 8.0, middle[1]])
         };
-        drawing.arrow(at(Vec3::ZERO), at(1.08 * way), pen);
-        let label = shifted(at(1.08 * way), [8.0, if way.y < 0.0 { 22.0 } else { -8.0 }]);
-        drawing.text(label, Anchor::Middle, SMALL, pen.ink, &words);
+        drawing.text(middle, anchor, SMALL, Ink::Color(2), &format!("sin θ{name} = {:.2}", way.x.abs()));
+        let ends = if end == -direction { [at(end), at(Vec3::ZERO)] } else { [at(Vec3::ZERO), at(end)] };
+        drawing.arrow(ends[0], ends[1], Pen::new(ink).wide(4.0));
+        let vertical: f64 = if end.y > 0.0 { 90.0 } else { 270.0 };
+        let angle = f64::from(way.x.abs().atan2(way.y.abs()).to_degrees());
+        let turn = if (end.x > 0.0) == (end.y > 0.0) { -angle } else { angle };
+        arc(drawing, center, 75.0, [vertical, vertical + turn], Pen::new(ink).wide(2.0));
+        // The angle is written on the free side of the normal.
+        let (anchor, x) = if end.x > 0.0 { (Anchor::End, -10.0) } else { (Anchor::Start, 10.0) };
+        let y = if end.y > 0.0 { -62.0 } else { 78.0 };
+        drawing.text(offset(center, [x, y]), anchor, SMALL, ink, &format!("θ{name} = {angle:.1}°"));
     }
+    Ok(())
 }
 
-/// A thin lens from the side: rays through points of the lens meet in the focal plane, and spread over a circle of confusion
-/// nearer and farther.
-pub fn thin_lens(kit: &dyn Kit) -> Result<String> {
-    // Ask for the rays through five points of the lens, for one point of the film.
-    let lens = Lens { aperture: 1.6, focal_distance: 4.6 };
-    let camera = Camera {
-        position: Vec3::ZERO,
-        towards: Vec3::X,
-        right: Vec3::Z,
-        up: Vec3::Y,
-        half_height: 0.5,
-        aspect: 1.0,
-        lens: Some(lens),
-        shutter: None,
+/// The angle of the refracted ray for an angle in degrees; `None` at total internal reflection.
+fn refracted_angle(kit: &dyn Kit, degrees: f64, n1: f32, n2: f32) -> Option<f64> {
+    let (sin, cos) = (degrees.to_radians() as f32).sin_cos();
+    let query = RefractQuery { direction: vec3(sin, -cos, 0.0), normal: Vec3::Y, n1, n2 };
+    kit.refract(&[query])[0].map(|way| f64::from(way.x.atan2(-way.y)).to_degrees())
+}
+
+const DEGREES: [(f64, &str); 4] = [(0.0, "0°"), (30.0, "30°"), (60.0, "60°"), (90.0, "90°")];
+
+/// The angle of the refracted ray against that of the ray.
+pub fn critical_angle(kit: &dyn Kit) -> Result<String> {
+    let mut drawing = Drawing::new("The angle of refraction, and the critical angle", 1000.0, 620.0);
+    let plot = Plot {
+        x: Axis::linear(0.0, 90.0),
+        y: Axis::linear(0.0, 90.0),
+        corner: [90.0, 530.0],
+        size: [640.0, 460.0],
     };
-    let pinhole = Ray::new(Vec3::ZERO, vec3(1.0, 0.07, 0.0).normalize());
-    let places = [-1.0, -0.5, 0.0, 0.5, 1.0];
-    let queries = places.map(|y| LensQuery { camera, pinhole, lens, on_lens: Vec2::new(0.0, y) });
-    let rays = kit.lens_ray(&queries);
-
-    let mut drawing =
-        Drawing::new("A thin lens, the focal plane, and the circle of confusion", 1000.0, 560.0);
-    let view = View { origin: [110.0, 285.0], scale: 108.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
-    let reach = |ray: &Ray, x: f32| ray.at((x - ray.origin.x) / ray.direction.x);
-
-    // Draw the lens and the focal plane.
-    let half = f64::from(lens.aperture / 2.0);
-    let lens_line = Pen::new(Ink::Color(4)).wide(9.0);
-    drawing.line(view.at(0.0, -half), view.at(0.0, half), lens_line);
-    drawing.text(view.at(0.0, half + 0.22), Anchor::Middle, TEXT, lens_line.ink, "lens");
-    let focus = f64::from(lens.focal_distance);
-    drawing.line(view.at(focus, -1.7), view.at(focus, 1.7), Pen::new(Ink::Text).wide(2.0).dashed());
-    drawing.text(view.at(focus, 1.85), Anchor::Middle, TEXT, Ink::Text, "focal plane");
-    // Mark the focal distance and the aperture.
-    drawing.arrow(view.at(0.1, -1.95), view.at(focus - 0.05, -1.95), Pen::new(Ink::Faint).wide(2.0));
-    drawing.arrow(view.at(focus - 0.1, -1.95), view.at(0.05, -1.95), Pen::new(Ink::Faint).wide(2.0));
-    drawing.text(view.at(focus / 2.0, -2.25), Anchor::Middle, SMALL, Ink::Text, "focal distance");
-    drawing.text_upwards(view.at(-0.35, 0.0), SMALL, Ink::Text, "aperture");
-
-    // Draw the rays, and how far they spread nearer and farther than the focal plane.
-    for ray in &rays {
-        drawing.line(at(ray.origin), at(reach(ray, 7.6)), Pen::new(Ink::Color(0)).wide(2.0));
-    }
-    for x in [2.3, 6.9] {
-        let ends = [&rays[0], &rays[4]].map(|ray| reach(ray, x));
-        drawing.line(at(ends[0]), at(ends[1]), Pen::new(Ink::Color(1)).wide(9.0));
-        let wide = (ends[0].y - ends[1].y).abs();
-        let top = ends[0].y.max(ends[1].y);
-        drawing.text(
-            at(vec3(x, top + 0.32, 0.0)),
-            Anchor::Middle,
-            SMALL,
-            Ink::Color(1),
-            "circle of confusion",
+    plot.draw_axes(&mut drawing, &DEGREES, &DEGREES, ["θ1", "θ2"]);
+    let media = [
+        (1.5, 1.0, "1.5 to 1", Ink::Color(1)),
+        (1.33, 1.0, "1.33 to 1", Ink::Color(4)),
+        (1.0, 1.5, "1 to 1.5", Ink::Color(2)),
+    ];
+    for (row, (n1, n2, name, ink)) in media.into_iter().enumerate() {
+        // Take steps of a hundredth of a degree, so that the last one before `None` is the critical angle.
+        let values: Vec<[f64; 2]> = steps(0.0, 90.0, 9000)
+            .map_while(|degrees| Some([degrees, refracted_angle(kit, degrees, n1, n2)?]))
+            .collect();
+        let last = *values.last().context("no angle has a refracted ray")?;
+        // One point per half a degree is enough for a curve, and the steep end needs all.
+        let thinned = values.iter().enumerate();
+        let thinned =
+            thinned.filter(|(i, value)| i % 50 == 0 || (last[1] > 80.0 && value[1] > 75.0 && i % 5 == 0));
+        plot.draw_curve(
+            &mut drawing,
+            thinned.map(|(_, value)| *value).chain([last]),
+            Pen::new(ink).wide(4.0),
         );
-        drawing.text(
-            at(vec3(x, top + 0.1, 0.0)),
-            Anchor::Middle,
-            SMALL,
-            Ink::Color(1),
-            &format!("{wide:.2} wide"),
-        );
+        let y = 100.0 + 90.0 * row as f64;
+        if values.len() < 9000 {
+            plot.draw_mark(&mut drawing, last[0], Pen::new(ink).wide(2.0).dashed());
+            drawing.text([760.0, y], Anchor::Start, TEXT, ink, name);
+            let text = format!("None from {:.1}°", last[0]);
+            drawing.text([760.0, y + 32.0], Anchor::Start, SMALL, ink, &text);
+        } else {
+            let [x, y] = plot.at(last[0], last[1]);
+            drawing.text([x + 30.0, y - 4.0], Anchor::Start, TEXT, ink, name);
+            let text = format!("at most {:.1}°", last[1]);
+            drawing.text([x + 30.0, y + 28.0], Anchor::Start, SMALL, ink, &text);
+        }
     }
-    drawing.dot(at(reach(&rays[2], lens.focal_distance)), 9.0, Ink::Color(1));
     Ok(drawing.svg())
 }
 
-fn shifted(point: Point, by: Point) -> Point {
-    [point[0] + by[0], point[1] + by[1]]
+/// Reflectance against the angle, exact and by Schlick's approximation.
+pub fn fresnel(kit: &dyn Kit) -> Result<String> {
+    let mut drawing = Drawing::new("Fresnel reflectance against the angle", 1000.0, 620.0);
+    let plot = Plot {
+        x: Axis::linear(0.0, 90.0),
+        y: Axis::linear(0.0, 1.0),
+        corner: [90.0, 530.0],
+        size: [640.0, 460.0],
+    };
+    let y = [(0.0, "0"), (0.5, "0.5"), (1.0, "1")];
+    plot.draw_axes(&mut drawing, &DEGREES, &y, ["θ1", "reflectance"]);
+    let media = [(1.0, GLASS, "air to glass", Ink::Color(0)), (GLASS, 1.0, "glass to air", Ink::Color(1))];
+    for (row, (n1, n2, name, ink)) in media.into_iter().enumerate() {
+        let query = |degrees: f64| FresnelQuery { cos_theta: degrees.to_radians().cos() as f32, n1, n2 };
+        let angles: Vec<f64> = steps(0.0, 90.0, 900).collect();
+        let queries: Vec<_> = angles.iter().map(|&degrees| query(degrees)).collect();
+        for (values, pen) in [
+            (kit.fresnel_exact(&queries), Pen::new(ink).wide(4.0)),
+            (kit.fresnel_schlick(&queries), Pen::new(ink).wide(3.0).dashed()),
+        ] {
+            let values = angles.iter().zip(values).map(|(&degrees, value)| [degrees, f64::from(value)]);
+            plot.draw_curve(&mut drawing, values, pen);
+        }
+        let at_zero = kit.fresnel_exact(&[query(0.0)])[0];
+        let y = 160.0 + 170.0 * row as f64;
+        drawing.text([760.0, y], Anchor::Start, TEXT, ink, name);
+        drawing.line([760.0, y + 26.0], [810.0, y + 26.0], Pen::new(ink).wide(4.0));
+        drawing.text([820.0, y + 33.0], Anchor::Start, SMALL, ink, "exact");
+        drawing.line([760.0, y + 58.0], [810.0, y + 58.0], Pen::new(ink).dashed());
+        drawing.text([820.0, y + 65.0], Anchor::Start, SMALL, ink, "Schlick");
+        drawing.text([760.0, y + 97.0], Anchor::Start, SMALL, ink, &format!("{at_zero:.2} at 0°"));
+    }
+    // Mark the critical angle: the first at which everything is reflected.
+    let all = |degrees: &f64| {
+        let cos_theta = degrees.to_radians().cos() as f32;
+        kit.fresnel_exact(&[FresnelQuery { cos_theta, n1: GLASS, n2: 1.0 }])[0] == 1.0
+    };
+    let critical = steps(0.0, 90.0, 900).find(all).context("no angle with total internal reflection")?;
+    plot.draw_mark(&mut drawing, critical, Pen::new(Ink::Faint).wide(2.0).dashed());
+    let label = offset(plot.at(critical, 0.5), [-10.0, 0.0]);
+    drawing.text(label, Anchor::End, SMALL, Ink::Text, "critical angle");
+    Ok(drawing.svg())
+}
+
+/// A ray and its reflection, both divided into a part along the normal and a part along the surface.
+pub fn reflection(kit: &dyn Kit) -> Result<String> {
+    let (sin, cos) = 50f32.to_radians().sin_cos();
+    let direction = vec3(sin, -cos, 0.0);
+    let reflected = kit.reflect(&[(direction, Vec3::Y)])[0];
+    let mut drawing = Drawing::new("A ray and its reflection", 1000.0, 560.0);
+    let center = [500.0, 430.0];
+    let view = View { origin: center, scale: 390.0 };
+    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    drawing.rectangle([60.0, 430.0], [940.0, 470.0], Ink::Faint, 0.25);
+    drawing.line([60.0, 430.0], [940.0, 430.0], Pen::new(Ink::Text));
+    drawing.arrow(center, view.at(0.0, 0.95), Pen::new(Ink::Text));
+    drawing.text(offset(view.at(0.0, 0.95), [12.0, 16.0]), Anchor::Start, TEXT, Ink::Text, "n");
+    let (before, after, part) = (Ink::Color(0), Ink::Color(1), Ink::Color(2));
+    // Draw the parts of both, then the rays over them.
+    for (end, ink) in [(-direction, before), (reflected, after)] {
+        let foot = vec3(end.x, 0.0, 0.0);
+        drawing.line(at(end), at(foot), Pen::new(ink).wide(2.0).dashed());
+        drawing.line(offset(at(foot), [0.0, 0.0]), center, Pen::new(ink).wide(5.0));
+    }
+    drawing.arrow(at(-direction), center, Pen::new(before).wide(4.0));
+    drawing.arrow(center, at(reflected), Pen::new(after).wide(4.0));
+    drawing.text(offset(at(-direction), [-12.0, 0.0]), Anchor::End, TEXT, before, "d");
+    drawing.text(offset(at(reflected), [12.0, 0.0]), Anchor::Start, TEXT, after, "d'");
+    for (degrees, ink) in [([90.0, 140.0], before), ([40.0, 90.0], after)] {
+        arc(&mut drawing, center, 90.0, degrees, Pen::new(ink).wide(2.0));
+    }
+    let angle = f64::from(reflected.x.atan2(reflected.y)).to_degrees();
+    drawing.text(offset(center, [-46.0, -100.0]), Anchor::Middle, SMALL, before, "50°");
+    drawing.text(offset(center, [46.0, -100.0]), Anchor::Middle, SMALL, after, &format!("{angle:.0}°"));
+    // Move d to the foot of d', where the difference of both is along the normal.
+    let below = vec3(reflected.x, direction.y + 0.0, 0.0);
+    let length = (reflected - direction).length();
+    let half = at(vec3(below.x, reflected.y / 2.0, 0.0));
+    let along = format!("along n: {:.2}", length / 2.0);
+    drawing.text(offset(half, [12.0, 0.0]), Anchor::Start, SMALL, after, &along);
+    let half = at(vec3(-direction.x, -direction.y / 2.0, 0.0));
+    drawing.text(
+        offset(half, [-12.0, 0.0]),
+        Anchor::End,
+        SMALL,
+        before,
+        &format!("along n: {:.2}", direction.y),
+    );
+    for (x, value, ink) in
+        [(-direction.x / 2.0, direction.x, before), (reflected.x / 2.0, reflected.x, after)]
+    {
+        let label = offset(at(vec3(x, 0.0, 0.0)), [0.0, 30.0]);
+        drawing.text(label, Anchor::Middle, SMALL, ink, &format!("along the surface: {value:.2}"));
+    }
+    let text = format!("d' = reflect(d, n): d' - d = {length:.2} n = -2 n (d·n)");
+    drawing.text([500.0, 530.0], Anchor::Middle, TEXT, part, &text);
+    Ok(drawing.svg())
 }

@@ -1,9 +1,8 @@
 //! Diagrams of acceleration structures: the steps of a ray through them, and the costs of cuts.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
-use raykata::bvh::PrimitiveRef;
 use raykata::kit::{CellsAnswer, CellsQuery, GridQuery, KdQuery, Kit};
 use raykata::partition::{KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
@@ -66,7 +65,7 @@ fn draw_visit(drawing: &mut Drawing, bounds: &Aabb, step: usize) {
 }
 
 /// A ray through a uniform grid: the cells that it visits, numbered, up to the first hit.
-pub fn dda_steps(kit: &dyn Kit) -> Result<String> {
+pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
     let (ray, hits) = ray_and_hits(kit);
     let query = GridQuery { bounds: boxes(), resolution: UVec3::new(8, 5, 1) };
     let grid = kit.grid_build(&[query]).remove(0);
@@ -91,7 +90,7 @@ pub fn dda_steps(kit: &dyn Kit) -> Result<String> {
 }
 
 fn caption(drawing: &mut Drawing, what: &str, answer: &CellsAnswer) {
-    let text = format!("{} {what} visited, {} boxes tested", answer.visits.len(), answer.tests.len());
+    let text = format!("{} {what} visited, boxes tested: {}", answer.visits.len(), answer.tests.len());
     drawing.text([100.0, 604.0], Anchor::Start, TEXT, Ink::Text, &text);
 }
 
@@ -139,83 +138,4 @@ fn leaves(tree: &KdTree) -> Vec<(u32, Aabb)> {
         }
     }
     found
-}
-
-/// The cost of each cut of twelve boxes along x by the surface area heuristic, and the cuts at both medians.
-pub fn sah_cuts(kit: &dyn Kit) -> Result<String> {
-    // Many small boxes stand at the left, a larger one in the middle, and two large ones at the right.
-    let small = (0..9).map(|i| {
-        let (x, y) = (0.2 + 0.28 * i as f32, 0.4 + 0.9 * ((i * 5) % 9) as f32 / 9.0);
-        [x, x + 0.2, y, y + 0.2]
-    });
-    let large = [[3.1, 3.8, 0.3, 1.5], [5.6, 6.5, 0.2, 1.6], [7.2, 8.1, 0.2, 1.6]];
-    let boxes: Vec<Aabb> = small
-        .chain(large)
-        .map(|[x0, x1, y0, y1]| Aabb::new(vec3(x0, y0, 0.0), vec3(x1, y1, y1 - y0)))
-        .collect();
-    let n = boxes.len();
-
-    // Ask for the areas of both sides of each cut, and for the cut that the heuristic chooses.
-    let around = |part: &[Aabb]| part.iter().skip(1).fold(part[0], |all, one| kit.union(&[(all, *one)])[0]);
-    let area = |part: &[Aabb]| f64::from(kit.surface_area(&[around(part)])[0]);
-    let whole = area(&boxes);
-    let costs: Vec<f64> = (1..n)
-        .map(|cut| (area(&boxes[..cut]) * cut as f64 + area(&boxes[cut..]) * (n - cut) as f64) / whole)
-        .collect();
-    let primitives: Vec<PrimitiveRef> = (0..)
-        .zip(&boxes)
-        .map(|(id, bounds)| PrimitiveRef { id, bounds: *bounds, centroid: (bounds.min + bounds.max) / 2.0 })
-        .collect();
-    let chosen = kit
-        .split_surface_area(std::slice::from_ref(&primitives))
-        .remove(0)
-        .middle
-        .context("`split_surface_area` makes a leaf")?;
-    let spatial = kit
-        .split_spatial_median(std::slice::from_ref(&primitives))
-        .remove(0)
-        .middle
-        .context("no spatial median")?;
-    let object = kit.split_object_median(&[primitives]).remove(0).middle.context("no object median")?;
-
-    // Draw the boxes, and under them the cost of each cut.
-    let mut drawing = Drawing::new("The cost of each cut by the surface area heuristic", 1000.0, 620.0);
-    let view = View { origin: [70.0, 240.0], scale: 108.0 };
-    let at = |x: f32, y: f32| view.at(f64::from(x), f64::from(y));
-    for bounds in &boxes {
-        drawing.rectangle(at(bounds.min.x, bounds.min.y), at(bounds.max.x, bounds.max.y), Ink::Faint, 0.35);
-        drawing.frame(
-            at(bounds.min.x, bounds.min.y),
-            at(bounds.max.x, bounds.max.y),
-            Pen::new(Ink::Text).wide(2.0),
-        );
-    }
-    let place = |cut: usize| view.at(f64::from((boxes[cut - 1].max.x + boxes[cut].min.x) / 2.0), 0.0)[0];
-    let most = costs.iter().copied().fold(0.0, f64::max);
-    let height = |cost: f64| 560.0 - 230.0 * cost / most;
-    drawing.line([70.0, 560.0], [960.0, 560.0], Pen::new(Ink::Text).wide(2.0));
-    let points: Vec<[f64; 2]> =
-        costs.iter().zip(1..).map(|(&cost, cut)| [place(cut), height(cost)]).collect();
-    drawing.polyline(&points, Pen::new(Ink::Color(0)).wide(4.0));
-    for point in points {
-        drawing.dot(point, 7.0, Ink::Color(0));
-    }
-    let cuts = [
-        (spatial, "spatial median", Ink::Color(3)),
-        (object, "object median", Ink::Color(2)),
-        (chosen, "surface area", Ink::Color(1)),
-    ];
-    for (row, (cut, name, ink)) in cuts.into_iter().enumerate() {
-        drawing.line([place(cut), 60.0], [place(cut), 560.0], Pen::new(ink).dashed());
-        let text = format!("{name}: {:.2}", costs[cut - 1]);
-        drawing.text([350.0, 330.0 + 34.0 * row as f64], Anchor::Start, TEXT, ink, &text);
-    }
-    drawing.text(
-        [70.0, 600.0],
-        Anchor::Start,
-        SMALL,
-        Ink::Text,
-        "expected primitive tests of a ray that meets the box, for each cut",
-    );
-    Ok(drawing.svg())
 }

@@ -7,7 +7,7 @@ macro_rules! println {
 }
 
 pub mod args;
-mod caption;
+pub mod caption;
 pub mod compare;
 pub mod cost;
 pub mod explain;

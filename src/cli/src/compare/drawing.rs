@@ -59,7 +59,7 @@ fn file_name(row: &str) -> String {
 }
 
 /// A colour from black over violet, red and yellow to white, on a logarithmic scale.
-fn heat_color(tests: f32, most: f32) -> Vec3 {
+pub fn heat_color(tests: f32, most: f32) -> Vec3 {
     const COLORS: [Vec3; 5] = [
         Vec3::new(0.0, 0.0, 0.02),
         Vec3::new(0.18, 0.01, 0.3),
