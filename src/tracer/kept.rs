@@ -12,9 +12,9 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// The most primitives of all kept intersectors together, so that they take some hundred megabytes at most. A larger
+/// The most primitives of all kept intersectors together, so that they take about a gigabyte at most. A larger
 /// scene is built for each frame.
-const MOST_PRIMITIVES: usize = 1 << 19;
+const MOST_PRIMITIVES: usize = 1 << 21;
 
 /// The kept intersectors, the oldest first.
 static KEPT: Mutex<VecDeque<Kept>> = Mutex::new(VecDeque::new());
