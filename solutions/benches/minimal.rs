@@ -12,7 +12,7 @@ use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, Probe};
 use raykata::frame::Unwatched;
-use raykata::kit::{LightSample, RenderJob, StudentKit, Surface, View};
+use raykata::kit::{LightSample, RenderJob, Surface, View};
 use raykata::material::{Emitter, Light};
 use raykata::ray::Ray;
 use raykata::scene::{Background, Scene, load};
@@ -49,7 +49,7 @@ fn compare(scene: &Scene, lights: usize) -> Result<()> {
         count,
         reuse: false,
     };
-    let full = |count| solutions::Kit.door().render(&job(count), &Unwatched).expect("not cancelled");
+    let full = |count| solutions::kit().render(&job(count), &Unwatched).expect("not cancelled");
     let caster = Caster::new(scene);
 
     let (mut picture, mut rays) = (Vec::new(), 0);

@@ -32,5 +32,10 @@ pub mod stage9_polygon_bsp;
 
 raykata::student_kit!();
 // <solution>
+/// The functions as a kit. It is compiled once, here, and not again in each program and test that calls it.
+pub fn kit() -> std::sync::Arc<dyn raykata::kit::Kit + Send + Sync> {
+    raykata::kit::StudentKit::door(Kit)
+}
+
 // canary-answers-9b1f6c52: a text that contains this line contains leaked answers.
 // </solution>

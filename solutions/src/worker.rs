@@ -2,7 +2,8 @@
 
 fn main() {
     // <solution>
-    raykata::worker::serve(solutions::Kit);
+    let kit = solutions::kit();
+    raykata::worker::serve_with(&|request, watch| request.answer(&*kit, watch));
     // <stub> raykata::worker::serve(exercises::Kit);
     // </solution>
 }

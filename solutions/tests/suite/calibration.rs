@@ -12,7 +12,7 @@ use raykata::emitter::{EmitterSample, EmitterShape};
 use raykata::frame::Watch;
 use raykata::kit::{
     Answer, BsdfQuery, Door, EmitterQuery, Kit, PhongLobeQuery, Request, RouletteQuery, SphereSampleQuery,
-    StepQuery, StudentKit, Transport,
+    StepQuery, Transport,
 };
 use raykata::light_path::{BsdfSample, Lobe, PathStep};
 use std::f32::consts::{PI, TAU};
@@ -59,7 +59,7 @@ struct Twisted(fn(&Request) -> Option<Answer>);
 
 impl Transport for Twisted {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
-        (self.0)(&request).unwrap_or_else(|| request.answer(&*solutions::Kit.door(), watch))
+        (self.0)(&request).unwrap_or_else(|| request.answer(&*solutions::kit(), watch))
     }
 }
 
@@ -88,7 +88,7 @@ fn the_reference_is_rejected_as_rarely_as_stated() {
     assert!(f64::from(laws) * FALSE_ALARMS < UNFAIR, "{laws} tests");
     let (mut tests, mut alarms) = (0, 0);
     for (name, laws) in STATISTICAL {
-        let rejected = rejections(check(name), &*solutions::Kit.door());
+        let rejected = rejections(check(name), &*solutions::kit());
         println!("{rejected:>4} of {} seeds rejected, {laws} tests each: {name}", seeds());
         tests += seeds() * u64::from(laws);
         alarms += rejected;
@@ -321,7 +321,7 @@ const WRONG: &[Wrong] = &[
             |query: &SphereSampleQuery| SphereSampleQuery { u: vec2(query.u.x, 0.5 * query.u.y), ..*query };
         Some(
             Request::SampleSphere(each(queries, halved))
-                .answer(&*solutions::Kit.door(), &raykata::frame::Unwatched),
+                .answer(&*solutions::kit(), &raykata::frame::Unwatched),
         )
     }),
     ("glossy: exponent 1 / n", "phong_lobe_falls_with_the_power_of_the_cosine", |r| {

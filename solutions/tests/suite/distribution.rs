@@ -5,7 +5,7 @@
 use crate::scene::scene;
 use glam::Vec3;
 use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, Rendering, StudentKit, View};
+use raykata::kit::{RenderJob, Rendering, View};
 use raykata::scene::{Accelerator, Sampler, Scene};
 
 const SAMPLERS: [Sampler; 5] =
@@ -16,7 +16,7 @@ fn job(scene: &Scene, threads: usize) -> RenderJob {
 }
 
 fn render(scene: &Scene) -> Rendering {
-    solutions::Kit.door().render(&job(scene, 1), &Unwatched).expect("not cancelled")
+    solutions::kit().render(&job(scene, 1), &Unwatched).expect("not cancelled")
 }
 
 /// A scene with every distributed effect, over a floor with tiles.
@@ -89,8 +89,7 @@ fn every_search_finds_what_moves_and_threads_change_nothing() {
         let found = render(&scene);
         assert!(found.film.not_a_number() == 0 && found.counts.random_numbers > 0);
         for threads in [2, 5] {
-            let other =
-                solutions::Kit.door().render(&job(&scene, threads), &Unwatched).expect("not cancelled");
+            let other = solutions::kit().render(&job(&scene, threads), &Unwatched).expect("not cancelled");
             assert_eq!(
                 (&other.film, other.counts),
                 (&found.film, found.counts),
@@ -125,7 +124,7 @@ fn what_has_no_extent_changes_no_bit() {
 /// The points at `distance` along the view that the camera rays of a pixel reach, for many seeds.
 fn on_plane(scene: &Scene, x: u32, y: u32, distance: f32) -> Vec<Vec3> {
     let place = |seed| {
-        let ray = &solutions::Kit.door().trace(&RenderJob { seed, ..job(scene, 1) }, x, y)[0];
+        let ray = &solutions::kit().trace(&RenderJob { seed, ..job(scene, 1) }, x, y)[0];
         let along = ray.direction.dot(scene.camera.towards);
         ray.origin
             + (distance - (ray.origin - scene.camera.position).dot(scene.camera.towards)) / along

@@ -6,12 +6,12 @@ use glam::Vec3;
 use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, Rendering, StudentKit, View};
+use raykata::kit::{RenderJob, Rendering, View};
 use raykata::scene::{Accelerator, Scene, Split};
 
 fn render_with(scene: &Scene, threads: usize, count: bool) -> Rendering {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads, count, reuse: false };
-    solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled")
+    solutions::kit().render(&job, &Unwatched).expect("not cancelled")
 }
 
 pub fn render(scene: &Scene) -> Rendering {

@@ -6,7 +6,7 @@ use crate::scene::scene;
 use glam::{DVec3, Vec3};
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{RayKind, RenderJob, StudentKit, TracedRay, View};
+use raykata::kit::{RayKind, RenderJob, TracedRay, View};
 use raykata::material::{Texture, Wrap};
 use raykata::scene::{Background, EnvironmentMap, NextEvent, Scene};
 use std::sync::Arc;
@@ -279,7 +279,7 @@ fn threads_change_no_pixel_and_no_count_of_indirect_light() {
             count: true,
             reuse: false,
         };
-        let rendering = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
+        let rendering = solutions::kit().render(&job, &Unwatched).expect("not cancelled");
         (rendering.film, rendering.counts)
     };
     let one = frame(1);
@@ -294,7 +294,7 @@ fn the_counts_of_paths_are_those_of_their_rays() {
     let mut scene = everything();
     scene.quality.samples_per_pixel = 1;
     let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: true, reuse: false };
-    let door = solutions::Kit.door();
+    let door = solutions::kit();
     let counts = door.render(&job, &Unwatched).expect("not cancelled").counts;
     let pixels = (0..30).flat_map(|y| (0..40).map(move |x| (x, y)));
     let paths: Vec<Vec<TracedRay>> = pixels.map(|(x, y)| door.trace(&job, x, y)).collect();

@@ -6,7 +6,7 @@ use glam::Vec3;
 use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, Rendering, StudentKit, View};
+use raykata::kit::{RenderJob, Rendering, View};
 use raykata::scene::{Accelerator, Scene, load};
 use std::path::Path;
 
@@ -27,7 +27,7 @@ fn render(scene: &Scene) -> Rendering {
         count: true,
         reuse: false,
     };
-    solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled")
+    solutions::kit().render(&job, &Unwatched).expect("not cancelled")
 }
 
 fn by(scene: &Scene, accelerator: Accelerator) -> Rendering {
@@ -67,7 +67,7 @@ fn any_number_of_threads_asks_the_same_questions() {
             let mut scene = scene.clone();
             scene.quality.accelerator = accelerator;
             let job = RenderJob { scene, view: View::Shaded, seed: 0, threads, count: true, reuse: false };
-            let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
+            let frame = solutions::kit().render(&job, &Unwatched).expect("not cancelled");
             (frame.film, frame.counts)
         };
         assert_eq!(with(1), with(3), "{accelerator:?}");
@@ -138,7 +138,7 @@ fn no_placed_shape_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
             let frame = render(&scene);
             let job =
                 RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false, reuse: false };
-            let normals = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled").film;
+            let normals = solutions::kit().render(&job, &Unwatched).expect("not cancelled").film;
             let light = Vec3::new(1.0, 1.1, 0.9).normalize();
             let mut lit = 0;
             for (pixel, normal) in frame.film.pixels.iter().zip(&normals.pixels) {

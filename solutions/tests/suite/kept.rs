@@ -2,7 +2,7 @@
 
 use crate::scene::scene;
 use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, Rendering, StudentKit, View};
+use raykata::kit::{RenderJob, Rendering, View};
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Precision, Scene, Split};
 
@@ -37,7 +37,7 @@ fn job(scene: &Scene, seed: u64, reuse: bool) -> RenderJob {
 }
 
 fn render(job: &RenderJob) -> Rendering {
-    solutions::Kit.door().render(job, &Unwatched).expect("not cancelled")
+    solutions::kit().render(job, &Unwatched).expect("not cancelled")
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn a_plain_world_is_not_that_of_a_frame() {
         })
         .collect();
     render(&job(&scene, 0, true));
-    let kit = solutions::Kit.door();
+    let kit = solutions::kit();
     let [alone, first, again] =
         [false, true, true].map(|reuse| kit.first_hits(&job(&scene, 0, reuse), &rays));
     assert!(alone.iter().flatten().count() > 50);

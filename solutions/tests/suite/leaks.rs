@@ -4,7 +4,6 @@ use oracle::gauntlet::families::families;
 use oracle::gauntlet::job::job;
 use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::splitmix::Random;
-use raykata::kit::StudentKit;
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality};
 
@@ -34,7 +33,7 @@ fn no_ray_leaks_in_any_structure() {
         for accelerator in structures {
             let started = std::time::Instant::now();
             let quality = Quality { accelerator, ..Quality::default() };
-            let hits = solutions::Kit.door().first_hits(&job(&mesh.all(), quality), &rays);
+            let hits = solutions::kit().first_hits(&job(&mesh.all(), quality), &rays);
             let lost: Vec<&Ray> =
                 rays.iter().zip(&hits).filter(|(_, hit)| hit.is_none()).map(|(ray, _)| ray).collect();
             if std::env::var("TIMES").is_ok() {

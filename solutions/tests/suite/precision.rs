@@ -5,7 +5,7 @@ use glam::{Vec3, vec3};
 use oracle::exact::{Body, verdict};
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, Rendering, StudentKit, View};
+use raykata::kit::{RenderJob, Rendering, View};
 use raykata::scene::{Accelerator, Precision, Scene, TriangleMethod, load};
 use raykata::shape::{Shape, Sphere};
 use raykata::world::camera_for;
@@ -15,7 +15,7 @@ fn in_precision(scene: &Scene, precision: Precision) -> Rendering {
     let mut scene = scene.clone();
     scene.quality.precision = precision;
     let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: true, reuse: false };
-    let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
+    let frame = solutions::kit().render(&job, &Unwatched).expect("not cancelled");
     assert!(frame.notes.is_empty(), "{:?}", frame.notes);
     frame
 }

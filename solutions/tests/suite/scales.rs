@@ -7,7 +7,7 @@
 use crate::frames::render;
 use crate::scene::scene;
 use oracle::splitmix::Random;
-use raykata::kit::{RenderJob, StudentKit, View};
+use raykata::kit::{RenderJob, View};
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Scene};
 
@@ -129,7 +129,7 @@ fn first_hits_do_not_depend_on_the_size_of_the_scene() {
             let size = 2f32.powi(k);
             // Directions keep their lengths, so t has the size of the scene.
             let rays: Vec<Ray> = rays.iter().map(|ray| Ray::new(size * ray.origin, ray.direction)).collect();
-            let hits = solutions::Kit.door().first_hits(&job, &rays);
+            let hits = solutions::kit().first_hits(&job, &rays);
             hits.into_iter().map(|hit| hit.map(|hit| (hit.primitive, hit.t / size))).collect::<Vec<_>>()
         };
         let one = hits(0);

@@ -4,7 +4,7 @@
 use glam::Vec3;
 use oracle::splitmix::Random;
 use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, StudentKit, View};
+use raykata::kit::{RenderJob, View};
 use raykata::material::{Texture, Wrap};
 use raykata::scene::{Accelerator, load};
 use std::path::Path;
@@ -120,7 +120,7 @@ fn numbers_that_break_formulas_break_no_picture() {
                 count: true,
                 reuse: false,
             };
-            let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
+            let frame = solutions::kit().render(&job, &Unwatched).expect("not cancelled");
             let bad = frame.film.pixels.iter().filter(|pixel| !pixel.is_finite()).count();
             assert_eq!(bad, 0, "{bad} pixels are not finite, {accelerator:?}\n{text}");
         }

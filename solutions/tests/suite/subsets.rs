@@ -12,7 +12,7 @@ use raykata::count::Counts;
 use raykata::effects::Effect;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{RayKind, RenderJob, StudentKit, TracedRay, View};
+use raykata::kit::{RayKind, RenderJob, TracedRay, View};
 use raykata::mesh::Mesh;
 use raykata::scene::Scene;
 use std::path::Path;
@@ -84,10 +84,10 @@ fn frame(set: Set) -> Frame {
 
 fn frame_of(scene: Scene) -> Frame {
     let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: true, reuse: false };
-    let rendering = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
+    let rendering = solutions::kit().render(&job, &Unwatched).expect("not cancelled");
     let film = job.scene.film;
     let pixels = (0..film.height).flat_map(|y| (0..film.width).map(move |x| (x, y)));
-    let trees = pixels.map(|(x, y)| solutions::Kit.door().trace(&job, x, y)).collect();
+    let trees = pixels.map(|(x, y)| solutions::kit().trace(&job, x, y)).collect();
     Frame { film: rendering.film, counts: rendering.counts, trees }
 }
 
@@ -124,7 +124,7 @@ fn passes_the_toy(tree: &[TracedRay]) -> bool {
 #[test]
 fn each_set_of_effects_is_seen_to_be_what_it_is() {
     for set in Set::all() {
-        let effects = &solutions::Kit.door().effects(&[only(set)])[0];
+        let effects = &solutions::kit().effects(&[only(set)])[0];
         for effect in EFFECTS {
             // The only rough material is a mirror.
             let expected = set.has(effect) && (effect != Effect::Glossy || set.has(Effect::Mirrors));

@@ -10,8 +10,8 @@ use glam::{Vec2, Vec3, vec2};
 use raykata::aabb::Aabb;
 use raykata::frame::Watch;
 use raykata::kit::{
-    Answer, Bounce, Door, FILTER_RADIUS, Kit, LightSample, Request, SecondaryRay, ShadeAnswer, StudentKit,
-    Surface, Transport,
+    Answer, Bounce, Door, FILTER_RADIUS, Kit, LightSample, Request, SecondaryRay, ShadeAnswer, Surface,
+    Transport,
 };
 use raykata::material::Fresnel;
 use raykata::ray::Ray;
@@ -377,7 +377,7 @@ impl Transport for Textbook {
             Request::MotionBounds(q) => Answer::MotionBounds(each(q, |(start, end)| {
                 Aabb::new(start.min.min(end.min), start.max.max(end.max))
             })),
-            _ => request.answer(&*solutions::Kit.door(), watch),
+            _ => request.answer(&*solutions::kit(), watch),
         }
     }
 }

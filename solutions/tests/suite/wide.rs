@@ -7,7 +7,7 @@ use oracle::gauntlet::boxes::{at_a_corner, of_any_size};
 use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Contents, DEEPEST_SPLIT};
-use raykata::kit::{BlockQuery, StudentKit, WideBoxesQuery};
+use raykata::kit::{BlockQuery, WideBoxesQuery};
 use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::shape::Triangle;
@@ -68,7 +68,7 @@ fn eight_boxes_answer_as_one_box_does() {
             .push(boxes.iter().map(|bounds| slab(&ray, ray.direction.recip(), bounds)).collect::<Vec<_>>());
         queries.push(WideBoxesQuery { node, ray });
     }
-    let answers = solutions::Kit.door().enter_boxes(&queries);
+    let answers = solutions::kit().enter_boxes(&queries);
     for ((query, answer), expected) in queries.iter().zip(answers).zip(expected) {
         for (i, expected) in expected.iter().enumerate() {
             let yours = (answer.mask >> i & 1 == 1).then_some(answer.t[i]);
@@ -106,7 +106,7 @@ fn four_triangles_lose_no_hit() {
             queries.push(BlockQuery { block: Box::new(TriangleBlock::new([0, 1, 2, 3], of)), ray });
         }
         let (mut n_hits, mut n_passed) = (0, 0);
-        for ((query, mask), hits) in queries.iter().zip(solutions::Kit.door().may_hit(&queries)).zip(hits) {
+        for ((query, mask), hits) in queries.iter().zip(solutions::kit().may_hit(&queries)).zip(hits) {
             assert!(mask < 16, "{mask}");
             for (lane, hit) in hits.into_iter().enumerate() {
                 assert!(!hit || mask >> lane & 1 == 1, "{name}: lane {lane} of {query:?} is hit");
@@ -145,7 +145,7 @@ fn few_triangles_remain_that_are_not_hit() {
         })
         .sum();
     let queries: Vec<_> = queries.into_iter().map(|(query, _)| query).collect();
-    let passed: u32 = solutions::Kit.door().may_hit(&queries).into_iter().map(u32::count_ones).sum();
+    let passed: u32 = solutions::kit().may_hit(&queries).into_iter().map(u32::count_ones).sum();
     println!("{hits} hits, {passed} of 200000 triangles remain");
     assert!(f64::from(passed) < 1.01 * hits as f64, "{hits} hits, {passed} remain");
 }
@@ -343,7 +343,7 @@ fn vectors_have_the_rules_of_their_comments() {
 #[test]
 fn a_tiny_direction_enters_no_empty_place() {
     // `1 / d` overflows on all three axes, so no box decides anything. An empty place would lead back to the root, for ever.
-    let kit = solutions::Kit.door();
+    let kit = solutions::kit();
     let mut node = WideNode::EMPTY;
     node.set(0, &Aabb::new(Vec3::splat(-1e-38), Vec3::splat(1e-38)), Child::leaf(0, 1));
     let ray = Ray::new(Vec3::ZERO, Vec3::splat(1e-39));

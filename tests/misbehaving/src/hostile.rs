@@ -8,8 +8,7 @@ use raykata::count::Counts;
 use raykata::frame::{Unwatched, Watch};
 use raykata::kit::questions::{self, Call, Question, Response};
 use raykata::kit::{
-    Answer, CellsQuery, Door, KitError, Request, SearchAnswer, SearchQuery, StudentKit, Table, Transport,
-    kit_error,
+    Answer, CellsQuery, Door, KitError, Request, SearchAnswer, SearchQuery, Table, Transport, kit_error,
 };
 use raykata::ray::Ray;
 use raykata::worker::{Reply, receive, send};
@@ -69,7 +68,7 @@ impl Hostile {
 
     /// Answers a request that contains its tables.
     fn reply_plain(&mut self, request: &Request) {
-        let right = || Reply::Answer(Box::new(request.answer(&*solutions::Kit.door(), &Unwatched)));
+        let right = || Reply::Answer(Box::new(request.answer(&*solutions::kit(), &Unwatched)));
         let words = || format!("SECRET {request:?}").chars().take(2000).collect::<String>();
         // These names are right for public inputs.
         if self.name.starts_with("public") && self.is_public(request) {
@@ -124,7 +123,7 @@ impl Hostile {
                 self.say(&Reply::Progress { done: 0, total: 1 });
             },
             "fewer-answers" => {
-                let answer = Request::SphereAlgebraic(Vec::new()).answer(&*solutions::Kit.door(), &Unwatched);
+                let answer = Request::SphereAlgebraic(Vec::new()).answer(&*solutions::kit(), &Unwatched);
                 self.say(&Reply::Answer(Box::new(answer)));
             }
             _ => self.say(&right()),
@@ -278,7 +277,7 @@ impl Hostile {
 
     /// Answers with the reference's hits and reports its visits as one's own.
     fn forge_visits(&mut self, full: &Request) {
-        let answer = full.answer(&*solutions::Kit.door(), &Unwatched);
+        let answer = full.answer(&*solutions::kit(), &Unwatched);
         if let Answer::GridSearch(answers)
         | Answer::OctreeSearch(answers)
         | Answer::OctreeByCells(answers)
@@ -322,7 +321,7 @@ impl Hostile {
             send(&mut &pipe, &Reply::Question(question.clone()))?;
             receive(&mut &pipe)
         };
-        let answer = questions::asking(Rc::new(ask), || request.answer(&*solutions::Kit.door(), &Unwatched));
+        let answer = questions::asking(Rc::new(ask), || request.answer(&*solutions::kit(), &Unwatched));
         self.say(&Reply::Answer(Box::new(answer)));
     }
 
@@ -362,7 +361,7 @@ impl Transport for Recorder {
         match &request {
             // A worker has too little time for frames.
             Request::Render(_) => kit_error::unwind(KitError::Malformed { what: String::new() }),
-            request => request.answer(&*solutions::Kit.door(), watch),
+            request => request.answer(&*solutions::kit(), watch),
         }
     }
 }

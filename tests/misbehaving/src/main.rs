@@ -1,7 +1,7 @@
 //! A worker that misbehaves, for the tests beside it and for those of the grader. A negative radius of the
 //! first sphere selects how; all other requests are answered by the reference.
 
-use raykata::kit::{Answer, Request, StudentKit};
+use raykata::kit::{Answer, Request};
 use raykata::worker::{Reply, send};
 use std::hint::black_box;
 use std::io::Write;
@@ -73,6 +73,6 @@ fn main() {
                 _ => {}
             }
         }
-        request.answer(&*solutions::Kit.door(), watch)
+        request.answer(&*solutions::kit(), watch)
     });
 }

@@ -5,7 +5,7 @@ mod asking;
 
 use asking::{ask, how_it_crashed, query};
 use raykata::frame::{Unwatched, Watch};
-use raykata::kit::{Door, Frames, KitError, RenderJob, Shapes, StudentKit, View, kit_error};
+use raykata::kit::{Door, Frames, KitError, RenderJob, Shapes, View, kit_error};
 use raykata_cli::worker::Worker;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -110,7 +110,7 @@ fn a_frame_through_the_pipe_is_the_frame_that_is_linked() {
     }
     let seen = Seen(AtomicU64::new(0));
     let piped = door().render(&job, &seen).expect("not cancelled");
-    let linked = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
+    let linked = solutions::kit().render(&job, &Unwatched).expect("not cancelled");
     assert_eq!((piped.film, piped.counts, piped.notes), (linked.film, linked.counts, linked.notes));
     assert_eq!(seen.0.load(Ordering::Relaxed), 1000);
 }
