@@ -137,6 +137,9 @@ impl Program {
     /// The program that runs the checks.
     pub const JUDGE: Program = Program { package: "judge", name: "judge", feature: None };
 
+    /// The program that follows a student's edits.
+    pub const WATCH: Program = Program { package: "watch", name: "watch", feature: None };
+
     /// The program that makes the figures of the slides.
     pub const FIGURES: Program = Program { package: "figures", name: "figures", feature: None };
 
@@ -158,6 +161,13 @@ pub fn build_worker(root: &Path, which: Which, need: Need) -> Result<PathBuf> {
 /// Builds programs of the workspace at `root` in the profile of this program, and returns their paths. If
 /// something has to be built, it prints a line that names `what`, followed by the output of cargo.
 pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBuf>> {
+    let (cargo, paths) = cargo_build(root, programs)?;
+    run_cargo(cargo, what)?;
+    Ok(paths)
+}
+
+/// The command that builds programs of the workspace at `root` in the profile of this program, and their paths afterwards.
+pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<(Command, Vec<PathBuf>)> {
     for program in programs {
         if program.package == Which::Solutions.package() && !has_solutions(root) {
             bail!("there are no solutions in {}: omit `--kit solutions`", root.display());
@@ -185,8 +195,7 @@ pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBu
     if let Some(target) = folder.parent() {
         cargo.arg("--target-dir").arg(target);
     }
-    run_cargo(cargo, what)?;
-    Ok(programs.iter().map(|program| folder.join(program.file())).collect())
+    Ok((cargo, programs.iter().map(|program| folder.join(program.file())).collect()))
 }
 
 /// Runs a build by cargo and returns what it writes to standard output. If something has to be built, or if the build waits for

@@ -25,4 +25,6 @@ pub mod slides;
 pub mod strip;
 pub mod svg;
 pub mod tree;
+pub mod verdicts;
+pub mod watch;
 pub mod worker;

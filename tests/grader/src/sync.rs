@@ -42,6 +42,9 @@ const END: &str = "// </solution>";
 /// The file with the fingerprints of generated files. A file with its stored fingerprint is untouched.
 const RECORD: &str = "exercises/.generated";
 
+/// The file with the untouched functions, from which `raykata watch` resets one. Students have it too.
+const STUBS: &str = "tests/stubs.toml";
+
 /// An exercise file in its three versions.
 pub struct Exercise {
     /// Path below the workspace.
@@ -95,11 +98,15 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
 
 /// Compares the exercises with the files that `sync` would write. Returns an error that lists the differences.
 pub fn check(root: &Path) -> Result<()> {
-    let different: Vec<String> = exercises(root)?
+    let exercises = exercises(root)?;
+    let mut different: Vec<String> = exercises
         .iter()
         .filter(|exercise| exercise.present.as_ref() != Some(&exercise.stub))
         .map(|exercise| format!("  {}", exercise.path.display()))
         .collect();
+    if fs::read_to_string(root.join(STUBS)).ok() != Some(stubs(&exercises)) {
+        different.push(format!("  {STUBS}"));
+    }
     if different.is_empty() {
         println!("exercises/ is up to date with solutions/");
         return Ok(());
@@ -126,10 +133,34 @@ pub fn sync(root: &Path, force: bool) -> Result<()> {
     let lines: Vec<String> =
         record.iter().map(|(path, print)| format!("{print} {}\n", path.display())).collect();
     write(&root.join(RECORD), &lines.concat())?;
+    write(&root.join(STUBS), &stubs(&exercises))?;
     for path in &kept {
         println!("kept {path}: you have begun it (`grader sync --force` would overwrite it)");
     }
     Ok(())
+}
+
+/// Returns the untouched functions of all exercises as TOML: a table per file, and in it the text of each function.
+fn stubs(exercises: &[Exercise]) -> String {
+    let mut toml = "# The functions of the exercises before they are written. `grader sync` writes this file, and `raykata watch` \
+                    resets a\n# function from it.\n"
+        .to_owned();
+    for exercise in exercises {
+        let file = exercise.path.file_stem().unwrap_or_default().to_string_lossy();
+        if stage_of(&file).is_none() {
+            continue;
+        }
+        toml += &format!("\n[{file}]\n");
+        let mut lines = exercise.stub.lines();
+        while let Some(line) = lines.next() {
+            let Some(head) = line.strip_prefix("pub fn ") else { continue };
+            let name: String =
+                head.chars().take_while(|sign| sign.is_ascii_alphanumeric() || *sign == '_').collect();
+            let rest = lines.by_ref().take_while(|line| *line != "}").map(|line| format!("{line}\n"));
+            toml += &format!("{name} = '''\n{line}\n{}}}\n'''\n", rest.collect::<String>());
+        }
+    }
+    toml
 }
 
 /// A block of lines of a solution file.
@@ -275,6 +306,7 @@ mod tests {
         let at = |path: &str| root.path().join(path);
         fs::create_dir_all(at("solutions/src")).unwrap();
         fs::create_dir_all(at("exercises/src")).unwrap();
+        fs::create_dir_all(at("tests")).unwrap();
         let solution =
             "fn f() -> u8 {\n    // <solution>\n    7\n    // <stub> todo!()\n    // </solution>\n}\n";
         fs::write(at("solutions/src/a.rs"), solution).unwrap();

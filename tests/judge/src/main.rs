@@ -1,5 +1,6 @@
 //! The program that `raykata` starts: `judge check ROOT WORKER [STAGE]`, `judge status ROOT WORKER`, `judge
-//! gauntlet ROOT WORKER INPUTS SEED`, and `judge hits`, which reads requests from standard input.
+//! gauntlet ROOT WORKER INPUTS SEED`, `judge verdicts ROOT WORKER STAGE`, which writes messages, and `judge hits`, which reads
+//! requests from standard input.
 
 use anyhow::{Result, bail};
 use judge::{boxes_and_offsets, gauntlet, hits, scorecard};
@@ -35,6 +36,9 @@ fn run() -> Result<bool> {
                 raykata_cli::report::say(format_args!("{}\n", table.text()));
             }
             Ok(true)
+        }
+        ["verdicts", _, worker, stage] => {
+            scorecard::tell(&source(worker), stage.parse()?, std::io::stdout()).map(|()| true)
         }
         ["hits"] => hits::serve(std::io::stdin().lock(), std::io::stdout().lock()).map(|()| true),
         _ => bail!("this is the judge: `raykata check` starts it. It is not started by hand"),

@@ -4,9 +4,12 @@ use all_checks::STAGES;
 use anyhow::Result;
 use checks::rubric::{self, RUBRIC};
 use checks::{Check, Inputs, Verdict};
+use raykata::worker::send;
 use raykata_cli::kits::{Source, with_exercises};
-use raykata_cli::queue;
+use raykata_cli::{queue, verdicts};
+use std::io::Write;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// A check and its verdict.
 pub struct Graded {
@@ -45,6 +48,23 @@ pub fn run_checks_on(
         Ok(Graded { check, verdict, points: rubric::entry(check.stage, check.name).points })
     };
     queue::run(&vec![(); threads], &checks, grade)
+}
+
+/// Writes the verdicts of a stage to `out` as messages, each as soon as it is known.
+pub fn tell(source: &Source, stage: u8, out: impl Write + Send) -> Result<()> {
+    let out = Mutex::new(out);
+    let checks: Vec<&'static Check> =
+        STAGES.iter().filter(|(number, _)| *number == stage).flat_map(|(_, checks)| checks.iter()).collect();
+    queue::run(&queue::one_a_core(), &checks, |(), &check| {
+        let verdict = match checks::run(check, &source.fresh(), 0) {
+            Verdict::Passed => verdicts::Verdict::Passed,
+            Verdict::NotWritten { task, place } => verdicts::Verdict::NotWritten { task, place },
+            Verdict::Failed(message) => verdicts::Verdict::Failed(message),
+        };
+        let mut out = out.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(send(&mut *out, &verdicts::CheckVerdict { check: check.name.into(), verdict })?)
+    })?;
+    Ok(())
 }
 
 /// Prints the scorecard; `Ok(true)` if all checks passed.

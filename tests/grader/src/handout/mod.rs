@@ -35,11 +35,12 @@ impl Options {
 
 /// Folders that are handed out with their subfolders, and the extensions of the files in them. A missing folder is left
 /// out.
-const FOLDERS: [(&str, &[&str]); 8] = [
+const FOLDERS: [(&str, &[&str]); 9] = [
     ("src", &["css", "md", "rs", "snap", "toml"]),
     ("tests/checks", &["rs", "toml"]),
     ("tests/oracle", &["rs", "toml"]),
     ("tests/judge", &["rs", "toml"]),
+    ("tests/watch", &["rs", "snap", "toml"]),
     ("scenes", &["md", "toml"]),
     ("scenes/meshes", &["ply", "obj", "mtl"]),
     ("scenes/images", &["png", "hdr"]),
@@ -51,7 +52,7 @@ const FOLDERS: [(&str, &[&str]); 8] = [
 const KEPT_BACK: [&str; 2] = ["src/cli/tests", "tests/checks/all/tests"];
 
 /// Files that are handed out unchanged.
-const FILES: [&str; 9] = [
+const FILES: [&str; 10] = [
     ".cargo/config.toml",
     ".gitignore",
     "Cargo.lock",
@@ -61,6 +62,7 @@ const FILES: [&str; 9] = [
     "rustfmt.toml",
     "scenes/showcase.png",
     "tests/rubric.toml",
+    "tests/stubs.toml",
 ];
 
 /// The student's README, with places for parts of the kit's README.

@@ -40,6 +40,7 @@ fn nothing_is_built_twice() {
         &["normal,build", "--package", "solutions", "--features", "frames"],
         &["normal,build", "--package", "exercises", "--features", "frames"],
         &["normal,build", "--package", "judge"],
+        &["normal,build", "--package", "watch"],
         // The program of instructors.
         &["normal,build", "--package", "grader"],
     ] {

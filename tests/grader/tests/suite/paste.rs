@@ -62,7 +62,8 @@ fn crates() -> Vec<(String, String)> {
 
 /// The programs that students receive. The copy does not build them, because they and their dependencies would take most of
 /// its time. So no exercise can call their functions, and none of these may fit an exercise.
-const PROGRAMS: [(&str, &str); 2] = [("src/cli/src", "raykata_cli"), ("tests/judge/src", "judge")];
+const PROGRAMS: [(&str, &str); 3] =
+    [("src/cli/src", "raykata_cli"), ("tests/judge/src", "judge"), ("tests/watch/src", "watch")];
 
 /// Returns whether a function belongs to one of the programs.
 fn is_of_a_program(function: &Function) -> bool {

@@ -1,0 +1,28 @@
+//! The messages of `judge verdicts`: the verdicts of a stage, each as soon as it is known.
+
+use serde::{Deserialize, Serialize};
+
+/// A check and its verdict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CheckVerdict {
+    /// The name of the check.
+    pub check: String,
+    /// Its verdict.
+    pub verdict: Verdict,
+}
+
+/// The result of a check for the student.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Verdict {
+    /// The law holds.
+    Passed,
+    /// The student's function is still a gap.
+    NotWritten {
+        /// What to write.
+        task: String,
+        /// The place of the gap, as `file:line`.
+        place: String,
+    },
+    /// The law is broken, or the code crashed or did not end: the message for the student.
+    Failed(String),
+}

@@ -1,0 +1,72 @@
+//! The errors of the compiler, condensed to the lines of the student.
+
+use serde_json::Value;
+
+/// An error: where it is, what is wrong, and the line of code.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CompilerError {
+    /// `file:line:column`, or nothing if it belongs to no place.
+    pub place: String,
+    /// What is wrong, in one line.
+    pub what: String,
+    /// The line of code, without its indentation.
+    pub code: String,
+    /// What the compiler says about the place, and what it suggests.
+    pub notes: Vec<String>,
+}
+
+/// Reads one line that cargo writes with `--message-format=json`; `None` if it is no error.
+pub fn error_in(line: &str) -> Option<CompilerError> {
+    let line: Value = serde_json::from_str(line).ok()?;
+    let message = line.get("message").filter(|_| line["reason"] == "compiler-message")?;
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let what = text(&message["message"]);
+    // The last error only counts the others.
+    if message["level"] != "error" || what.starts_with("aborting due to") {
+        return None;
+    }
+    let spans = message["spans"].as_array().map_or(&[][..], Vec::as_slice);
+    let Some(span) = spans.iter().find(|span| span["is_primary"] == true) else {
+        return Some(CompilerError { place: String::new(), what, code: String::new(), notes: Vec::new() });
+    };
+    let place = format!("{}:{}:{}", text(&span["file_name"]), span["line_start"], span["column_start"]);
+    let code = text(&span["text"][0]["text"]).trim().to_owned();
+    let help = message["children"].as_array().map_or(&[][..], Vec::as_slice).iter();
+    let suggestions = help.filter(|child| child["level"] == "help").map(|child| text(&child["message"]));
+    let mut notes: Vec<String> = [text(&span["label"])].into_iter().chain(suggestions).collect();
+    notes.retain(|note| !note.is_empty());
+    Some(CompilerError { place, what, code, notes })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_condensed_to_its_line() {
+        let line = r#"{"reason":"compiler-message","message":{"level":"error","message":"mismatched types","spans":[
+            {"is_primary":true,"file_name":"src/stage1_shapes.rs","line_start":23,"column_start":5,
+             "label":"expected `Option<f32>`, found `f32`","text":[{"text":"    t_near"}]}],
+            "children":[{"level":"help","message":"try wrapping the expression in `Some`","spans":[]}]}}"#;
+        let error = error_in(&line.replace('\n', " ")).unwrap();
+        assert_eq!(error.place, "src/stage1_shapes.rs:23:5");
+        assert_eq!(error.what, "mismatched types");
+        assert_eq!(error.code, "t_near");
+        assert_eq!(
+            error.notes,
+            ["expected `Option<f32>`, found `f32`", "try wrapping the expression in `Some`"]
+        );
+    }
+
+    #[test]
+    fn warnings_artifacts_and_the_count_of_errors_are_no_errors() {
+        for line in [
+            r#"{"reason":"compiler-artifact"}"#,
+            r#"{"reason":"compiler-message","message":{"level":"warning","message":"unused","spans":[]}}"#,
+            r#"{"reason":"compiler-message","message":{"level":"error","message":"aborting due to 2 previous errors","spans":[]}}"#,
+            "no JSON",
+        ] {
+            assert_eq!(error_in(line), None, "{line}");
+        }
+    }
+}
