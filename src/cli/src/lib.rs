@@ -10,6 +10,7 @@ pub mod args;
 pub mod caption;
 pub mod compare;
 pub mod cost;
+pub mod doctor;
 pub mod explain;
 pub mod figures;
 pub mod html;

@@ -133,9 +133,19 @@ fn stage_line(number: u8, graded: &[&Graded]) -> String {
     )
 }
 
+/// What a student reads first.
+const WELCOME: &str = "\
+Welcome. You build a ray tracer: you write its functions in exercises/src, one at
+a time, and a check passes for each law of light and geometry that they obey.
+Nothing is written yet.
+";
+
 /// Prints the points of the student, and the next step.
 pub fn status(root: &Path, source: &Source) -> Result<()> {
     let graded = run_checks(source, |_| true)?;
+    if graded.iter().all(|one| matches!(one.verdict, Verdict::NotWritten { .. })) {
+        println!("{WELCOME}");
+    }
     for (number, _) in STAGES {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
         println!("{}", stage_line(*number, &of_stage));
@@ -149,12 +159,16 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
         Some(next) => {
             let (stage, name) = (next.check.stage, next.check.name);
             match &next.verdict {
-                Verdict::NotWritten { task, place } => println!("Next: {place}\n  {task}\n"),
+                Verdict::NotWritten { task, place } => {
+                    let slide = rubric::entry(stage, name).slide;
+                    println!("Next: {place}\n  {task}\n  slides: {slide}\n");
+                }
                 Verdict::Failed(message) => println!("Next, `{name}` fails:\n{message}"),
                 Verdict::Passed => {}
             }
             println!("  run it:  cargo test --test stage{stage} {name}");
             println!("  a hint:  cargo run -- hint {name}");
+            println!("  all the time, after each save:  cargo run -- watch");
         }
     }
     Ok(())

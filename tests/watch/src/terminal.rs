@@ -46,6 +46,7 @@ pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
     let (sender, reports) = mpsc::channel();
     let (mut app, mut action) = App::new(stage, size());
     let (mut run, mut number) = (None, 0);
+    let mut shown = Vec::new();
     let mut screen = Screen::enter()?;
     loop {
         // Do what the last key, save or event asked for.
@@ -65,13 +66,19 @@ pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
                 drop(screen);
                 let opened = editor::open(root, &file, line);
                 screen = Screen::enter()?;
+                shown.clear();
                 app.note = opened.err().map_or(String::new(), |error| format!("{error:#}"));
             }
         }
         if action != Action::Nothing {
             continue;
         }
-        draw(&app, look, has_colours)?;
+        // Draw only what is new, because a screen reader may read each drawing aloud.
+        let new = rows(&app, look);
+        if new != shown {
+            draw(&new, look, has_colours)?;
+            shown = new;
+        }
         // Wait for a key, and look at the files and the reports in between.
         if poll(PAUSE)? {
             match read()? {
@@ -82,7 +89,10 @@ pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
                         code => key_of(code).map_or(Action::Nothing, |key| app.key(key)),
                     };
                 }
-                Event::Resize(columns, rows) => app.size = (columns.into(), rows.into()),
+                Event::Resize(columns, rows) => {
+                    app.size = (columns.into(), rows.into());
+                    shown.clear();
+                }
                 _ => {}
             }
         } else if files.have_changed() {
@@ -117,13 +127,13 @@ fn key_of(code: KeyCode) -> Option<Key> {
 }
 
 /// Draws all rows. Each one is overwritten and not cleared first, so that nothing flickers.
-fn draw(app: &App, look: Look, has_colours: bool) -> Result<()> {
+fn draw(rows: &[Row], look: Look, has_colours: bool) -> Result<()> {
     let mut out = stdout().lock();
-    for (y, row) in rows(app, look).into_iter().enumerate() {
+    for (y, row) in rows.iter().enumerate() {
         queue!(out, MoveTo(0, y as u16))?;
         match row {
             Row::Words(tone, text) => {
-                if let Some(colour) = colour(tone).filter(|_| has_colours) {
+                if let Some(colour) = colour(*tone).filter(|_| has_colours) {
                     queue!(out, SetForegroundColor(colour))?;
                 }
                 queue!(out, Print(text))?;
@@ -135,9 +145,9 @@ fn draw(app: &App, look: Look, has_colours: bool) -> Result<()> {
             }
             Row::Pixels(cells) => {
                 for (upper, lower) in cells {
-                    let [r, g, b] = upper;
+                    let [r, g, b] = *upper;
                     queue!(out, SetForegroundColor(Color::Rgb { r, g, b }))?;
-                    let [r, g, b] = lower;
+                    let [r, g, b] = *lower;
                     queue!(out, SetBackgroundColor(Color::Rgb { r, g, b }), Print('▀'))?;
                 }
             }
