@@ -280,7 +280,7 @@ pub fn kd_easy_and_five(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
 /// The tests of each pixel with the three splits, on one logarithmic scale.
 pub fn split_heatmaps(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let mut scene = load(root, "stage3.toml")?;
-    (scene.film.width, scene.film.height) = (300, 188);
+    (scene.film.width, scene.film.height) = (270, 169);
     let mut films = Vec::new();
     for (split, name) in [
         (Split::ObjectMedian, "object median"),
