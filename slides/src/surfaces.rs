@@ -96,7 +96,7 @@ pub fn vertex_normals(kit: &dyn Kit) -> Result<String> {
     positions.extend((0..6).map(corner));
     let triangles: Vec<[u32; 3]> = (0..6).map(|index| [0, 1 + index, 1 + (index + 1) % 6]).collect();
     let mesh = Mesh { positions, triangles, ..Mesh::default() };
-    let normal = kit.vertex_normals(&[mesh.clone()]).remove(0)[0];
+    let normal = kit.vertex_normals(std::slice::from_ref(&mesh)).remove(0)[0];
     let faces: Vec<Triangle> =
         (0..6).map(|index| mesh.corners(index)).map(|[a, b, c]| Triangle { a, b, c }).collect();
     for triangle in &faces {

@@ -196,6 +196,12 @@ impl<F: StudentFunctions> Frame<'_, F> {
             let by_chance = emitter.is_some() && emitter == left;
             left = emitter;
             let emitter = if by_chance { None } else { emitter };
+            // A ray that grazes the rim of an emitter may hit it although its density is rounded to 0. Its light, which samples of
+            // the emitter count, would count in full: a bright speck.
+            let grazes = |ChosenEmitter { emitter, .. }: &ChosenEmitter| {
+                pdf < f32::INFINITY && F::light_pdf(emitter, origin, direction) == 0.0
+            };
+            let emission = if emitter.as_ref().is_some_and(grazes) { Vec3::ZERO } else { emission };
             // Where light is only sampled, a diffuse or rough ray adds none of it, and its samples have the weight 1.
             let is_sampled = indirect.samples_only && emitter.is_some() && pdf < f32::INFINITY;
             let emission = if is_sampled { Vec3::ZERO } else { emission };
