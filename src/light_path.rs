@@ -69,7 +69,8 @@ pub struct PathState {
     /// The number of reflections and refractions so far, diffuse ones included; 0 for a camera ray.
     pub bounces: u32,
     /// The probability density per steradian with which `direction` was sampled. Infinite for a camera ray and for reflected
-    /// and refracted rays, whose direction is certain.
+    /// and refracted rays, whose direction is certain. For a ray that a rough mirror reflects, the scaffold gives the density of
+    /// its lobe if it has sampled a light for this lobe, too.
     pub pdf: f32,
 }
 

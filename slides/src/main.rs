@@ -5,21 +5,28 @@
 //! functions, so a figure cannot contradict the code. [`DIAGRAMS`] and [`FROM_SCENES`] list them by name. Other commands of
 //! `raykata` make pictures and plots.
 
+mod acne;
 mod camera_frame;
 mod curves;
 mod intersection;
+mod leaks;
 mod lens;
 mod lighting;
 mod list;
 mod optics;
+mod partitions;
 mod pictures;
 mod pipeline;
 mod rays;
+mod rounding;
 mod sampling;
 mod sketch;
+mod solids;
 mod spheres;
 mod splits;
 mod structures;
+mod surfaces;
+mod transport;
 mod triangles;
 
 use anyhow::{Context, Result, bail};
@@ -70,6 +77,21 @@ const DIAGRAMS: &[(&str, Draw)] = &[
     ("normal-transform", curves::normal_transform),
     ("de-casteljau", curves::de_casteljau),
     ("bspline-basis", curves::bspline_basis),
+    ("inside-tests", surfaces::inside_tests),
+    ("vertex-normals", surfaces::vertex_normals),
+    ("texture-coordinates", surfaces::texture_coordinates),
+    ("bilinear", surfaces::bilinear),
+    ("silhouette-normal", rounding::silhouette_normal),
+    ("rounded-point", rounding::rounded_point),
+    ("edge-gap", rounding::edge_gap),
+    ("offset-bound", rounding::offset_bound),
+    ("solid-intervals", solids::solid_intervals),
+    ("double-cone", solids::double_cone),
+    ("octree-searches", partitions::octree_searches),
+    ("bsp-sheets", partitions::bsp_sheets),
+    ("malley", transport::malley),
+    ("light-solid-angle", transport::light_solid_angle),
+    ("corner", transport::corner),
 ];
 
 /// Makes the bytes of a figure from the scenes of the kit at a path.
@@ -92,6 +114,14 @@ const FROM_SCENES: &[(&str, FromScenes)] = &[
     ("heckbert", pictures::heckbert),
     ("gamma-steps", pictures::gamma_steps),
     ("three-scales", pictures::three_scales),
+    ("scene-graph", solids::scene_graph),
+    ("loop-subdivision", solids::loop_subdivision),
+    ("furnace-bias", transport::furnace_bias),
+    ("shadow-acne", acne::shadow_acne),
+    ("offset-strip", acne::offset_strip),
+    ("leaks", leaks::leaks),
+    ("shadow-ray-map", leaks::shadow_ray_map),
+    ("cornell-next-event", leaks::cornell_next_event),
 ];
 
 fn main() -> ExitCode {
@@ -184,9 +214,18 @@ fn make(figure: &Figure, kit: &dyn Kit, root: &Path, raykata: &str) -> Result<Ve
                 .with_context(|| format!("`raykata figures` draws no diagram `{name}`"))?;
             Ok(kit_error::catch(|| draw(kit))??.into_bytes())
         }
-        ["raykata", rest @ ..] => by_command(figure, rest, root, raykata),
+        ["raykata", rest @ ..] => {
+            let made = by_command(figure, rest, root, raykata)?;
+            if figure.file.ends_with(".png") { recompressed(&made) } else { Ok(made) }
+        }
         _ => bail!("it is made by `cargo run --release -p {}`", figure.command.replacen(' ', " -- ", 1)),
     }
+}
+
+/// The same pixels in fewer bytes. The program that renders compresses quickly; a figure is kept for good.
+fn recompressed(png: &[u8]) -> Result<Vec<u8>> {
+    let picture = pixels(png).context("this is no picture")?;
+    pictures::compressed(&picture)
 }
 
 /// Runs another command of `raykata`, and takes the file that it writes.

@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use raykata::camera::Camera;
 use raykata::film::{Film, encode_srgb};
 use raykata::frame::Unwatched;
@@ -18,25 +19,25 @@ use std::path::Path;
 /// Pixels between two panels.
 const GAP: u32 = 8;
 
-fn load(root: &Path, name: &str) -> Result<Scene> {
+pub fn load(root: &Path, name: &str) -> Result<Scene> {
     Ok(raykata::scene::load::load(&root.join("scenes").join(name))?)
 }
 
-fn job(scene: &Scene) -> RenderJob {
+pub fn job(scene: &Scene) -> RenderJob {
     RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 0, count: true, reuse: false }
 }
 
-fn render(kit: &dyn Kit, scene: &Scene) -> Result<Rendering> {
+pub fn render(kit: &dyn Kit, scene: &Scene) -> Result<Rendering> {
     kit.render(&job(scene), &Unwatched).context("the frame was cancelled")
 }
 
 /// The picture as a screen shows it, in linear light up to 1.
-fn shown(kit: &dyn Kit, scene: &Scene) -> Result<Film> {
+pub fn shown(kit: &dyn Kit, scene: &Scene) -> Result<Film> {
     Ok(render(kit, scene)?.film.toned(scene.film.tone))
 }
 
 /// The part of a picture from column and row `corner`, `size` pixels wide and high.
-fn crop(film: &Film, corner: [u32; 2], size: [u32; 2]) -> Film {
+pub fn crop(film: &Film, corner: [u32; 2], size: [u32; 2]) -> Film {
     let mut part = Film::new(size[0], size[1]);
     for y in 0..size[1] {
         for x in 0..size[0] {
@@ -47,7 +48,7 @@ fn crop(film: &Film, corner: [u32; 2], size: [u32; 2]) -> Film {
 }
 
 /// The picture with each pixel repeated `times` along both axes.
-fn magnified(film: &Film, times: u32) -> Film {
+pub fn magnified(film: &Film, times: u32) -> Film {
     let mut large = Film::new(times * film.width, times * film.height);
     for y in 0..large.height {
         for x in 0..large.width {
@@ -58,7 +59,7 @@ fn magnified(film: &Film, times: u32) -> Film {
 }
 
 /// Panels of equal size in rows of `columns`, each with its caption below, as a PNG file.
-fn panels(parts: &[(Film, String)], columns: u32) -> Result<Vec<u8>> {
+pub fn panels(parts: &[(Film, String)], columns: u32) -> Result<Vec<u8>> {
     let first = &parts.first().context("there are no panels")?.0;
     let (width, height) = (first.width, first.height + caption::HEIGHT);
     let rows = (parts.len() as u32).div_ceil(columns);
@@ -75,12 +76,18 @@ fn panels(parts: &[(Film, String)], columns: u32) -> Result<Vec<u8>> {
     png(&sheet)
 }
 
-fn png(film: &Film) -> Result<Vec<u8>> {
+pub fn png(film: &Film) -> Result<Vec<u8>> {
     let bytes = film.to_bytes(encode_srgb).rgb;
     let picture = image::RgbImage::from_raw(film.width, film.height, bytes).context("the size is wrong")?;
-    let mut file = std::io::Cursor::new(Vec::new());
-    picture.write_to(&mut file, image::ImageFormat::Png)?;
-    Ok(file.into_inner())
+    compressed(&picture)
+}
+
+/// A PNG file that is as small as the encoder can make it.
+pub fn compressed(picture: &image::RgbImage) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let (compression, filter) = (CompressionType::Best, FilterType::Adaptive);
+    picture.write_with_encoder(PngEncoder::new_with_quality(&mut bytes, compression, filter))?;
+    Ok(bytes)
 }
 
 /// A crop of scenes/plain.toml with a sampler and a number of samples, magnified four times.
@@ -216,9 +223,7 @@ pub fn gamma_steps(kit: &dyn Kit, _root: &Path) -> Result<Vec<u8>> {
             }
         }
     }
-    let mut file = std::io::Cursor::new(Vec::new());
-    sheet.write_to(&mut file, image::ImageFormat::Png)?;
-    Ok(file.into_inner())
+    compressed(&sheet)
 }
 
 /// The picture of the check of three scales, magnified.
@@ -275,7 +280,7 @@ pub fn kd_easy_and_five(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
 /// The tests of each pixel with the three splits, on one logarithmic scale.
 pub fn split_heatmaps(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let mut scene = load(root, "stage3.toml")?;
-    (scene.film.width, scene.film.height) = (300, 188);
+    (scene.film.width, scene.film.height) = (270, 169);
     let mut films = Vec::new();
     for (split, name) in [
         (Split::ObjectMedian, "object median"),

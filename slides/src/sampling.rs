@@ -84,6 +84,9 @@ pub fn disk_samples(kit: &dyn Kit) -> Result<String> {
     Ok(drawing.svg())
 }
 
+/// The number of shades of grey of a floor, apart from white.
+const LEVELS: u32 = 32;
+
 /// The shadows of a point light and of an area light, with the fraction of the light that is visible along the floor.
 pub fn penumbra(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("A sharp shadow and a soft shadow", 1000.0, 620.0);
@@ -109,10 +112,16 @@ pub fn penumbra(kit: &dyn Kit) -> Result<String> {
         let view = View { origin: [x, 370.0], scale: 105.0 };
         let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
         let fractions: Vec<[f64; 2]> = steps(-2.0, 2.0, 400).map(|place| [place, visible(place)]).collect();
-        // Draw the floor, darker where less light arrives.
-        for pair in fractions.windows(2) {
-            let dark = 1.0 - (pair[0][1] + pair[1][1]) / 2.0;
-            drawing.rectangle(view.at(pair[0][0], 0.0), view.at(pair[1][0], -0.14), Ink::Text, dark);
+        // Draw the floor, darker where less light arrives: one layer per level over all places that are darker. Layers are
+        // nested, because gaps would show between pieces side by side.
+        for level in 1..=LEVELS {
+            let least = (f64::from(level) - 0.5) / f64::from(LEVELS);
+            let mut places = fractions.iter().filter(|[_, visible]| 1.0 - visible > least).map(|[x, _]| *x);
+            let Some(first) = places.next() else { continue };
+            let last = places.next_back().unwrap_or(first);
+            // With this opacity the first k layers together are k / LEVELS opaque.
+            let opacity = 1.0 / f64::from(LEVELS - level + 1);
+            drawing.rectangle(view.at(first, 0.0), view.at(last, -0.14), Ink::Text, opacity);
         }
         drawing.line(view.at(-2.0, 0.0), view.at(2.0, 0.0), Pen::new(Ink::Text));
         for end in [-half, half] {

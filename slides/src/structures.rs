@@ -23,7 +23,8 @@ const BOXES: [[f32; 4]; 11] = [
     [7.2, 4.2, 7.8, 4.8],
 ];
 
-fn boxes() -> Vec<Aabb> {
+/// The boxes of the diagrams.
+pub fn boxes() -> Vec<Aabb> {
     BOXES.iter().map(|[x0, y0, x1, y1]| Aabb::new(vec3(*x0, *y0, 0.0), vec3(*x1, *y1, 1.0))).collect()
 }
 
@@ -123,7 +124,7 @@ pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
 }
 
 /// All leaves, each with its cell.
-fn leaves(tree: &KdTree) -> Vec<(u32, Aabb)> {
+pub fn leaves(tree: &KdTree) -> Vec<(u32, Aabb)> {
     let mut found = Vec::new();
     let mut open = vec![(0u32, tree.bounds)];
     while let Some((node, cell)) = open.pop() {

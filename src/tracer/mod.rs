@@ -33,6 +33,7 @@ mod plan;
 mod probe;
 mod random_choices;
 mod record;
+mod rough_lobe;
 mod solids;
 mod structure;
 mod texture_filter;

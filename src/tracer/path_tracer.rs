@@ -9,9 +9,10 @@ use super::interaction::SurfaceInteraction;
 use super::path::{Path, Scratch};
 use super::random_choices::{before_emitter, sample_rough_surface};
 use super::record::Record;
+use super::rough_lobe::RoughLobe;
 use crate::count::{Event, Tally};
 use crate::emitter::{AreaEmitter, EmitterSample};
-use crate::kit::{LightSample, Limits, RayKind, SecondaryRay, StudentFunctions};
+use crate::kit::{Bounce, LightSample, Limits, RayKind, SecondaryRay, StudentFunctions};
 use crate::light_path::{
     ChosenEmitter, LightCandidate, Lobe, NextRay, PathEffects, PathState, PathVertex, Scattering,
     ShadowQuestion, StepNumbers,
@@ -88,6 +89,11 @@ impl IndirectLight {
         Some(chosen)
     }
 
+    /// Whether anything is sampled.
+    fn samples(&self) -> bool {
+        !self.emitters.is_empty() || self.environment.is_some()
+    }
+
     /// Whether there is more than one light to choose from.
     fn has_choice(&self) -> bool {
         self.emitters.len() + usize::from(self.environment.is_some()) > 1
@@ -106,6 +112,16 @@ fn alone(light: LightCandidate) -> LightCandidate {
             let emitter = AreaEmitter { radiance: DENSE * emitter.radiance, ..emitter };
             LightCandidate::Emitter(ChosenEmitter { emitter, probability: DENSE * probability })
         }
+    }
+}
+
+/// The shadow rays of both lobes. They sample the same light with the same random numbers, so that one ray serves both.
+fn shared(diffuse: Option<ShadowQuestion>, rough: Option<ShadowQuestion>) -> [Option<ShadowQuestion>; 2] {
+    match (diffuse, rough) {
+        (Some(diffuse), Some(rough)) if diffuse.direction == rough.direction => {
+            [Some(ShadowQuestion { light: diffuse.light + rough.light, ..diffuse }), None]
+        }
+        both => [both.0, both.1],
     }
 }
 
@@ -140,6 +156,8 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let mut color = Vec3::ZERO;
         // The direction of a camera ray is certain.
         let (mut origin, mut pdf) = (path.ray.origin, f32::INFINITY);
+        // Whether the last surface sent the ray on in its diffuse lobe.
+        let mut is_diffuse = false;
         // The emitter on which the ray starts.
         let mut left: Option<ChosenEmitter> = None;
         loop {
@@ -160,9 +178,11 @@ impl<F: StudentFunctions> Frame<'_, F> {
             let state = PathState { origin, direction, weight: path.weight, bounces, pdf };
             let may_bounce = path.depth < self.limits.max_depth;
             let scattering = self.scattering(indirect, direction, &at, &material, may_bounce);
+            let rough = self.rough_lobe(indirect, &at, &material, &scattering);
+            let asks = rough.is_some() || scattering.diffuse != Vec3::ZERO;
             let (mut light, numbers) =
-                self.numbers_of_step(indirect, &scattering, &path.points, &state, scratch);
-            let is_seen = !indirect.is_light[at.material] || pdf == f32::INFINITY;
+                self.numbers_of_step(indirect, &scattering, asks, &path.points, &state, scratch);
+            let is_seen = !(indirect.is_light[at.material] && is_diffuse);
             let emission = if is_seen { material.emission } else { Vec3::ZERO };
             let emitter = match emission == Vec3::ZERO {
                 true => None,
@@ -176,7 +196,13 @@ impl<F: StudentFunctions> Frame<'_, F> {
             let by_chance = emitter.is_some() && emitter == left;
             left = emitter;
             let emitter = if by_chance { None } else { emitter };
-            // Where light is only sampled, a diffuse ray adds none of it, and its samples have the weight 1.
+            // A ray that grazes the rim of an emitter may hit it although its density is rounded to 0. Its light, which samples of
+            // the emitter count, would count in full: a bright speck.
+            let grazes = |ChosenEmitter { emitter, .. }: &ChosenEmitter| {
+                pdf < f32::INFINITY && F::light_pdf(emitter, origin, direction) == 0.0
+            };
+            let emission = if emitter.as_ref().is_some_and(grazes) { Vec3::ZERO } else { emission };
+            // Where light is only sampled, a diffuse or rough ray adds none of it, and its samples have the weight 1.
             let is_sampled = indirect.samples_only && emitter.is_some() && pdf < f32::INFINITY;
             let emission = if is_sampled { Vec3::ZERO } else { emission };
             if indirect.samples_only {
@@ -185,9 +211,15 @@ impl<F: StudentFunctions> Frame<'_, F> {
             let vertex = PathVertex { surface: at.surface, scattering, emission, emitter, light };
             let step = F::step(&state, &vertex, max_depth, &numbers);
             color += step.light;
-            // Trace the shadow ray to the light that was sampled.
-            if let Some(question) = &step.shadow {
-                color += self.unoccluded(question, &path, &at, light, scratch, |ray, blocked| {
+            // Trace the shadow ray to the light that was sampled, which the diffuse and the rough lobe share.
+            let in_lobe = match (&rough, &light) {
+                (Some(rough), Some(light)) => {
+                    self.light_in_lobe(indirect, rough, light, &vertex, &state, numbers.light)
+                }
+                _ => None,
+            };
+            for question in shared(step.shadow, in_lobe).into_iter().flatten() {
+                color += self.unoccluded(&question, &path, &at, light, scratch, |ray, blocked| {
                     record.shadow(&path, number, ray, blocked);
                 });
             }
@@ -200,8 +232,14 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 }
                 return color;
             };
-            (origin, pdf) = (at.surface.point, next.pdf);
             path = self.next_path(&next, &path, &found, number, &at, &material, scratch);
+            (origin, is_diffuse) = (at.surface.point, next.lobe == Lobe::Diffuse);
+            pdf = match &rough {
+                Some(rough) if next.lobe == Lobe::Reflection => {
+                    rough.pdf(path.ray.direction).unwrap_or(next.pdf)
+                }
+                _ => next.pdf,
+            };
             hit = self.closest_hit(&path.ray, scratch);
         }
     }
@@ -237,12 +275,55 @@ impl<F: StudentFunctions> Frame<'_, F> {
         Scattering { diffuse, normal, secondary }
     }
 
-    /// The light that may be sampled at a vertex, and the random numbers of its step. Numbers that cannot matter are 0 and are
-    /// not looked up.
+    /// The lobe of a rough mirror, if any light is sampled; `None` for other surfaces. A refracted ray finds light by chance
+    /// only, because the shape that it enters is in the way of shadow rays.
+    fn rough_lobe(
+        &self,
+        indirect: &IndirectLight,
+        at: &SurfaceInteraction,
+        material: &Material,
+        scattering: &Scattering,
+    ) -> Option<RoughLobe> {
+        let is_rough = self.plan.effects.materials[at.material].glossy && material.roughness > 0.0;
+        if !(is_rough && indirect.samples()) {
+            return None;
+        }
+        let reflected = scattering.secondary.iter().find(|ray| ray.bounce == Bounce::Reflection)?;
+        Some(RoughLobe::new(&at.surface, reflected.direction, reflected.weight, material.roughness))
+    }
+
+    /// The light that a rough mirror reflects from one sample of `light`, with the random numbers `u` with which `step` samples
+    /// it; the weight is that of multiple importance sampling against the reflected ray.
+    fn light_in_lobe(
+        &self,
+        indirect: &IndirectLight,
+        lobe: &RoughLobe,
+        light: &LightCandidate,
+        vertex: &PathVertex,
+        state: &PathState,
+        u: Vec2,
+    ) -> Option<ShadowQuestion> {
+        let sample = match light {
+            LightCandidate::Environment(sample) => *sample,
+            LightCandidate::Emitter(ChosenEmitter { emitter, probability }) => {
+                let sample = F::sample_light(emitter, vertex.surface.point, u)?;
+                EmitterSample { pdf: probability * sample.pdf, ..sample }
+            }
+        };
+        let EmitterSample { direction, distance, radiance, pdf } = sample;
+        let of_lobe = lobe.pdf(direction)?;
+        let weight = if indirect.samples_only { 1.0 } else { F::mis_weight(pdf, of_lobe) };
+        let light = state.weight * lobe.reflectance * radiance * (of_lobe / pdf * weight);
+        (light != Vec3::ZERO).then_some(ShadowQuestion { direction, distance, light })
+    }
+
+    /// The light that may be sampled at a vertex that `asks` for it, and the random numbers of its step. Numbers that cannot
+    /// matter are 0 and are not looked up.
     fn numbers_of_step<T: Tally>(
         &self,
         indirect: &IndirectLight,
         scattering: &Scattering,
+        asks: bool,
         points: &Points,
         state: &PathState,
         scratch: &mut Scratch<T>,
@@ -251,7 +332,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let is_diffuse = scattering.diffuse != Vec3::ZERO;
         // Choose a light, and sample the environment map; `step` samples any other light.
         let mut light = None;
-        if is_diffuse && (!indirect.emitters.is_empty() || indirect.environment.is_some()) {
+        if asks && indirect.samples() {
             let choice = match indirect.has_choice() {
                 true => self.numbers(points, Purpose::EmitterChoice, 1, scratch).x,
                 false => 0.0,

@@ -173,6 +173,51 @@ fn emitters_of_every_shape_count_once() {
 }
 
 #[test]
+fn light_in_rough_mirrors_counts_once() {
+    let (texture, map) = bright_patch();
+    for roughness in [0.1, 0.4, 1.0] {
+        let mut scene = lit_by("sphere = { center = [0.8, 0.6, 0], radius = 0.5 }", "");
+        for material in scene.materials.iter_mut().filter(|material| material.mirror != Vec3::ZERO) {
+            // One without a diffuse lobe, beside the one that has both.
+            material.roughness = roughness;
+            material.diffuse = if roughness == 0.4 { Vec3::ZERO } else { material.diffuse };
+        }
+        techniques_agree(&scene, &format!("a sphere and roughness {roughness}"));
+        scene.textures.push(texture.clone());
+        scene.background = Background::Map(map);
+        techniques_agree(&scene, &format!("a map, a sphere and roughness {roughness}"));
+    }
+}
+
+#[test]
+fn both_techniques_have_less_noise_in_rough_mirrors_than_either() {
+    // A rough mirror and a large light near it, for which reflected rays are best, and a small light, for which samples are.
+    let scene = indirect(
+        "",
+        "[materials.mirror]\ndiffuse = [0.01, 0.01, 0.01]\nmirror = 0.9\nroughness = 0.08\n\
+         [materials.large]\ndiffuse = 0\nemission = 1\n[materials.small]\ndiffuse = 0\nemission = 100\n\
+         [[nodes]]\nmaterial = \"mirror\"\nshape = { plane = { point = [0, -1, 0], normal = [0, 1, 0.3] } }\n\
+         [[nodes]]\nmaterial = \"large\"\nshape = { sphere = { center = [-1.6, 0.3, -1], radius = 1.2 } }\n\
+         [[nodes]]\nmaterial = \"small\"\nshape = { sphere = { center = [1.6, 0.5, -1], radius = 0.04 } }\n",
+    );
+    let film = |next_event: NextEvent, seed: u64, samples: u32| {
+        let mut scene = scene.clone();
+        let quality = &mut scene.quality;
+        (quality.next_event, quality.max_depth, quality.samples_per_pixel) = (next_event, 1, samples);
+        let job = RenderJob { scene, view: View::Shaded, seed, threads: 1, count: false, reuse: false };
+        solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled").film
+    };
+    let right = film(NextEvent::On, 1, 4096);
+    let error = |next_event| {
+        let film = film(next_event, 2, 16);
+        let squares = film.pixels.iter().zip(&right.pixels).map(|(a, b)| (*a - *b).length_squared());
+        squares.map(f64::from).sum::<f64>()
+    };
+    let [both, chance, samples] = [NextEvent::On, NextEvent::Off, NextEvent::Only].map(error);
+    assert!(both < chance && both < samples, "{both}, by chance {chance}, by samples {samples}");
+}
+
+#[test]
 fn an_environment_map_and_an_emitter_count_once() {
     let (texture, map) = bright_patch();
     let mut with_both = lit_by("sphere = { center = [0.8, 0.6, 0], radius = 0.4 }", "");
@@ -250,7 +295,7 @@ fn everything() -> Scene {
          [quality]\nsamples_per_pixel = 4\nmax_depth = 7\n\
          [textures.tiles]\nfile = \"images/tiles.png\"\n[materials.floor]\ndiffuse = 0.8\ntexture = \"tiles\"\n\
          [materials.glass]\ndiffuse = 0\ntransmission = 0.95\nindex_of_refraction = 1.5\nfresnel = \"exact\"\n\
-         [materials.brass]\ndiffuse = 0.1\nmirror = [0.7, 0.6, 0.3]\nroughness = 0.2\n\
+         [materials.brass]\ndiffuse = 0.1\nmirror = [0.7, 0.6, 0.3]\nroughness = 0.08\n\
          [materials.glow]\nemission = [2, 3, 4]\n[meshes.vase]\nfile = \"meshes/vase.ply\"\nsmooth = true\n\
          [[lights]]\npoint = { position = [2, 4, 3] }\nintensity = 0.4\n\
          [[lights]]\narea = { sphere = { center = [-2, 3, 1], radius = 0.3 } }\nintensity = 0.3\nvisible = true\n\

@@ -3,7 +3,8 @@
 //! `directions` (cosine-weighted directions), `emitters` (inputs, and their geometry in double precision), `lights` (samples of
 //! emitters), `irradiance` (closed forms), `weights` (multiple importance sampling), `roulette`, `bounces`,
 //! `integrating_sphere`, `table`, `picture`; `lobes` (the choice of a lobe), `contributions` (light that counts), `steps` (one
-//! step of a path), `rooms` (geometry for whole paths) and `references` (their closed forms), `called_for` (what scenes need).
+//! step of a path), `rooms` (geometry for whole paths), `references` (their closed forms) and `room_picture` (their picture),
+//! `called_for` (what scenes need).
 //!
 //! Distributions are judged by [`checks::statistics`], with 1 false alarm in 10 million per test.
 
@@ -18,6 +19,7 @@ mod lights;
 mod lobes;
 mod picture;
 mod references;
+mod room_picture;
 mod rooms;
 mod roulette;
 mod steps;
@@ -57,6 +59,7 @@ use references::{
     paths_of_a_white_corner_lose_nothing, steps_count_sampled_light_once, steps_find_light_in_a_mirror,
     steps_in_an_empty_cornell_box_agree_with_radiosity, steps_in_an_integrating_sphere_find_its_light,
 };
+use room_picture::picture_of_a_room;
 use roulette::{
     roulette_ends_no_bright_and_no_young_path, roulette_ends_paths_without_weight, roulette_keeps_the_mean,
 };
@@ -123,4 +126,5 @@ checks::stage! { ($ crate) 11 [
     lights_are_sampled_where_they_can_be
     table_of_closed_rooms: composed
     picture_of_a_sphere_and_its_light: composed
+    picture_of_a_room: composed
 ] }
