@@ -14,6 +14,6 @@ pub const SWEEP_COSTS: [(&str, f64); 6] = [
     ("boxes of all sizes", 7.672),
 ];
 
-/// The calls of the reference's `wide_closest_hit` for all rays of [`rays_through_a_cloud`](super::visits::rays_through_a_cloud):
-/// nodes, blocks and exact tests together.
+/// The calls of the reference's `wide_closest_hit` for all
+/// [`rays_through_a_cloud`](super::visits::rays_through_a_cloud): nodes, blocks and exact tests together.
 pub const CALLS_OF_SEARCH: usize = 3255;

@@ -96,7 +96,7 @@ fn judge_all(trial: &Trial<'_>, drawn: Vec<Four>) -> CheckResult {
 pub(super) fn may_hit_keeps_what_is_hit(trial: &Trial<'_>) -> CheckResult {
     for (index, distribution) in DISTRIBUTIONS.iter().enumerate() {
         let mut random = Random::new(trial.seed, 30 + index as u64);
-        let drawn = (0..400).map(|_| {
+        let drawn = (0..250).map(|_| {
             let (ray, first) = (distribution.draw)(&mut random);
             let triangles =
                 [vec![first], (0..3).map(|_| (distribution.draw)(&mut random).1).collect()].concat();

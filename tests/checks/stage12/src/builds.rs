@@ -322,7 +322,8 @@ pub(super) fn build_binned_isolates_what_is_not_a_number(trial: &Trial<'_>) -> C
         let [a, b] = [is_cause && panics, is_cause && !panics];
         Broken { input: "build_binned of 200 boxes, of which 6 are empty or have NaN".into(), ..broken }.explained_by([
             (a, "a NaN or an empty box makes the builder panic"),
-            (b, "a NaN or an empty box got into the box of a node, or changed the splits: PrimitiveBox makes them empty, so keep the union in this order"),
+            (b, "a NaN or an empty box got into the box of a node: PrimitiveBox makes such boxes empty, and the empty box \
+                 changes no union"),
         ])
     })
 }

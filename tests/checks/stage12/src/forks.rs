@@ -77,14 +77,12 @@ fn work_and_span(tree: &FlatTree, ranges: &[(u32, u32)], forks: impl Fn(usize) -
     sums.first().copied().unwrap_or_default()
 }
 
-/// A build of 100,000 boxes: the tree, the ranges of its nodes, and the nodes that are forked.
+/// A build of many boxes: the tree, the ranges of its nodes, and the nodes that are forked.
 struct Forked {
     tree: FlatTree,
     ranges: Vec<(u32, u32)>,
     forks: Vec<Fork>,
 }
-
-const MANY: usize = 100_000;
 
 fn build_many(trial: &Trial<'_>, n: usize) -> Result<Forked, Broken> {
     let boxes = cloud(trial.seed, n);
@@ -140,9 +138,9 @@ pub(super) fn build_parallel_logs_the_nodes_that_it_forks(trial: &Trial<'_>) -> 
     Ok(())
 }
 
-/// Judges whether the span of a build of 100,000 boxes is at most the work divided by `share`.
-fn judge_span(trial: &Trial<'_>, share: u64) -> CheckResult {
-    let Forked { tree, ranges, forks } = build_many(trial, MANY)?;
+/// Judges whether the span of a build of `n` boxes is at most the work divided by `share`.
+fn judge_span(trial: &Trial<'_>, n: usize, share: u64) -> CheckResult {
+    let Forked { tree, ranges, forks } = build_many(trial, n)?;
     let known = forked_ranges(&forks);
     let (work, span) = work_and_span(&tree, &ranges, |index| known.contains(&ranges[index]));
     if share * span <= work {
@@ -151,7 +149,7 @@ fn judge_span(trial: &Trial<'_>, share: u64) -> CheckResult {
     let at = |index: usize| ranges[index].1 > 2000;
     let (_, possible) = work_and_span(&tree, &ranges, at);
     let yours = format!("work {work}, span {span}: a ratio of {:.2}", work as f64 / span as f64);
-    let input = format!("build_parallel of 100,000 boxes, with {} forks", forks.len());
+    let input = format!("build_parallel of {n} boxes, with {} forks", forks.len());
     Err(Broken::with_texts(input, yours, format!("a span of at most {}", work / share), "the tree and the log of forks")
         .explained_by([
             (forks.is_empty(), "nothing is forked: join both sides of a large node by `forks.join`"),
@@ -163,9 +161,9 @@ fn judge_span(trial: &Trial<'_>, share: u64) -> CheckResult {
 }
 
 pub(super) fn build_parallel_has_a_third_of_the_span(trial: &Trial<'_>) -> CheckResult {
-    judge_span(trial, 3)
+    judge_span(trial, 30_000, 3)
 }
 
 pub(super) fn build_parallel_has_a_fifth_of_the_span(trial: &Trial<'_>) -> CheckResult {
-    judge_span(trial, 5)
+    judge_span(trial, 100_000, 5)
 }

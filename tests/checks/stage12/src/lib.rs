@@ -1,9 +1,9 @@
 //! The checks of stage 12: speed.
 //!
-//! `flat` (flattened hierarchies) · `bins`, `splits`, `partitions` (the steps of the binned builder) · `builds`, `forks` (whole
-//! trees, and their work and span) · `wide_trees` (eight children per node) · `slabs`, `blocks` (eight boxes and four triangles
-//! at once) · `searches`, `visits` (what searches find, and what they cost) · `table` · `picture`. `trees`, `wide_tables` and
-//! `scenes` make inputs; `bars` has the counts of the reference.
+//! `flat` (flattened hierarchies) · `bins`, `splits`, `partitions` (the steps of the binned builder) · `builds`, `forks`
+//! (whole trees, and their work and span) · `wide_trees` (eight children per node) · `slabs`, `blocks` (eight boxes and four
+//! triangles at once) · `searches`, `visits` (what searches find, and what they cost) · `table` · `picture`. `trees`,
+//! `wide_tables` and `scenes` make inputs; `bars` has the counts of the reference.
 //!
 //! No check reads a clock: speed is judged by the counts that decide it.
 

@@ -54,7 +54,7 @@ fn judge_hit(query: &WideQuery, yours: &WideAnswer) -> CheckResult {
 }
 
 pub(super) fn wide_closest_hit_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&small_searches(), 800, searches(120), |queries| {
+    trial.forall_and(&small_searches(), 400, searches(120), |queries| {
         let answers = trial.kit.wide_closest_hit(queries);
         compare_formulas(
             queries,
@@ -79,7 +79,7 @@ pub(super) fn wide_closest_hit_prefers_the_smaller_number(trial: &Trial<'_>) -> 
         }
         query
     });
-    trial.forall_and(&small_searches(), 500, tied, |queries| {
+    trial.forall_and(&small_searches(), 300, tied, |queries| {
         let answers = trial.kit.wide_closest_hit(queries);
         compare_formulas(
             queries,
@@ -114,7 +114,7 @@ fn judge_nodes(query: &WideQuery, yours: &WideAnswer, function: &str) -> CheckRe
 }
 
 pub(super) fn wide_closest_hit_enters_only_boxes_it_meets(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&small_searches(), 400, searches(120), |queries| {
+    trial.forall_and(&small_searches(), 300, searches(120), |queries| {
         compare(queries, trial.kit.wide_closest_hit(queries), |query, yours| {
             judge_hit(query, &yours)?;
             judge_nodes(query, &yours, "wide_closest_hit")
@@ -139,13 +139,13 @@ fn judge_any(query: &WideQuery, yours: &WideAnswer) -> CheckResult {
 }
 
 pub(super) fn wide_any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&small_searches(), 800, searches(120), |queries| {
+    trial.forall_and(&small_searches(), 300, searches(120), |queries| {
         compare(queries, trial.kit.wide_any_hit(queries), |query, yours| judge_any(query, &yours))
     })
 }
 
 pub(super) fn wide_any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&small_searches(), 400, searches(120), |queries| {
+    trial.forall_and(&small_searches(), 300, searches(120), |queries| {
         compare(queries, trial.kit.wide_any_hit(queries), |query, yours| {
             // A search that asks nothing finds nothing.
             judge_any(query, &yours)?;
@@ -163,7 +163,7 @@ pub(super) fn wide_any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult 
 }
 
 pub(super) fn wide_any_hit_enters_only_boxes_it_meets(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&small_searches(), 400, searches(120), |queries| {
+    trial.forall_and(&small_searches(), 300, searches(120), |queries| {
         compare(queries, trial.kit.wide_any_hit(queries), |query, yours| {
             judge_any(query, &yours)?;
             judge_nodes(query, &yours, "wide_any_hit")

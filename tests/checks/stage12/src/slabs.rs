@@ -161,7 +161,7 @@ pub(super) fn enter_boxes_agrees_with_one_box_at_a_time(trial: &Trial<'_>) -> Ch
         }
         among_others(&mut random, ray, bounds)
     };
-    let queries: Vec<WideBoxesQuery> = (0..3000).map(|_| draw()).collect();
+    let queries: Vec<WideBoxesQuery> = (0..1500).map(|_| draw()).collect();
     judge_all(trial, &queries)
 }
 
@@ -193,7 +193,7 @@ pub(super) fn enter_boxes_takes_zeros_and_faces(trial: &Trial<'_>) -> CheckResul
         }
         among_others(&mut random, Ray::new(origin, direction), bounds)
     };
-    let queries: Vec<WideBoxesQuery> = (0..4000).map(|_| draw()).collect();
+    let queries: Vec<WideBoxesQuery> = (0..2000).map(|_| draw()).collect();
     judge_all(trial, &queries)
 }
 
@@ -203,7 +203,7 @@ pub(super) fn enter_boxes_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> 
         let query = at_a_corner(&mut random)?;
         Some(among_others(&mut random, query.ray, query.bounds))
     };
-    let queries: Vec<WideBoxesQuery> = (0..4000).filter_map(|_| draw()).collect();
+    let queries: Vec<WideBoxesQuery> = (0..2000).filter_map(|_| draw()).collect();
     judge_all(trial, &queries)
 }
 
@@ -214,7 +214,7 @@ pub(super) fn enter_boxes_of_any_size(trial: &Trial<'_>) -> CheckResult {
         let query = of_any_size(&mut random)?;
         Some(among_others(&mut random, query.ray, query.bounds))
     };
-    let queries: Vec<WideBoxesQuery> = (0..4000).filter_map(|_| draw()).collect();
+    let queries: Vec<WideBoxesQuery> = (0..2000).filter_map(|_| draw()).collect();
     judge_all(trial, &queries)
 }
 

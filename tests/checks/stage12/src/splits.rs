@@ -209,14 +209,14 @@ fn judge_choice(query: &BinSplitQuery, yours: &Option<BinSplit>) -> CheckResult 
 }
 
 pub(super) fn cheapest_split_is_the_cheapest(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(500, queries(), |queries| {
+    trial.forall(250, queries(), |queries| {
         let answers = trial.kit.cheapest_split(queries);
         compare_formulas(queries, answers, |query, yours| judge_choice(query, &yours), mistakes)
     })
 }
 
 pub(super) fn cheapest_split_returns_its_cost(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(300, queries(), |queries| {
+    trial.forall(200, queries(), |queries| {
         let of = |query: &BinSplitQuery, yours: &BinSplit| {
             let mut all = splits(query).into_iter();
             all.find(|(split, _)| (split.axis, split.bin) == (yours.axis, yours.bin)).map(|(_, sides)| sides)
@@ -274,7 +274,7 @@ pub(super) fn cheapest_split_leaves_no_side_empty(trial: &Trial<'_>) -> CheckRes
     let point = Aabb::new(Vec3::ONE, Vec3::ONE);
     let apart = bins_of(&[(point, [0; 3]), (point, [15; 3])], 16);
     let together = bins_of(&[(point, [7; 3]), (point, [7; 3])], 16);
-    trial.forall_and(&[apart, together], 300, few, |queries| {
+    trial.forall_and(&[apart, together], 200, few, |queries| {
         let answers = trial.kit.cheapest_split(queries);
         compare_formulas(queries, answers, |query, yours| judge_choice(query, &yours), mistakes)
     })

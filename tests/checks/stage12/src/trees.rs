@@ -76,8 +76,10 @@ pub(super) fn drawn_trees(most: usize) -> impl Strategy<Value = (Vec<Aabb>, Flat
 /// What is wrong with a tree: yours, expected, and the text of a diagnosis if the fault is itself the cause.
 pub(super) type Fault = (String, String, Option<&'static str>);
 
-pub(super) const LEFT_OUT: &str = "a primitive was left out, or is in two leaves: both sides of a split together must hold each exactly once";
-pub(super) const NOT_DEPTH_FIRST: &str = "the nodes are not depth first: append both children of a node, then all nodes below the first, then all below the second";
+pub(super) const LEFT_OUT: &str = "a primitive was left out, or is in two leaves: both sides of a split together \
+                                   must hold each exactly once";
+pub(super) const NOT_DEPTH_FIRST: &str = "the nodes are not depth first: append both children of a node, then all \
+                                          nodes below the first, then all below the second";
 pub(super) const TOO_LARGE: &str =
     "a leaf holds more than MAX_LEAF primitives: only a node of at most MAX_LEAF may become a leaf";
 

@@ -66,8 +66,8 @@ impl Parts<'_> {
     }
 }
 
-/// A search of a tree over primitives with these hits. The leaves have the sizes of `sizes`, and list the primitives in an order
-/// that is not that of their numbers.
+/// A search of a tree over primitives with these hits. The leaves have the sizes of `sizes`, and list the primitives in
+/// an order that is not that of their numbers.
 fn query(hits: &[f32], sizes: &[usize], choices: &[u16], ray: Ray) -> WideQuery {
     let n = hits.len();
     let step = [7, 11, 13, 1].into_iter().find(|step| n % step != 0).unwrap_or(1);

@@ -279,7 +279,7 @@ fn broken_rule(tree: &FlatTree, meaning: &Meaning) -> Option<(String, &'static s
 }
 
 pub(super) fn collapse_opens_the_largest_child(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(300, trees_only(120), |trees| {
+    trial.forall(200, trees_only(120), |trees| {
         let judge = |tree: &FlatTree, wide: WideTree| {
             judge_leaves(tree, &wide)?;
             let broken = meaning(tree, &wide).ok().and_then(|meaning| broken_rule(tree, &meaning));
