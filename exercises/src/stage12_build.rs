@@ -86,9 +86,9 @@ pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
 ///
 /// The *work* is the time on one thread, and the *span* the time on any number of threads, both counted in primitives. The work
 /// of a node is its number of primitives plus the work of its two sides. Its span is its number of primitives plus the larger span
-/// of its two sides if they are built in parallel, and plus both spans if not. At 100,000 primitives of about one size, the
-/// span must be at most a fifth of the work (for a part of the points a third). Forks at all nodes above 2,000 primitives achieve
-/// that.
+/// of its two sides if they are built in parallel, and plus both spans if not. For primitives of about one size,
+/// the span must be at most a third of the work at 30,000 primitives and at most a fifth at 100,000. Forks at all nodes above 2,000
+/// primitives achieve that.
 ///
 /// Pitfall: each side needs an array of its own for its nodes, and indices shift when the arrays are joined.
 ///

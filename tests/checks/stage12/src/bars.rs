@@ -16,4 +16,4 @@ pub const SWEEP_COSTS: [(&str, f64); 6] = [
 
 /// The calls of the reference's `wide_closest_hit` for all
 /// [`rays_through_a_cloud`](super::visits::rays_through_a_cloud): nodes, blocks and exact tests together.
-pub const CALLS_OF_SEARCH: usize = 3255;
+pub const CALLS_OF_SEARCH: usize = 2162;

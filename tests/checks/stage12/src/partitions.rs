@@ -9,7 +9,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::{PartitionQuery, SplitAnswer};
-use raykata::wide::{BinSplit, PrimitiveBox};
+use raykata::wide::{BinGrid, BinSplit, PrimitiveBox};
 
 fn query(boxes: &[Aabb], kind: u8, n_bins: u32, axis: u32, bin: u32) -> PartitionQuery {
     let primitives = primitives(boxes);
@@ -150,7 +150,11 @@ pub(super) fn partition_bins_agrees_with_the_bins(trial: &Trial<'_>) -> CheckRes
                     Aabb::new(Vec3::ZERO, Vec3::ZERO),
                     Aabb::new(Vec3::splat(extent), Vec3::splat(extent)),
                 ]);
-                query(&boxes, 0, n_bins, axis, u32::from(bin))
+                let mut query = query(&boxes, 0, n_bins, axis, u32::from(bin));
+                // The grid has twice the centroids: bounds between its bins are at twice those places.
+                let scale = Vec3::splat(n_bins as f32 / (2.0 * extent));
+                query.grid = BinGrid { low: Vec3::ZERO.into(), scale: scale.into(), n_bins };
+                query
             });
     judge_all(trial, &[], prop_oneof![3 => edges, 1 => queries(false, 1..=5)])
 }

@@ -252,7 +252,7 @@ pub(super) fn enter_boxes_enters_no_empty_place(trial: &Trial<'_>) -> CheckResul
             })
             .collect();
         // Half of the directions are so small that 1/d overflows on every axis, so that no box decides anything.
-        let scale = [1.0, 2f32.powi(-140)][random.below(2) as usize];
+        let scale = [1.0, f32::MIN_POSITIVE / 16_384.0][random.below(2) as usize];
         let ray = Ray::new(3.0 * random.in_cube(), scale * random.direction());
         WideBoxesQuery { node: node_of(&boxes), ray }
     };

@@ -71,7 +71,7 @@ fn search(tree: &WideTree, spheres: &[Sphere], ray: &Ray) -> WideQuery {
 pub fn rays_through_a_cloud() -> Vec<WideQuery> {
     let mut random = Random::new(12, 2);
     let mut spheres: Vec<Sphere> =
-        (0..600).map(|_| Sphere { center: random.in_cube(), radius: 0.02 + 0.06 * random.unit() }).collect();
+        (0..600).map(|_| Sphere { center: random.in_cube(), radius: 0.08 + 0.12 * random.unit() }).collect();
     let code = |sphere: &Sphere| -> u32 {
         let cell = ((sphere.center + 1.0) * 8.0).as_uvec3();
         (0..4).map(|bit| (0..3).map(|axis| (cell[axis] >> bit & 1) << (3 * bit + axis)).sum::<u32>()).sum()

@@ -108,7 +108,7 @@ pub(super) fn searches(most: usize) -> impl Strategy<Value = WideQuery> + Clone 
 }
 
 /// Small searches in which each mistake shows: a leaf of five, two leaves with hits at the same `t`, of which the second is
-/// entered exactly there, and two with a hit in one of them.
+/// entered exactly there, two with a hit in one of them, and a hit before the range.
 pub(super) fn small_searches() -> Vec<WideQuery> {
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     let leaf = query(&[3.0, 5.0, 4.0, 6.0, 2.0], &[5], &[0], ray);
@@ -118,12 +118,14 @@ pub(super) fn small_searches() -> Vec<WideQuery> {
         two
     };
     let miss = f32::INFINITY;
+    let before = query(&[1.0], &[1], &[0], ray.with_range(2.0, miss));
     vec![
         leaf,
         pair([3.0, 2.0], [3.0, 3.0]),
         pair([1.0, 2.0], [6.0, 4.0]),
         pair([1.0, 2.0], [miss, 4.0]),
         pair([1.0, 2.0], [6.0, miss]),
+        before,
     ]
 }
 
@@ -204,8 +206,8 @@ pub(super) fn flawed_search(query: &WideQuery, flaw: Flaw) -> (Option<(u32, f32)
                 entered.retain(|(_, t)| t.is_finite() && *t <= ray.t_max);
                 match flaw {
                     Flaw::Unsorted => entered.reverse(),
-                    Flaw::FarthestFirst => entered.sort_by(|p, q| p.1.total_cmp(&q.1)),
-                    _ => entered.sort_by(|p, q| q.1.total_cmp(&p.1)),
+                    Flaw::FarthestFirst => entered.sort_by_key(|(child, t)| child.key(*t)),
+                    _ => entered.sort_by_key(|(child, t)| std::cmp::Reverse(child.key(*t))),
                 }
                 stack.extend(entered);
             }
