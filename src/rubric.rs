@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn stages_and_checks_have_the_order_of_the_lecture() {
         let numbers: Vec<u8> = stages().into_iter().map(|(number, _)| number).collect();
-        assert_eq!(numbers, (1..=11).collect::<Vec<_>>());
+        assert_eq!(numbers, (1..=12).collect::<Vec<_>>());
         for (number, stage) in stages() {
             let checks = stage.in_order();
             assert!(checks.iter().all(|(_, entry)| entry.stage == number && entry.place < TEXT.len()));

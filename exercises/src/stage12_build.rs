@@ -27,7 +27,8 @@ pub fn fill_bins(primitives: &[PrimitiveBox], grid: &BinGrid) -> Bins {
 
 /// The cost of a leaf with this number of primitives: `BLOCK_COST · ⌈n / BLOCK⌉`.
 ///
-/// A ray tests four triangles at once, so it pays for whole blocks. A leaf of five costs as much as one of eight.
+/// A ray tests four triangles at once, so it pays for whole blocks. A leaf of five costs as much as one of eight. The result is
+/// exact for up to 2²⁴ primitives.
 pub fn block_cost(n_primitives: u32) -> f32 {
     todo!("round up to whole blocks")
 }
@@ -36,8 +37,10 @@ pub fn block_cost(n_primitives: u32) -> f32 {
 /// `A(L) c(L) + A(R) c(R)`, with half the surface area `A` of the box around a side, and the cost `c` of its primitives as a
 /// leaf ([`block_cost`]).
 ///
-/// `n_bins` bins per axis are in use. Returns `None` if every split leaves one side without primitives. Of splits with the
-/// same cost any one is right. The box of a side is the box around its bins. The result has the cost of the split.
+/// `n_bins` bins per axis are in use, so the first bin of the right side is one of `1..n_bins`. Both sides have primitives; the
+/// result is `None` if every split leaves one side without any. Of splits with the same cost up to rounding any one is right,
+/// and a cost of 0 (boxes without area) is a cost like any other. The box of a side is the box around its bins. The result has
+/// the cost of the split.
 ///
 /// Two passes per axis are enough: one from the right that stores the cost of each right side, and one from the left.
 pub fn cheapest_split(bins: &Bins, n_bins: u32) -> Option<BinSplit> {
@@ -60,12 +63,15 @@ pub fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &B
 /// cheapest split between [`MAX_BINS`] equal bins per axis, over the box around the centroids of its primitives, unless
 /// a leaf is not more expensive: `NODE_COST · A + A(L) c(L) + A(R) c(R) ≥ A · c` with `c` for [`block_cost`]. Only a node of at
 /// most [`MAX_LEAF`] primitives may become a leaf. A node with fewer primitives than bins may use fewer bins. Where no split is
-/// possible, because all centroids are equal, and at depth [`DEEPEST_SPLIT`], the primitives are divided in half in
-/// any order.
+/// possible, because all centroids are equal, a node that may become a leaf becomes one. A larger one, and every node of more than
+/// [`BLOCK`] primitives at depth [`DEEPEST_SPLIT`], is divided in half in any order.
 ///
-/// The tree has the layout of [`FlatTree`]. A box of NaN goes into some leaf and does not change other boxes. The cost of the
-/// tree by the surface area heuristic is at most 1.05 times that of a full sweep (stage 3), where the sizes of the boxes differ
-/// by a factor of less than a million: equal bins cannot separate boxes that each are half as large as the one before.
+/// The tree has the layout of [`FlatTree`], and its leaves stand in `order` in the order of the tree. The box of a node is the
+/// smallest box around the boxes of its primitives. A box that is empty or has NaN goes into some leaf and changes no other box.
+///
+/// The cost of the tree, `NODE_COST · A` for each inner node and `A · c` for each leaf, is at most 1.05 times that of a full
+/// sweep, which tries every split of the sorted primitives with the same costs. Equal bins cannot do this for sizes that
+/// differ by a factor of a million, such as boxes of which each is half as large as the one before.
 ///
 /// Pitfall: with `1 / extent` as scale, an axis along which all centroids are equal gives 0 · ∞.
 pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
@@ -75,10 +81,14 @@ pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
 /// Builds the tree of [`build_binned`] with forks: where both sides of a split are large, they are built in parallel
 /// by [`Forks::join`].
 ///
-/// The tree is the same, bit for bit. The *work* is the time on one thread, and the *span* the time on any number of
-/// threads: for a node, its own primitives plus the larger span of its two sides if they are built in parallel, and plus both
-/// spans if not. With forks at all nodes above 2,000 primitives, the span at 100,000 primitives is less than a fifth of the
-/// work.
+/// The tree is the same as that of [`build_binned`], bit for bit. Each forked node is logged once, as
+/// [`ForkKind::Children`]: `first` is the position of its first primitive in the `order` of the whole tree.
+///
+/// The *work* is the time on one thread, and the *span* the time on any number of threads, both counted in primitives. The work
+/// of a node is its number of primitives plus the work of its two sides. Its span is its number of primitives plus the larger span
+/// of its two sides if they are built in parallel, and plus both spans if not. For primitives of about one size,
+/// the span must be at most a third of the work at 30,000 primitives and at most a fifth at 100,000. Forks at all nodes above 2,000
+/// primitives achieve that.
 ///
 /// Pitfall: each side needs an array of its own for its nodes, and indices shift when the arrays are joined.
 ///

@@ -14,8 +14,12 @@ use raykata::wide::{BLOCK, Child, ChildContents, Stack, WideProbe};
 /// same `t`, of which the smaller primitive number wins.
 ///
 /// Start at [`Child::ROOT`]. Of the children that the ray enters, visit the nearest first, and keep the others on a stack, the
-/// nearest on top. A child that is entered at the best `t` so far or beyond is skipped when it comes from the stack. `t_max` in
-/// the calls of the probe is the end of the shortened ray, one float above the best `t`, as in stage 3.
+/// nearest on top. A child that is entered beyond the best `t` so far is skipped when it comes from the stack; one that is entered
+/// exactly there may hold a hit with a smaller number. `t_max` in the calls of the probe is the end of the shortened ray,
+/// one float above the best `t`, as in stage 3. A leaf has `⌈count / BLOCK⌉` blocks, and only its primitives are asked for.
+///
+/// No node is visited twice, and none that the ray does not enter. The calls of the probe are counted; all points need at most
+/// 1.05 times as many as the reference makes.
 ///
 /// In most nodes the ray enters one or two children. Treat these cases first: one child needs no stack, and two need one
 /// comparison.
@@ -28,7 +32,8 @@ pub fn wide_closest_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> Option<Primit
 
 /// Whether any primitive of a wide tree with at least one node is hit within the range of the ray (shadow rays).
 ///
-/// The search ends at the first hit. The order of the children is free, so nothing is sorted.
+/// The search ends at the first hit: it makes no further call. The order of the children is free, so nothing is sorted. No node is
+/// visited twice, and none that the ray does not enter.
 #[inline(always)]
 pub fn wide_any_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> bool {
     todo!("push all children that the ray enters, and stop at the first hit")

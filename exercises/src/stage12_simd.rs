@@ -13,10 +13,12 @@ use raykata::wide::{Entered, TriangleBlock, WideNode, WideRay};
 
 /// Which of the eight boxes of a node a ray enters, by the slab test of stage 3, eight boxes at once.
 ///
-/// For each box, the result is the same as that of the reference's `slab`, bit for bit, for a ray with the range
-/// `ray.t_min..=t_max`, `t_min >= 0`: intersect the intervals of the three axes, move the entry earlier and the exit later by
-/// twice γ₃, and intersect with the range. So no box is missed that a ray meets, and the entry is never NaN. Where
-/// `inverse_direction` is NaN, the axis is ignored. An empty place is never entered: `node.occupied` has a bit per child.
+/// For a ray with the range `ray.t_min..=t_max`, `t_min >= 0`: the `t` of a plane is `(plane - origin) · inverse_direction`.
+/// Intersect the intervals of the three axes, multiply the entry by `1 - 2γ₃` and the exit by `1 + 2γ₃`, and intersect with the
+/// range. A box is entered if the entry is at most the exit. The result is that of these operations in single precision, bit for
+/// bit (0 and -0 are the same). So no box is missed that a ray meets, and the entry is never NaN. Where a plane has the `t`
+/// NaN, it decides nothing: the ray runs within a face, or the axis is ignored because `inverse_direction` is NaN. An empty
+/// place is never entered: `node.occupied` has a bit per child.
 ///
 /// `ray.near_side[axis]` says which of the two coordinates the ray passes first, so nothing is compared or swapped.
 ///
@@ -31,9 +33,11 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
 /// `i`, or certainly hits it outside of `ray.t_min..t_max`.
 ///
 /// Frames test only the remaining triangles with the watertight test of stage 10, in double precision. So this function may
-/// not reject any triangle that the watertight test hits, for any finite input. It should reject nearly all others,
-/// because each triangle that remains costs about as much as a whole block. A lane with NaN is never rejected, because its primitive is not a
-/// triangle. Coordinates and directions are at most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing overflows.
+/// not reject any triangle that the watertight test hits, for any finite input: the exact line meets the closed triangle, and
+/// the exact `t`, rounded, is in the range. It must reject nearly all others, because each triangle that remains costs about as
+/// much as a whole block: at least 99 of 100 triangles that a ray misses by a good part of their size, or hits outside of
+/// `ray.t_min..t_max` by a tenth. A lane with NaN is never rejected, because its primitive is not a triangle. Coordinates and
+/// directions are at most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing overflows.
 ///
 /// The signs of three numbers decide: `U = ((a - o) × d)·(c - a)`, `V = -((a - o) × d)·(b - a)` and `W = d·n - U - V` with
 /// `n = (b - a) × (c - a)`. They are the barycentric coordinates times `d·n`. If two of them have different signs, and both

@@ -17,10 +17,12 @@ use glam::Vec3;
 
 /// Which of the eight boxes of a node a ray enters, by the slab test of stage 3, eight boxes at once.
 ///
-/// For each box, the result is the same as that of the reference's `slab`, bit for bit, for a ray with the range
-/// `ray.t_min..=t_max`, `t_min >= 0`: intersect the intervals of the three axes, move the entry earlier and the exit later by
-/// twice γ₃, and intersect with the range. So no box is missed that a ray meets, and the entry is never NaN. Where
-/// `inverse_direction` is NaN, the axis is ignored. An empty place is never entered: `node.occupied` has a bit per child.
+/// For a ray with the range `ray.t_min..=t_max`, `t_min >= 0`: the `t` of a plane is `(plane - origin) · inverse_direction`.
+/// Intersect the intervals of the three axes, multiply the entry by `1 - 2γ₃` and the exit by `1 + 2γ₃`, and intersect with the
+/// range. A box is entered if the entry is at most the exit. The result is that of these operations in single precision, bit for
+/// bit (0 and -0 are the same). So no box is missed that a ray meets, and the entry is never NaN. Where a plane has the `t`
+/// NaN, it decides nothing: the ray runs within a face, or the axis is ignored because `inverse_direction` is NaN. An empty
+/// place is never entered: `node.occupied` has a bit per child.
 ///
 /// `ray.near_side[axis]` says which of the two coordinates the ray passes first, so nothing is compared or swapped.
 ///
@@ -56,9 +58,11 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
 /// `i`, or certainly hits it outside of `ray.t_min..t_max`.
 ///
 /// Frames test only the remaining triangles with the watertight test of stage 10, in double precision. So this function may
-/// not reject any triangle that the watertight test hits, for any finite input. It should reject nearly all others,
-/// because each triangle that remains costs about as much as a whole block. A lane with NaN is never rejected, because its primitive is not a
-/// triangle. Coordinates and directions are at most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing overflows.
+/// not reject any triangle that the watertight test hits, for any finite input: the exact line meets the closed triangle, and
+/// the exact `t`, rounded, is in the range. It must reject nearly all others, because each triangle that remains costs about as
+/// much as a whole block: at least 99 of 100 triangles that a ray misses by a good part of their size, or hits outside of
+/// `ray.t_min..t_max` by a tenth. A lane with NaN is never rejected, because its primitive is not a triangle. Coordinates and
+/// directions are at most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing overflows.
 ///
 /// The signs of three numbers decide: `U = ((a - o) × d)·(c - a)`, `V = -((a - o) × d)·(b - a)` and `W = d·n - U - V` with
 /// `n = (b - a) × (c - a)`. They are the barycentric coordinates times `d·n`. If two of them have different signs, and both
@@ -107,10 +111,10 @@ pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: 
     let v = F32x4::splat(level, 0.0) - minus_v;
     let (least, most) = (w.min(u.min(v)), w.max(u.max(v)));
     let outside = least.lt(F32x4::splat(level, 0.0) - edge_error) & edge_error.lt(most);
-    // Beyond t_max: `distance / slope` has the sign of `distance · slope`.
+    // Beyond t_max, with the computed sign of the slope: |slope| t = along.
     let (along, steep) = (distance * F32x4::splat(level, 1.0).copysign(slope), slope.abs());
     let beyond = error_at_t_max.lt(along - F32x4::splat(level, t_max) * steep);
-    // A hit before t_min needs a slope whose sign is certain. Beyond t_max it does not: with the other sign, t is negative.
+    // A hit before t_min needs a slope whose sign is certain. Beyond t_max it does not, see T_ERROR.
     let before = along.lt(F32x4::splat(level, t_min) * steep - error_at_t_min) & edge_error.lt(steep);
     !(outside | beyond | before).bits() & 15
     // <stub> todo!("compute U, V and W with four lanes, bound their errors, and reject what is certain")
@@ -134,6 +138,11 @@ const EDGE_ERROR: f32 = 128.0 * UNIT_ROUNDOFF;
 /// `n·(a - o)` has an error of `3 (8 + 2 · 2) u e² h + 10 u e² h = 46 u e² h`, and `d·n` one of `40 u m e²`. The product with
 /// t and the difference round numbers of at most `6 e² h` and `6 t m e²`: together at most `52 u e² (h + t m)`. The
 /// remaining `12 u` cover the rounding of the hit's `t` to single precision.
+///
+/// So `along > t_max |slope| + error` is certain to reject. If the slope has the computed sign, the exact `|slope| t` is above
+/// `t_max |slope|` as well. If rounding has changed its sign, then so has the sign of the exact `t`: `along` is larger than
+/// the error of `n·(a - o)`, which is a part of the bound, so that the exact `along` is positive too, and the exact `t`, which is
+/// `along / |slope|` with the other sign, is negative. If the slope is exactly 0, there is no hit.
 const T_ERROR: f32 = 64.0 * UNIT_ROUNDOFF;
 
 /// Where a product underflows, it has an error of up to 2⁻¹⁵⁰ more. In U, V, W, d·n and n·(a - o) at most 12 of these are

@@ -15,7 +15,7 @@ use raykata::wide::FlatNode;
 /// Copies a hierarchy of stage 3 into the layout of [`FlatTree`]: nodes of 32 bytes, the two children of a node next to each
 /// other, and the nodes below the first child before those below the second.
 ///
-/// Boxes, leaves and the order of the primitives stay as they are. Neighbours are read together: a line of the cache holds 64
+/// Boxes, leaves and the order of the primitives stay as they are, and the left child comes first. Neighbours are read together: a line of the cache holds 64
 /// bytes, which is a pair of children. A hierarchy without nodes gives a tree without nodes.
 pub fn flatten(bvh: &Bvh) -> FlatTree {
     // <solution>

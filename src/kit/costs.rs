@@ -1,6 +1,6 @@
 //! The answers of searches with their costs, for a judge that does not trust them.
 
-use super::{Answer, CellsAnswer, GraphAnswer, PacketAnswer, SearchAnswer, ShadeAnswer};
+use super::{Answer, CellsAnswer, GraphAnswer, PacketAnswer, SearchAnswer, ShadeAnswer, WideAnswer};
 
 /// The answer to one query whose cost is counted.
 pub enum Costs<'a> {
@@ -14,6 +14,8 @@ pub enum Costs<'a> {
     Packet(&'a mut PacketAnswer),
     /// Of shading, which costs shadow rays.
     Shade(&'a mut ShadeAnswer),
+    /// Of a search in a wide tree.
+    Wide(&'a mut WideAnswer),
 }
 
 impl Answer {
@@ -37,6 +39,9 @@ impl Answer {
             | Answer::PolygonBspSearch(answers)
             | Answer::CachedSearch(answers) => answers.iter_mut().map(Costs::Cells).collect(),
             Answer::PacketSearch(answers) => answers.iter_mut().map(Costs::Packet).collect(),
+            Answer::WideClosestHit(answers) | Answer::WideAnyHit(answers) => {
+                answers.iter_mut().map(Costs::Wide).collect()
+            }
             Answer::Shade(answers) => answers.iter_mut().map(Costs::Shade).collect(),
             _ => Vec::new(),
         }

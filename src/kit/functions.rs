@@ -72,7 +72,7 @@ macro_rules! functions {
             /// All student functions, in the order of the stages.
             pub const ALL: &'static [Function] = &[$($(Function::$name),*),*];
 
-            /// The number of the stage to which the function belongs, `1..=11`.
+            /// The number of the stage to which the function belongs, `1..=12`.
             pub fn stage(self) -> u8 {
                 match self {
                     $($(Function::$name)|* => $stage,)*

@@ -3,6 +3,7 @@
 
 use crate::bvh::{Contents, PrimitiveHit};
 use crate::ray::Ray;
+use crate::wide::Entered;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::io;
@@ -32,6 +33,12 @@ pub enum Call {
     Search(Ray),
     /// Asks whether the shadow ray to a light is not occluded.
     Visible(u32, Ray),
+    /// Asks which children of a wide node a ray enters at this `t_max` or before.
+    EnterWide(u32, f32),
+    /// Asks which of the first `n` lanes of a block may be hit before this `t_max`: block, `n`, `t_max`.
+    Candidates(u32, u32, f32),
+    /// Asks for the hit with the primitive in a lane of a block: block, lane, ray.
+    HitLane(u32, u32, Ray),
     /// Asks nothing: reports the last visits.
     End,
 }
@@ -43,10 +50,14 @@ pub enum Response {
     Contents(Contents),
     /// The `t` of an entry or a hit; `None` if there is none.
     T(Option<f32>),
-    /// The result of a whole search.
+    /// The result of a whole search, or of the test of one lane.
     Found(Option<PrimitiveHit>),
     /// Whether a shadow ray is not occluded.
     Visible(bool),
+    /// Which children of a wide node are entered.
+    Entered(Entered),
+    /// The lanes of a block that may be hit, as bits.
+    Lanes(u32),
     /// The visits were recorded.
     Recorded,
     /// The call is not allowed. The text is the message of the panic that it causes.
@@ -133,6 +144,30 @@ impl Asker {
     pub(super) fn visible(&mut self, light: usize, ray: &Ray) -> bool {
         match self.ask(Call::Visible(u32::try_from(light).unwrap_or(u32::MAX), *ray)) {
             Response::Visible(visible) => visible,
+            other => out_of_step(&other),
+        }
+    }
+
+    #[track_caller]
+    pub(super) fn enter_wide(&mut self, node: u32, t_max: f32) -> Entered {
+        match self.ask(Call::EnterWide(node, t_max)) {
+            Response::Entered(entered) => entered,
+            other => out_of_step(&other),
+        }
+    }
+
+    #[track_caller]
+    pub(super) fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
+        match self.ask(Call::Candidates(block, n, t_max)) {
+            Response::Lanes(lanes) => lanes,
+            other => out_of_step(&other),
+        }
+    }
+
+    #[track_caller]
+    pub(super) fn hit_lane(&mut self, block: u32, lane: u32, ray: &Ray) -> Option<PrimitiveHit> {
+        match self.ask(Call::HitLane(block, lane, *ray)) {
+            Response::Found(hit) => hit,
             other => out_of_step(&other),
         }
     }

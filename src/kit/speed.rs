@@ -1,9 +1,11 @@
 //! Stage 12, speed: queries and answers.
 
 use crate::bvh::PrimitiveHit;
+use crate::kit::questions::Asker;
 use crate::ray::Ray;
 use crate::wide::{
-    BinGrid, BinSplit, Bins, Child, Entered, PrimitiveBox, TriangleBlock, WideNode, WideProbe, WideTree,
+    BinGrid, BinSplit, Bins, Child, Entered, NO_PRIMITIVE, PrimitiveBox, TriangleBlock, WideNode, WideProbe,
+    WideTree,
 };
 use serde::{Deserialize, Serialize};
 
@@ -68,7 +70,7 @@ pub struct WideQuery {
 }
 
 /// The hit of a search in a wide tree, and what it cost.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WideAnswer {
     /// The hit.
     pub hit: Option<PrimitiveHit>,
@@ -80,32 +82,56 @@ pub struct WideAnswer {
     pub blocks: Vec<u32>,
     /// The primitives that were tested exactly, in order.
     pub primitives: Vec<u32>,
+    /// The number of calls after the first hit.
+    pub calls_after_hit: u32,
 }
 
-/// The probe that answers from the table of a [`WideQuery`] and lists all calls.
-#[derive(Debug)]
+/// The probe that answers from the table of a [`WideQuery`] and lists all calls. Where a judge keeps the tables, it asks the
+/// judge, which lists the calls.
 pub struct WideTableProbe<'a> {
     query: &'a WideQuery,
-    nodes: Vec<u32>,
-    blocks: Vec<u32>,
-    primitives: Vec<u32>,
+    /// The calls so far.
+    calls: WideAnswer,
+    /// Whether a call has returned a hit.
+    has_hit: bool,
+    asker: Option<Asker>,
 }
 
 impl<'a> WideTableProbe<'a> {
     /// A probe without calls.
     pub fn new(query: &'a WideQuery) -> Self {
-        WideTableProbe { query, nodes: Vec::new(), blocks: Vec::new(), primitives: Vec::new() }
+        WideTableProbe { query, calls: WideAnswer::default(), has_hit: false, asker: Asker::for_next_query() }
     }
 
     /// The answer with the lists of all calls.
     pub fn answer(self, hit: Option<PrimitiveHit>, found: bool) -> WideAnswer {
-        WideAnswer { hit, found, nodes: self.nodes, blocks: self.blocks, primitives: self.primitives }
+        WideAnswer { hit, found, ..self.calls }
+    }
+
+    /// The primitive in a lane.
+    #[track_caller]
+    fn primitive(&self, block: u32, lane: u32) -> u32 {
+        let id = self.query.tree.blocks[block as usize][lane as usize];
+        assert!(
+            id != NO_PRIMITIVE,
+            "lane {lane} of block {block} is free: ask only for the primitives of the leaf"
+        );
+        id
+    }
+
+    /// Counts a call.
+    fn note(&mut self) {
+        self.calls.calls_after_hit += u32::from(self.has_hit);
     }
 }
 
 impl WideProbe for WideTableProbe<'_> {
     fn enter(&mut self, node: u32, t_max: f32) -> Entered {
-        self.nodes.push(node);
+        if let Some(asker) = &mut self.asker {
+            return asker.enter_wide(node, t_max);
+        }
+        self.note();
+        self.calls.nodes.push(node);
         let t = self.query.entries[node as usize];
         let entered = |i: &usize| t[*i] < f32::INFINITY && t[*i] <= t_max;
         Entered { mask: (0..8).filter(entered).map(|i| 1 << i).sum(), t }
@@ -116,16 +142,25 @@ impl WideProbe for WideTableProbe<'_> {
     }
 
     fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
-        self.blocks.push(block);
-        let ids = &self.query.tree.blocks[block as usize];
-        let may_hit = |lane: &u32| self.query.hits[ids[*lane as usize] as usize] < t_max;
+        if let Some(asker) = &mut self.asker {
+            return asker.candidates(block, n, t_max);
+        }
+        self.note();
+        self.calls.blocks.push(block);
+        let may_hit = |lane: &u32| self.query.hits[self.primitive(block, *lane) as usize] < t_max;
         (0..n).filter(may_hit).map(|lane| 1 << lane).sum()
     }
 
     fn hit(&mut self, block: u32, lane: u32, ray: &Ray) -> Option<PrimitiveHit> {
-        let primitive = self.query.tree.blocks[block as usize][lane as usize];
-        self.primitives.push(primitive);
+        if let Some(asker) = &mut self.asker {
+            return asker.hit_lane(block, lane, ray);
+        }
+        self.note();
+        let primitive = self.primitive(block, lane);
+        self.calls.primitives.push(primitive);
         let t = self.query.hits[primitive as usize];
-        ray.contains(t).then_some(PrimitiveHit { t, primitive })
+        let hit = ray.contains(t).then_some(PrimitiveHit { t, primitive });
+        self.has_hit |= hit.is_some();
+        hit
     }
 }

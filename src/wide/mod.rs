@@ -46,8 +46,9 @@ impl FlatNode {
     }
 }
 
-/// A binary bounding volume hierarchy in one array. Node 0 is the root; the two children of a node are neighbours, and the
-/// nodes below the first child come before those below the second (depth first). A tree over no primitives has no nodes.
+/// A binary bounding volume hierarchy in one array. Node 0 is the root, and a parent comes before its children. The two children
+/// of a node are neighbours, and the nodes below the first child come before those below the second (depth first). So there is
+/// one order of the nodes. A tree over no primitives has no nodes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlatTree {
     /// All nodes.

@@ -43,3 +43,7 @@ mod stage10 {
 mod stage11 {
     stage11_checks::tests!(solutions::Kit);
 }
+
+mod stage12 {
+    stage12_checks::tests!(solutions::Kit);
+}

@@ -4,9 +4,10 @@ use raykata::bvh::Probe;
 use raykata::kit::questions::{Call, Question, Response};
 use raykata::kit::{
     Answer, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, Costs, KitError, PacketProbe, PacketQuery,
-    Request, SearchQuery, ShadeQuery, ShadowProbe, TableProbe, kit_error,
+    Request, SearchQuery, ShadeQuery, ShadowProbe, TableProbe, WideQuery, WideTableProbe, kit_error,
 };
 use raykata::partition::Cells;
+use raykata::wide::WideProbe;
 
 /// The most calls of a query. A search that makes more does not end, and its calls would fill the memory of the judge.
 const MOST_CALLS: u32 = 1 << 20;
@@ -27,6 +28,7 @@ enum Kept<'a> {
     Cached(CellsProbe<'a>, &'a CachedQuery),
     Packet(PacketProbe<'a>),
     Shadows(ShadowProbe<'a>),
+    Wide(WideTableProbe<'a>),
 }
 
 /// Returns the request without its tables; `None` if it has none.
@@ -43,6 +45,15 @@ pub fn withheld(request: &Request) -> Option<Request> {
         };
         queries.iter().map(blank).collect()
     }
+    let wide = |queries: &[WideQuery]| -> Vec<WideQuery> {
+        let blank = |query: &WideQuery| WideQuery {
+            tree: query.tree.clone(),
+            ray: query.ray,
+            entries: vec![[f32::NAN; 8]; query.entries.len()],
+            hits: blank(&query.hits),
+        };
+        queries.iter().map(blank).collect()
+    };
     let without_tables = match request {
         Request::BruteForce(queries) => Request::BruteForce(search(queries)),
         Request::ClosestHitBoth(queries) => Request::ClosestHitBoth(search(queries)),
@@ -87,6 +98,8 @@ pub fn withheld(request: &Request) -> Option<Request> {
             };
             Request::Shade(queries.iter().map(blank).collect())
         }
+        Request::WideClosestHit(queries) => Request::WideClosestHit(wide(queries)),
+        Request::WideAnyHit(queries) => Request::WideAnyHit(wide(queries)),
         _ => return None,
     };
     Some(Request::Withheld(Box::new(without_tables)))
@@ -129,6 +142,9 @@ impl<'a> Withheld<'a> {
             Request::Shade(queries) => {
                 queries.iter().map(|query| Kept::Shadows(ShadowProbe::new(query))).collect()
             }
+            Request::WideClosestHit(queries) | Request::WideAnyHit(queries) => {
+                queries.iter().map(|query| Kept::Wide(WideTableProbe::new(query))).collect()
+            }
             _ => Vec::new(),
         };
         Withheld(probes.into_iter().map(|probe| Asked { n_calls: 0, probe }).collect())
@@ -167,6 +183,7 @@ impl<'a> Withheld<'a> {
                     answer.opened = probe.answer.opened;
                     answer.counts = probe.answer.counts;
                 }
+                (Costs::Wide(answer), Kept::Wide(probe)) => *answer = probe.answer(answer.hit, answer.found),
                 (Costs::Shade(answer), Kept::Shadows(probe)) => *answer = probe.finish(answer.color),
                 // An answer of another kind than its request is refused elsewhere.
                 _ => {}
@@ -190,6 +207,13 @@ impl Kept<'_> {
             (Kept::Cached(probe, query), Call::Search(ray)) => Response::Found(query.search(probe, &ray)),
             (Kept::Shadows(probe), Call::Visible(light, ray)) => {
                 Response::Visible(probe.visible(light as usize, &ray))
+            }
+            (Kept::Wide(probe), Call::EnterWide(node, t_max)) => Response::Entered(probe.enter(node, t_max)),
+            (Kept::Wide(probe), Call::Candidates(block, n, t_max)) => {
+                Response::Lanes(probe.candidates(block, n, t_max))
+            }
+            (Kept::Wide(probe), Call::HitLane(block, lane, ray)) => {
+                Response::Found(probe.hit(block, lane, &ray))
             }
             _ => other_kind(),
         }

@@ -19,6 +19,7 @@ pub const STAGES: &[(u8, &[Check])] = &[
     (9, stage9_checks::CHECKS),
     (10, stage10_checks::CHECKS),
     (11, stage11_checks::CHECKS),
+    (12, stage12_checks::CHECKS),
 ];
 
 /// The checks of a stage; an empty list if there is no such stage.

@@ -9,6 +9,7 @@ use raykata::kit::*;
 use raykata::mesh::Mesh;
 use raykata::partition::{Bsp, KdTree, Octree, PolygonBsp};
 use raykata::shape::{Cone, Cylinder, Plane, PlaneEquation, Sphere, Triangle};
+use raykata::wide::FlatTree;
 
 /// A kit that gets turned requests, and whose answers are turned back. Requests that are not listed in its `call`
 /// remain as they are.
@@ -56,7 +57,8 @@ impl Transport for TurnedKit<'_> {
             Reflect Scatter
             Cylinder Cone
             GridResolution OctreeBuild KdBuild BspBuild PolygonBspBuild CachedSearch PacketSearch
-            SafeNormalize;
+            SafeNormalize
+            BuildBinned WideClosestHit;
             GridSearch OctreeByCells OctreeByNeighbours OctreeSearch KdSearch BspSearch PolygonBspSearch
         }
     }
@@ -253,4 +255,20 @@ turn! {
         tables: query.tables.turn(symmetry),
     };
     |answer: PacketAnswer, symmetry| PacketAnswer { hits: answer.hits.turn(symmetry), ..answer.clone() };
+
+    |tree: FlatTree, symmetry| {
+        let mut tree = tree.clone();
+        for node in &mut tree.nodes {
+            let bounds = node.bounds().turn(symmetry);
+            (node.low, node.high) = (bounds.min, bounds.max);
+        }
+        tree
+    };
+    |query: WideQuery, symmetry| WideQuery {
+        tree: query.tree.clone(),
+        ray: query.ray.turn(symmetry),
+        entries: query.entries.iter().map(|entries| entries.map(|t| symmetry.length(t))).collect(),
+        hits: query.hits.turn(symmetry),
+    };
+    |answer: WideAnswer, symmetry| WideAnswer { hit: answer.hit.turn(symmetry), ..answer.clone() };
 }

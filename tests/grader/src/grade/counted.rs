@@ -43,6 +43,12 @@ fn raise_costs(answer: &mut Answer, lights: &[usize]) {
                 raise_list(&mut answer.opened);
                 raise_counts(&mut answer.counts);
             }
+            Costs::Wide(answer) => {
+                raise_list(&mut answer.nodes);
+                raise_list(&mut answer.blocks);
+                raise_list(&mut answer.primitives);
+                answer.calls_after_hit += 1;
+            }
             Costs::Shade(answer) => {
                 // Trace a shadow ray to every light, also where it cannot matter.
                 answer.traced.extend(0..lights.get(index).copied().unwrap_or(0));

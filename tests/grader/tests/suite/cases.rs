@@ -1,4 +1,4 @@
-//! Tests the catalogue of hard cases: there are 101, each with an existing check or test, or with a stage that does not
+//! Tests the catalogue of hard cases: there are 107, each with an existing check or test, or with a stage that does not
 //! exist yet.
 
 use grader::cases::read;
@@ -25,7 +25,7 @@ fn sources(folder: &Path) -> String {
 #[test]
 fn every_case_is_seen_to() {
     let cases = read(&root()).unwrap_or_else(|error| panic!("{error:#}"));
-    assert_eq!(cases.len(), 101);
+    assert_eq!(cases.len(), 107);
     let sources: String = ["src", "solutions/tests", "tests/grader/tests"]
         .iter()
         .map(|folder| sources(&root().join(folder)))

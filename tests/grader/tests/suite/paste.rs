@@ -54,7 +54,7 @@ fn crates() -> Vec<(String, String)> {
         ("tests/checks/all/src", "all_checks"),
     ];
     let stages =
-        (1..=11).map(|stage| (format!("tests/checks/stage{stage}/src"), format!("stage{stage}_checks")));
+        (1..=12).map(|stage| (format!("tests/checks/stage{stage}/src"), format!("stage{stage}_checks")));
     let named =
         shared.iter().chain(&PROGRAMS).map(|(folder, name)| ((*folder).to_owned(), (*name).to_owned()));
     named.chain(stages).collect()

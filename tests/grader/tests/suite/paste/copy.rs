@@ -30,7 +30,7 @@ pub fn copy(root: &Path, to: &Path, open: &[String]) {
 }
 
 fn stages() -> impl Iterator<Item = String> {
-    (1..=11).map(|stage| format!("stage{stage}"))
+    (1..=12).map(|stage| format!("stage{stage}"))
 }
 
 /// Builds the checks with the reference. Returns the path of the program that runs them.

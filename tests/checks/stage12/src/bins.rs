@@ -1,0 +1,263 @@
+//! `fill_bins`, and the bin of a primitive.
+
+use checks::Trial;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare_formulas;
+use checks::nasty;
+use glam::Vec3;
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::kit::BinsQuery;
+use raykata::wide::{BinGrid, Bins, BoxA, MAX_BINS, PrimitiveBox};
+
+/// The ways in which the bin of a primitive is computed wrongly.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Rounding {
+    Right,
+    Nearest,
+    Up,
+    OfCentroid,
+    OfLow,
+    NanLast,
+    OfAxis(usize),
+}
+
+pub(super) const ROUNDINGS: [(Rounding, &str); 6] = [
+    (Rounding::Nearest, "the bin is rounded to the nearest one: round down"),
+    (Rounding::Up, "the bin is rounded up: round down"),
+    (Rounding::OfCentroid, "the grid is that of twice the centroids: do not halve them"),
+    (Rounding::OfLow, "the bin is that of the low corner of the box: take twice the centroid"),
+    (Rounding::NanLast, "a NaN counts as bin 0"),
+    (Rounding::OfAxis(0), "the same coordinate is used on all axes"),
+];
+
+/// The number of the bin along an axis, by the definition or by a wrong one.
+pub(super) fn bin_of(primitive: &PrimitiveBox, grid: &BinGrid, axis: usize, rounding: Rounding) -> usize {
+    let last = grid.n_bins as usize - 1;
+    let from = if let Rounding::OfAxis(axis) = rounding { axis } else { axis };
+    let at = match rounding {
+        Rounding::OfCentroid => 0.5 * primitive.twice_centroid()[from],
+        Rounding::OfLow => primitive.low()[from],
+        _ => primitive.twice_centroid()[from],
+    };
+    let place = (at - grid.low[from]) * grid.scale[from];
+    let place = match rounding {
+        Rounding::Nearest => place.round(),
+        Rounding::Up => place.ceil(),
+        Rounding::NanLast if place.is_nan() => f32::INFINITY,
+        _ => place,
+    };
+    // The first comparison is false for a NaN.
+    if place >= last as f32 {
+        last
+    } else if place >= 1.0 {
+        place as usize
+    } else {
+        0
+    }
+}
+
+/// Boxes: of whole eighths, with full mantissas, empty, and with NaN.
+fn any_box() -> impl Strategy<Value = Aabb> + Clone {
+    let cube = |low: Vec3, size: f32| Aabb::new(low, low + size);
+    prop_oneof![
+        4 => (nasty::lattice(6), 0..=3i32).prop_map(move |(low, size)| cube(low, size as f32)),
+        4 => (checks::generate::rough_point(6.0), 0..=3i32).prop_map(move |(low, size)| cube(low, size as f32 / 3.0)),
+        1 => Just(Aabb::EMPTY),
+        1 => (nasty::lattice(6), 0..3usize).prop_map(move |(low, axis)| {
+            let mut bounds = cube(low, 1.0);
+            bounds.max[axis] = f32::NAN;
+            bounds
+        }),
+    ]
+}
+
+/// Boxes without NaN that are not empty.
+fn ordinary_box() -> impl Strategy<Value = Aabb> + Clone {
+    (checks::generate::rough_point(6.0), 1..=8i32)
+        .prop_map(|(low, size)| Aabb::new(low, low + size as f32 / 3.0))
+}
+
+/// The primitives with these boxes. Their numbers are not their places.
+pub(super) fn primitives(boxes: &[Aabb]) -> Vec<PrimitiveBox> {
+    let n = boxes.len() as u32;
+    (0..n).zip(boxes).map(|(i, bounds)| PrimitiveBox::new(3 * n - 2 * i, bounds)).collect()
+}
+
+/// The grid over the centroids of ordinary primitives; all in one bin if there are none.
+pub(super) fn grid_over(primitives: &[PrimitiveBox], n_bins: u32) -> BinGrid {
+    let all = |fold: fn(f32, f32) -> f32, start: f32| {
+        Vec3::from_array([0, 1, 2].map(|axis| {
+            primitives.iter().map(|p| p.twice_centroid()[axis]).filter(|at| at.is_finite()).fold(start, fold)
+        }))
+    };
+    let (low, high) = (all(f32::min, f32::INFINITY), all(f32::max, f32::NEG_INFINITY));
+    let scale = (high - low).map(|extent| if extent > 0.0 { 0.999_99 * n_bins as f32 / extent } else { 0.0 });
+    let low = low.map(|low| if low.is_finite() { low } else { 0.0 });
+    BinGrid { low: low.into(), scale: scale.into(), n_bins }
+}
+
+/// A grid over the centroids, or one that leaves centroids outside, or on the bounds between bins.
+pub(super) fn grids(primitives: &[PrimitiveBox], kind: u8, n_bins: u32) -> BinGrid {
+    let over = grid_over(primitives, n_bins);
+    match kind {
+        0 | 1 => over,
+        2 => BinGrid { low: Vec3::ZERO.into(), scale: Vec3::ONE.into(), n_bins },
+        3 => {
+            BinGrid { low: Vec3::new(-2.0, 0.0, 2.0).into(), scale: Vec3::new(0.5, 1.0, 0.25).into(), n_bins }
+        }
+        4 => BinGrid { scale: Vec3::new(over.scale.x, 0.0, over.scale.z).into(), ..over },
+        _ => BinGrid { scale: over.scale * 3.0, ..over },
+    }
+}
+
+pub(super) fn n_bins() -> impl Strategy<Value = u32> + Clone {
+    prop::sample::select(vec![16u32, 2, 3, 5, 8, 13])
+}
+
+fn ordinary() -> impl Strategy<Value = BinsQuery> + Clone {
+    (prop::collection::vec(ordinary_box(), 0..24), n_bins()).prop_map(|(boxes, n_bins)| {
+        let primitives = primitives(&boxes);
+        BinsQuery { grid: grid_over(&primitives, n_bins), primitives }
+    })
+}
+
+fn special() -> impl Strategy<Value = BinsQuery> + Clone {
+    (prop::collection::vec(any_box(), 0..24), n_bins(), 0..=5u8).prop_map(|(boxes, n_bins, kind)| {
+        let primitives = primitives(&boxes);
+        BinsQuery { grid: grids(&primitives, kind, n_bins), primitives }
+    })
+}
+
+/// The primitives in one bin.
+fn members(query: &BinsQuery, axis: usize, bin: usize, rounding: Rounding) -> Vec<&PrimitiveBox> {
+    let is_in = |primitive: &&PrimitiveBox| bin_of(primitive, &query.grid, axis, rounding) == bin;
+    query.primitives.iter().filter(is_in).collect()
+}
+
+/// The box around some primitives.
+fn around(members: &[&PrimitiveBox]) -> BoxA {
+    members
+        .iter()
+        .fold(BoxA::EMPTY, |all, one| BoxA { low: all.low.min(one.low()), high: all.high.max(one.high()) })
+}
+
+/// All bins by axis and number.
+fn all_bins() -> impl Iterator<Item = (usize, usize)> {
+    (0..3).flat_map(|axis| (0..MAX_BINS).map(move |bin| (axis, bin)))
+}
+
+fn input(query: &BinsQuery) -> String {
+    let boxes: Vec<String> = query
+        .primitives
+        .iter()
+        .map(|p| format!("{:?}..{:?}", Vec3::from(p.low()).to_array(), Vec3::from(p.high()).to_array()))
+        .collect();
+    let BinGrid { low, scale, n_bins } = query.grid;
+    format!("fill_bins of [{}]\nwith low {low:?}, scale {scale:?}, {n_bins} bins", boxes.join(", "))
+}
+
+/// The mistakes of a bin's number that give exactly these counts.
+fn wrong_numbers(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
+    let gives = |rounding| {
+        all_bins()
+            .all(|(axis, bin)| yours.0[axis][bin].count as usize == members(query, axis, bin, rounding).len())
+    };
+    let once = all_bins().all(|(axis, bin)| axis == 0 || yours.0[axis][bin].count == 0);
+    let mut mistakes: Vec<_> = ROUNDINGS.map(|(rounding, text)| (gives(rounding), text)).to_vec();
+    mistakes.push((once, "the bins of the axes y and z stay empty"));
+    mistakes
+}
+
+fn judge_counts(query: &BinsQuery, yours: &Bins) -> CheckResult {
+    for (axis, bin) in all_bins() {
+        let expected = members(query, axis, bin, Rounding::Right).len();
+        let count = yours.0[axis][bin].count as usize;
+        if count != expected {
+            let of = |n: usize| format!("{n} primitives in bin {bin} of axis {axis}");
+            return Err(Broken::with_texts(input(query), of(count), of(expected), "counted").explained_by([]));
+        }
+    }
+    Ok(())
+}
+
+fn judge_boxes(query: &BinsQuery, yours: &Bins) -> CheckResult {
+    for (axis, bin) in all_bins() {
+        let (expected, mine) =
+            (around(&members(query, axis, bin, Rounding::Right)), yours.0[axis][bin].bounds);
+        if mine != expected {
+            let of =
+                |bounds: BoxA| format!("{:?}..{:?} in bin {bin} of axis {axis}", bounds.low, bounds.high);
+            return Err(Broken::with_texts(
+                input(query),
+                of(mine),
+                of(expected),
+                "the box around its primitives",
+            )
+            .explained_by([]));
+        }
+    }
+    Ok(())
+}
+
+/// The mistakes of a bin's box that give exactly these boxes.
+fn wrong_boxes(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
+    let gives = |bounds: &dyn Fn(&[&PrimitiveBox]) -> BoxA| {
+        all_bins().all(|(axis, bin)| {
+            yours.0[axis][bin].bounds == bounds(&members(query, axis, bin, Rounding::Right))
+        })
+    };
+    let last = |members: &[&PrimitiveBox]| members.last().map_or(BoxA::EMPTY, |last| around(&[last]));
+    let centroids = |members: &[&PrimitiveBox]| {
+        members.iter().fold(BoxA::EMPTY, |all, one| {
+            let at = one.twice_centroid();
+            BoxA { low: all.low.min(at), high: all.high.max(at) }
+        })
+    };
+    let from_origin = |members: &[&PrimitiveBox]| {
+        let all = around(members);
+        BoxA { low: all.low.min(glam::Vec3A::ZERO), high: all.high.max(glam::Vec3A::ZERO) }
+    };
+    vec![
+        (gives(&last), "the box of a bin is that of its last primitive: take the union"),
+        (gives(&centroids), "the box of a bin is that of the centroids: take the boxes of the primitives"),
+        (gives(&from_origin), "the boxes start at the origin: start with the empty box, Bin::EMPTY"),
+        (gives(&|_| BoxA::EMPTY), "the boxes stay empty"),
+    ]
+}
+
+fn ask(trial: &Trial<'_>, queries: &[BinsQuery]) -> Vec<Bins> {
+    trial.kit.fill_bins(queries).into_iter().map(|bins| *bins).collect()
+}
+
+pub(super) fn fill_bins_counts_every_primitive(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(300, ordinary(), |queries| {
+        compare_formulas(
+            queries,
+            ask(trial, queries),
+            |query, yours| judge_counts(query, &yours),
+            wrong_numbers,
+        )
+    })
+}
+
+pub(super) fn fill_bins_boxes_hold_their_primitives(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(300, ordinary(), |queries| {
+        compare_formulas(queries, ask(trial, queries), |query, yours| judge_boxes(query, &yours), wrong_boxes)
+    })
+}
+
+pub(super) fn fill_bins_takes_special_numbers(trial: &Trial<'_>) -> CheckResult {
+    // First test one ordinary primitive, so that no panic of a special one hides what is wrong.
+    let one = primitives(&[Aabb::new(Vec3::ZERO, Vec3::ONE)]);
+    let simple = [BinsQuery { grid: grid_over(&one, 4), primitives: one }];
+    all_hold(
+        simple.iter().zip(ask(trial, &simple)).map(|(query, yours)| judge_counts(query, &yours)).collect(),
+    )?;
+    trial.forall(400, special(), |queries| {
+        let judge = |query: &BinsQuery, yours: Bins| {
+            judge_counts(query, &yours).and_then(|()| judge_boxes(query, &yours))
+        };
+        compare_formulas(queries, ask(trial, queries), judge, wrong_numbers)
+    })
+}

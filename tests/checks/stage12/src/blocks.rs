@@ -1,0 +1,291 @@
+//! `may_hit`: it keeps every triangle that may be hit, and rejects nearly all others.
+
+use checks::Trial;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
+use checks::paste::Paste;
+use glam::Vec3;
+use oracle::STABLE;
+use oracle::exact::{Body, meet, triangle};
+use oracle::gauntlet::distributions::DISTRIBUTIONS;
+use oracle::gauntlet::families::families;
+use oracle::gauntlet::leaks::{Aim, aimed};
+use oracle::gauntlet::meshes::{Closed, closed};
+use oracle::splitmix::Random;
+use raykata::kit::BlockQuery;
+use raykata::ray::Ray;
+use raykata::shape::Triangle;
+use raykata::wide::{BLOCK, LARGEST, NO_PRIMITIVE, TriangleBlock};
+
+/// A block of triangles, and a ray.
+struct Four {
+    triangles: Vec<Triangle>,
+    ray: Ray,
+}
+
+impl Four {
+    /// The query; `None` if a coordinate of the ray is so large that frames do not ask.
+    fn query(&self) -> Option<BlockQuery> {
+        let largest = self.ray.origin.abs().max(self.ray.direction.abs()).max_element();
+        let ids =
+            std::array::from_fn(|lane| if lane < self.triangles.len() { lane as u32 } else { NO_PRIMITIVE });
+        let block = TriangleBlock::new(ids, |id| self.triangles.get(id as usize).copied());
+        (largest <= LARGEST).then(|| BlockQuery { block: Box::new(block), ray: self.ray })
+    }
+}
+
+/// The exact `t` of a hit within the range of the ray, rounded once.
+fn exact(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+    let line = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+    meet(&line, Body::Triangle(*triangle))?.t.filter(|&t| ray.contains(t))
+}
+
+/// The causes that a rejected hit can prove.
+fn causes(ray: &Ray, triangle: &Triangle, t: f32) -> [(bool, &'static str); 5] {
+    let Triangle { a, b, c } = triangle;
+    let normal = (*b - *a).as_dvec3().cross((*c - *a).as_dvec3());
+    let slope = normal.dot(ray.direction.as_dvec3()).abs();
+    let edge_on = slope <= 1e-5 * normal.length() * ray.direction.as_dvec3().length();
+    let size = (*b - *a).abs().max((*c - *a).abs()).max_element();
+    let is_far = (*a - ray.origin).abs().max_element() > 1e3 * size;
+    let clear = triangle::margin(ray, triangle).is_some_and(|margin| margin > STABLE);
+    let at_end = t >= ray.t_max.next_down().next_down() || t <= ray.t_min.next_up().next_up();
+    [
+        (
+            edge_on,
+            "the triangle is seen edge-on: where d·n is smaller than its error, neither its sign nor that of t is known",
+        ),
+        (
+            at_end && clear,
+            "the hit is at an end of the range: reject it only if it is beyond the end by more than its error",
+        ),
+        (
+            is_far && !clear,
+            "rounding errors decide here, and they grow with the distance of the triangle, not with its size",
+        ),
+        (!clear, "rounding errors decide here: reject only if both numbers are larger than their errors"),
+        (clear, "no rounding decides here: the signs of U, V, W or t are wrong"),
+    ]
+}
+
+/// Judges the lanes of one block: none that is hit may be rejected.
+fn judge_hits(four: &Four, mask: u32) -> CheckResult {
+    if mask >> BLOCK != 0 {
+        return Err(
+            Broken::new("may_hit", format!("{mask:#x}"), "four bits", "the definition").explained_by([])
+        );
+    }
+    for (lane, triangle) in four.triangles.iter().enumerate() {
+        let Some(t) = exact(&four.ray, triangle) else { continue };
+        if mask >> lane & 1 == 0 {
+            let input = format!("may_hit of {}, lane {lane}: {}", four.ray.paste(), triangle.paste());
+            let broken =
+                Broken::with_texts(input, "rejected", format!("kept: it is hit at t = {t:?}"), "exactly");
+            return Err(broken.explained_by(causes(&four.ray, triangle, t)));
+        }
+    }
+    Ok(())
+}
+
+fn judge_all(trial: &Trial<'_>, drawn: Vec<Four>) -> CheckResult {
+    let (drawn, queries): (Vec<Four>, Vec<BlockQuery>) =
+        drawn.into_iter().filter_map(|four| four.query().map(|query| (four, query))).unzip();
+    all_hold(compare(&drawn, trial.kit.may_hit(&queries), judge_hits))
+}
+
+pub(super) fn may_hit_keeps_what_is_hit(trial: &Trial<'_>) -> CheckResult {
+    for (index, distribution) in DISTRIBUTIONS.iter().enumerate() {
+        let mut random = Random::new(trial.seed, 30 + index as u64);
+        let drawn = (0..250).map(|_| {
+            let (ray, first) = (distribution.draw)(&mut random);
+            let triangles =
+                [vec![first], (0..3).map(|_| (distribution.draw)(&mut random).1).collect()].concat();
+            Four { triangles, ray: Ray { t_min: ray.t_min.max(0.0), ..ray } }
+        });
+        judge_all(trial, drawn.collect())?;
+    }
+    Ok(())
+}
+
+pub(super) fn may_hit_keeps_hits_at_the_ends_of_the_range(trial: &Trial<'_>) -> CheckResult {
+    for (index, distribution) in DISTRIBUTIONS.iter().enumerate() {
+        let mut random = Random::new(trial.seed, 50 + index as u64);
+        let mut drawn = Vec::new();
+        for _ in 0..300 {
+            let (ray, first) = (distribution.draw)(&mut random);
+            let Some(t) = exact(&Ray::new(ray.origin, ray.direction), &first) else { continue };
+            // The range begins one float before the hit, or ends one float behind it.
+            let (t_min, t_max) = match random.below(3) {
+                0 => (t.next_down().max(0.0), f32::INFINITY),
+                1 => (0.0, t.next_up()),
+                _ => (t.next_down().max(0.0), t.next_up()),
+            };
+            let ray = Ray::new(ray.origin, ray.direction).with_range(t_min, t_max);
+            drawn.push(Four { triangles: vec![first; 1 + random.below(4) as usize], ray });
+        }
+        judge_all(trial, drawn)?;
+    }
+    Ok(())
+}
+
+/// Rays from inside closed meshes, each with the triangles around the vertex near which it should hit.
+fn aimed_fours(trial: &Trial<'_>, mesh: &Closed, index: u64) -> Vec<Four> {
+    let mut random = Random::new(trial.seed, 70 + index);
+    let mut drawn = Vec::new();
+    for n in 0..60 {
+        let (ray, vertex) = aimed(mesh, Aim::ALL[n % 2], &mut random);
+        let fan: Vec<Triangle> =
+            mesh.fans[vertex as usize].iter().map(|&index| mesh.triangle(index)).collect();
+        drawn.extend(fan.chunks(BLOCK).map(|part| Four { triangles: part.to_vec(), ray }));
+    }
+    drawn
+}
+
+pub(super) fn may_hit_loses_no_ray_at_an_edge(trial: &Trial<'_>) -> CheckResult {
+    let meshes = closed().into_iter().chain(families());
+    meshes.zip(0..).try_for_each(|(mesh, index)| judge_all(trial, aimed_fours(trial, &mesh, index)))
+}
+
+pub(super) fn may_hit_of_any_size(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 90);
+    let mut drawn = Vec::new();
+    for _ in 0..3000 {
+        // Scales up to LARGEST, down to where products of three lengths underflow, and triangles far from the origin.
+        let scale = 2f32.powi(random.below(161) as i32 - 121);
+        let place = [0.0, 1.0, 1e3, 1e6][random.below(4) as usize] * random.in_cube();
+        let corner = |random: &mut Random| scale * (place + random.in_cube());
+        let [a, b, c] = [(); 3].map(|()| corner(&mut random));
+        let origin = scale * (place + 4.0 * random.in_cube());
+        let target = a.lerp(b, random.unit()).lerp(c, [0.0, 0.5][random.below(2) as usize] * random.unit());
+        let way = target - origin;
+        let direction = if random.below(2) == 0 { way } else { way.as_dvec3().normalize_or_zero().as_vec3() };
+        if direction != Vec3::ZERO {
+            drawn.push(Four { triangles: vec![Triangle { a, b, c }; 2], ray: Ray::new(origin, direction) });
+        }
+    }
+    judge_all(trial, drawn)
+}
+
+pub(super) fn may_hit_keeps_lanes_without_a_triangle(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 91);
+    let mut drawn = Vec::new();
+    for _ in 0..300 {
+        let n = random.below(4) as usize;
+        let mut corner = || 0.5 * random.in_cube();
+        let mut triangles: Vec<Triangle> =
+            (0..n).map(|_| Triangle { a: corner(), b: corner(), c: corner() }).collect();
+        // A triangle with too large a coordinate gets NaN, like another shape.
+        triangles.insert(0, Triangle { a: Vec3::splat(4.0 * LARGEST), b: Vec3::X, c: Vec3::Y });
+        drawn.push(Four { triangles, ray: Ray::new(4.0 * random.direction(), random.direction()) });
+    }
+    let (drawn, queries): (Vec<Four>, Vec<BlockQuery>) =
+        drawn.into_iter().filter_map(|four| four.query().map(|query| (four, query))).unzip();
+    let without =
+        |query: &BlockQuery| (0..BLOCK).filter(|&lane| query.block.size[lane].is_nan()).collect::<Vec<_>>();
+    let masks = trial.kit.may_hit(&queries);
+    // Some lane with a triangle must be rejected, because 15 is no answer to every question.
+    let rejected = masks
+        .iter()
+        .zip(&drawn)
+        .filter(|(mask, four)| mask.count_ones() < 4 && four.triangles.len() > 1)
+        .count();
+    let judge = |query: &BlockQuery, mask: u32| {
+        let lost = without(query).into_iter().find(|lane| mask >> lane & 1 == 0);
+        let Some(lane) = lost else { return Ok(()) };
+        let input = format!("may_hit of {}, lane {lane} with NaN", query.ray.paste());
+        Err(Broken::with_texts(input, "rejected", "kept", "the definition").explained_by([(
+            true,
+            "a lane with NaN is rejected: it holds another shape. A comparison with NaN is false, so reject where a comparison is true",
+        )]))
+    };
+    all_hold(compare(&queries, masks, judge))?;
+    if rejected == 0 {
+        let broken =
+            Broken::new("may_hit of 300 blocks", "all triangles kept", "misses rejected", "the definition");
+        return Err(broken.explained_by([(true, "nothing is rejected, so each triangle is tested again")]));
+    }
+    Ok(())
+}
+
+/// The share of sure misses that must be rejected.
+const REJECTED: f64 = 0.99;
+
+/// Judges the share of sure misses that are rejected, and that hits are kept.
+fn judge_share(trial: &Trial<'_>, what: &str, drawn: &[Four], cause: &'static str) -> CheckResult {
+    let queries: Vec<BlockQuery> = drawn.iter().filter_map(Four::query).collect();
+    let masks = trial.kit.may_hit(&queries);
+    all_hold(compare(drawn, masks.clone(), judge_hits))?;
+    let (mut misses, mut rejected, mut n_hits) = (0, 0, 0);
+    for (four, mask) in drawn.iter().zip(masks) {
+        for (lane, triangle) in four.triangles.iter().enumerate() {
+            if exact(&four.ray, triangle).is_some() {
+                n_hits += 1;
+            } else {
+                misses += 1;
+                rejected += usize::from(mask >> lane & 1 == 0);
+            }
+        }
+    }
+    assert!(n_hits > 100 && misses > 100, "{what}: {n_hits} hits, {misses} misses");
+    if rejected as f64 >= REJECTED * misses as f64 {
+        return Ok(());
+    }
+    let input = format!("may_hit of {} blocks: {what}", drawn.len());
+    let yours = format!("{rejected} of {misses} misses are rejected");
+    Err(Broken::with_texts(input, yours, format!("at least {:.0} %", 100.0 * REJECTED), "exactly")
+        .explained_by([(2 * rejected < misses, cause)]))
+}
+
+pub(super) fn may_hit_rejects_rays_beside_a_triangle(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 92);
+    // Small triangles in a cube, seen from two units away.
+    let drawn: Vec<Four> = (0..3000)
+        .map(|_| {
+            let triangles = (0..4).map(|_| {
+                let [a, b, c] = [(); 3].map(|()| 0.1 * random.in_cube());
+                Triangle { a, b, c }
+            });
+            let triangles = triangles.collect();
+            let origin = 2.0 * random.direction();
+            Four { triangles, ray: Ray::new(origin, 0.1 * random.in_cube() - origin) }
+        })
+        .collect();
+    judge_share(
+        trial,
+        "triangles beside which the ray passes",
+        &drawn,
+        "most misses are kept: if two of U, V, W have different signs for certain, the ray misses",
+    )
+}
+
+pub(super) fn may_hit_rejects_hits_outside_of_the_range(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 93);
+    // Rays aimed at the middle of triangles, of which half begin behind the triangle, end before it, or point away.
+    let drawn: Vec<Four> = (0..2000)
+        .map(|_| {
+            let place = 2.0 * random.direction();
+            let triangles: Vec<Triangle> = (0..4)
+                .map(|_| {
+                    let [a, b, c] = [(); 3].map(|()| place + random.in_cube());
+                    // Move the triangle such that its centre is at `place`.
+                    let shift = place - (a + b + c) / 3.0;
+                    Triangle { a: a + shift, b: b + shift, c: c + shift }
+                })
+                .collect();
+            let ray = Ray::new(Vec3::ZERO, place);
+            let ray = match random.below(6) {
+                0 => Ray::new(Vec3::ZERO, -place),
+                1 => ray.with_range(0.0, 0.5 + 0.4 * random.unit()),
+                2 => ray.with_range(1.1 + random.unit(), f32::INFINITY),
+                _ => ray,
+            };
+            Four { triangles, ray }
+        })
+        .collect();
+    judge_share(
+        trial,
+        "triangles in the line of the ray, outside of its range",
+        &drawn,
+        "most hits outside of the range are kept: compare t with t_min and t_max",
+    )
+}

@@ -1,0 +1,330 @@
+//! `build_binned`.
+
+use super::bars::SWEEP_COSTS;
+use super::scenes::scenes;
+use super::trees::{boxes, cost, depth, fault};
+use checks::Trial;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
+use checks::tree::around;
+use glam::{Vec3, vec3};
+use oracle::splitmix::Random;
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::bvh::DEEPEST_SPLIT;
+use raykata::kit::{KitError, kit_error};
+use raykata::wide::{BLOCK, FlatTree};
+
+const MISSING: &str = "the nodes of a tree without faults";
+
+pub(super) fn describe(boxes: &[Aabb]) -> String {
+    let shown: Vec<String> =
+        boxes.iter().take(6).map(|b| format!("{:?}..{:?}", b.min.to_array(), b.max.to_array())).collect();
+    let more = if boxes.len() > 6 { format!(" and {} more", boxes.len() - 6) } else { String::new() };
+    format!("build_binned of {} boxes: {}{more}", boxes.len(), shown.join(", "))
+}
+
+/// Judges a tree by its layout and its boxes.
+pub(super) fn judge_tree(boxes: &[Aabb], tree: &FlatTree) -> CheckResult {
+    match fault(tree, boxes) {
+        None => Ok(()),
+        Some((yours, expected, cause)) => {
+            let broken = Broken::with_texts(describe(boxes), yours, expected, MISSING);
+            Err(broken.explained_by(cause.map(|text| (true, text))))
+        }
+    }
+}
+
+pub(super) fn build_binned_holds_every_primitive_once(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(300, boxes(60), |sets| {
+        compare(sets, trial.kit.build_binned(sets), |boxes, tree| judge_tree(boxes, &tree))
+    })
+}
+
+/// The boxes below each node of a tree without faults: the smallest box around the boxes of its primitives.
+fn tight(boxes: &[Aabb], tree: &FlatTree) -> Vec<Aabb> {
+    let mut tight = vec![Aabb::EMPTY; tree.nodes.len()];
+    // Children come after their parents.
+    for (index, node) in tree.nodes.iter().enumerate().rev() {
+        let first = node.first as usize;
+        tight[index] = if node.is_leaf() {
+            let ids = &tree.order[first..first + node.count as usize];
+            around(ids.iter().map(|&id| &boxes[id as usize]).filter(|bounds| !bounds.is_empty()))
+        } else {
+            around([&tight[first], &tight[first + 1]])
+        };
+    }
+    tight
+}
+
+fn judge_tight(boxes: &[Aabb], tree: &FlatTree) -> CheckResult {
+    judge_tree(boxes, tree)?;
+    let tight = tight(boxes, tree);
+    for (index, (node, expected)) in tree.nodes.iter().zip(&tight).enumerate() {
+        let yours = node.bounds();
+        if yours == *expected || yours.is_empty() && expected.is_empty() {
+            continue;
+        }
+        let has_origin = yours == around([expected, &Aabb::new(Vec3::ZERO, Vec3::ZERO)]);
+        let of = |bounds: &Aabb| format!("{:?}..{:?} for node {index}", bounds.min, bounds.max);
+        let broken =
+            Broken::with_texts(describe(boxes), of(&yours), of(expected), "the box around its primitives");
+        return Err(broken.explained_by([
+            (has_origin, "the boxes contain the origin: start with the empty box, BoxA::EMPTY"),
+            (index > 0 && yours == tree.nodes[0].bounds(), "every node has the box of the root"),
+        ]));
+    }
+    Ok(())
+}
+
+pub(super) fn build_binned_boxes_are_tight(trial: &Trial<'_>) -> CheckResult {
+    // Boxes away from the origin, of which some are flat.
+    let moved = boxes(40).prop_map(|boxes| {
+        let shift = Vec3::splat(20.0);
+        boxes.iter().map(|one| Aabb::new(one.min + shift, one.max + shift)).collect::<Vec<_>>()
+    });
+    trial.forall(200, moved, |sets| {
+        compare(sets, trial.kit.build_binned(sets), |boxes, tree| judge_tight(boxes, &tree))
+    })
+}
+
+/// A set of boxes with the sizes of the leaves that its tree must have, and the mistakes that give other ones.
+struct Choice {
+    what: &'static str,
+    boxes: Vec<Aabb>,
+    leaves: Vec<u32>,
+    /// Each mistake with the leaves that it gives.
+    mistakes: Vec<(Other, &'static str)>,
+}
+
+/// Other leaves than the right ones.
+enum Other {
+    Sizes(Vec<u32>),
+    More,
+    Fewer,
+}
+
+const BY_PRIMITIVES: &str = "the costs count single primitives: a leaf pays for whole blocks, block_cost";
+const WITHOUT_NODE_COST: &str = "NODE_COST is left out: visiting a node costs something, too";
+const ALWAYS_SPLIT: &str = "a node is split although a leaf is not more expensive";
+const NEVER_SPLIT: &str = "a node becomes a leaf although a split is cheaper";
+const BELOW_BLOCK: &str = "a node of at most BLOCK primitives becomes a leaf";
+
+/// The cases in which a leaf, or a split, is cheaper by at least a hundredth of the cost of the leaf.
+fn choices(random: &mut Random) -> Vec<Choice> {
+    use Other::{Fewer, More, Sizes};
+    // Bars along x from 0 to `length`, or from 1 - `length` to 1, whose ends differ by up to a thousandth.
+    let mut bars = |n: usize, length: f32, from_right: bool| -> Vec<Aabb> {
+        let bar = |_| {
+            let end = length - 1e-3 * random.unit();
+            let (low, high) = if from_right { (1.0 - end, 1.0) } else { (0.0, end) };
+            Aabb::new(vec3(low, 0.0, 0.0), vec3(high, 1.0, 1.0))
+        };
+        (0..n).map(bar).collect()
+    };
+    let mut pair = |n: usize, m: usize, length: f32| [bars(n, length, false), bars(m, length, true)].concat();
+    let bar = |length: f32| Aabb::new(Vec3::ZERO, vec3(length, 1.0, 1.0));
+    // Half the surface area of a bar is 1 + 2 · length, and that of all is 3. Mistakes are listed in the order of `known`.
+    vec![
+        Choice {
+            what: "two groups of four that are far apart",
+            boxes: pair(4, 4, 0.2),
+            leaves: vec![4, 4],
+            mistakes: vec![(Fewer, NEVER_SPLIT), (More, BELOW_BLOCK)],
+        },
+        Choice {
+            what: "four boxes at one end and one at the other",
+            boxes: pair(4, 1, 0.1),
+            leaves: vec![1, 4],
+            mistakes: vec![(Fewer, NEVER_SPLIT), (More, BELOW_BLOCK)],
+        },
+        Choice {
+            // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.75. By primitives 6 · 3 and 0.25 · 3 + 6 · 2.75.
+            what: "two groups of three that overlap by three quarters",
+            boxes: pair(3, 3, 0.875),
+            leaves: vec![6],
+            mistakes: vec![
+                (Sizes(vec![3, 3]), BY_PRIMITIVES),
+                (Sizes(vec![3, 3]), WITHOUT_NODE_COST),
+                (More, ALWAYS_SPLIT),
+                (More, BELOW_BLOCK),
+            ],
+        },
+        Choice {
+            // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.85. By primitives 8 · 3 and 0.25 · 3 + 8 · 2.85.
+            what: "two groups of four that overlap nearly",
+            boxes: pair(4, 4, 0.925),
+            leaves: vec![8],
+            mistakes: vec![
+                (Sizes(vec![4, 4]), BY_PRIMITIVES),
+                (Sizes(vec![4, 4]), WITHOUT_NODE_COST),
+                (More, ALWAYS_SPLIT),
+            ],
+        },
+        Choice {
+            // As a leaf 8 · 3; split 0.25 · 3 + 8 · 2.99 at best.
+            what: "two groups of 16 that overlap but for a hundredth",
+            boxes: pair(16, 16, 0.995),
+            leaves: vec![32],
+            mistakes: vec![(More, WITHOUT_NODE_COST), (More, ALWAYS_SPLIT)],
+        },
+        Choice {
+            // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.91 + 3, because bins do not separate the five.
+            what: "five equal boxes in a larger one",
+            boxes: [vec![bar(0.955); 5], vec![bar(1.0)]].concat(),
+            leaves: vec![6],
+            mistakes: vec![(More, ALWAYS_SPLIT)],
+        },
+        Choice {
+            what: "four boxes that are far apart",
+            boxes: [0.0, 1.0, 2.0, 3.0]
+                .map(|x| Aabb::new(Vec3::splat(9.0 * x), Vec3::splat(9.0 * x + 1.0)))
+                .to_vec(),
+            leaves: vec![4],
+            mistakes: vec![(More, BELOW_BLOCK)],
+        },
+    ]
+}
+
+pub(super) fn build_binned_makes_leaves_that_pay(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 20);
+    let choices = choices(&mut random);
+    let sets: Vec<Vec<Aabb>> = choices.iter().map(|choice| choice.boxes.clone()).collect();
+    let answers = trial.kit.build_binned(&sets);
+    all_hold(compare(&choices, answers, |choice, tree| {
+        judge_tree(&choice.boxes, &tree)?;
+        let mut sizes: Vec<u32> =
+            tree.nodes.iter().filter(|node| node.is_leaf()).map(|node| node.count).collect();
+        sizes.sort_unstable();
+        if sizes == choice.leaves {
+            return Ok(());
+        }
+        let [yours, expected] = [&sizes, &choice.leaves].map(|sizes| format!("leaves of {sizes:?}"));
+        // Every mistake is listed for every set, in the same order.
+        let known = [BY_PRIMITIVES, WITHOUT_NODE_COST, BELOW_BLOCK, ALWAYS_SPLIT, NEVER_SPLIT];
+        let gives = |other: &Other| match other {
+            Other::Sizes(given) => *given == sizes,
+            Other::More => sizes.len() > choice.leaves.len(),
+            Other::Fewer => sizes.len() < choice.leaves.len(),
+        };
+        let mistakes =
+            known.map(|text| (choice.mistakes.iter().any(|(other, of)| *of == text && gives(other)), text));
+        let input = format!("build_binned of {}", choice.what);
+        Err(Broken::with_texts(input, yours, expected, "NODE_COST and block_cost").explained_by(mistakes))
+    }))
+}
+
+pub(super) fn build_binned_costs_little_more_than_a_sweep(trial: &Trial<'_>) -> CheckResult {
+    for ((name, boxes), (of, sweep)) in scenes().into_iter().zip(SWEEP_COSTS) {
+        assert_eq!(name, of, "the bars are in the order of the scenes");
+        let tree = trial.kit.build_binned(std::slice::from_ref(&boxes)).remove(0);
+        judge_tree(&boxes, &tree)?;
+        let yours = cost(&tree);
+        if yours > 1.05 * sweep {
+            let input = format!("build_binned of {} boxes: {name}", boxes.len());
+            let (yours, most) = (
+                format!("cost {yours:.3}"),
+                format!("at most {:.3}, 1.05 times that of a sweep", 1.05 * sweep),
+            );
+            return Err(Broken::with_texts(input, yours, most, "the surface area heuristic").explained_by([]));
+        }
+    }
+    Ok(())
+}
+
+/// Builds a tree over boxes on which a builder may never end.
+fn build_of(trial: &Trial<'_>, what: &str, boxes: Vec<Aabb>) -> CheckResult {
+    let built = kit_error::catch(|| trial.kit.build_binned(std::slice::from_ref(&boxes)).remove(0));
+    let input = format!("build_binned of {what}");
+    let tree = match built {
+        Ok(tree) => tree,
+        Err(KitError::Panicked { message, place }) => {
+            let panic = format!("a panic at {place}: {message}");
+            return Err(Broken::with_texts(input, panic, "a tree", "the definition").explained_by([]));
+        }
+        Err(error) => kit_error::unwind(error),
+    };
+    judge_tree(&boxes, &tree).map_err(|broken| Broken { input: input.clone(), ..broken })?;
+    let small = tree.nodes.iter().filter(|node| node.is_leaf()).count();
+    // Each level below DEEPEST_SPLIT halves the primitives, down to a leaf of BLOCK.
+    let most = DEEPEST_SPLIT + boxes.len().next_power_of_two().ilog2() as usize + 1;
+    let levels = depth(&tree);
+    if levels > most || small * BLOCK < boxes.len() / 8 {
+        let yours = format!("{levels} levels, {small} leaves");
+        let broken = Broken::with_texts(input, yours, format!("at most {most} levels"), "counted");
+        return Err(broken.explained_by([(
+            levels > most,
+            "each level splits off few primitives: from depth DEEPEST_SPLIT on divide them in half",
+        )]));
+    }
+    Ok(())
+}
+
+pub(super) fn build_binned_ends_where_centroids_are_equal(trial: &Trial<'_>) -> CheckResult {
+    let x = trial.varied(1.0, 0.25..8f32);
+    let cube = |half: f32| Aabb::new(Vec3::splat(x - half), Vec3::splat(x + half));
+    build_of(trial, "1000 equal boxes", vec![cube(1.0); 1000])?;
+    build_of(trial, "33 equal boxes", vec![cube(1.0); 33])?;
+    build_of(trial, "500 boxes around one point", (1..=500).map(|i| cube(i as f32)).collect())?;
+    build_of(trial, "600 equal points", vec![Aabb::new(Vec3::splat(x), Vec3::splat(x)); 600])?;
+    let line = (0..300).map(|i| Aabb::new(vec3(i as f32, x, x), vec3(i as f32 + x, x, x))).collect();
+    build_of(trial, "300 segments along a line", line)
+}
+
+pub(super) fn build_binned_is_not_too_deep(trial: &Trial<'_>) -> CheckResult {
+    let x = trial.varied(1.0, 0.25..8f32);
+    // A split between equal bins separates the largest few of these boxes from the others.
+    let corner = |i: i32| Aabb::new(Vec3::ZERO, Vec3::splat(x * 1.35f32.powi(i)));
+    let what = "200 boxes with a common corner, each 1.35 times as large as the one before";
+    build_of(trial, what, (0..200).map(corner).collect())?;
+    // A split across an axis separates four points at most, because the next one has a sixteenth of the coordinate. Without a
+    // limit, the tree has about 150 levels.
+    let point = |i: i32| {
+        let at = x * 2f32.powi(60 - i / 3) * Vec3::AXES[i as usize % 3];
+        Aabb::new(at, at)
+    };
+    let what = "600 points on the three axes, each at half the distance of the one before";
+    build_of(trial, what, (0..600).map(point).collect())
+}
+
+pub(super) fn build_binned_isolates_what_is_not_a_number(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 21);
+    let mut boxes: Vec<Aabb> = (0..200)
+        .map(|_| {
+            let low = 8.0 * random.in_cube();
+            Aabb::new(low, low + 0.25 + random.unit())
+        })
+        .collect();
+    let ordinary = boxes.clone();
+    for place in [7, 8, 100, 199] {
+        boxes[place].min.y = f32::NAN;
+    }
+    boxes[50] = Aabb::EMPTY;
+    boxes[51] = Aabb::new(Vec3::NAN, Vec3::NAN);
+    let judge = |boxes: &[Aabb]| {
+        let answer = kit_error::catch(|| trial.kit.build_binned(&[boxes.to_vec()]).remove(0));
+        match answer {
+            Ok(tree) => judge_tight(boxes, &tree),
+            Err(KitError::Panicked { message, place }) => {
+                let panic = format!("a panic at {place}: {message}");
+                Err(Broken::with_texts(describe(boxes), panic, "a tree", "the definition").explained_by([]))
+            }
+            Err(error) => kit_error::unwind(error),
+        }
+    };
+    let outcome = judge(&boxes);
+    // The same boxes without NaN, to prove that the NaN is the cause.
+    let is_cause = outcome.is_err() && judge(&ordinary).is_ok();
+    outcome.map_err(|broken| {
+        let panics = broken.yours.starts_with("a panic");
+        if broken.diagnosis.is_some() {
+            return broken;
+        }
+        let [a, b] = [is_cause && panics, is_cause && !panics];
+        Broken { input: "build_binned of 200 boxes, of which 6 are empty or have NaN".into(), ..broken }.explained_by([
+            (a, "a NaN or an empty box makes the builder panic"),
+            (b, "a NaN or an empty box got into the box of a node: PrimitiveBox makes such boxes empty, and the empty box \
+                 changes no union"),
+        ])
+    })
+}

@@ -1,0 +1,169 @@
+//! `build_parallel`: the tree, and the work and the span that follow from the log of its forks.
+
+use super::builds::judge_tree;
+use super::scenes::scenes;
+use super::trees::fault;
+use checks::Trial;
+use checks::broken::{Broken, CheckResult, all_hold};
+use oracle::splitmix::Random;
+use raykata::aabb::Aabb;
+use raykata::wide::{FlatTree, Fork, ForkKind, ForkedTree};
+use std::collections::HashSet;
+
+/// An even cloud of small boxes.
+fn cloud(seed: u64, n: usize) -> Vec<Aabb> {
+    let mut random = Random::new(seed, 22);
+    (0..n).map(|_| random.in_cube()).map(|center| Aabb::new(center - 0.01, center + 0.01)).collect()
+}
+
+pub(super) fn build_parallel_gives_the_same_tree(trial: &Trial<'_>) -> CheckResult {
+    let mut sets = vec![cloud(trial.seed, 6), Vec::new(), cloud(trial.seed, 1), cloud(trial.seed, 10_000)];
+    sets.push(scenes().swap_remove(2).1);
+    let alone = trial.kit.build_binned(&sets);
+    let answers = trial.kit.build_parallel(&sets);
+    let judge = |((boxes, alone), forked): ((&Vec<Aabb>, &FlatTree), &ForkedTree)| {
+        let yours = &forked.tree;
+        if yours == alone {
+            // The same empty tree twice is no tree.
+            return judge_tree(boxes, yours);
+        }
+        let kinds = |tree: &FlatTree| -> Vec<(Aabb, u32)> {
+            tree.nodes.iter().map(|node| (node.bounds(), node.count)).collect()
+        };
+        let only_indices = kinds(yours) == kinds(alone) && yours.order == alone.order;
+        let n = yours.nodes.len().max(alone.nodes.len());
+        let different = (0..n).find(|&i| yours.nodes.get(i) != alone.nodes.get(i));
+        let of = |tree: &FlatTree| match different {
+            Some(i) => format!("node {i} of {}: {:?}", tree.nodes.len(), tree.nodes.get(i)),
+            None => format!("order {:?}…", &tree.order[..tree.order.len().min(10)]),
+        };
+        let input = format!("build_parallel of {} boxes", boxes.len());
+        Err(Broken::with_texts(input, of(yours), of(alone), "your build_binned").explained_by([(
+            only_indices,
+            "only the indices of children differ: they shift when the arrays of both sides are joined",
+        )]))
+    };
+    all_hold(sets.iter().zip(&alone).zip(&answers).map(judge).collect())
+}
+
+/// The first primitive and the number of primitives of each node of a tree without faults.
+fn ranges(tree: &FlatTree) -> Vec<(u32, u32)> {
+    let mut ranges = vec![(0, 0); tree.nodes.len()];
+    // Children come after their parents.
+    for (index, node) in tree.nodes.iter().enumerate().rev() {
+        let first = node.first as usize;
+        ranges[index] = if node.is_leaf() {
+            (node.first, node.count)
+        } else {
+            (ranges[first].0, ranges[first].1 + ranges[first + 1].1)
+        };
+    }
+    ranges
+}
+
+/// The work and the span of a build that forks at the nodes for which `forks` returns true, in primitives.
+fn work_and_span(tree: &FlatTree, ranges: &[(u32, u32)], forks: impl Fn(usize) -> bool) -> (u64, u64) {
+    let mut sums = vec![(0u64, 0u64); tree.nodes.len()];
+    for (index, node) in tree.nodes.iter().enumerate().rev() {
+        let own = u64::from(ranges[index].1);
+        let (mut work, mut span) = (own, own);
+        if !node.is_leaf() {
+            let [left, right] = [sums[node.first as usize], sums[node.first as usize + 1]];
+            work += left.0 + right.0;
+            span += if forks(index) { left.1.max(right.1) } else { left.1 + right.1 };
+        }
+        sums[index] = (work, span);
+    }
+    sums.first().copied().unwrap_or_default()
+}
+
+/// A build of many boxes: the tree, the ranges of its nodes, and the nodes that are forked.
+struct Forked {
+    tree: FlatTree,
+    ranges: Vec<(u32, u32)>,
+    forks: Vec<Fork>,
+}
+
+fn build_many(trial: &Trial<'_>, n: usize) -> Result<Forked, Broken> {
+    let boxes = cloud(trial.seed, n);
+    let ForkedTree { tree, forks } = trial.kit.build_parallel(std::slice::from_ref(&boxes)).remove(0);
+    if let Some((yours, expected, cause)) = fault(&tree, &boxes) {
+        let input = format!("build_parallel of {n} boxes");
+        let broken = Broken::with_texts(input, yours, expected, "the layout of FlatTree");
+        return Err(broken.explained_by(cause.map(|text| (true, text))));
+    }
+    Ok(Forked { ranges: ranges(&tree), tree, forks })
+}
+
+/// The nodes at which both sides are built in parallel, by their ranges.
+fn forked_ranges(forks: &[Fork]) -> HashSet<(u32, u32)> {
+    let children = forks.iter().filter(|fork| fork.kind == ForkKind::Children);
+    children.map(|fork| (fork.first, fork.count)).collect()
+}
+
+pub(super) fn build_parallel_logs_the_nodes_that_it_forks(trial: &Trial<'_>) -> CheckResult {
+    let Forked { tree, ranges, forks } = build_many(trial, 10_000)?;
+    let inner: HashSet<(u32, u32)> = (0..tree.nodes.len())
+        .filter(|&index| !tree.nodes[index].is_leaf())
+        .map(|index| ranges[index])
+        .collect();
+    let mut seen = HashSet::new();
+    let broken = |fork: Option<&Fork>, expected: &str, cause: &'static str| {
+        let yours = fork.map_or("no fork".into(), |fork| format!("{fork:?}"));
+        Err(Broken::with_texts("build_parallel of 10,000 boxes", yours, expected, "the finished tree")
+            .explained_by([(!cause.is_empty(), cause)]))
+    };
+    if forks.is_empty() {
+        return broken(
+            None,
+            "a fork at the root, at least",
+            "nothing is forked: join both sides of a large node by `forks.join`",
+        );
+    }
+    let counts: HashSet<u32> = inner.iter().map(|(_, count)| *count).collect();
+    for fork in &forks {
+        if !inner.contains(&(fork.first, fork.count)) {
+            let is_shifted = forks.iter().all(|fork| counts.contains(&fork.count));
+            let cause = if is_shifted {
+                "`first` is the position in the order of the whole tree, not in that of one side"
+            } else {
+                ""
+            };
+            return broken(Some(fork), "the range of an inner node", cause);
+        }
+        if fork.kind == ForkKind::Children && !seen.insert((fork.first, fork.count)) {
+            return broken(Some(fork), "each node once", "a node is logged twice");
+        }
+    }
+    Ok(())
+}
+
+/// Judges whether the span of a build of `n` boxes is at most the work divided by `share`.
+fn judge_span(trial: &Trial<'_>, n: usize, share: u64) -> CheckResult {
+    let Forked { tree, ranges, forks } = build_many(trial, n)?;
+    let known = forked_ranges(&forks);
+    let (work, span) = work_and_span(&tree, &ranges, |index| known.contains(&ranges[index]));
+    if share * span <= work {
+        return Ok(());
+    }
+    let at = |index: usize| ranges[index].1 > 2000;
+    let (_, possible) = work_and_span(&tree, &ranges, at);
+    let yours = format!("work {work}, span {span}: a ratio of {:.2}", work as f64 / span as f64);
+    let input = format!("build_parallel of {n} boxes, with {} forks", forks.len());
+    Err(Broken::with_texts(input, yours, format!("a span of at most {}", work / share), "the tree and the log of forks")
+        .explained_by([
+            (forks.is_empty(), "nothing is forked: join both sides of a large node by `forks.join`"),
+            (
+                share * possible <= work,
+                "too few nodes are forked: with forks at all nodes above 2,000 primitives the span is short enough",
+            ),
+        ]))
+}
+
+pub(super) fn build_parallel_has_a_third_of_the_span(trial: &Trial<'_>) -> CheckResult {
+    judge_span(trial, 30_000, 3)
+}
+
+pub(super) fn build_parallel_has_a_fifth_of_the_span(trial: &Trial<'_>) -> CheckResult {
+    judge_span(trial, 100_000, 5)
+}

@@ -1,0 +1,178 @@
+//! `partition_bins`.
+
+use super::bins::{ROUNDINGS, Rounding, bin_of, grid_over, grids, n_bins, primitives};
+use checks::Trial;
+use checks::broken::{Broken, CheckResult};
+use checks::judge::compare_formulas;
+use checks::nasty;
+use glam::Vec3;
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::kit::{PartitionQuery, SplitAnswer};
+use raykata::wide::{BinGrid, BinSplit, PrimitiveBox};
+
+fn query(boxes: &[Aabb], kind: u8, n_bins: u32, axis: u32, bin: u32) -> PartitionQuery {
+    let primitives = primitives(boxes);
+    let grid = if kind == 0 { grid_over(&primitives, n_bins) } else { grids(&primitives, kind, n_bins) };
+    PartitionQuery { primitives, grid, split: BinSplit { axis, bin: 1 + bin % (n_bins - 1), cost: 1.0 } }
+}
+
+fn cubes(rough: bool) -> impl Strategy<Value = Vec<Aabb>> + Clone {
+    let cube = |(low, size): (Vec3, i32)| Aabb::new(low, low + size as f32 / 4.0);
+    let low = if rough { checks::generate::rough_point(6.0).boxed() } else { nasty::lattice(6).boxed() };
+    prop::collection::vec((low, 1..=4i32).prop_map(cube), 0..24)
+}
+
+fn queries(
+    rough: bool,
+    kinds: std::ops::RangeInclusive<u8>,
+) -> impl Strategy<Value = PartitionQuery> + Clone {
+    (cubes(rough), kinds, n_bins(), 0..3u32, any::<u8>())
+        .prop_map(|(boxes, kind, n_bins, axis, bin)| query(&boxes, kind, n_bins, axis, u32::from(bin)))
+}
+
+/// The numbers of the primitives on the left side, by a rounding of the bin.
+fn left_side(query: &PartitionQuery, is_left: impl Fn(&PrimitiveBox) -> bool) -> Vec<u32> {
+    let mut ids: Vec<u32> =
+        query.primitives.iter().filter(|primitive| is_left(primitive)).map(PrimitiveBox::id).collect();
+    ids.sort_unstable();
+    ids
+}
+
+fn sorted(ids: &[u32]) -> Vec<u32> {
+    let mut ids = ids.to_vec();
+    ids.sort_unstable();
+    ids
+}
+
+fn judge(query: &PartitionQuery, yours: &SplitAnswer) -> CheckResult {
+    let PartitionQuery { grid, split, .. } = query;
+    let bin = |primitive: &PrimitiveBox| bin_of(primitive, grid, split.axis as usize, Rounding::Right);
+    let left = left_side(query, |primitive| bin(primitive) < split.bin as usize);
+    let bins: Vec<String> =
+        query.primitives.iter().map(|primitive| format!("{}: {}", primitive.id(), bin(primitive))).collect();
+    let input = format!(
+        "partition_bins before bin {} of axis {}, primitives with their bins: {}",
+        split.bin,
+        split.axis,
+        bins.join(", ")
+    );
+    let middle = yours.middle.unwrap_or(usize::MAX).min(yours.order.len());
+    let all = sorted(&query.primitives.iter().map(PrimitiveBox::id).collect::<Vec<_>>());
+    let text = format!("{:?} and {:?}", &yours.order[..middle], &yours.order[middle..]);
+    if sorted(&yours.order) != all {
+        let broken = Broken::with_texts(input, text, "each primitive once", "the given primitives");
+        return Err(broken.explained_by([(true, "a primitive is lost or copied: only swap")]));
+    }
+    if sorted(&yours.order[..middle]) == left && yours.middle == Some(left.len()) {
+        return Ok(());
+    }
+    let expected = format!("{left:?} in any order, and then the others");
+    Err(Broken::with_texts(input, text, expected, "the bins of fill_bins").explained_by([]))
+}
+
+fn mistakes(query: &PartitionQuery, yours: &SplitAnswer) -> Vec<(bool, &'static str)> {
+    let PartitionQuery { grid, split, .. } = query;
+    let (axis, last_left) = (split.axis as usize, split.bin as usize);
+    let middle = yours.middle.unwrap_or(usize::MAX).min(yours.order.len());
+    let of = |primitive: &PrimitiveBox, rounding| bin_of(primitive, grid, axis, rounding);
+    let is = |is_left: &dyn Fn(&PrimitiveBox) -> bool| {
+        yours.middle == Some(middle) && sorted(&yours.order[..middle]) == left_side(query, is_left)
+    };
+    let right = |primitive: &PrimitiveBox| of(primitive, Rounding::Right);
+    let n_left = left_side(query, |primitive| right(primitive) < last_left).len();
+    let plane = grid.low[axis] + split.bin as f32 / grid.scale[axis];
+    let mut mistakes = vec![
+        (
+            is(&|primitive| right(primitive) <= last_left),
+            "the first bin of the right side goes to the left: bins before `bin` are left",
+        ),
+        (is(&|primitive| right(primitive) >= last_left), "the sides are exchanged"),
+        (
+            is(&|primitive| primitive.twice_centroid()[axis] < plane),
+            "the centroid is compared with a plane, which rounds otherwise than the bin does: compute the bin as fill_bins does",
+        ),
+        (
+            yours.order.iter().copied().eq(query.primitives.iter().map(PrimitiveBox::id)) && middle == n_left,
+            "the number of the left side is right, but the primitives stay as they come",
+        ),
+        (
+            (yours.middle == Some(query.primitives.len() - n_left)) && is_divided(query, yours, n_left),
+            "you return the number of the right side",
+        ),
+    ];
+    for (rounding, text) in ROUNDINGS {
+        mistakes.push((is(&|primitive| of(primitive, rounding) < last_left), text));
+    }
+    mistakes
+}
+
+/// Whether the left side comes first, of `n_left` primitives.
+fn is_divided(query: &PartitionQuery, yours: &SplitAnswer, n_left: usize) -> bool {
+    let PartitionQuery { grid, split, .. } = query;
+    let bin = |primitive: &PrimitiveBox| bin_of(primitive, grid, split.axis as usize, Rounding::Right);
+    let left = left_side(query, |primitive| bin(primitive) < split.bin as usize);
+    yours.order.get(..n_left).is_some_and(|first| sorted(first) == left)
+}
+
+fn judge_all(
+    trial: &Trial<'_>,
+    chosen: &[PartitionQuery],
+    drawn: impl Strategy<Value = PartitionQuery> + Clone,
+) -> CheckResult {
+    trial.forall_and(chosen, 400, drawn, |queries| {
+        let answers = trial.kit.partition_bins(queries);
+        compare_formulas(queries, answers, |query, yours| judge(query, &yours), mistakes)
+    })
+}
+
+pub(super) fn partition_bins_puts_the_left_side_first(trial: &Trial<'_>) -> CheckResult {
+    judge_all(trial, &[], queries(true, 0..=0))
+}
+
+pub(super) fn partition_bins_agrees_with_the_bins(trial: &Trial<'_>) -> CheckResult {
+    // Centroids on the bounds between bins, where a formula that rounds in another way puts them into another bin. An axis
+    // with the scale 0 has one bin.
+    let edges =
+        (prop::collection::vec((1..=15i32, 0..=2i32), 1..12), n_bins(), 1..=40i32, 0..3u32, any::<u8>())
+            .prop_map(|(places, n_bins, extent, axis, bin)| {
+                // Boxes at about the places k/n_bins of an extent: their bounds are rounded.
+                let extent = extent as f32 / 7.0;
+                let at = |(k, ulps): (i32, i32)| {
+                    let mut at = extent * k as f32 / n_bins as f32;
+                    for _ in 0..ulps {
+                        at = at.next_up();
+                    }
+                    Aabb::new(Vec3::splat(at), Vec3::splat(at))
+                };
+                let mut boxes: Vec<Aabb> = places.into_iter().map(at).collect();
+                boxes.extend([
+                    Aabb::new(Vec3::ZERO, Vec3::ZERO),
+                    Aabb::new(Vec3::splat(extent), Vec3::splat(extent)),
+                ]);
+                let mut query = query(&boxes, 0, n_bins, axis, u32::from(bin));
+                // The grid has twice the centroids: bounds between its bins are at twice those places.
+                let scale = Vec3::splat(n_bins as f32 / (2.0 * extent));
+                query.grid = BinGrid { low: Vec3::ZERO.into(), scale: scale.into(), n_bins };
+                query
+            });
+    judge_all(trial, &[], prop_oneof![3 => edges, 1 => queries(false, 1..=5)])
+}
+
+pub(super) fn partition_bins_of_one_side(trial: &Trial<'_>) -> CheckResult {
+    // All primitives in one bin, none at all, and primitives with NaN, which are in bin 0.
+    let cube = |x: f32| Aabb::new(Vec3::splat(x), Vec3::splat(x + 1.0));
+    let place = |boxes: &[Aabb], bin: u32| {
+        let mut query = query(boxes, 2, 8, 0, 0);
+        query.split.bin = bin;
+        query
+    };
+    let chosen = [
+        place(&[cube(0.0), cube(2.0)], 3),
+        place(&[cube(0.0), cube(0.0), cube(0.0)], 4),
+        place(&[cube(2.0), cube(2.0), cube(2.0)], 1),
+        place(&[], 1),
+        place(&[cube(3.0), Aabb::EMPTY, cube(0.0)], 2),
+    ];
+    judge_all(trial, &chosen, queries(false, 2..=3))
+}

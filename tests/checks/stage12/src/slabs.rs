@@ -1,0 +1,261 @@
+//! `enter_boxes`.
+
+use checks::Trial;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare_formulas;
+use checks::paste::Paste;
+use glam::{Vec3, vec3};
+use oracle::gauntlet::boxes::{at_a_corner, of_any_size};
+use oracle::splitmix::Random;
+use raykata::aabb::Aabb;
+use raykata::kit::WideBoxesQuery;
+use raykata::ray::Ray;
+use raykata::rounding::gamma;
+use raykata::wide::{Child, Entered, WideNode, WideRay};
+
+/// The mistakes of a slab test.
+#[derive(Clone, Copy, PartialEq)]
+enum Flaw {
+    None,
+    NanWins,
+    NotWidened,
+    OnlyExit,
+    EndsAtInfinity,
+    StartsAtZero,
+    Open,
+    SidesNotSwapped,
+    EmptyPlaces,
+}
+
+const FLAWS: [(Flaw, &str); 8] = [
+    (
+        Flaw::NanWins,
+        "0 · ∞ is NaN, and it replaces the interval so far, which must be the second operand of min and max",
+    ),
+    (
+        Flaw::NotWidened,
+        "the interval is not widened, so rounding loses boxes: move the entry earlier and the exit later by 2 γ₃",
+    ),
+    (Flaw::OnlyExit, "only the exit is moved: move the entry earlier by 2 γ₃ as well"),
+    (Flaw::EndsAtInfinity, "t_max is left out: a box beyond it is not entered"),
+    (Flaw::StartsAtZero, "t_min is left out: the entry is t_min or later"),
+    (Flaw::Open, "boxes without thickness are lost: near <= far, not near < far"),
+    (
+        Flaw::SidesNotSwapped,
+        "a ray in negative direction passes the largest coordinate first: near_side says which",
+    ),
+    (Flaw::EmptyPlaces, "an empty place is entered: mask it out by `occupied`"),
+];
+
+/// The entry of a ray into one box, by the definition or by a wrong one. `None` if it misses.
+fn entry(node: &WideNode, place: usize, ray: &WideRay, t_max: f32, flaw: Flaw) -> Option<f32> {
+    let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
+    for axis in 0..3 {
+        let side = if flaw == Flaw::SidesNotSwapped { 0 } else { ray.near_side[axis] };
+        let t =
+            |side: usize| (node.bounds[axis][side][place] - ray.origin[axis]) * ray.inverse_direction[axis];
+        let (enter, leave) = (t(side), t(1 - side));
+        // A comparison with NaN is false.
+        if flaw == Flaw::NanWins {
+            near = if near > enter { near } else { enter };
+            far = if far < leave { far } else { leave };
+        } else {
+            near = if enter > near { enter } else { near };
+            far = if leave < far { leave } else { far };
+        }
+    }
+    let by = |factor: f32, is_left_out: bool| if is_left_out { 1.0 } else { factor };
+    let near = near * by(1.0 - 2.0 * gamma(3), matches!(flaw, Flaw::NotWidened | Flaw::OnlyExit));
+    let far = far * by(1.0 + 2.0 * gamma(3), flaw == Flaw::NotWidened);
+    let start = if flaw == Flaw::StartsAtZero { 0.0 } else { ray.t_min };
+    let end = if flaw == Flaw::EndsAtInfinity { f32::INFINITY } else { t_max };
+    let (near, far) = (if near > start { near } else { start }, if far < end { far } else { end });
+    let is_there = flaw == Flaw::EmptyPlaces || node.occupied >> place & 1 == 1;
+    let enters = if flaw == Flaw::Open { near < far } else { near <= far };
+    (enters && is_there).then_some(near)
+}
+
+fn entries(query: &WideBoxesQuery, flaw: Flaw) -> [Option<f32>; 8] {
+    let ray = WideRay::new(&query.ray);
+    std::array::from_fn(|place| entry(&query.node, place, &ray, query.ray.t_max, flaw))
+}
+
+fn answers(entered: &Entered) -> [Option<f32>; 8] {
+    std::array::from_fn(|place| (entered.mask >> place & 1 == 1).then_some(entered.t[place]))
+}
+
+fn judge(query: &WideBoxesQuery, yours: &Entered) -> CheckResult {
+    let (mine, expected) = (answers(yours), entries(query, Flaw::None));
+    // -0 and 0 are the same entry.
+    let Some(place) = (0..8).find(|&place| mine[place] != expected[place]) else {
+        let beyond = yours.mask >> 8;
+        let broken =
+            || Broken::new("enter_boxes", format!("mask {:#x}", yours.mask), "eight bits", "the definition");
+        return if beyond == 0 { Ok(()) } else { Err(broken().explained_by([])) };
+    };
+    let bounds = match query.node.occupied >> place & 1 {
+        1 => query.node.child_bounds(place).paste(),
+        _ => "an empty place".into(),
+    };
+    let input = format!("enter_boxes, place {place}: {}, {bounds}", query.ray.paste());
+    let of = |entry: Option<f32>| entry.map_or("not entered".into(), |t| format!("entered at {t:?}"));
+    Err(Broken::with_texts(input, of(mine[place]), of(expected[place]), "one box at a time").explained_by([]))
+}
+
+fn judge_all(trial: &Trial<'_>, queries: &[WideBoxesQuery]) -> CheckResult {
+    // Every known mistake must give another answer to some query, so that only one can explain all answers.
+    all_hold(compare_formulas(
+        queries,
+        trial.kit.enter_boxes(queries),
+        |query, yours| judge(query, &yours),
+        |query, yours| {
+            FLAWS
+                .map(|(flaw, text)| {
+                    let (mine, wrong) = (answers(yours), entries(query, flaw));
+                    let same = |(p, q): (&Option<f32>, &Option<f32>)| match (p, q) {
+                        (Some(p), Some(q)) => p == q || p.is_nan() && q.is_nan(),
+                        (p, q) => p.is_none() && q.is_none(),
+                    };
+                    (mine.iter().zip(&wrong).all(same), text)
+                })
+                .to_vec()
+        },
+    ))
+}
+
+/// A node with these boxes in its first places.
+fn node_of(boxes: &[Aabb]) -> Box<WideNode> {
+    let mut node = Box::new(WideNode::EMPTY);
+    for (place, bounds) in boxes.iter().enumerate().take(8) {
+        node.set(place, bounds, Child::leaf(place as u32, 1));
+    }
+    node
+}
+
+/// A query whose other boxes are drawn around the first one.
+fn among_others(random: &mut Random, ray: Ray, first: Aabb) -> WideBoxesQuery {
+    let n = random.below(8);
+    let size = (first.max - first.min).abs().max_element();
+    let place = random.below(n + 1) as usize;
+    let mut boxes: Vec<Aabb> = (0..n)
+        .map(|_| {
+            let low = first.min + 3.0 * size * random.in_cube();
+            Aabb::new(low, low + size * random.in_cube().abs())
+        })
+        .collect();
+    boxes.insert(place, first);
+    WideBoxesQuery { node: node_of(&boxes), ray: Ray { t_min: ray.t_min.max(0.0), ..ray } }
+}
+
+pub(super) fn enter_boxes_agrees_with_one_box_at_a_time(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 24);
+    let mut draw = || {
+        let low = 4.0 * random.in_cube();
+        let bounds = Aabb::new(low, low + random.in_cube().abs());
+        let origin = 6.0 * random.in_cube();
+        let target = low + random.in_cube();
+        let mut ray = Ray::new(origin, target - origin);
+        // Some ranges begin or end within the scene.
+        if random.below(3) == 0 {
+            ray = ray.with_range(random.unit(), 0.5 + random.unit());
+        }
+        among_others(&mut random, ray, bounds)
+    };
+    let queries: Vec<WideBoxesQuery> = (0..1500).map(|_| draw()).collect();
+    judge_all(trial, &queries)
+}
+
+pub(super) fn enter_boxes_takes_zeros_and_faces(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 25);
+    let mut draw = || {
+        let whole = |random: &mut Random| vec3(1.0, 1.0, 1.0).map(|one| one * (random.below(5) as f32 - 2.0));
+        let (low, mut size) = (whole(&mut random), whole(&mut random).abs());
+        if random.below(2) == 0 {
+            size[random.below(3) as usize] = 0.0;
+        }
+        let bounds = Aabb::new(low, low + size);
+        let (mut origin, mut direction) = (3.0 * whole(&mut random), whole(&mut random));
+        for axis in 0..3 {
+            match random.below(6) {
+                0 => direction[axis] = 0.0,
+                1 => direction[axis] = -0.0,
+                2 => (origin[axis], direction[axis]) = (bounds.min[axis], 0.0),
+                3 => (origin[axis], direction[axis]) = (bounds.max[axis], -0.0),
+                _ => {}
+            }
+        }
+        if direction == Vec3::ZERO {
+            direction[random.below(3) as usize] = -1.0;
+        }
+        let mut bounds = bounds;
+        if random.below(6) == 0 {
+            bounds.max[random.below(3) as usize] = f32::INFINITY;
+        }
+        among_others(&mut random, Ray::new(origin, direction), bounds)
+    };
+    let queries: Vec<WideBoxesQuery> = (0..2000).map(|_| draw()).collect();
+    judge_all(trial, &queries)
+}
+
+pub(super) fn enter_boxes_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 26);
+    let mut draw = || {
+        let query = at_a_corner(&mut random)?;
+        Some(among_others(&mut random, query.ray, query.bounds))
+    };
+    let queries: Vec<WideBoxesQuery> = (0..2000).filter_map(|_| draw()).collect();
+    judge_all(trial, &queries)
+}
+
+pub(super) fn enter_boxes_of_any_size(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 27);
+    // Directions down to the denormal numbers: where 1/d overflows, an axis decides nothing.
+    let mut draw = || {
+        let query = of_any_size(&mut random)?;
+        Some(among_others(&mut random, query.ray, query.bounds))
+    };
+    let queries: Vec<WideBoxesQuery> = (0..2000).filter_map(|_| draw()).collect();
+    judge_all(trial, &queries)
+}
+
+pub(super) fn enter_boxes_respects_the_range(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 28);
+    let mut draw = || {
+        // A box along an axis, entered and left at whole numbers; ranges that touch these from either side.
+        let (axis, from) = (random.below(3) as usize, 1.0 + random.below(4) as f32);
+        let thickness = random.below(3) as f32;
+        let [mut low, mut high] = [Vec3::splat(-1.0), Vec3::splat(1.0)];
+        (low[axis], high[axis]) = (from, from + thickness);
+        let ray = Ray::new(Vec3::ZERO, Vec3::AXES[axis]);
+        let end = |random: &mut Random| {
+            let t = from + [0.0, thickness][random.below(2) as usize];
+            [t, t.next_up(), t.next_down(), t * 1.5, t * 0.5, 0.0, f32::INFINITY][random.below(7) as usize]
+        };
+        let (t_min, t_max) = (end(&mut random), end(&mut random));
+        let t_min = if t_min.is_finite() { t_min } else { 0.0 };
+        let query =
+            WideBoxesQuery { node: node_of(&[Aabb::new(low, high)]), ray: ray.with_range(t_min, t_max) };
+        if random.below(2) == 0 { query } else { among_others(&mut random, query.ray, Aabb::new(low, high)) }
+    };
+    let queries: Vec<WideBoxesQuery> = (0..2000).map(|_| draw()).collect();
+    judge_all(trial, &queries)
+}
+
+pub(super) fn enter_boxes_enters_no_empty_place(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 29);
+    let mut draw = || {
+        let n = 1 + random.below(7);
+        let boxes: Vec<Aabb> = (0..n)
+            .map(|_| {
+                let low = random.in_cube();
+                Aabb::new(low, low + random.in_cube().abs())
+            })
+            .collect();
+        // Half of the directions are so small that 1/d overflows on every axis, so that no box decides anything.
+        let scale = [1.0, f32::MIN_POSITIVE / 16_384.0][random.below(2) as usize];
+        let ray = Ray::new(3.0 * random.in_cube(), scale * random.direction());
+        WideBoxesQuery { node: node_of(&boxes), ray }
+    };
+    let queries: Vec<WideBoxesQuery> = (0..1000).map(|_| draw()).collect();
+    judge_all(trial, &queries)
+}

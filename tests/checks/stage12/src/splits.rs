@@ -1,0 +1,281 @@
+//! `block_cost` and `cheapest_split`.
+
+use checks::Trial;
+use checks::broken::{Broken, CheckResult};
+use checks::judge::compare_formulas;
+use glam::{Vec3, Vec3A};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::kit::BinSplitQuery;
+use raykata::wide::{BLOCK, BLOCK_COST, Bin, BinSplit, Bins, BoxA};
+
+/// The number of blocks, computed in a wrong way.
+fn wrong_blocks(n: u32) -> [(u32, &'static str); 3] {
+    let block = BLOCK as u32;
+    [
+        (
+            n / block,
+            "the number of blocks is rounded down: a block that is not full costs as much as a full one",
+        ),
+        (n / block + 1, "a full block is followed by an empty one: a leaf of four has one block"),
+        (n, "the cost is that of single primitives: four are tested at once"),
+    ]
+}
+
+pub(super) fn block_cost_counts_whole_blocks(trial: &Trial<'_>) -> CheckResult {
+    // Numbers beside multiples of four, small and large.
+    let numbers =
+        prop_oneof![0..=40u32, (1..=22u32, 0..=2u32).prop_map(|(exponent, more)| (1 << exponent) + more - 1)];
+    trial.forall_and(&[1, 4, 5, 8], 200, numbers, |numbers| {
+        let judge = |n: &u32, yours: f32| {
+            // Exact: BLOCK_COST times a whole number below 2²⁴.
+            let expected = BLOCK_COST * n.div_ceil(BLOCK as u32) as f32;
+            if yours == expected {
+                return Ok(());
+            }
+            Err(Broken::new(format!("block_cost({n})"), yours, expected, "the definition").explained_by([]))
+        };
+        compare_formulas(numbers, trial.kit.block_cost(numbers), judge, |n, yours| {
+            wrong_blocks(*n).map(|(blocks, text)| (*yours == BLOCK_COST * blocks as f32, text)).to_vec()
+        })
+    })
+}
+
+/// A primitive in the bins: its box, and its bin on each axis.
+type Placed = (Aabb, [u8; 3]);
+
+/// The bins of `placed`, `n_bins` per axis.
+fn bins_of(placed: &[Placed], n_bins: u32) -> BinSplitQuery {
+    let mut bins = Box::new(Bins::EMPTY);
+    for (bounds, places) in placed {
+        for (axis, place) in places.iter().enumerate() {
+            let bin = &mut bins.0[axis][usize::from(*place) % n_bins as usize];
+            bin.bounds.low = bin.bounds.low.min(bounds.min.into());
+            bin.bounds.high = bin.bounds.high.max(bounds.max.into());
+            bin.count += 1;
+        }
+    }
+    BinSplitQuery { bins, n_bins }
+}
+
+fn placed() -> impl Strategy<Value = Placed> + Clone {
+    // Some boxes are flat, and some have no area.
+    let size =
+        (0..=4i32, 0..=4i32, 0..=4i32).prop_map(|(x, y, z)| Vec3::new(x as f32, y as f32, z as f32) * 0.5);
+    (checks::generate::point(6), size, any::<[u8; 3]>())
+        .prop_map(|(low, size, places)| (Aabb::new(low, low + size), places))
+}
+
+fn queries() -> impl Strategy<Value = BinSplitQuery> + Clone {
+    (prop::collection::vec(placed(), 0..30), super::bins::n_bins())
+        .prop_map(|(placed, n_bins)| bins_of(&placed, n_bins))
+}
+
+/// One side of a split: the box around some bins, and the number of their primitives.
+fn side(bins: &[Bin]) -> (BoxA, u32) {
+    let join = |(bounds, count): (BoxA, u32), bin: &Bin| {
+        let low = bounds.low.min(bin.bounds.low);
+        let high = bounds.high.max(bin.bounds.high);
+        (BoxA { low, high }, count + bin.count)
+    };
+    bins.iter().fold((BoxA::EMPTY, 0), join)
+}
+
+/// Half of the surface area in double precision; 0 for the empty box.
+fn area(bounds: &BoxA) -> f64 {
+    let size = (bounds.high - bounds.low).max(Vec3A::ZERO);
+    let [x, y, z] = size.to_array().map(f64::from);
+    x * y + y * z + z * x
+}
+
+fn volume(bounds: &BoxA) -> f64 {
+    let [x, y, z] = (bounds.high - bounds.low).max(Vec3A::ZERO).to_array().map(f64::from);
+    x * y * z
+}
+
+/// The number of whole blocks.
+fn blocks(n: u32) -> f64 {
+    f64::from(n.div_ceil(BLOCK as u32))
+}
+
+/// All splits that leave no side without primitives: axis, bin and both sides.
+fn splits(query: &BinSplitQuery) -> Vec<(BinSplit, [(BoxA, u32); 2])> {
+    let mut splits = Vec::new();
+    for axis in 0..3 {
+        let bins = &query.bins.0[axis][..query.n_bins as usize];
+        for bin in 1..bins.len() {
+            let sides = [side(&bins[..bin]), side(&bins[bin..])];
+            if sides[0].1 > 0 && sides[1].1 > 0 {
+                splits.push((BinSplit { axis: axis as u32, bin: bin as u32, cost: 0.0 }, sides));
+            }
+        }
+    }
+    splits
+}
+
+type Cost = fn(&[(BoxA, u32); 2]) -> f64;
+
+fn right_cost(sides: &[(BoxA, u32); 2]) -> f64 {
+    sides.iter().map(|(bounds, n)| area(bounds) * blocks(*n)).sum()
+}
+
+const WRONG_COSTS: [(Cost, &str); 5] = [
+    (
+        |sides| sides.iter().map(|(bounds, n)| area(bounds) * f64::from(*n)).sum(),
+        "the sides count single primitives: a leaf pays for whole blocks, block_cost",
+    ),
+    (|sides| sides.iter().map(|(bounds, _)| area(bounds)).sum(), "the counts are left out of the cost"),
+    (|sides| sides.iter().map(|(_, n)| blocks(*n)).sum(), "the areas are left out of the cost"),
+    (
+        |sides| sides.iter().map(|(bounds, n)| volume(bounds) * blocks(*n)).sum(),
+        "the cost has volumes in place of surface areas",
+    ),
+    (
+        |sides| area(&sides[0].0) * blocks(sides[1].1) + area(&sides[1].0) * blocks(sides[0].1),
+        "each area is multiplied by the cost of the other side",
+    ),
+];
+
+/// Two costs are the same if they differ by less than the rounding errors of sums of 16 areas.
+const SAME: f64 = 1e-5;
+
+/// Whether `yours` is the cheapest of the splits that `may` be chosen, by this cost.
+fn is_cheapest(query: &BinSplitQuery, yours: &BinSplit, cost: Cost, may: impl Fn(&BinSplit) -> bool) -> bool {
+    let splits: Vec<_> = splits(query).into_iter().filter(|(split, _)| may(split)).collect();
+    let least = splits.iter().map(|(_, sides)| cost(sides)).fold(f64::INFINITY, f64::min);
+    splits.iter().any(|(split, sides)| {
+        (split.axis, split.bin) == (yours.axis, yours.bin) && cost(sides) <= least * (1.0 + SAME)
+    })
+}
+
+fn mistakes(query: &BinSplitQuery, yours: &Option<BinSplit>) -> Vec<(bool, &'static str)> {
+    let is_of = |cost: Cost, may: &dyn Fn(&BinSplit) -> bool| match yours {
+        Some(yours) => is_cheapest(query, yours, cost, may),
+        None => !splits(query).iter().any(|(split, _)| may(split)),
+    };
+    let mut mistakes: Vec<_> = (0..3)
+        .map(|axis| {
+            let text = ["only the axis x is tried", "only the axis y is tried", "only the axis z is tried"];
+            (is_of(right_cost, &|split| split.axis == axis), text[axis as usize])
+        })
+        .collect();
+    let last = query.n_bins - 1;
+    mistakes.push((is_of(right_cost, &|split| split.bin > 1), "the split behind the first bin is not tried"));
+    mistakes
+        .push((is_of(right_cost, &|split| split.bin < last), "the split before the last bin is not tried"));
+    for (cost, text) in WRONG_COSTS {
+        mistakes.push((is_of(cost, &|_| true), text));
+    }
+    mistakes
+}
+
+fn input(query: &BinSplitQuery) -> String {
+    let n = query.n_bins as usize;
+    let axis = |bins: &[Bin]| bins[..n].iter().map(|bin| bin.count.to_string()).collect::<Vec<_>>().join(" ");
+    let [x, y, z] = [0, 1, 2].map(|i| axis(&query.bins.0[i]));
+    format!("cheapest_split of {n} bins with these counts: x: {x}, y: {y}, z: {z}")
+}
+
+fn describe(split: &Option<BinSplit>) -> String {
+    match split {
+        Some(split) => format!("axis {}, bin {}, cost {}", split.axis, split.bin, split.cost),
+        None => "None".into(),
+    }
+}
+
+fn judge_choice(query: &BinSplitQuery, yours: &Option<BinSplit>) -> CheckResult {
+    let all = splits(query);
+    let best = all.iter().min_by(|(_, p), (_, q)| right_cost(p).total_cmp(&right_cost(q)));
+    let expected = match (yours, best) {
+        (None, None) => return Ok(()),
+        (Some(_), None) => "None: every split leaves one side without primitives".into(),
+        (Some(split), Some(_)) if is_cheapest(query, split, right_cost, |_| true) => return Ok(()),
+        (_, Some((split, sides))) => {
+            format!("axis {}, bin {}, cost {}", split.axis, split.bin, right_cost(sides))
+        }
+    };
+    let is_inside = |split: &BinSplit| split.axis < 3 && (1..query.n_bins).contains(&split.bin);
+    let has_sides =
+        |split: &BinSplit| all.iter().any(|(one, _)| (one.axis, one.bin) == (split.axis, split.bin));
+    let is_free = best.is_some_and(|(_, sides)| right_cost(sides) == 0.0);
+    let mistakes = [
+        (
+            yours.as_ref().is_some_and(|split| is_inside(split) && !has_sides(split)),
+            "a side without primitives is no side: leave such splits out",
+        ),
+        (is_free && yours.is_none(), "boxes without area have the cost 0, which is a cost like any other"),
+    ];
+    Err(Broken::with_texts(input(query), describe(yours), expected, "each split").explained_by(mistakes))
+}
+
+pub(super) fn cheapest_split_is_the_cheapest(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(250, queries(), |queries| {
+        let answers = trial.kit.cheapest_split(queries);
+        compare_formulas(queries, answers, |query, yours| judge_choice(query, &yours), mistakes)
+    })
+}
+
+pub(super) fn cheapest_split_returns_its_cost(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(200, queries(), |queries| {
+        let of = |query: &BinSplitQuery, yours: &BinSplit| {
+            let mut all = splits(query).into_iter();
+            all.find(|(split, _)| (split.axis, split.bin) == (yours.axis, yours.bin)).map(|(_, sides)| sides)
+        };
+        let judge = |query: &BinSplitQuery, yours: Option<BinSplit>| {
+            let Some(split) = yours else {
+                // Whether there is a split is decided by other checks, but `None` has no cost to judge.
+                let none = splits(query).is_empty();
+                let broken =
+                    || Broken::with_texts(input(query), "None", "a split", "each split").explained_by([]);
+                return if none { Ok(()) } else { Err(broken()) };
+            };
+            let expected = of(query, &split).map_or(f64::INFINITY, |sides| right_cost(&sides));
+            if (f64::from(split.cost) - expected).abs() <= SAME * expected {
+                return Ok(());
+            }
+            let expected = format!("the cost {expected} of this split");
+            Err(Broken::with_texts(input(query), describe(&yours), expected, "double precision")
+                .explained_by([]))
+        };
+        let formulas = |query: &BinSplitQuery, yours: &Option<BinSplit>| {
+            let sides = yours.as_ref().and_then(|split| of(query, split));
+            let gives = |factor: f64, cost: Cost| match (yours, &sides) {
+                (Some(split), Some(sides)) => {
+                    let cost = factor * cost(sides);
+                    (f64::from(split.cost) - cost).abs() <= SAME * cost
+                }
+                _ => yours.is_none(),
+            };
+            let mut mistakes = vec![(
+                gives(2.0, right_cost),
+                "the areas are whole surface areas: half of them is enough, and is what is asked for",
+            )];
+            mistakes.extend(WRONG_COSTS.map(|(cost, text)| (gives(1.0, cost), text)));
+            mistakes
+        };
+        compare_formulas(queries, trial.kit.cheapest_split(queries), judge, formulas)
+    })
+}
+
+pub(super) fn cheapest_split_leaves_no_side_empty(trial: &Trial<'_>) -> CheckResult {
+    // Few bins contain primitives: on some axes only one, on some none but the first or the last.
+    let crowded = (placed(), 0..6u8).prop_map(|((bounds, places), kind)| {
+        let few = match kind {
+            0 => [0, 0, 0],
+            1 => [places[0] % 2 * 15, 0, 0],
+            2 => [0, places[1] % 2, 3],
+            3 => [5, 5, places[2] % 2 * 4],
+            _ => [2, 2, 2],
+        };
+        (bounds, few)
+    });
+    let few = prop::collection::vec(crowded, 0..5).prop_map(|placed| bins_of(&placed, 16));
+    // Two equal points in the first and in the last bin: the cost is 0.
+    let point = Aabb::new(Vec3::ONE, Vec3::ONE);
+    let apart = bins_of(&[(point, [0; 3]), (point, [15; 3])], 16);
+    let together = bins_of(&[(point, [7; 3]), (point, [7; 3])], 16);
+    trial.forall_and(&[apart, together], 200, few, |queries| {
+        let answers = trial.kit.cheapest_split(queries);
+        compare_formulas(queries, answers, |query, yours| judge_choice(query, &yours), mistakes)
+    })
+}
