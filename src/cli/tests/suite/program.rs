@@ -97,7 +97,7 @@ fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_reported() {
             assert_eq!(output.status.code(), Some(2));
             let complaint = printed(&output).1;
             assert!(
-                complaint.contains("there are stages 1 to 11") && !complaint.contains("building"),
+                complaint.contains("there are stages 1 to 12") && !complaint.contains("building"),
                 "{complaint}"
             );
         }

@@ -1,5 +1,5 @@
-//! The picture of a room, composed from `step`: two spheres under a panel of light and beside a small lamp, with all light of
-//! three bounces.
+//! The picture of a room, composed from `step`: two spheres under a panel of light and beside a small spherical light, with
+//! all light of three bounces.
 //!
 //! The metric and the bound are those of [`Sampled`]: the means of blocks of 4 × 4 pixels differ by at most six standard
 //! errors. The walls and emitters are dim, and multiple importance sampling limits what one sample can add, so that the mean
@@ -25,9 +25,9 @@ fn wall(corner: DVec3, first: DVec3, second: DVec3, diffuse: Vec3) -> Wall {
     Wall::new(Form::Parallelogram(corner, first, second), Paint { diffuse, ..Paint::default() })
 }
 
-/// A room that is open towards the camera. `mirror` and `glazed` are the radii of the two spheres, `lamp` is the height of the
-/// small lamp, and `color` the reflectance of the left wall.
-fn room(mirror: f64, glazed: f64, lamp: f64, color: Vec3) -> Room {
+/// A room that is open towards the camera. `mirror` and `glazed` are the radii of the two spheres, `height` is that of the
+/// small spherical light, and `color` the reflectance of the left wall.
+fn room(mirror: f64, glazed: f64, height: f64, color: Vec3) -> Room {
     let (white, right) = (vec3(0.72, 0.7, 0.66), vec3(0.2, 0.45, 0.6));
     let (x, y, z) = (3.0 * DVec3::X, 2.0 * DVec3::Y, 3.0 * DVec3::Z);
     let corner = dvec3(-1.5, 0.0, -1.5);
@@ -44,7 +44,7 @@ fn room(mirror: f64, glazed: f64, lamp: f64, color: Vec3) -> Room {
         sphere(dvec3(-0.6, mirror, -0.6), mirror, Vec3::ZERO, vec3(0.85, 0.82, 0.75)),
         sphere(dvec3(0.65, glazed, -0.1), glazed, vec3(0.5, 0.3, 0.1), Vec3::splat(0.3)),
         Wall::light(panel, vec3(0.9, 0.8, 0.65), 0.7),
-        Wall::light(Form::Sphere(dvec3(-0.1, lamp, 0.5), 0.15), vec3(0.5, 0.7, 0.9), 0.3),
+        Wall::light(Form::Sphere(dvec3(-0.1, height, 0.5), 0.15), vec3(0.5, 0.7, 0.9), 0.3),
     ];
     Room { walls, sky: Vec3::ZERO }
 }
@@ -74,8 +74,8 @@ pub(super) fn picture_of_a_room(trial: &Trial<'_>) -> CheckResult {
     let public = room(0.55, 0.45, 0.35, vec3(0.65, 0.2, 0.15));
     let radii = (0.45..0.65f64, 0.35..0.5f64, 0.25..0.6f64);
     let hidden = (radii, 0.2..0.6f32, 0.1..0.3f32);
-    let hidden = hidden.prop_map(|((mirror, glazed, lamp), green, blue)| {
-        room(mirror, glazed, lamp, vec3(0.65, green, blue))
+    let hidden = hidden.prop_map(|((mirror, glazed, height), green, blue)| {
+        room(mirror, glazed, height, vec3(0.65, green, blue))
     });
     let room = trial.composed(public, hidden);
     let camera = picture::camera(SIZE, vec3(0.0, 1.05, 3.3), vec3(0.0, 0.95, 0.0));

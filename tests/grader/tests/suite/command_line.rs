@@ -83,7 +83,7 @@ fn what_is_not_understood_ends_with_2() {
         ("export", "the commands are gradescope, classroom"),
         ("export gradescop", "did you mean `gradescope`?"),
         ("export classroom", "`--out` is missing"),
-        ("export gradescope --stages 12", "there is no stage 12"),
+        ("export gradescope --stages 13", "there is no stage 13"),
         ("corpus --chekc", "unexpected option `--chekc`; did you mean `--check`?"),
         ("corpus --bless --check", "`--bless` cannot be used with `--check`"),
         ("corpus --seed 1 --check", "`--seed` cannot be used with `--check`"),

@@ -258,7 +258,7 @@ fn submissions_of_one_age_are_not_taken_for_each_other() {
 fn what_cannot_be_graded_is_said_in_words() {
     let (class, out) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     for (more, says) in [
-        (&["--stages", "12"][..], "there is no stage 12"),
+        (&["--stages", "13"][..], "there is no stage 13"),
         (&["--shard", "3/2"], "parts are counted from 1"),
         (&["--jobs", "0"], "`--jobs 0`: a whole number from 1 to 65535 is wanted"),
     ] {
