@@ -91,7 +91,7 @@ fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_reported() {
     let said = printed(&raykata(&["check", "1", "--kit", "solutions"])).0;
     assert!(said.contains("stage  1 ·") && !said.contains("stage  2 ·"), "{said}");
     assert_eq!(said, printed(&raykata(&["check", "stage1", "--kit", "solutions"])).0);
-    for wrong in ["77", "0", "stage12", "one"] {
+    for wrong in ["77", "0", "stage13", "one"] {
         for command in ["check", "list"] {
             let output = raykata(&[command, wrong]);
             assert_eq!(output.status.code(), Some(2));
