@@ -49,12 +49,12 @@ fn flats(most: usize) -> impl Strategy<Value = Flat> + Clone {
         .prop_map(|((_, tree), choices)| Flat { bvh: scattered(&tree, &choices), tree })
 }
 
-/// Wrong orders of nodes.
+/// Wrong orders of nodes: level by level, the right child first, or all below the second child first.
 #[derive(Clone, Copy)]
 enum Order {
-    BreadthFirst,
-    RightFirst,
-    SecondSideFirst,
+    Breadth,
+    Right,
+    SecondSide,
 }
 
 /// The same tree with its nodes in a wrong order.
@@ -63,7 +63,7 @@ fn reordered(tree: &FlatTree, order: Order) -> FlatTree {
     // Pairs of (index in the tree, index in the result) whose children are not placed yet.
     let mut waiting: Vec<(usize, usize)> = nodes.iter().map(|_| (0, 0)).collect();
     while !waiting.is_empty() {
-        let (from, to) = if matches!(order, Order::BreadthFirst) {
+        let (from, to) = if matches!(order, Order::Breadth) {
             waiting.remove(0)
         } else {
             waiting.pop().unwrap_or_default()
@@ -74,14 +74,13 @@ fn reordered(tree: &FlatTree, order: Order) -> FlatTree {
         }
         let (first, pair) = (node.first as usize, nodes.len());
         nodes[to].first = pair as u32;
-        let children =
-            if matches!(order, Order::RightFirst) { [first + 1, first] } else { [first, first + 1] };
+        let children = if matches!(order, Order::Right) { [first + 1, first] } else { [first, first + 1] };
         nodes.extend(children.map(|child| tree.nodes[child]));
         match order {
-            Order::SecondSideFirst | Order::BreadthFirst => {
+            Order::SecondSide | Order::Breadth => {
                 waiting.extend([(children[0], pair), (children[1], pair + 1)]);
             }
-            Order::RightFirst => waiting.extend([(children[1], pair + 1), (children[0], pair)]),
+            Order::Right => waiting.extend([(children[1], pair + 1), (children[0], pair)]),
         }
     }
     FlatTree { nodes, order: tree.order.clone() }
@@ -107,15 +106,15 @@ fn judge(flat: &Flat, yours: &FlatTree) -> CheckResult {
     let only_order_differs = yours.nodes == flat.tree.nodes;
     Err(Broken::with_texts(input, yours_text, expected, "the layout of FlatTree").explained_by([
         (
-            *yours == reordered(&flat.tree, Order::BreadthFirst),
+            *yours == reordered(&flat.tree, Order::Breadth),
             "the nodes are in breadth-first order: finish everything below the first child before the second",
         ),
         (
-            *yours == reordered(&flat.tree, Order::RightFirst),
+            *yours == reordered(&flat.tree, Order::Right),
             "the right child comes first: left and right are exchanged",
         ),
         (
-            *yours == reordered(&flat.tree, Order::SecondSideFirst),
+            *yours == reordered(&flat.tree, Order::SecondSide),
             "the nodes below the second child come before those below the first",
         ),
         (is_as_given, "the nodes keep the order of the hierarchy, so children need not be neighbours"),

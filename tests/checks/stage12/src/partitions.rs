@@ -75,6 +75,8 @@ fn mistakes(query: &PartitionQuery, yours: &SplitAnswer) -> Vec<(bool, &'static 
     let PartitionQuery { grid, split, .. } = query;
     let (axis, last_left) = (split.axis as usize, split.bin as usize);
     let middle = yours.middle.unwrap_or(usize::MAX).min(yours.order.len());
+    // An answer that lost a primitive follows none of these formulas.
+    let is_complete = sorted(&yours.order) == left_side(query, |_| true);
     let of = |primitive: &PrimitiveBox, rounding| bin_of(primitive, grid, axis, rounding);
     let is = |is_left: &dyn Fn(&PrimitiveBox) -> bool| {
         yours.middle == Some(middle) && sorted(&yours.order[..middle]) == left_side(query, is_left)
@@ -104,7 +106,7 @@ fn mistakes(query: &PartitionQuery, yours: &SplitAnswer) -> Vec<(bool, &'static 
     for (rounding, text) in ROUNDINGS {
         mistakes.push((is(&|primitive| of(primitive, rounding) < last_left), text));
     }
-    mistakes
+    mistakes.into_iter().map(|(gives, text)| (gives && is_complete, text)).collect()
 }
 
 /// Whether the left side comes first, of `n_left` primitives.

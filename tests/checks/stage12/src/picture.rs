@@ -29,11 +29,6 @@ fn ramp(pitch: f32, width: f32) -> Vec<Triangle> {
     (0..28).flat_map(step).collect()
 }
 
-fn bounds_of(triangle: &Triangle) -> Aabb {
-    let Triangle { a, b, c } = triangle;
-    Aabb::new(a.min(*b).min(*c), a.max(*b).max(*c))
-}
-
 /// The exact `t` of the hit, rounded once; ∞ for a miss.
 fn t_of(ray: &Ray, triangle: &Triangle) -> f32 {
     meet(ray, Body::Triangle(*triangle)).and_then(|hit| hit.t).unwrap_or(f32::INFINITY)
@@ -96,7 +91,10 @@ fn depths(kit: &dyn Kit, tree: &FlatTree, triangles: &[Triangle], rays: &[Ray]) 
 pub(super) fn picture_of_a_winding_ramp(trial: &Trial<'_>) -> CheckResult {
     let (pitch, width) = trial.composed((1.0, 1.0), (0.7..1.3f32, 0.7..1.2f32));
     let triangles = ramp(pitch, width);
-    let boxes: Vec<Aabb> = triangles.iter().map(bounds_of).collect();
+    let boxes: Vec<Aabb> = triangles
+        .iter()
+        .map(|Triangle { a, b, c }| Aabb::new(a.min(*b).min(*c), a.max(*b).max(*c)))
+        .collect();
     let tree = drawn_tree(&boxes, 6, &[28, 13, 14, 7, 6, 4, 5, 2]);
     let rays = picture::rays_of(trial, SMALL, vec3(2.4, 2.9, 2.4), TARGET);
     // All hits are exact, so no pixel may differ.

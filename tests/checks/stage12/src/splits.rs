@@ -93,8 +93,8 @@ fn volume(bounds: &BoxA) -> f64 {
     x * y * z
 }
 
-/// The number of whole blocks.
-fn blocks(n: u32) -> f64 {
+/// The number of whole blocks of a side.
+fn blocks((_, n): &(BoxA, u32)) -> f64 {
     f64::from(n.div_ceil(BLOCK as u32))
 }
 
@@ -116,7 +116,7 @@ fn splits(query: &BinSplitQuery) -> Vec<(BinSplit, [(BoxA, u32); 2])> {
 type Cost = fn(&[(BoxA, u32); 2]) -> f64;
 
 fn right_cost(sides: &[(BoxA, u32); 2]) -> f64 {
-    sides.iter().map(|(bounds, n)| area(bounds) * blocks(*n)).sum()
+    sides.iter().map(|side| area(&side.0) * blocks(side)).sum()
 }
 
 const WRONG_COSTS: [(Cost, &str); 5] = [
@@ -125,13 +125,13 @@ const WRONG_COSTS: [(Cost, &str); 5] = [
         "the sides count single primitives: a leaf pays for whole blocks, block_cost",
     ),
     (|sides| sides.iter().map(|(bounds, _)| area(bounds)).sum(), "the counts are left out of the cost"),
-    (|sides| sides.iter().map(|(_, n)| blocks(*n)).sum(), "the areas are left out of the cost"),
+    (|sides| sides.iter().map(blocks).sum(), "the areas are left out of the cost"),
     (
-        |sides| sides.iter().map(|(bounds, n)| volume(bounds) * blocks(*n)).sum(),
+        |sides| sides.iter().map(|side| volume(&side.0) * blocks(side)).sum(),
         "the cost has volumes in place of surface areas",
     ),
     (
-        |sides| area(&sides[0].0) * blocks(sides[1].1) + area(&sides[1].0) * blocks(sides[0].1),
+        |sides| area(&sides[0].0) * blocks(&sides[1]) + area(&sides[1].0) * blocks(&sides[0]),
         "each area is multiplied by the cost of the other side",
     ),
 ];

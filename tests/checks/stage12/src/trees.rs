@@ -21,15 +21,20 @@ pub(super) fn boxes(most: usize) -> impl Strategy<Value = Vec<Aabb>> + Clone {
     prop::collection::vec(one, 0..=most)
 }
 
+/// The numbers `0..n` in another order.
+pub(super) fn shuffled(n: usize) -> Vec<u32> {
+    // A prime step that does not divide n visits every number once.
+    let step = [7, 11, 13].into_iter().find(|step| !n.is_multiple_of(*step)).unwrap_or(1);
+    (0..n).map(|i| (i * step % n) as u32).collect()
+}
+
 /// A tree over boxes. It is divided as `cuts` says, and so follows none of the rules by which students build.
 ///
 /// Primitives are listed in an order that is not that of their numbers. Leaves have at most `leaf_size` primitives. Without
 /// cuts, nodes are divided in half down to leaves of this size.
 pub(super) fn drawn_tree(boxes: &[Aabb], leaf_size: usize, cuts: &[u16]) -> FlatTree {
     let n = boxes.len();
-    // A step without a common divisor with n visits every number once.
-    let step = [7, 11, 13, 1].into_iter().find(|step| n % step != 0).unwrap_or(1);
-    let mut tree = FlatTree { nodes: Vec::new(), order: (0..n).map(|i| (i * step % n) as u32).collect() };
+    let mut tree = FlatTree { nodes: Vec::new(), order: shuffled(n) };
     if n > 0 {
         tree.nodes.push(GAP);
         divide(boxes, leaf_size, &mut cuts.iter().cycle(), &mut tree, 0, 0..n);

@@ -1,5 +1,6 @@
 //! Wide trees whose boxes and primitives are tables of answers, and searches of them.
 
+use super::trees::shuffled;
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::bvh::PrimitiveHit;
@@ -69,9 +70,7 @@ impl Parts<'_> {
 /// A search of a tree over primitives with these hits. The leaves have the sizes of `sizes`, and list the primitives in
 /// an order that is not that of their numbers.
 fn query(hits: &[f32], sizes: &[usize], choices: &[u16], ray: Ray) -> WideQuery {
-    let n = hits.len();
-    let step = [7, 11, 13, 1].into_iter().find(|step| n % step != 0).unwrap_or(1);
-    let mut ids = (0..n).map(|i| (i * step % n) as u32);
+    let mut ids = shuffled(hits.len()).into_iter();
     let mut leaves = Vec::new();
     for size in sizes.iter().cycle() {
         let leaf: Vec<u32> = ids.by_ref().take((*size).clamp(1, MAX_LEAF)).collect();
