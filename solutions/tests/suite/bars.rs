@@ -55,7 +55,7 @@ fn sweep(boxes: &mut [Aabb]) -> f64 {
 
 #[test]
 fn the_bars_are_those_of_the_reference() {
-    let kit = solutions::Kit.door();
+    let kit = solutions::kit();
     let mut found = Vec::new();
     for (name, mut boxes) in scenes() {
         let own = cost(&kit.build_binned(std::slice::from_ref(&boxes))[0]);

@@ -205,7 +205,7 @@ fn both_techniques_have_less_noise_in_rough_mirrors_than_either() {
         let quality = &mut scene.quality;
         (quality.next_event, quality.max_depth, quality.samples_per_pixel) = (next_event, 1, samples);
         let job = RenderJob { scene, view: View::Shaded, seed, threads: 1, count: false, reuse: false };
-        solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled").film
+        solutions::kit().render(&job, &Unwatched).expect("not cancelled").film
     };
     let right = film(NextEvent::On, 1, 4096);
     let error = |next_event| {
