@@ -2,7 +2,6 @@
 
 use checks::tree::{around, half_area};
 use raykata::aabb::Aabb;
-use raykata::kit::StudentKit;
 use raykata::wide::{BLOCK, BLOCK_COST, MAX_LEAF, NODE_COST};
 use stage12_checks::bars::{CALLS_OF_SEARCH, SWEEP_COSTS};
 use stage12_checks::scenes::scenes;
