@@ -53,18 +53,22 @@ fn judge_hit(query: &WideQuery, yours: &WideAnswer) -> CheckResult {
         .explained_by(mistakes(query, yours, found)))
 }
 
+/// Judges the hits of searches, and names a wrong rule for ties if it explains all answers.
+fn judge_hits(queries: &[WideQuery], answers: Vec<WideAnswer>) -> CheckResult {
+    compare_formulas(
+        queries,
+        answers,
+        |query, yours| judge_hit(query, &yours),
+        |query, yours| {
+            let found = yours.hit.map(|hit| (hit.primitive, hit.t));
+            TIES.map(|(flaw, text)| (flawed_search(query, flaw).0 == found, text)).to_vec()
+        },
+    )
+}
+
 pub(super) fn wide_closest_hit_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     trial.forall_and(&small_searches(), 400, searches(120), |queries| {
-        let answers = trial.kit.wide_closest_hit(queries);
-        compare_formulas(
-            queries,
-            answers,
-            |query, yours| judge_hit(query, &yours),
-            |query, yours| {
-                let found = yours.hit.map(|hit| (hit.primitive, hit.t));
-                TIES.map(|(flaw, text)| (flawed_search(query, flaw).0 == found, text)).to_vec()
-            },
-        )
+        judge_hits(queries, trial.kit.wide_closest_hit(queries))
     })
 }
 
@@ -80,16 +84,7 @@ pub(super) fn wide_closest_hit_prefers_the_smaller_number(trial: &Trial<'_>) -> 
         query
     });
     trial.forall_and(&small_searches(), 300, tied, |queries| {
-        let answers = trial.kit.wide_closest_hit(queries);
-        compare_formulas(
-            queries,
-            answers,
-            |query, yours| judge_hit(query, &yours),
-            |query, yours| {
-                let found = yours.hit.map(|hit| (hit.primitive, hit.t));
-                TIES.map(|(flaw, text)| (flawed_search(query, flaw).0 == found, text)).to_vec()
-            },
-        )
+        judge_hits(queries, trial.kit.wide_closest_hit(queries))
     })
 }
 
