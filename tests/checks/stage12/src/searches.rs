@@ -54,7 +54,7 @@ fn judge_hit(query: &WideQuery, yours: &WideAnswer) -> CheckResult {
 }
 
 /// Judges the hits of searches, and names a wrong rule for ties if it explains all answers.
-fn judge_hits(queries: &[WideQuery], answers: Vec<WideAnswer>) -> CheckResult {
+fn judge_hits(queries: &[WideQuery], answers: Vec<WideAnswer>) -> Vec<CheckResult> {
     compare_formulas(
         queries,
         answers,
