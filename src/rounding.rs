@@ -56,9 +56,15 @@ pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> f64 {
     partials.into_iter().sum()
 }
 
-/// The rounded sum of two numbers, and its rounding error, exactly (Knuth, "The Art of Computer Programming", volume 2,
-/// section 4.2.2).
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
+/// The rounded sum of two numbers, and its rounding error: together they are exactly `a + b`, if the sum does not overflow
+/// (Knuth, "The Art of Computer Programming", volume 2, section 4.2.2).
+///
+/// ```
+/// use raykata::rounding::two_sum;
+///
+/// assert_eq!(two_sum(1e100, 1.0), (1e100, 1.0));
+/// ```
+pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let b_rounded = sum - a;
     let a_rounded = sum - b_rounded;

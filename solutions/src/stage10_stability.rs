@@ -18,6 +18,7 @@ use raykata::shape::Triangle;
 // <solution>
 use crate::{stage1_shapes::nearest_root, stage3_boxes::slab, stage4_shading::off_surface};
 use glam::DVec2;
+use raykata::rounding::two_sum;
 // </solution>
 
 /// Computes the real roots of `a t² + b t + c = 0` without cancellation.
@@ -195,25 +196,44 @@ fn exact_hit(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 
 /// The sum of the determinants of matrices with three columns. Its sign is right, and so are its first 26 binary digits.
 fn sum_of_determinants<const N: usize>(matrices: [[Vec3; 3]; N]) -> f64 {
-    let mut terms = Vec::with_capacity(12 * N);
-    for columns in matrices {
+    // Expand the determinants into products of three numbers. A product of two single precision numbers has 48 digits, so it
+    // is exact in double precision. Each half of its digits times the third number is exact, too.
+    let mut terms = [[0.0; 12]; N];
+    for (terms, columns) in terms.iter_mut().zip(matrices) {
         let [u, v, w] = columns.map(Vec3::as_dvec3);
-        for [i, j, k] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
-            // A product of two single precision numbers is exact in double precision. A third factor makes it the sum of
-            // two doubles: the rounded product and its rounding error, which a fused multiply-add computes exactly.
-            for product in [u[i] * v[j], -u[j] * v[i]] {
-                let rounded = product * w[k];
-                terms.extend([rounded, product.mul_add(w[k], -rounded)]);
+        let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];
+        for (four, [i, j, k]) in terms.chunks_exact_mut(4).zip(orders) {
+            for (two, product) in four.chunks_exact_mut(2).zip([u[i] * v[j], -u[j] * v[i]]) {
+                let upper = upper_half(product);
+                two.copy_from_slice(&[upper * w[k], (product - upper) * w[k]]);
             }
         }
     }
-    // Return the rounded sum if its digits are right. Each of n terms is exact, so this sum has an error of at most
-    // n u Σ|term|, with u = ε/2. The other half leaves room for the rounding of this bound.
-    let (sum, size) = terms.iter().fold((0.0, 0.0), |(sum, size), term| (sum + term, size + term.abs()));
-    if sum.abs() > DIGITS * terms.len() as f64 * f64::EPSILON * size {
-        return sum;
+    let terms = terms.as_flattened();
+    // Add the terms, and beside them the rounding error of each addition, which is a double.
+    let [mut sum, mut error, mut lost, mut size] = [0.0f64; 4];
+    for &term in terms {
+        let (rounded, rounding) = two_sum(sum, term);
+        sum = rounded;
+        error += rounding;
+        lost += rounding.abs();
+        size += term.abs();
     }
-    exact_sum(terms)
+    // Return the sum if no digit was lost, or if its digits are right: with its rounding errors added, the sum of n terms is
+    // off by at most u |sum| + (n u)² Σ|term| (Ogita, Rump and Oishi, "Accurate Sum and Dot Product", 2005), with u = ε/2.
+    // The other half of ε leaves room for the rounding of this bound.
+    let bound = (terms.len() as f64 * f64::EPSILON).powi(2) * size;
+    let corrected = sum + error;
+    if lost == 0.0 || corrected.abs() > DIGITS * bound {
+        return corrected;
+    }
+    exact_sum(terms.iter().copied())
+}
+
+/// The first 24 of the binary digits of a number, so that at most 24 remain of a product of two single precision numbers.
+fn upper_half(product: f64) -> f64 {
+    const LOWER: u64 = (1 << (f64::MANTISSA_DIGITS - f32::MANTISSA_DIGITS)) - 1;
+    f64::from_bits(product.to_bits() & !LOWER)
 }
 // </solution>
 
