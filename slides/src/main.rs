@@ -22,6 +22,7 @@ mod rounding;
 mod sampling;
 mod sketch;
 mod solids;
+mod speed;
 mod spheres;
 mod splits;
 mod structures;
@@ -92,6 +93,10 @@ const DIAGRAMS: &[(&str, Draw)] = &[
     ("malley", transport::malley),
     ("light-solid-angle", transport::light_solid_angle),
     ("corner", transport::corner),
+    ("bins-and-cuts", speed::bins_and_cuts),
+    ("blocks-that-pay", speed::blocks_that_pay),
+    ("wide-node", speed::wide_node),
+    ("work-and-span", speed::work_and_span),
 ];
 
 /// Makes the bytes of a figure from the scenes of the kit at a path.
@@ -122,6 +127,7 @@ const FROM_SCENES: &[(&str, FromScenes)] = &[
     ("leaks", leaks::leaks),
     ("shadow-ray-map", leaks::shadow_ray_map),
     ("cornell-next-event", leaks::cornell_next_event),
+    ("wide-heatmaps", speed::wide_heatmaps),
 ];
 
 fn main() -> ExitCode {
