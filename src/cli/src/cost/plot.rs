@@ -1,6 +1,6 @@
 //! A plot of error over time on logarithmic axes. The same numbers give the same SVG file.
 
-use std::fmt::Write;
+use crate::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT};
 
 /// The contents of a plot.
 pub struct Plot<'a> {
@@ -23,17 +23,12 @@ pub struct Line {
     pub points: Vec<[f64; 4]>,
 }
 
-const WIDTH: f64 = 900.0;
-const HEIGHT: f64 = 560.0;
-const LEFT: f64 = 86.0;
-const RIGHT: f64 = 690.0;
-const TOP: f64 = 56.0;
-const BOTTOM: f64 = 500.0;
-
-/// Tol's bright and muted colours, which colour-blind readers can distinguish; in this order they also differ
-/// in grey.
-const COLORS: [&str; 8] =
-    ["#332288", "#ee6677", "#228833", "#997700", "#66ccee", "#aa3377", "#44aa99", "#555555"];
+const WIDTH: f64 = 1000.0;
+const HEIGHT: f64 = 640.0;
+const LEFT: f64 = 110.0;
+const RIGHT: f64 = 600.0;
+const TOP: f64 = 90.0;
+const BOTTOM: f64 = 550.0;
 
 /// A logarithmic axis, which ends at whole or half powers of ten.
 struct Axis {
@@ -78,92 +73,62 @@ pub fn svg(plot: &Plot<'_>) -> String {
     let points = || plot.lines.iter().flat_map(|line| &line.points);
     let x = Axis::over(points().map(|point| point[0]), LEFT, RIGHT);
     let y = Axis::over(points().flat_map(|point| [floored(point[1]), floored(point[3])]), BOTTOM, TOP);
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" font-family=\"sans-serif\" \
-         font-size=\"13\" role=\"img\">\n<title>{0}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n\
-         <text x=\"{LEFT}\" y=\"28\" font-size=\"17\">{0}</text>\n",
-        escaped(plot.title)
-    );
-    axes(&mut out, plot, &x, &y);
-    pareto_front(&mut out, &plot.pareto_front, &x, &y, plot.floor);
-    guides(&mut out, plot, &x, &y);
+    let mut drawing = Drawing::new(plot.title, WIDTH, HEIGHT);
+    drawing.text([LEFT - 90.0, 34.0], Anchor::Start, TEXT, Ink::Text, plot.title);
+    draw_axes(&mut drawing, plot, &x, &y);
+    draw_pareto_front(&mut drawing, &plot.pareto_front, &x, &y, plot.floor);
+    draw_guides(&mut drawing, plot, &x, &y);
     let mut labels = Vec::new();
     for (index, line) in plot.lines.iter().enumerate() {
-        let color = COLORS[index % COLORS.len()];
-        draw(&mut out, line, color, index, &x, &y, plot.floor);
+        draw_line(&mut drawing, line, index, &x, &y, plot.floor);
         if let Some(last) = line.points.last() {
-            labels.push((y.at(floored(last[1])), x.at(last[0]), color, line.name.clone()));
+            labels.push(Label {
+                from: [x.at(last[0]), y.at(floored(last[1]))],
+                ink: Ink::Color(index),
+                name: &line.name,
+            });
         }
     }
-    write_labels(&mut out, labels);
-    out + "</svg>\n"
+    draw_labels(&mut drawing, labels);
+    drawing.svg()
 }
 
-fn axes(out: &mut String, plot: &Plot<'_>, x: &Axis, y: &Axis) {
-    for (value, named) in x.ticks() {
+fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, x: &Axis, y: &Axis) {
+    let pen = Pen::new(Ink::Faint).wide(0.5);
+    for (value, is_named) in x.ticks() {
         let at = x.at(value);
-        let _ = writeln!(
-            out,
-            "<line x1=\"{at:.1}\" y1=\"{TOP}\" x2=\"{at:.1}\" y2=\"{BOTTOM}\" stroke=\"#e4e4e4\"/>"
-        );
-        if named {
-            let label = number(value);
-            let _ = writeln!(
-                out,
-                "<text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"#555\">{label}</text>",
-                BOTTOM + 19.0
-            );
+        drawing.line([at, TOP], [at, BOTTOM], pen);
+        if is_named {
+            drawing.text([at, BOTTOM + 28.0], Anchor::Middle, SMALL, Ink::Text, &number(value));
         }
     }
-    for (value, named) in y.ticks() {
+    for (value, is_named) in y.ticks() {
         let at = y.at(value);
-        let _ = writeln!(
-            out,
-            "<line x1=\"{LEFT}\" y1=\"{at:.1}\" x2=\"{RIGHT}\" y2=\"{at:.1}\" stroke=\"#e4e4e4\"/>"
-        );
-        if named {
-            let label = number(value);
-            let _ = writeln!(
-                out,
-                "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" fill=\"#555\">{label}</text>",
-                LEFT - 8.0,
-                at + 4.5
-            );
+        drawing.line([LEFT, at], [RIGHT, at], pen);
+        if is_named {
+            drawing.text([LEFT - 10.0, at + 7.0], Anchor::End, SMALL, Ink::Text, &number(value));
         }
     }
-    let middle = (TOP + BOTTOM) / 2.0;
-    let _ = writeln!(
-        out,
-        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\n\
-         <text x=\"22\" y=\"{middle:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 22 {middle:.1})\">{}</text>",
-        (LEFT + RIGHT) / 2.0,
-        BOTTOM + 46.0,
-        escaped(plot.x_axis),
-        escaped(plot.y_axis)
-    );
+    drawing.text([RIGHT, BOTTOM + 66.0], Anchor::End, SMALL, Ink::Text, plot.x_axis);
+    drawing.text([LEFT - 90.0, TOP - 18.0], Anchor::Start, SMALL, Ink::Text, plot.y_axis);
 }
 
-/// The Pareto front as a broad step line: every setting above it is slower or less accurate than one on it.
-fn pareto_front(out: &mut String, points: &[(f64, f64)], x: &Axis, y: &Axis, floor: f64) {
-    let mut path = String::new();
-    let mut before = None;
+/// Draws the Pareto front as a dashed step line: every setting above it is slower or less accurate than one on it.
+fn draw_pareto_front(drawing: &mut Drawing, points: &[(f64, f64)], x: &Axis, y: &Axis, floor: f64) {
+    let mut steps: Vec<Point> = Vec::new();
     for &(time, error) in points {
-        let (time, error) = (x.at(time), y.at(error.max(floor)));
-        match before {
-            None => path += &format!("M{time:.1} {error:.1}"),
-            Some(_) => path += &format!("H{time:.1}V{error:.1}"),
+        let corner = [x.at(time), y.at(error.max(floor))];
+        if let Some(&[_, before]) = steps.last() {
+            steps.push([corner[0], before]);
         }
-        before = Some(error);
+        steps.push(corner);
     }
-    if before.is_some() {
-        let _ = writeln!(
-            out,
-            "<path d=\"{path}\" fill=\"none\" stroke=\"#ffcc66\" stroke-width=\"9\" stroke-opacity=\"0.6\"/>"
-        );
+    if !steps.is_empty() {
+        drawing.polyline(&steps, Pen::new(Ink::Text).wide(2.0).dashed());
     }
 }
 
-fn guides(out: &mut String, plot: &Plot<'_>, x: &Axis, y: &Axis) {
+fn draw_guides(drawing: &mut Drawing, plot: &Plot<'_>, x: &Axis, y: &Axis) {
     let Some(&[x0, y0, ..]) = plot.lines.first().and_then(|line| line.points.first()) else { return };
     let y0 = y0.max(plot.floor);
     for (slope, name) in &plot.guides {
@@ -171,75 +136,53 @@ fn guides(out: &mut String, plot: &Plot<'_>, x: &Axis, y: &Axis) {
         let to_bottom = (y.low - y0.log10()) / slope;
         let length = (x.high - x0.log10()).min(if *slope < 0.0 { to_bottom } else { f64::INFINITY });
         let end = (x0 * 10f64.powf(length), y0 * 10f64.powf(slope * length));
-        let (x1, y1, x2, y2) = (x.at(x0), y.at(y0), x.at(end.0), y.at(end.1));
-        let _ = writeln!(
-            out,
-            "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" stroke=\"#888\" \
-             stroke-dasharray=\"6 5\"/>\n<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" fill=\"#666\" \
-             font-size=\"12\">{}</text>",
-            x2 - 6.0,
-            y2 - 6.0,
-            escaped(name)
-        );
+        let to = [x.at(end.0), y.at(end.1)];
+        drawing.line([x.at(x0), y.at(y0)], to, Pen::new(Ink::Faint).wide(2.0).dashed());
+        drawing.text([to[0] - 6.0, to[1] - 8.0], Anchor::End, SMALL, Ink::Faint, name);
     }
 }
 
-/// One line with markers of its own shape for colour-blind readers, and the range over all rounds at each point.
-fn draw(out: &mut String, line: &Line, color: &str, index: usize, x: &Axis, y: &Axis, floor: f64) {
-    let at = |point: &[f64; 4]| (x.at(point[0]), y.at(point[1].max(floor)));
-    let path: Vec<String> = line.points.iter().map(at).map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
-    let _ = writeln!(
-        out,
-        "<polyline points=\"{}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.8\"/>",
-        path.join(" ")
-    );
-    for point in &line.points {
-        let (cx, cy) = at(point);
+/// Draws one line with markers of its own shape for colour-blind readers, and the range over all rounds at each point.
+fn draw_line(drawing: &mut Drawing, line: &Line, index: usize, x: &Axis, y: &Axis, floor: f64) {
+    let ink = Ink::Color(index);
+    let at = |point: &[f64; 4]| [x.at(point[0]), y.at(point[1].max(floor))];
+    let path: Vec<Point> = line.points.iter().map(at).collect();
+    drawing.polyline(&path, Pen::new(ink).wide(2.5));
+    for (point, &[cx, cy]) in line.points.iter().zip(&path) {
         let (low, high) = (y.at(point[2].max(floor)), y.at(point[3].max(floor)));
         if (low - high).abs() > 1.0 {
-            let _ = writeln!(
-                out,
-                "<line x1=\"{cx:.1}\" y1=\"{low:.1}\" x2=\"{cx:.1}\" y2=\"{high:.1}\" stroke=\"{color}\"/>"
-            );
+            drawing.line([cx, low], [cx, high], Pen::new(ink).wide(1.5));
         }
-        let r = 4.0;
-        let _ = match index % 4 {
-            0 => writeln!(out, "<circle cx=\"{cx:.1}\" cy=\"{cy:.1}\" r=\"{r}\" fill=\"{color}\"/>"),
-            1 => writeln!(
-                out,
-                "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{2}\" height=\"{2}\" fill=\"{color}\"/>",
-                cx - r,
-                cy - r,
-                2.0 * r
-            ),
-            2 => writeln!(out, "<path d=\"M{cx:.1} {:.1}l5 9h-10z\" fill=\"{color}\"/>", cy - 5.5),
-            _ => writeln!(
-                out,
-                "<path d=\"M{cx:.1} {:.1}l5.5 5.5-5.5 5.5-5.5-5.5z\" fill=\"{color}\"/>",
-                cy - 5.5
-            ),
-        };
+        let r = 6.0;
+        match index % 4 {
+            0 => drawing.dot([cx, cy], r, ink),
+            1 => drawing.rectangle([cx - r, cy - r], [cx + r, cy + r], ink, 1.0),
+            2 => drawing.area(&[[cx, cy - 8.0], [cx + 7.0, cy + 5.0], [cx - 7.0, cy + 5.0]], ink, 1.0),
+            _ => drawing.area(&[[cx, cy - 8.0], [cx + 8.0, cy], [cx, cy + 8.0], [cx - 8.0, cy]], ink, 1.0),
+        }
     }
+}
+
+/// The name of a line, written beside its end.
+struct Label<'a> {
+    from: Point,
+    ink: Ink,
+    name: &'a str,
 }
 
 /// Writes the names beside the ends of the lines, moved apart.
-fn write_labels(out: &mut String, mut labels: Vec<(f64, f64, &str, String)>) {
-    labels.sort_by(|a, b| a.0.total_cmp(&b.0));
-    const APART: f64 = 17.0;
+fn draw_labels(drawing: &mut Drawing, mut labels: Vec<Label<'_>>) {
+    labels.sort_by(|a, b| a.from[1].total_cmp(&b.from[1]));
+    // Move labels closer together if there are too many for the height.
+    let apart = ((HEIGHT - 20.0 - TOP) / labels.len().max(1) as f64).min(27.0);
+    let lowest = |below: usize| HEIGHT - 14.0 - apart * below as f64;
     let mut free = TOP - 10.0;
-    for (y, x, color, name) in &labels {
-        let at = y.max(free).min(HEIGHT - 10.0);
-        free = at + APART;
-        let _ = writeln!(
-            out,
-            "<line x1=\"{:.1}\" y1=\"{y:.1}\" x2=\"{:.1}\" y2=\"{at:.1}\" stroke=\"{color}\" stroke-opacity=\"0.35\"/>\n\
-             <text x=\"{:.1}\" y=\"{:.1}\" fill=\"{color}\">{}</text>",
-            x + 6.0,
-            RIGHT + 8.0,
-            RIGHT + 12.0,
-            at + 4.5,
-            escaped(name)
-        );
+    let n = labels.len();
+    for (index, Label { from, ink, name }) in labels.into_iter().enumerate() {
+        let at = from[1].max(free).min(lowest(n - 1 - index));
+        free = at + apart;
+        drawing.line([from[0] + 8.0, from[1]], [RIGHT + 10.0, at], Pen::new(ink).wide(0.7));
+        drawing.text([RIGHT + 14.0, at + 7.0], Anchor::Start, SMALL.min(0.95 * apart), ink, name);
     }
 }
 
@@ -252,10 +195,6 @@ fn number(value: f64) -> String {
         }
         _ => format!("{value:.0e}"),
     }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]
