@@ -35,15 +35,17 @@ impl Options {
 
 /// Folders that are handed out with their subfolders, and the extensions of the files in them. A missing folder is left
 /// out.
-const FOLDERS: [(&str, &[&str]); 9] = [
+const FOLDERS: [(&str, &[&str]); 11] = [
     ("src", &["css", "md", "rs", "snap", "toml"]),
     ("tests/checks", &["rs", "toml"]),
     ("tests/oracle", &["rs", "toml"]),
     ("tests/judge", &["rs", "toml"]),
-    ("tests/watch", &["rs", "snap", "toml"]),
+    ("tests/browser", &["rs", "toml"]),
+    ("tests/watch", &["html", "rs", "snap", "toml"]),
     ("scenes", &["md", "toml"]),
     ("scenes/meshes", &["ply", "obj", "mtl"]),
     ("scenes/images", &["png", "hdr"]),
+    ("scenes/reference", &["png"]),
     ("slides", &["md", "svg"]),
 ];
 
