@@ -55,9 +55,10 @@ fn the_worker() {
     }
     serve_with(&|request, watch| match request {
         Request::Render(job) | Request::RenderInTiles(job) => {
-            let forever = first.starts_with("// loop");
-            while forever {
-                std::thread::sleep(Duration::from_secs(1));
+            if first.starts_with("// loop") {
+                loop {
+                    std::thread::sleep(Duration::from_secs(1));
+                }
             }
             assert!(!first.starts_with("// panic"), "on purpose");
             let color = if first.starts_with("// red") { Vec3::X } else { Vec3::Y };
@@ -494,7 +495,7 @@ fn the_page_works_in_a_browser() {
         .unwrap();
     browser.evaluate("document.querySelector('[data-mode=heat]').click()").unwrap();
     browser
-        .wait_for("document.getElementById('summary').textContent.includes('node visits per pixel')")
+        .wait_for("document.getElementById('summary').textContent.includes('primitive tests per pixel')")
         .unwrap();
     browser.evaluate("document.getElementById('level').click()").unwrap();
     browser.wait_for("document.getElementById('summary').textContent.includes('1 line segments')").unwrap();

@@ -335,21 +335,23 @@ impl Studio {
         Ok(json!({ "depth": depth, "count": edges.len(), "lines": pixel::lines(&scene, &edges) }))
     }
 
-    /// The node visits, box tests and primitive tests of each pixel as colours, with one sample per pixel.
+    /// The node visits of each pixel as colours, with one sample per pixel; without a structure, its primitive tests.
     pub fn heat(&self) -> Result<Value> {
         let (scene, kit, _) = self.asked()?;
         let mut job = job(&scene, View::Work, true);
         job.scene.quality.samples_per_pixel = 1;
         let work = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
-        let sums: Vec<f32> = work.film.pixels.iter().map(|pixel| pixel.element_sum()).collect();
-        let most = sums.iter().copied().fold(1.0, f32::max);
-        let color = |sum: &f32| raykata_cli::compare::heat_color(*sum, most).to_array().map(encode_srgb);
-        let rgb: Vec<u8> = sums.iter().flat_map(color).collect();
-        let visits =
-            work.film.pixels.iter().map(|pixel| f64::from(pixel.x)).sum::<f64>() / sums.len().max(1) as f64;
+        let has_visits = work.film.pixels.iter().any(|pixel| pixel.x > 0.0);
+        let what = if has_visits { "node visits" } else { "primitive tests" };
+        let counts: Vec<f32> =
+            work.film.pixels.iter().map(|pixel| if has_visits { pixel.x } else { pixel.z }).collect();
+        let most = counts.iter().copied().fold(1.0, f32::max);
+        let color = |count: &f32| raykata_cli::compare::heat_color(*count, most).to_array().map(encode_srgb);
+        let rgb: Vec<u8> = counts.iter().flat_map(color).collect();
+        let mean = counts.iter().copied().map(f64::from).sum::<f64>() / counts.len().max(1) as f64;
         Ok(json!({
             "width": scene.film.width, "height": scene.film.height, "scale": 1, "rgb": base64(&rgb), "most": most,
-            "visits": visits,
+            "mean": mean, "what": what,
         }))
     }
 
