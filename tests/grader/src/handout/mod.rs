@@ -141,7 +141,9 @@ fn gather(root: &Path, folder: &str, endings: &[&str], files: &mut BTreeMap<Stri
         let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
         let is = |ending: &&str| Path::new(&path).extension().is_some_and(|one| one == *ending);
         if entry.file_type()?.is_dir() {
-            if !KEPT_BACK.contains(&path.as_str()) && entry.file_name() != "target" {
+            if !KEPT_BACK.contains(&path.as_str())
+                && !["target", "node_modules"].iter().any(|name| entry.file_name() == *name)
+            {
                 gather(root, &path, endings, files)?;
             }
         } else if endings.iter().any(is) {
