@@ -3,6 +3,7 @@
 //! Code that is counted is generic over [`Tally`]. With [`Counts`] every event is one addition to a local
 //! number; with [`Uncounted`] the calls compile to nothing.
 
+use crate::aabb::Aabb;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
@@ -95,6 +96,18 @@ pub trait Tally: Default + Send {
 
     /// Counts one event.
     fn note(&mut self, event: Event);
+
+    /// The search for the hit of one ray begins.
+    #[inline(always)]
+    fn search(&mut self) {}
+
+    /// A ray was tested against the box `bounds` of a node. `hit`: it enters the box.
+    #[inline(always)]
+    fn tested(&mut self, _bounds: &Aabb, _hit: bool) {}
+
+    /// From here on, boxes are those of a shared mesh, in its own space, or those of the scene again.
+    #[inline(always)]
+    fn within_mesh(&mut self, _within: bool) {}
 
     /// The counts so far; all zero for a tally that ignores events.
     fn counts(&self) -> Counts;

@@ -9,6 +9,7 @@ use crate::random::{Points, Purpose, Stratum};
 use crate::scene::Sampler;
 use glam::Vec3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// The side of a tile in pixels: small enough to share the work out evenly, large enough that neighbours
@@ -23,10 +24,55 @@ pub trait Watch: Sync {
     /// Before the first pixel: `placed` of `total` primitives are in leaves. Called from any thread.
     fn building(&self, _placed: u64, _total: u64) {}
 
+    /// Whether [`tile`](Watch::tile) uses the pixels. If they have to come from another process, they are sent only then.
+    fn wants_tiles(&self) -> bool {
+        false
+    }
+
+    /// Receives the pixels of a finished tile. A frame that [wants](Watch::wants_tiles) no tiles may omit the call. If a frame
+    /// starts again without an unfinished function, its tiles come again. Called from any thread.
+    fn tile(&self, _tile: &Tile) {}
+
     /// Whether the frame is no longer wanted. Called before each tile, from any thread; the default is
     /// `false`.
     fn cancelled(&self) -> bool {
         false
+    }
+}
+
+/// A finished rectangle of a frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tile {
+    /// The column of its upper left pixel.
+    pub x: u32,
+    /// The row of its upper left pixel.
+    pub y: u32,
+    /// The number of pixels per row.
+    pub width: u32,
+    /// The colours row by row from the top, in linear radiance.
+    pub pixels: Vec<Vec3>,
+}
+
+impl Tile {
+    /// Whether the tile is a rectangle within a film of `width` by `height` pixels.
+    pub fn fits(&self, width: u32, height: u32) -> bool {
+        let (columns, n_pixels) = (u64::from(self.width), self.pixels.len() as u64);
+        columns > 0
+            && n_pixels.is_multiple_of(columns)
+            && u64::from(self.x) + columns <= u64::from(width)
+            && u64::from(self.y) + n_pixels / columns <= u64::from(height)
+    }
+
+    /// Copies the pixels of the tile to their place in `film`.
+    ///
+    /// # Panics
+    ///
+    /// If the tile does not [fit](Tile::fits) into the film.
+    pub fn copy_to(&self, film: &mut Film) {
+        for (row, colors) in self.pixels.chunks(self.width as usize).enumerate() {
+            let start = (self.y as usize + row) * film.width as usize + self.x as usize;
+            film.pixels[start..start + colors.len()].copy_from_slice(colors);
+        }
     }
 }
 
@@ -143,7 +189,8 @@ pub fn render<T: Tally>(
     let total = u64::from(width) * u64::from(height);
     let done = AtomicU64::new(0);
     let broken = AtomicBool::new(false);
-    let tile = |corner: (u32, u32)| -> Result<Option<Tile>, Broken> {
+    let wants_tiles = watch.wants_tiles();
+    let tile = |corner: (u32, u32)| -> Result<Option<(Tile, Counts)>, Broken> {
         if watch.cancelled() || broken.load(Ordering::Relaxed) {
             return Ok(None);
         }
@@ -151,7 +198,10 @@ pub fn render<T: Tally>(
         let tile = kit_error::catch(|| render_tile::<T>(settings, corner, &radiance, &filter))
             .map_err(|error| (error, take_unwound()))
             .inspect_err(|_| broken.store(true, Ordering::Relaxed))?;
-        let pixels = tile.pixels.len() as u64;
+        let pixels = tile.0.pixels.len() as u64;
+        if wants_tiles {
+            watch.tile(&tile.0);
+        }
         watch.progress(done.fetch_add(pixels, Ordering::Relaxed) + pixels, total);
         Ok(Some(tile))
     };
@@ -160,7 +210,7 @@ pub fn render<T: Tally>(
         .step_by(TILE as usize)
         .flat_map(|y| (0..width).step_by(TILE as usize).map(move |x| (x, y)))
         .collect();
-    let tiles: Vec<Result<Option<Tile>, Broken>> = if settings.threads == 1 {
+    let tiles: Vec<Result<Option<(Tile, Counts)>, Broken>> = if settings.threads == 1 {
         corners.into_iter().map(tile).collect()
     } else {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
@@ -172,7 +222,7 @@ pub fn render<T: Tally>(
     };
 
     // Pass a panic of a tile on, with the student function that was running.
-    let tiles: Vec<Option<Tile>> =
+    let tiles: Vec<Option<(Tile, Counts)>> =
         tiles.into_iter().collect::<Result<_, _>>().unwrap_or_else(|(error, function)| {
             note_unwound(function);
             kit_error::unwind(error)
@@ -181,12 +231,9 @@ pub fn render<T: Tally>(
     let mut film = Film::new(width, height);
     let mut counts = Counts::default();
     for tile in tiles {
-        let tile = tile?;
-        counts += tile.counts;
-        for (row, colors) in tile.pixels.chunks(tile.width as usize).enumerate() {
-            let start = (tile.y as usize + row) * width as usize + tile.x as usize;
-            film.pixels[start..start + colors.len()].copy_from_slice(colors);
-        }
+        let (tile, of_tile) = tile?;
+        counts += of_tile;
+        tile.copy_to(&mut film);
     }
     Some((film, counts))
 }
@@ -194,20 +241,12 @@ pub fn render<T: Tally>(
 /// The reason why a tile has no pixels, and the student function that was running.
 type Broken = (KitError, Option<Function>);
 
-struct Tile {
-    x: u32,
-    y: u32,
-    width: u32,
-    pixels: Vec<Vec3>,
-    counts: Counts,
-}
-
 fn render_tile<T: Tally>(
     settings: &FrameSettings,
     (x, y): (u32, u32),
     radiance: &(impl Fn(&CameraSample, &mut T) -> WeightedColor + Sync),
     filter: &(impl Fn(&[WeightedColor]) -> Vec3 + Sync),
-) -> Tile {
+) -> (Tile, Counts) {
     let right = settings.width.min(x + TILE);
     let bottom = settings.height.min(y + TILE);
     let mut tally = T::default();
@@ -233,7 +272,7 @@ fn render_tile<T: Tally>(
         .flat_map(|row| (x..right).map(move |column| (column, row)))
         .map(&mut render_pixel)
         .collect();
-    Tile { x, y, width: right - x, pixels, counts: tally.counts() }
+    (Tile { x, y, width: right - x, pixels }, tally.counts())
 }
 
 #[cfg(test)]
@@ -314,6 +353,37 @@ mod tests {
                 assert_eq!(light(&plain), light(&all));
             }
         }
+    }
+
+    #[test]
+    fn tiles_make_the_picture_and_fit_into_it() {
+        struct Tiles(std::sync::Mutex<Film>);
+        impl Watch for Tiles {
+            fn progress(&self, _: u64, _: u64) {}
+            fn wants_tiles(&self) -> bool {
+                true
+            }
+            fn tile(&self, tile: &Tile) {
+                assert!(
+                    tile.fits(50, 33) && !tile.fits(tile.x + tile.width - 1, 33) && !tile.fits(50, tile.y)
+                );
+                tile.copy_to(&mut self.0.lock().unwrap());
+            }
+        }
+        let watch = Tiles(std::sync::Mutex::new(Film::new(50, 33)));
+        let place = |sample: &CameraSample, _: &mut Counts| WeightedColor {
+            color: Vec3::new(sample.column as f32, sample.row as f32, 1.0),
+            weight: 1.0,
+        };
+        let (film, _) = render::<Counts>(&settings(50, 33, 1, 2), &watch, place, mean).unwrap();
+        assert_eq!(*watch.0.lock().unwrap(), film);
+        for wrong in [
+            Tile { x: 0, y: 0, width: 0, pixels: vec![] },
+            Tile { x: 0, y: 0, width: 2, pixels: vec![Vec3::ONE] },
+        ] {
+            assert!(!wrong.fits(50, 33));
+        }
+        assert!(!Tile { x: u32::MAX, y: 0, width: u32::MAX, pixels: vec![] }.fits(50, 33));
     }
 
     #[test]

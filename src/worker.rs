@@ -5,7 +5,7 @@
 //! the other side passes as standard input, so nothing that student code prints can get between two messages;
 //! elsewhere requests come through standard input and replies leave through standard output.
 
-use crate::frame::Watch;
+use crate::frame::{Tile, Watch};
 use crate::kit::questions::{self, Question, Response};
 use crate::kit::{Answer, KitError, Request, StudentKit, kit_error};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -31,6 +31,8 @@ pub enum Reply {
         /// The number of all pixels.
         total: u64,
     },
+    /// The pixels of a finished tile, if the request asks for tiles.
+    Tile(Tile),
     /// The progress of building the structure of a frame, before its first pixel.
     Building {
         /// The number of primitives that are in leaves.
@@ -152,9 +154,10 @@ fn answer_all(
     };
     loop {
         let request: Request = receive(&mut *reader.borrow_mut())?;
+        let relay = Relay { say: &say, tiles: matches!(request, Request::RenderInTiles(_)) };
         let reply = match kit_error::catch(|| match &request {
-            Request::Withheld(request) => questions::asking(ask.clone(), || answer(request, &Relay(&say))),
-            request => answer(request, &Relay(&say)),
+            Request::Withheld(request) => questions::asking(ask.clone(), || answer(request, &relay)),
+            request => answer(request, &relay),
         }) {
             Ok(answer) => Reply::Answer(Box::new(answer)),
             Err(error) => Reply::KitError(error),
@@ -164,16 +167,30 @@ fn answer_all(
 }
 
 /// Passes progress on to the other side. To cancel, that side ends this process.
-struct Relay<'a>(&'a (dyn Fn(&Reply) -> io::Result<()> + Sync));
+struct Relay<'a> {
+    say: &'a (dyn Fn(&Reply) -> io::Result<()> + Sync),
+    /// Whether the other side wants the pixels of tiles.
+    tiles: bool,
+}
 
 impl Watch for Relay<'_> {
     fn progress(&self, done: u64, total: u64) {
         // Ignore a closed pipe here, because sending the answer will report it.
-        let _ = (self.0)(&Reply::Progress { done, total });
+        let _ = (self.say)(&Reply::Progress { done, total });
+    }
+
+    fn wants_tiles(&self) -> bool {
+        self.tiles
+    }
+
+    fn tile(&self, tile: &Tile) {
+        if self.tiles {
+            let _ = (self.say)(&Reply::Tile(tile.clone()));
+        }
     }
 
     fn building(&self, placed: u64, total: u64) {
-        let _ = (self.0)(&Reply::Building { placed, total });
+        let _ = (self.say)(&Reply::Building { placed, total });
     }
 }
 

@@ -95,6 +95,10 @@ impl<F: StudentKit> Frames for Linked<F> {
         frames::<F>().trace(job, x, y)
     }
 
+    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<RayVisits> {
+        frames::<F>().visits(job, x, y)
+    }
+
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
         frames::<F>().outlines(job, depth)
     }

@@ -85,6 +85,9 @@ pub trait Frames {
     /// `job`, exactly those that a frame traces. A parent has a smaller index than its secondary rays.
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay>;
 
+    /// For each ray of [`trace`](Frames::trace), in the same order, what the search for its hit visits.
+    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<RayVisits>;
+
     /// The line segments, in world units, that outline the boxes or cells at `depth` (the root has depth 0)
     /// of the structure over the scene, and the leaves above that depth.
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]>;
@@ -110,8 +113,12 @@ macro_rules! door {
             $($($(#[$doc])* $Message(Vec<$Query>),)*)*
             /// Renders a whole frame.
             Render(Box<RenderJob>),
+            /// The same, and the worker also sends each tile when it is finished.
+            RenderInTiles(Box<RenderJob>),
             /// Asks for the rays of a pixel, by column and row.
             Trace(Box<RenderJob>, u32, u32),
+            /// Asks what the searches for the rays of a pixel visit, by column and row.
+            Visits(Box<RenderJob>, u32, u32),
             /// Asks for the outlines of the structure at a depth.
             Outlines(Box<RenderJob>, u32),
             /// Asks for the first hit of each ray in a scene.
@@ -129,6 +136,8 @@ macro_rules! door {
             Render(Option<Box<Rendering>>),
             /// The rays of a pixel.
             Trace(Vec<TracedRay>),
+            /// What the search for each ray of a pixel visits.
+            Visits(Vec<RayVisits>),
             /// The two ends of each line segment that outlines the structure at a depth.
             Outlines(Vec<[Vec3; 2]>),
             /// The first hit of each ray in a scene.
@@ -136,6 +145,14 @@ macro_rules! door {
         }
 
         impl Request {
+            /// The frame that is to be rendered, if any.
+            pub fn frame(&self) -> Option<&RenderJob> {
+                match self {
+                    Request::Render(job) | Request::RenderInTiles(job) => Some(job),
+                    _ => None,
+                }
+            }
+
             /// Calls the function of `kit` that this request names. `watch` receives the progress of a frame.
             ///
             /// # Panics
@@ -144,8 +161,11 @@ macro_rules! door {
             pub fn answer(&self, kit: &dyn Kit, watch: &dyn Watch) -> Answer {
                 match self {
                     $($(Request::$Message(queries) => Answer::$Message(kit.$name(queries)),)*)*
-                    Request::Render(job) => Answer::Render(kit.render(job, watch).map(Box::new)),
+                    Request::Render(job) | Request::RenderInTiles(job) => {
+                        Answer::Render(kit.render(job, watch).map(Box::new))
+                    }
                     Request::Trace(job, x, y) => Answer::Trace(kit.trace(job, *x, *y)),
+                    Request::Visits(job, x, y) => Answer::Visits(kit.visits(job, *x, *y)),
                     Request::Outlines(job, depth) => Answer::Outlines(kit.outlines(job, *depth)),
                     Request::FirstHits(job, rays) => Answer::FirstHits(kit.first_hits(job, rays)),
                     Request::Withheld(request) => request.answer(kit, watch),
@@ -187,7 +207,8 @@ impl dyn Kit + '_ {
 
 impl<T: Transport> Frames for Door<T> {
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
-        match self.0.call(Request::Render(Box::new(job.clone())), watch) {
+        let request = if watch.wants_tiles() { Request::RenderInTiles } else { Request::Render };
+        match self.0.call(request(Box::new(job.clone())), watch) {
             // Check the size of the picture, because it comes from another process.
             Answer::Render(Some(rendering)) if !job.fits(&rendering.film) => {
                 kit_error::wrong_answer(&rendering.film)
@@ -200,6 +221,13 @@ impl<T: Transport> Frames for Door<T> {
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
         match self.0.call(Request::Trace(Box::new(job.clone()), x, y), &crate::frame::Unwatched) {
             Answer::Trace(rays) => rays,
+            answer => kit_error::wrong_answer(&answer),
+        }
+    }
+
+    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<RayVisits> {
+        match self.0.call(Request::Visits(Box::new(job.clone()), x, y), &crate::frame::Unwatched) {
+            Answer::Visits(visits) => visits,
             answer => kit_error::wrong_answer(&answer),
         }
     }

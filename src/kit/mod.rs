@@ -68,7 +68,7 @@ pub use stability::OffsetQuery;
 pub use table::{
     BuildQuery, SearchAnswer, SearchQuery, SlabQuery, SplitAnswer, SplitQuery, Table, TableProbe,
 };
-pub use traced::{RayKind, TracedRay};
+pub use traced::{RayKind, RayVisits, TestedBox, TracedRay};
 pub use triangles::{GramScalars, InsideQuery, InterpolateQuery, TriangleHit, TriangleQuery};
 
 use crate::count::Counts;

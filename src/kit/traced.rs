@@ -1,5 +1,6 @@
-//! The rays of one pixel, as data.
+//! The rays of one pixel, and what is visited to find their hits, as data.
 
+use crate::aabb::Aabb;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -37,4 +38,28 @@ pub struct TracedRay {
     /// The `t` of the hit, in lengths of `direction`, and the name of the material there; `None` if nothing is hit.
     /// An occluded shadow ray has `t` 0 and an empty name.
     pub hit: Option<(f32, String)>,
+}
+
+/// What the search for the hit of one ray visits.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RayVisits {
+    /// The number of nodes or cells whose contents the search looked at.
+    pub node_visits: u64,
+    /// The number of tests against bounding volumes.
+    pub box_tests: u64,
+    /// The number of tests against primitives.
+    pub primitive_tests: u64,
+    /// The tested boxes of the structure over the scene, in the order of the tests. Boxes within shared meshes are left out,
+    /// because they are in another space. Grids, octrees, kd-trees, BSP trees, trees with eight children per node and bounding
+    /// spheres have none.
+    pub boxes: Vec<TestedBox>,
+}
+
+/// A box that was tested.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TestedBox {
+    /// The box, in world units.
+    pub bounds: Aabb,
+    /// Whether the ray enters it.
+    pub hit: bool,
 }

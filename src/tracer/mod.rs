@@ -9,7 +9,7 @@
 //! not be divided as asked, and `wide` holds and searches trees with eight children per node. `path` follows a ray
 //! through the tree of its secondary rays, from `interaction` to interaction. With indirect light `path_tracer`
 //! follows one random path in place of the tree; `emitters` and `environment` choose the lights that it samples.
-//! `record` stores the rays of a pixel, `outlines` draws structures, `gamma2` decodes colours, and
+//! `record` stores the rays of a pixel and `visits` the boxes that are tested for them, `outlines` draws structures, `gamma2` decodes colours, and
 //! `texture_filter` filters images.
 
 mod camera_sampler;
@@ -37,6 +37,7 @@ mod rough_lobe;
 mod solids;
 mod structure;
 mod texture_filter;
+mod visits;
 mod wide;
 mod written;
 
@@ -45,8 +46,8 @@ use crate::count::{Counts, Event, Tally, Uncounted};
 use crate::film::Film;
 use crate::frame::{CameraSample, Unwatched, Watch};
 use crate::kit::{
-    Frames, KitError, RenderJob, Rendering, StudentFunctions, TracedRay, View, WeightedColor, kit_error,
-    take_unwound,
+    Frames, KitError, RayVisits, RenderJob, Rendering, StudentFunctions, TracedRay, View, WeightedColor,
+    kit_error, take_unwound,
 };
 use crate::ray::Ray;
 use crate::world::World;
@@ -62,6 +63,7 @@ use plan::Plan;
 use record::{NoRecord, Rays};
 use std::marker::PhantomData;
 use std::time::Instant;
+use visits::Visits;
 use written::Written;
 
 /// Renders frames with the student functions of `F`.
@@ -87,7 +89,11 @@ impl<F: StudentFunctions> Frames for Renderer<F> {
     }
 
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
-        with_what_is_written::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0
+        with_what_is_written::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0.0
+    }
+
+    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<RayVisits> {
+        with_what_is_written::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0.1
     }
 
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
@@ -190,14 +196,20 @@ fn work(before: &Counts, after: &Counts) -> Vec3 {
     Vec3::new(nodes as f32, boxes as f32, primitives as f32)
 }
 
-fn trace<F: StudentFunctions>(job: &RenderJob, written: &Written<F>, x: u32, y: u32) -> Vec<TracedRay> {
+/// The rays of the first sample of a pixel, and what the search for each of them visits.
+fn trace<F: StudentFunctions>(
+    job: &RenderJob,
+    written: &Written<F>,
+    x: u32,
+    y: u32,
+) -> (Vec<TracedRay>, Vec<RayVisits>) {
     // Make the camera ray of the first sample.
     let frame = Frame::new(job, written, &Unwatched);
     let sample = CameraSample::draw(&frame.settings(), x, y, 0);
     let path = Path::from_camera(frame.camera.ray(&sample), sample.points, frame.camera.cone());
     // Follow it as a frame does, and record all rays.
     let mut record = Rays { material_names: &job.scene.material_names, rays: Vec::new() };
-    let mut scratch = Scratch::<Uncounted>::default();
+    let mut scratch = Scratch::<Visits>::default();
     let hit = frame.closest_hit(&path.ray, &mut scratch);
     match frame.plan.view {
         View::Normals => frame.normal_as_color(&path, hit, &mut scratch, &mut record),
@@ -206,7 +218,7 @@ fn trace<F: StudentFunctions>(job: &RenderJob, written: &Written<F>, x: u32, y: 
             Some(indirect) => frame.radiance_of_path(indirect, path, hit, &mut scratch, &mut record),
         },
     };
-    record.rays
+    (record.rays, scratch.tally.rays)
 }
 
 fn first_hits<F: StudentFunctions>(

@@ -9,6 +9,7 @@ use super::packets::Packets;
 use super::random_choices::{area_of, before_its_surface, sample_area_light, sample_rough_surface};
 use super::record::Record;
 use super::texture_filter::{Cone, Pyramids, curvature, footprint, uv_change};
+use crate::aabb::Aabb;
 use crate::count::{Counts, Event, Tally};
 use crate::kit::{Bounce, LightSample, RayKind, StudentFunctions, Surface};
 use crate::material::Material;
@@ -64,6 +65,15 @@ impl<T: Tally> Tally for Scratch<T> {
 
     fn note(&mut self, event: Event) {
         self.tally.note(event);
+    }
+    fn search(&mut self) {
+        self.tally.search();
+    }
+    fn tested(&mut self, bounds: &Aabb, hit: bool) {
+        self.tally.tested(bounds, hit);
+    }
+    fn within_mesh(&mut self, within: bool) {
+        self.tally.within_mesh(within);
     }
     fn counts(&self) -> Counts {
         self.tally.counts()

@@ -6,6 +6,7 @@ use super::motion::geometry_at;
 use super::solids::intersect_solid;
 use super::structure::{Primitives, Structure};
 use super::wide::Wide;
+use crate::aabb::Aabb;
 use crate::bvh::{Contents, Node, PrimitiveHit, Probe};
 use crate::count::{Event, Tally};
 use crate::graph::Savings;
@@ -199,12 +200,16 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
         let searched = (structure, primitives, &self.scene.mesh_gram[mesh]);
         // Search the shared mesh with a probe and notes of its own.
         let mut notes = Notes { any_will_do: self.notes.any_will_do, ..Notes::for_closest_hit() };
+        self.tally.within_mesh(true);
         let mut probe = SceneProbe::<F, T>::over(self.scene, searched, &ray, self.tally, &mut notes);
         if self.notes.any_will_do {
             let hit = structure.any_hit::<F, _>(&mut probe, &ray, self.scene.savings);
+            self.tally.within_mesh(false);
             return hit.then_some(ray.t_min.next_up());
         }
-        let hit = structure.closest_hit::<F, _>(&mut probe, &ray, self.scene.savings)?;
+        let hit = structure.closest_hit::<F, _>(&mut probe, &ray, self.scene.savings);
+        self.tally.within_mesh(false);
+        let hit = hit?;
         // Keep the inner hit if it is the closest so far; of two at the same `t` the smaller index wins.
         if self.notes.instance.is_none_or(|(best, ..)| (hit.t, index) < (best.t, best.primitive)) {
             let at = PrimitiveHit { t: hit.t, primitive: index };
@@ -270,6 +275,7 @@ impl<F: StudentFunctions, T: Tally> Probe for SceneProbe<'_, F, T> {
         } else {
             F::slab(ray, self.inverse_direction, bounds)
         };
+        self.tally.tested(bounds, interval.is_some());
         interval.map(|(enter, _)| enter)
     }
 
@@ -300,6 +306,11 @@ impl<F: StudentFunctions, T: Tally> Primitives for SceneProbe<'_, F, T> {
     #[inline]
     fn count(&mut self, event: Event) {
         self.tally.note(event);
+    }
+
+    #[inline(always)]
+    fn tested(&mut self, bounds: &Aabb, hit: bool) {
+        self.tally.tested(bounds, hit);
     }
 
     #[inline]

@@ -93,6 +93,9 @@ pub trait Primitives: Probe + Cells {
     /// Counts one event.
     fn count(&mut self, event: Event);
 
+    /// Notes that a ray was tested against a box, and whether it enters it.
+    fn tested(&mut self, bounds: &Aabb, hit: bool);
+
     /// Whether `conservative_slab` of stage 10 tests boxes; otherwise `slab` of stage 3.
     fn conservative(&self) -> bool;
 
@@ -326,7 +329,9 @@ impl<F: StudentFunctions, P: Primitives> Probe for GraphProbe<'_, F, P> {
                 let bounds = &boxes[node as usize];
                 let (inverse, conservative) = (self.probe.inverse_direction(), self.probe.conservative());
                 let test = if conservative { F::conservative_slab } else { F::slab };
-                test(ray, inverse, bounds).map(|(enter, _)| enter)
+                let interval = test(ray, inverse, bounds);
+                self.probe.tested(bounds, interval.is_some());
+                interval.map(|(enter, _)| enter)
             }
             Volumes::Spheres(spheres) => F::enter_bounding_sphere(ray, spheres[node as usize].as_ref()?),
         }

@@ -211,7 +211,7 @@ fn browser() -> Finding {
     match found {
         Some(browser) => Finding::Good(browser),
         None => Finding::Optional(
-            "there is none for reports and slides".into(),
+            "there is none for `raykata view`, reports and slides".into(),
             "sudo apt install firefox, or open them elsewhere".into(),
         ),
     }

@@ -140,6 +140,9 @@ impl Program {
     /// The program that follows a student's edits.
     pub const WATCH: Program = Program { package: "watch", name: "watch", feature: None };
 
+    /// The program that shows pictures in a browser.
+    pub const VIEW: Program = Program { package: "watch", name: "view", feature: None };
+
     /// The program that makes the figures of the slides.
     pub const FIGURES: Program = Program { package: "figures", name: "figures", feature: None };
 

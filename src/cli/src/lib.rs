@@ -27,5 +27,6 @@ pub mod strip;
 pub mod svg;
 pub mod tree;
 pub mod verdicts;
+pub mod view;
 pub mod watch;
 pub mod worker;

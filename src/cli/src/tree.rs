@@ -122,7 +122,7 @@ fn levels_above(rays: &[TracedRay], index: usize) -> usize {
 }
 
 /// The kind, depth, weight and hit of a ray in one line.
-fn label(ray: &TracedRay) -> String {
+pub fn label(ray: &TracedRay) -> String {
     let kind = match ray.kind {
         RayKind::Primary => "primary",
         RayKind::Reflection => "reflection",

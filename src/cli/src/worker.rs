@@ -34,16 +34,16 @@ const LONGEST_UNTRUSTED: usize = 4 << 20;
 
 /// The longest reply of an untrusted worker to `request`, in bytes.
 fn longest_reply(request: &Request) -> usize {
-    match request {
+    match request.frame() {
         // A pixel has 12 bytes.
-        Request::Render(job) => {
+        Some(job) => {
             let pixels = u64::from(job.scene.film.width) * u64::from(job.scene.film.height);
             usize::try_from(12 * pixels)
                 .unwrap_or(LONGEST_MESSAGE)
                 .saturating_add(LONGEST_UNTRUSTED)
                 .min(LONGEST_MESSAGE)
         }
-        _ => LONGEST_UNTRUSTED,
+        None => LONGEST_UNTRUSTED,
     }
 }
 
@@ -86,6 +86,8 @@ pub struct Worker {
     /// Whether the tables of searches stay here, so that the worker must ask for each entry.
     withholds: AtomicBool,
     process: Mutex<Option<Process>>,
+    /// The process that answers a call at the moment, which [`Worker::stop`] ends.
+    running: Mutex<Option<Arc<Mutex<Child>>>>,
     /// The processor time of the processes that have ended.
     ended: Mutex<Duration>,
 }
@@ -101,6 +103,7 @@ impl Worker {
             asks_again: AtomicBool::new(false),
             withholds: AtomicBool::new(false),
             process: Mutex::new(None),
+            running: Mutex::new(None),
             ended: Mutex::default(),
         }
     }
@@ -136,6 +139,14 @@ impl Worker {
         *lock(&self.ended) + running
     }
 
+    /// Ends the process that answers a call at the moment, also if its code never ends. That call fails as if the process had
+    /// crashed.
+    pub fn stop(&self) {
+        if let Some(child) = lock(&self.running).take() {
+            let _ = lock(&child).kill();
+        }
+    }
+
     fn ask(&self, request: &Request, watch: &dyn Watch, patience: Duration) -> Result<Answer, KitError> {
         let mut slot = lock(&self.process);
         let start = || Process::start(&self.program, self.launcher.clone());
@@ -143,6 +154,7 @@ impl Worker {
             Ok(process) => process,
             Err(error) => return Err(KitError::Crashed { how: format!("it cannot be started: {error}") }),
         };
+        *lock(&self.running) = Some(process.child.clone());
         let blank = self.withholds.load(Ordering::Relaxed).then(|| withheld::withheld(request)).flatten();
         let mut tables = blank.as_ref().map(|_| Withheld::of(request));
         match process.ask(blank.as_ref().unwrap_or(request), tables.as_mut(), watch, patience) {
@@ -179,8 +191,7 @@ impl Worker {
 
 impl Transport for Worker {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
-        let patience =
-            if matches!(request, Request::Render(_)) { self.frame_patience } else { self.call_patience };
+        let patience = if request.frame().is_some() { self.frame_patience } else { self.call_patience };
         let mut answer = self.ask(&request, watch, patience);
         let late = |answer: &Result<Answer, KitError>| matches!(answer, Err(KitError::TimedOut { .. }));
         if late(&answer) && self.asks_again.load(Ordering::Relaxed) {
@@ -240,7 +251,7 @@ impl Process {
         let longest = if trusted { LONGEST_MESSAGE } else { longest_reply(request) };
         loop {
             match worker::receive_up_to(&mut self.from_worker, longest)? {
-                Reply::Progress { .. } | Reply::Building { .. } if !matches!(request, Request::Render(_)) => {
+                Reply::Progress { .. } | Reply::Building { .. } if request.frame().is_none() => {
                     return Err(io::Error::other(
                         "it reports the progress of a frame, but no frame was requested",
                     ));
@@ -259,6 +270,13 @@ impl Process {
                         self.watchdog.bark_after(patience);
                     }
                 }
+                // A tile is never the last message of a frame, so `progress` notices that it was cancelled.
+                Reply::Tile(tile) => match request {
+                    Request::RenderInTiles(job) if tile.fits(job.scene.film.width, job.scene.film.height) => {
+                        watch.tile(&tile);
+                    }
+                    _ => return Err(io::Error::other("it sends pixels that were not requested")),
+                },
                 Reply::Question(question) => match &mut tables {
                     Some(tables) => worker::send(&mut self.to_worker, &tables.answer(&question))?,
                     None => {

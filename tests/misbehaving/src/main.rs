@@ -1,6 +1,7 @@
 //! A worker that misbehaves, for the tests beside it and for those of the grader. A negative radius of the
 //! first sphere selects how; all other requests are answered by the reference.
 
+use raykata::frame::Tile;
 use raykata::kit::{Answer, Request};
 use raykata::worker::{Reply, send};
 use std::hint::black_box;
@@ -67,6 +68,8 @@ fn main() {
                 // A message that never ends.
                 -21 => drop(pipe().write_all(&[255; 4096])),
                 -22 => while say(&Reply::Progress { done: 0, total: 1 }) {},
+                // Pixels, although no frame was requested.
+                -25 => drop(say(&Reply::Tile(Tile { x: 0, y: 0, width: 1, pixels: vec![glam::Vec3::ONE] }))),
                 -23 => drop(say(&Reply::Answer(Box::new(Answer::Render(None))))),
                 // Answers to all future requests.
                 -24 => while say(&Reply::Answer(Box::new(Answer::SphereAlgebraic(vec![Some(1.0)])))) {},

@@ -73,8 +73,8 @@ fn what_student_code_prints_does_not_reach_the_pipe() {
 #[test]
 fn an_answer_of_the_wrong_kind_or_length_is_refused() {
     let door = door();
-    for radius in [-7.0, -8.0] {
-        assert!(matches!(ask(&door, radius), Err(KitError::Malformed { .. })));
+    for radius in [-7.0, -8.0, -25.0] {
+        assert!(matches!(ask(&door, radius), Err(KitError::Malformed { .. })), "{radius}");
     }
 }
 

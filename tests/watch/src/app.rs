@@ -1,6 +1,5 @@
 //! What is shown, and what keys, saves and events do to it.
 
-use crate::compiler::CompilerError;
 use crate::course::{Check, Course, Stage};
 use crate::pixels::Pixels;
 use crate::reset::{function_at, reset};
@@ -8,6 +7,7 @@ use crate::run::{Event, Task};
 use raykata_cli::verdicts::Verdict;
 use std::path::Path;
 use std::time::Duration;
+use watch::compiler::CompilerError;
 
 /// A key of the student.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -394,7 +394,7 @@ impl App {
 
 /// The files of a stage, from the root of the kit.
 fn files_of(root: &Path, stage: u8) -> Vec<String> {
-    let entries = std::fs::read_dir(crate::exercises(root)).into_iter().flatten().flatten();
+    let entries = std::fs::read_dir(watch::exercises(root)).into_iter().flatten().flatten();
     let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
     let mut names: Vec<String> = names.filter(|name| name.starts_with(&format!("stage{stage}_"))).collect();
     names.sort();

@@ -20,6 +20,7 @@ pub struct Files {
 
 impl Files {
     /// Begins with the files as they are now.
+    #[must_use]
     pub fn new(folder: PathBuf) -> Files {
         let now = times(&folder);
         Files { folder, reported: now.clone(), previous: now }

@@ -1,16 +1,13 @@
 //! The program that `raykata watch` starts: `watch ROOT [STAGE]`. It compiles the exercises and runs the checks of a stage
 //! whenever a file of the student changes.
 //!
-//! `files` (which files changed) · `run` (one run, which a save cancels) · `compiler` (errors of the compiler) · `course`
-//! (stages, checks and verdicts) · `app` (what keys and events do) · `screen` (the text of the screen) · `pixels` (pictures
+//! `run` (one run, which a save cancels) · `course` (stages, checks and verdicts) · `app` (what keys and events do) · `screen` (the text of the screen) · `pixels` (pictures
 //! in half blocks) · `terminal` (draws, and reads keys) · `plain` (lines, without a terminal) · `editor` · `reset` (one
 //! function as it was before it was written)
 
 mod app;
-mod compiler;
 mod course;
 mod editor;
-mod files;
 mod pixels;
 mod plain;
 mod reset;
@@ -20,7 +17,7 @@ mod terminal;
 
 use anyhow::{Context, Result, bail};
 use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -44,9 +41,4 @@ fn watch() -> Result<()> {
     let screen = std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
     let dumb = std::env::var_os("TERM").is_some_and(|name| name == "dumb");
     if screen && !dumb { terminal::watch(&root, stage) } else { plain::watch(&root, stage) }
-}
-
-/// The folder that the student writes in.
-fn exercises(root: &Path) -> PathBuf {
-    root.join("exercises/src")
 }

@@ -2,7 +2,6 @@
 //! program is interrupted.
 
 use crate::app::{Action, App, Phase};
-use crate::files::Files;
 use crate::run::{Event, Report, Run};
 use anyhow::Result;
 use raykata_cli::report::say;
@@ -10,13 +9,14 @@ use raykata_cli::verdicts::Verdict;
 use std::path::Path;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
+use watch::files::Files;
 
 /// The time between two looks at the files.
 const PAUSE: Duration = Duration::from_millis(150);
 
 /// Follows the files until the program is interrupted.
 pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
-    let mut files = Files::new(crate::exercises(root));
+    let mut files = Files::new(watch::exercises(root));
     let (sender, reports) = mpsc::channel();
     let (mut app, mut action) = App::new(stage, (80, 24));
     let (mut run, mut number) = (None, 0);
@@ -56,7 +56,7 @@ fn lines(app: &App) -> String {
     );
     let body = match (&app.phase, &app.check().verdict) {
         (Phase::Errors(errors), _) => {
-            let error = |error: &crate::compiler::CompilerError| {
+            let error = |error: &watch::compiler::CompilerError| {
                 let notes: String = error.notes.iter().map(|note| format!("  {note}\n")).collect();
                 format!("{}\n  {}\n  {}\n{notes}", error.place, error.what, error.code)
             };

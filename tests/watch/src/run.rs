@@ -1,19 +1,20 @@
 //! One run: compile the exercises, then run the checks of a stage, or render its picture. Everything happens in processes of
 //! its own, so that a save can end a run at any time, also if the code of the student never ends.
 
-use crate::compiler::{CompilerError, error_in};
 use crate::pixels::Pixels;
 use anyhow::{Context, Result, bail};
 use raykata::worker::receive;
 use raykata_cli::kits::{Need, Program, Which, cargo_build};
 use raykata_cli::verdicts::CheckVerdict;
-use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::process::Command;
+use std::sync::Arc;
 use std::sync::mpsc::Sender;
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
+use watch::compiler::{CompilerError, error_in};
+use watch::process::Process;
+use watch::scene_of;
 
 /// What a run reports.
 #[derive(Debug)]
@@ -52,13 +53,6 @@ pub enum Task {
 /// A run. It is cancelled when it is dropped.
 pub struct Run(Arc<Process>);
 
-/// The process of a run at the moment.
-#[derive(Default)]
-struct Process {
-    is_over: AtomicBool,
-    child: Mutex<Option<Child>>,
-}
-
 impl Run {
     /// Starts a run, which reports to `reports`.
     pub fn start(root: PathBuf, task: Task, run: u64, reports: Sender<Report>) -> Run {
@@ -77,70 +71,7 @@ impl Run {
 
 impl Drop for Run {
     fn drop(&mut self) {
-        self.0.is_over.store(true, Ordering::Relaxed);
-        if let Some(child) = &mut *self.0.child() {
-            end(child);
-        }
-    }
-}
-
-/// Ends a process and those that it has started.
-#[cfg(unix)]
-fn end(child: &mut Child) {
-    use nix::sys::signal::{Signal, killpg};
-    use nix::unistd::Pid;
-    if let Ok(id) = i32::try_from(child.id()) {
-        let _ = killpg(Pid::from_raw(id), Signal::SIGKILL);
-    }
-    let _ = child.wait();
-}
-
-#[cfg(not(unix))]
-fn end(child: &mut Child) {
-    let _ = child.kill();
-    let _ = child.wait();
-}
-
-impl Process {
-    fn child(&self) -> std::sync::MutexGuard<'_, Option<Child>> {
-        self.child.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Starts a process, reads what it writes, and returns whether it succeeded and what it wrote to standard error.
-    /// `Ok(None)` if the run is over.
-    fn follow(
-        &self,
-        mut command: Command,
-        read: impl FnOnce(&mut BufReader<std::process::ChildStdout>) -> Result<()>,
-    ) -> Result<Option<(bool, String)>> {
-        // Give the process a group of its own, so that `end` reaches those that it starts.
-        #[cfg(unix)]
-        std::os::unix::process::CommandExt::process_group(&mut command, 0);
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        // Start it under the lock, so that a cancel before this sees no child and prevents it, and one after this ends it.
-        let mut slot = self.child();
-        if self.is_over.load(Ordering::Relaxed) {
-            return Ok(None);
-        }
-        let name = command.get_program().to_string_lossy().into_owned();
-        let child = command.spawn().with_context(|| format!("{name} cannot be started"))?;
-        let child = slot.insert(child);
-        let stdout = child.stdout.take().context("no standard output")?;
-        let mut stderr = child.stderr.take().context("no standard error")?;
-        drop(slot);
-        let words = std::thread::spawn(move || {
-            let mut bytes = Vec::new();
-            let _ = stderr.read_to_end(&mut bytes);
-            String::from_utf8_lossy(&bytes).into_owned()
-        });
-        let result = read(&mut BufReader::new(stdout));
-        let words = words.join().unwrap_or_default();
-        let Some(mut child) = self.child().take().filter(|_| !self.is_over.load(Ordering::Relaxed)) else {
-            return Ok(None);
-        };
-        let succeeded = child.wait()?.success();
-        result?;
-        Ok(Some((succeeded, words)))
+        self.0.end();
     }
 }
 
@@ -218,15 +149,4 @@ fn render(
         Some((false, words)) => bail!("{}", words.trim().trim_start_matches("error: ")),
     }
     Ok(())
-}
-
-/// The scene that shows what a stage adds.
-fn scene_of(root: &Path, stage: u8) -> PathBuf {
-    let own = root.join(format!("scenes/stage{stage}.toml"));
-    let file = match stage {
-        _ if own.is_file() => return own,
-        11 => "cornell.toml",
-        _ => "showcase.toml",
-    };
-    root.join("scenes").join(file)
 }

@@ -1,10 +1,10 @@
 //! The rows of the screen, from the state of the program. Meaning is never in the colour alone.
 
 use crate::app::{App, Page, Phase};
-use crate::compiler::CompilerError;
 use crate::course::Check;
 use crate::pixels::Rgb;
 use raykata_cli::verdicts::Verdict;
+use watch::compiler::CompilerError;
 
 /// The colour of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,6 @@
 
 use crate::app::{Action, App, Key};
 use crate::editor;
-use crate::files::Files;
 use crate::run::{Report, Run};
 use crate::screen::{Look, Row, Tone, rows};
 use anyhow::Result;
@@ -15,6 +14,7 @@ use std::io::{Write, stdout};
 use std::path::Path;
 use std::sync::mpsc;
 use std::time::Duration;
+use watch::files::Files;
 
 /// The time between two looks at the files.
 const PAUSE: Duration = Duration::from_millis(150);
@@ -42,7 +42,7 @@ impl Drop for Screen {
 pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
     let look = Look::of_environment();
     let has_colours = std::env::var_os("NO_COLOR").is_none();
-    let mut files = Files::new(crate::exercises(root));
+    let mut files = Files::new(watch::exercises(root));
     let (sender, reports) = mpsc::channel();
     let (mut app, mut action) = App::new(stage, size());
     let (mut run, mut number) = (None, 0);

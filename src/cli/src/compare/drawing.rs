@@ -77,15 +77,16 @@ pub fn with_edges(film: &Film, camera: &Camera, edges: &[[Vec3; 2]]) -> Film {
     let mut drawn = Film::new(film.width, film.height);
     drawn.pixels = film.pixels.iter().map(|pixel| 0.25 * pixel.clamp(Vec3::ZERO, Vec3::ONE)).collect();
     for edge in edges.iter().take(MOST_EDGES) {
-        if let Some([p, q]) = projected(camera, &drawn, *edge) {
+        if let Some([p, q]) = projected(camera, (drawn.width, drawn.height), *edge) {
             line(&mut drawn, p, q);
         }
     }
     drawn
 }
 
-/// The ends of an edge in pixels; `None` if it lies behind the camera.
-fn projected(camera: &Camera, film: &Film, ends: [Vec3; 2]) -> Option<[Vec2; 2]> {
+/// The ends of an edge in a film of this width and height, in pixels from the upper left; `None` if the edge lies behind the
+/// camera.
+pub fn projected(camera: &Camera, (width, height): (u32, u32), ends: [Vec3; 2]) -> Option<[Vec2; 2]> {
     let seen = ends.map(|end| {
         let way = end - camera.position;
         Vec3::new(way.dot(camera.right), way.dot(camera.up), way.dot(camera.towards))
@@ -101,9 +102,9 @@ fn projected(camera: &Camera, film: &Film, ends: [Vec3; 2]) -> Option<[Vec2; 2]>
     let flat = [cut(seen[0], seen[1]), cut(seen[1], seen[0])].map(|end| {
         let x = 0.5 + end.x / (2.0 * end.z * camera.half_height * camera.aspect);
         let y = 0.5 - end.y / (2.0 * end.z * camera.half_height);
-        Vec2::new(x * film.width as f32, y * film.height as f32)
+        Vec2::new(x * width as f32, y * height as f32)
     });
-    let limit = 16.0 * film.width.max(film.height) as f32;
+    let limit = 16.0 * width.max(height) as f32;
     flat.iter().all(|p| p.is_finite() && p.abs().max_element() < limit).then_some(flat)
 }
 

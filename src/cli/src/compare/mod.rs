@@ -14,7 +14,7 @@ use crate::kits::{Choice, Need, Source, root};
 use crate::quality_options::{ACCELERATORS, QualityOptions, Threads};
 use crate::report::{load_scene, make_folder, with_at_most};
 use anyhow::{Context, Result};
-pub use drawing::{heat_color, with_edges};
+pub use drawing::{heat_color, projected, with_edges};
 use measure::Bench;
 use raykata::scene::Accelerator;
 use rows::Of;

@@ -127,17 +127,28 @@ fn cut<'a>(text: &'a str, mut choose: impl FnMut(&[&'a str], &mut Vec<&'a str>))
     paragraphs.join("\n\n") + "\n"
 }
 
-/// Returns the names of a package's dependencies.
+/// Returns the names of a package's dependencies, also of those that only some systems need.
 fn dependencies(manifest: &str) -> Result<BTreeSet<String>> {
     let manifest: toml::Table = toml::from_str(manifest)?;
-    let tables =
-        ["dependencies", "dev-dependencies"].into_iter().filter_map(|name| manifest.get(name)?.as_table());
+    let of_systems = manifest.get("target").and_then(|target| target.as_table()).into_iter();
+    let of_systems = of_systems.flat_map(|target| target.values()).filter_map(|system| system.as_table());
+    let tables = std::iter::once(&manifest).chain(of_systems).flat_map(|table| {
+        ["dependencies", "dev-dependencies"].into_iter().filter_map(|name| table.get(name)?.as_table())
+    });
     Ok(tables.flat_map(|table| table.keys().cloned()).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn dependencies_of_one_system_count() {
+        let manifest = "[dependencies]\nglam = \"1\"\n[target.'cfg(unix)'.dependencies]\nnix.workspace = true\n\
+                        [dev-dependencies]\ninsta = \"1\"\n";
+        let names: Vec<String> = dependencies(manifest).unwrap().into_iter().collect();
+        assert_eq!(names, ["glam", "insta", "nix"]);
+    }
 
     #[test]
     fn a_workspace_keeps_what_its_members_want() {

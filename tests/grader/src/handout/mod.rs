@@ -35,15 +35,17 @@ impl Options {
 
 /// Folders that are handed out with their subfolders, and the extensions of the files in them. A missing folder is left
 /// out.
-const FOLDERS: [(&str, &[&str]); 9] = [
+const FOLDERS: [(&str, &[&str]); 11] = [
     ("src", &["css", "md", "rs", "snap", "toml"]),
     ("tests/checks", &["rs", "toml"]),
     ("tests/oracle", &["rs", "toml"]),
     ("tests/judge", &["rs", "toml"]),
-    ("tests/watch", &["rs", "snap", "toml"]),
+    ("tests/browser", &["rs", "toml"]),
+    ("tests/watch", &["html", "rs", "snap", "toml"]),
     ("scenes", &["md", "toml"]),
     ("scenes/meshes", &["ply", "obj", "mtl"]),
     ("scenes/images", &["png", "hdr"]),
+    ("scenes/reference", &["png"]),
     ("slides", &["md", "svg"]),
 ];
 
@@ -139,7 +141,9 @@ fn gather(root: &Path, folder: &str, endings: &[&str], files: &mut BTreeMap<Stri
         let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
         let is = |ending: &&str| Path::new(&path).extension().is_some_and(|one| one == *ending);
         if entry.file_type()?.is_dir() {
-            if !KEPT_BACK.contains(&path.as_str()) && entry.file_name() != "target" {
+            if !KEPT_BACK.contains(&path.as_str())
+                && !["target", "node_modules"].iter().any(|name| entry.file_name() == *name)
+            {
                 gather(root, &path, endings, files)?;
             }
         } else if endings.iter().any(is) {

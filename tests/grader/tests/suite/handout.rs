@@ -4,8 +4,10 @@ use super::program_runs::{grader, printed, root};
 use grader::handout::{answers, leaks};
 use std::collections::BTreeSet;
 use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::net::TcpStream;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::sync::LazyLock;
 
 /// A hand-out that all tests read and none changes: the folder `kit`, alone in a folder.
@@ -87,7 +89,7 @@ fn manifests_name_nothing_that_is_missing() {
             assert!(folder.join(path).join("Cargo.toml").is_file(), "{name}");
         }
     }
-    for name in ["rusqlite", "syn", "landlock", "solutions", "nix", "zip", "seccompiler", "sha2"] {
+    for name in ["rusqlite", "syn", "landlock", "solutions", "zip", "seccompiler", "sha2"] {
         assert!(!shared.contains_key(name), "{name} is useless for students");
     }
     let members = workspace["workspace"]["members"].as_array().expect("members");
@@ -182,6 +184,8 @@ fn a_student_can_begin() {
     assert!(!tested.status.success());
     assert!(lock == fs::read(folder.join("Cargo.lock")).expect("a lock"), "cargo has changed Cargo.lock");
 
+    view_shows_a_picture_beside_its_record(folder, &target, &cargo);
+
     let check = "sphere_geometric_starts_inside";
     for (arguments, success, words) in [
         (&["run"][..], true, "Next: exercises/src/stage1_shapes.rs"),
@@ -208,4 +212,29 @@ fn a_student_can_begin() {
         assert!(said.contains(words) || complained.contains(words), "{arguments:?}: {said}\n{complained}");
         assert!(!complained.contains("warning: "), "{arguments:?}: {complained}");
     }
+}
+
+/// The page shows a picture of the untouched exercises beside the recorded reference.
+fn view_shows_a_picture_beside_its_record(folder: &Path, target: &Path, cargo: &dyn Fn(&[&str]) -> Output) {
+    let built = cargo(&["build", "--package", "watch"]);
+    assert!(built.status.success(), "{}", printed(&built).1);
+    let mut view = Command::new(target.join("debug/view"));
+    view.arg(folder)
+        .arg(folder.join("scenes/stage1.toml"))
+        .env("CARGO", env!("CARGO"))
+        .stdout(Stdio::piped());
+    let mut view = view.env("CARGO_NET_OFFLINE", "true").spawn().expect("view starts");
+    let mut line = String::new();
+    BufReader::new(view.stdout.take().expect("its output")).read_line(&mut line).expect("its address");
+    let address = line.trim().rsplit("http://").next().expect("an address");
+    let (host, path) = address.split_once('/').expect("a path");
+    let mut stream = TcpStream::connect(host).expect("the server");
+    write!(stream, "GET /{path}events HTTP/1.1\r\nHost: {host}\r\n\r\n").expect("a request");
+    let messages = BufReader::new(stream).lines().map_while(Result::ok);
+    let until_done: Vec<String> = messages.take_while(|line| !line.contains("\"phase\":\"done\"")).collect();
+    let _ = view.kill();
+    let _ = view.wait();
+    let has = |words: &str| until_done.iter().any(|line| line.contains(words));
+    assert!(has("\"source\":\"recorded from the solutions\""), "{line}");
+    assert!(has("\"pass\":\"all samples\"") && has("spheres are left out"), "{line}");
 }

@@ -1,0 +1,75 @@
+//! The reference pictures in `scenes/reference`, with which `raykata view` compares in a hand-out, are those of the solutions.
+//! `INSTA_UPDATE=always` writes them: each pixel is the mean of two by two pixels of the picture, in linear light.
+
+use glam::Vec3;
+use image::RgbImage;
+use raykata::film::{Film, encode_srgb};
+use raykata::frame::Unwatched;
+use raykata::kit::{RenderJob, View};
+use raykata::scene::{Scene, load};
+use std::path::{Path, PathBuf};
+
+/// The scenes of the stages. Stages 10 and 12 have `scenes/showcase.png`.
+const NAMES: [&str; 10] =
+    ["stage1", "stage2", "stage3", "stage4", "stage5", "stage6", "stage7", "stage8", "stage9", "cornell"];
+
+/// The number of pixels of the picture per pixel of the record, and per pixel of the comparison, in each direction.
+const RECORDED: u32 = 2;
+const COMPARED: u32 = 10;
+
+fn scenes() -> PathBuf {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes")).into()
+}
+
+fn picture(scene: Scene) -> Film {
+    let tone = scene.film.tone;
+    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: false, reuse: false };
+    solutions::kit().render(&job, &Unwatched).unwrap().film.toned(tone)
+}
+
+/// The mean of each block of pixels.
+fn means(film: &Film, scale: u32) -> Film {
+    let mut means = Film::new(film.width / scale, film.height / scale);
+    for (index, mean) in (0..).zip(&mut means.pixels) {
+        let (x, y) = (index % means.width * scale, index / means.width * scale);
+        let block = (0..scale * scale).map(|i| film.at(x + i % scale, y + i / scale));
+        *mean = block.sum::<Vec3>() / (scale * scale) as f32;
+    }
+    means
+}
+
+/// The linear light of a component in sRGB.
+fn linear(byte: u8) -> f32 {
+    let x = f32::from(byte) / 255.0;
+    if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+}
+
+#[test]
+fn recorded_references_are_the_pictures_of_the_solutions() {
+    let writes = std::env::var("INSTA_UPDATE").is_ok_and(|how| how == "always");
+    for name in NAMES {
+        let mut scene = load::load(&scenes().join(name).with_extension("toml")).unwrap();
+        let file = scenes().join("reference").join(name).with_extension("png");
+        if writes {
+            std::fs::create_dir_all(scenes().join("reference")).unwrap();
+            means(&picture(scene), RECORDED).write_png(&file, encode_srgb).unwrap();
+            continue;
+        }
+        // Compare a small picture, which takes little time, with the means of the record.
+        let record: RgbImage = image::open(&file).unwrap().into_rgb8();
+        let (width, height) = (scene.film.width, scene.film.height);
+        assert_eq!(record.dimensions(), (width / RECORDED, height / RECORDED), "{name}");
+        let bytes = record.pixels().map(|pixel| Vec3::from_array(pixel.0.map(linear))).collect();
+        let record = Film { width: width / RECORDED, height: height / RECORDED, pixels: bytes };
+        let record = means(&record, COMPARED / RECORDED);
+        (scene.film.width, scene.film.height) = (width / COMPARED, height / COMPARED);
+        scene.quality.samples_per_pixel = scene.quality.samples_per_pixel.clamp(16, 36);
+        let small = picture(scene);
+        let off = |(a, b): (&Vec3, &Vec3)| f64::from((*a - *b).abs().element_sum()) / 3.0;
+        let mean = record.pixels.iter().zip(&small.pixels).map(off).sum::<f64>() / record.pixels.len() as f64;
+        println!("{name}: mean difference {mean:.5}");
+        // Random light is noisy with so few samples: 0.020 was measured for the Cornell box, and at most 0.004 for the others.
+        let most = if name == "cornell" { 0.04 } else { 0.008 };
+        assert!(mean < most, "{name}: {mean}; INSTA_UPDATE=always records the picture again");
+    }
+}

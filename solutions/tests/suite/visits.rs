@@ -1,0 +1,32 @@
+//! What the searches for the rays of a pixel visit is what a frame counts.
+
+use raykata::frame::Unwatched;
+use raykata::kit::{RenderJob, View};
+use raykata::scene::load;
+use std::path::Path;
+
+#[test]
+fn the_visits_of_a_pixel_are_those_that_its_frame_counts() {
+    let kit = solutions::kit();
+    for name in ["stage1", "stage5", "graph", "shapes", "cornell", "veach"] {
+        let file =
+            Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes")).join(name).with_extension("toml");
+        let mut scene = load::load(&file).unwrap();
+        (scene.film.width, scene.film.height) = (1, 1);
+        scene.quality.samples_per_pixel = 1;
+        let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: true, reuse: false };
+        let (rays, visits) = (kit.trace(&job, 0, 0), kit.visits(&job, 0, 0));
+        assert_eq!(rays.len(), visits.len(), "{name}: one search per ray");
+        let counts = kit.render(&job, &Unwatched).unwrap().counts;
+        assert_eq!(counts.rays(), rays.len() as u64, "{name}");
+        let sum = |of: fn(&raykata::kit::RayVisits) -> u64| visits.iter().map(of).sum::<u64>();
+        assert_eq!(counts.node_visits, sum(|one| one.node_visits), "{name}");
+        assert_eq!(counts.box_tests, sum(|one| one.box_tests), "{name}");
+        assert_eq!(counts.primitive_tests, sum(|one| one.primitive_tests), "{name}");
+        // Without shared meshes, each box that was tested is known. A search enters the box of each ray that hits something.
+        for (ray, visits) in rays.iter().zip(&visits) {
+            assert_eq!(visits.boxes.len() as u64, visits.box_tests, "{name}");
+            assert!(visits.node_visits == 0 || visits.boxes.iter().any(|one| one.hit), "{name}: {ray:?}");
+        }
+    }
+}
