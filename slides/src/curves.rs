@@ -36,8 +36,8 @@ pub fn ray_to_object(kit: &dyn Kit) -> Result<String> {
             drawing.text(label, Anchor::Middle, SMALL, Ink::Text, &format!("{mark}"));
         }
         drawing.dot(at(ray.at(t)), 9.0, Ink::Color(1));
-        let label = offset(at(ray.at(t)), [-8.0, -18.0]);
-        drawing.text(label, Anchor::End, SMALL, Ink::Color(1), &format!("t = {t:.2}"));
+        let label = offset(at(ray.at(t)), [-2.0, -22.0]);
+        drawing.text(label, Anchor::Middle, SMALL, Ink::Color(1), &format!("t = {t:.2}"));
         drawing.text([x, 480.0], Anchor::Middle, TEXT, Ink::Text, name);
     }
     drawing.arrow([410.0, 440.0], [600.0, 440.0], Pen::new(Ink::Color(0)).wide(4.0));

@@ -62,7 +62,7 @@ pub fn phong_vectors(kit: &dyn Kit) -> Result<String> {
     let viewer = leaning(55.0);
     let arrows = [
         (Vec3::Y, "n, the normal", Ink::Text, Anchor::Middle, [0.0, -14.0]),
-        (light, "l, to the light", Ink::Color(3), Anchor::End, [-10.0, -6.0]),
+        (light, "l, to the light", Ink::Color(3), Anchor::Middle, [0.0, -14.0]),
         (reflected, "r, reflected", Ink::Color(1), Anchor::Start, [10.0, -6.0]),
         (viewer, "v, to the viewer", Ink::Color(0), Anchor::Start, [10.0, -4.0]),
     ];

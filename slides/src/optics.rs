@@ -209,7 +209,7 @@ pub fn reflection(kit: &dyn Kit) -> Result<String> {
         [(-direction.x / 2.0, direction.x, before), (reflected.x / 2.0, reflected.x, after)]
     {
         let label = offset(at(vec3(x, 0.0, 0.0)), [0.0, 30.0]);
-        drawing.text(label, Anchor::Middle, SMALL, ink, &format!("along the surface: {value:.2}"));
+        drawing.text(label, Anchor::Middle, SMALL, ink, &format!("along it: {value:.2}"));
     }
     let text = format!("d' = reflect(d, n): d' - d = {length:.2} n = -2 n (d·n)");
     drawing.text([500.0, 530.0], Anchor::Middle, TEXT, part, &text);

@@ -7,7 +7,7 @@ use raykata::aabb::Aabb;
 use raykata::kit::{BspQuery, CellsAnswer, CellsQuery, KdQuery, Kit, OctreeQuery, SlabQuery};
 use raykata::partition::{Bsp, BspNode, KdHeuristics, Octree, OctreeNode};
 use raykata::ray::Ray;
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, View};
+use raykata_cli::svg::{Anchor, Drawing, Ink, LARGE, Pen, Point, SMALL, View};
 
 /// A node of the lower half of an octree, with its cell, its depth and its position in the row of this depth.
 struct Node {
@@ -148,8 +148,8 @@ pub fn bsp_sheets(kit: &dyn Kit) -> Result<String> {
         for hull in &hulls {
             drawing.line(at(hull[0].as_dvec3()), at(hull[1].as_dvec3()), Pen::new(Ink::Color(0)).wide(5.0));
         }
-        let text = format!("{name}: {references} references to 6 sheets");
-        drawing.text([view.origin[0] + 210.0, 510.0], Anchor::Middle, SMALL, Ink::Text, &text);
+        let text = format!("{name}: {references} references");
+        drawing.text([view.origin[0] + 210.0, 525.0], Anchor::Middle, LARGE, Ink::Text, &text);
     }
     Ok(drawing.svg())
 }

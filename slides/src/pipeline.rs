@@ -10,7 +10,7 @@ pub fn judge_and_worker(_kit: &dyn Kit) -> Result<String> {
     let (judge, worker, closed) = (Ink::Color(0), Ink::Color(2), Ink::Color(1));
     drawing.frame([30.0, 40.0], [330.0, 340.0], Pen::new(judge).wide(4.0));
     drawing.text([50.0, 80.0], Anchor::Start, TEXT, judge, "judge");
-    let lines = ["inputs", "expected answers", "tolerances", "counts", "verdict"];
+    let lines = ["inputs", "expectations", "tolerances", "counts", "verdict"];
     for (row, line) in lines.into_iter().enumerate() {
         drawing.text([50.0, 130.0 + 42.0 * row as f64], Anchor::Start, TEXT, Ink::Text, line);
     }
@@ -27,7 +27,7 @@ pub fn judge_and_worker(_kit: &dyn Kit) -> Result<String> {
     drawing.text([435.0, 216.0], Anchor::Middle, SMALL, worker, "answers");
     drawing.text([435.0, 290.0], Anchor::Middle, SMALL, Ink::Text, "one socket");
     // Nothing else leaves the sandbox.
-    for (row, what) in ["files", "network", "processes"].into_iter().enumerate() {
+    for (row, what) in ["files", "network", "children"].into_iter().enumerate() {
         let y = 100.0 + 80.0 * row as f64;
         drawing.arrow([842.0, y], [945.0, y], Pen::new(Ink::Faint));
         drawing.line([880.0, y - 14.0], [908.0, y + 14.0], Pen::new(closed).wide(5.0));
@@ -37,7 +37,7 @@ pub fn judge_and_worker(_kit: &dyn Kit) -> Result<String> {
     drawing.frame([540.0, 400.0], [970.0, 560.0], Pen::new(closed).dashed());
     drawing.text([960.0, 550.0], Anchor::End, SMALL, closed, "sandbox");
     drawing.frame([580.0, 430.0], [900.0, 510.0], Pen::new(worker).wide(4.0));
-    drawing.text([740.0, 478.0], Anchor::Middle, SMALL, worker, "worker for hidden inputs");
+    drawing.text([740.0, 478.0], Anchor::Middle, SMALL, worker, "the same, hidden");
     drawing.polyline(&[[180.0, 340.0], [180.0, 470.0], [560.0, 470.0]], Pen::new(judge).wide(4.0));
     drawing.arrow([540.0, 470.0], [576.0, 470.0], Pen::new(judge).wide(4.0));
     drawing.text([350.0, 456.0], Anchor::Middle, SMALL, judge, "hidden inputs");

@@ -109,16 +109,16 @@ pub fn grid_resolution(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
         x: Axis::logarithmic(8.0, 256.0),
         y: Axis::logarithmic(1.0, 2000.0),
         corner: [100.0, 530.0],
-        size: [660.0, 450.0],
+        size: [580.0, 450.0],
     };
     let x = [(8.0, "8"), (16.0, "16"), (32.0, "32"), (64.0, "64"), (128.0, "128"), (256.0, "256")];
     let y = [(1.0, "1"), (10.0, "10"), (100.0, "100"), (1000.0, "1,000")];
     plot.draw_axes(&mut drawing, &x, &y, ["cells along the longest side", "per ray"]);
     type Value<'a> = &'a dyn Fn(&[f64; 2]) -> f64;
     let curves: [(Value<'_>, &str, Pen, f64); 3] = [
-        (&|one| one[0] + one[1], "their sum", Pen::new(Ink::Text).wide(2.0), -16.0),
+        (&|one| one[0] + one[1], "their sum", Pen::new(Ink::Text).wide(2.0), -24.0),
         (&|one| one[0], "primitive tests", Pen::new(Ink::Color(0)).wide(4.0), 8.0),
-        (&|one| one[1], "visited cells", Pen::new(Ink::Color(1)).wide(4.0), 18.0),
+        (&|one| one[1], "visited cells", Pen::new(Ink::Color(1)).wide(4.0), 20.0),
     ];
     for (value, name, pen, by) in curves {
         let points: Vec<[f64; 2]> =

@@ -4,7 +4,7 @@ use crate::sketch::offset;
 use anyhow::{Context, Result, ensure};
 use glam::{DVec3, Vec3, dvec3, vec3};
 use raykata::kit::{Kit, LightSample, OffsetQuery, ShadowQuery, Surface};
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, SMALL, TEXT, View};
+use raykata_cli::svg::{Anchor, Drawing, Ink, LARGE, Pen, SMALL, TEXT, View};
 
 /// The unit vector at an angle in degrees, counterclockwise from the right.
 fn at_angle(degrees: f32) -> Vec3 {
@@ -45,8 +45,8 @@ pub fn silhouette_normal(kit: &dyn Kit) -> Result<String> {
     drawing.dot(at(point), 9.0, Ink::Text);
     let label = offset(at(point + 0.42 * geometric), [16.0, 10.0]);
     drawing.text(label, Anchor::Start, SMALL, Ink::Text, "geometric normal");
-    let label = offset(at(point + 0.55 * shading), [-16.0, 18.0]);
-    drawing.text(label, Anchor::End, SMALL, Ink::Color(0), "shading_normal");
+    let label = offset(at(point + 0.55 * shading), [-20.0, -14.0]);
+    drawing.text(label, Anchor::Start, SMALL, Ink::Color(0), "shading_normal");
     let label = offset(at(point + 0.42 * turned), [18.0, -4.0]);
     drawing.text(label, Anchor::Start, SMALL, Ink::Color(1), "turned by the ray: inside");
     for (row, (name, vector, ink)) in
@@ -56,12 +56,12 @@ pub fn silhouette_normal(kit: &dyn Kit) -> Result<String> {
     {
         let dot = vector.dot(direction);
         let sign = if dot < 0.0 { "< 0" } else { "> 0" };
-        let text = format!("{name}: n·d = {dot:.2} {sign}");
-        drawing.text([680.0, 400.0 + 36.0 * row as f64], Anchor::Start, SMALL, ink, &text);
+        let text = format!("{name}: n·d {sign}");
+        drawing.text([690.0, 390.0 + 40.0 * row as f64], Anchor::Start, SMALL, ink, &text);
     }
-    let lines = ["The viewer sees the front", "of the facet: the geometric", "normal decides the side."];
+    let lines = ["The viewer sees the", "front of the facet:", "n decides the side."];
     for (row, line) in lines.into_iter().enumerate() {
-        drawing.text([680.0, 500.0 + 34.0 * row as f64], Anchor::Start, SMALL, Ink::Text, line);
+        drawing.text([690.0, 490.0 + 40.0 * row as f64], Anchor::Start, SMALL, Ink::Text, line);
     }
     Ok(drawing.svg())
 }
@@ -127,13 +127,7 @@ pub fn rounded_point(kit: &dyn Kit) -> Result<String> {
         Ink::Color(2),
         "start of shadow_ray",
     );
-    drawing.text(
-        [500.0, 496.0],
-        Anchor::Start,
-        SMALL,
-        Ink::Text,
-        "circles: exact hits; dots: rounded points",
-    );
+    drawing.text([500.0, 496.0], Anchor::Start, SMALL, Ink::Text, "circles: exact; dots: rounded");
     let text = format!("{below} of {} points are below the surface", xs.len());
     drawing.text([500.0, 528.0], Anchor::Start, SMALL, Ink::Color(1), &text);
     drawing.text(
@@ -166,10 +160,10 @@ pub fn edge_gap(_kit: &dyn Kit) -> Result<String> {
     }
     drawing.line(top, bottom, Pen::new(Ink::Text).wide(4.0));
     drawing.dot([497.0, 214.0], 11.0, Ink::Color(1));
-    drawing.text([610.0, 46.0], Anchor::Start, SMALL, Ink::Color(1), "the ray, seen along its direction");
+    drawing.text([610.0, 46.0], Anchor::Start, SMALL, Ink::Color(1), "the ray, seen end-on");
     drawing.line([602.0, 46.0], [504.0, 201.0], Pen::new(Ink::Color(1)).wide(1.5));
-    drawing.text([250.0, 430.0], Anchor::Middle, SMALL, Ink::Text, "solid: the edge that both share");
-    drawing.text([740.0, 430.0], Anchor::Middle, SMALL, Ink::Text, "dashed: the edge as each computes it");
+    drawing.text([250.0, 430.0], Anchor::Middle, SMALL, Ink::Text, "solid: the shared edge");
+    drawing.text([740.0, 430.0], Anchor::Middle, SMALL, Ink::Text, "dashed: as each computes it");
     Ok(drawing.svg())
 }
 
@@ -192,21 +186,21 @@ pub fn offset_bound(kit: &dyn Kit) -> Result<String> {
     // The true surface passes somewhere through the box.
     let inside = -0.45 * normal;
     drawing.line(at(inside - 1.9 * along), at(inside + 2.3 * along), Pen::new(Ink::Text).wide(4.0));
-    let label = offset(at(inside - 1.9 * along), [-50.0, 14.0]);
-    drawing.text(label, Anchor::End, SMALL, Ink::Text, "the true surface");
+    let label = offset(at(inside - 1.9 * along), [-60.0, 34.0]);
+    drawing.text(label, Anchor::End, LARGE, Ink::Text, "the true surface");
     drawing.rectangle(at(-error), at(error), Ink::Color(3), 0.14);
     drawing.frame(at(-error), at(error), Pen::new(Ink::Color(3)));
     drawing.text(
-        offset(at(vec3(0.6, -error.y, 0.0)), [0.0, 30.0]),
+        offset(at(vec3(0.6, -error.y, 0.0)), [0.0, 42.0]),
         Anchor::Middle,
-        TEXT,
+        LARGE,
         Ink::Color(3),
         "2 eₓ",
     );
     drawing.text(
         offset(at(vec3(-error.x, 0.0, 0.0)), [-14.0, 8.0]),
         Anchor::End,
-        TEXT,
+        LARGE,
         Ink::Color(3),
         "2 e_y",
     );
@@ -216,14 +210,14 @@ pub fn offset_bound(kit: &dyn Kit) -> Result<String> {
     drawing.dot(at(corner), 8.0, Ink::Color(3));
     drawing.arrow(at(Vec3::ZERO), at(height * normal), Pen::new(Ink::Color(1)).wide(5.0));
     drawing.dot(at(Vec3::ZERO), 10.0, Ink::Text);
-    drawing.text(offset(at(Vec3::ZERO), [18.0, 24.0]), Anchor::Start, SMALL, Ink::Text, "the computed point");
+    drawing.text(offset(at(Vec3::ZERO), [18.0, 40.0]), Anchor::Start, LARGE, Ink::Text, "the computed point");
     drawing.dot(at(moved), 10.0, Ink::Color(2));
     let label = offset(at(moved), [-20.0, -8.0]);
-    drawing.text(label, Anchor::End, TEXT, Ink::Color(2), "offset_origin");
-    drawing.text([660.0, 120.0], Anchor::Start, TEXT, Ink::Color(1), "height =");
-    drawing.text([660.0, 156.0], Anchor::Start, TEXT, Ink::Color(1), "eₓ |nₓ| + e_y |n_y|");
-    let text = format!("offset_origin: {:.2} times as far", moved.dot(normal) / height);
-    drawing.text([660.0, 200.0], Anchor::Start, SMALL, Ink::Color(2), &text);
-    drawing.text(offset(at(0.6 * height * normal), [16.0, 22.0]), Anchor::Start, TEXT, Ink::Color(1), "n");
+    drawing.text(label, Anchor::End, LARGE, Ink::Color(2), "offset_origin");
+    drawing.text([620.0, 60.0], Anchor::Start, LARGE, Ink::Color(1), "height =");
+    drawing.text([620.0, 106.0], Anchor::Start, LARGE, Ink::Color(1), "eₓ |nₓ| + e_y |n_y|");
+    let text = format!("offset_origin: {:.2} ×", moved.dot(normal) / height);
+    drawing.text([560.0, 160.0], Anchor::Start, LARGE, Ink::Color(2), &text);
+    drawing.text(offset(at(0.6 * height * normal), [16.0, 22.0]), Anchor::Start, LARGE, Ink::Color(1), "n");
     Ok(drawing.svg())
 }

@@ -7,7 +7,7 @@ use raykata::aabb::Aabb;
 use raykata::kit::{FILTER_RADIUS, Kit, RectangleQuery};
 use raykata::random::{Points, Purpose};
 use raykata::scene::Sampler;
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
+use raykata_cli::svg::{Anchor, Drawing, Ink, LARGE, Pen, Point, SMALL, TEXT, View};
 
 /// The weight of the Gaussian filter, and the Gaussian that is cut off.
 pub fn gaussian_weight(kit: &dyn Kit) -> Result<String> {
@@ -52,8 +52,8 @@ pub fn gaussian_weight(kit: &dyn Kit) -> Result<String> {
         inset.draw_curve(&mut drawing, end, pen);
     }
     drawing.text([660.0, 90.0], Anchor::Start, SMALL, Ink::Color(0), "gaussian_weight, scaled");
-    drawing.text([660.0, 130.0], Anchor::Start, SMALL, Ink::Color(1), "exp(-2 x²), cut off at 1.5:");
-    drawing.text([660.0, 158.0], Anchor::Start, SMALL, Ink::Color(1), &format!("a step of {step:.3}"));
+    drawing.text([660.0, 130.0], Anchor::Start, SMALL, Ink::Color(1), "exp(-2 x²), cut at 1.5:");
+    drawing.text([660.0, 166.0], Anchor::Start, SMALL, Ink::Color(1), &format!("a step of {step:.3}"));
     Ok(drawing.svg())
 }
 
@@ -171,8 +171,8 @@ pub fn motion_bounds(kit: &dyn Kit) -> Result<String> {
             [(start.min, end.min), (start.max, end.max)].map(|(a, b)| kit.lerp(&[(a, b, time)])[0]);
         drawing.rectangle(at(low), at(high), Ink::Color(4), 0.16);
         drawing.frame(at(low), at(high), Pen::new(Ink::Color(4)).wide(1.5));
-        let middle = offset(at((low + high) / 2.0), [0.0, 8.0]);
-        drawing.text(middle, Anchor::Middle, SMALL, Ink::Text, &time.to_string());
+        let middle = offset(at((low + high) / 2.0), [0.0, 14.0]);
+        drawing.text(middle, Anchor::Middle, LARGE, Ink::Text, &time.to_string());
     }
     let corner = |bounds: &Aabb, i: usize| {
         let [low, high] = [bounds.min, bounds.max];
@@ -183,12 +183,12 @@ pub fn motion_bounds(kit: &dyn Kit) -> Result<String> {
     }
     for (bounds, name) in [(start, "time 0"), (end, "time 1")] {
         drawing.frame(at(bounds.min), at(bounds.max), Pen::new(Ink::Color(0)).wide(4.0));
-        let middle = offset(at((bounds.min + bounds.max) / 2.0), [0.0, 8.0]);
-        drawing.text(middle, Anchor::Middle, SMALL, Ink::Color(0), name);
+        let middle = offset(at((bounds.min + bounds.max) / 2.0), [0.0, 14.0]);
+        drawing.text(middle, Anchor::Middle, LARGE, Ink::Color(0), name);
     }
     let around = kit.motion_bounds(&[(start, end)])[0];
     drawing.frame(at(around.min), at(around.max), Pen::new(Ink::Color(1)).wide(4.0).dashed());
-    let label = offset(at(vec3(around.min.x, around.max.y, 0.0)), [14.0, 34.0]);
-    drawing.text(label, Anchor::Start, TEXT, Ink::Color(1), "motion_bounds");
+    let label = offset(at(vec3(around.min.x, around.max.y, 0.0)), [14.0, 46.0]);
+    drawing.text(label, Anchor::Start, LARGE, Ink::Color(1), "motion_bounds");
     Ok(drawing.svg())
 }

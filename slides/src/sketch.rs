@@ -76,19 +76,19 @@ impl Plot {
         let (low, high) = ([self.x.low, self.y.low], [self.x.high, self.y.high]);
         for &(value, label) in x {
             drawing.line(self.at(value, low[1]), self.at(value, high[1]), Pen::new(Ink::Faint).wide(0.5));
-            let at = offset(self.at(value, low[1]), [0.0, 28.0]);
+            let at = offset(self.at(value, low[1]), [0.0, 36.0]);
             drawing.text(at, Anchor::Middle, SMALL, Ink::Text, label);
         }
         for &(value, label) in y {
             drawing.line(self.at(low[0], value), self.at(high[0], value), Pen::new(Ink::Faint).wide(0.5));
-            let at = offset(self.at(low[0], value), [-10.0, 7.0]);
+            let at = offset(self.at(low[0], value), [-12.0, 6.0]);
             drawing.text(at, Anchor::End, SMALL, Ink::Text, label);
         }
         let axes = [self.at(low[0], high[1]), self.at(low[0], low[1]), self.at(high[0], low[1])];
         drawing.polyline(&axes, Pen::new(Ink::Text).wide(2.0));
-        let below = offset(self.at(low[0], low[1]), [self.size[0] / 2.0, 60.0]);
+        let below = offset(self.at(low[0], low[1]), [self.size[0] / 2.0, 72.0]);
         drawing.text(below, Anchor::Middle, SMALL, Ink::Text, titles[0]);
-        let above = offset(self.at(low[0], high[1]), [-40.0, -18.0]);
+        let above = offset(self.at(low[0], high[1]), [-40.0, -30.0]);
         drawing.text(above, Anchor::Start, SMALL, Ink::Text, titles[1]);
     }
 

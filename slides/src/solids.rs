@@ -35,7 +35,7 @@ pub fn solid_intervals(kit: &dyn Kit) -> Result<String> {
         Ink::Color(0),
         "infinite cylinder",
     );
-    drawing.text(view.at(7.0, 0.12), Anchor::Start, SMALL, Ink::Color(3), "between the ends");
+    drawing.text(view.at(7.0, 0.12), Anchor::Start, SMALL, Ink::Color(3), "between ends");
     drawing.arrow(at(ray.origin), at(ray.at(8.9)), Pen::new(Ink::Text));
     // The line is seen from the side, so it passes the side of the cylinder where its x is that of the outline.
     let t_of_x = |x: f32| (x - ray.origin.x) / ray.direction.x;
@@ -112,18 +112,18 @@ pub fn double_cone(kit: &dyn Kit) -> Result<String> {
         for root in roots {
             drawing.dot(at(ray.at(root)), 10.0, ink);
         }
-        let sign = if a > 0.0 { "a > 0: inside between the roots" } else { "a < 0: inside beyond the roots" };
+        let sign = if a > 0.0 { "a > 0: between roots" } else { "a < 0: beyond roots" };
         let verdict = hit.map_or("no hit".to_owned(), |hit| format!("hit at t = {:.2}", hit.t));
-        let y = 200.0 + 110.0 * row as f64;
+        let y = 150.0 + 130.0 * row as f64;
         for (line, text) in [name, sign, &verdict].into_iter().enumerate() {
             let size = if line == 0 { TEXT } else { SMALL };
-            drawing.text([650.0, y + 30.0 * line as f64], Anchor::Start, size, ink, text);
+            drawing.text([650.0, y + 35.0 * line as f64], Anchor::Start, size, ink, text);
         }
         if let Some(hit) = hit {
             drawing.circle(at(ray.at(hit.t)), 17.0, Pen::new(Ink::Text));
         }
     }
-    drawing.text([650.0, 560.0], Anchor::Start, SMALL, Ink::Text, "circle: what cone() returns");
+    drawing.text([650.0, 560.0], Anchor::Start, SMALL, Ink::Text, "circle: cone()");
     Ok(drawing.svg())
 }
 
@@ -277,10 +277,7 @@ pub fn scene_graph(_kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     }
     let roots = (0..nodes.len()).filter(|&index| parents[index] == 0 && is_drawn(&index));
     let tree: usize = roots.map(|root| unfolded(nodes, root)).sum();
-    let text = format!(
-        "{} nodes here; {tree} nodes as a tree, in which nothing is shared",
-        (0..nodes.len()).filter(is_drawn).count()
-    );
+    let text = format!("{} nodes here; {tree} as a tree", (0..nodes.len()).filter(is_drawn).count());
     drawing.text([20.0, 590.0], Anchor::Start, SMALL, Ink::Text, &text);
     drawing.text([980.0, 590.0], Anchor::End, SMALL, Ink::Color(1), "shaded: several parents");
     Ok(drawing.svg().into_bytes())

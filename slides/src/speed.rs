@@ -78,7 +78,7 @@ pub fn bins_and_cuts(kit: &dyn Kit) -> Result<String> {
     let labels: Vec<(f64, &str)> = numbers.iter().map(|(y, text)| (*y, text.as_str())).collect();
     plot.draw_axes(&mut drawing, &[], &labels, ["", "A(L) c(L) + A(R) c(R)"]);
     plot.draw_curve(&mut drawing, sweep, Pen::new(Ink::Faint).wide(3.0));
-    drawing.text([960.0, 36.0], Anchor::End, SMALL, Ink::Faint, "all 59 cuts of the sorted boxes");
+    drawing.text([960.0, 30.0], Anchor::End, SMALL, Ink::Faint, "all 59 cuts of the sorted boxes");
     // Draw the cost of each cut between two bins.
     let border = |bin: usize| f64::from(low + bin as f32 / scale) / 2.0;
     for bin in 1..MAX_BINS {
@@ -93,7 +93,7 @@ pub fn bins_and_cuts(kit: &dyn Kit) -> Result<String> {
             drawing.text(offset(at, [0.0, 36.0]), Anchor::Middle, SMALL, ink, &text);
         }
     }
-    drawing.text([960.0, 64.0], Anchor::End, SMALL, Ink::Color(0), "15 cuts between bins");
+    drawing.text([960.0, 66.0], Anchor::End, SMALL, Ink::Color(0), "15 cuts between bins");
     draw_bins(&mut drawing, &plot, &bins, border);
     Ok(drawing.svg())
 }
@@ -302,7 +302,7 @@ pub fn work_and_span(kit: &dyn Kit) -> Result<String> {
     let [work, span] = costs[0];
     let levels = 1 + all.depth.iter().max().context("a tree")?;
     let text = format!("work {}: all rows of all {levels} levels", Thousands(work));
-    drawing.text([20.0, 510.0], Anchor::Start, SMALL, Ink::Color(0), &text);
+    drawing.text([20.0, 506.0], Anchor::Start, SMALL, Ink::Color(0), &text);
     let text = format!("span {}: the longest path, work / {:.1}", Thousands(span), work as f64 / span as f64);
     drawing.text([20.0, 542.0], Anchor::Start, SMALL, Ink::Color(1), &text);
     let text = format!("{} forks", forked.forks.len());

@@ -112,8 +112,8 @@ pub fn sphere_cancellation(kit: &dyn Kit) -> Result<String> {
     let plot = Plot {
         x: Axis::logarithmic(10.0, 1e6),
         y: Axis::linear(0.0, 100.0),
-        corner: [90.0, 530.0],
-        size: [810.0, 460.0],
+        corner: [130.0, 530.0],
+        size: [770.0, 460.0],
     };
     let x =
         [(10.0, "10"), (100.0, "100"), (1e3, "1,000"), (1e4, "10,000"), (1e5, "100,000"), (1e6, "1,000,000")];

@@ -82,8 +82,8 @@ pub fn sah_cuts(kit: &dyn Kit) -> Result<String> {
         let (anchor, by) = if is_high { (Anchor::End, [-24.0, 28.0]) } else { (Anchor::Middle, [0.0, -9.0]) };
         drawing.text(offset(top, by), anchor, SMALL, ink, &format!("{cost:.0}"));
         if let Some((_, first, second, _)) = mark {
-            drawing.text(offset(top, [0.0, -60.0]), Anchor::Middle, SMALL, ink, first);
-            drawing.text(offset(top, [0.0, -36.0]), Anchor::Middle, SMALL, ink, second);
+            drawing.text(offset(top, [0.0, -72.0]), Anchor::Middle, SMALL, ink, first);
+            drawing.text(offset(top, [0.0, -40.0]), Anchor::Middle, SMALL, ink, second);
         }
     }
     let y = plot.at(1.0, f64::from(leaf));
@@ -169,7 +169,7 @@ fn cut(kit: &dyn Kit, drawing: &mut Drawing, boxes: &[Aabb], x: f64, middle: f64
     let on = centroids.iter().filter(|centroid| centroid.x == at).count();
     let above = centroids.len() - below - on;
     drawing.line([x, 26.0], [x, 420.0], Pen::new(Ink::Color(1)).wide(4.0).dashed());
-    let counts = format!("centroids: {below} left, {on} on the cut, {above} right");
+    let counts = format!("{below} left, {on} on the cut, {above} right");
     drawing.text([middle, 454.0], Anchor::Middle, SMALL, Ink::Color(1), &counts);
     let answer = kit.split_spatial_median(&[references(kit, boxes)]).remove(0);
     if let Some(left) = answer.middle {

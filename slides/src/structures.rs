@@ -102,7 +102,7 @@ pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
     let tree = kit.kd_build(&[query]).remove(0);
     let answer = kit.kd_search(&[CellsQuery { cells: tree.clone(), ray, hits }]).remove(0);
 
-    let mut drawing = Drawing::new("The leaves of a kd-tree that a ray visits, in order", 1000.0, 620.0);
+    let mut drawing = Drawing::new("The leaves of a kd-tree that a ray visits, in order", 1000.0, 600.0);
     let cells = leaves(&tree);
     let visited = answer.visits.iter().filter_map(|node| cells.iter().find(|(leaf, _)| leaf == node));
     for (step, (_, cell)) in (1..).zip(visited) {
@@ -119,7 +119,7 @@ pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
         answer.visits.len() - n_leaves,
         answer.tests.len()
     );
-    drawing.text([100.0, 604.0], Anchor::Start, TEXT, Ink::Text, &text);
+    drawing.text([500.0, 588.0], Anchor::Middle, SMALL, Ink::Text, &text);
     Ok(drawing.svg())
 }
 

@@ -76,7 +76,7 @@ pub fn inside_tests(kit: &dyn Kit) -> Result<String> {
         }
         drawing.text([view.origin[0] + 20.0, 464.0], Anchor::Start, TEXT, Ink::Text, name);
     }
-    drawing.text([50.0, 500.0], Anchor::Start, SMALL, Ink::Color(3), "P on the same side of all");
+    drawing.text([50.0, 500.0], Anchor::Start, SMALL, Ink::Color(3), "same side of all");
     drawing.text([385.0, 500.0], Anchor::Start, SMALL, Ink::Color(1), "same sense for all sides");
     Ok(drawing.svg())
 }
@@ -217,14 +217,15 @@ pub fn bilinear(kit: &dyn Kit) -> Result<String> {
     drawing.frame(place(Vec2::ZERO), place(Vec2::ONE), Pen::new(Ink::Text).wide(2.0));
     drawing.dot(place(point), 11.0, Ink::Text);
     let lines = [
-        ("Each pixel has the weight", Ink::Text),
-        ("of the opposite rectangle,", Ink::Text),
+        ("A pixel has the weight", Ink::Text),
+        ("of the rectangle across,", Ink::Text),
         ("which has its colour.", Ink::Text),
     ];
     for (row, (line, ink)) in lines.into_iter().enumerate() {
-        drawing.text([630.0, 220.0 + 36.0 * row as f64], Anchor::Start, TEXT, ink, line);
+        drawing.text([620.0, 220.0 + 42.0 * row as f64], Anchor::Start, TEXT, ink, line);
     }
-    let text = format!("δx = {}, δy = {}; sum {sum:.2}", point.x, point.y);
-    drawing.text([630.0, 350.0], Anchor::Start, SMALL, Ink::Text, &text);
+    let text = format!("δx = {}, δy = {}", point.x, point.y);
+    drawing.text([630.0, 370.0], Anchor::Start, SMALL, Ink::Text, &text);
+    drawing.text([630.0, 408.0], Anchor::Start, SMALL, Ink::Text, &format!("sum of weights {sum:.2}"));
     Ok(drawing.svg())
 }

@@ -109,7 +109,7 @@ pub fn light_solid_angle(kit: &dyn Kit) -> Result<String> {
         format!("light_pdf: {pdf:.2}"),
     ];
     for (row, line) in lines.iter().enumerate() {
-        drawing.text([700.0, 400.0 + 38.0 * row as f64], Anchor::Start, TEXT, Ink::Text, line);
+        drawing.text([650.0, 400.0 + 42.0 * row as f64], Anchor::Start, TEXT, Ink::Text, line);
     }
     Ok(drawing.svg())
 }
@@ -202,8 +202,8 @@ pub fn furnace_bias(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
         let label = offset(plot.at(*depth, *bias), [16.0, -8.0]);
         drawing.text(label, Anchor::Start, SMALL, Ink::Color(1), &format!("{bias:.4}"));
     }
-    drawing.text([620.0, 150.0], Anchor::Start, SMALL, Ink::Color(1), "measured in scenes/furnace.toml");
-    drawing.text([620.0, 184.0], Anchor::Start, SMALL, Ink::Color(0), "0.8 · cut_off(0.5, depth)");
-    drawing.text([620.0, 212.0], Anchor::Start, SMALL, Ink::Color(0), "= 0.8 · 0.5^(depth + 1)");
+    drawing.text([600.0, 120.0], Anchor::Start, SMALL, Ink::Color(1), "measured in the furnace");
+    drawing.text([600.0, 164.0], Anchor::Start, SMALL, Ink::Color(0), "0.8 · cut_off(0.5, depth)");
+    drawing.text([600.0, 202.0], Anchor::Start, SMALL, Ink::Color(0), "= 0.8 · 0.5^(depth + 1)");
     Ok(drawing.svg().into_bytes())
 }

@@ -204,6 +204,31 @@ fn every_figure_is_listed_and_used() {
     assert_eq!(unused, Vec::<&str>::new());
 }
 
+#[test]
+fn letters_of_diagrams_have_eighteen_pixels_or_more() {
+    let number = |text: &str| -> f64 { text.parse().unwrap_or_else(|_| panic!("a number: {text}")) };
+    let mut n_figures = 0;
+    for deck in &decks() {
+        for figure in deck.text().split("![").skip(1) {
+            let Some((words, rest)) = figure.split_once("](figures/") else { continue };
+            let file = rest.split(')').next().unwrap_or_default();
+            if !file.ends_with(".svg") {
+                continue;
+            }
+            let svg = fs::read_to_string(root().join("slides/figures").join(file)).unwrap();
+            let view: Vec<f64> = between(&svg, "viewBox=\"0 0 ", "\"")[0].split(' ').map(number).collect();
+            let sizes = between(&svg, "font-size=\"", "\"").into_iter().map(number);
+            // The description ends with the width or the height on the slide, in pixels of 1280 by 720.
+            let (side, size) = words.rsplit_once(", ").and_then(|(_, size)| size.split_once(':')).unwrap();
+            let scale = number(size) / if side == "w" { view[0] } else { view[1] };
+            let pixels = scale * sizes.fold(f64::INFINITY, f64::min);
+            assert!(pixels >= 18.0, "{}, {file}: letters of {pixels:.1} pixels", deck.name);
+            n_figures += 1;
+        }
+    }
+    assert!(n_figures > 50, "{n_figures} figures");
+}
+
 /// The quoted outputs: the deck, the source, and the text.
 fn quotes() -> Vec<(String, String, String)> {
     let mut quotes = Vec::new();

@@ -8,12 +8,15 @@ use std::fmt::Write;
 /// A position in a drawing, from its upper left corner.
 pub type Point = [f64; 2];
 
-/// The size of letters. A drawing is 1,000 units wide or less and fills most of a slide, so that these are 20 and 16 points
-/// or more there, legible from the last row.
-pub const TEXT: f64 = 26.0;
+/// The size of letters. A drawing is 1,000 units wide or less and takes more than three fifths of a slide's width, so that
+/// letters are 18 of its 720 pixels or more, legible from the last row.
+pub const TEXT: f64 = 35.0;
 
 /// The size of small letters, for ticks and remarks.
-pub const SMALL: f64 = 21.0;
+pub const SMALL: f64 = 31.0;
+
+/// The size of letters in drawings that a slide shows small, beside much text.
+pub const LARGE: f64 = 43.0;
 
 /// What something is drawn with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

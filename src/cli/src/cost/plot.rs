@@ -24,11 +24,11 @@ pub struct Line {
 }
 
 const WIDTH: f64 = 1000.0;
-const HEIGHT: f64 = 640.0;
+const HEIGHT: f64 = 560.0;
 const LEFT: f64 = 110.0;
-const RIGHT: f64 = 600.0;
-const TOP: f64 = 90.0;
-const BOTTOM: f64 = 550.0;
+const RIGHT: f64 = 550.0;
+const TOP: f64 = 110.0;
+const BOTTOM: f64 = 470.0;
 
 /// A logarithmic axis, which ends at whole or half powers of ten.
 struct Axis {
@@ -95,11 +95,14 @@ pub fn svg(plot: &Plot<'_>) -> String {
 
 fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, x: &Axis, y: &Axis) {
     let pen = Pen::new(Ink::Faint).wide(0.5);
+    let mut free = 0.0;
     for (value, is_named) in x.ticks() {
         let at = x.at(value);
         drawing.line([at, TOP], [at, BOTTOM], pen);
-        if is_named {
-            drawing.text([at, BOTTOM + 28.0], Anchor::Middle, SMALL, Ink::Text, &number(value));
+        // Leave out a number that would touch the one before it.
+        if is_named && at >= free {
+            free = at + 80.0;
+            drawing.text([at, BOTTOM + 34.0], Anchor::Middle, SMALL, Ink::Text, &number(value));
         }
     }
     for (value, is_named) in y.ticks() {
@@ -109,8 +112,8 @@ fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, x: &Axis, y: &Axis) {
             drawing.text([LEFT - 10.0, at + 7.0], Anchor::End, SMALL, Ink::Text, &number(value));
         }
     }
-    drawing.text([RIGHT, BOTTOM + 66.0], Anchor::End, SMALL, Ink::Text, plot.x_axis);
-    drawing.text([LEFT - 90.0, TOP - 18.0], Anchor::Start, SMALL, Ink::Text, plot.y_axis);
+    drawing.text([RIGHT, BOTTOM + 76.0], Anchor::End, SMALL, Ink::Text, plot.x_axis);
+    drawing.text([LEFT - 90.0, TOP - 28.0], Anchor::Start, SMALL, Ink::Text, plot.y_axis);
 }
 
 /// Draws the Pareto front as a dashed step line: every setting above it is slower or less accurate than one on it.
@@ -174,7 +177,7 @@ struct Label<'a> {
 fn draw_labels(drawing: &mut Drawing, mut labels: Vec<Label<'_>>) {
     labels.sort_by(|a, b| a.from[1].total_cmp(&b.from[1]));
     // Move labels closer together if there are too many for the height.
-    let apart = ((HEIGHT - 20.0 - TOP) / labels.len().max(1) as f64).min(27.0);
+    let apart = ((HEIGHT - 20.0 - TOP) / labels.len().max(1) as f64).min(33.0);
     let lowest = |below: usize| HEIGHT - 14.0 - apart * below as f64;
     let mut free = TOP - 10.0;
     let n = labels.len();
