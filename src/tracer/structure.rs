@@ -170,7 +170,8 @@ impl Structure {
             }
             (
                 Some(
-                    Accelerator::Bvh
+                    Accelerator::Auto
+                    | Accelerator::Bvh
                     | Accelerator::WideBvh
                     | Accelerator::CachedBvh
                     | Accelerator::PacketBvh
