@@ -186,7 +186,7 @@ pub fn offset_bound(kit: &dyn Kit) -> Result<String> {
     // The true surface passes somewhere through the box.
     let inside = -0.45 * normal;
     drawing.line(at(inside - 1.9 * along), at(inside + 2.3 * along), Pen::new(Ink::Text).wide(4.0));
-    let label = offset(at(inside - 1.9 * along), [-60.0, 34.0]);
+    let label = offset(at(inside - 1.9 * along), [-190.0, -6.0]);
     drawing.text(label, Anchor::End, LARGE, Ink::Text, "the true surface");
     drawing.rectangle(at(-error), at(error), Ink::Color(3), 0.14);
     drawing.frame(at(-error), at(error), Pen::new(Ink::Color(3)));

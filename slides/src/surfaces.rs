@@ -77,7 +77,7 @@ pub fn inside_tests(kit: &dyn Kit) -> Result<String> {
         drawing.text([view.origin[0] + 20.0, 464.0], Anchor::Start, TEXT, Ink::Text, name);
     }
     drawing.text([50.0, 500.0], Anchor::Start, SMALL, Ink::Color(3), "same side of all");
-    drawing.text([385.0, 500.0], Anchor::Start, SMALL, Ink::Color(1), "same sense for all sides");
+    drawing.text([385.0, 500.0], Anchor::Start, SMALL, Ink::Color(1), "one sense of rotation");
     Ok(drawing.svg())
 }
 

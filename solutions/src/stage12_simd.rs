@@ -82,21 +82,31 @@ pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: 
     let to_a = minus(a, origin);
     let normal = cross(edge_b, edge_c);
 
-    // Compute U, V, W and both parts of t.
+    // Compute U, V and W, and bound their rounding errors.
     let moment = cross(to_a, direction);
     let (u, minus_v) = (dot(moment, edge_c), dot(moment, edge_b));
     let slope = dot(direction, normal);
     let w = slope - u + minus_v;
-    let distance = dot(normal, to_a);
-
-    // Bound the rounding errors.
     let fastest = ray.direction.abs().max_element();
     let (size, far_away) = (F32x4::load(level, &block.size), largest(to_a));
-    let t_min = ray.t_min;
     let tiny = F32x4::splat(level, UNDERFLOW);
     let edge_error = F32x4::splat(level, EDGE_ERROR * fastest)
         .mul_add(size, tiny)
         .mul_add(far_away + size, F32x4::splat(level, UNDERFLOW * (1.0 + fastest)));
+
+    // Reject a triangle if two signs differ for certain. Most blocks are done here. Each comparison is false for a NaN, which
+    // rejects nothing.
+    let v = F32x4::splat(level, 0.0) - minus_v;
+    let (least, most) = (w.min(u.min(v)), w.max(u.max(v)));
+    let outside = least.lt(F32x4::splat(level, 0.0) - edge_error) & edge_error.lt(most);
+    let may_be_inside = !outside.bits() & 15;
+    if may_be_inside == 0 {
+        return 0;
+    }
+
+    // Compute both parts of t, and bound the rounding errors at both ends of the range.
+    let distance = dot(normal, to_a);
+    let t_min = ray.t_min;
     let area = (F32x4::splat(level, T_ERROR) * size).mul_add(size, tiny);
     let error_at_t_min = area.mul_add(
         far_away + F32x4::splat(level, t_min * fastest),
@@ -107,16 +117,12 @@ pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: 
         F32x4::splat(level, UNDERFLOW * (1.0 + t_max)),
     );
 
-    // Reject what is certain. Each comparison is false for a NaN, which rejects nothing.
-    let v = F32x4::splat(level, 0.0) - minus_v;
-    let (least, most) = (w.min(u.min(v)), w.max(u.max(v)));
-    let outside = least.lt(F32x4::splat(level, 0.0) - edge_error) & edge_error.lt(most);
     // Beyond t_max, with the computed sign of the slope: |slope| t = along.
     let (along, steep) = (distance * F32x4::splat(level, 1.0).copysign(slope), slope.abs());
     let beyond = error_at_t_max.lt(along - F32x4::splat(level, t_max) * steep);
     // A hit before t_min needs a slope whose sign is certain. Beyond t_max it does not, see T_ERROR.
     let before = along.lt(F32x4::splat(level, t_min) * steep - error_at_t_min) & edge_error.lt(steep);
-    !(outside | beyond | before).bits() & 15
+    may_be_inside & !(beyond | before).bits()
     // <stub> todo!("compute U, V and W with four lanes, bound their errors, and reject what is certain")
     // </solution>
 }

@@ -73,7 +73,7 @@ pub use triangles::{GramScalars, InsideQuery, InterpolateQuery, TriangleHit, Tri
 
 use crate::count::Counts;
 use crate::film::Film;
-use crate::scene::Scene;
+use crate::scene::{Accelerator, Scene};
 use serde::{Deserialize, Serialize};
 
 /// What the pixels of a picture show.
@@ -139,6 +139,8 @@ pub struct Rendering {
     pub counts: Counts,
     /// The number of primitives in the frame, infinite planes included.
     pub primitives: u64,
+    /// The acceleration structure that was used, never [`Accelerator::Auto`]; `None` if no search is written.
+    pub accelerator: Option<Accelerator>,
     /// The size of the structure over the scene; `None` if there is none, because every primitive is tested.
     /// Shared meshes have structures of their own, which are not included.
     pub structure: Option<StructureSize>,

@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Accelerator {
+    /// The fastest hierarchy that is written: [`Accelerator::WideBvh`], or else [`Accelerator::Bvh`]. A split or a leaf size other
+    /// than the default selects [`Accelerator::Bvh`], because only the builder of stage 3 has them.
+    #[default]
+    Auto,
     /// No structure: every ray is tested against every primitive (stage 2).
     BruteForce,
     /// The scene graph itself, with a bounding box around each of its nodes (stage 8).
@@ -18,7 +22,6 @@ pub enum Accelerator {
     /// and searches it first (stage 8).
     CachedBoundingBoxes,
     /// A bounding volume hierarchy (stage 3).
-    #[default]
     Bvh,
     /// A bounding volume hierarchy with eight children per node, whose boxes are tested at once (stage 12).
     WideBvh,
@@ -48,7 +51,7 @@ pub enum Accelerator {
 }
 
 impl Accelerator {
-    /// Every accelerator once: brute force, the volumes of the scene graph, the hierarchies, then the
+    /// Every structure once, so without [`Accelerator::Auto`]: brute force, the volumes of the scene graph, the hierarchies, then the
     /// structures that divide space.
     pub const ALL: [Accelerator; 16] = [
         Accelerator::BruteForce,
@@ -69,17 +72,32 @@ impl Accelerator {
         Accelerator::PolygonBsp,
     ];
 
-    /// Whether the structure is a bounding volume hierarchy of stage 3, however it is searched.
+    /// The names of all values in scene files.
+    pub fn names() -> [(&'static str, Accelerator); 17] {
+        let mut names = [(Accelerator::Auto.name(), Accelerator::Auto); 17];
+        for (place, one) in names[1..].iter_mut().zip(Accelerator::ALL) {
+            *place = (one.name(), one);
+        }
+        names
+    }
+
+    /// Whether the structure is a bounding volume hierarchy of stage 3, however it is searched, or may be one: then the split and
+    /// the leaf size change it.
     pub fn is_hierarchy(self) -> bool {
         matches!(
             self,
-            Accelerator::Bvh | Accelerator::BvhBothChildren | Accelerator::CachedBvh | Accelerator::PacketBvh
+            Accelerator::Auto
+                | Accelerator::Bvh
+                | Accelerator::BvhBothChildren
+                | Accelerator::CachedBvh
+                | Accelerator::PacketBvh
         )
     }
 
     /// The name in scene files, in snake case, for example `bounding_boxes`.
     pub fn name(self) -> &'static str {
         match self {
+            Accelerator::Auto => "auto",
             Accelerator::BruteForce => "brute_force",
             Accelerator::BoundingBoxes => "bounding_boxes",
             Accelerator::BoundingSpheres => "bounding_spheres",

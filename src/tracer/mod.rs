@@ -149,6 +149,7 @@ fn render<F: StudentFunctions>(
         film,
         counts,
         primitives: (scene.world.primitives.len() + scene.world.planes.len()) as u64,
+        accelerator: frame.plan.accelerator,
         structure: scene.structure.size(),
         bytes_of_parts: frame.intersector.bytes_of_parts(),
         build_seconds,

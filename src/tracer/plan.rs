@@ -18,7 +18,7 @@ use glam::Vec3;
 pub struct Plan {
     /// The effects that the scene asks for and that are written.
     pub effects: Effects,
-    /// The acceleration structure; `None` if no search is written, not even brute force.
+    /// The acceleration structure, never [`Accelerator::Auto`]; `None` if no search is written, not even brute force.
     pub accelerator: Option<Accelerator>,
     /// Which student functions test rays against triangles and spheres.
     pub tests: ShapeTests,
@@ -420,6 +420,7 @@ fn choose_accelerator<F: StudentFunctions>(
 ) -> Option<Accelerator> {
     // Use the structure of the scene, or else a hierarchy.
     let wanted = quality.accelerator;
+    let wanted = if wanted == Accelerator::Auto { fastest_hierarchy(quality, written) } else { wanted };
     if wanted != Accelerator::BruteForce {
         let boxes = written.has(Function::slab) || written.has(Function::conservative_slab);
         if boxes && written.has_all(HIERARCHY) {
@@ -443,6 +444,20 @@ fn choose_accelerator<F: StudentFunctions>(
     None
 }
 
+/// The hierarchy of a scene that names no structure: that of stage 12 once everything that makes it fast is written.
+fn fastest_hierarchy<F: StudentFunctions>(quality: &Quality, written: &Written<F>) -> Accelerator {
+    // Only the builder of stage 3 has other splits and leaf sizes.
+    let default = Quality::default();
+    let is_default = (quality.split, quality.leaf_size) == (default.split, default.leaf_size);
+    let builds = written.has(Function::build_parallel) || written.has(Function::build_binned);
+    let (_, needed) = own_functions(Accelerator::WideBvh);
+    if is_default && builds && written.has(Function::may_hit) && written.has_all(needed) {
+        Accelerator::WideBvh
+    } else {
+        Accelerator::Bvh
+    }
+}
+
 /// The functions that a bounding volume hierarchy needs, beside a test of boxes. Every structure needs them, because
 /// they bound primitives.
 const HIERARCHY: &[Function] = &[
@@ -457,7 +472,7 @@ const HIERARCHY: &[Function] = &[
 /// The functions that a structure needs beside those of a hierarchy, and their stage.
 fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
     match accelerator {
-        Accelerator::BruteForce | Accelerator::Bvh => (3, &[]),
+        Accelerator::Auto | Accelerator::BruteForce | Accelerator::Bvh => (3, &[]),
         Accelerator::BvhBothChildren => (3, &[Function::closest_hit_both]),
         Accelerator::BoundingBoxes => (8, &[Function::closest_hit_in_graph]),
         Accelerator::BoundingSpheres => {

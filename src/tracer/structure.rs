@@ -173,7 +173,8 @@ impl Structure {
             }
             (
                 Some(
-                    Accelerator::Bvh
+                    Accelerator::Auto
+                    | Accelerator::Bvh
                     | Accelerator::WideBvh
                     | Accelerator::CachedBvh
                     | Accelerator::PacketBvh

@@ -334,7 +334,7 @@ pub struct Stack {
 }
 
 impl Stack {
-    const FIXED: usize = 64;
+    const FIXED: usize = 32;
 
     /// An empty stack.
     #[inline(always)]

@@ -7,7 +7,7 @@ use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
 use raykata::kit::{RenderJob, Rendering, View};
-use raykata::scene::{Accelerator, Scene, Split};
+use raykata::scene::{Accelerator, Quality, Scene, Split};
 
 fn render_with(scene: &Scene, threads: usize, count: bool) -> Rendering {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads, count, reuse: false };
@@ -64,6 +64,24 @@ fn every_search_and_every_number_of_threads_makes_the_same_picture() {
         let many = render_with(&scene, threads, true);
         assert_eq!((many.film, many.counts), (one.film.clone(), one.counts));
     }
+}
+
+#[test]
+fn a_scene_that_names_no_accelerator_gets_the_fastest_hierarchy_that_fits_it() {
+    let mut scene = scene(VASES);
+    assert_eq!(scene.quality.accelerator, Accelerator::Auto);
+    let wide = render(&scene);
+    assert_eq!(wide.accelerator, Some(Accelerator::WideBvh));
+    // Only the builder of stage 3 has other splits and leaf sizes.
+    scene.quality.split = Split::ObjectMedian;
+    assert_eq!(render(&scene).accelerator, Some(Accelerator::Bvh));
+    (scene.quality.split, scene.quality.leaf_size) = (Split::default(), 2);
+    assert_eq!(render(&scene).accelerator, Some(Accelerator::Bvh));
+    // A structure that the scene names is used, and gives the same picture.
+    scene = Scene { quality: Quality { accelerator: Accelerator::Bvh, ..Quality::default() }, ..scene };
+    let binary = render(&scene);
+    assert_eq!((binary.accelerator, binary.film), (Some(Accelerator::Bvh), wide.film));
+    assert_eq!(rays(&binary.counts), rays(&wide.counts));
 }
 
 #[test]

@@ -60,6 +60,7 @@ fn every_method_makes_the_same_picture() {
 #[test]
 fn both_children_find_the_same_hits_and_test_more_boxes() {
     let mut scene = scene(&SHAPES.replace("cube.obj", "vase.ply"));
+    scene.quality.accelerator = Accelerator::Bvh;
     let expected = render(&scene);
     scene.quality.accelerator = Accelerator::BvhBothChildren;
     let found = render(&scene);

@@ -41,7 +41,7 @@ impl Choice {
     pub const OPTIONS: &[Opt] = &[Opt::value(
         "--kit",
         "NAME",
-        "The code to use [default: solutions if there are any, else exercises; for `check`: exercises].",
+        "The code to use [default: solutions if there are any, else exercises; for `check` and `race`: exercises].",
     )
     .choices(&names(&Which::NAMES))];
 
@@ -176,11 +176,8 @@ pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<(Command, Vec<Pa
             bail!("there are no solutions in {}: omit `--kit solutions`", root.display());
         }
     }
-    // Find the target folder and the profile of this program.
-    let here = std::env::current_exe().context("the path of this program is unknown")?;
-    let folder = here.parent().context("this program is in no folder")?;
-    let folder = if folder.ends_with("deps") { folder.parent().unwrap_or(folder) } else { folder };
-    // Let cargo build the programs there.
+    // Build in the target folder and the profile of this program.
+    let folder = build_folder()?;
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(root).arg("build");
     for program in programs {
@@ -199,6 +196,14 @@ pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<(Command, Vec<Pa
         cargo.arg("--target-dir").arg(target);
     }
     Ok((cargo, programs.iter().map(|program| folder.join(program.file())).collect()))
+}
+
+/// The folder of this program inside of the target folder, whose name is that of its profile.
+pub fn build_folder() -> Result<PathBuf> {
+    let here = std::env::current_exe().context("the path of this program is unknown")?;
+    let folder = here.parent().context("this program is in no folder")?;
+    let folder = if folder.ends_with("deps") { folder.parent().unwrap_or(folder) } else { folder };
+    Ok(folder.to_owned())
 }
 
 /// Runs a build by cargo and returns what it writes to standard output. If something has to be built, or if the build waits for

@@ -20,6 +20,7 @@ pub mod list;
 pub mod progress;
 pub mod quality_options;
 pub mod queue;
+pub mod race;
 pub mod render;
 pub mod report;
 pub mod slides;

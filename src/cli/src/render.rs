@@ -171,7 +171,8 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
     println!("{}  {} × {} pixels, {samples}", out.display(), film.width, film.height);
     println!("  primitives       {}", Thousands(rendering.primitives));
     if let Some(size) = rendering.structure {
-        let how = match quality.accelerator {
+        let used = rendering.accelerator.unwrap_or(quality.accelerator);
+        let how = match used {
             one if one.is_hierarchy() => {
                 format!(", {:?}, leaves of {} or fewer", quality.split, quality.leaf_size)
             }
@@ -179,7 +180,7 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
         };
         println!(
             "  {:<16} {} nodes, {} levels{how}, {}",
-            quality.accelerator.name().replace('_', " "),
+            used.name().replace('_', " "),
             Thousands(size.nodes),
             size.levels,
             Bytes(size.bytes)

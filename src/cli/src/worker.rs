@@ -147,6 +147,11 @@ impl Worker {
         }
     }
 
+    /// The number of the process, if one is running.
+    pub fn process(&self) -> Option<u32> {
+        lock(&self.process).as_ref().map(|process| lock(&process.child).id())
+    }
+
     fn ask(&self, request: &Request, watch: &dyn Watch, patience: Duration) -> Result<Answer, KitError> {
         let mut slot = lock(&self.process);
         let start = || Process::start(&self.program, self.launcher.clone());

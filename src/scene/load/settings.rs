@@ -238,7 +238,7 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
             "roulette_from" => quality.roulette_from = value.whole(2..=MAX_DEPTH)?,
             "clamp" => quality.clamp = value.not_negative()?,
             "accelerator" => {
-                quality.accelerator = value.choice(&Accelerator::ALL.map(|one| (one.name(), one)))?
+                quality.accelerator = value.choice(&Accelerator::names())?;
             }
             "copies" => quality.copies = value.truth()?,
             "savings" => quality.savings = savings(value)?,

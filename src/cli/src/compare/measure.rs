@@ -143,7 +143,8 @@ impl Bench<'_> {
         let tried = match row.quality.accelerator {
             // Each primitive is in one leaf, and a ray tests some tens even in the forest, so whole pictures
             // take seconds.
-            Accelerator::Bvh
+            Accelerator::Auto
+            | Accelerator::Bvh
             | Accelerator::BvhBothChildren
             | Accelerator::CachedBvh
             | Accelerator::PacketBvh

@@ -67,8 +67,8 @@ impl Row {
     }
 }
 
-/// Measures 12 times each power of ten up to `most` triangles, prints the table, and writes it to a file.
-pub fn run(bench: &Bench<'_>, most: u64, out: &Path) -> Result<bool> {
+/// Measures 12 times each power of ten up to `most` triangles with this hierarchy, prints the table, and writes it to a file.
+pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path) -> Result<bool> {
     println!(
         "A landscape of n triangles on {} × {} pixels: one ray per pixel,\nnormals as colours, {} \
          threads. Brute force is timed on a slice of rays, and\nthe counts per ray are means over a sixteenth \
@@ -83,7 +83,7 @@ pub fn run(bench: &Bench<'_>, most: u64, out: &Path) -> Result<bool> {
     );
     let mut rows: Vec<Row> = Vec::new();
     for triangles in sizes(most) {
-        let Some(row) = measure(bench, triangles, rows.last())? else { break };
+        let Some(row) = measure(bench, hierarchy, triangles, rows.last())? else { break };
         println!(
             "{:>10} {:>6.1} {:>8} {:>5.1} {:>9.2} {:>6.0} {:>8} {:>11} {:>9}",
             Thousands(row.triangles).to_string(),
@@ -194,7 +194,12 @@ fn sizes(most: u64) -> Vec<u64> {
 }
 
 /// `None` if the program is being stopped.
-fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<Option<Row>> {
+fn measure(
+    bench: &Bench<'_>,
+    hierarchy: Accelerator,
+    triangles: u64,
+    smaller: Option<&Row>,
+) -> Result<Option<Row>> {
     let sides = sides(triangles);
     let exact = 2 * u64::from(sides.0) * u64::from(sides.1);
     let bar = FrameBar::new("");
@@ -205,7 +210,9 @@ fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<O
     let expected = smaller.map_or(0.0, |row| row.build_seconds_of(exact));
     let frame = |what: &str, accelerator: Accelerator, size: (u32, u32), count: bool| {
         match accelerator {
-            Accelerator::Bvh if expected >= 1.0 => say(&format!("{what}, about {expected:.0} s to build")),
+            one if one == hierarchy && expected >= 1.0 => {
+                say(&format!("{what}, about {expected:.0} s to build"))
+            }
             _ => say(what),
         }
         frame(bench, &bar, &scene, accelerator, size, count)
@@ -213,13 +220,13 @@ fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<O
 
     // The hierarchy is built for each picture, because a kit keeps nothing between two pictures.
     let sixteenth = (SCREEN.0 / SHARE_COUNTED, SCREEN.1 / SHARE_COUNTED);
-    let Some(counted) = frame("counting", Accelerator::Bvh, sixteenth, true)? else { return Ok(None) };
-    let Some(whole) = frame("the whole frame", Accelerator::Bvh, SCREEN, false)? else { return Ok(None) };
+    let Some(counted) = frame("counting", hierarchy, sixteenth, true)? else { return Ok(None) };
+    let Some(whole) = frame("the whole frame", hierarchy, SCREEN, false)? else { return Ok(None) };
     // A slice with the aspect ratio of the screen: 16 × 9 times a number.
     let across = ((TESTS_OF_SLICE as f64 / (144.0 * exact as f64)).sqrt() * 16.0).clamp(4.0, 960.0) as u32;
     let slice = (across, (across * 9 / 16).max(1));
     let brute = frame("brute force on a slice", Accelerator::BruteForce, slice, false)?;
-    let same = frame("the slice again", Accelerator::Bvh, slice, false)?;
+    let same = frame("the slice again", hierarchy, slice, false)?;
     let (Some(brute), Some(same)) = (brute, same) else { return Ok(None) };
     bar.finish();
     let rays = counted.counts.primary.max(1) as f64;

@@ -314,6 +314,9 @@ impl Parameter {
                 let name = |one: Accelerator| one.name().replace('_', " ");
                 let (offered, dear): (Vec<_>, Vec<_>) =
                     Accelerator::ALL.into_iter().partition(|&one| *primitives <= most(one));
+                // The structure that the kit chooses is a value of its own, because it may be the scene's.
+                let auto = (quality.accelerator == Accelerator::Auto).then_some(Accelerator::Auto);
+                let offered = auto.into_iter().chain(offered);
                 let with = |accelerator| (name(accelerator), Quality { accelerator, ..quality });
                 let why = |one: Accelerator| {
                     let (name, most) = (name(one), Thousands(most(one)));
@@ -323,7 +326,7 @@ impl Parameter {
                     )
                 };
                 let left_out = dear.into_iter().map(why).collect();
-                vec![Ladder { left_out, ..ladder(offered.into_iter().map(with).collect()) }]
+                vec![Ladder { left_out, ..ladder(offered.map(with).collect()) }]
             }
             Parameter::Split => {
                 needs(hierarchy, "the accelerator is not a hierarchy")?;

@@ -124,7 +124,8 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     // Without a scene, measure the headline example.
     let Some(file) = &options.scene else {
         let out = options.out.clone().unwrap_or_else(|| Path::new("out").join("headline"));
-        return headline::run(&bench, options.most, &out);
+        let hierarchy = options.quality.accelerator().unwrap_or_default();
+        return headline::run(&bench, hierarchy, options.most, &out);
     };
     // Read the scene, in its own size and in that of the measured pictures.
     let mut full = load_scene(file, options.quality.limits())?;

@@ -4,6 +4,7 @@ use super::ladder::Parameter;
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
 use crate::kits::Choice;
 use crate::quality_options::{QualityOptions, Threads};
+use raykata::scene::Accelerator;
 use std::path::PathBuf;
 
 /// `raykata cost`.
@@ -118,6 +119,11 @@ impl Options {
         given.exclude("--equal-time", "--budget")?;
         given.exclude("--equal-time", "--error")?;
         given.exclude("--equal-time", "--headline")?;
+        let quality = QualityOptions::read(given)?;
+        let is_tree = |one: Accelerator| one.is_hierarchy() || one == Accelerator::WideBvh;
+        if headline && !quality.accelerator().is_none_or(is_tree) {
+            return Err(given.misuse("`--headline` needs a hierarchy, such as `--accelerator bvh`"));
+        }
         let mut light_sizes = given.list("--light-sizes", parse_size)?;
         let equal_time = given.has("--equal-time");
         if !(light_sizes.is_empty() || equal_time) {
@@ -141,7 +147,7 @@ impl Options {
             light_sizes,
             threads: Threads::read(given)?,
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
-            quality: QualityOptions::read(given)?,
+            quality,
             out: given.path("--out"),
         })
     }

@@ -52,7 +52,7 @@ pub fn converged(scene: &Scene) -> Scene {
         min_contribution: scene.quality.min_contribution.min(0.0003),
         next_event: NextEvent::On,
         clamp: 0.0,
-        accelerator: Accelerator::Bvh,
+        accelerator: Accelerator::Auto,
         split: Split::SurfaceArea,
         ..scene.quality
     };

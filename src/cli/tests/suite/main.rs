@@ -5,4 +5,5 @@ mod cost;
 mod curriculum;
 mod program;
 mod program_runs;
+mod race;
 mod slides;

@@ -1,0 +1,180 @@
+//! `raykata race`: which of two kits renders a scene faster.
+//!
+//! Each kit is a worker process. They render the same whole frames in turn, the structures included, and this program reads
+//! their processor times from the operating system.
+//!
+//! `racers` (folders and builds) · `processor_time` · `pictures` (are they the same?) · `statistics` · `table`
+
+mod pictures;
+mod processor_time;
+mod racers;
+mod statistics;
+mod table;
+
+use crate::args::{Argument, Given, Misuse, Opt, Spec};
+use crate::kits::{Choice, Which, root};
+use crate::quality_options::QualityOptions;
+use crate::report::{bar_of_steps, load_scene, with_at_most};
+use crate::worker::{CALL_PATIENCE, Worker};
+use anyhow::{Context, Result};
+use pictures::different_pixels;
+use processor_time::processor_time;
+use racers::Racer;
+use raykata::frame::Unwatched;
+use raykata::kit::{Door, Frames, RenderJob, Rendering, View, kit_error};
+use raykata::scene::Scene;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use table::{Lane, Race};
+
+/// `raykata race`.
+pub static SPEC: Spec = Spec {
+    name: "raykata race",
+    about: "Compare the speed of your code with the reference or with other exercises.",
+    arguments: &[Argument::required("SCENE", "The scene, a TOML file.")],
+    options: &[
+        &[
+            Opt::value(
+                "--against",
+                "FOLDER",
+                "Another folder of exercises, whose code is run as yours is; several can be given, and speeds \
+                 are relative to the first [default: solutions].",
+            )
+            .many(),
+            Opt::value("--rounds", "N", "How often each kit renders the picture [default: 15]."),
+            Opt::flag("--full", "Render pictures of the scene's own size, not smaller ones."),
+        ],
+        Choice::OPTIONS,
+        QualityOptions::OPTIONS,
+    ],
+};
+
+/// The scene, the kits, and how often they render it.
+pub struct Options {
+    scene: PathBuf,
+    kit: Choice,
+    against: Vec<PathBuf>,
+    rounds: usize,
+    full: bool,
+    quality: QualityOptions,
+}
+
+/// The most pixels of a picture, without `--full` and `--size`: a race in the scenes of the README then takes about a minute.
+const RACED_PIXELS: f64 = 50_000.0;
+
+impl Options {
+    /// Reads the arguments and options.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options {
+            scene: given.required(0)?.into(),
+            kit: Choice::read(given)?,
+            against: given.repeated("--against", |text| Ok::<_, String>(PathBuf::from(text)))?,
+            rounds: given.number("--rounds", statistics::FEWEST..=10_000)?.unwrap_or(15),
+            full: given.has("--full"),
+            quality: QualityOptions::read(given)?,
+        })
+    }
+}
+
+/// Runs the race and prints its table. Returns whether all kits make the same picture.
+pub fn run(options: &Options) -> Result<bool> {
+    let mut scene = load_scene(&options.scene, options.quality.limits())?;
+    options.quality.apply(&mut scene)?;
+    if !options.full && !options.quality.names_a_size() {
+        scene = with_at_most(RACED_PIXELS, &scene);
+    }
+    // Find the kits before anything is built. The first opponent is the yardstick, and comes first.
+    let root = root()?;
+    let mut racers = match options.against.as_slice() {
+        [] => vec![racers::of_kit(&root, Which::Solutions)?],
+        folders => folders.iter().map(|folder| racers::in_folder(&root, folder)).collect::<Result<_>>()?,
+    };
+    racers.push(racers::of_kit(&root, options.kit.or_exercises())?);
+    let programs = racers::build(&root, &racers)?;
+
+    let samples = match scene.quality.samples_per_pixel {
+        1 => "1 sample".to_owned(),
+        n => format!("{n} samples"),
+    };
+    let title = format!(
+        "{}, {} × {} pixels, {samples} each",
+        options.scene.display(),
+        scene.film.width,
+        scene.film.height
+    );
+    let race = measure(&scene, title, &racers, &programs, options.rounds)?;
+    println!("{}", race.report().trim_end());
+    Ok(race.is_valid())
+}
+
+/// A kit in its process.
+struct Contestant {
+    name: String,
+    kit: Door<Worker>,
+}
+
+impl Contestant {
+    /// Renders a frame, and returns it with the time that the operating system measured: processor time, or else elapsed time.
+    fn frame(&self, scene: &Scene, seed: u64, by_processor: bool) -> Result<(Rendering, Duration)> {
+        let job = RenderJob {
+            scene: scene.clone(),
+            view: View::Shaded,
+            seed,
+            threads: 1,
+            count: false,
+            reuse: false,
+        };
+        let clock = || self.kit.0.process().and_then(processor_time).unwrap_or_default();
+        let (before, started) = (clock(), Instant::now());
+        let rendering = kit_error::catch(|| self.kit.render(&job, &Unwatched))
+            .with_context(|| format!("{} cannot finish its frame", self.name))?
+            .context("the frame was cancelled")?;
+        let time = if by_processor { clock().saturating_sub(before) } else { started.elapsed() };
+        Ok((rendering, time))
+    }
+}
+
+/// Lets all kits render the scene in turn.
+fn measure(
+    scene: &Scene,
+    title: String,
+    racers: &[Racer],
+    programs: &[PathBuf],
+    rounds: usize,
+) -> Result<Race> {
+    let processor_time = processor_time(std::process::id()).is_some();
+    let contestant = |(racer, program): (&Racer, &PathBuf)| Contestant {
+        name: racer.name.clone(),
+        kit: Door(Worker::new(Path::new(program).to_owned(), CALL_PATIENCE)),
+    };
+    let contestants: Vec<Contestant> = racers.iter().zip(programs).map(contestant).collect();
+    let mut race = Race {
+        title,
+        pixels: scene.film.width as usize * scene.film.height as usize,
+        processor_time,
+        lanes: racers.iter().map(|racer| Lane { name: racer.name.clone(), ..Lane::default() }).collect(),
+    };
+    let bar = bar_of_steps((rounds + 1) * contestants.len());
+    // Render a round that does not count: it starts the processes and reads their programs from the disk.
+    for round in 0..=rounds {
+        let mut expected = None;
+        for (lane, contestant) in race.lanes.iter_mut().zip(&contestants) {
+            // Another seed per round gives other random numbers, so that no frame is that of an earlier round.
+            let (rendering, time) = contestant.frame(scene, round as u64, processor_time)?;
+            if round == 0 {
+                lane.notes = rendering.notes;
+            } else {
+                lane.seconds.push(time.as_secs_f64());
+            }
+            let expected = expected.get_or_insert_with(|| rendering.film.clone());
+            lane.different_pixels = lane.different_pixels.max(different_pixels(expected, &rendering.film));
+            bar.inc(1);
+        }
+        // More rounds do not repair a wrong picture.
+        if round > 0 && !race.has_opponent() {
+            break;
+        }
+    }
+    bar.finish_and_clear();
+    Ok(race)
+}
