@@ -121,7 +121,11 @@ fn one_pixel_of_the_picture_of_a_check_is_asked_for_again() {
     let mistakes: [(&[&str], i32, &str); 5] = [
         (&[check, "--pixel", "80,30"], 1, "has 80 columns and 60 rows"),
         (&[check, "--pixel", "4"], 1, "its column and its row, such as 12,7"),
-        (&["sphere_on_a_plane", "--pixel", "4,4"], 1, "did you mean picture_of_a_sphere_on_a_plane?"),
+        (
+            &["sphere_on_a_plane", "--pixel", "4,4"],
+            1,
+            "_of_a_sphere_on_a_plane, picture_of_a_sphere_on_a_plane?",
+        ),
         (&["plane_hits", "--pixel", "4,4"], 1, "there is no check `plane_hits`"),
         (&["--pixel", "4,4"], 2, "needs the name of a check"),
     ];
