@@ -17,6 +17,7 @@ use crate::scene::{Sampler, Scene, Split};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 use crate::wide::{BinSplit, Bins, Entered, FlatTree, ForkedTree, WideTree};
 use glam::{Affine3A, UVec3, Vec2, Vec3};
+use std::fmt::Debug;
 
 /// Carries a request to the process that contains the student's code, and brings back the answer.
 ///
@@ -98,6 +99,10 @@ pub trait Frames {
     fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>>;
 }
 
+fn each<T: Debug>(values: &[T]) -> Vec<&dyn Debug> {
+    values.iter().map(|value| value as &dyn Debug).collect()
+}
+
 macro_rules! door {
     ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
         $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
@@ -153,6 +158,15 @@ macro_rules! door {
                 }
             }
 
+            /// The name of the function that this request calls, and its queries; `None` for frames and their rays.
+            pub fn queries(&self) -> Option<(&'static str, Vec<&dyn Debug>)> {
+                match self {
+                    $($(Request::$Message(queries) => Some((stringify!($function), each(queries))),)*)*
+                    Request::Withheld(request) => request.queries(),
+                    _ => None,
+                }
+            }
+
             /// Calls the function of `kit` that this request names. `watch` receives the progress of a frame.
             ///
             /// # Panics
@@ -169,6 +183,16 @@ macro_rules! door {
                     Request::Outlines(job, depth) => Answer::Outlines(kit.outlines(job, *depth)),
                     Request::FirstHits(job, rays) => Answer::FirstHits(kit.first_hits(job, rays)),
                     Request::Withheld(request) => request.answer(kit, watch),
+                }
+            }
+        }
+
+        impl Answer {
+            /// The answer to each query; empty for frames and their rays.
+            pub fn values(&self) -> Vec<&dyn Debug> {
+                match self {
+                    $($(Answer::$Message(answers) => each(answers),)*)*
+                    _ => Vec::new(),
                 }
             }
         }

@@ -30,12 +30,18 @@ pub static HINT: Spec = Spec {
 /// The argument of `raykata check`.
 pub const STAGE: Argument = Argument::optional("STAGE", "One stage only, such as 3 or stage3.");
 
+const PIXEL: &[Opt] = &[Opt::value(
+    "--pixel",
+    "X,Y",
+    "Ask for one pixel of the picture of a check again, and print each call with its input and your answer.",
+)];
+
 /// `raykata check`.
 pub static CHECK: Spec = Spec {
     name: "raykata check",
     about: "Grade your exercises and print the scorecard.",
-    arguments: &[STAGE],
-    options: &[crate::kits::Choice::OPTIONS],
+    arguments: &[Argument::optional("STAGE", "One stage only, such as 3 or stage3; with --pixel, a check.")],
+    options: &[PIXEL, crate::kits::Choice::OPTIONS],
 };
 
 /// `raykata gauntlet`.
@@ -105,9 +111,9 @@ fn lines(words: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// One of the three hints of a check.
-pub fn hint(name: &str, level: usize) -> Result<String> {
-    let all: Vec<(&str, &CheckEntry)> =
+/// The entry of a check in the rubric; the error names checks with similar names.
+pub fn entry(name: &str) -> Result<&'static CheckEntry> {
+    let all: Vec<(&str, &'static CheckEntry)> =
         rubric::stages().into_iter().flat_map(|(_, stage)| stage.in_order()).collect();
     let Some((_, entry)) = all.iter().find(|(check, _)| *check == name) else {
         let names = || all.iter().map(|(check, _)| *check);
@@ -121,6 +127,12 @@ pub fn hint(name: &str, level: usize) -> Result<String> {
             false => bail!("there is no check `{name}`; did you mean {}?", near.join(", ")),
         }
     };
+    Ok(entry)
+}
+
+/// One of the three hints of a check.
+pub fn hint(name: &str, level: usize) -> Result<String> {
+    let entry = entry(name)?;
     let mut text = format!("{}\n  {}\n\n", entry.header(), entry.hints[level - 1]);
     if level < entry.hints.len() {
         let _ = writeln!(text, "  still stuck: cargo run -- hint {name} {}", level + 1);

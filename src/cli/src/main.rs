@@ -127,8 +127,14 @@ fn start_page() -> Result<ExitCode> {
 }
 
 fn check(given: &Given) -> Result<ExitCode> {
-    let stage = list::stage(given)?.map(|stage| stage.to_string());
     let which = Choice::read(given)?.or_exercises();
+    if let Some(pixel) = given.path("--pixel") {
+        let check = given.required(0).map_err(|_| {
+            Misuse::new("`--pixel` needs the name of a check, as in `raykata check CHECK --pixel 12,7`")
+        })?;
+        return judge::judge(&root()?, "pixel", which, &[check, pixel.as_os_str()]);
+    }
+    let stage = list::stage(given)?.map(|stage| stage.to_string());
     judge::judge(&root()?, "check", which, stage.as_slice())
 }
 

@@ -5,8 +5,10 @@
 //! are compared by the means of blocks of pixels (`blocks`).
 
 mod blocks;
+mod replay;
 
 pub use blocks::Sampled;
+pub use replay::{Replay, Replayed};
 
 use crate::broken::{Broken, CheckResult, Png};
 use crate::golden as golden_texts;
@@ -51,7 +53,7 @@ pub fn rays(trial: &Trial<'_>, eye: Vec3, target: Vec3) -> Vec<Ray> {
 pub fn rays_of(trial: &Trial<'_>, size: Size, eye: Vec3, target: Vec3) -> Vec<Ray> {
     let camera = camera(size, eye, target);
     let (width, height) = (size.width as f32, size.height as f32);
-    pixels(size)
+    pixels_of(trial, size)
         .filter(|(_, y)| (*y as usize).is_multiple_of(trial.row_step()))
         .map(|(x, y)| camera.ray((x as f32 + 0.5) / width, (y as f32 + 0.5) / height))
         .collect()
@@ -66,6 +68,17 @@ pub fn camera(size: Size, eye: Vec3, target: Vec3) -> Camera {
 /// The pixels of a picture, `(column, row)`, row by row from the top.
 pub fn pixels(size: Size) -> impl Iterator<Item = (u32, u32)> {
     (0..size.height).flat_map(move |y| (0..size.width).map(move |x| (x, y)))
+}
+
+/// The pixels of a picture for which the trial asks: all, or the one that is [asked for again](Replay).
+pub fn pixels_of(trial: &Trial<'_>, size: Size) -> impl Iterator<Item = (u32, u32)> {
+    let only = trial.pixel().map(|replay| (replay.x, replay.y));
+    pixels(size).filter(move |pixel| only.is_none_or(|only| only == *pixel))
+}
+
+/// The column of the ray `index` of [`rays_of`].
+pub fn column(trial: &Trial<'_>, size: Size, index: usize) -> usize {
+    trial.pixel().map_or(index % size.width as usize, |replay| replay.x as usize)
 }
 
 /// The picture that these colours make, in the order of [`rays`].
@@ -91,6 +104,10 @@ impl Composed<'_> {
     /// colour of each ray.
     #[track_caller]
     pub fn check(&self, trial: &Trial<'_>, colors: impl Fn(&dyn Kit) -> Vec<Vec3>) -> CheckResult {
+        if let Some(replay) = trial.pixel() {
+            let ray = self.rays.first().copied();
+            return replay.show(self.name, self.size, ray, || colors(trial.kit).first().copied());
+        }
         let film = film_of_width(self.size.width, colors(trial.kit));
         match trial.expected(&colors) {
             None => compare(trial, self.name, &film, self.rays, self.may_differ),
@@ -98,6 +115,7 @@ impl Composed<'_> {
                 let expected = film_of_width(self.size.width, (*expected).clone());
                 let (name, n_pixels) = (self.name, self.size.width * self.size.height);
                 judge(
+                    trial,
                     &Pair { name, film: &film, golden: &image_of(&expected) },
                     self.rays,
                     self.may_differ,
@@ -119,15 +137,16 @@ pub fn normal_color(normal: Vec3) -> Vec3 {
 fn compare(trial: &Trial<'_>, name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> CheckResult {
     match golden_picture(trial.row_step(), name, film)? {
         None => Ok(()),
-        Some((golden, n_pixels)) => judge(&Pair { name, film, golden: &golden }, rays, may_differ, n_pixels),
+        Some((golden, n_pixels)) => {
+            judge(trial, &Pair { name, film, golden: &golden }, rays, may_differ, n_pixels)
+        }
     }
 }
 
 /// The rows of the golden picture `name` that are compared, one in `row_step`, and the number of pixels of the whole picture. `None` if the
 /// golden picture was just written from `film`.
 fn golden_picture(row_step: usize, name: &str, film: &Film) -> Result<Option<(RgbImage, u32)>, Broken> {
-    let golden_file =
-        PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../golden")).join(format!("{name}.png"));
+    let golden_file = golden_folder().join(format!("{name}.png"));
     if !golden_texts::is_sealed() && std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
         let written = film.write_png(&golden_file, gamma());
         return match written {
@@ -151,6 +170,10 @@ fn golden_picture(row_step: usize, name: &str, film: &Film) -> Result<Option<(Rg
         return Err(Broken::with_texts(input, yours, theirs, "the golden picture"));
     }
     Ok(Some((golden, whole.width() * whole.height())))
+}
+
+fn golden_folder() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../golden"))
 }
 
 /// A picture and the one that is expected.
@@ -178,7 +201,7 @@ impl Pair<'_> {
 }
 
 /// Compares two pictures pixel by pixel. A fraction `may_differ` of `n_pixels`, the pixels of the whole picture, may differ.
-fn judge(pair: &Pair<'_>, rays: &[Ray], may_differ: f64, n_pixels: u32) -> CheckResult {
+fn judge(trial: &Trial<'_>, pair: &Pair<'_>, rays: &[Ray], may_differ: f64, n_pixels: u32) -> CheckResult {
     let Pair { film, golden, .. } = pair;
     let yours = film.to_bytes(gamma());
     let off: Vec<u8> = yours
@@ -199,9 +222,14 @@ fn judge(pair: &Pair<'_>, rays: &[Ray], may_differ: f64, n_pixels: u32) -> Check
         0 => String::new(),
         n => format!(", and {n} are NaN"),
     };
+    // A hidden picture cannot be asked for again, so its message has the ray.
+    let replay = match trial.is_public() && trial.row_step() == 1 {
+        true => replay::command(trial.name, x, y),
+        false => format!("the ray of the worst pixel: {}", rays[worst].paste()),
+    };
     Err(pair.broken(&yours.rgb, |written| {
         Broken::with_texts(
-            format!("{}\n{written}the ray of the worst pixel: {}", pair.input(), rays[worst].paste()),
+            format!("{}\n{written}{}", pair.input(), replay),
             format!(
                 "{n_off} of {} pixels differ, most at ({x}, {y}): {:?}{not_a_number}",
                 off.len(),

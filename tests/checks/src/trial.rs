@@ -2,6 +2,7 @@
 
 use crate::broken::{self, Broken, CheckResult};
 use crate::drawn::{Drawn, Values};
+use crate::picture::Replay;
 use crate::rubric;
 use crate::symmetry::{Symmetries, Symmetry, TurnedKit};
 use proptest::strategy::{Strategy, ValueTree};
@@ -63,11 +64,13 @@ pub struct Inputs {
     /// A kit whose answers are right. If there is one, a check of a text or a picture draws a scene for a hidden seed, and
     /// composes the expected text or picture from the answers of this kit.
     pub reference: Option<Arc<dyn Kit + Send + Sync>>,
+    /// If there is a pixel, a check of a picture asks for this pixel alone.
+    pub pixel: Option<Arc<Replay>>,
 }
 
 impl Default for Inputs {
     fn default() -> Self {
-        Inputs { drawn: None, one_in: 1, reference: None }
+        Inputs { drawn: None, one_in: 1, reference: None, pixel: None }
     }
 }
 
@@ -196,6 +199,16 @@ impl<'a> Trial<'a> {
     /// Only one in so many rows of a picture is judged.
     pub(crate) fn row_step(&self) -> usize {
         self.inputs.one_in
+    }
+
+    /// The pixel that is asked for again, if it is only one.
+    pub(crate) fn pixel(&self) -> Option<&Replay> {
+        self.inputs.pixel.as_deref()
+    }
+
+    /// Whether the inputs are those that students have, so that a command repeats them.
+    pub(crate) fn is_public(&self) -> bool {
+        self.seed == PUBLIC_SEED
     }
 
     /// A generator that makes the same random choices in each run.

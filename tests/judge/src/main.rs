@@ -1,9 +1,9 @@
 //! The program that `raykata` starts: `judge check ROOT WORKER [STAGE]`, `judge status ROOT WORKER`, `judge
-//! gauntlet ROOT WORKER INPUTS SEED`, `judge verdicts ROOT WORKER STAGE`, which writes messages, and `judge hits`, which reads
+//! pixel ROOT WORKER CHECK X,Y`, `judge gauntlet ROOT WORKER INPUTS SEED`, `judge verdicts ROOT WORKER STAGE`, which writes messages, and `judge hits`, which reads
 //! requests from standard input.
 
 use anyhow::{Result, bail};
-use judge::{boxes_and_offsets, gauntlet, hits, scorecard};
+use judge::{boxes_and_offsets, gauntlet, hits, pixel, scorecard};
 use raykata_cli::kits::{Source, Which};
 use std::path::Path;
 use std::process::ExitCode;
@@ -27,6 +27,7 @@ fn run() -> Result<bool> {
     match words[..] {
         ["check", _, worker] => scorecard::scorecard(&source(worker), None),
         ["check", _, worker, stage] => scorecard::scorecard(&source(worker), Some(stage.parse()?)),
+        ["pixel", _, worker, check, at] => pixel::replay(&source(worker), check, at),
         ["status", root, worker] => scorecard::status(Path::new(root), &source(worker)).map(|()| true),
         ["gauntlet", _, worker, inputs, seed] => {
             let kit = source(worker).fresh();

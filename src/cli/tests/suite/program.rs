@@ -105,6 +105,38 @@ fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_reported() {
 }
 
 #[test]
+fn one_pixel_of_the_picture_of_a_check_is_asked_for_again() {
+    let check = "picture_of_a_sphere_on_a_plane";
+    let output = raykata(&["check", check, "--pixel", "40,30", "--kit", "solutions"]);
+    let (said, complaint) = printed(&output);
+    assert!(output.status.success(), "{said}{complaint}");
+    for part in [
+        "column 40, row 30",
+        "the ray   &Ray::new(vec3(2.0,",
+        "  sphere_geometric\n    input   SphereQuery {",
+    ] {
+        assert!(said.contains(part), "no `{part}` in\n{said}");
+    }
+    assert!(said.contains("(the golden picture)"), "{said}");
+    let mistakes: [(&[&str], i32, &str); 5] = [
+        (&[check, "--pixel", "80,30"], 1, "has 80 columns and 60 rows"),
+        (&[check, "--pixel", "4"], 1, "its column and its row, such as 12,7"),
+        (
+            &["sphere_on_a_plane", "--pixel", "4,4"],
+            1,
+            "_of_a_sphere_on_a_plane, picture_of_a_sphere_on_a_plane?",
+        ),
+        (&["plane_hits", "--pixel", "4,4"], 1, "there is no check `plane_hits`"),
+        (&["--pixel", "4,4"], 2, "needs the name of a check"),
+    ];
+    for (words, code, part) in mistakes {
+        let output = raykata(&[&["check", "--kit", "solutions"], words].concat());
+        let complaint = printed(&output).1;
+        assert!(output.status.code() == Some(code) && complaint.contains(part), "{words:?}: {complaint}");
+    }
+}
+
+#[test]
 fn checks_are_listed_by_stage() {
     let all = printed(&raykata(&["list"])).0;
     let one = printed(&raykata(&["list", "3"])).0;

@@ -9,7 +9,7 @@
 //! vary more than their mean does if they are stratified, and second differences of neighbouring pixels also contain what the
 //! picture shows.
 
-use super::{Pair, Size, film_of_width, golden_picture, image_of, linear};
+use super::{Pair, Size, film_of_width, golden_picture, image_of, linear, replay};
 use crate::broken::{Broken, CheckResult};
 use crate::trial::Trial;
 use glam::{DVec3, Vec3};
@@ -73,8 +73,11 @@ impl Sampled<'_> {
     /// colours, from 0 to 1, of the samples of each pixel. No row is left out, because a block needs its rows.
     #[track_caller]
     pub fn check(&self, trial: &Trial<'_>, samples: impl Fn(&dyn Kit) -> Vec<Vec<Vec3>>) -> CheckResult {
-        let yours = samples(trial.kit);
         let mean = |samples: &Vec<Vec3>| samples.iter().sum::<Vec3>() / samples.len().max(1) as f32;
+        if let Some(replay) = trial.pixel() {
+            return replay.show(self.name, self.size, None, || samples(trial.kit).first().map(mean));
+        }
+        let yours = samples(trial.kit);
         let film_of =
             |samples: &[Vec<Vec3>]| film_of_width(self.size.width, samples.iter().map(mean).collect());
         let film = film_of(&yours);
@@ -85,7 +88,7 @@ impl Sampled<'_> {
                 None => return Ok(()),
             },
         };
-        self.judge(&yours, &Pair { name: self.name, film: &film, golden: &golden })
+        self.judge(trial, &yours, &Pair { name: self.name, film: &film, golden: &golden })
     }
 
     /// Adds up the pixels of each block, and the colours that are expected there.
@@ -116,7 +119,7 @@ impl Sampled<'_> {
         blocks
     }
 
-    fn judge(&self, samples: &[Vec<Vec3>], pair: &Pair<'_>) -> CheckResult {
+    fn judge(&self, trial: &Trial<'_>, samples: &[Vec<Vec3>], pair: &Pair<'_>) -> CheckResult {
         let per_row = self.size.width.div_ceil(BLOCK);
         let blocks = self.blocks(samples, pair.golden);
         let used: Vec<usize> = (0..blocks.len()).filter(|&block| blocks[block].pixels > 0.0).collect();
@@ -126,9 +129,15 @@ impl Sampled<'_> {
         let block = &blocks[worst];
         let (column, row) = (worst as u32 % per_row * BLOCK, worst as u32 / per_row * BLOCK);
         let rgb = pair.film.to_bytes(super::gamma()).rgb;
+        // Of the pixels of the worst block, the one that differs most.
+        let pixels = (row..(row + BLOCK).min(self.size.height))
+            .flat_map(|y| (column..(column + BLOCK).min(self.size.width)).map(move |x| (x, y)));
+        let off = |&(x, y): &(u32, u32)| (pair.film.at(x, y) - linear(pair.golden, x, y)).abs().max_element();
+        let (x, y) = pixels.max_by(|p, q| off(p).total_cmp(&off(q))).unwrap_or((column, row));
+        let replay = if trial.is_public() { replay::command(trial.name, x, y) } else { String::new() };
         Err(pair.broken(&rgb, |written| {
             Broken::with_texts(
-                format!("{}\n{}", pair.input(), written.trim_end()).trim_end(),
+                format!("{}\n{written}{replay}", pair.input()).trim_end(),
                 format!(
                     "the mean colours of {n_off} of {} blocks of {BLOCK} × {BLOCK} pixels differ, most from ({column}, \
                      {row}) on: {:.3}",

@@ -202,7 +202,7 @@ pub(super) fn picture_at_three_scales(trial: &Trial<'_>) -> CheckResult {
         });
     let place = trial.composed(public, hidden);
     let rays = picture::rays_of(trial, SMALL, vec3(0.5, 2.7, 5.2), vec3(0.1, 0.7, 0.0));
-    let part = |index: usize| 3 * (index % SMALL.width as usize) / SMALL.width as usize;
+    let part = |index: usize| 3 * picture::column(trial, SMALL, index) / SMALL.width as usize;
     let colors = |kit: &dyn Kit| {
         let mut colors = vec![Vec3::ZERO; rays.len()];
         for (number, exponent) in place.exponents.into_iter().enumerate() {

@@ -201,7 +201,7 @@ pub(super) fn picture_of_a_sphere_and_its_light(trial: &Trial<'_>) -> CheckResul
     });
     let place = trial.composed(public, hidden);
     let camera = picture::camera(SIZE, vec3(0.0, 1.7, 5.4), vec3(0.0, 0.95, 0.0));
-    let pixels: Vec<(u32, u32)> = picture::pixels(SIZE).collect();
+    let pixels: Vec<(u32, u32)> = picture::pixels_of(trial, SIZE).collect();
     let picture = Sampled { name: "stage11_sphere_and_its_light", size: SIZE };
     picture.check(trial, |kit| samples(kit, &camera, &pixels, &place))
 }

@@ -207,7 +207,7 @@ pub(super) fn picture_of_soft_edges(trial: &Trial<'_>) -> CheckResult {
     });
     let place = trial.composed(PUBLIC, hidden);
     let camera = picture::camera(SIZE, vec3(0.0, 1.7, 5.6), vec3(-0.1, 0.75, 0.0));
-    let pixels: Vec<(u32, u32)> = picture::pixels(SIZE).collect();
+    let pixels: Vec<(u32, u32)> = picture::pixels_of(trial, SIZE).collect();
     let picture = Sampled { name: "stage6_soft_edges", size: SIZE };
     picture.check(trial, |kit| samples(kit, &camera, &pixels, &place))
 }

@@ -99,7 +99,7 @@ pub(super) fn picture_searched_in_six_structures(trial: &Trial<'_>) -> CheckResu
     let scene = staircase(turns, radius);
     let rays = picture::rays_of(trial, SMALL, vec3(0.6, 2.4, 3.9), vec3(0.0, -0.15, 0.0));
     // Six columns of the picture, from the left to the right.
-    let band = |index: usize| 6 * (index % SMALL.width as usize) / SMALL.width as usize;
+    let band = |index: usize| 6 * picture::column(trial, SMALL, index) / SMALL.width as usize;
     let groups: [Vec<Ray>; 6] = std::array::from_fn(|group| {
         (0..rays.len()).filter(|&index| band(index) == group).map(|index| rays[index]).collect()
     });

@@ -283,7 +283,7 @@ impl Processes<'_> {
 /// The inputs of a check.
 fn inputs(seed: u64, drawn: &Arc<Drawn>, reference: &Arc<dyn Kit + Send + Sync>) -> Inputs {
     let one_in = if seed == 0 { 1 } else { ONE_HIDDEN_IN };
-    Inputs { drawn: Some(drawn.clone()), one_in, reference: Some(reference.clone()) }
+    Inputs { drawn: Some(drawn.clone()), one_in, reference: Some(reference.clone()), ..Inputs::default() }
 }
 
 fn hidden_message(check: &Check) -> String {

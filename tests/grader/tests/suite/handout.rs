@@ -193,6 +193,11 @@ fn a_student_can_begin() {
         (&["run", "--", "hint", check], true, "still stuck"),
         (&["run", "--", "check"], false, "0 passed"),
         (
+            &["run", "--", "check", "picture_of_a_sphere_on_a_plane", "--pixel", "40,30"],
+            false,
+            "(the golden picture)",
+        ),
+        (
             &["run", "--", "render", "scenes/stage1.toml", "--size", "32x20"],
             true,
             "spheres are left out: `sphere_algebraic` of stage 1 is not written yet",
