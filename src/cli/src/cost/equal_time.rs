@@ -196,7 +196,7 @@ fn plot(rows: &[Row], sizes: &[f32]) -> String {
         line.name = format!("{} ({})", short(&line.name), of_line.join(", "));
     }
     svg(&Plot {
-        title: "error at equal time; in brackets the million rays that each second bought",
+        title: "error at equal time (in brackets: million rays per second)",
         x_axis: match sizes.len() {
             0 | 1 => "million rays per second, logarithmic",
             _ => "size of the lights at equal power, logarithmic",
