@@ -135,8 +135,8 @@ fn stage_line(number: u8, graded: &[&Graded]) -> String {
 
 /// What a student reads first.
 const WELCOME: &str = "\
-Welcome. You build a ray tracer: you write its functions in exercises/src, one at
-a time, and a check passes for each law of light and geometry that they obey.
+Welcome. You build a ray tracer: you write its functions in exercises/src, one
+at a time. A check passes for each law of light and geometry that they obey.
 Nothing is written yet.
 ";
 

@@ -85,6 +85,12 @@ fn work(root: &Path, task: Task, process: &Process, report: &impl Fn(Event)) -> 
     };
     let (mut cargo, programs) = cargo_build(root, &[Program::worker(Which::Exercises, need)])?;
     cargo.arg("--message-format=json");
+    // Compile for checks as `cargo test` does: without optimisation and incrementally, which takes a fifth of the time.
+    let in_debug =
+        programs.first().and_then(|program| program.parent()).is_some_and(|folder| folder.ends_with("debug"));
+    if matches!(task, Task::Check(_)) && in_debug {
+        cargo.args(["--profile", "test"]);
+    }
     let mut errors = Vec::new();
     let lines = |out: &mut BufReader<_>| {
         errors.extend(out.lines().map_while(Result::ok).filter_map(|line| error_in(&line)));
