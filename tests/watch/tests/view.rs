@@ -93,6 +93,7 @@ fn one_color(job: &RenderJob, color: Vec3, watch: &dyn Watch) -> Option<Renderin
         counts: Counts { primary: 7, node_visits: 21, ..Counts::default() },
         primitives: 5,
         structure: None,
+        accelerator: None,
         bytes_of_parts: 0,
         build_seconds: 0.0,
         render_seconds: 0.0,
