@@ -4,6 +4,7 @@ use super::hit::Detail;
 use super::intersection::TriangleTest;
 use super::plan::WidePlan;
 use super::probe::SceneProbe;
+use super::structure::Primitives;
 use crate::aabb::Aabb;
 use crate::bvh::PrimitiveHit;
 use crate::count::{Event, Tally};
@@ -185,12 +186,15 @@ impl<F: StudentFunctions, T: Tally, L: Level> WideProbe for WideSceneProbe<'_, '
     fn enter(&mut self, node: u32, t_max: f32) -> Entered {
         let node = &self.wide.nodes[node as usize];
         self.probe.note(Event::NodeVisit);
+        let entered = F::enter_boxes(self.level, node, &self.ray, t_max);
         if T::COUNTS {
-            for _ in 0..node.n_children() {
+            // The children come first, then the empty places.
+            for child in 0..node.n_children() {
                 self.probe.note(Event::BoxTest);
+                self.probe.tested(&node.child_bounds(child as usize), entered.mask & 1 << child != 0);
             }
         }
-        F::enter_boxes(self.level, node, &self.ray, t_max)
+        entered
     }
 
     #[inline(always)]
