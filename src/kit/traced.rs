@@ -50,8 +50,8 @@ pub struct RayVisits {
     /// The number of tests against primitives.
     pub primitive_tests: u64,
     /// The tested boxes of the structure over the scene, in the order of the tests. Boxes within shared meshes are left out,
-    /// because they are in another space. Grids, octrees, kd-trees, BSP trees, trees with eight children per node and bounding
-    /// spheres have none.
+    /// because they are in another space. Grids, octrees, kd-trees, BSP trees and bounding spheres have
+    /// none.
     pub boxes: Vec<TestedBox>,
 }
 

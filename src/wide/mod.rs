@@ -325,7 +325,7 @@ pub trait WideProbe {
 
 /// The places that a search still has to visit, the last one on top.
 ///
-/// The first 64 are in an array, which needs no allocation; a search that needs more is rare.
+/// The first 32 are in an array, which needs no allocation; a search that needs more is rare.
 #[derive(Debug)]
 pub struct Stack {
     fixed: [u64; Stack::FIXED],

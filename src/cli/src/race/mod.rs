@@ -83,7 +83,7 @@ pub fn run(options: &Options) -> Result<bool> {
     if !options.full && !options.quality.names_a_size() {
         scene = with_at_most(RACED_PIXELS, &scene);
     }
-    // Find the kits before anything is built. The first opponent is the yardstick, and comes first.
+    // Find the kits before anything is built. The first opponent is the baseline, and comes first.
     let root = root()?;
     let mut racers = match options.against.as_slice() {
         [] => vec![racers::of_kit(&root, Which::Solutions)?],

@@ -218,7 +218,7 @@ mod tests {
     fn folders_without_exercises_are_refused() {
         let folder = tempfile::tempdir().expect("a folder");
         let why = |at: &Path| in_folder(folder.path(), at).map(|_| ()).unwrap_err().to_string();
-        assert!(why(&folder.path().join("nobody")).starts_with("there is no folder "));
+        assert!(why(&folder.path().join("missing")).starts_with("there is no folder "));
         assert!(
             why(folder.path()).contains(" holds no exercises: `--against` needs a folder with src/lib.rs")
         );

@@ -19,7 +19,7 @@ pub const FEWEST: usize = 6;
 /// The median of `values` and the narrowest interval between two of the sorted values that contains the median of their
 /// distribution with a probability of at least 95 %; `None` for fewer than [`FEWEST`] values or with a NaN.
 ///
-/// Each value lies below the median of the distribution with probability 1/2, whatever the distribution is. So the number
+/// For any distribution, a value lies below its median with probability 1/2. So the number
 /// of values below it is binomial, and the interval from the k-th smallest to the k-th largest value misses it with
 /// probability `2 P(B(n, 1/2) < k)`. No normal distribution is assumed.
 pub fn median(values: &[f64]) -> Option<Median> {

@@ -13,13 +13,13 @@ pub struct Lane {
     pub name: String,
     /// The time of the frame of each round, in seconds.
     pub seconds: Vec<f64>,
-    /// The largest number of pixels of a round that differ from the yardstick's picture.
+    /// The largest number of pixels of a round that differ from the baseline's picture.
     pub different_pixels: usize,
     /// What its pictures lack.
     pub notes: Vec<String>,
 }
 
-/// A race: its lanes, of which the first is the yardstick.
+/// A race: its lanes, of which the first is the baseline.
 #[derive(Clone, Debug, Default)]
 pub struct Race {
     /// The scene, with the size of the pictures.
@@ -28,7 +28,7 @@ pub struct Race {
     pub pixels: usize,
     /// Whether the times are processor times, or else elapsed times.
     pub processor_time: bool,
-    /// The kits. The first one is the yardstick.
+    /// The kits. The first one is the baseline.
     pub lanes: Vec<Lane>,
 }
 
@@ -36,34 +36,34 @@ pub struct Race {
 const NAMES: usize = 24;
 
 impl Race {
-    /// Whether the picture of a lane is that of the yardstick.
+    /// Whether the picture of a lane is that of the baseline.
     fn is_right(&self, lane: &Lane) -> bool {
         is_tolerable(lane.different_pixels, self.pixels)
     }
 
-    /// Whether every picture is that of the yardstick.
+    /// Whether every picture is that of the baseline.
     pub fn is_valid(&self) -> bool {
         self.lanes.iter().all(|lane| self.is_right(lane))
     }
 
-    /// Whether any kit has the yardstick's picture, beside the yardstick.
+    /// Whether any kit has the baseline's picture, beside the baseline.
     pub fn has_opponent(&self) -> bool {
         self.lanes.iter().skip(1).any(|lane| self.is_right(lane))
     }
 
-    /// How many times as fast as the yardstick a lane is: the median over rounds of the ratios of times, because the frames of
+    /// How many times as fast as the baseline a lane is: the median over rounds of the ratios of times, because the frames of
     /// a round were rendered within moments of each other. `None` for a wrong picture.
     fn speed(&self, lane: &Lane) -> Option<Median> {
-        let yardstick = self.lanes.first().filter(|_| self.is_right(lane))?;
+        let baseline = self.lanes.first().filter(|_| self.is_right(lane))?;
         let ratios: Vec<f64> =
-            yardstick.seconds.iter().zip(&lane.seconds).map(|(one, own)| one / own).collect();
+            baseline.seconds.iter().zip(&lane.seconds).map(|(one, own)| one / own).collect();
         median(&ratios)
     }
 
     /// The report.
     pub fn report(&self) -> String {
-        let Some(yardstick) = self.lanes.first() else { return String::new() };
-        let rounds = yardstick.seconds.len();
+        let Some(baseline) = self.lanes.first() else { return String::new() };
+        let rounds = baseline.seconds.len();
         let mut text = format!("{}\n", wrapped(&self.title, 0));
         let what = if self.processor_time { "processor time" } else { "ELAPSED time" };
         let _ = writeln!(text, "{what} of whole frames on one thread, {rounds} rounds, all kits in turn\n");
@@ -77,7 +77,7 @@ impl Race {
         }
         text += "\n";
         for lane in &self.lanes[1..] {
-            let _ = writeln!(text, "{}", wrapped(&self.verdict(lane, yardstick), 0));
+            let _ = writeln!(text, "{}", wrapped(&self.verdict(lane, baseline), 0));
         }
         if !self.processor_time {
             let note = "This system does not say how much processor time another process has used, so these are elapsed times: \
@@ -107,8 +107,8 @@ impl Race {
     }
 
     /// Which kit is faster, in words.
-    fn verdict(&self, lane: &Lane, yardstick: &Lane) -> String {
-        let (name, other) = (&lane.name, &yardstick.name);
+    fn verdict(&self, lane: &Lane, baseline: &Lane) -> String {
+        let (name, other) = (&lane.name, &baseline.name);
         let Some(speed) = self.speed(lane) else {
             return format!(
                 "{} of {} pixels of {name} differ from those of {other}, more than rounding explains: a wrong picture \

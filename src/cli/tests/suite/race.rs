@@ -3,15 +3,15 @@
 use super::program_runs::{printed, raykata};
 
 #[test]
-fn a_race_against_nobody_is_refused_before_anything_is_built() {
+fn a_race_against_a_missing_folder_is_refused_before_anything_is_built() {
     let race = |against: &str| {
         let output = raykata(&["race", "scenes/gamma.toml", "--against", against]);
         assert_eq!(output.status.code(), Some(1), "{}", printed(&output).0);
         printed(&output).1
     };
     assert_eq!(
-        race("../nobody/exercises"),
-        "error: there is no folder ../nobody/exercises: `--against` needs a folder of exercises\n"
+        race("../missing/exercises"),
+        "error: there is no folder ../missing/exercises: `--against` needs a folder of exercises\n"
     );
     assert!(race("scenes").contains("scenes holds no exercises: `--against` needs a folder with src/lib.rs"));
     let few = raykata(&["race", "scenes/gamma.toml", "--rounds", "5"]);
