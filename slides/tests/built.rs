@@ -58,6 +58,9 @@ fn decks_are_built_whole_and_without_the_network() {
     if !slides.join("node_modules/@marp-team").is_dir() {
         return eprintln!("SKIPPED: Marp is not installed: npm ci --prefix slides");
     }
+    if browser::path().is_none() {
+        return eprintln!("SKIPPED: there is no browser, which makes the PDF files");
+    }
     let out = std::env::temp_dir().join(format!("raykata-built-slides-{}", std::process::id()));
     let built = Command::new(env!("CARGO"))
         .current_dir(slides.join(".."))
@@ -65,11 +68,7 @@ fn decks_are_built_whole_and_without_the_network() {
         .arg(&out)
         .output()
         .expect("cargo starts");
-    let said = String::from_utf8_lossy(&built.stderr);
-    if said.contains("browser") && !built.status.success() {
-        return eprintln!("SKIPPED: there is no browser: {said}");
-    }
-    assert!(built.status.success(), "{said}");
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
     let mut n_decks = 0;
     for file in fs::read_dir(slides).unwrap().map(|file| file.unwrap().path()) {
         let text = fs::read_to_string(&file).unwrap_or_default();
