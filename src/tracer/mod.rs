@@ -2,16 +2,17 @@
 //! picture lacks.
 //!
 //! [`Renderer`] renders the frames of a kit. `plan` decides what is computed, and what replaces functions
-//! that are not written. `frame` puts together `camera_sampler`, which makes camera rays, and `intersector`,
+//! that are not written; `accelerator` chooses the structure. `frame` puts together `camera_sampler`, which makes camera rays, and `intersector`,
 //! which finds their hits; measurements use the intersectors again that `kept` keeps. The intersector searches
 //! a `structure` through a `probe`, which tests triangles and spheres by `intersection` and shapes in spaces of
 //! their own by `solids`. `grid_resolution` chooses the cells of a grid, `large_leaves` notes where a tree could
 //! not be divided as asked, and `wide` holds and searches trees with eight children per node. `path` follows a ray
 //! through the tree of its secondary rays, from `interaction` to interaction. With indirect light `path_tracer`
 //! follows one random path in place of the tree; `emitters` and `environment` choose the lights that it samples.
-//! `record` stores the rays of a pixel and `visits` the boxes that are tested for them, `outlines` draws structures, `gamma2` decodes colours, and
-//! `texture_filter` filters images.
+//! `record` stores the rays of a pixel and `visits` the boxes that are tested for them, `outlines` draws structures,
+//! `gamma2` decodes colours, and `texture_filter` filters images.
 
+mod accelerator;
 mod camera_sampler;
 mod emitters;
 mod environment;
