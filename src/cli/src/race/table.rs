@@ -32,6 +32,9 @@ pub struct Race {
     pub lanes: Vec<Lane>,
 }
 
+/// The smallest difference of speeds that two digits after the point show.
+const SHOWN: f64 = 0.005;
+
 /// The width of the column of names.
 const NAMES: usize = 24;
 
@@ -118,13 +121,16 @@ impl Race {
             );
         };
         let sure = format!("with {:.0} % confidence", (100.0 * speed.confidence).floor());
-        if speed.low > 1.0 {
+        // A difference that the table's two digits do not show is not worth a sentence.
+        if speed.low >= 1.0 + SHOWN {
             format!("{name} is faster than {other}, {sure}.")
-        } else if speed.high < 1.0 {
+        } else if speed.high <= 1.0 - SHOWN {
             format!("{name} is slower than {other}, {sure}.")
+        } else if speed.low > 1.0 - SHOWN && speed.high < 1.0 + SHOWN {
+            format!("{name} is as fast as {other} within 1 %, {sure}.")
         } else {
             format!(
-                "Neither {name} nor {other} is certainly faster: the interval contains 1. More rounds narrow it."
+                "Neither {name} nor {other} is certainly faster: the interval contains 1.00. More rounds narrow it."
             )
         }
     }
