@@ -3,12 +3,14 @@
 
 #![cfg(unix)]
 
+mod kit_folder;
+
+use kit_folder::KitFolder;
 use raykata::worker::send;
 use raykata_cli::verdicts::{CheckVerdict, Verdict};
 use std::fs;
 use std::io::{Read, Write};
-use std::os::unix::fs::PermissionsExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
@@ -35,14 +37,19 @@ esac
 "#;
 
 /// A kit in a temporary folder.
-struct Kit(tempfile::TempDir);
+struct Kit(KitFolder);
+
+impl std::ops::Deref for Kit {
+    type Target = KitFolder;
+
+    fn deref(&self) -> &KitFolder {
+        &self.0
+    }
+}
 
 impl Kit {
     fn new() -> Kit {
-        let kit = Kit(tempfile::tempdir().unwrap());
-        for folder in ["exercises/src", "target/debug"] {
-            fs::create_dir_all(kit.path(folder)).unwrap();
-        }
+        let kit = Kit(KitFolder::with(&["exercises/src", "target/debug"]));
         kit.write("error.json", ERROR);
         kit.script("cargo", CARGO);
         kit.script("target/debug/judge", JUDGE);
@@ -64,19 +71,6 @@ impl Kit {
         kit
     }
 
-    fn path(&self, path: &str) -> PathBuf {
-        self.0.path().join(path)
-    }
-
-    fn write(&self, path: &str, text: &str) {
-        fs::write(self.path(path), text).unwrap();
-    }
-
-    fn script(&self, path: &str, text: &str) {
-        self.write(path, text);
-        fs::set_permissions(self.path(path), fs::Permissions::from_mode(0o755)).unwrap();
-    }
-
     /// Writes the exercise. The lengths differ, so that the change is seen where times are coarse.
     fn save(&self, first: &str) {
         self.write("exercises/src/stage1_shapes.rs", &format!("{first}\npub fn nearest_root() {{}}\n"));
@@ -84,7 +78,7 @@ impl Kit {
 
     fn watch(&self) -> Command {
         let mut command = Command::new(self.path("target/debug/watch"));
-        command.arg(self.0.path()).arg("1").env("CARGO", self.path("cargo")).env("LANG", "C.UTF-8");
+        command.arg(self.root()).arg("1").env("CARGO", self.path("cargo")).env("LANG", "C.UTF-8");
         command.env("TERM", "xterm").env("COLORTERM", "").env_remove("NO_COLOR").env_remove("LC_ALL");
         command
     }
