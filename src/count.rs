@@ -101,8 +101,13 @@ pub trait Tally: Default + Send {
     #[inline(always)]
     fn search(&mut self) {}
 
-    /// A ray was tested against the box `bounds` of a node. `hit`: it enters the box.
+    /// Whether [`Tally::tested`] is to be called for each tested box from here on.
     #[inline(always)]
+    fn keeps_boxes(&self) -> bool {
+        false
+    }
+
+    /// A ray was tested against the box `bounds` of a node. `hit`: it enters the box.
     fn tested(&mut self, _bounds: &Aabb, _hit: bool) {}
 
     /// From here on, boxes are those of a shared mesh, in its own space, or those of the scene again.

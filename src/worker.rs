@@ -97,6 +97,27 @@ pub fn receive_up_to<T: DeserializeOwned>(pipe: &mut impl Read, longest: usize) 
     postcard::from_bytes(&bytes).map_err(|error| io::Error::other(format!("no message: {error}")))
 }
 
+/// Writes a request to the pipe of a worker, as [`send`] does.
+///
+/// The messages of a worker are its largest types. Code for them is compiled in this crate, whose level of optimisation is high,
+/// and not in each program that asks a worker.
+///
+/// # Errors
+///
+/// The same as those of [`send`].
+pub fn send_request(mut pipe: &mut dyn Write, request: &Request) -> io::Result<()> {
+    send(&mut pipe, request)
+}
+
+/// Reads a reply of at most `longest` bytes from the pipe of a worker, as [`receive_up_to`] does. See [`send_request`].
+///
+/// # Errors
+///
+/// The same as those of [`receive`].
+pub fn receive_reply(mut pipe: &mut dyn Read, longest: usize) -> io::Result<Reply> {
+    receive_up_to(&mut pipe, longest)
+}
+
 /// Answers requests with the functions of a crate until the pipe closes: the complete `main` of a worker.
 /// Other errors of the pipe are reported on standard error.
 pub fn serve(functions: impl StudentKit) {

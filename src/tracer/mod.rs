@@ -9,11 +9,12 @@
 //! not be divided as asked, and `wide` holds and searches trees with eight children per node. `path` follows a ray
 //! through the tree of its secondary rays, from `interaction` to interaction. With indirect light `path_tracer`
 //! follows one random path in place of the tree; `emitters` and `environment` choose the lights that it samples.
-//! `record` stores the rays of a pixel and `visits` the boxes that are tested for them, `outlines` draws structures,
+//! `counter` counts the work, `record` stores the rays of a pixel, `outlines` draws structures,
 //! `gamma2` decodes colours, and `texture_filter` filters images.
 
 mod accelerator;
 mod camera_sampler;
+mod counter;
 mod emitters;
 mod environment;
 mod frame;
@@ -38,7 +39,6 @@ mod rough_lobe;
 mod solids;
 mod structure;
 mod texture_filter;
-mod visits;
 mod wide;
 mod written;
 
@@ -52,6 +52,7 @@ use crate::kit::{
 };
 use crate::ray::Ray;
 use crate::world::World;
+use counter::Counter;
 use frame::Frame;
 use gamma2::decoded;
 use glam::Vec3;
@@ -64,7 +65,6 @@ use plan::Plan;
 use record::{NoRecord, Rays};
 use std::marker::PhantomData;
 use std::time::Instant;
-use visits::Visits;
 use written::Written;
 
 /// Renders frames with the student functions of `F`.
@@ -144,7 +144,7 @@ fn render<F: StudentFunctions>(
     // Render the pixels, with or without counts.
     let started = Instant::now();
     let (film, counts) =
-        if job.count { pixels::<F, Counts>(&frame, watch)? } else { pixels::<F, Uncounted>(&frame, watch)? };
+        if job.count { pixels::<F, Counter>(&frame, watch)? } else { pixels::<F, Uncounted>(&frame, watch)? };
     let scene = &frame.intersector.scene;
     Some(Rendering {
         film,
@@ -211,7 +211,8 @@ fn trace<F: StudentFunctions>(
     let path = Path::from_camera(frame.camera.ray(&sample), sample.points, frame.camera.cone());
     // Follow it as a frame does, and record all rays.
     let mut record = Rays { material_names: &job.scene.material_names, rays: Vec::new() };
-    let mut scratch = Scratch::<Visits>::default();
+    let mut scratch = Scratch::default();
+    scratch.tally = Counter::of_each_search();
     let hit = frame.closest_hit(&path.ray, &mut scratch);
     match frame.plan.view {
         View::Normals => frame.normal_as_color(&path, hit, &mut scratch, &mut record),
@@ -220,7 +221,7 @@ fn trace<F: StudentFunctions>(
             Some(indirect) => frame.radiance_of_path(indirect, path, hit, &mut scratch, &mut record),
         },
     };
-    (record.rays, scratch.tally.rays)
+    (record.rays, scratch.tally.into_visits())
 }
 
 fn first_hits<F: StudentFunctions>(

@@ -69,6 +69,9 @@ impl<T: Tally> Tally for Scratch<T> {
     fn search(&mut self) {
         self.tally.search();
     }
+    fn keeps_boxes(&self) -> bool {
+        self.tally.keeps_boxes()
+    }
     fn tested(&mut self, bounds: &Aabb, hit: bool) {
         self.tally.tested(bounds, hit);
     }

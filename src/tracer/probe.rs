@@ -275,7 +275,7 @@ impl<F: StudentFunctions, T: Tally> Probe for SceneProbe<'_, F, T> {
         } else {
             F::slab(ray, self.inverse_direction, bounds)
         };
-        self.tally.tested(bounds, interval.is_some());
+        self.tested(bounds, interval.is_some());
         interval.map(|(enter, _)| enter)
     }
 
@@ -310,7 +310,9 @@ impl<F: StudentFunctions, T: Tally> Primitives for SceneProbe<'_, F, T> {
 
     #[inline(always)]
     fn tested(&mut self, bounds: &Aabb, hit: bool) {
-        self.tally.tested(bounds, hit);
+        if self.tally.keeps_boxes() {
+            self.tally.tested(bounds, hit);
+        }
     }
 
     #[inline]
