@@ -69,7 +69,7 @@ fn texts(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a readable folder") {
         let path = entry.expect("a readable entry").path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if path.is_dir() && !matches!(&*name, "target" | "out" | ".git") {
+        if path.is_dir() && !matches!(&*name, "target" | "out" | ".git" | "node_modules") {
             texts(&path, found);
         } else if [".rs", ".md", ".toml", ".patch"].iter().any(|ending| name.ends_with(ending)) {
             found.push(path);
