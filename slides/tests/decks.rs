@@ -67,6 +67,30 @@ fn between<'a>(text: &'a str, before: &str, after: &str) -> Vec<&'a str> {
     text.split(before).skip(1).filter_map(|rest| rest.split(after).next()).collect()
 }
 
+/// The formulas within the lines of a slide, as the program that builds the decks divides them, without code and notes.
+fn formulas(slide: &str) -> Vec<&str> {
+    let text = slide.rsplit_once("<!--").map_or(slide, |(text, _)| text);
+    let prose = text.split("```").step_by(2).flat_map(str::lines);
+    prose
+        .flat_map(|line| line.split('`').step_by(2).filter(|part| !part.contains("$$")))
+        .flat_map(|part| part.split('$').skip(1).step_by(2))
+        .collect()
+}
+
+/// A formula that begins or ends with a space is shown as its source.
+#[test]
+fn formulas_begin_and_end_without_spaces() {
+    assert_eq!(formulas("$a = $ b\n```\n$x\n```\n`$` $c$\n<!-- $ d -->"), ["a = ", "c"]);
+    let decks = decks();
+    let slides = decks.iter().flat_map(|deck| deck.slides.iter().map(move |slide| (&deck.name, slide)));
+    let formulas: Vec<_> = slides
+        .flat_map(|(name, slide)| formulas(slide).into_iter().map(move |formula| (name, formula)))
+        .collect();
+    assert!(formulas.len() > 300, "{} formulas", formulas.len());
+    let shown_as_source: Vec<_> = formulas.iter().filter(|(_, formula)| formula.trim() != *formula).collect();
+    assert!(shown_as_source.is_empty(), "{shown_as_source:?}");
+}
+
 #[test]
 fn every_deck_says_what_it_needs() {
     let decks = decks();
