@@ -186,20 +186,14 @@ fn plot(rows: &[Row], sizes: &[f32]) -> String {
             None => lines.push(Line { name: row.value.clone(), points: vec![point] }),
         }
     }
-    // Write below each name how many rays a second bought, from the smallest to the largest light.
     for line in &mut lines {
-        let of_line: Vec<String> = rows
-            .iter()
-            .filter(|row| row.value == line.name)
-            .map(|row| format!("{:.1}", 1e-6 * row.rays_per_second()))
-            .collect();
-        line.name = format!("{} ({})", short(&line.name), of_line.join(", "));
+        line.name = short(&line.name).to_owned();
     }
     svg(&Plot {
-        title: "error at equal time (in brackets: million rays per second)",
+        title: "error at equal time",
         x_axis: match sizes.len() {
             0 | 1 => "million rays per second, logarithmic",
-            _ => "size of the lights at equal power, logarithmic",
+            _ => "size of the lights, logarithmic",
         },
         y_axis: "root mean square error in linear light, logarithmic",
         lines,
