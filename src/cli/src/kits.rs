@@ -143,6 +143,9 @@ impl Program {
     /// The program that shows pictures in a browser.
     pub const VIEW: Program = Program { package: "watch", name: "view", feature: None };
 
+    /// The program that updates a student's kit.
+    pub const UPDATE: Program = Program { package: "watch", name: "update", feature: None };
+
     /// The program that makes the figures of the slides.
     pub const FIGURES: Program = Program { package: "figures", name: "figures", feature: None };
 

@@ -27,6 +27,7 @@ pub mod slides;
 pub mod strip;
 pub mod svg;
 pub mod tree;
+pub mod update;
 pub mod verdicts;
 pub mod view;
 pub mod watch;

@@ -5,7 +5,8 @@ use raykata_cli::args::{Given, Misuse, Read, Spec, did_you_mean, entry, whole_nu
 use raykata_cli::kits::{Choice, Which, root};
 use raykata_cli::report::say;
 use raykata_cli::{
-    compare, cost, doctor, explain, figures, judge, list, race, render, slides, strip, tree, view, watch,
+    compare, cost, doctor, explain, figures, judge, list, race, render, slides, strip, tree, update, view,
+    watch,
 };
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -14,7 +15,7 @@ use std::process::ExitCode;
 type Command = (&'static Spec, fn(&Given) -> Result<ExitCode>);
 
 /// All commands, in the order of the help.
-const COMMANDS: [Command; 16] = [
+const COMMANDS: [Command; 17] = [
     (&render::SPEC, |given| render::run(&render::Options::read(given)?).map(|()| ExitCode::SUCCESS)),
     (&explain::SPEC, |given| explain::run(&explain::Options::read(given)?).map(|()| ExitCode::SUCCESS)),
     (&compare::SPEC, |given| compare::run(&compare::Options::read(given)?).map(ended)),
@@ -30,6 +31,7 @@ const COMMANDS: [Command; 16] = [
     (&list::HINT, hint),
     (&watch::SPEC, watch::run),
     (&view::SPEC, view::run),
+    (&update::SPEC, update::run),
     (&list::GAUNTLET, gauntlet),
     (&figures::SPEC, |given| figures::run(&figures::Options::read(given)?)),
     (&doctor::SPEC, |_| Ok(ended(doctor::run()))),

@@ -1,8 +1,9 @@
-//! What the programs `watch` and `view` share: which files have changed, the errors of the compiler, processes that a save ends,
-//! and the scene of a stage.
+//! What the programs `watch`, `view` and `update` share: which files have changed, the functions of a file, the errors of the
+//! compiler, processes that a save ends, and the scene of a stage.
 
 pub mod compiler;
 pub mod files;
+pub mod functions;
 pub mod process;
 
 use std::path::{Path, PathBuf};

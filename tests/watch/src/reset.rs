@@ -1,12 +1,9 @@
 //! Resets a function to the text that it had before it was written. The old file is kept.
 
 use anyhow::{Context, Result, anyhow, bail};
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// The untouched functions, by file and name.
-type Stubs = BTreeMap<String, BTreeMap<String, String>>;
+use watch::functions::{name_in, replaced, span, stubs};
 
 /// The function that begins at `line` of a file or contains it; lines begin at 1.
 pub fn function_at(text: &str, line: u32) -> Option<String> {
@@ -14,26 +11,17 @@ pub fn function_at(text: &str, line: u32) -> Option<String> {
     above.into_iter().rev().find_map(|line| name_in(line).map(str::to_owned))
 }
 
-/// The name of the function that begins in this line.
-fn name_in(line: &str) -> Option<&str> {
-    let head = line.strip_prefix("pub fn ")?;
-    let end = head.find(|sign: char| !sign.is_ascii_alphanumeric() && sign != '_')?;
-    Some(&head[..end])
-}
-
 /// Resets the function `name` in `file`, a path from `root`. Returns where the old text of the file is kept.
 pub fn reset(root: &Path, file: &str, name: &str) -> Result<PathBuf> {
     // Find the untouched text.
-    let stubs = root.join("tests/stubs.toml");
-    let text = fs::read_to_string(&stubs).with_context(|| format!("{} cannot be read", stubs.display()))?;
-    let stubs: Stubs = toml::from_str(&text).with_context(|| format!("{} is malformed", stubs.display()))?;
+    let stubs = stubs(root)?;
     let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let stub = stubs.get(&stem).and_then(|file| file.get(name));
     let stub = stub.ok_or_else(|| anyhow!("`{name}` is no exercise, so it has no first text"))?;
     // Replace the function, and keep the old file.
     let path = root.join(file);
     let old = fs::read_to_string(&path).with_context(|| format!("{} cannot be read", path.display()))?;
-    let new = replaced(&old, name, stub)?;
+    let new = with_stub(&old, name, stub)?;
     let kept = keep(root, &stem, &old)?;
     raykata::film::write_atomically(&path, |out| std::io::Write::write_all(out, new.as_bytes()))
         .with_context(|| format!("{} cannot be written", path.display()))?;
@@ -61,22 +49,10 @@ fn keep(root: &Path, stem: &str, old: &str) -> Result<PathBuf> {
     bail!("out/ is full")
 }
 
-/// The text with `stub` in place of the function `name`. The function ends at the first `}` at the beginning of a line.
-fn replaced(text: &str, name: &str, stub: &str) -> Result<String> {
+/// The text with `stub` in place of the function `name`.
+fn with_stub(text: &str, name: &str, stub: &str) -> Result<String> {
     let lines: Vec<&str> = text.split_inclusive('\n').collect();
-    let begin = lines.iter().position(|line| name_in(line) == Some(name));
-    let begin = begin.ok_or_else(|| anyhow!("there is no `pub fn {name}` at the beginning of a line"))?;
-    let ends = |line: &&str| line.trim_end() == "}";
-    // An item that begins before the end belongs to something else.
-    let is_item = |line: &&str| {
-        ["pub ", "fn ", "///", "impl ", "struct ", "#["].iter().any(|head| line.starts_with(head))
-    };
-    let body = &lines[begin + 1..];
-    let length = match (body.iter().position(ends), body.iter().position(is_item)) {
-        (Some(end), item) if item.is_none_or(|item| end < item) => end,
-        _ => bail!("the end of `{name}` is not found: it is a `}}` at the beginning of a line"),
-    };
-    Ok([&lines[..begin].concat(), stub, &body[length + 1..].concat()].concat())
+    Ok(replaced(&lines, span(&lines, name)?, stub))
 }
 
 #[cfg(test)]
@@ -88,16 +64,16 @@ mod tests {
 
     #[test]
     fn only_the_function_changes() {
-        let new = replaced(TEXT, "one", STUB).unwrap();
+        let new = with_stub(TEXT, "one", STUB).unwrap();
         let expected = TEXT.replace("    if a > 0.0 {\n        1.0\n    }\n", "    todo!(\"write it\")\n");
         assert_eq!(new, expected);
     }
 
     #[test]
     fn a_function_whose_end_is_not_sure_is_left_alone() {
-        assert!(replaced(TEXT, "two", STUB).unwrap_err().to_string().contains("the end of `two`"));
-        assert!(replaced(TEXT, "four", STUB).unwrap_err().to_string().contains("no `pub fn four`"));
-        assert!(replaced("pub fn one() {\n  1 }\n", "one", STUB).is_err());
+        assert!(with_stub(TEXT, "two", STUB).unwrap_err().to_string().contains("the end of `two`"));
+        assert!(with_stub(TEXT, "four", STUB).unwrap_err().to_string().contains("no `pub fn four`"));
+        assert!(with_stub("pub fn one() {\n  1 }\n", "one", STUB).is_err());
     }
 
     #[test]

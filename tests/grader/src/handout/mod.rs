@@ -8,7 +8,7 @@ pub use leaks::{CANARY, answers, leaks};
 
 use anyhow::{Context, Result, bail, ensure};
 use raykata_cli::args::{Argument, Given, Misuse, Spec};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -66,6 +66,9 @@ const FILES: [&str; 10] = [
     "tests/rubric.toml",
     "tests/stubs.toml",
 ];
+
+/// The file with the version and the files of the kit, from which `raykata update` knows what an older kit held.
+const LIST: &str = "tests/kit.toml";
 
 /// The student's README, with places for parts of the kit's README.
 const README: &str = include_str!("README.md");
@@ -131,7 +134,19 @@ pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     let manifest = manifests::of_workspace(&text(root, "Cargo.toml")?, &files)?;
     files.insert("Cargo.toml".into(), manifest.into_bytes());
     files.insert("README.md".into(), readme(&text(root, "README.md")?)?.into_bytes());
+    let list = list(files.keys());
+    files.insert(LIST.into(), list.into_bytes());
     Ok(files)
+}
+
+/// The text of [`LIST`] for a kit of these files.
+fn list<'a>(files: impl Iterator<Item = &'a String>) -> String {
+    let paths: BTreeSet<&str> = files.map(String::as_str).chain([LIST]).collect();
+    let lines: String = paths.iter().map(|path| format!("    {path:?},\n")).collect();
+    let version = env!("CARGO_PKG_VERSION");
+    format!(
+        "# The files of this kit, which `raykata update` replaces.\nversion = {version:?}\nfiles = [\n{lines}]\n"
+    )
 }
 
 /// Adds the files with these extensions in a folder and below it.

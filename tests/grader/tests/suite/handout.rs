@@ -217,6 +217,81 @@ fn a_student_can_begin() {
         assert!(said.contains(words) || complained.contains(words), "{arguments:?}: {said}\n{complained}");
         assert!(!complained.contains("warning: "), "{arguments:?}: {complained}");
     }
+    a_half_written_kit_is_updated(folder, &target);
+}
+
+/// A student of an older version has written a function. The update keeps it and adds what is new, and everything compiles.
+fn a_half_written_kit_is_updated(new: &Path, target: &Path) {
+    let around = tempfile::tempdir().expect("a folder");
+    let old = around.path().join("kit");
+    let mut files = BTreeSet::new();
+    paths(new, "", &mut files);
+    for path in &files {
+        let copy = old.join(path);
+        fs::create_dir_all(copy.parent().expect("a folder")).expect("made");
+        fs::copy(new.join(path), copy).expect("copied");
+    }
+    let edit = |path: &str, from: &str, to: &str| {
+        let text = fs::read_to_string(old.join(path)).expect("text");
+        assert!(text.contains(from), "{path} lacks {from}");
+        fs::write(old.join(path), text.replace(from, to)).expect("written");
+    };
+    // The older version has another scene, a file less and a file more, and lacks a function and a stage.
+    edit("scenes/stage1.toml", "[camera]", "# An older scene.\n[camera]");
+    fs::remove_file(old.join("exercises/src/stage12_wide.rs")).expect("removed");
+    edit("exercises/src/lib.rs", "pub mod stage12_wide;\n", "pub mod mine;\n");
+    fs::write(old.join("exercises/src/mine.rs"), "//! Mine.\n").expect("written");
+    fs::write(old.join("src/gone.rs"), "").expect("written");
+    edit("tests/kit.toml", "files = [\n", "files = [\n    \"src/gone.rs\",\n");
+    let version = format!("version = \"{}\"", env!("CARGO_PKG_VERSION"));
+    edit("tests/kit.toml", &version, "version = \"0.0.9\"");
+    let file = "exercises/src/stage1_shapes.rs";
+    let text = fs::read_to_string(old.join(file)).expect("an exercise");
+    let start =
+        text.find("/// ").map(|_| text.find("pub fn face_forward").expect("a function")).expect("docs");
+    fs::write(old.join(file), &text[..text[..start].rfind("\n\n").expect("a gap") + 1]).expect("written");
+    // The student has written a function with a function of its own.
+    let text = fs::read_to_string(old.join(file)).expect("an exercise");
+    let (before, stub) = text.split_once("pub fn sphere_normal").expect("a function");
+    let (head, rest) = stub.split_once("{\n").expect("its body");
+    let (_, after) = rest.split_once("\n}\n").expect("its end");
+    let written = format!(
+        "{before}pub fn sphere_normal{head}{{\n    my_own(point - center)\n}}\n{after}\n\nfn my_own(v: Vec3) -> Vec3 {{\n    \
+         v.normalize()\n}}\n"
+    );
+    fs::write(old.join(file), written).expect("written");
+    let cargo = |arguments: &[&str]| {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.current_dir(&old).env("CARGO_TARGET_DIR", target).env("CARGO_NET_OFFLINE", "true");
+        printed(&cargo.args(arguments).output().expect("cargo starts"))
+    };
+    // The program of the older kit is that of the new one here. It is built where it compiles.
+    let update = target.join("debug/update");
+    let run = |arguments: &[&str]| {
+        let mut update = Command::new(&update);
+        printed(&update.arg(&old).arg(new).args(arguments).output().expect("update starts"))
+    };
+    let (said, complained) = run(&["--dry-run"]);
+    assert!(said.contains("Nothing was changed, because of --dry-run."), "{said}{complained}");
+    assert!(old.join("src/gone.rs").exists());
+    let (said, complained) = run(&[]);
+    assert!(said.starts_with("raykata 0.0.9 → "), "{said}{complained}");
+    for line in [
+        "exercises/src/stage1_shapes.rs: the function that you have written stays; new: `face_forward`",
+        "exercises/src/stage12_wide.rs: new",
+        "out/before-update-1",
+    ] {
+        assert!(said.contains(line), "{line}: {said}{complained}");
+    }
+    let text = fs::read_to_string(old.join(file)).expect("an exercise");
+    assert!(text.contains("my_own(point - center)") && text.contains("pub fn face_forward"), "{text}");
+    assert!(!old.join("src/gone.rs").exists() && old.join("out/before-update-1/src/gone.rs").exists());
+    let kept = fs::read_to_string(old.join("out/before-update-1/scenes/stage1.toml")).expect("the old scene");
+    assert!(kept.contains("# An older scene."));
+    let (said, complained) = cargo(&["test", "--test", "stage1"]);
+    assert!(said.contains("test sphere_normal") && said.contains(" ok\n"), "{said}{complained}");
+    let (said, _) = run(&[]);
+    assert!(said.contains("Everything is as in the new kit."), "{said}");
 }
 
 /// The page shows a picture of the untouched exercises beside the recorded reference.
