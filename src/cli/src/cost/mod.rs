@@ -304,7 +304,7 @@ fn slopes(measured: &Measured) -> Vec<(String, Slope)> {
 fn fingerprint(source: &Source) -> Result<String> {
     let program = &source.program;
     let bytes = std::fs::read(program).with_context(|| format!("cannot read {}", program.display()))?;
-    Ok(reference::fingerprint([&bytes[..]]))
+    Ok(crate::fingerprint::fingerprint([&bytes[..]]))
 }
 
 /// The command line with which this program was started.
