@@ -18,6 +18,7 @@ pub mod html;
 pub mod judge;
 pub mod kits;
 pub mod list;
+pub mod lock;
 pub mod merge_picture;
 pub mod piece;
 pub mod progress;

@@ -66,11 +66,12 @@ impl Taken {
 pub fn find(folder: &Path) -> io::Result<(Vec<Submission>, Vec<PathBuf>)> {
     let (mut found, mut others) = (Vec::new(), Vec::new());
     for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
+        let entry = entry?;
+        let path = entry.path();
         let name = path.file_name().unwrap_or_default();
-        let is = |of: fn(&fs::FileType) -> bool| {
-            fs::symlink_metadata(&path).is_ok_and(|metadata| of(&metadata.file_type()))
-        };
+        // Most file systems know this from the list of the folder, without a look at each entry. A link is neither.
+        let kind = entry.file_type();
+        let is = |of: fn(&fs::FileType) -> bool| kind.as_ref().is_ok_and(of);
         let student = match names::archive_stem(name) {
             _ if name.as_encoded_bytes().starts_with(b".") => None,
             Some(stem) if is(fs::FileType::is_file) => Some(stem),
