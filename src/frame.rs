@@ -6,6 +6,7 @@ use crate::effects::{Effect, Effects};
 use crate::film::Film;
 use crate::kit::{Function, KitError, WeightedColor, kit_error, note_unwound, take_unwound};
 use crate::random::{Points, Purpose, Stratum};
+use crate::rows::Rows;
 use crate::scene::Sampler;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -88,8 +89,10 @@ impl Watch for Unwatched {
 pub struct FrameSettings {
     /// The number of pixels per row.
     pub width: u32,
-    /// The number of rows.
+    /// The number of rows of the whole picture.
     pub height: u32,
+    /// The rows to render, `end <= height`. Others than those of [`Rows::check`] change counts.
+    pub rows: Rows,
     /// The number of rays from the camera per pixel, at least 1.
     pub samples_per_pixel: u32,
     /// How the samples are distributed over the pixel.
@@ -171,7 +174,8 @@ impl CameraSample {
 }
 
 /// Renders a picture: calls `radiance` for the colour and weight of each sample, and `filter` for the colour
-/// that the samples of a pixel make. Colours are linear radiance. Each tile has a tally of its own; the
+/// that the samples of a pixel make. Colours are linear radiance. The picture has only the rows that the settings ask for; they
+/// are equal to these rows of the whole picture, because each pixel depends on its own samples only. Each tile has a tally of its own; the
 /// counts of the result are their sum. The same settings give the same picture for any number of threads.
 /// `None` if `watch` cancelled the frame.
 ///
@@ -185,8 +189,8 @@ pub fn render<T: Tally>(
     radiance: impl Fn(&CameraSample, &mut T) -> WeightedColor + Sync,
     filter: impl Fn(&[WeightedColor]) -> Vec3 + Sync,
 ) -> Option<(Film, Counts)> {
-    let FrameSettings { width, height, .. } = *settings;
-    let total = u64::from(width) * u64::from(height);
+    let FrameSettings { width, rows, .. } = *settings;
+    let total = u64::from(width) * u64::from(rows.n_rows());
     let done = AtomicU64::new(0);
     let broken = AtomicBool::new(false);
     let wants_tiles = watch.wants_tiles();
@@ -206,7 +210,7 @@ pub fn render<T: Tally>(
         Ok(Some(tile))
     };
     // Render all tiles, on a pool of threads unless one thread is enough.
-    let corners: Vec<(u32, u32)> = (0..height)
+    let corners: Vec<(u32, u32)> = (rows.start..rows.end)
         .step_by(TILE as usize)
         .flat_map(|y| (0..width).step_by(TILE as usize).map(move |x| (x, y)))
         .collect();
@@ -228,11 +232,12 @@ pub fn render<T: Tally>(
             kit_error::unwind(error)
         });
     // Copy the tiles into the film, and add up their counts.
-    let mut film = Film::new(width, height);
+    let mut film = Film::new(width, rows.n_rows());
     let mut counts = Counts::default();
     for tile in tiles {
-        let (tile, of_tile) = tile?;
+        let (mut tile, of_tile) = tile?;
         counts += of_tile;
+        tile.y -= rows.start;
         tile.copy_to(&mut film);
     }
     Some((film, counts))
@@ -248,7 +253,7 @@ fn render_tile<T: Tally>(
     filter: &(impl Fn(&[WeightedColor]) -> Vec3 + Sync),
 ) -> (Tile, Counts) {
     let right = settings.width.min(x + TILE);
-    let bottom = settings.height.min(y + TILE);
+    let bottom = settings.rows.end.min(y + TILE);
     let mut tally = T::default();
     let mut samples = Vec::new();
     // Compute the radiance of one sample, and count its random numbers.
@@ -284,6 +289,7 @@ mod tests {
         FrameSettings {
             width,
             height,
+            rows: Rows::all(height),
             samples_per_pixel,
             sampler,
             lens: false,
@@ -299,8 +305,12 @@ mod tests {
     }
 
     fn noise(threads: usize) -> (Film, Counts) {
+        noise_of(settings(50, 33, 3, threads))
+    }
+
+    fn noise_of(settings: FrameSettings) -> (Film, Counts) {
         let frame = render::<Counts>(
-            &settings(50, 33, 3, threads),
+            &settings,
             &Unwatched,
             |sample, tally| {
                 tally.note(Event::Primary);
@@ -320,6 +330,17 @@ mod tests {
             let (other, other_counts) = noise(threads);
             assert_eq!(film, other);
             assert_eq!(counts, other_counts);
+        }
+    }
+
+    #[test]
+    fn some_rows_are_those_of_the_whole_picture() {
+        let whole = noise(1).0;
+        for rows in [Rows { start: 0, end: 16 }, Rows { start: 16, end: 32 }, Rows { start: 16, end: 33 }] {
+            let (piece, counts) = noise_of(FrameSettings { rows, ..settings(50, 33, 3, 2) });
+            assert_eq!((piece.width, piece.height), (50, rows.n_rows()));
+            assert_eq!(piece.pixels, whole.pixels[50 * rows.start as usize..50 * rows.end as usize]);
+            assert_eq!(counts.primary, 3 * 50 * u64::from(rows.n_rows()));
         }
     }
 

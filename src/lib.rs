@@ -12,7 +12,7 @@
 //! | [`effects`], [`count`], [`random`] | what a scene needs, what it cost, and random numbers that are looked up by address |
 //! | [`rounding`] | bounds on rounding errors |
 //! | [`kit`] | the list of student functions, the door through which they are called, and the messages to a worker |
-//! | [`tracer`], [`frame`], [`building`] | the renderer, its tiles and threads, and the progress of a build |
+//! | [`tracer`], [`frame`], [`rows`], [`building`] | the renderer, its tiles, threads and pieces, and the progress of a build |
 //! | [`rubric`], [`worker`] | points, titles and hints of the checks; the process that answers for a kit |
 //!
 //! # Conventions
@@ -41,6 +41,7 @@ pub mod partition;
 pub mod random;
 pub mod ray;
 pub mod rounding;
+pub mod rows;
 pub mod rubric;
 pub mod scene;
 pub mod shape;

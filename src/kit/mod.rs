@@ -109,11 +109,11 @@ pub struct RenderJob {
 }
 
 impl RenderJob {
-    /// Whether a picture has the size of the job's film.
+    /// Whether a picture has the width of the job's film, and the rows that the job asks for.
     fn fits(&self, film: &Film) -> bool {
-        let asked = &self.scene.film;
-        let pixels = u64::from(asked.width) * u64::from(asked.height);
-        (film.width, film.height) == (asked.width, asked.height) && film.pixels.len() as u64 == pixels
+        let (width, height) = (self.scene.film.width, self.scene.film.rendered_rows().n_rows());
+        let pixels = u64::from(width) * u64::from(height);
+        (film.width, film.height) == (width, height) && film.pixels.len() as u64 == pixels
     }
 }
 
@@ -133,7 +133,7 @@ pub struct StructureSize {
 /// A rendered frame and its cost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rendering {
-    /// The picture in linear light.
+    /// The picture in linear light; only the rows that the job asked for.
     pub film: Film,
     /// Work by kind; zero if the job did not ask for counts.
     pub counts: Counts,

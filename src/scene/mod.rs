@@ -24,6 +24,7 @@ use crate::camera::Camera;
 use crate::film::Tone;
 use crate::material::{Light, Material, Texture};
 use crate::mesh::Mesh;
+use crate::rows::Rows;
 use crate::shape::Shape;
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use serde::{Deserialize, Serialize};
@@ -52,12 +53,21 @@ pub struct FilmSettings {
     pub encoding: Encoding,
     /// Exposure of 8-bit image files and the tone curve for them.
     pub tone: Tone,
+    /// The rows that a frame renders, as in [`Rows::check`]; `None`, the default, renders all. A scene file cannot set it.
+    pub rows: Option<Rows>,
+}
+
+impl FilmSettings {
+    /// The rows that a frame renders.
+    pub fn rendered_rows(&self) -> Rows {
+        self.rows.unwrap_or(Rows::all(self.height))
+    }
 }
 
 impl Default for FilmSettings {
     /// 640 by 360 pixels in sRGB, without exposure, clamped.
     fn default() -> Self {
-        FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb, tone: Tone::default() }
+        FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb, tone: Tone::default(), rows: None }
     }
 }
 

@@ -70,6 +70,7 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
         let settings = FrameSettings {
             width: film.width,
             height: film.height,
+            rows: film.rendered_rows(),
             samples_per_pixel: quality.samples_per_pixel,
             sampler: quality.sampler,
             lens: false,

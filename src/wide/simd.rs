@@ -9,7 +9,7 @@
 //! Sums, differences, products, comparisons, `min` and `max` give the same result at every level. [`F32x4::mul_add`] does
 //! not: use it only where a rounding error changes no result.
 
-use fearless_simd::{Simd, SimdBase, SimdFloat, SimdMask};
+use fearless_simd::{SimdBase, SimdFloat, SimdMask};
 use std::ops::{Add, BitAnd, BitOr, Mul, Sub};
 
 pub use fearless_simd::Simd as Level;

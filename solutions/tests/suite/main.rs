@@ -17,6 +17,7 @@ mod leaks;
 mod light;
 mod methods;
 mod partitions;
+mod pieces;
 mod pixels;
 mod precision;
 mod recorded;

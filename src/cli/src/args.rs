@@ -290,6 +290,15 @@ impl Given {
         self.options.iter().filter(move |(option, _)| option.long == long).map(|(_, value)| value.as_os_str())
     }
 
+    /// The options as they were given, for the command line of another program, without those of these names.
+    pub fn words_without(&self, left_out: &[&str]) -> Vec<OsString> {
+        let given = self.options.iter().filter(|(option, _)| !left_out.contains(&option.long));
+        let words = given.flat_map(|(option, value)| {
+            [Some(OsString::from(option.long)), option.value.map(|_| value.clone())]
+        });
+        words.flatten().collect()
+    }
+
     /// The value of an option that names a file or a folder.
     pub fn path(&self, long: &str) -> Option<PathBuf> {
         self.values(long).next().map(PathBuf::from)

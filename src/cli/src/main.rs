@@ -5,8 +5,8 @@ use raykata_cli::args::{Given, Misuse, Read, Spec, did_you_mean, entry, whole_nu
 use raykata_cli::kits::{Choice, Which, root};
 use raykata_cli::report::say;
 use raykata_cli::{
-    compare, cost, doctor, explain, figures, judge, list, race, render, slides, strip, tree, update, view,
-    watch,
+    compare, cost, doctor, explain, figures, judge, list, merge_picture, race, render, slides, strip, tree,
+    update, view, watch,
 };
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -15,8 +15,11 @@ use std::process::ExitCode;
 type Command = (&'static Spec, fn(&Given) -> Result<ExitCode>);
 
 /// All commands, in the order of the help.
-const COMMANDS: [Command; 17] = [
+const COMMANDS: [Command; 18] = [
     (&render::SPEC, |given| render::run(&render::Options::read(given)?).map(|()| ExitCode::SUCCESS)),
+    (&merge_picture::SPEC, |given| {
+        merge_picture::run(&merge_picture::Options::read(given)?).map(|()| ExitCode::SUCCESS)
+    }),
     (&explain::SPEC, |given| explain::run(&explain::Options::read(given)?).map(|()| ExitCode::SUCCESS)),
     (&compare::SPEC, |given| compare::run(&compare::Options::read(given)?).map(ended)),
     (&cost::SPEC, |given| cost::run(&cost::Options::read(given)?, "cargo run --release --", None).map(ended)),

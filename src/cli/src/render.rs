@@ -1,13 +1,15 @@
-//! `raykata render`: renders a scene to a picture.
+//! `raykata render`: renders a scene to a picture, or some rows of it to a piece that `raykata merge-picture` takes.
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec};
 use crate::kits::{Choice, Need, Source, root};
+use crate::piece::{self, Piece, Settings};
 use crate::quality_options::{QualityOptions, Threads, ToneOptions};
 use crate::report::{Bytes, FrameBar, Thousands, load_scene, make_folder_of};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use raykata::film::{Film, encode_srgb};
 use raykata::kit::{Kit, RenderJob, Rendering, View, kit_error};
-use raykata::scene::Encoding;
+use raykata::rows::Rows;
+use raykata::scene::{Encoding, FilmSettings, Quality};
 use std::path::{Path, PathBuf};
 
 /// `raykata render`.
@@ -21,6 +23,13 @@ pub static SPEC: Spec = Spec {
         Choice::OPTIONS,
         Threads::OPTIONS,
         &[
+            Opt::value(
+                "--rows",
+                "A..B",
+                "Render only the rows from A up to, but without, B, counted from 0 at the top. They are written to a .piece file \
+                 with all digits, and `raykata merge-picture` puts the pieces together. A and B are multiples of 16, or B is the \
+                 number of rows [default file: out/NAME.A-B.piece].",
+            ),
             Opt::value("--seed", "N", "Seed of the random numbers [default: 0]."),
             Opt::flag("--normals", "Show normals instead of light."),
             Opt::flag("--no-counts", "Do not count rays and tests; a little faster."),
@@ -36,6 +45,7 @@ pub struct Options {
     out: Option<PathBuf>,
     kit: Choice,
     threads: Threads,
+    rows: Option<Rows>,
     seed: u64,
     quality: QualityOptions,
     tone: ToneOptions,
@@ -51,6 +61,7 @@ impl Options {
             out: given.path("--out"),
             kit: Choice::read(given)?,
             threads: Threads::read(given)?,
+            rows: given.parsed("--rows", str::parse)?,
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
             quality: QualityOptions::read(given)?,
             tone: ToneOptions::read(given)?,
@@ -61,23 +72,43 @@ impl Options {
 }
 
 /// The file format of a picture.
-#[derive(Clone, Copy)]
-enum Format {
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Format {
     Png,
     Hdr,
     Exr,
+    /// Some rows of a picture, for `raykata merge-picture`.
+    Piece,
 }
 
-fn format_of(file: &Path) -> Result<Format> {
-    let extension = file.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    match extension.to_ascii_lowercase().as_str() {
-        "png" => Ok(Format::Png),
-        "hdr" => Ok(Format::Hdr),
-        "exr" if cfg!(feature = "exr") => Ok(Format::Exr),
-        "exr" => bail!(
-            "this program was built without OpenEXR; `cargo run --features exr -- render …` builds it with OpenEXR"
-        ),
-        _ => bail!("the format of {} is unknown: let it end in .png, .hdr or .exr", file.display()),
+impl Format {
+    /// The format of a whole picture, by the name of its file.
+    pub(crate) fn of(file: &Path) -> Result<Format> {
+        let extension = file.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        match extension.to_ascii_lowercase().as_str() {
+            "png" => Ok(Format::Png),
+            "hdr" => Ok(Format::Hdr),
+            "exr" if cfg!(feature = "exr") => Ok(Format::Exr),
+            "exr" => bail!(
+                "this program was built without OpenEXR; `cargo run --features exr -- render …` builds it with OpenEXR"
+            ),
+            piece::ENDING => {
+                bail!("{}: a piece has some rows of a picture: give them by --rows", file.display())
+            }
+            _ => bail!("the format of {} is unknown: let it end in .png, .hdr or .exr", file.display()),
+        }
+    }
+
+    /// The format of some rows of a picture.
+    fn of_piece(file: &Path) -> Result<Format> {
+        let is_piece = file.extension().is_some_and(|ending| ending == piece::ENDING);
+        ensure!(is_piece, "{}: with --rows the file must end in .{}", file.display(), piece::ENDING);
+        Ok(Format::Piece)
+    }
+
+    /// Whether the components of the file are bytes.
+    pub(crate) fn is_8_bit(self) -> bool {
+        self == Format::Png
     }
 }
 
@@ -86,13 +117,18 @@ pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene, options.quality.limits())?;
     options.quality.apply(&mut scene)?;
     options.tone.apply(&mut scene);
-    let out = match &options.out {
-        Some(out) => out.clone(),
-        None => Path::new("out")
-            .join(options.scene.file_stem().context("the scene has no name")?)
-            .with_extension("png"),
+    let height = scene.film.height;
+    if let Some(rows) = options.rows {
+        rows.check(height).map_err(|why| anyhow!("`--rows {rows}`: {why}"))?;
+        scene.film.rows = Some(rows);
+    }
+    let name = options.scene.file_stem().context("the scene has no name")?;
+    let out = match (&options.out, options.rows) {
+        (Some(out), _) => out.clone(),
+        (None, Some(rows)) => Path::new("out").join(Piece::file_name(&name.to_string_lossy(), rows)),
+        (None, None) => Path::new("out").join(name).with_extension("png"),
     };
-    let format = format_of(&out)?;
+    let format = if options.rows.is_some() { Format::of_piece(&out)? } else { Format::of(&out)? };
     make_folder_of(&out)?;
 
     // Build the kit.
@@ -114,26 +150,54 @@ pub fn run(options: &Options) -> Result<()> {
     bar.finish();
 
     // Write the file, and print what the picture cost.
-    let write = match format {
-        // Normals are no light, so they have no exposure.
-        Format::Png if options.normals => write_png(&rendering.film, &out, job.scene.film.encoding, &*kit),
-        Format::Png => {
-            let shown = rendering.film.toned(job.scene.film.tone);
-            write_png(&shown, &out, job.scene.film.encoding, &*kit)
-        }
-        Format::Hdr => rendering.film.write_hdr(&out).map_err(Into::into),
-        Format::Exr => write_exr(&rendering.film, &out),
+    let samples = match job.scene.quality.samples_per_pixel {
+        1 => "1 sample per pixel".to_owned(),
+        n => format!("{n} samples per pixel"),
     };
-    write.with_context(|| format!("cannot write {}", out.display()))?;
-    tell(&out, &job, &rendering);
+    let (quality, indirect_light, count) = (&job.scene.quality, job.scene.indirect_light, job.count);
+    let width = rendering.film.width;
+    let size = match options.rows {
+        Some(rows) => format!("rows {rows} of {width} × {height} pixels, {samples}"),
+        None => format!("{width} × {height} pixels, {samples}"),
+    };
+    let rendering = if let Some(rows) = options.rows {
+        let piece = Piece { settings: Settings::new(&job, source.which, &root)?, rows, rendering };
+        piece.write(&out).with_context(|| format!("cannot write {}", out.display()))?;
+        piece.rendering
+    } else {
+        write_picture(&rendering.film, &out, format, view, &job.scene.film, Some(&*kit))?;
+        rendering
+    };
+    Summary { size, quality, indirect_light, count }.print(&out, &rendering);
     Ok(())
 }
 
+/// Writes a whole picture. A PNG file with gamma 2 needs the kit.
+pub(crate) fn write_picture(
+    picture: &Film,
+    out: &Path,
+    format: Format,
+    view: View,
+    film: &FilmSettings,
+    kit: Option<&dyn Kit>,
+) -> Result<()> {
+    let write = match format {
+        // Normals are no light, so they have no exposure.
+        Format::Png if view == View::Normals => write_png(picture, out, film.encoding, kit),
+        Format::Png => write_png(&picture.toned(film.tone), out, film.encoding, kit),
+        Format::Hdr => picture.write_hdr(out).map_err(Into::into),
+        Format::Exr => write_exr(picture, out),
+        Format::Piece => Err(anyhow!("it is not a whole picture")),
+    };
+    write.with_context(|| format!("cannot write {}", out.display()))
+}
+
 /// Writes a PNG file. The kit that rendered the picture encodes it, because gamma 2 is an exercise.
-pub(crate) fn write_png(film: &Film, out: &Path, encoding: Encoding, kit: &dyn Kit) -> Result<()> {
+pub(crate) fn write_png(film: &Film, out: &Path, encoding: Encoding, kit: Option<&dyn Kit>) -> Result<()> {
     match encoding {
         Encoding::Srgb => film.write_png(out, encode_srgb)?,
         Encoding::Gamma2 => {
+            let kit = kit.context("gamma 2 needs a kit")?;
             let components: Vec<f32> = film.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
             let bytes = kit_error::catch(|| kit.encode_gamma(&components))?;
             film.write_png_bytes(out, &bytes)?;
@@ -161,71 +225,80 @@ fn write_exr(film: &Film, out: &Path) -> Result<()> {
     Ok(())
 }
 
-fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
-    let Rendering { film, counts, .. } = rendering;
-    let quality = &job.scene.quality;
-    let samples = match quality.samples_per_pixel {
-        1 => "1 sample per pixel".to_owned(),
-        n => format!("{n} samples per pixel"),
-    };
-    println!("{}  {} × {} pixels, {samples}", out.display(), film.width, film.height);
-    println!("  primitives       {}", Thousands(rendering.primitives));
-    if let Some(size) = rendering.structure {
-        let used = rendering.accelerator.unwrap_or(quality.accelerator);
-        let how = match used {
-            one if one.is_hierarchy() => {
-                format!(", {:?}, leaves of {} or fewer", quality.split, quality.leaf_size)
-            }
-            _ => format!(", {} references", Thousands(size.references)),
-        };
-        println!(
-            "  {:<16} {} nodes, {} levels{how}, {}",
-            used.name().replace('_', " "),
-            Thousands(size.nodes),
-            size.levels,
-            Bytes(size.bytes)
-        );
-    }
-    if rendering.bytes_of_parts > 0 {
-        println!("  shared meshes    {}", Bytes(rendering.bytes_of_parts));
-    }
-    println!("  build            {:.3} s", rendering.build_seconds);
-    println!("  render           {:.3} s", rendering.render_seconds);
-    if job.count {
-        println!("  primary rays     {}", Thousands(counts.primary));
-        println!("  shadow rays      {}", Thousands(counts.shadow));
-        println!("  reflected rays   {}", Thousands(counts.reflection));
-        println!("  refracted rays   {}", Thousands(counts.transmission));
-        if job.scene.indirect_light {
-            println!("  indirect rays    {}", Thousands(counts.indirect));
-            println!("  absorbed paths   {}", Thousands(counts.absorbed));
+/// What is printed about a picture besides its rendering.
+pub(crate) struct Summary<'a> {
+    /// The size of the picture, for the first line.
+    pub(crate) size: String,
+    pub(crate) quality: &'a Quality,
+    pub(crate) indirect_light: bool,
+    /// Whether work was counted.
+    pub(crate) count: bool,
+}
+
+impl Summary<'_> {
+    /// Prints the name of the file, the size of the picture, and what it cost.
+    pub(crate) fn print(&self, out: &Path, rendering: &Rendering) {
+        let Summary { size, quality, indirect_light, count } = self;
+        let Rendering { film, counts, .. } = rendering;
+        println!("{}  {size}", out.display());
+        println!("  primitives       {}", Thousands(rendering.primitives));
+        if let Some(size) = rendering.structure {
+            let used = rendering.accelerator.unwrap_or(quality.accelerator);
+            let how = match used {
+                one if one.is_hierarchy() => {
+                    format!(", {:?}, leaves of {} or fewer", quality.split, quality.leaf_size)
+                }
+                _ => format!(", {} references", Thousands(size.references)),
+            };
+            println!(
+                "  {:<16} {} nodes, {} levels{how}, {}",
+                used.name().replace('_', " "),
+                Thousands(size.nodes),
+                size.levels,
+                Bytes(size.bytes)
+            );
         }
-        println!("  hits             {}", Thousands(counts.hits));
-        println!("  random numbers   {}", Thousands(counts.random_numbers));
-        println!("  image reads      {}", Thousands(counts.texture_reads));
-        println!("  node visits      {}", Thousands(counts.node_visits));
-        println!("  box tests        {}", Thousands(counts.box_tests));
-        println!("  primitive tests  {}", Thousands(counts.primitive_tests));
-        let rays = counts.rays().max(1) as f64;
-        println!(
-            "  per ray          {:.1} box tests, {:.1} primitive tests, {:.0} ns on all threads together",
-            counts.box_tests as f64 / rays,
-            counts.primitive_tests as f64 / rays,
-            1e9 * rendering.render_seconds / rays
-        );
-    }
-    for note in &rendering.notes {
-        println!("  note             {note}");
-    }
-    match film.not_a_number() {
-        0 => {}
-        n => println!("  warning          {} pixels are NaN; they are magenta", Thousands(n as u64)),
-    }
-    match film.infinite() {
-        0 => {}
-        n => println!(
-            "  warning          {} pixels are infinite; they are as bright as the file format allows",
-            Thousands(n as u64)
-        ),
+        if rendering.bytes_of_parts > 0 {
+            println!("  shared meshes    {}", Bytes(rendering.bytes_of_parts));
+        }
+        println!("  build            {:.3} s", rendering.build_seconds);
+        println!("  render           {:.3} s", rendering.render_seconds);
+        if *count {
+            println!("  primary rays     {}", Thousands(counts.primary));
+            println!("  shadow rays      {}", Thousands(counts.shadow));
+            println!("  reflected rays   {}", Thousands(counts.reflection));
+            println!("  refracted rays   {}", Thousands(counts.transmission));
+            if *indirect_light {
+                println!("  indirect rays    {}", Thousands(counts.indirect));
+                println!("  absorbed paths   {}", Thousands(counts.absorbed));
+            }
+            println!("  hits             {}", Thousands(counts.hits));
+            println!("  random numbers   {}", Thousands(counts.random_numbers));
+            println!("  image reads      {}", Thousands(counts.texture_reads));
+            println!("  node visits      {}", Thousands(counts.node_visits));
+            println!("  box tests        {}", Thousands(counts.box_tests));
+            println!("  primitive tests  {}", Thousands(counts.primitive_tests));
+            let rays = counts.rays().max(1) as f64;
+            println!(
+                "  per ray          {:.1} box tests, {:.1} primitive tests, {:.0} ns on all threads together",
+                counts.box_tests as f64 / rays,
+                counts.primitive_tests as f64 / rays,
+                1e9 * rendering.render_seconds / rays
+            );
+        }
+        for note in &rendering.notes {
+            println!("  note             {note}");
+        }
+        match film.not_a_number() {
+            0 => {}
+            n => println!("  warning          {} pixels are NaN; they are magenta", Thousands(n as u64)),
+        }
+        match film.infinite() {
+            0 => {}
+            n => println!(
+                "  warning          {} pixels are infinite; they are as bright as the file format allows",
+                Thousands(n as u64)
+            ),
+        }
     }
 }

@@ -130,7 +130,7 @@ pub fn run(options: &Options) -> Result<()> {
         paste(&film, &mut strip, left);
         caption::write(&mut strip, &what, [left, height], width);
     }
-    write_png(&strip, &out, scene.film.encoding, &*kit)
+    write_png(&strip, &out, scene.film.encoding, Some(&*kit))
         .with_context(|| format!("cannot write {}", out.display()))?;
     println!("{}", out.display());
     Ok(())

@@ -27,6 +27,10 @@ const COMMANDS: &[Command] = &[
     #[cfg(target_os = "linux")]
     (&export::GRADESCOPE, |given| done(in_kit(export::Options::of_gradescope(given), export::gradescope))),
     #[cfg(target_os = "linux")]
+    (&export::SLURM, |given| done(in_kit(export::SlurmOptions::read(given), export::slurm))),
+    #[cfg(target_os = "linux")]
+    (&export::PICTURE, |given| done(in_kit(export::PictureOptions::read(given), export::picture))),
+    #[cfg(target_os = "linux")]
     (&export::CLASSROOM, |given| done(export::classroom(&export::Options::of_classroom(given)?))),
     (&gauntlet::SPEC, |given| in_kit(gauntlet::Options::read(given), gauntlet::run)),
     (&gauntlet::COST, |given| gauntlet::cost(&cost::Options::read(given)?)),
@@ -46,7 +50,7 @@ const COMMANDS: &[Command] = &[
 /// Groups: words that begin the names of commands but are not commands themselves, with descriptions.
 const GROUPS: &[(&str, &str)] = &[
     #[cfg(target_os = "linux")]
-    ("export", "Write the files with which Gradescope or GitHub Classroom grade (for instructors)."),
+    ("export", "Write the files with which Gradescope, GitHub Classroom or Slurm grade (for instructors)."),
 ];
 
 fn main() -> ExitCode {

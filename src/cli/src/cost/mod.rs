@@ -27,6 +27,7 @@ mod table;
 
 use crate::args::wrapped;
 use crate::kits::{Need, Source, root};
+use crate::lock::Lock;
 use crate::quality_options::arguments;
 use crate::report::{FrameBar, load_scene, make_folder, with_at_most};
 use advice::{Advice, Goal};
@@ -143,6 +144,7 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     }
     let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
+    let _lock = Lock::on(&out)?;
 
     // Choose the values to measure.
     let (ladders, not_offered) = ladders(kit, &bench, &small, options)?;
@@ -304,7 +306,7 @@ fn slopes(measured: &Measured) -> Vec<(String, Slope)> {
 fn fingerprint(source: &Source) -> Result<String> {
     let program = &source.program;
     let bytes = std::fs::read(program).with_context(|| format!("cannot read {}", program.display()))?;
-    Ok(reference::fingerprint([&bytes[..]]))
+    Ok(crate::fingerprint::fingerprint([&bytes[..]]))
 }
 
 /// The command line with which this program was started.

@@ -6,6 +6,7 @@
 
 use super::ladder::least_depth;
 use super::measure::Bench;
+use crate::fingerprint::fingerprint;
 use crate::report::bar_of_steps;
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};
@@ -138,17 +139,6 @@ fn write(file: &Path, sums: &Sums) -> Result<()> {
     let bytes: Vec<u8> = KEPT.iter().copied().chain(sums.batches.to_le_bytes()).chain(numbers).collect();
     write_atomically(file, |out| out.write_all(&bytes))
         .with_context(|| format!("cannot keep the reference in {}", file.display()))
-}
-
-/// A hash of these bytes: FNV-1a with 128 bits. It distinguishes files and is not cryptographic.
-pub fn fingerprint<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> String {
-    let mut hash = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d_u128;
-    for part in parts {
-        for byte in part.iter().chain(&part.len().to_le_bytes()) {
-            hash = (hash ^ u128::from(*byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
-        }
-    }
-    format!("{hash:032x}")
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Runs `raykata cost` on tiny pictures.
 
+use raykata_cli::lock::Lock;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -76,6 +77,12 @@ fn two_runs_have_the_same_errors_and_counts() {
     let (_, longer) = run("longer", &["--parameter", "samples", "--reference", "192"]);
     assert_eq!(longer.0["reference_samples"], 192);
     assert_eq!(fs::read_dir(folder.path().join("out/references")).unwrap().count(), 1);
+
+    // A second run refuses a folder that a first one is writing to.
+    let lock = Lock::on(&folder.path().join("one")).unwrap();
+    let refused = cost(folder.path(), &["scenes/soft_shadows.toml", "--out", "one"]);
+    assert!(said(&refused).contains("another run is writing to one"), "{}", said(&refused));
+    drop(lock);
 }
 
 #[test]

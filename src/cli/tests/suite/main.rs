@@ -3,6 +3,7 @@
 mod compare;
 mod cost;
 mod curriculum;
+mod pieces;
 mod program;
 mod program_runs;
 mod race;

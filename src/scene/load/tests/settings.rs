@@ -42,7 +42,10 @@ fn every_setting_arrives() {
          sampler = 'jittered'\nprecision = 'double'\n",
     );
     let tone = Tone { exposure: -1.5, curve: ToneCurve::Aces };
-    assert_eq!(scene.film, FilmSettings { width: 32, height: 16, encoding: Encoding::Gamma2, tone });
+    assert_eq!(
+        scene.film,
+        FilmSettings { width: 32, height: 16, encoding: Encoding::Gamma2, tone, rows: None }
+    );
     assert_eq!((scene.camera.towards, scene.camera.up), (Vec3::X, Vec3::Z));
     assert_eq!((scene.camera.half_height, scene.camera.aspect), (1.0, 2.0));
     assert_eq!(scene.camera.lens, Some(Lens { aperture: 0.1, focal_distance: 5.0 }));

@@ -18,11 +18,15 @@ use checks::Inputs;
 use entry::{Claim, Entry};
 use judge::scorecard::run_checks_on;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use raykata_cli::lock::Lock;
 use records::Matrix;
 use std::path::Path;
 use std::sync::Arc;
 use verdict::{Fate, Tried};
 use workshop::{Built, Workshop};
+
+/// The folder in which entries and changes of the solutions are built. One run at a time uses it.
+pub(crate) const FOLDER: &str = "target/corpus";
 
 /// `grader corpus`.
 pub static SPEC: Spec = Spec {
@@ -87,6 +91,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let n_all = all.len();
     let chosen = choose(all, options)?;
     let complete = chosen.len() == n_all;
+    let _lock = Lock::on(&root.join(FOLDER))?;
     let tried = try_all(root, &chosen, options.jobs.max(1), options.seed)?;
 
     let matrix = Matrix::read(root);

@@ -73,7 +73,7 @@ impl Workshop {
 
     /// Opens the workshop of this number for the kit at `root` and updates its files.
     fn open(root: &Path, number: usize, need: Need) -> Result<Workshop> {
-        let folder = root.join(format!("target/corpus/{number}"));
+        let folder = root.join(super::FOLDER).join(number.to_string());
         let workshop = Workshop { root: root.to_owned(), folder, need };
         write_if_new(
             &workshop.folder.join("Cargo.toml"),

@@ -1,6 +1,9 @@
-//! `grader export`: writes the files with which Gradescope and GitHub Classroom grade as `grader grade` does.
+//! `grader export`: writes the files with which Gradescope, GitHub Classroom and Slurm grade as `grader grade` does.
 
 mod bundle;
+mod slurm;
+
+pub use slurm::{PICTURE, PictureOptions, SLURM, SlurmOptions, picture, slurm};
 
 use crate::grade::{draw_seed, stages};
 use anyhow::{Context, Result, ensure};
@@ -27,7 +30,14 @@ pub static CLASSROOM: Spec = Spec {
             machines.",
     arguments: &[],
     options: &[
-        &[Opt::value("--out", "FOLDER", "The folder for .github/workflows.").required()],
+        &[
+            Opt::value("--out", "FOLDER", "The folder for .github/workflows.").required(),
+            Opt::value(
+                "--parts",
+                "N",
+                "The number of jobs that grade a class, at most 256, the limit of GitHub [default: 4].",
+            ),
+        ],
         Grading::OPTIONS,
     ],
 };
@@ -35,6 +45,8 @@ pub static CLASSROOM: Spec = Spec {
 /// The options of both commands.
 pub struct Options {
     out: PathBuf,
+    /// The number of jobs that grade a class on GitHub.
+    parts: u16,
     grading: Grading,
 }
 
@@ -42,14 +54,18 @@ impl Options {
     /// Reads the options of [`GRADESCOPE`].
     pub fn of_gradescope(given: &Given) -> Result<Options, Misuse> {
         let out = given.path("--out").unwrap_or_else(|| "autograder.zip".into());
-        Ok(Options { out, grading: Grading::read(given)? })
+        Ok(Options { out, parts: 1, grading: Grading::read(given)? })
     }
 
     /// Reads the options of [`CLASSROOM`].
     pub fn of_classroom(given: &Given) -> Result<Options, Misuse> {
-        Ok(Options { out: given.required_path("--out")?, grading: Grading::read(given)? })
+        let parts = given.number("--parts", 1..=MOST_JOBS)?.unwrap_or(4);
+        Ok(Options { out: given.required_path("--out")?, parts, grading: Grading::read(given)? })
     }
 }
+
+/// Most jobs of a matrix on GitHub.
+const MOST_JOBS: u16 = 256;
 
 /// Stages and seed, the same for all students.
 struct Grading {
@@ -88,8 +104,10 @@ const RUN: &str = include_str!("run_autograder");
 const EACH_PUSH: &str = include_str!("classroom.yml");
 const WHOLE_CLASS: &str = include_str!("class.yml");
 
-/// The place of the options in a template.
+/// The places of the options, of the number of parts and of their list in a template.
 const OPTIONS: &str = "{options}";
+const PARTS: &str = "{parts}";
+const NUMBERS: &str = "{numbers}";
 
 /// Writes the zip for Gradescope.
 pub fn gradescope(root: &Path, options: &Options) -> Result<()> {
@@ -107,10 +125,13 @@ pub fn gradescope(root: &Path, options: &Options) -> Result<()> {
 pub fn classroom(options: &Options) -> Result<()> {
     let folder = options.out.join(".github/workflows");
     let graded = options.grading.options();
+    let numbers: Vec<String> = (1..=options.parts).map(|part| part.to_string()).collect();
+    let (parts, numbers) = (options.parts.to_string(), numbers.join(", "));
     for (name, template) in [("classroom.yml", EACH_PUSH), ("class.yml", WHOLE_CLASS)] {
         let file = folder.join(name);
         ensure!(!file.exists(), "{} already exists", file.display());
-        write(&file, template.replace(OPTIONS, &graded).as_bytes())?;
+        let text = template.replace(OPTIONS, &graded).replace(PARTS, &parts).replace(NUMBERS, &numbers);
+        write(&file, text.as_bytes())?;
     }
     println!("{}: read the comment at the top of each file before you use it", folder.display());
     Ok(())

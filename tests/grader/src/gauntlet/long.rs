@@ -20,6 +20,7 @@ use oracle::splitmix::Random;
 use raykata::kit::{Door, Kit, SlabQuery, TriangleQuery, kit_error};
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality, Split};
+use raykata_cli::lock::Lock;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -186,6 +187,7 @@ fn lost_boxes(kit: &dyn Kit, mut random: Random) -> u64 {
 }
 /// Runs until `rays` rays of each kind are done. Returns the numbers, and whether no ray failed.
 pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<(Table, bool)> {
+    let _lock = Lock::on(file)?;
     let mut state = read(file)?;
     if state.seed != seed && !state.done.is_empty() {
         bail!(

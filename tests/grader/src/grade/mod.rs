@@ -9,7 +9,10 @@ mod counted;
 mod forge;
 mod grader;
 mod judge;
+#[cfg(test)]
+mod large_class;
 mod lint;
+mod merge;
 mod naive;
 mod one;
 mod options;
@@ -19,10 +22,12 @@ pub mod result;
 mod run_attacks;
 mod sanity;
 mod scratch;
+mod shard;
 mod store;
 mod submission;
 
 pub use grader::{Grader, lint_if_asked};
+pub use merge::{Options as MergeOptions, SPEC as MERGE, run as merge};
 pub use one::{Options as OneOptions, SPEC as ONE, run as one};
 pub(crate) use options::{draw_seed, stages};
 pub use rehearsal::{Options as RehearsalOptions, SPEC as REHEARSE, run as rehearse};
@@ -33,8 +38,7 @@ use anyhow::{Context, Result, ensure};
 use options::GradingOptions;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use report::clean::clean_line;
-use result::Graded;
-use sha2::{Digest, Sha256};
+use shard::{Part, Shard, shard};
 use std::path::{Path, PathBuf};
 use store::Store;
 use submission::Submission;
@@ -79,14 +83,6 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// `grader merge`.
-pub static MERGE: Spec = Spec {
-    name: "grader merge",
-    about: "Combine the grades that `grade --shard` made of the parts of a class (for instructors).",
-    arguments: &[Argument::required("PART", "The folders of the parts.").many()],
-    options: &[&[Opt::value("--out", "FOLDER", "The folder for the grades of the whole class.").required()]],
-};
-
 /// The options of `grader grade`.
 pub struct Options {
     submissions: PathBuf,
@@ -116,28 +112,11 @@ impl Options {
     }
 }
 
-/// A part of a class.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Shard {
-    index: u64,
-    of: u64,
-}
-
-fn shard(text: &str) -> Result<Shard> {
-    let (index, of) = text.split_once('/').with_context(|| format!("`{text}` is not like 2/8"))?;
-    let shard = Shard { index: index.parse()?, of: of.parse()? };
-    ensure!((1..=shard.of).contains(&shard.index), "parts are counted from 1: 1/{of} to {of}/{of}");
-    Ok(shard)
-}
-
-impl Shard {
-    /// Returns whether a student belongs to this part. This depends only on the name, so that all machines agree even if
-    /// their folders differ.
-    fn holds(self, student: &str) -> bool {
-        let hash = Sha256::digest(student);
-        let number = hash[..8].iter().fold(0u64, |number, byte| number << 8 | u64::from(*byte));
-        number % self.of == self.index - 1
-    }
+/// Returns the number of submissions in a folder.
+pub(crate) fn submissions_in(folder: &Path) -> Result<usize> {
+    let found =
+        submission::find(folder).with_context(|| format!("cannot read the folder {}", folder.display()))?;
+    Ok(found.0.len())
 }
 
 /// Grades the class. Returns `Ok(true)` if every submission could be graded, with any grade.
@@ -148,9 +127,11 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     for other in others {
         eprintln!("not a submission: {}", other.display());
     }
+    ensure!(!submissions.is_empty(), "there is no submission in {}", options.submissions.display());
+    let part = options.shard.map(|shard| Part::of(shard, &submissions));
+    // A part of a small class may be empty.
     let mine = |one: &Submission| options.shard.is_none_or(|shard| shard.holds(&one.student));
     let submissions: Vec<Submission> = submissions.into_iter().filter(mine).collect();
-    ensure!(!submissions.is_empty(), "there is no submission in {}", options.submissions.display());
     // Open the database and begin or continue the session.
     scratch::clean();
     crate::report::make_folder(&options.out)?;
@@ -163,6 +144,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     );
     let (grader, session) = options.grading.begin(root, begun.as_ref())?;
     store.begin(&session)?;
+    store.begin_part(part.as_ref())?;
     // Keep the grades of submissions that are not there, unless the instructor says otherwise.
     let names: Vec<&str> = submissions.iter().map(|one| one.student.as_str()).collect();
     let others = store.others(&names)?;
@@ -184,69 +166,28 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let jobs = options.jobs.map_or_else(queue::cores, usize::from);
     grader.grade_all(&submissions, &store, jobs, |_| bar.inc(1))?;
     bar.finish_and_clear();
+    store.finish_part()?;
     finish(&store, &options.out)
 }
 
-/// The options of `grader merge`.
-pub struct MergeOptions {
-    parts: Vec<PathBuf>,
-    out: PathBuf,
-}
-
-impl MergeOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<MergeOptions, Misuse> {
-        given.required(0)?;
-        let parts = given.arguments(0).iter().map(PathBuf::from).collect();
-        Ok(MergeOptions { parts, out: given.required_path("--out")? })
-    }
-}
-
-/// Combines the parts of a class.
-pub fn merge(MergeOptions { parts, out }: &MergeOptions) -> Result<bool> {
-    crate::report::make_folder(out)?;
-    let store = Store::claim(out)?;
-    ensure!(store.session()?.is_none(), "{} already contains grades; choose another folder", out.display());
-    for part in parts {
-        ensure!(part.join(store::FILE).is_file(), "{} contains no grades", part.display());
-        store.take_over(&Store::open(part)?.class()?, part)?;
-    }
-    finish(&store, out)
-}
+/// Most submissions that could not be graded and that are listed at the end. The reports list all.
+const MOST_LISTED: usize = 20;
 
 /// Writes the reports and prints a summary. Returns whether every submission could be graded.
 fn finish(store: &Store, out: &Path) -> Result<bool> {
-    let class = store.class()?;
-    report::write_all(&class, out)?;
-    let troubled: Vec<&Graded> = class.students.iter().filter(|one| !one.trouble.is_empty()).collect();
-    for one in &troubled {
-        eprintln!("{}: {}", one.student, one.trouble);
+    let session = store.session()?.context("nothing has been graded here yet")?;
+    let summary = report::write_from(&session, &|each| store.each(each), out)?;
+    for (student, trouble) in summary.troubled.iter().take(MOST_LISTED) {
+        eprintln!("{student}: {trouble}");
     }
-    let not_graded = match troubled.len() {
+    let n_troubled = summary.troubled.len();
+    if n_troubled > MOST_LISTED {
+        eprintln!("{} more could not be graded: see grades.csv", n_troubled - MOST_LISTED);
+    }
+    let not_graded = match n_troubled {
         0 => String::new(),
         n => format!(", {n} of them could not be graded"),
     };
-    println!("{} submissions{not_graded}; open {}", class.students.len(), out.join("index.html").display());
-    Ok(troubled.is_empty())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_are_read_as_people_write_them() {
-        assert_eq!(shard("2/8").unwrap(), Shard { index: 2, of: 8 });
-        for wrong in ["0/8", "9/8", "2", "a/b", "1/0"] {
-            assert!(shard(wrong).is_err(), "{wrong}");
-        }
-    }
-
-    #[test]
-    fn every_student_is_in_one_part() {
-        for student in ["ann", "bob", "c d", "é"] {
-            let parts = (1..=7).filter(|&index| Shard { index, of: 7 }.holds(student)).count();
-            assert_eq!(parts, 1, "{student}");
-        }
-    }
+    println!("{} submissions{not_graded}; open {}", summary.submissions, out.join("index.html").display());
+    Ok(n_troubled == 0)
 }

@@ -2,11 +2,13 @@
 //! is complete, so a killed run loses only the submissions that were in progress.
 
 use super::result::{Class, Graded, Session};
+use super::shard::Part;
 use anyhow::{Context, Result, bail, ensure};
 use nix::fcntl::{Flock, FlockArg};
 use rusqlite::{Connection, OptionalExtension, params};
+use std::collections::HashSet;
 use std::fs::{self, File};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The name of the database in the folder of results.
@@ -22,7 +24,8 @@ const TABLES: &str = "
         student TEXT PRIMARY KEY,
         content TEXT NOT NULL,
         json TEXT NOT NULL
-    );";
+    );
+    CREATE TABLE IF NOT EXISTS part (id INTEGER PRIMARY KEY CHECK (id = 0), json TEXT NOT NULL);";
 
 /// The grades of a class.
 pub struct Store {
@@ -110,9 +113,22 @@ impl Store {
         Ok(())
     }
 
+    /// Stores many grades in one transaction.
+    #[cfg(test)]
+    pub fn keep_all(&self, grades: &[Graded]) -> Result<()> {
+        let mut connection = self.lock();
+        let transaction = connection.transaction()?;
+        for graded in grades {
+            let row = params![graded.student, graded.content, serde_json::to_string(graded)?];
+            transaction.execute("INSERT INTO graded (student, content, json) VALUES (?1, ?2, ?3)", row)?;
+        }
+        Ok(transaction.commit()?)
+    }
+
     /// Returns the graded students that are not among `students`.
     pub fn others(&self, students: &[&str]) -> Result<Vec<String>> {
-        Ok(self.names()?.into_iter().filter(|name| !students.contains(&name.as_str())).collect())
+        let students: HashSet<&str> = students.iter().copied().collect();
+        Ok(self.names()?.into_iter().filter(|name| !students.contains(name.as_str())).collect())
     }
 
     /// Deletes the grade of a student.
@@ -131,38 +147,96 @@ impl Store {
     /// Returns the session and all grades.
     pub fn class(&self) -> Result<Class> {
         let session = self.session()?.context("nothing has been graded here yet")?;
-        let connection = self.lock();
-        let mut statement = connection.prepare("SELECT json FROM graded ORDER BY student")?;
-        let rows = statement.query_map([], |row| row.get::<_, String>(0))?;
-        let students = rows.map(|json| Ok(serde_json::from_str(&json?)?)).collect::<Result<_>>()?;
+        let mut students = Vec::new();
+        self.each(&mut |graded| {
+            students.push(graded);
+            Ok(())
+        })?;
         Ok(Class { session, students })
     }
 
-    /// Adds the grades of another part of the class. Returns an error if it was graded with another kit, other stages or
-    /// another seed, or if a student is in both.
-    pub fn take_over(&self, other: &Class, from: &Path) -> Result<()> {
-        match self.session()? {
-            None => self.begin(&other.session)?,
-            Some(session) if session.same_grades(&other.session) => {}
-            Some(session) => bail!(
-                "{} was graded in another way ({}) than the other parts ({}): all parts need the same kit, stages and --seed",
-                from.display(),
-                other.session.words(),
-                session.words()
-            ),
-        }
-        // Copy the grades. A student may be in only one part.
-        let names = self.names()?;
-        for graded in &other.students {
-            ensure!(
-                !names.contains(&graded.student),
-                "{} is graded twice, here and in {}: remove one of them",
-                graded.student,
-                from.display()
-            );
-            self.keep(graded)?;
+    /// Calls `each` with one grade after the other, sorted by the names of the students. Only one grade is in memory at a time.
+    pub fn each(&self, each: &mut dyn FnMut(Graded) -> Result<()>) -> Result<()> {
+        let connection = self.lock();
+        let mut statement = connection.prepare("SELECT json FROM graded ORDER BY student")?;
+        let mut rows = statement.query([])?;
+        while let Some(row) = rows.next()? {
+            let json: String = row.get(0)?;
+            each(serde_json::from_str(&json).context("a grade is from another version")?)?;
         }
         Ok(())
+    }
+
+    /// Returns which part of a class is graded here; `None` if it is the whole class.
+    pub fn part(&self) -> Result<Option<Part>> {
+        let json: Option<String> =
+            self.lock().query_row("SELECT json FROM part", [], |row| row.get(0)).optional()?;
+        json.map(|json| serde_json::from_str(&json).context("the part is from another version")).transpose()
+    }
+
+    /// Stores which part of the class a run begins to grade. Returns an error if grades of another part are stored.
+    pub fn begin_part(&self, part: Option<&Part>) -> Result<()> {
+        let (begun, is_empty) = (self.part()?, self.names()?.is_empty());
+        match (&begun, part) {
+            (Some(begun), Some(part)) if begun.shard == part.shard => {}
+            (None, None) => return Ok(()),
+            (None, Some(_)) if is_empty => {}
+            _ => bail!(
+                "the grades there are of {}, and {} is to be graded now: choose another folder",
+                words(begun.as_ref()),
+                words(part)
+            ),
+        }
+        let json = serde_json::to_string(&part)?;
+        self.lock().execute("INSERT OR REPLACE INTO part (id, json) VALUES (0, ?1)", [json])?;
+        Ok(())
+    }
+
+    /// Stores that all submissions of the part are graded.
+    pub fn finish_part(&self) -> Result<()> {
+        if let Some(part) = self.part()? {
+            let json = serde_json::to_string(&Part { finished: true, ..part })?;
+            self.lock().execute("UPDATE part SET json = ?1", [json])?;
+        }
+        Ok(())
+    }
+
+    /// Copies the grades from the folders of all parts of a class into this empty store. Returns an error if they were graded
+    /// with different kits, stages or seeds, or if a student is in two of them. The session is stored last, so a merge that was
+    /// interrupted leaves no grades that count.
+    pub fn take_over(&self, parts: &[PathBuf]) -> Result<()> {
+        self.lock().execute("DELETE FROM graded", [])?;
+        let mut known: Option<Session> = None;
+        for folder in parts {
+            let theirs = Store::open(folder)?.session()?;
+            let theirs = theirs.with_context(|| format!("{} contains no grades", folder.display()))?;
+            let session = known.get_or_insert_with(|| theirs.clone());
+            ensure!(
+                session.same_grades(&theirs),
+                "{} was graded in another way ({}) than the other parts ({}): all parts need the same kit, stages and --seed",
+                folder.display(),
+                theirs.words(),
+                session.words()
+            );
+            self.copy_from(folder)?;
+        }
+        self.begin(&known.context("there are no parts")?)
+    }
+
+    /// Copies all grades of the store in `folder` in one transaction.
+    fn copy_from(&self, folder: &Path) -> Result<()> {
+        let file = folder.join(FILE);
+        let file = file.to_str().with_context(|| format!("{} is not UTF-8: rename it", folder.display()))?;
+        let mut connection = self.lock();
+        connection.execute("ATTACH ?1 AS other", [file])?;
+        let copied = copy_from_other(&mut connection);
+        connection.execute("DETACH other", [])?;
+        match copied? {
+            Some(student) => {
+                bail!("{student} is graded twice, here and in {}: remove one of them", folder.display())
+            }
+            None => Ok(()),
+        }
     }
 
     fn lock(&self) -> MutexGuard<'_, Connection> {
@@ -183,9 +257,31 @@ impl Session {
     }
 }
 
+/// Copies all grades of the attached database `other`. If one is of a student that has a grade here, copies none and returns the
+/// student.
+fn copy_from_other(connection: &mut Connection) -> rusqlite::Result<Option<String>> {
+    let twice = "SELECT student FROM other.graded INTERSECT SELECT student FROM main.graded";
+    let twice: Option<String> = connection.query_row(twice, [], |row| row.get(0)).optional()?;
+    if twice.is_some() {
+        return Ok(twice);
+    }
+    let transaction = connection.transaction()?;
+    let copy =
+        "INSERT INTO main.graded (student, content, json) SELECT student, content, json FROM other.graded";
+    transaction.execute(copy, [])?;
+    transaction.commit()?;
+    Ok(None)
+}
+
+/// Describes a part of a class in messages.
+fn words(part: Option<&Part>) -> String {
+    part.map_or("the whole class".to_owned(), |part| format!("part {}/{}", part.shard.index, part.shard.of))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grade::shard::Shard;
 
     fn session(seed: u64) -> Session {
         Session { kit: "1".into(), stages: vec![1], seed, isolation: String::new() }
@@ -239,16 +335,47 @@ mod tests {
 
     #[test]
     fn parts_of_a_class_fit_together_or_say_why_not() {
-        let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-        let (store, other) = (Store::open(one.path()).unwrap(), Store::open(two.path()).unwrap());
-        other.begin(&session(1)).unwrap();
-        other.keep(&graded("ann", "x")).unwrap();
-        let part = other.class().unwrap();
-        store.take_over(&part, two.path()).unwrap();
-        assert_eq!(store.class().unwrap(), part);
-        assert!(store.take_over(&part, two.path()).unwrap_err().to_string().contains("is graded twice"));
-        let strange = Class { session: session(2), students: Vec::new() };
-        assert!(store.take_over(&strange, two.path()).unwrap_err().to_string().contains("another way"));
+        let folders: Vec<_> = (0..4).map(|_| tempfile::tempdir().unwrap()).collect();
+        let paths: Vec<PathBuf> = folders.iter().map(|folder| folder.path().to_owned()).collect();
+        for (folder, student, seed) in [(1, "ann", 1), (2, "bob", 1), (3, "cat", 2)] {
+            let part = Store::open(&paths[folder]).unwrap();
+            part.begin(&session(seed)).unwrap();
+            part.keep(&graded(student, "x")).unwrap();
+        }
+        let store = Store::open(&paths[0]).unwrap();
+        let refused = |parts: &[PathBuf]| store.take_over(parts).unwrap_err().to_string();
+        let twice = refused(&[paths[1].clone(), paths[1].clone()]);
+        assert!(twice.contains("ann is graded twice"), "{twice}");
+        assert!(refused(&paths[1..]).contains("another way"));
+        assert!(store.session().unwrap().is_none(), "a merge that failed leaves no grades that count");
+        drop(store);
+        let store = Store::open(&paths[0]).unwrap();
+        store.take_over(&paths[1..3]).unwrap();
+        assert_eq!(store.class().unwrap().students, [graded("ann", "x"), graded("bob", "x")]);
+    }
+
+    #[test]
+    fn a_folder_holds_one_part_of_a_class() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        store.begin(&session(1)).unwrap();
+        let part = |index| Part {
+            shard: Shard { index, of: 3 },
+            submissions: 5,
+            class: "c".into(),
+            finished: false,
+        };
+        store.begin_part(Some(&part(2))).unwrap();
+        assert_eq!(store.part().unwrap(), Some(part(2)));
+        store.finish_part().unwrap();
+        assert!(store.part().unwrap().unwrap().finished);
+        // A run that begins again is not finished until it ends.
+        store.begin_part(Some(&part(2))).unwrap();
+        assert!(!store.part().unwrap().unwrap().finished);
+        let error = store.begin_part(Some(&part(1))).unwrap_err().to_string();
+        assert!(error.contains("are of part 2/3, and part 1/3 is to be graded"), "{error}");
+        let error = store.begin_part(None).unwrap_err().to_string();
+        assert!(error.contains("the whole class is to be graded"), "{error}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 
 use super::result::Remark;
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fs::{self, OpenOptions};
 use std::io::{self, Read};
 use std::os::unix::fs::OpenOptionsExt;
@@ -66,11 +66,12 @@ impl Taken {
 pub fn find(folder: &Path) -> io::Result<(Vec<Submission>, Vec<PathBuf>)> {
     let (mut found, mut others) = (Vec::new(), Vec::new());
     for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
+        let entry = entry?;
+        let path = entry.path();
         let name = path.file_name().unwrap_or_default();
-        let is = |of: fn(&fs::FileType) -> bool| {
-            fs::symlink_metadata(&path).is_ok_and(|metadata| of(&metadata.file_type()))
-        };
+        // Most file systems know this from the list of the folder, without a look at each entry. A link is neither.
+        let kind = entry.file_type();
+        let is = |of: fn(&fs::FileType) -> bool| kind.as_ref().is_ok_and(of);
         let student = match names::archive_stem(name) {
             _ if name.as_encoded_bytes().starts_with(b".") => None,
             Some(stem) if is(fs::FileType::is_file) => Some(stem),
@@ -84,9 +85,10 @@ pub fn find(folder: &Path) -> io::Result<(Vec<Submission>, Vec<PathBuf>)> {
     found.sort();
     others.sort();
     // If there is a folder `ann` and an archive `ann.zip`, both use their full names.
-    let short: Vec<String> = found.iter().map(|one| one.student.clone()).collect();
+    let mut n_of_name: HashMap<String, usize> = HashMap::new();
+    found.iter().for_each(|one| *n_of_name.entry(one.student.clone()).or_default() += 1);
     for one in &mut found {
-        if short.iter().filter(|name| **name == one.student).count() > 1 {
+        if n_of_name.get(&one.student).is_some_and(|n| *n > 1) {
             one.student = names::of_student(one.path.file_name().unwrap_or_default());
         }
     }

@@ -18,7 +18,7 @@ pub struct Journal {
 impl Journal {
     /// Opens the journal of the last run, or an empty one.
     pub fn open(root: &Path, keep: bool) -> Result<Journal> {
-        let file = root.join("target/corpus/mutants.jsonl");
+        let file = root.join(crate::corpus::FOLDER).join("mutants.jsonl");
         let text = || format!("{}", file.display());
         std::fs::create_dir_all(file.parent().unwrap_or(root)).with_context(text)?;
         let mut fates = BTreeMap::new();

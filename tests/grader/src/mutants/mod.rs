@@ -10,8 +10,8 @@ mod journal;
 mod list;
 pub mod reviewed;
 
-use crate::corpus::entry;
 use crate::corpus::workshop::{Built, Workshop};
+use crate::corpus::{FOLDER, entry};
 use crate::gaps::{self, Gap};
 use crate::kits::{Need, Source, Which};
 use crate::pictures::{Scenes, Shown};
@@ -25,6 +25,7 @@ use journal::Journal;
 use list::Mutant;
 use raykata::kit::Door;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use raykata_cli::lock::Lock;
 use reviewed::Reviewed;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -90,6 +91,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         mutants.retain(|mutant| mutant.file.contains(file.as_str()));
     }
     // Choose the changes to test.
+    let _lock = Lock::on(&root.join(FOLDER))?;
     let mut journal = Journal::open(root, options.resume || options.again)?;
     if options.again {
         mutants.retain(|mutant| journal.of(mutant) == Some(&Fate::Survived));

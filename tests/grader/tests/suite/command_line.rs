@@ -3,7 +3,7 @@ use super::program_runs::{grader, printed};
 use std::process::Command;
 
 /// The commands with their arguments and options.
-const COMMANDS: [(&str, &[&str]); 17] = [
+const COMMANDS: [(&str, &[&str]); 19] = [
     (
         "grade",
         &[
@@ -25,7 +25,9 @@ const COMMANDS: [(&str, &[&str]); 17] = [
     ("merge", &["PART...", "--out"]),
     ("handout", &["FOLDER"]),
     ("export gradescope", &["--out", "--stages", "--seed", "autograder.zip"]),
-    ("export classroom", &["--out", "--stages", "--seed"]),
+    ("export slurm", &["SUBMISSIONS", "--out", "--chunk", "--stages", "--seed"]),
+    ("export slurm-picture", &["SCENE", "--out", "--pieces", "--seed", "--size", "--tone"]),
+    ("export classroom", &["--out", "--stages", "--seed", "--parts"]),
     (
         "gauntlet",
         &["--kit", "--inputs", "--seed", "--rays", "--state", "--out", "20000", "out/gauntlet.json"],
@@ -80,7 +82,10 @@ fn what_is_not_understood_ends_with_2() {
     for (line, complaint) in [
         ("", "a command is missing"),
         ("exprot", "there is no command `exprot`; did you mean `export`?"),
-        ("export", "the commands are gradescope, classroom"),
+        ("export", "the commands are gradescope, slurm, slurm-picture, classroom"),
+        ("export classroom --out a --parts 257", "a whole number from 1 to 256"),
+        ("export slurm --out a", "SUBMISSIONS is missing"),
+        ("export slurm-picture a.toml --out a --sed 1", "did you mean `--seed`?"),
         ("export gradescop", "did you mean `gradescope`?"),
         ("export classroom", "`--out` is missing"),
         ("export gradescope --stages 13", "there is no stage 13"),

@@ -80,6 +80,15 @@ fn classroom_gets_workflows_whose_steps_are_scripts() {
         }
         assert!(scripts >= 1, "{name}");
     }
+    // Each part of the class is graded by one job, and the merge takes the parts of all jobs.
+    let most = folder.path().join("most");
+    let output = grader(&["export", "classroom", "--out", &most.to_string_lossy(), "--parts", "256"]);
+    assert!(output.status.success(), "{}", printed(&output).1);
+    let text = fs::read_to_string(most.join(".github/workflows/class.yml")).expect("a workflow");
+    let list = text.split_once("part: [").and_then(|(_, rest)| rest.split_once(']')).expect("a matrix").0;
+    let parts: Vec<u16> = list.split(", ").map(|part| part.parse().expect("a number")).collect();
+    assert_eq!(parts, (1..=256).collect::<Vec<u16>>());
+    assert!(text.contains("--shard ${{ matrix.part }}/256 ") && !text.contains("{parts}"), "{text}");
     // The files exist, and the instructor may have edited them.
     let out = folder.path().join("out");
     let again = grader(&["export", "classroom", "--out", &out.to_string_lossy()]);

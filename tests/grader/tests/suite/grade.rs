@@ -33,12 +33,12 @@ fn done(mut command: Command) -> String {
 }
 
 /// Returns the reference's stage 1 without the marks.
-fn right() -> String {
+pub fn right() -> String {
     let file = root().unwrap().join("solutions/src/stage1_shapes.rs");
     sync::answer(&fs::read_to_string(&file).unwrap(), &file).unwrap()
 }
 
-fn hand_in(class: &Path, student: &str, text: &str) {
+pub fn hand_in(class: &Path, student: &str, text: &str) {
     let folder = class.join(student).join("exercises/src");
     fs::create_dir_all(&folder).unwrap();
     fs::write(folder.join("stage1_shapes.rs"), text).unwrap();
@@ -69,7 +69,7 @@ fn points(out: &Path) -> Vec<(String, u32)> {
     table.lines().skip(1).map(row).collect()
 }
 
-fn graded(out: &Path) -> Vec<(String, String)> {
+pub fn graded(out: &Path) -> Vec<(String, String)> {
     let Ok(connection) = rusqlite::Connection::open(out.join("grades.sqlite")) else { return Vec::new() };
     let Ok(mut statement) = connection.prepare("SELECT student, json FROM graded ORDER BY student") else {
         return Vec::new();
@@ -199,6 +199,14 @@ fn a_class_gets_the_same_grades_however_often_the_run_is_killed_and_however_it_i
     merge.arg("merge").args([first, second]).arg("--out").arg(merged.path());
     assert_eq!(merge.status().unwrap().code(), Some(1));
     assert_eq!(results(merged.path()), results(whole));
+
+    // A merge without one of the parts names it, and writes nothing.
+    let hole = tempfile::tempdir().unwrap();
+    let output = grader().arg("merge").arg(first).arg("--out").arg(hole.path()).output().unwrap();
+    assert!(said(&output).contains("part 2 of 2 is missing"), "{}", said(&output));
+    assert!(files(hole.path()).is_empty());
+    let again = said(&grade(class.path(), first, &["--shard", "2/2", "--resume"]).output().unwrap());
+    assert!(again.contains("the grades there are of part 1/2, and part 2/2 is to be graded"), "{again}");
 
     // One student hands in again. No other submission is graded again.
     let before = graded(whole);

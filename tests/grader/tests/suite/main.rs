@@ -19,5 +19,7 @@ mod program_runs;
 mod sandbox;
 #[cfg(target_os = "linux")]
 mod sandboxed_workers;
+#[cfg(target_os = "linux")]
+mod slurm;
 mod sync;
 mod words;

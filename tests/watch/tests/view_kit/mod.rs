@@ -74,6 +74,7 @@ fn one_color(job: &RenderJob, color: Vec3, watch: &dyn Watch) -> Option<Renderin
     let settings = FrameSettings {
         width: job.scene.film.width,
         height: job.scene.film.height,
+        rows: job.scene.film.rendered_rows(),
         samples_per_pixel: job.scene.quality.samples_per_pixel,
         sampler: job.scene.quality.sampler,
         lens: false,

@@ -1,23 +1,25 @@
 //! `index.html`: the overview of the class for the instructor. Printed, it is one sheet that the class may see, without names.
 
-use super::chart;
+use super::line::Line;
 use super::page::{page, session_line, with_code};
 use super::tally::{self, Tally};
-use crate::grade::result::{Class, Graded, Outcome, sum};
+use super::{chart, student_list};
+use crate::grade::result::{Outcome, Session};
 use maud::{Markup, html};
 
 /// Number of listed checks that fail most often, and of listed slow submissions.
 const N_WORST: usize = 10;
 
-/// Returns the page as HTML. `pages` are the file names of the students' pages.
-pub(super) fn class_page(class: &Class, tallies: &[Tally], pages: &[String]) -> String {
-    let students: Vec<(&Graded, &str)> =
-        class.students.iter().zip(pages.iter().map(String::as_str)).collect();
-    let points: Vec<u32> = class.students.iter().map(|student| student.points().0).collect();
+/// Number of links to submissions in a list of problems.
+const N_LINKS: usize = 200;
+
+/// Returns the page as HTML.
+pub(super) fn class_page(session: &Session, lines: &[Line], tallies: &[Tally]) -> String {
+    let points: Vec<u32> = lines.iter().map(|line| line.points).collect();
     let body = html! {
         header {
             h1 { "The class" }
-            (session_line(&class.session))
+            (session_line(session))
         }
         nav {
             a href="#reteach" { "Most failed checks" }
@@ -26,29 +28,32 @@ pub(super) fn class_page(class: &Class, tallies: &[Tally], pages: &[String]) -> 
             a href="#slowest" { "Slowest" }
             a href="#students" { "Students" }
         }
-        (numbers(class, tallies))
+        (numbers(lines, tallies))
         section {
             h2 { "Points" }
             @if !points.is_empty() { (chart::histogram(&points, tally::of(tallies))) }
         }
         (worst(tallies))
-        (to_look_at(&students))
+        (to_look_at(lines))
         (stages(tallies))
-        (slowest(&students))
-        (all(&students, tallies))
+        (slowest(lines))
+        section #students.screen {
+            h2 { "Students" }
+            (student_list::list(lines, tallies))
+        }
     };
     page("The class · Raykata", &body)
 }
 
-fn numbers(class: &Class, tallies: &[Tally]) -> Markup {
+fn numbers(lines: &[Line], tallies: &[Tally]) -> Markup {
     let of = tally::of(tallies);
-    let full = class.students.iter().filter(|student| !student.checks.is_empty() && student.points().0 == of);
-    let troubled = class.students.iter().filter(|student| !student.trouble.is_empty());
+    let full = lines.iter().filter(|line| line.n_checks > 0 && line.points == of);
+    let troubled = lines.iter().filter(|line| !line.trouble.is_empty());
     html! {
         dl.numbers {
-            div { dt { "submissions" } dd { (class.students.len()) } }
-            div { dt { "points, median" } dd { (tally::median(class)) small { " of " (of) } } }
-            div { dt { "points, mean" } dd { (format!("{:.1}", tally::mean(class))) small { " of " (of) } } }
+            div { dt { "submissions" } dd { (lines.len()) } }
+            div { dt { "points, median" } dd { (tally::median(lines)) small { " of " (of) } } }
+            div { dt { "points, mean" } dd { (format!("{:.1}", tally::mean(lines))) small { " of " (of) } } }
             div { dt { "all points" } dd { (full.count()) } }
             div { dt { "not gradable" } dd { (troubled.count()) } }
         }
@@ -93,7 +98,7 @@ fn failures(tally: &Tally) -> Markup {
     html! { div.note { (words.join(" · ")) } }
 }
 
-fn to_look_at(students: &[(&Graded, &str)]) -> Markup {
+fn to_look_at(lines: &[Line]) -> Markup {
     let kinds = [
         (Outcome::DoesNotCompile, "A file does not compile"),
         (Outcome::Refused, "A file was refused by the syntax check"),
@@ -101,9 +106,9 @@ fn to_look_at(students: &[(&Graded, &str)]) -> Markup {
         (Outcome::TooLong, "A check took too long"),
         (Outcome::NotTried, "The submission used up its time"),
     ];
-    let troubled: Vec<_> = students.iter().filter(|(student, _)| !student.trouble.is_empty()).collect();
+    let troubled: Vec<&Line> = lines.iter().filter(|line| !line.trouble.is_empty()).collect();
     let kinds = kinds.map(|(outcome, words)| {
-        let such: Vec<_> = students.iter().filter(|(student, _)| tally::has(student, outcome)).collect();
+        let such: Vec<&Line> = lines.iter().filter(|line| line.has(outcome)).collect();
         (words, such)
     });
     html! {
@@ -114,14 +119,21 @@ fn to_look_at(students: &[(&Graded, &str)]) -> Markup {
             }
             @if !troubled.is_empty() {
                 h3 { "Could not be graded " small { (troubled.len()) } }
-                ul { @for (student, name) in troubled { li { (link(student, name)) ": " (student.trouble) } } }
+                ul { @for line in troubled.iter().take(N_LINKS) { li { (student_list::link(line)) ": " (line.trouble) } } }
+                (more(troubled.len(), "grades.csv"))
             }
             @for (words, such) in kinds.iter().filter(|(_, such)| !such.is_empty()) {
                 h3 { (words) " " small { (such.len()) } }
-                p.links { @for (student, name) in such { (link(student, name)) " " } }
+                p.links { @for line in such.iter().take(N_LINKS) { (student_list::link(line)) " " } }
+                (more(such.len(), "checks.csv"))
             }
         }
     }
+}
+
+/// Says where the rest of a long list is.
+fn more(n: usize, table: &str) -> Markup {
+    html! { @if n > N_LINKS { p.note { (n - N_LINKS) " more are in " (table) "." } } }
 }
 
 fn stages(tallies: &[Tally]) -> Markup {
@@ -149,9 +161,9 @@ fn stages(tallies: &[Tally]) -> Markup {
     }
 }
 
-fn slowest(students: &[(&Graded, &str)]) -> Markup {
-    let mut slowest = students.to_vec();
-    slowest.sort_by_key(|(student, _)| std::cmp::Reverse(student.cpu_ms));
+fn slowest(lines: &[Line]) -> Markup {
+    let mut slowest: Vec<&Line> = lines.iter().collect();
+    slowest.sort_by_key(|line| std::cmp::Reverse(line.cpu_ms));
     html! {
         section #slowest.screen {
             h2 { "Slowest" }
@@ -159,59 +171,14 @@ fn slowest(students: &[(&Graded, &str)]) -> Markup {
             table.plain {
                 thead { tr { th { "student" } th.number { "seconds" } } }
                 tbody {
-                    @for (student, name) in slowest.iter().take(N_WORST) {
+                    @for line in slowest.iter().take(N_WORST) {
                         tr {
-                            td { (link(student, name)) }
-                            td.number { (format!("{}.{}", student.cpu_ms / 1000, student.cpu_ms / 100 % 10)) }
+                            td { (student_list::link(line)) }
+                            td.number { (format!("{}.{}", line.cpu_ms / 1000, line.cpu_ms / 100 % 10)) }
                         }
                     }
                 }
             }
         }
     }
-}
-
-fn all(students: &[(&Graded, &str)], tallies: &[Tally]) -> Markup {
-    let stages = tally::stages(tallies);
-    let of_stage =
-        |stage| tallies.iter().filter(|tally| tally.stage == stage).map(|tally| tally.points).sum::<u32>();
-    html! {
-        section #students.screen {
-            h2 { "Students" }
-            div.scroll {
-                table.plain {
-                    thead {
-                        tr {
-                            th { "student" }
-                            th.number { "points" div.note { "of " (tally::of(tallies)) } }
-                            @for &stage in &stages {
-                                th.number { "stage " (stage) div.note { "of " (of_stage(stage)) } }
-                            }
-                            th.number { "remarks" }
-                        }
-                    }
-                    tbody {
-                        @for (student, name) in students {
-                            tr {
-                                td.student { (link(student, name)) @if !student.trouble.is_empty() { " " span.badge.crashed { "not gradable" } } }
-                                td.number {
-                                    b { (student.points().0) }
-                                    div.note { (tally::percent(student.points().0, tally::of(tallies))) " %" }
-                                }
-                                @for &stage in &stages {
-                                    td.number { (sum(student.of_stage(stage)).0) }
-                                }
-                                td.number { @if !student.remarks.is_empty() { (student.remarks.len()) } }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn link(student: &Graded, name: &str) -> Markup {
-    let shown = if student.student.is_empty() { "(no name)" } else { &student.student };
-    html! { a href={ "students/" (name) ".html" } { (shown) } }
 }

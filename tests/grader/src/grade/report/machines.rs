@@ -1,21 +1,16 @@
 //! Reports for programs: `results.json`, and the files for Gradescope and GitHub Classroom.
 
 use super::clean::clean_line;
-use super::{messages, presentable};
-use crate::grade::result::{CheckResult, Class, Graded, Outcome, Remark, Session};
+use super::{Each, messages, presentable};
+use crate::grade::result::{CheckResult, Graded, Outcome, Remark, Session};
 use anyhow::Result;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use serde::Serialize;
 use serde_json::{Value, json};
+use std::io::Write;
 
-/// A class without pictures and without values that differ from run to run.
-#[derive(Serialize)]
-struct ClassView<'a> {
-    session: &'a Session,
-    students: Vec<GradedView<'a>>,
-}
-
+/// A submission without pictures and without values that differ from run to run.
 #[derive(Serialize)]
 struct GradedView<'a> {
     student: &'a str,
@@ -28,12 +23,15 @@ struct GradedView<'a> {
     trouble: &'a str,
 }
 
-/// Writes the class as JSON for the instructor's tools. It can be read back as a [`Class`].
-pub(super) fn results(class: &Class) -> Result<Vec<u8>> {
-    let students = class.students.iter().map(|graded| {
+/// Writes the class as JSON for the instructor's tools, one submission after the other. It can be read back as a
+/// [`Class`](crate::grade::result::Class).
+pub(super) fn results(session: &Session, each: &Each<'_>, out: &mut dyn Write) -> Result<()> {
+    write!(out, "{{\n  \"session\": {},\n  \"students\": [", indented(session, 2)?)?;
+    let mut before = "";
+    each(&mut |graded| {
         let (earned, of) = graded.points();
         let without_picture = |check: &CheckResult| CheckResult { picture: None, ..check.clone() };
-        GradedView {
+        let view = GradedView {
             student: &graded.student,
             content: &graded.content,
             earned,
@@ -42,9 +40,20 @@ pub(super) fn results(class: &Class) -> Result<Vec<u8>> {
             remarks: &graded.remarks,
             compiler: &graded.compiler,
             trouble: &graded.trouble,
-        }
-    });
-    pretty(&ClassView { session: &class.session, students: students.collect() })
+        };
+        write!(out, "{before}\n    {}", indented(&view, 4)?)?;
+        before = ",";
+        Ok(())
+    })?;
+    // A list without entries is written on one line.
+    let end = if before.is_empty() { "" } else { "\n  " };
+    Ok(writeln!(out, "{end}]\n}}")?)
+}
+
+/// Returns indented JSON as a part of a text: all lines but the first begin with `spaces` more. A text in JSON has no line
+/// breaks.
+fn indented(value: &impl Serialize, spaces: usize) -> Result<String> {
+    Ok(serde_json::to_string_pretty(value)?.replace('\n', &format!("\n{:spaces$}", "")))
 }
 
 /// Returns indented JSON.

@@ -7,10 +7,12 @@ mod chart;
 mod class_page;
 pub mod clean;
 mod junit;
+mod line;
 mod machines;
 mod messages;
 mod names;
 mod page;
+mod student_list;
 mod student_page;
 mod tables;
 mod tally;
@@ -23,9 +25,10 @@ pub use names::file_names;
 
 use super::result::{CheckResult, Class, Graded, Picture, Remark, Session};
 use anyhow::{Context, Result};
+use line::Line;
 use raykata::film::write_atomically;
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::Path;
 
 /// Longest name or other text of one line, in bytes.
@@ -40,43 +43,79 @@ const COMPILER: usize = 16 * 1024;
 /// Most remarks that are shown per submission. A submission may have thousands of files.
 const REMARKS: usize = 50;
 
-/// Writes all reports of a class into `folder`: `grades.csv`, `checks.csv`, `timings.csv`, `results.json`, `junit.xml`,
-/// `index.html`, and for each student a file in `students`, `gradescope` and `classroom`.
-///
-/// The same results give the same bytes in any order of the students. Only `timings.csv` and `index.html` contain times.
-/// Each file is replaced atomically.
+/// Passes the submissions of a class to a function, one after the other, sorted by name. It is called several times, and keeps
+/// one submission in memory at a time, because a class may be larger than the memory.
+pub type Each<'a> = dyn Fn(&mut dyn FnMut(Graded) -> Result<()>) -> Result<()> + 'a;
+
+/// What is printed after the reports are written.
+pub struct Summary {
+    /// The number of submissions.
+    pub submissions: usize,
+    /// The submissions that could not be graded, with the reason.
+    pub troubled: Vec<(String, String)>,
+}
+
+/// Writes all reports of a class into `folder`; see [`write_from`]. The students may have any order.
 pub fn write_all(class: &Class, folder: &Path) -> Result<()> {
     let mut students: Vec<&Graded> = class.students.iter().collect();
     // Two submissions may have the same name. Sort these by their content.
     students.sort_by_key(|&graded| (&graded.student, &graded.content, &graded.trouble));
-    let students: Vec<Graded> = students.into_iter().cloned().collect();
-    let pages = names::file_names(&students);
-    // Clean all texts.
-    let session = Session {
-        kit: clean_line(&class.session.kit, LINE),
-        isolation: clean_line(&class.session.isolation, LINE),
-        ..class.session.clone()
+    write_from(&class.session, &|each| students.iter().try_for_each(|&graded| each(graded.clone())), folder)
+        .map(drop)
+}
+
+/// Writes all reports of a class into `folder`: `grades.csv`, `checks.csv`, `timings.csv`, `results.json`, `junit.xml`,
+/// `index.html`, and for each student a file in `students`, `gradescope` and `classroom`. If the class is large, the list of
+/// students has pages of its own.
+///
+/// The same results give the same bytes in any order of the students. Only `timings.csv` and `index.html` contain times.
+/// Each file is replaced atomically.
+pub fn write_from(session: &Session, each: &Each<'_>, folder: &Path) -> Result<Summary> {
+    let session = &Session {
+        kit: clean_line(&session.kit, LINE),
+        isolation: clean_line(&session.isolation, LINE),
+        ..session.clone()
     };
-    let class = &Class { session, students: students.iter().map(presentable).collect() };
-    let tallies = tally::tallies(class);
+    let each_cleaned: &Each<'_> = &|work| each(&mut |graded| work(presentable(&graded)));
+
+    // Count, and keep a line of each submission.
+    let (mut tallies, mut totals) = (tally::Tallies::default(), junit::Totals::default());
+    let (mut names, mut lines) = (names::FileNames::default(), Vec::new());
+    each(&mut |graded| {
+        let cleaned = presentable(&graded);
+        tallies.add(&cleaned);
+        totals.add(&cleaned);
+        lines.push(Line::new(&cleaned, &graded.student, &mut names));
+        Ok(())
+    })?;
+    let tallies = tallies.in_order();
 
     // Write the tables and the files for programs.
-    write(folder, "grades.csv", &tables::grades(class, &tallies, &pages)?)?;
-    write(folder, "checks.csv", &tables::checks(class)?)?;
-    write(folder, "timings.csv", &tables::timings(class, &pages)?)?;
-    write(folder, "results.json", &machines::results(class)?)?;
-    write(folder, "junit.xml", &junit::junit(class)?)?;
+    write(folder, "grades.csv", &tables::grades(&lines, &tallies)?)?;
+    write_with(folder, "checks.csv", |out| tables::checks(each_cleaned, out))?;
+    write(folder, "timings.csv", &tables::timings(&lines)?)?;
+    write_with(folder, "results.json", |out| machines::results(session, each_cleaned, out))?;
+    write_with(folder, "junit.xml", |out| junit::junit(totals, each_cleaned, out))?;
     // Write the files of each student.
-    for (graded, name) in class.students.iter().zip(&pages) {
-        let page = student_page::student_page(graded, &class.session);
+    let mut pages = lines.iter().map(|line| line.page.as_str());
+    each_cleaned(&mut |graded| {
+        let name =
+            pages.next().context("the grades changed while the reports were written: write them again")?;
+        let page = student_page::student_page(&graded, session);
         write(folder, &format!("students/{name}.html"), page.as_bytes())?;
-        let results = machines::pretty(&gradescope(graded, &class.session))?;
+        let results = machines::pretty(&gradescope(&graded, session))?;
         write(folder, &format!("gradescope/{name}.json"), &results)?;
-        write(folder, &format!("classroom/{name}.json"), &machines::pretty(&classroom(graded))?)?;
-    }
+        write(folder, &format!("classroom/{name}.json"), &machines::pretty(&classroom(&graded))?)
+    })?;
     // Write the index last, so that all its links work.
-    let index = class_page::class_page(class, &tallies, &pages);
-    write(folder, "index.html", index.as_bytes())
+    for (name, page) in student_list::pages(&lines, &tallies) {
+        write(folder, &name, page.as_bytes())?;
+    }
+    let index = class_page::class_page(session, &lines, &tallies);
+    write(folder, "index.html", index.as_bytes())?;
+    let submissions = lines.len();
+    let troubled = lines.into_iter().filter(|line| !line.trouble.is_empty());
+    Ok(Summary { submissions, troubled: troubled.map(|line| (line.student, line.trouble)).collect() })
 }
 
 /// Returns the submission with every text cleaned. Cleaning it again changes nothing.
@@ -114,9 +153,14 @@ fn presentable_check(check: &CheckResult) -> CheckResult {
 }
 
 fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<()> {
+    write_with(folder, name, |out| Ok(out.write_all(bytes)?))
+}
+
+/// Writes a file that may be larger than the memory.
+fn write_with(folder: &Path, name: &str, fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     let file = folder.join(name);
     let parent = file.parent().unwrap_or(folder);
-    let written =
-        fs::create_dir_all(parent).and_then(|()| write_atomically(&file, |out| out.write_all(bytes)));
+    let written = fs::create_dir_all(parent)
+        .and_then(|()| write_atomically(&file, |out| fill(out).map_err(io::Error::other)));
     written.with_context(|| format!("{} cannot be written", file.display()))
 }

@@ -13,8 +13,21 @@ const RESERVED: [&str; 5] = ["con", "prn", "aux", "nul", "index"];
 /// Returns a file name for each student, in the order of `students`. It contains only letters, digits, `-`, `_` and `.`.
 /// The names also differ on file systems that ignore case. A changed name ends in a fingerprint of the old one.
 pub fn file_names(students: &[Graded]) -> Vec<String> {
-    let mut taken = BTreeSet::new();
-    students.iter().map(|student| free_name(&student.student, &mut taken)).collect()
+    let mut names = FileNames::default();
+    students.iter().map(|student| names.name(&student.student)).collect()
+}
+
+/// Makes these names one by one.
+#[derive(Default)]
+pub(super) struct FileNames {
+    taken: BTreeSet<String>,
+}
+
+impl FileNames {
+    /// Returns the file name for the next student.
+    pub fn name(&mut self, student: &str) -> String {
+        free_name(student, &mut self.taken)
+    }
 }
 
 fn free_name(student: &str, taken: &mut BTreeSet<String>) -> String {

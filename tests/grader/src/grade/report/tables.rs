@@ -1,57 +1,66 @@
 //! Tables for spreadsheets: `grades.csv`, `checks.csv` and `timings.csv`.
 
+use super::Each;
+use super::line::Line;
 use super::tally::{self, Tally};
-use crate::grade::result::{Class, sum};
 use anyhow::{Result, anyhow};
+use std::io::Write;
 
-/// Writes one row per student: points in total and per stage.
-pub(super) fn grades(class: &Class, tallies: &[Tally], pages: &[String]) -> Result<Vec<u8>> {
-    let stages = tally::stages(tallies);
+/// Returns one row per student: points in total and per stage.
+pub(super) fn grades(lines: &[Line], tallies: &[Tally]) -> Result<Vec<u8>> {
+    let (stages, of) = (tally::stages(tallies), tally::of(tallies));
+    let mut table = Table::new(Vec::new());
     let header = ["name", "points", "of", "percent"].map(str::to_owned).into_iter();
     let header = header.chain(stages.iter().map(|stage| format!("stage{stage}")));
-    let mut rows = vec![header.chain(["remarks", "trouble", "page"].map(str::to_owned)).collect()];
-    for (student, page) in class.students.iter().zip(pages) {
-        let (points, of) = (student.points().0, tally::of(tallies));
-        let percent = tally::percent(points, of);
-        let mut row = vec![student.student.clone(), points.to_string(), of.to_string(), percent];
-        row.extend(stages.iter().map(|&stage| sum(student.of_stage(stage)).0.to_string()));
-        row.extend([student.remarks.len().to_string(), student.trouble.clone(), page.clone()]);
-        rows.push(row);
+    table.row(header.chain(["remarks", "trouble", "page"].map(str::to_owned)))?;
+    for line in lines {
+        let percent = tally::percent(line.points, of);
+        let row = [line.student.clone(), line.points.to_string(), of.to_string(), percent].into_iter();
+        let row = row.chain(stages.iter().map(|&stage| line.of_stage(stage).to_string()));
+        table.row(row.chain([line.n_remarks.to_string(), line.trouble.clone(), line.page.clone()]))?;
     }
-    table(rows)
+    table.finish()
 }
 
 /// Writes one row per check of each student.
-pub(super) fn checks(class: &Class) -> Result<Vec<u8>> {
-    let mut rows =
-        vec![["name", "stage", "check", "outcome", "points", "earned"].map(str::to_owned).to_vec()];
-    for student in &class.students {
-        rows.extend(student.checks.iter().map(|check| {
+pub(super) fn checks(each: &Each<'_>, out: &mut dyn Write) -> Result<()> {
+    let mut table = Table::new(out);
+    table.row(["name", "stage", "check", "outcome", "points", "earned"].map(str::to_owned))?;
+    each(&mut |graded| {
+        graded.checks.iter().try_for_each(|check| {
             let (name, words) = (check.name.clone(), check.outcome.words().to_owned());
             let (points, earned) = (check.points.to_string(), check.earned.to_string());
-            vec![student.student.clone(), check.stage.to_string(), name, words, points, earned]
-        }));
-    }
-    table(rows)
+            table.row([graded.student.clone(), check.stage.to_string(), name, words, points, earned])
+        })
+    })?;
+    table.finish().map(drop)
 }
 
-/// Writes one row per student: the time of grading. It has its own file, because it differs from run to run.
-pub(super) fn timings(class: &Class, pages: &[String]) -> Result<Vec<u8>> {
-    let mut rows = vec![["name", "cpu_ms", "page"].map(str::to_owned).to_vec()];
-    for (student, page) in class.students.iter().zip(pages) {
-        rows.push(vec![student.student.clone(), student.cpu_ms.to_string(), page.clone()]);
+/// Returns one row per student: the time of grading. It has its own file, because it differs from run to run.
+pub(super) fn timings(lines: &[Line]) -> Result<Vec<u8>> {
+    let mut table = Table::new(Vec::new());
+    table.row(["name", "cpu_ms", "page"].map(str::to_owned))?;
+    for line in lines {
+        table.row([line.student.clone(), line.cpu_ms.to_string(), line.page.clone()])?;
     }
-    table(rows)
+    table.finish()
 }
 
-/// Writes a table. All texts are in quotes, so that no text is divided where `;` or a tab separates cells.
-fn table(rows: Vec<Vec<String>>) -> Result<Vec<u8>> {
-    let mut writer =
-        csv::WriterBuilder::new().quote_style(csv::QuoteStyle::NonNumeric).from_writer(Vec::new());
-    for row in rows {
-        writer.write_record(row.iter().map(|cell| defused(cell)))?;
+/// A table. All texts are in quotes, so that no text is divided where `;` or a tab separates cells.
+struct Table<W: Write>(csv::Writer<W>);
+
+impl<W: Write> Table<W> {
+    fn new(out: W) -> Table<W> {
+        Table(csv::WriterBuilder::new().quote_style(csv::QuoteStyle::NonNumeric).from_writer(out))
     }
-    writer.into_inner().map_err(|error| anyhow!("{error}"))
+
+    fn row(&mut self, cells: impl IntoIterator<Item = String>) -> Result<()> {
+        Ok(self.0.write_record(cells.into_iter().map(|cell| defused(&cell)))?)
+    }
+
+    fn finish(self) -> Result<W> {
+        self.0.into_inner().map_err(|error| anyhow!("{error}"))
+    }
 }
 
 /// Returns the cell in a form that no spreadsheet takes for a formula.
@@ -69,7 +78,9 @@ mod tests {
     #[test]
     fn formulas_are_text() -> Result<()> {
         let row = ["=1+1", "+1", "-1", "@SUM(A1)", " =1", "a=1", "12", "a,\"b\"", "x;=1+1", "x\t=1"];
-        let bytes = table(vec![row.map(str::to_owned).to_vec()])?;
+        let mut table = Table::new(Vec::new());
+        table.row(row.map(str::to_owned))?;
+        let bytes = table.finish()?;
         let expected = r#""'=1+1","'+1","'-1","'@SUM(A1)","' =1","a=1",12,"a,""b""","x;=1+1","x	=1""#;
         assert_eq!(String::from_utf8_lossy(&bytes), format!("{expected}\n"));
         Ok(())

@@ -1,7 +1,8 @@
 //! Counts the results of a class.
 
+use super::line::Line;
 use super::messages;
-use crate::grade::result::{CheckResult, Class, Graded, Outcome};
+use crate::grade::result::{CheckResult, Graded, Outcome};
 use checks::rubric::{CheckEntry, RUBRIC};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -46,22 +47,34 @@ impl Tally {
     }
 }
 
-/// Counts the results of each check, in the order of the lecture.
-pub(super) fn tallies(class: &Class) -> Vec<Tally> {
-    let mut places = BTreeMap::new();
-    let mut tallies: Vec<Tally> = Vec::new();
-    for check in class.students.iter().flat_map(|student| &student.checks) {
-        let place = *places.entry((check.stage, check.name.as_str())).or_insert_with(|| {
-            tallies.push(Tally::new(check));
-            tallies.len() - 1
-        });
-        if let Some(which) = Outcome::ALL.iter().position(|&outcome| outcome == check.outcome) {
-            tallies[place].counts[which] += 1;
+/// Counts the results of each check, one submission after the other.
+#[derive(Default)]
+pub(super) struct Tallies {
+    places: BTreeMap<(u8, String), usize>,
+    tallies: Vec<Tally>,
+}
+
+impl Tallies {
+    /// Adds the results of a submission.
+    pub fn add(&mut self, graded: &Graded) {
+        for check in &graded.checks {
+            let tallies = &mut self.tallies;
+            let place = *self.places.entry((check.stage, check.name.clone())).or_insert_with(|| {
+                tallies.push(Tally::new(check));
+                tallies.len() - 1
+            });
+            if let Some(which) = Outcome::ALL.iter().position(|&outcome| outcome == check.outcome) {
+                tallies[place].counts[which] += 1;
+            }
         }
     }
-    // The sort is stable: the checks of each stage stay in their order.
-    tallies.sort_by_key(|tally| tally.stage);
-    tallies
+
+    /// Returns the counts of each check, in the order of the lecture.
+    pub fn in_order(mut self) -> Vec<Tally> {
+        // The sort is stable: the checks of each stage stay in their order.
+        self.tallies.sort_by_key(|tally| tally.stage);
+        self.tallies
+    }
 }
 
 /// Returns the graded stages in ascending order.
@@ -100,8 +113,8 @@ pub(super) fn worst(tallies: &[Tally], n: usize) -> Vec<&Tally> {
 }
 
 /// Returns the median of the points.
-pub(super) fn median(class: &Class) -> f64 {
-    let mut points: Vec<u32> = class.students.iter().map(|student| student.points().0).collect();
+pub(super) fn median(lines: &[Line]) -> f64 {
+    let mut points: Vec<u32> = lines.iter().map(|line| line.points).collect();
     points.sort_unstable();
     match points.len() {
         0 => 0.0,
@@ -110,12 +123,7 @@ pub(super) fn median(class: &Class) -> f64 {
 }
 
 /// Returns the mean of the points.
-pub(super) fn mean(class: &Class) -> f64 {
-    let sum: u32 = class.students.iter().map(|student| student.points().0).sum();
-    f64::from(sum) / class.students.len().max(1) as f64
-}
-
-/// Returns whether a check of the submission has this outcome.
-pub(super) fn has(student: &Graded, outcome: Outcome) -> bool {
-    student.checks.iter().any(|check| check.outcome == outcome)
+pub(super) fn mean(lines: &[Line]) -> f64 {
+    let sum: u64 = lines.iter().map(|line| u64::from(line.points)).sum();
+    sum as f64 / lines.len().max(1) as f64
 }

@@ -1,0 +1,88 @@
+//! Pieces of a picture, as users render and merge them.
+
+use super::program_runs::{printed, raykata};
+use std::path::{Path, PathBuf};
+
+/// Renders a scene with these options, and returns what was printed.
+#[track_caller]
+fn render(scene: &str, more: &[&str], out: &Path) -> String {
+    let out = out.to_string_lossy();
+    let output =
+        raykata(&[&["render", scene, "--size", "60x50", "--spp", "2", "--out", &out], more].concat());
+    let (said, complaint) = printed(&output);
+    assert!(output.status.success(), "{complaint}");
+    said
+}
+
+#[track_caller]
+fn merge(pieces: &[PathBuf], out: &Path, succeeds: bool) -> (String, String) {
+    let pieces: Vec<String> = pieces.iter().map(|piece| piece.to_string_lossy().into_owned()).collect();
+    let out = out.to_string_lossy().into_owned();
+    let words = ["merge-picture", "--out", &out].into_iter().chain(pieces.iter().map(String::as_str));
+    let output = raykata(&words.collect::<Vec<_>>());
+    let (said, complaint) = printed(&output);
+    assert_eq!(output.status.success(), succeeds, "{complaint}");
+    (said, complaint)
+}
+
+/// The lines of a report that state counts.
+fn counts(report: &str) -> Vec<&str> {
+    let is_count = |line: &&str| {
+        ["rays", "hits", "numbers", "reads", "visits", "tests"].iter().any(|word| line.contains(word))
+    };
+    report.lines().filter(is_count).filter(|line| !line.contains("per ray")).collect()
+}
+
+#[test]
+fn merged_pieces_are_the_file_and_the_counts_of_the_whole_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    // One scene is encoded with sRGB and a tone curve, the other with gamma 2, which is an exercise.
+    for (scene, more) in [("scenes/showcase.toml", &["--tone", "aces"][..]), ("scenes/gamma.toml", &[])] {
+        let whole = render(scene, more, &at("whole.png"));
+        render(scene, more, &at("whole.hdr"));
+        for division in [&["0..50"][..], &["0..16", "16..50"], &["32..48", "0..16", "48..50", "16..32"]] {
+            let pieces: Vec<PathBuf> = division.iter().map(|rows| at(&format!("{rows}.piece"))).collect();
+            for (rows, piece) in division.iter().zip(&pieces) {
+                let said = render(scene, &[more, &["--rows", rows]].concat(), piece);
+                assert!(said.contains(&format!("rows {rows} of 60 × 50 pixels")), "{said}");
+            }
+            for ending in ["png", "hdr"] {
+                let merged = at("merged").with_extension(ending);
+                let (said, _) = merge(&pieces, &merged, true);
+                let [ours, theirs] = [&merged, &at("whole").with_extension(ending)]
+                    .map(|file| std::fs::read(file).expect("a picture"));
+                assert!(ours == theirs, "{scene} in {division:?}: another .{ending} file");
+                assert_eq!(counts(&said), counts(&whole), "{scene} in {division:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn pieces_that_make_no_picture_are_refused_and_nothing_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let scene = "scenes/gamma.toml";
+    render(scene, &["--rows", "0..16"], &at("a.piece"));
+    render(scene, &["--rows", "32..50"], &at("c.piece"));
+    render(scene, &["--rows", "16..32", "--seed", "4"], &at("b.piece"));
+    let merged = at("merged.png");
+    let (_, complaint) = merge(&[at("a.piece"), at("c.piece")], &merged, false);
+    assert!(complaint.contains("rows 16..32 are missing"), "{complaint}");
+    let (_, complaint) = merge(&[at("a.piece"), at("b.piece"), at("c.piece")], &merged, false);
+    assert!(complaint.contains("b.piece is a piece of another picture than"), "{complaint}");
+    assert!(complaint.contains("seed 4 instead of 0"), "{complaint}");
+    assert!(!merged.exists());
+    for (words, part) in [
+        (&["--rows", "5..20"][..], "multiples of 16 or at the last row, as 0..32"),
+        (&["--rows", "0..64"], "the picture has 50 rows"),
+        (&["--rows", "0-16"], "rows are written as 0..32"),
+        (&["--rows", "0..16", "--out", "a.png"], "with --rows the file must end in .piece"),
+        (&["--out", "a.piece"], "give them by --rows"),
+    ] {
+        let output = raykata(&[&["render", scene, "--size", "60x50"], words].concat());
+        let complaint = printed(&output).1;
+        assert!(!output.status.success() && complaint.contains(part), "{words:?}: {complaint}");
+    }
+}

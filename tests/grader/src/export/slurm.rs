@@ -1,0 +1,256 @@
+//! `grader export slurm` and `grader export slurm-picture`: job scripts for a cluster that runs Slurm. The engine queues, limits
+//! and starts again; the parts that it runs can be stopped at any time, and the merge refuses a result with holes.
+
+use super::{Grading, write};
+use crate::grade::submissions_in;
+use anyhow::{Context, Result, ensure};
+use raykata::rows::Rows;
+use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use raykata_cli::kits::build_folder;
+use raykata_cli::quality_options::{QualityOptions, ToneOptions};
+use raykata_cli::report::load_scene;
+use std::ffi::{OsStr, OsString};
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+
+/// `grader export slurm`.
+pub static SLURM: Spec = Spec {
+    name: "grader export slurm",
+    about: "Write job scripts for Slurm that grade a class on many machines and merge the grades.",
+    arguments: &[Argument::required("SUBMISSIONS", "The folder of the class, as for `grader grade`.")],
+    options: &[
+        &[
+            Opt::value("--chunk", "N", "About how many submissions each task grades [default: 200]."),
+            Opt::value("--out", "FOLDER", "The folder for scripts, logs and grades. All nodes must see it.")
+                .required(),
+        ],
+        Grading::OPTIONS,
+    ],
+};
+
+/// `grader export slurm-picture`.
+pub static PICTURE: Spec = Spec {
+    name: "grader export slurm-picture",
+    about: "Write job scripts for Slurm that render the pieces of a picture on many machines and merge them.",
+    arguments: &[Argument::required("SCENE", "The scene, a TOML file.")],
+    options: &[
+        &[
+            Opt::value("--pieces", "N", "The number of pieces: at most one per 16 rows [default: 64]."),
+            Opt::value(
+                "--out",
+                "FOLDER",
+                "The folder for scripts, logs and the picture. All nodes must see it.",
+            )
+            .required(),
+            Opt::value("--seed", "N", "Seed of the random numbers [default: 0]."),
+        ],
+        QualityOptions::OPTIONS,
+        ToneOptions::OPTIONS,
+    ],
+};
+
+/// The options of [`SLURM`].
+pub struct SlurmOptions {
+    submissions: PathBuf,
+    chunk: usize,
+    out: PathBuf,
+    grading: Grading,
+}
+
+impl SlurmOptions {
+    /// Reads the options.
+    pub fn read(given: &Given) -> Result<SlurmOptions, Misuse> {
+        Ok(SlurmOptions {
+            submissions: given.required(0)?.into(),
+            chunk: given.number("--chunk", 1..=usize::MAX)?.unwrap_or(200),
+            out: given.required_path("--out")?,
+            grading: Grading::read(given)?,
+        })
+    }
+}
+
+/// The options of [`PICTURE`].
+pub struct PictureOptions {
+    scene: PathBuf,
+    pieces: u32,
+    out: PathBuf,
+    quality: QualityOptions,
+    /// The options of `raykata render`, as they were given.
+    words: Vec<OsString>,
+}
+
+impl PictureOptions {
+    /// Reads the options.
+    pub fn read(given: &Given) -> Result<PictureOptions, Misuse> {
+        // These are passed on to each task, so they must be right now.
+        given.number("--seed", 0..=u64::MAX)?;
+        ToneOptions::read(given)?;
+        Ok(PictureOptions {
+            scene: given.required(0)?.into(),
+            pieces: given.number("--pieces", 1..=u32::MAX)?.unwrap_or(64),
+            out: given.required_path("--out")?,
+            quality: QualityOptions::read(given)?,
+            words: given.words_without(&["--pieces", "--out"]),
+        })
+    }
+}
+
+/// Most tasks of an array in a Slurm with its default settings (`MaxArraySize`).
+const MOST_TASKS: usize = 1000;
+
+/// Writes the scripts that grade a class.
+pub fn slurm(root: &Path, options: &SlurmOptions) -> Result<()> {
+    let submissions = absolute(&options.submissions)?;
+    let n_submissions = submissions_in(&submissions)?;
+    ensure!(n_submissions > 0, "there is no submission in {}", submissions.display());
+    let parts = n_submissions.div_ceil(options.chunk);
+    let grader = std::env::current_exe().context("the path of this program is unknown")?;
+    let folder = Folder::make(&options.out, "parts")?;
+    folder.fill(
+        &[
+            ("grade.sbatch", include_str!("grade.sbatch")),
+            ("merge.sbatch", include_str!("merge.sbatch")),
+            ("submit.sh", include_str!("submit.sh")),
+            ("README.md", include_str!("slurm.md")),
+        ],
+        &[
+            ("kit", quoted(root.as_os_str())?),
+            ("grader", quoted(grader.as_os_str())?),
+            ("submissions_count", n_submissions.to_string()),
+            ("submissions", quoted(submissions.as_os_str())?),
+            ("parts", parts.to_string()),
+            ("chunk", options.chunk.to_string()),
+            ("options", options.grading.options()),
+            ("results", "parts".into()),
+            ("first", "grade.sbatch".into()),
+            ("second", "merge.sbatch".into()),
+        ],
+    )?;
+    println!(
+        "{}: {n_submissions} submissions in {parts} parts; submit.sh submits them, see README.md",
+        folder.path.display()
+    );
+    if parts > MOST_TASKS {
+        println!(
+            "note: a Slurm with its default settings accepts {MOST_TASKS} tasks; `--chunk {}` or more makes so few",
+            n_submissions.div_ceil(MOST_TASKS)
+        );
+    }
+    Ok(())
+}
+
+/// Writes the scripts that render a picture.
+pub fn picture(root: &Path, options: &PictureOptions) -> Result<()> {
+    let file = absolute(&options.scene)?;
+    let mut scene = load_scene(&file, options.quality.limits())?;
+    options.quality.apply(&mut scene)?;
+    let rows = Rows::divide(scene.film.height, options.pieces);
+    let raykata = build_folder()?.join("raykata");
+    let folder = Folder::make(&options.out, "pieces")?;
+    let name = file.file_stem().context("the scene has no name")?;
+    let picture = folder.path.join(name).with_extension("png");
+    let words: Vec<String> = options.words.iter().map(|word| quoted(word)).collect::<Result<_>>()?;
+    let list: String = rows.iter().map(|rows| format!("{rows}\n")).collect();
+    write(&folder.path.join("rows.txt"), list.as_bytes())?;
+    folder.fill(
+        &[
+            ("render.sbatch", include_str!("render.sbatch")),
+            ("merge.sbatch", include_str!("merge_picture.sbatch")),
+            ("submit.sh", include_str!("submit.sh")),
+            ("README.md", include_str!("slurm_picture.md")),
+        ],
+        &[
+            ("kit", quoted(root.as_os_str())?),
+            ("raykata", quoted(raykata.as_os_str())?),
+            ("scene", quoted(file.as_os_str())?),
+            ("picture", quoted(picture.as_os_str())?),
+            ("pieces", rows.len().to_string()),
+            ("options", words.join(" ")),
+            ("results", "pieces".into()),
+            ("first", "render.sbatch".into()),
+            ("second", "merge.sbatch".into()),
+        ],
+    )?;
+    println!("{}: {} pieces; submit.sh submits them, see README.md", folder.path.display(), rows.len());
+    ensure!(
+        raykata.is_file(),
+        "the scripts are written, but {} is not built yet: build it by `cargo build --package raykata-cli`, with `--release` if \
+         this program was built so",
+        raykata.display()
+    );
+    Ok(())
+}
+
+/// The folder of the scripts.
+struct Folder {
+    path: PathBuf,
+}
+
+impl Folder {
+    /// Makes the folder, which must be new, with a folder for results and one for logs. Nobody else can read it, because the
+    /// scripts of a class contain the seed.
+    fn make(out: &Path, results: &str) -> Result<Folder> {
+        let is_new = fs::read_dir(out).map_or(true, |mut entries| entries.next().is_none());
+        ensure!(is_new, "{} is not empty: choose another folder", out.display());
+        for folder in [results, "logs"] {
+            crate::report::make_folder(&out.join(folder))?;
+        }
+        fs::set_permissions(out, fs::Permissions::from_mode(0o700))
+            .with_context(|| format!("cannot protect {}", out.display()))?;
+        let path = absolute(out)?;
+        // Slurm reads these in the name of a log.
+        let plain = !path.to_string_lossy().contains(['%', '"', '\\', '\n']);
+        ensure!(
+            plain,
+            "the path {} contains %, a quotation mark or a backslash: choose another folder",
+            path.display()
+        );
+        Ok(Folder { path })
+    }
+
+    /// Writes files from templates, in which `{name}` stands for the value of that name.
+    fn fill(&self, files: &[(&str, &str)], values: &[(&str, String)]) -> Result<()> {
+        let own = [("out", self.path.display().to_string()), ("out_quoted", quoted(self.path.as_os_str())?)];
+        for (name, template) in files {
+            let values = values.iter().chain(&own);
+            let text = values.fold((*template).to_owned(), |text, (key, value)| {
+                text.replace(&format!("{{{key}}}"), value)
+            });
+            let file = self.path.join(name);
+            write(&file, text.as_bytes())?;
+            if text.starts_with("#!") {
+                fs::set_permissions(&file, fs::Permissions::from_mode(0o700))
+                    .with_context(|| format!("{} cannot be made executable", file.display()))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn absolute(path: &Path) -> Result<PathBuf> {
+    path.canonicalize().with_context(|| format!("cannot read {}", path.display()))
+}
+
+/// Returns a word as a shell reads it back. Plain words stay as they are.
+fn quoted(word: &OsStr) -> Result<String> {
+    let text = word.to_str().with_context(|| format!("{} is not UTF-8: rename it", word.display()))?;
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:,@".contains(c);
+    Ok(match !text.is_empty() && text.chars().all(is_plain) {
+        true => text.to_owned(),
+        false => format!("'{}'", text.replace('\'', r"'\''")),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_quoted_for_a_shell() {
+        assert_eq!(quoted("/a/b-c.d".as_ref()).unwrap(), "/a/b-c.d");
+        assert_eq!(quoted("a b".as_ref()).unwrap(), "'a b'");
+        assert_eq!(quoted("it's $HOME".as_ref()).unwrap(), r"'it'\''s $HOME'");
+        assert_eq!(quoted("".as_ref()).unwrap(), "''");
+    }
+}

@@ -1,0 +1,55 @@
+//! What the overview of a class keeps of each submission. A class may have many thousands, so it is little.
+
+use super::names::FileNames;
+use crate::grade::result::{Graded, Outcome, sum};
+
+/// A submission in the overview.
+pub(super) struct Line {
+    /// The name, cleaned.
+    pub student: String,
+    /// The name of the files of the student, without an ending.
+    pub page: String,
+    /// The earned points of all stages.
+    pub points: u32,
+    /// The earned points of each graded stage.
+    pub of_stages: Vec<(u8, u32)>,
+    pub n_checks: usize,
+    pub n_remarks: usize,
+    /// Why nothing could be graded; empty otherwise.
+    pub trouble: String,
+    pub cpu_ms: u64,
+    /// Which outcomes occur, a bit for each of [`Outcome::ALL`].
+    outcomes: u16,
+}
+
+impl Line {
+    /// The line of a cleaned submission. `student` is its name before it was cleaned.
+    pub fn new(graded: &Graded, student: &str, names: &mut FileNames) -> Line {
+        let of_stage = |stage| (stage, sum(graded.of_stage(stage)).0);
+        Line {
+            student: graded.student.clone(),
+            page: names.name(student),
+            points: graded.points().0,
+            of_stages: graded.stages().into_iter().map(of_stage).collect(),
+            n_checks: graded.checks.len(),
+            n_remarks: graded.remarks.len(),
+            trouble: graded.trouble.clone(),
+            cpu_ms: graded.cpu_ms,
+            outcomes: graded.checks.iter().fold(0, |bits, check| bits | bit(check.outcome)),
+        }
+    }
+
+    /// Returns the earned points of a stage.
+    pub fn of_stage(&self, stage: u8) -> u32 {
+        self.of_stages.iter().filter(|(number, _)| *number == stage).map(|(_, points)| points).sum()
+    }
+
+    /// Returns whether a check of the submission has this outcome.
+    pub fn has(&self, outcome: Outcome) -> bool {
+        self.outcomes & bit(outcome) != 0
+    }
+}
+
+fn bit(outcome: Outcome) -> u16 {
+    Outcome::ALL.iter().position(|&one| one == outcome).map_or(0, |place| 1 << place)
+}
