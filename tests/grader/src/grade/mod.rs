@@ -24,7 +24,7 @@ mod submission;
 
 pub use grader::{Grader, lint_if_asked};
 pub use one::{Options as OneOptions, SPEC as ONE, run as one};
-pub(crate) use options::{draw_seed, stages};
+pub(crate) use options::{Stages, draw_seed, stages};
 pub use rehearsal::{Options as RehearsalOptions, SPEC as REHEARSE, run as rehearse};
 pub use run_attacks::{Options as AttackOptions, SPEC as ATTACKS, run as attack};
 

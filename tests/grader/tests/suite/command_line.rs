@@ -23,7 +23,7 @@ const COMMANDS: [(&str, &[&str]); 17] = [
         &["SUBMISSION", "--gradescope", "--classroom", "--stages", "--seed", "--allow", "--insecure"],
     ),
     ("merge", &["PART...", "--out"]),
-    ("handout", &["FOLDER"]),
+    ("handout", &["FOLDER", "--title", "--stages"]),
     ("export gradescope", &["--out", "--stages", "--seed", "autograder.zip"]),
     ("export classroom", &["--out", "--stages", "--seed"]),
     (
