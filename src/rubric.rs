@@ -52,6 +52,40 @@ pub struct Stage {
     pub checks: BTreeMap<String, CheckEntry>,
 }
 
+/// What a course takes from the kit: the table `course`, which only the rubric of a hand-out has.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Course {
+    /// The title of the course; empty if it has none.
+    pub title: String,
+    /// The numbers of the stages that students are asked for; empty for all stages.
+    pub stages: Vec<u8>,
+}
+
+/// The whole file.
+#[derive(Deserialize)]
+struct Rubric {
+    #[serde(default)]
+    course: Course,
+    #[serde(flatten)]
+    stages: BTreeMap<String, Stage>,
+}
+
+static FILE: LazyLock<Rubric> =
+    LazyLock::new(|| read(TEXT).unwrap_or_else(|error| panic!("tests/rubric.toml: {error}")));
+
+fn read(text: &str) -> Result<Rubric, toml::de::Error> {
+    let mut rubric: Rubric = toml::from_str(text)?;
+    for (name, stage) in &mut rubric.stages {
+        let number = name.trim_start_matches("stage").parse().unwrap_or_default();
+        for (check, entry) in &mut stage.checks {
+            entry.stage = number;
+            entry.place = text.find(&format!("[{name}.checks.{check}]")).unwrap_or(usize::MAX);
+        }
+    }
+    Ok(rubric)
+}
+
 /// The text of the rubric.
 const TEXT: &str = include_str!("../tests/rubric.toml");
 
@@ -60,20 +94,18 @@ const TEXT: &str = include_str!("../tests/rubric.toml");
 /// # Panics
 ///
 /// On first use, if `tests/rubric.toml` is malformed.
-pub static RUBRIC: LazyLock<BTreeMap<String, Stage>> = LazyLock::new(|| {
-    let mut rubric: BTreeMap<String, Stage> =
-        toml::from_str(TEXT).unwrap_or_else(|error| panic!("tests/rubric.toml: {error}"));
-    for (name, stage) in &mut rubric {
-        let number = name.trim_start_matches("stage").parse().unwrap_or_default();
-        for (check, entry) in &mut stage.checks {
-            entry.stage = number;
-            entry.place = TEXT.find(&format!("[{name}.checks.{check}]")).unwrap_or(usize::MAX);
-        }
-    }
-    rubric
-});
+pub static RUBRIC: LazyLock<&BTreeMap<String, Stage>> = LazyLock::new(|| &FILE.stages);
 
-/// The stages with their numbers, in ascending order.
+/// The title of the course and its stages.
+///
+/// # Panics
+///
+/// On the first use, if `tests/rubric.toml` is malformed.
+pub fn course() -> &'static Course {
+    &FILE.course
+}
+
+/// The stages that the course asks for, with their numbers, in ascending order.
 ///
 /// # Panics
 ///
@@ -82,6 +114,8 @@ pub fn stages() -> Vec<(u8, &'static Stage)> {
     let number = |name: &str| name.trim_start_matches("stage").parse().ok();
     let mut stages: Vec<(u8, &Stage)> =
         RUBRIC.iter().filter_map(|(name, stage)| Some((number(name)?, stage))).collect();
+    let asked = &course().stages;
+    stages.retain(|(number, _)| asked.is_empty() || asked.contains(number));
     stages.sort_by_key(|(number, _)| *number);
     stages
 }
@@ -118,6 +152,15 @@ pub fn entry(stage: u8, check: &str) -> CheckEntry {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_hand_out_names_its_course() {
+        let course = "[course]\ntitle = \"Graphics\"\nstages = [1, 4]\n\n";
+        let rubric = read(&format!("{course}{TEXT}")).unwrap();
+        assert_eq!(rubric.course, Course { title: "Graphics".into(), stages: vec![1, 4] });
+        assert_eq!(rubric.stages.len(), RUBRIC.len());
+        assert_eq!(FILE.course, Course::default());
+    }
 
     #[test]
     fn stages_and_checks_have_the_order_of_the_lecture() {

@@ -95,7 +95,7 @@ impl<F: StudentKit> Frames for Linked<F> {
         frames::<F>().trace(job, x, y)
     }
 
-    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<RayVisits> {
+    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<(TracedRay, RayVisits)> {
         frames::<F>().visits(job, x, y)
     }
 

@@ -86,8 +86,8 @@ pub trait Frames {
     /// `job`, exactly those that a frame traces. A parent has a smaller index than its secondary rays.
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay>;
 
-    /// For each ray of [`trace`](Frames::trace), in the same order, what the search for its hit visits.
-    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<RayVisits>;
+    /// The rays of [`trace`](Frames::trace), in the same order, each with what the search for its hit visits.
+    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<(TracedRay, RayVisits)>;
 
     /// The line segments, in world units, that outline the boxes or cells at `depth` (the root has depth 0)
     /// of the structure over the scene, and the leaves above that depth.
@@ -122,7 +122,7 @@ macro_rules! door {
             RenderInTiles(Box<RenderJob>),
             /// Asks for the rays of a pixel, by column and row.
             Trace(Box<RenderJob>, u32, u32),
-            /// Asks what the searches for the rays of a pixel visit, by column and row.
+            /// Asks for the rays of a pixel, by column and row, and what the search for each of them visits.
             Visits(Box<RenderJob>, u32, u32),
             /// Asks for the outlines of the structure at a depth.
             Outlines(Box<RenderJob>, u32),
@@ -141,8 +141,8 @@ macro_rules! door {
             Render(Option<Box<Rendering>>),
             /// The rays of a pixel.
             Trace(Vec<TracedRay>),
-            /// What the search for each ray of a pixel visits.
-            Visits(Vec<RayVisits>),
+            /// The rays of a pixel, and what the search for each of them visits.
+            Visits(Vec<(TracedRay, RayVisits)>),
             /// The two ends of each line segment that outlines the structure at a depth.
             Outlines(Vec<[Vec3; 2]>),
             /// The first hit of each ray in a scene.
@@ -249,7 +249,7 @@ impl<T: Transport> Frames for Door<T> {
         }
     }
 
-    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<RayVisits> {
+    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<(TracedRay, RayVisits)> {
         match self.0.call(Request::Visits(Box::new(job.clone()), x, y), &crate::frame::Unwatched) {
             Answer::Visits(visits) => visits,
             answer => kit_error::wrong_answer(&answer),

@@ -93,8 +93,9 @@ impl<F: StudentFunctions> Frames for Renderer<F> {
         with_what_is_written::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0.0
     }
 
-    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<RayVisits> {
-        with_what_is_written::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0.1
+    fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<(TracedRay, RayVisits)> {
+        let traced = with_what_is_written::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0;
+        traced.0.into_iter().zip(traced.1).collect()
     }
 
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {

@@ -165,6 +165,12 @@ fn free_in(table: &str) -> Option<u64> {
     columns.get(share.checked_sub(1)?)?.parse::<u64>().ok().map(|blocks| blocks << 10)
 }
 
+/// The advice to set a variable of the environment, in the language of the system's shell.
+fn set(why: &str, name: &str, value: &str) -> String {
+    let sh = format!("{why} `export {name}={value}`");
+    for_system(&sh, &sh, &format!("{why} `$env:{name} = \"{value}\"`"))
+}
+
 fn terminal() -> Finding {
     let value = |name: &str| std::env::var(name).unwrap_or_default();
     let locale = ["LC_ALL", "LC_CTYPE", "LANG"].map(value).into_iter().find(|name| !name.is_empty());
@@ -180,11 +186,11 @@ fn terminal() -> Finding {
         (true, true) => Finding::Good("Unicode and 24-bit colours".into()),
         (true, false) => Finding::Optional(
             "it names no 24-bit colours: `watch` shows no pictures".into(),
-            "if it has them, run `export COLORTERM=truecolor`".into(),
+            set("if it has them, run", "COLORTERM", "truecolor"),
         ),
         (false, _) => Finding::Optional(
             "it names no Unicode: `watch` writes ASCII".into(),
-            "if it has it, run `export LANG=C.UTF-8`".into(),
+            set("if it has it, run", "LANG", "C.UTF-8"),
         ),
     }
 }
@@ -197,7 +203,7 @@ fn editor() -> Finding {
         Some(editor) => Finding::Good(editor),
         None => Finding::Optional(
             "none is chosen for the key `o` of `raykata watch`".into(),
-            "for example `export EDITOR=nano`".into(),
+            set("for example", "EDITOR", if cfg!(windows) { "code" } else { "nano" }),
         ),
     }
 }
@@ -212,7 +218,7 @@ fn browser() -> Finding {
         Some(browser) => Finding::Good(browser),
         None => Finding::Optional(
             "there is none for `raykata view`, reports and slides".into(),
-            "sudo apt install firefox, or open them elsewhere".into(),
+            "sudo apt install firefox".into(),
         ),
     }
 }

@@ -97,7 +97,7 @@ pub fn list(stage: Option<u8>) -> String {
 }
 
 /// The words wrapped to lines of at most `width` characters.
-fn lines(words: &str, width: usize) -> Vec<String> {
+pub fn lines(words: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in words.split_whitespace() {
         match lines.last_mut() {

@@ -280,14 +280,16 @@ impl Summary<'_> {
             println!("  primitive tests  {}", Thousands(counts.primitive_tests));
             let rays = counts.rays().max(1) as f64;
             println!(
-                "  per ray          {:.1} box tests, {:.1} primitive tests, {:.0} ns on all threads together",
+                "  per ray          {:.1} box tests, {:.1} primitive tests, {:.0} ns (all threads)",
                 counts.box_tests as f64 / rays,
                 counts.primitive_tests as f64 / rays,
                 1e9 * rendering.render_seconds / rays
             );
         }
         for note in &rendering.notes {
-            println!("  note             {note}");
+            for (line, words) in crate::list::lines(note, 80 - 19).into_iter().enumerate() {
+                println!("  {:<15}  {words}", if line == 0 { "note" } else { "" });
+            }
         }
         match film.not_a_number() {
             0 => {}

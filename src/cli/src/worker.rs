@@ -88,6 +88,8 @@ pub struct Worker {
     process: Mutex<Option<Process>>,
     /// The process that answers a call at the moment, which [`Worker::stop`] ends.
     running: Mutex<Option<Arc<Mutex<Child>>>>,
+    /// No process starts from now on. It is set and read while `running` is locked.
+    is_retired: AtomicBool,
     /// The processor time of the processes that have ended.
     ended: Mutex<Duration>,
 }
@@ -104,6 +106,7 @@ impl Worker {
             withholds: AtomicBool::new(false),
             process: Mutex::new(None),
             running: Mutex::new(None),
+            is_retired: AtomicBool::new(false),
             ended: Mutex::default(),
         }
     }
@@ -147,6 +150,15 @@ impl Worker {
         }
     }
 
+    /// The same, and every later call fails, so that a call that begins at this moment is not missed.
+    pub fn retire(&self) {
+        let mut running = lock(&self.running);
+        self.is_retired.store(true, Ordering::Relaxed);
+        if let Some(child) = running.take() {
+            let _ = lock(&child).kill();
+        }
+    }
+
     /// The number of the process, if one is running.
     pub fn process(&self) -> Option<u32> {
         lock(&self.process).as_ref().map(|process| lock(&process.child).id())
@@ -159,7 +171,13 @@ impl Worker {
             Ok(process) => process,
             Err(error) => return Err(KitError::Crashed { how: format!("it cannot be started: {error}") }),
         };
-        *lock(&self.running) = Some(process.child.clone());
+        {
+            let mut running = lock(&self.running);
+            if self.is_retired.load(Ordering::Relaxed) {
+                return Err(KitError::Crashed { how: "it was stopped".into() });
+            }
+            *running = Some(process.child.clone());
+        }
         let blank = self.withholds.load(Ordering::Relaxed).then(|| withheld::withheld(request)).flatten();
         let mut tables = blank.as_ref().map(|_| Withheld::of(request));
         match process.ask(blank.as_ref().unwrap_or(request), tables.as_mut(), watch, patience) {

@@ -10,8 +10,9 @@ use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use raykata::kit::{Door, Kit, KitError, kit_error};
 use std::any::Any;
 use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::panic::Location;
-use std::sync::{Arc, mpsc};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Duration;
 
 /// The time limit of a check. The slowest check takes a third of a second in a development build.
@@ -428,6 +429,13 @@ pub fn verdict(check: &Check, examined: Result<CheckResult, KitError>) -> Verdic
     }
 }
 
+/// Whether no test of this process has printed this gap before. Several checks wait for one function, and the harness prints
+/// nothing about a failed test that prints nothing itself.
+fn is_first(place: &str) -> bool {
+    static PRINTED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    PRINTED.lock().unwrap_or_else(PoisonError::into_inner).insert(place.to_owned())
+}
+
 /// Runs the check of this name as a test of `kit`: prints the message for the student if the check fails, and ends the
 /// test.
 pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
@@ -436,7 +444,11 @@ pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
     };
     match run(check, &kit, PUBLIC_SEED) {
         Verdict::Passed => return,
-        Verdict::NotWritten { task, place } => println!("not written yet: {place}\n  {task}"),
+        Verdict::NotWritten { task, place } => {
+            if is_first(&place) {
+                println!("not written yet: {place}\n  {task}");
+            }
+        }
         Verdict::Failed(message) => println!("{message}"),
     }
     // End the test without the text and the backtrace of a panic, because the message is complete.

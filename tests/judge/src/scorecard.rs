@@ -69,8 +69,9 @@ pub fn tell(source: &Source, stage: u8, out: impl Write + Send) -> Result<()> {
 
 /// Prints the scorecard; `Ok(true)` if all checks passed.
 pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
-    let graded = run_checks(source, |number| stage.is_none_or(|stage| stage == number))?;
-    for (number, _) in STAGES.iter().filter(|(number, _)| stage.is_none_or(|stage| stage == *number)) {
+    let wanted = |number| is_asked_for(number) && stage.is_none_or(|stage| stage == number);
+    let graded = run_checks(source, wanted)?;
+    for (number, _) in STAGES.iter().filter(|(number, _)| wanted(*number)) {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
         println!("{}", stage_line(*number, &of_stage));
         for one in &of_stage {
@@ -97,6 +98,11 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
     let (earned, all) = points(graded.iter());
     println!("\n{earned} of {all} points\n{passed} passed, {} failed", graded.len() - passed);
     Ok(passed == graded.len())
+}
+
+/// Whether the course asks for this stage.
+fn is_asked_for(stage: u8) -> bool {
+    rubric::stages().iter().any(|(number, _)| *number == stage)
 }
 
 fn wait_for_it(checks: usize) -> String {
@@ -142,11 +148,15 @@ Nothing is written yet.
 
 /// Prints the points of the student, and the next step.
 pub fn status(root: &Path, source: &Source) -> Result<()> {
-    let graded = run_checks(source, |_| true)?;
+    let graded = run_checks(source, is_asked_for)?;
+    let title = &rubric::course().title;
+    if !title.is_empty() {
+        println!("{title}\n");
+    }
     if graded.iter().all(|one| matches!(one.verdict, Verdict::NotWritten { .. })) {
         println!("{WELCOME}");
     }
-    for (number, _) in STAGES {
+    for (number, _) in STAGES.iter().filter(|(number, _)| is_asked_for(*number)) {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
         println!("{}", stage_line(*number, &of_stage));
     }

@@ -165,6 +165,7 @@ impl App {
 
     /// A file of the student has changed.
     pub fn saved(&mut self) -> Action {
+        self.note.clear();
         self.run()
     }
 

@@ -33,8 +33,14 @@ pub fn error_in(line: &str) -> Option<CompilerError> {
     let code = text(&span["text"][0]["text"]).trim().to_owned();
     let help = message["children"].as_array().map_or(&[][..], Vec::as_slice).iter();
     let suggestions = help.filter(|child| child["level"] == "help").map(|child| text(&child["message"]));
-    let mut notes: Vec<String> = [text(&span["label"])].into_iter().chain(suggestions).collect();
-    notes.retain(|note| !note.is_empty());
+    // Another place of the error, such as the bracket that is not closed, is named by its line.
+    let elsewhere = spans.iter().filter(|span| span["is_primary"] != true).map(|span| {
+        let label = text(&span["label"]);
+        if label.is_empty() { label } else { format!("line {}: {label}", span["line_start"]) }
+    });
+    let mut notes: Vec<String> =
+        [text(&span["label"])].into_iter().chain(elsewhere).chain(suggestions).collect();
+    notes.retain(|note| !note.is_empty() && !what.starts_with(note.as_str()));
     Some(CompilerError { place, what, code, notes })
 }
 
@@ -56,6 +62,17 @@ mod tests {
             error.notes,
             ["expected `Option<f32>`, found `f32`", "try wrapping the expression in `Some`"]
         );
+    }
+
+    #[test]
+    fn a_bracket_that_is_not_closed_is_named_by_its_line() {
+        let line = r#"{"reason":"compiler-message","message":{"level":"error","message":"mismatched closing delimiter: `}`",
+            "spans":[{"is_primary":true,"file_name":"a.rs","line_start":22,"column_start":1,
+             "label":"mismatched closing delimiter","text":[{"text":"}"}]},
+             {"is_primary":false,"file_name":"a.rs","line_start":21,"column_start":20,"label":"unclosed delimiter","text":[]}],
+            "children":[]}}"#;
+        let error = error_in(&line.replace('\n', " ")).unwrap();
+        assert_eq!(error.notes, ["line 21: unclosed delimiter"]);
     }
 
     #[test]

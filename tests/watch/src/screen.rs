@@ -93,6 +93,9 @@ const KEYS: &str = "h hint  n next  p previous  l list  o open  r reset  e more 
 /// The keys of the list.
 const LIST_KEYS: &str = "enter go there  / search  n next  p previous  esc back  q quit";
 
+/// The keys while a word is typed.
+const TYPING_KEYS: &str = "type a part of a name or of a title  up/down choose  enter go there  esc back";
+
 /// The rows of the screen, at most as many as the terminal has.
 pub fn rows(app: &App, look: Look) -> Vec<Row> {
     let (columns, height) = app.size;
@@ -107,12 +110,18 @@ pub fn rows(app: &App, look: Look) -> Vec<Row> {
         (_, Page::Picture(None)) => vec![Row::Words(Tone::Quiet, "the picture is being rendered …".into())],
         (_, Page::Check { hints, unfolded }) => check(app, *hints, *unfolded, columns),
     };
+    let foot = foot(app, columns);
     rows.extend(body.into_iter().take(room));
-    while rows.len() + 2 < height {
+    rows.truncate(height.saturating_sub(foot.len() + 1));
+    while rows.len() + foot.len() + 1 < height {
         rows.push(Row::Words(Tone::Plain, String::new()));
     }
-    rows.push(Row::Words(Tone::Quiet, phase(app)));
-    let keys = if matches!(app.page, Page::List { .. }) { LIST_KEYS } else { KEYS };
+    rows.extend(foot.into_iter().map(|line| Row::Words(Tone::Quiet, line)));
+    let keys = match app.page {
+        Page::List { is_typing: true, .. } => TYPING_KEYS,
+        Page::List { .. } => LIST_KEYS,
+        _ => KEYS,
+    };
     rows.push(Row::Words(Tone::Quiet, keys.into()));
     let fitted = |row| match row {
         Row::Words(tone, text) => Row::Words(tone, clipped(&look.plain(&text), columns, look)),
@@ -212,7 +221,8 @@ fn compiler(errors: &[CompilerError]) -> Vec<Row> {
     for error in errors {
         rows.push(Row::Words(Tone::Plain, String::new()));
         rows.push(Row::Words(Tone::Plain, error.what.clone()));
-        rows.push(Row::Words(Tone::Plain, format!("  {}   {}", error.place, error.code)));
+        rows.push(Row::Words(Tone::Plain, format!("  {}", error.place)));
+        rows.push(Row::Words(Tone::Plain, format!("    {}", error.code)));
         rows.extend(error.notes.iter().map(|note| Row::Words(Tone::Quiet, format!("  {note}"))));
     }
     rows
@@ -241,9 +251,13 @@ fn list(app: &App, look: Look, word: &str, is_typing: bool, at: usize, room: usi
     rows
 }
 
-/// The last line but one: how far the run has come.
-fn phase(app: &App) -> String {
+/// The lines above the keys: how far the run has come, and what the last key or event did.
+fn foot(app: &App, columns: usize) -> Vec<String> {
     let run = match &app.phase {
+        // The first picture waits for the renderer.
+        Phase::Compiling if matches!(app.page, Page::Picture(None)) => {
+            "compiling with optimisation … (about a minute)".to_owned()
+        }
         Phase::Compiling => "compiling …".to_owned(),
         Phase::Working if matches!(app.page, Page::Picture(_)) => "rendering …".to_owned(),
         Phase::Working => "checking …".to_owned(),
@@ -256,7 +270,15 @@ fn phase(app: &App) -> String {
         Phase::Errors(_) => "waiting for a save; o opens the place".to_owned(),
         Phase::Broken(_) => "waiting for a save".to_owned(),
     };
-    if app.note.is_empty() { run } else { format!("{run}   {}", app.note) }
+    if app.note.is_empty() {
+        return vec![run];
+    }
+    let line = format!("{run}   {}", app.note);
+    if line.chars().count() <= columns {
+        vec![line]
+    } else {
+        [wrapped(&app.note, columns), vec![run]].concat()
+    }
 }
 
 /// The text in at most `columns` columns. Signs of the kit's texts are one column wide.

@@ -29,7 +29,7 @@ mod submission;
 pub use grader::{Grader, lint_if_asked};
 pub use merge::{Options as MergeOptions, SPEC as MERGE, run as merge};
 pub use one::{Options as OneOptions, SPEC as ONE, run as one};
-pub(crate) use options::{draw_seed, stages};
+pub(crate) use options::{Stages, draw_seed, stages};
 pub use rehearsal::{Options as RehearsalOptions, SPEC as REHEARSE, run as rehearse};
 pub use run_attacks::{Options as AttackOptions, SPEC as ATTACKS, run as attack};
 

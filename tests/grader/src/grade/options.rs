@@ -89,7 +89,7 @@ impl GradingOptions {
 
 /// Numbers of stages, in ascending order.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Stages(pub(super) Vec<u8>);
+pub(crate) struct Stages(pub(crate) Vec<u8>);
 
 /// Reads a list of stages such as `1-4,10`.
 pub(crate) fn stages(text: &str) -> Result<Stages> {

@@ -6,8 +6,10 @@ mod manifests;
 
 pub use leaks::{CANARY, answers, leaks};
 
+use crate::grade::{Stages, stages};
 use anyhow::{Context, Result, bail, ensure};
-use raykata_cli::args::{Argument, Given, Misuse, Spec};
+use raykata::rubric::Course;
+use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,19 +20,35 @@ pub static SPEC: Spec = Spec {
     name: "grader handout",
     about: "Make the student's repository, without answers and instructors' files (for instructors).",
     arguments: &[Argument::required("FOLDER", "An empty or new folder.")],
-    options: &[],
+    options: &[&[
+        Opt::value("--title", "TEXT", "The title of the course, above its README and the start page."),
+        Opt::value(
+            "--stages",
+            "LIST",
+            "The stages that students see, as `3`, `1-4` or `1-4,10` [default: all].",
+        ),
+    ]],
 };
 
 /// The options of `grader handout`.
 pub struct Options {
     folder: PathBuf,
+    course: Course,
 }
 
 impl Options {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
-        Ok(Options { folder: given.required(0)?.into() })
+        let title = given.parsed("--title", title)?.unwrap_or_default();
+        let stages = given.parsed("--stages", stages)?.map(|Stages(stages)| stages).unwrap_or_default();
+        Ok(Options { folder: given.required(0)?.into(), course: Course { title, stages } })
     }
+}
+
+/// Reads a title, which is one line.
+fn title(text: &str) -> Result<String> {
+    ensure!(!text.trim().is_empty() && !text.contains(char::is_control), "a title is one line of text");
+    Ok(text.trim().to_owned())
 }
 
 /// Folders that are handed out with their subfolders, and the extensions of the files in them. A missing folder is left
@@ -83,7 +101,7 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
     crate::report::make_folder(parent)?;
     // Write all files into a draft folder.
     let draft = tempfile::tempdir_in(parent)?;
-    let n_files = write(root, draft.path())?;
+    let n_files = write(root, draft.path(), &options.course)?;
     // Stop if the draft contains an answer.
     let found = leaks(root, draft.path())?;
     ensure!(
@@ -103,8 +121,9 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
 }
 
 /// Writes the files of a hand-out into a folder, with Cargo.lock if cargo can make it. Returns the number of the others.
-pub fn write(root: &Path, folder: &Path) -> Result<usize> {
-    let files = files(root)?;
+pub fn write(root: &Path, folder: &Path, course: &Course) -> Result<usize> {
+    let mut files = files(root)?;
+    name_course(&mut files, course)?;
     for (path, bytes) in &files {
         let file = folder.join(path);
         fs::create_dir_all(file.parent().unwrap_or(folder))?;
@@ -147,6 +166,39 @@ fn list<'a>(files: impl Iterator<Item = &'a String>) -> String {
     format!(
         "# The files of this kit, which `raykata update` replaces.\nversion = {version:?}\nfiles = [\n{lines}]\n"
     )
+}
+
+/// Writes the title and the stages of the course into the rubric, which the programs read, and into the README.
+fn name_course(files: &mut BTreeMap<String, Vec<u8>>, course: &Course) -> Result<()> {
+    if *course == Course::default() {
+        return Ok(());
+    }
+    let mut change = |path: &str, change: &dyn Fn(&str) -> String| -> Result<()> {
+        let file = files.get_mut(path).with_context(|| format!("{path} is missing"))?;
+        *file = change(std::str::from_utf8(file)?).into_bytes();
+        Ok(())
+    };
+    let stages: Vec<String> = course.stages.iter().map(u8::to_string).collect();
+    // A string of JSON without control characters is also one of TOML.
+    let title = serde_json::to_string(&course.title)?;
+    let table = format!("[course]\ntitle = {title}\nstages = [{}]\n\n", stages.join(", "));
+    change("tests/rubric.toml", &|text| {
+        // The first table follows the comment at the beginning.
+        let at = text.find("\n[").map_or(0, |at| at + 1);
+        format!("{}{table}{}", &text[..at], &text[at..])
+    })?;
+    change("README.md", &|text| {
+        let is_kept = |line: &&str| {
+            let number = line.strip_prefix("| ").and_then(|rest| rest.split(' ').next()?.parse::<u8>().ok());
+            number.is_none_or(|number| course.stages.is_empty() || course.stages.contains(&number))
+        };
+        let lines = text.lines().filter(is_kept).map(|line| format!("{line}\n")).collect::<String>();
+        if course.title.is_empty() {
+            lines
+        } else {
+            lines.replacen("# Raykata\n", &format!("# {}: Raykata\n", course.title), 1)
+        }
+    })
 }
 
 /// Adds the files with these extensions in a folder and below it.

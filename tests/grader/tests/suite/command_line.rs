@@ -23,7 +23,7 @@ const COMMANDS: [(&str, &[&str]); 19] = [
         &["SUBMISSION", "--gradescope", "--classroom", "--stages", "--seed", "--allow", "--insecure"],
     ),
     ("merge", &["PART...", "--out"]),
-    ("handout", &["FOLDER"]),
+    ("handout", &["FOLDER", "--title", "--stages"]),
     ("export gradescope", &["--out", "--stages", "--seed", "autograder.zip"]),
     ("export slurm", &["SUBMISSIONS", "--out", "--chunk", "--stages", "--seed"]),
     ("export slurm-picture", &["SCENE", "--out", "--pieces", "--seed", "--size", "--tone"]),

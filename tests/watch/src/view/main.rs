@@ -3,11 +3,12 @@
 //!
 //! `secret` (port and token) · `http` (which requests are answered) · `server` (what the answers are) · `events` (messages to
 //! pages) · `studio` (what is shown at the moment) · `run` (compile and render; a save cancels it) · `pixel` (rays and boxes
-//! of a pixel) · `reference` (the picture to compare with) · `reports` (those of `cost` and `compare`) · `page.html`
+//! of a pixel) · `quick_tree` (the structure of the first pictures) · `reference` (the picture to compare with) · `reports` (those of `cost` and `compare`) · `page.html`
 
 mod events;
 mod http;
 mod pixel;
+mod quick_tree;
 mod reference;
 mod reports;
 mod run;
@@ -71,8 +72,9 @@ fn listen(port: u16) -> Result<TcpListener> {
         .context("no port of 127.0.0.1 can be used")
 }
 
-/// The scene of the first stage in which a function is not written; the showcase if all are.
+/// The scene of the first stage of the course in which a function is not written; the showcase if all are.
 fn first_scene(root: &Path) -> PathBuf {
+    let asked = raykata::rubric::stages();
     let mut stages: Vec<u8> = std::fs::read_dir(watch::exercises(root))
         .into_iter()
         .flatten()
@@ -82,6 +84,7 @@ fn first_scene(root: &Path) -> PathBuf {
             let name = file.file_name().to_string_lossy().into_owned();
             name.strip_prefix("stage")?.split('_').next()?.parse().ok()
         })
+        .filter(|stage| asked.iter().any(|(number, _)| number == stage))
         .collect();
     stages.sort_unstable();
     watch::scene_of(root, stages.first().copied().unwrap_or(u8::MAX))

@@ -16,14 +16,12 @@ const MOST_BOXES: usize = 400;
 const MOST_LINES: usize = 40_000;
 
 /// The rays with their parents, labels, lines on the picture and visits.
-pub fn rays(scene: &Scene, rays: &[TracedRay], visits: &[RayVisits]) -> Vec<Value> {
+pub fn rays(scene: &Scene, rays: &[(TracedRay, RayVisits)]) -> Vec<Value> {
     let camera = camera_for(scene);
     // A ray that hits nothing is drawn as long as the longest one that hits something.
-    let longest = rays.iter().filter_map(|ray| Some(ray.hit.as_ref()?.0 * ray.direction.length()));
+    let longest = rays.iter().filter_map(|(ray, _)| Some(ray.hit.as_ref()?.0 * ray.direction.length()));
     let longest = longest.filter(|length| length.is_finite()).fold(1.0, f32::max);
-    let none = RayVisits::default();
-    let ray = |(index, ray): (usize, &TracedRay)| {
-        let visits = visits.get(index).unwrap_or(&none);
+    let ray = |(ray, visits): &(TracedRay, RayVisits)| {
         let length = match &ray.hit {
             Some((t, _)) if ray.kind != RayKind::Shadow => t * ray.direction.length(),
             _ => longest,
@@ -42,7 +40,7 @@ pub fn rays(scene: &Scene, rays: &[TracedRay], visits: &[RayVisits]) -> Vec<Valu
             "boxes": boxes.collect::<Vec<_>>(),
         })
     };
-    rays.iter().enumerate().map(ray).collect()
+    rays.iter().map(ray).collect()
 }
 
 /// Line segments of the scene on the picture.

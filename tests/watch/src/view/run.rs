@@ -5,6 +5,7 @@
 //! run compiles twice: first without optimisation, for a coarse picture and one with a sample per pixel, and then with
 //! optimisation, for the finished picture.
 
+use super::quick_tree::quickly_built;
 use super::reference::{Origin, Reference};
 use super::studio::{Kit, PATIENCE, Pass, Studio, encoded, job, read_scene};
 use anyhow::{Context, Result, bail};
@@ -41,11 +42,27 @@ struct Work {
     number: u64,
     /// The build without optimisation, and the one with it.
     builds: [Process; 2],
-    /// The kits that render.
-    kits: Mutex<Vec<Kit>>,
+    /// The kits that work at the moment.
+    kits: Mutex<Vec<Kits>>,
     is_over: AtomicBool,
     /// The optimised code takes over.
     is_quick_over: AtomicBool,
+}
+
+/// The kits of a picture.
+#[derive(Clone)]
+struct Kits {
+    /// Renders.
+    renderer: Kit,
+    /// Encodes colours, and answers questions about pixels. It answers them also after the run, as long as the picture is shown.
+    helper: Kit,
+}
+
+impl Kits {
+    fn end(&self) {
+        self.renderer.0.retire();
+        self.helper.0.stop();
+    }
 }
 
 impl Run {
@@ -76,7 +93,7 @@ impl Drop for Run {
 }
 
 impl Work {
-    fn kits(&self) -> std::sync::MutexGuard<'_, Vec<Kit>> {
+    fn kits(&self) -> std::sync::MutexGuard<'_, Vec<Kits>> {
         self.kits.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -87,7 +104,7 @@ impl Work {
     fn end(&self) {
         self.is_over.store(true, Ordering::Relaxed);
         self.builds.iter().for_each(Process::end);
-        self.kits().drain(..).for_each(|kit| kit.0.stop());
+        self.kits().drain(..).for_each(|kits| kits.end());
     }
 
     /// Shows why there is no picture, and ends the run. A run that was cancelled fails silently.
@@ -98,11 +115,18 @@ impl Work {
         }
     }
 
-    /// A kit that runs this program, and that ends with the run.
-    fn kit(&self, program: &Path) -> Kit {
-        let kit: Kit = Arc::new(Door(Worker::new(program.to_owned(), PATIENCE)));
-        self.kits().push(kit.clone());
-        kit
+    /// Kits that run this program, and end with the run. If `is_over` holds already, they are ended at once.
+    fn start_kits(&self, program: &Path, is_over: &dyn Fn() -> bool) -> Kits {
+        let kit = || Arc::new(Door(Worker::new(program.to_owned(), PATIENCE)));
+        let new = Kits { renderer: kit(), helper: kit() };
+        // Ask under the lock: whoever ends the run sets the flag first, and ends the kits of the list afterwards.
+        let mut kits = self.kits();
+        if is_over() {
+            new.end();
+        } else {
+            kits.push(new.clone());
+        }
+        new
     }
 
     /// Compiles and renders.
@@ -134,19 +158,29 @@ impl Work {
 
     /// Renders with code that is not optimised.
     fn quickly(&self, program: &Path, scene: &Scene, coarse_is_there: &Sender<()>) -> Result<()> {
-        let (kit, helper) = (self.kit(program), self.kit(program));
-        self.studio.answered_by(self.number, &helper);
+        let is_over = || self.is_over() || self.is_quick_over.load(Ordering::Relaxed);
+        let kits = self.start_kits(program, &is_over);
+        self.studio.answered_by(self.number, &kits.helper);
         let mut job = job(scene, View::Shaded, false);
         job.scene.quality.samples_per_pixel = 1;
         let film = &mut job.scene.film;
         let (width, height) = (film.width, film.height);
         (film.width, film.height) = (width.div_ceil(COARSE.scale), height.div_ceil(COARSE.scale));
-        let is_over = || self.is_over() || self.is_quick_over.load(Ordering::Relaxed);
-        let coarse = self.render(&kit, &helper, &job, COARSE, &is_over)?;
+        // Take a structure that is quickly built; if that fails, take that of the scene.
+        let own = job.scene.quality;
+        if let Some(quick) = quickly_built(&self.studio.root, &own) {
+            job.scene.quality = quick;
+        }
+        let mut coarse = self.render(&kits, &job, COARSE, &is_over);
+        if coarse.is_err() && job.scene.quality != own {
+            job.scene.quality = own;
+            coarse = self.render(&kits, &job, COARSE, &is_over);
+        }
+        let coarse = coarse?;
         let _ = coarse_is_there.send(());
         if coarse.is_some() {
             (job.scene.film.width, job.scene.film.height) = (width, height);
-            self.render(&kit, &helper, &job, SINGLE, &is_over)?;
+            self.render(&kits, &job, SINGLE, &is_over)?;
         }
         Ok(())
     }
@@ -160,11 +194,13 @@ impl Work {
         }
         // Let the optimised code take over.
         self.is_quick_over.store(true, Ordering::Relaxed);
-        self.kits().drain(..).for_each(|kit| kit.0.stop());
-        let (kit, helper) = (self.kit(&program), self.kit(&program));
-        self.studio.answered_by(self.number, &helper);
+        let earlier: Vec<Kits> = self.kits().drain(..).collect();
+        let kits = self.start_kits(&program, &|| self.is_over());
+        self.studio.answered_by(self.number, &kits.helper);
+        // End the others now, because a question that one of them answers at the moment goes to the new one.
+        earlier.iter().for_each(Kits::end);
         let job = job(scene, View::Shaded, true);
-        let rendered = self.render(&kit, &helper, &job, FINAL, &|| self.is_over())?;
+        let rendered = self.render(&kits, &job, FINAL, &|| self.is_over())?;
         let Some(rendering) = rendered else { return Ok(()) };
         self.studio.finished(self.number, facts(&rendering, compiled));
         if !self.studio.rendered_reference(self.number) && self.studio.root.join("solutions").is_dir() {
@@ -176,16 +212,15 @@ impl Work {
     /// Renders a frame and shows its tiles; `None` if it was cancelled.
     fn render(
         &self,
-        kit: &Kit,
-        helper: &Kit,
+        kits: &Kits,
         job: &RenderJob,
         pass: Pass,
         is_over: &(dyn Fn() -> bool + Sync),
     ) -> Result<Option<Rendering>> {
         let words = format!("rendering, {}", pass.name);
         self.studio.status(self.number, "rendering", &words);
-        let watch = Tiles { work: self, helper, pass, is_over };
-        let rendering = kit_error::catch(|| kit.render(job, &watch));
+        let watch = Tiles { work: self, helper: &kits.helper, pass, is_over };
+        let rendering = kit_error::catch(|| kits.renderer.render(job, &watch));
         if is_over() { Ok(None) } else { Ok(rendering?) }
     }
 
@@ -198,7 +233,8 @@ impl Work {
         if !compiled {
             bail!("the solutions cannot be built:\n{}", words.trim());
         }
-        let kit = self.kit(programs.first().context("the solutions were not built")?);
+        let program = programs.first().context("the solutions were not built")?;
+        let kit = self.start_kits(program, &|| self.is_over()).renderer;
         let rendered = self.render_silently(&kit, job)?;
         if let Some(Rendering { film, .. }) = rendered {
             let rgb = encoded(&job.scene, &film, &kit);

@@ -307,6 +307,18 @@ impl Studio {
         }))
     }
 
+    /// The answer of the kit that is shown. If another one has replaced it meanwhile, which ends it, that one is asked again.
+    fn ask(&self, question: impl Fn(&Arc<Scene>, &Kit, &Path) -> Result<Value>) -> Result<Value> {
+        loop {
+            let (scene, kit, file) = self.asked()?;
+            let answer = question(&scene, &kit, &file);
+            let is_same = self.state().kit.as_ref().is_none_or(|now| Arc::ptr_eq(now, &kit));
+            if answer.is_ok() || is_same {
+                return answer;
+            }
+        }
+    }
+
     /// The scene that is shown and the kit that answers questions about it.
     fn asked(&self) -> Result<(Arc<Scene>, Kit, PathBuf)> {
         let state = self.state();
@@ -317,48 +329,53 @@ impl Studio {
 
     /// The rays behind a pixel, and the boxes that are tested for them.
     pub fn pixel(&self, x: u32, y: u32) -> Result<Value> {
-        let (scene, kit, file) = self.asked()?;
-        ensure!(x < scene.film.width && y < scene.film.height, "there is no pixel {x},{y}");
-        let job = job(&scene, View::Shaded, false);
-        let rays = kit_error::catch(|| kit.trace(&job, x, y))?;
-        let visits = kit_error::catch(|| kit.visits(&job, x, y))?;
-        Ok(json!({
-            "x": x, "y": y, "command": command_of(&self.root, &file, [x, y]),
-            "rays": pixel::rays(&scene, &rays, &visits),
-        }))
+        self.ask(|scene, kit, file| {
+            ensure!(x < scene.film.width && y < scene.film.height, "there is no pixel {x},{y}");
+            let job = job(scene, View::Shaded, false);
+            let rays = kit_error::catch(|| kit.visits(&job, x, y))?;
+            Ok(json!({
+                "x": x, "y": y, "command": command_of(&self.root, file, [x, y]),
+                "rays": pixel::rays(scene, &rays),
+            }))
+        })
     }
 
     /// The outlines of the boxes or cells of a level of the structure.
     pub fn level(&self, depth: u32) -> Result<Value> {
-        let (scene, kit, _) = self.asked()?;
-        let edges = kit_error::catch(|| kit.outlines(&job(&scene, View::Shaded, false), depth))?;
-        Ok(json!({ "depth": depth, "count": edges.len(), "lines": pixel::lines(&scene, &edges) }))
+        self.ask(|scene, kit, _| {
+            let edges = kit_error::catch(|| kit.outlines(&job(scene, View::Shaded, false), depth))?;
+            Ok(json!({ "depth": depth, "count": edges.len(), "lines": pixel::lines(scene, &edges) }))
+        })
     }
 
     /// The node visits of each pixel as colours, with one sample per pixel; without a structure, its primitive tests.
     pub fn heat(&self) -> Result<Value> {
-        let (scene, kit, _) = self.asked()?;
-        let mut job = job(&scene, View::Work, true);
-        job.scene.quality.samples_per_pixel = 1;
-        let work = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
-        let has_visits = work.film.pixels.iter().any(|pixel| pixel.x > 0.0);
-        let what = if has_visits { "node visits" } else { "primitive tests" };
-        let counts: Vec<f32> =
-            work.film.pixels.iter().map(|pixel| if has_visits { pixel.x } else { pixel.z }).collect();
-        let most = counts.iter().copied().fold(1.0, f32::max);
-        let color = |count: &f32| raykata_cli::compare::heat_color(*count, most).to_array().map(encode_srgb);
-        let rgb: Vec<u8> = counts.iter().flat_map(color).collect();
-        let mean = counts.iter().copied().map(f64::from).sum::<f64>() / counts.len().max(1) as f64;
-        Ok(json!({
-            "width": scene.film.width, "height": scene.film.height, "scale": 1, "rgb": base64(&rgb), "most": most,
-            "mean": mean, "what": what,
-        }))
+        self.ask(|scene, kit, _| heat(scene, kit))
     }
 
     /// The reports of `cost` and `compare`.
     pub fn reports(&self) -> Value {
         reports::list(&self.root, &self.state().file.clone())
     }
+}
+
+/// The work of each pixel as colours.
+fn heat(scene: &Scene, kit: &Kit) -> Result<Value> {
+    let mut job = job(scene, View::Work, true);
+    job.scene.quality.samples_per_pixel = 1;
+    let work = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
+    let has_visits = work.film.pixels.iter().any(|pixel| pixel.x > 0.0);
+    let what = if has_visits { "node visits" } else { "primitive tests" };
+    let counts: Vec<f32> =
+        work.film.pixels.iter().map(|pixel| if has_visits { pixel.x } else { pixel.z }).collect();
+    let most = counts.iter().copied().fold(1.0, f32::max);
+    let color = |count: &f32| raykata_cli::compare::heat_color(*count, most).to_array().map(encode_srgb);
+    let rgb: Vec<u8> = counts.iter().flat_map(color).collect();
+    let mean = counts.iter().copied().map(f64::from).sum::<f64>() / counts.len().max(1) as f64;
+    Ok(json!({
+        "width": scene.film.width, "height": scene.film.height, "scale": 1, "rgb": base64(&rgb), "most": most,
+        "mean": mean, "what": what,
+    }))
 }
 
 /// A frame of the scene.

@@ -60,8 +60,10 @@ fn the_worker() {
             let color = if first.starts_with("// red") { Vec3::X } else { Vec3::Y };
             Answer::Render(one_color(job, color, watch).map(Box::new))
         }
-        Request::Trace(..) => Answer::Trace(vec![ray(RayKind::Primary, None), ray(RayKind::Shadow, Some(0))]),
-        Request::Visits(..) => Answer::Visits(vec![visits(3), visits(1)]),
+        Request::Visits(..) => Answer::Visits(vec![
+            (ray(RayKind::Primary, None), visits(3)),
+            (ray(RayKind::Shadow, Some(0)), visits(1)),
+        ]),
         Request::Outlines(_, depth) => {
             let edge = [Vec3::new(-1.0, 0.0, 0.0), Vec3::X];
             Answer::Outlines(if *depth == 0 { vec![edge] } else { Vec::new() })
