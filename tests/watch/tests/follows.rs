@@ -53,7 +53,7 @@ impl Kit {
         kit.write("error.json", ERROR);
         kit.script("cargo", CARGO);
         kit.script("target/debug/judge", JUDGE);
-        fs::copy(env!("CARGO_BIN_EXE_watch"), kit.path("target/debug/watch")).unwrap();
+        kit.program("target/debug/watch", Path::new(env!("CARGO_BIN_EXE_watch")));
         // One verdict for each check of stage 1: all pass, or the second one fails.
         let stage = raykata::rubric::stages().into_iter().next().unwrap().1;
         for file in ["right", "wrong"] {

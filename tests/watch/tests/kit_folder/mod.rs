@@ -3,6 +3,7 @@
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// The folder of the kit. It is removed at the end.
 pub struct KitFolder(tempfile::TempDir);
@@ -31,7 +32,16 @@ impl KitFolder {
 
     /// Writes a program.
     pub fn script(&self, path: &str, text: &str) {
-        self.write(path, text);
+        let draft = format!("{path}.txt");
+        self.write(&draft, text);
+        self.program(path, &self.path(&draft));
         fs::set_permissions(self.path(path), fs::Permissions::from_mode(0o755)).unwrap();
+    }
+
+    /// Copies a program in a process of its own. While this process writes a program, another test may start a process, which
+    /// inherits the open file, and a file that is open for writing cannot be started.
+    pub fn program(&self, path: &str, from: &Path) {
+        let copied = Command::new("cp").arg(from).arg(self.path(path)).status().unwrap();
+        assert!(copied.success());
     }
 }

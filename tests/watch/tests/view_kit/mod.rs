@@ -13,7 +13,7 @@ use serde_json::Value;
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -138,7 +138,7 @@ impl Kit {
             this.display()
         );
         kit.script("target/debug/exercises-frames", &worker);
-        fs::copy(env!("CARGO_BIN_EXE_view"), kit.path("target/debug/view")).unwrap();
+        kit.program("target/debug/view", Path::new(env!("CARGO_BIN_EXE_view")));
         // The reference is blue, at half the size.
         let blue = image::RgbImage::from_pixel(32, 20, image::Rgb([0, 0, 255]));
         blue.save(kit.path("scenes/reference/a.png")).unwrap();
