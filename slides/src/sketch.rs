@@ -1,5 +1,6 @@
 //! Small helpers of all drawings: shifted points, arcs of angles, and plots over axes.
 
+pub use raykata_cli::svg::Axis;
 use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL};
 
 /// `point`, moved by `by`.
@@ -18,38 +19,6 @@ pub fn arc(drawing: &mut Drawing, center: Point, radius: f64, [from, to]: [f64; 
     let points: Vec<Point> =
         (0..=24).map(|i| polar(center, radius, from + (to - from) * f64::from(i) / 24.0)).collect();
     drawing.polyline(&points, pen);
-}
-
-/// The range of an axis.
-#[derive(Clone, Copy, Debug)]
-pub struct Axis {
-    /// The value at its beginning; above 0 if it is logarithmic.
-    pub low: f64,
-    /// The value at its end.
-    pub high: f64,
-    /// Whether equal distances are equal ratios.
-    pub logarithmic: bool,
-}
-
-impl Axis {
-    /// An axis on which equal distances are equal differences.
-    pub const fn linear(low: f64, high: f64) -> Axis {
-        Axis { low, high, logarithmic: false }
-    }
-
-    /// An axis on which equal distances are equal ratios.
-    pub const fn logarithmic(low: f64, high: f64) -> Axis {
-        Axis { low, high, logarithmic: true }
-    }
-
-    /// Where `value` lies: 0 at the beginning, 1 at the end.
-    pub fn share(&self, value: f64) -> f64 {
-        if self.logarithmic {
-            (value / self.low).ln() / (self.high / self.low).ln()
-        } else {
-            (value - self.low) / (self.high - self.low)
-        }
-    }
 }
 
 /// A plot over two axes.
@@ -112,16 +81,6 @@ pub fn steps(low: f64, high: f64, n: u32) -> impl Iterator<Item = f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn an_axis_begins_at_zero_and_ends_at_one() {
-        for axis in [Axis::linear(-2.0, 6.0), Axis::logarithmic(0.5, 32.0)] {
-            assert_eq!([axis.share(axis.low), axis.share(axis.high)], [0.0, 1.0]);
-        }
-        assert_eq!(Axis::linear(-2.0, 6.0).share(2.0), 0.5);
-        // The middle of a logarithmic axis is the geometric mean of its ends, but for the rounding of two logarithms.
-        assert!((Axis::logarithmic(0.5, 32.0).share(4.0) - 0.5).abs() < 1e-12);
-    }
 
     #[test]
     fn larger_values_are_drawn_farther_right_and_higher() {

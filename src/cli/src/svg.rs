@@ -8,6 +8,38 @@ use std::fmt::Write;
 /// A position in a drawing, from its upper left corner.
 pub type Point = [f64; 2];
 
+/// The range of an axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Axis {
+    /// The value at its beginning; above 0 if it is logarithmic.
+    pub low: f64,
+    /// The value at its end.
+    pub high: f64,
+    /// Whether equal distances are equal ratios.
+    pub logarithmic: bool,
+}
+
+impl Axis {
+    /// An axis on which equal distances are equal differences.
+    pub const fn linear(low: f64, high: f64) -> Axis {
+        Axis { low, high, logarithmic: false }
+    }
+
+    /// An axis on which equal distances are equal ratios.
+    pub const fn logarithmic(low: f64, high: f64) -> Axis {
+        Axis { low, high, logarithmic: true }
+    }
+
+    /// Where `value` lies: 0 at the beginning, 1 at the end.
+    pub fn share(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            (value / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        }
+    }
+}
+
 /// The size of letters. A drawing is 1,000 units wide or less and takes more than three fifths of a slide's width, so that
 /// letters are 18 of its 720 pixels or more, legible from the last row.
 pub const TEXT: f64 = 35.0;
@@ -279,6 +311,16 @@ mod tests {
         drawing.text([5.0, 12.0], Anchor::Start, TEXT, Ink::Text, "t & u");
         drawing.text_upwards([5.0, 25.0], SMALL, Ink::Faint, "up");
         insta::assert_snapshot!(drawing.svg());
+    }
+
+    #[test]
+    fn an_axis_begins_at_zero_and_ends_at_one() {
+        for axis in [Axis::linear(-2.0, 6.0), Axis::logarithmic(0.5, 32.0)] {
+            assert_eq!([axis.share(axis.low), axis.share(axis.high)], [0.0, 1.0]);
+        }
+        assert_eq!(Axis::linear(-2.0, 6.0).share(2.0), 0.5);
+        // The middle of a logarithmic axis is the geometric mean of its ends, but for the rounding of two logarithms.
+        assert!((Axis::logarithmic(0.5, 32.0).share(4.0) - 0.5).abs() < 1e-12);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A plot of error over time on logarithmic axes. The same numbers give the same SVG file.
 
-use crate::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT};
+use crate::svg::{Anchor, Axis, Drawing, Ink, Pen, Point, SMALL, TEXT};
 
 /// The contents of a plot.
 pub struct Plot<'a> {
@@ -37,36 +37,37 @@ const RIGHT: f64 = 550.0;
 const TOP: f64 = 110.0;
 const BOTTOM: f64 = 470.0;
 
-/// A logarithmic axis, which ends at whole or half powers of ten.
-struct Axis {
-    low: f64,
-    high: f64,
+/// A logarithmic axis, which ends at whole or half powers of ten, and where it lies in the drawing.
+struct Scale {
+    axis: Axis,
     from: f64,
     to: f64,
 }
 
-impl Axis {
-    fn over(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Axis {
+impl Scale {
+    fn over(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Scale {
         let logs = values.filter(|value| *value > 0.0 && value.is_finite()).map(f64::log10);
         let (low, high) =
             logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        if low > high {
-            return Axis { low: 0.0, high: 1.0, from, to };
-        }
-        let (low, high) = ((2.0 * low - 0.1).floor() / 2.0, (2.0 * high + 0.1).ceil() / 2.0);
-        Axis { low, high, from, to }
+        let (low, high) = if low > high {
+            (0.0, 1.0)
+        } else {
+            ((2.0 * low - 0.1).floor() / 2.0, (2.0 * high + 0.1).ceil() / 2.0)
+        };
+        Scale { axis: Axis::logarithmic(10f64.powf(low), 10f64.powf(high)), from, to }
     }
 
     fn at(&self, value: f64) -> f64 {
-        self.from + (self.to - self.from) * (value.log10() - self.low) / (self.high - self.low)
+        self.from + (self.to - self.from) * self.axis.share(value)
     }
 
     /// The ticks: 1, 2 and 5 times the powers of ten between the ends, or only the powers if there are many.
     fn ticks(&self) -> Vec<(f64, bool)> {
-        let powers = (self.low - 1.0) as i32..=self.high.ceil() as i32;
+        let (low, high) = (self.axis.low.log10(), self.axis.high.log10());
+        let powers = (low - 1.0) as i32..=high.ceil() as i32;
         let ticks = powers.flat_map(|power| [1.0, 2.0, 5.0].map(|digit| (digit, power)));
-        let within = |value: f64| (self.low - 1e-9..=self.high + 1e-9).contains(&value.log10());
-        let named = |digit: f64| digit == 1.0 || self.high - self.low < 2.6;
+        let within = |value: f64| (low - 1e-9..=high + 1e-9).contains(&value.log10());
+        let named = |digit: f64| digit == 1.0 || high - low < 2.6;
         ticks
             .map(|(digit, power)| (digit * 10f64.powi(power), named(digit)))
             .filter(|(value, _)| within(*value))
@@ -78,8 +79,8 @@ impl Axis {
 pub fn svg(plot: &Plot<'_>) -> String {
     let floored = |y: f64| y.max(plot.floor);
     let points = || plot.lines.iter().flat_map(|line| &line.points);
-    let x = Axis::over(points().map(|point| point[0]), LEFT, RIGHT);
-    let y = Axis::over(points().flat_map(|point| [floored(point[1]), floored(point[3])]), BOTTOM, TOP);
+    let x = Scale::over(points().map(|point| point[0]), LEFT, RIGHT);
+    let y = Scale::over(points().flat_map(|point| [floored(point[1]), floored(point[3])]), BOTTOM, TOP);
     let mut drawing = Drawing::new(plot.title, WIDTH, HEIGHT);
     drawing.text([LEFT - 90.0, 34.0], Anchor::Start, TEXT, Ink::Text, plot.title);
     draw_axes(&mut drawing, plot, &x, &y);
@@ -100,7 +101,7 @@ pub fn svg(plot: &Plot<'_>) -> String {
     drawing.svg()
 }
 
-fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, x: &Axis, y: &Axis) {
+fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, x: &Scale, y: &Scale) {
     let pen = Pen::new(Ink::Faint).wide(0.5);
     let mut free = 0.0;
     for (value, is_named) in x.ticks() {
@@ -127,7 +128,7 @@ fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, x: &Axis, y: &Axis) {
 }
 
 /// Draws the Pareto front as a dashed step line: every setting above it is slower or less accurate than one on it.
-fn draw_pareto_front(drawing: &mut Drawing, points: &[(f64, f64)], x: &Axis, y: &Axis, floor: f64) {
+fn draw_pareto_front(drawing: &mut Drawing, points: &[(f64, f64)], x: &Scale, y: &Scale, floor: f64) {
     let mut steps: Vec<Point> = Vec::new();
     for &(time, error) in points {
         let corner = [x.at(time), y.at(error.max(floor))];
@@ -141,13 +142,14 @@ fn draw_pareto_front(drawing: &mut Drawing, points: &[(f64, f64)], x: &Axis, y: 
     }
 }
 
-fn draw_guides(drawing: &mut Drawing, plot: &Plot<'_>, x: &Axis, y: &Axis) {
+fn draw_guides(drawing: &mut Drawing, plot: &Plot<'_>, x: &Scale, y: &Scale) {
     let Some(&[x0, y0, ..]) = plot.lines.first().and_then(|line| line.points.first()) else { return };
     let y0 = y0.max(plot.floor);
     for (slope, name) in &plot.guides {
         // Draw to the right end, or to where the line leaves the plot at the bottom.
-        let to_bottom = (y.low - y0.log10()) / slope;
-        let length = (x.high - x0.log10()).min(if *slope < 0.0 { to_bottom } else { f64::INFINITY });
+        let to_bottom = (y.axis.low.log10() - y0.log10()) / slope;
+        let length =
+            (x.axis.high.log10() - x0.log10()).min(if *slope < 0.0 { to_bottom } else { f64::INFINITY });
         let end = (x0 * 10f64.powf(length), y0 * 10f64.powf(slope * length));
         let to = [x.at(end.0), y.at(end.1)];
         drawing.line([x.at(x0), y.at(y0)], to, Pen::new(Ink::Faint).wide(2.0).dashed());
@@ -156,7 +158,7 @@ fn draw_guides(drawing: &mut Drawing, plot: &Plot<'_>, x: &Axis, y: &Axis) {
 }
 
 /// Draws one line with markers of its own shape for colour-blind readers, and the range over all rounds at each point.
-fn draw_line(drawing: &mut Drawing, line: &Line, index: usize, x: &Axis, y: &Axis, floor: f64) {
+fn draw_line(drawing: &mut Drawing, line: &Line, index: usize, x: &Scale, y: &Scale, floor: f64) {
     let ink = Ink::Color(index);
     let at = |point: &[f64; 4]| [x.at(point[0]), y.at(point[1].max(floor))];
     let path: Vec<Point> = line.points.iter().map(at).collect();
