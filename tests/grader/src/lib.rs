@@ -9,6 +9,7 @@ macro_rules! println {
 
 pub mod cases;
 pub mod corpus;
+pub mod course;
 #[cfg(target_os = "linux")]
 pub mod export;
 pub mod gaps;

@@ -116,6 +116,7 @@ fn grade_options(class: &Path, out: &Path, options: &Options) -> GradeOptions {
         shard: None,
         resume: false,
         forget_missing: false,
+        handed_in: None,
         grading: GradingOptions {
             stages: Some(Stages(STAGES_OF_CLASS.to_vec())),
             ..GradingOptions::default()

@@ -7,6 +7,8 @@ mod cases;
 mod command_line;
 mod corpus;
 #[cfg(target_os = "linux")]
+mod course;
+#[cfg(target_os = "linux")]
 mod export;
 #[cfg(target_os = "linux")]
 mod grade;
