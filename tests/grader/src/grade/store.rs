@@ -1,6 +1,7 @@
 //! Stores the grades of a class in an SQLite database beside the reports. Each grade is written in one transaction when it
 //! is complete, so a killed run loses only the submissions that were in progress.
 
+use super::report::clean::clean_line;
 use super::result::{Class, Graded, Session};
 use super::shard::Part;
 use crate::course::CourseFiles;
@@ -32,6 +33,8 @@ const TABLES: &str = "
 /// The grades of a class.
 pub struct Store {
     connection: Mutex<Connection>,
+    /// The path of the database, for errors.
+    file: PathBuf,
     /// Kept until the store is dropped, if this process may write grades.
     _lock: Option<Flock<File>>,
 }
@@ -64,7 +67,7 @@ impl Store {
         };
         make()
             .with_context(|| format!("{} is not a grade database; choose another folder", path.display()))?;
-        Ok(Store { connection: Mutex::new(connection), _lock: None })
+        Ok(Store { connection: Mutex::new(connection), file: path, _lock: None })
     }
 
     /// Returns the session, if grading was begun.
@@ -124,11 +127,17 @@ impl Store {
     /// Stores a grade durably.
     pub fn keep(&self, graded: &Graded) -> Result<()> {
         let json = serde_json::to_string(graded)?;
-        self.lock().execute(
+        let stored = self.lock().execute(
             "INSERT OR REPLACE INTO graded (student, content, json) VALUES (?1, ?2, ?3)",
             params![graded.student, graded.content, json],
-        )?;
-        Ok(())
+        );
+        let student = clean_line(&graded.student, 80);
+        stored.map(drop).with_context(|| {
+            format!(
+                "cannot store the grade of {student} in {}: the grades before it are stored, and `--resume` continues there",
+                self.file.display()
+            )
+        })
     }
 
     /// Stores many grades in one transaction.

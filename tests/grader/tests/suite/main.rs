@@ -13,6 +13,8 @@ mod export;
 #[cfg(target_os = "linux")]
 mod grade;
 mod handout;
+#[cfg(target_os = "linux")]
+mod long_runs;
 mod one_build;
 mod paste;
 mod pictures;
