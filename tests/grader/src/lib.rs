@@ -20,6 +20,7 @@ pub mod grade;
 pub mod handout;
 pub mod mutants;
 pub mod pictures;
+pub mod release;
 pub mod sandbox;
 pub mod sync;
 

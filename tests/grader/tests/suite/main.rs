@@ -19,6 +19,7 @@ mod one_build;
 mod paste;
 mod pictures;
 mod program_runs;
+mod release;
 #[cfg(target_os = "linux")]
 mod sandbox;
 #[cfg(target_os = "linux")]
