@@ -88,7 +88,7 @@ fn offline(folder: &Path, home: &Path, arguments: &[&str]) -> Output {
         command.arg("--net").arg(tools.join("cargo"));
         command
     } else {
-        println!("this user may not take the network away, so cargo is told to do without");
+        println!("this user may not take the network away, so cargo gets the option to work offline");
         Command::new(tools.join("cargo"))
     };
     command.current_dir(folder).args(arguments).env_clear();
