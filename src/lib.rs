@@ -13,7 +13,7 @@
 //! | [`rounding`] | bounds on rounding errors |
 //! | [`kit`] | the list of student functions, the door through which they are called, and the messages to a worker |
 //! | [`tracer`], [`frame`], [`rows`], [`building`] | the renderer, its tiles, threads and pieces, and the progress of a build |
-//! | [`rubric`], [`worker`] | points, titles and hints of the checks; the process that answers for a kit |
+//! | [`rubric`], [`course`], [`worker`] | points, titles and hints of the checks, and what a course changes in them; the process that answers for a kit |
 //!
 //! # Conventions
 //!
@@ -28,6 +28,7 @@ pub mod building;
 pub mod bvh;
 pub mod camera;
 pub mod count;
+pub mod course;
 pub mod effects;
 pub mod emitter;
 pub mod film;

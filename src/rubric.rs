@@ -1,9 +1,11 @@
-//! The rubric: points, title, slide and three hints of each check, read from `tests/rubric.toml`. It is part
-//! of this crate so that `raykata list` and `raykata hint` need not build the checks.
+//! The rubric: points, title, slide and three hints of each check, read from `tests/rubric.toml`. A [`Course`] may
+//! change them. It is part of this crate so that `raykata list` and `raykata hint` need not build the checks.
 
+use crate::course::{self, Course};
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::sync::LazyLock;
+use std::path::Path;
+use std::sync::{LazyLock, OnceLock};
 
 /// The rubric's entry for a check: its points and its texts.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -52,57 +54,68 @@ pub struct Stage {
     pub checks: BTreeMap<String, CheckEntry>,
 }
 
-/// What a course takes from the kit: the table `course`, which only the rubric of a hand-out has.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Course {
-    /// The title of the course; empty if it has none.
-    pub title: String,
-    /// The numbers of the stages that students are asked for; empty for all stages.
-    pub stages: Vec<u8>,
-}
+static FILE: LazyLock<BTreeMap<String, Stage>> = LazyLock::new(|| {
+    let mut stages = PLAIN.clone();
+    course().apply(&mut stages);
+    stages
+});
 
-/// The whole file.
-#[derive(Deserialize)]
-struct Rubric {
-    #[serde(default)]
-    course: Course,
-    #[serde(flatten)]
-    stages: BTreeMap<String, Stage>,
-}
-
-static FILE: LazyLock<Rubric> =
+/// The rubric before a course changes it.
+pub(crate) static PLAIN: LazyLock<BTreeMap<String, Stage>> =
     LazyLock::new(|| read(TEXT).unwrap_or_else(|error| panic!("tests/rubric.toml: {error}")));
 
-fn read(text: &str) -> Result<Rubric, toml::de::Error> {
-    let mut rubric: Rubric = toml::from_str(text)?;
-    for (name, stage) in &mut rubric.stages {
+/// The course of this program: that of [`use_course`], or that of the kit, which is the default outside of hand-outs.
+static COURSE: OnceLock<Course> = OnceLock::new();
+
+/// Applies a course to the rubric of this program, in place of that of the kit. Returns `false`, and changes nothing, if
+/// the rubric was read before.
+#[must_use]
+pub fn use_course(course: Course) -> bool {
+    COURSE.set(course).is_ok()
+}
+
+/// The course of the kit.
+fn of_kit() -> Course {
+    let file = |name| Path::new(name);
+    let mut course = course::parse(file("tests/course.toml"), include_str!("../tests/course.toml"))
+        .unwrap_or_else(|error| panic!("{error}"));
+    let language = include_str!("../tests/language.toml");
+    course.translate(
+        course::parse_language(file("tests/language.toml"), language)
+            .unwrap_or_else(|error| panic!("{error}")),
+    );
+    course
+}
+
+fn read(text: &str) -> Result<BTreeMap<String, Stage>, toml::de::Error> {
+    let mut stages: BTreeMap<String, Stage> = toml::from_str(text)?;
+    for (name, stage) in &mut stages {
         let number = name.trim_start_matches("stage").parse().unwrap_or_default();
         for (check, entry) in &mut stage.checks {
             entry.stage = number;
             entry.place = text.find(&format!("[{name}.checks.{check}]")).unwrap_or(usize::MAX);
         }
     }
-    Ok(rubric)
+    Ok(stages)
 }
 
 /// The text of the rubric.
 const TEXT: &str = include_str!("../tests/rubric.toml");
 
-/// The whole rubric, by stage name (`stage1`, `stage2`, …). It is parsed on first use.
+/// The whole rubric, by stage name (`stage1`, `stage2`, …), as the course changes it. It is parsed on first use.
 ///
 /// # Panics
 ///
-/// On first use, if `tests/rubric.toml` is malformed.
-pub static RUBRIC: LazyLock<&BTreeMap<String, Stage>> = LazyLock::new(|| &FILE.stages);
+/// On first use, if `tests/rubric.toml`, `tests/course.toml` or `tests/language.toml` is malformed.
+pub static RUBRIC: LazyLock<&BTreeMap<String, Stage>> = LazyLock::new(|| &FILE);
 
-/// The title of the course and its stages.
+/// The course of this program.
 ///
 /// # Panics
 ///
-/// On the first use, if `tests/rubric.toml` is malformed.
+/// On the first use, if `tests/course.toml` or `tests/language.toml` is malformed.
 pub fn course() -> &'static Course {
-    &FILE.course
+    COURSE.get_or_init(of_kit)
 }
 
 /// The stages that the course asks for, with their numbers, in ascending order.
@@ -114,8 +127,7 @@ pub fn stages() -> Vec<(u8, &'static Stage)> {
     let number = |name: &str| name.trim_start_matches("stage").parse().ok();
     let mut stages: Vec<(u8, &Stage)> =
         RUBRIC.iter().filter_map(|(name, stage)| Some((number(name)?, stage))).collect();
-    let asked = &course().stages;
-    stages.retain(|(number, _)| asked.is_empty() || asked.contains(number));
+    stages.retain(|(number, _)| !course().leaves_out(*number));
     stages.sort_by_key(|(number, _)| *number);
     stages
 }
@@ -152,15 +164,6 @@ pub fn entry(stage: u8, check: &str) -> CheckEntry {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_hand_out_names_its_course() {
-        let course = "[course]\ntitle = \"Graphics\"\nstages = [1, 4]\n\n";
-        let rubric = read(&format!("{course}{TEXT}")).unwrap();
-        assert_eq!(rubric.course, Course { title: "Graphics".into(), stages: vec![1, 4] });
-        assert_eq!(rubric.stages.len(), RUBRIC.len());
-        assert_eq!(FILE.course, Course::default());
-    }
 
     #[test]
     fn stages_and_checks_have_the_order_of_the_lecture() {

@@ -15,6 +15,7 @@ pub mod explain;
 pub mod figures;
 pub mod fingerprint;
 pub mod html;
+pub mod journal;
 pub mod judge;
 pub mod kits;
 pub mod list;

@@ -2,9 +2,11 @@
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec};
 use crate::kits::{Choice, Need, Source, root};
+use crate::lock::Lock;
+use crate::merge_picture;
 use crate::piece::{self, Piece, Settings};
 use crate::quality_options::{QualityOptions, Threads, ToneOptions};
-use crate::report::{Bytes, FrameBar, Thousands, load_scene, make_folder_of};
+use crate::report::{Bytes, FrameBar, Thousands, load_scene, make_folder, make_folder_of};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use raykata::film::{Film, encode_srgb};
 use raykata::kit::{Kit, RenderJob, Rendering, View, kit_error};
@@ -30,6 +32,12 @@ pub static SPEC: Spec = Spec {
                  with all digits, and `raykata merge-picture` puts the pieces together. A and B are multiples of 16, or B is the \
                  number of rows [default file: out/NAME.A-B.piece].",
             ),
+            Opt::value(
+                "--pieces",
+                "N",
+                "Render the picture in N pieces, and keep the finished ones in a folder beside it, so that a run that is stopped \
+                 continues where it was. The picture is the same.",
+            ),
             Opt::value("--seed", "N", "Seed of the random numbers [default: 0]."),
             Opt::flag("--normals", "Show normals instead of light."),
             Opt::flag("--no-counts", "Do not count rays and tests; a little faster."),
@@ -46,6 +54,7 @@ pub struct Options {
     kit: Choice,
     threads: Threads,
     rows: Option<Rows>,
+    pieces: Option<u32>,
     seed: u64,
     quality: QualityOptions,
     tone: ToneOptions,
@@ -56,12 +65,14 @@ pub struct Options {
 impl Options {
     /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
+        given.exclude("--rows", "--pieces")?;
         Ok(Options {
             scene: given.required(0)?.into(),
             out: given.path("--out"),
             kit: Choice::read(given)?,
             threads: Threads::read(given)?,
             rows: given.parsed("--rows", str::parse)?,
+            pieces: given.number("--pieces", 1..=u32::MAX)?,
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
             quality: QualityOptions::read(given)?,
             tone: ToneOptions::read(given)?,
@@ -143,11 +154,13 @@ pub fn run(options: &Options) -> Result<()> {
         seed: options.seed,
         threads: options.threads.count(),
         count: !options.no_counts,
-        reuse: false,
+        // A structure that was built for one piece is used for the next.
+        reuse: options.pieces.is_some(),
     };
-    let bar = FrameBar::new("");
-    let rendering = kit_error::catch(|| kit.render(&job, &bar))?.context("the frame was cancelled")?;
-    bar.finish();
+    let rendering = match options.pieces {
+        Some(n) => in_pieces(&*kit, &job, &Settings::new(&job, source.which, &root)?, &out, n)?,
+        None => rendered(&*kit, &job, "")?,
+    };
 
     // Write the file, and print what the picture cost.
     let samples = match job.scene.quality.samples_per_pixel {
@@ -170,6 +183,55 @@ pub fn run(options: &Options) -> Result<()> {
     };
     Summary { size, quality, indirect_light, count }.print(&out, &rendering);
     Ok(())
+}
+
+fn rendered(kit: &dyn Kit, job: &RenderJob, what: &str) -> Result<Rendering> {
+    let bar = FrameBar::new(what);
+    let rendering = kit_error::catch(|| kit.render(job, &bar))?.context("the frame was cancelled")?;
+    bar.finish();
+    Ok(rendering)
+}
+
+/// Renders the picture in pieces, and keeps them beside `out` until all are finished. Pieces of an earlier run with the same
+/// settings are not rendered again. A piece that cannot be used is.
+fn in_pieces(kit: &dyn Kit, job: &RenderJob, settings: &Settings, out: &Path, n: u32) -> Result<Rendering> {
+    let folder = out.with_extension("pieces");
+    let _lock = Lock::on(&folder)?;
+    make_folder(&folder)?;
+    let all = Rows::divide(job.scene.film.height, n);
+    let mut pieces = Vec::new();
+    let mut n_kept = 0;
+    for (number, rows) in (1..).zip(&all) {
+        let file = folder.join(format!("{}-{}.{}", rows.start, rows.end, piece::ENDING));
+        let known =
+            Piece::read(&file).ok().filter(|piece| piece.settings == *settings && piece.rows == *rows);
+        let piece = match known {
+            Some(piece) => {
+                n_kept += 1;
+                piece
+            }
+            None => {
+                let mut job = job.clone();
+                job.scene.film.rows = Some(*rows);
+                let rendering = rendered(kit, &job, &format!("piece {number} of {}", all.len()))?;
+                let piece = Piece { settings: settings.clone(), rows: *rows, rendering };
+                piece.write(&file).with_context(|| {
+                    format!(
+                        "cannot write {}: the pieces before it are kept, and the next run continues there",
+                        file.display()
+                    )
+                })?;
+                piece
+            }
+        };
+        pieces.push((file.display().to_string(), piece));
+    }
+    if n_kept > 0 {
+        println!("continued: {n_kept} of {} pieces were rendered before", all.len());
+    }
+    let (_, rendering) = merge_picture::merge(pieces)?;
+    std::fs::remove_dir_all(&folder).with_context(|| format!("cannot delete {}", folder.display()))?;
+    Ok(rendering)
 }
 
 /// Writes a whole picture. A PNG file with gamma 2 needs the kit.

@@ -53,7 +53,7 @@ impl Limits {
 }
 
 /// The limits of a scene, and how much of the memory is in use.
-pub(super) struct Budget {
+pub(crate) struct Budget {
     limits: Limits,
     used: Cell<u64>,
 }

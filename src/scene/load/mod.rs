@@ -11,7 +11,7 @@ mod nodes;
 mod numbers;
 mod nurbs;
 mod polygon;
-mod reader;
+pub(crate) mod reader;
 mod settings;
 mod shapes;
 mod syntax;
@@ -23,10 +23,8 @@ mod words;
 
 use super::Scene;
 use super::error::LoadError;
-use limits::Budget;
 pub use limits::Limits;
 use reader::{Source, Table};
-use std::cell::{Cell, RefCell};
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -104,16 +102,9 @@ pub fn parse(file: &Path, text: &str) -> Result<Scene, LoadError> {
 ///
 /// In all cases in which [`parse`] fails.
 pub fn parse_within(file: &Path, text: &str, limits: Limits) -> Result<Loaded, LoadError> {
-    let source = Source {
-        file,
-        text,
-        warnings: RefCell::default(),
-        encoding: Cell::default(),
-        gamma2: RefCell::default(),
-        budget: Budget::new(limits),
-    };
+    let source = Source::new(file, text, limits);
     let document = source.document()?;
-    let root = Table::root(&source, &document, &TABLES)?;
+    let root = Table::root(&source, "the scene", &document, &TABLES)?;
 
     if let Some(encoding) = root.get("color_encoding") {
         source.encoding.set(encoding.choice(&settings::ENCODINGS)?);

@@ -1,7 +1,7 @@
 //! A small typed reader over TOML values. Each value knows its place in the file, so that every message uses
 //! the words of scenes and points at the text that is wrong. `numbers` reads the numbers.
 
-use super::limits::Budget;
+use super::limits::{Budget, Limits};
 use super::syntax;
 use super::words::{listed, nearest, one_line, quoted};
 use crate::scene::error::LoadError;
@@ -12,8 +12,8 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The scene file that is being read, for error messages.
-pub(super) struct Source<'a> {
+/// The TOML file that is being read, mostly a scene, for error messages.
+pub(crate) struct Source<'a> {
     /// The path of the file, which names it in messages and from whose folder other files are searched.
     pub file: &'a Path,
     /// The content of the file.
@@ -29,6 +29,18 @@ pub(super) struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
+    /// The file of this path and content.
+    pub fn new(file: &'a Path, text: &'a str, limits: Limits) -> Source<'a> {
+        Source {
+            file,
+            text,
+            warnings: RefCell::default(),
+            encoding: Cell::default(),
+            gamma2: RefCell::default(),
+            budget: Budget::new(limits),
+        }
+    }
+
     /// All tables of the file; fails if the text is not TOML.
     pub fn document(&self) -> Result<DeTable<'a>, LoadError> {
         DeTable::parse(self.text).map(Spanned::into_inner).map_err(|error| syntax::explain(self, &error))
@@ -54,7 +66,7 @@ impl<'a> Source<'a> {
 }
 
 /// A table whose keys are all known.
-pub(super) struct Table<'a> {
+pub(crate) struct Table<'a> {
     source: &'a Source<'a>,
     name: String,
     entries: &'a DeTable<'a>,
@@ -62,9 +74,14 @@ pub(super) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// The table of the whole file; fails if it has a key that is not among `known`.
-    pub fn root(source: &'a Source<'a>, entries: &'a DeTable<'a>, known: &[&str]) -> Result<Self, LoadError> {
-        Table { source, name: "the scene".into(), entries, span: 0..0 }.knowing(known)
+    /// The table of the whole file, which messages call `name`; fails if it has a key that is not among `known`.
+    pub fn root(
+        source: &'a Source<'a>,
+        name: &str,
+        entries: &'a DeTable<'a>,
+        known: &[&str],
+    ) -> Result<Self, LoadError> {
+        Table { source, name: name.into(), entries, span: 0..0 }.knowing(known)
     }
 
     /// The same table; fails if it has a key that is not among `known`.
@@ -129,7 +146,7 @@ impl<'a> Table<'a> {
 
 /// A value, its key and, in a list, its index.
 #[derive(Clone, Copy)]
-pub(super) struct Value<'a> {
+pub(crate) struct Value<'a> {
     /// The file that the value stands in.
     pub source: &'a Source<'a>,
     /// The key of the value or, in a list, of the list.

@@ -9,6 +9,7 @@ macro_rules! println {
 
 pub mod cases;
 pub mod corpus;
+pub mod course;
 #[cfg(target_os = "linux")]
 pub mod export;
 pub mod gaps;
@@ -19,6 +20,7 @@ pub mod grade;
 pub mod handout;
 pub mod mutants;
 pub mod pictures;
+pub mod release;
 pub mod sandbox;
 pub mod sync;
 

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use grader::kits::root;
-use grader::{cases, corpus, gaps, gauntlet, generate, handout, mutants, sandbox, sync};
+use grader::{cases, corpus, course, gaps, gauntlet, generate, handout, mutants, release, sandbox, sync};
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
 use raykata_cli::args::{Given, Misuse, Read, Spec, did_you_mean, entry};
@@ -23,7 +23,9 @@ const COMMANDS: &[Command] = &[
     (&grade::ONE, |given| grade::one(root, &grade::OneOptions::read(given)?)),
     #[cfg(target_os = "linux")]
     (&grade::MERGE, |given| grade::merge(&grade::MergeOptions::read(given)?)),
+    (&course::SPEC, |given| done(course::show(&course::file(given)?))),
     (&handout::SPEC, |given| done(in_kit(handout::Options::read(given), handout::run))),
+    (&release::SPEC, |given| done(in_kit(release::Options::read(given), release::run))),
     #[cfg(target_os = "linux")]
     (&export::GRADESCOPE, |given| done(in_kit(export::Options::of_gradescope(given), export::gradescope))),
     #[cfg(target_os = "linux")]

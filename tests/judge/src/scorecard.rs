@@ -139,26 +139,22 @@ fn stage_line(number: u8, graded: &[&Graded]) -> String {
     )
 }
 
-/// What a student reads first.
-const WELCOME: &str = "\
-Welcome. You build a ray tracer: you write its functions in exercises/src, one
-at a time. A check passes for each law of light and geometry that they obey.
-Nothing is written yet.
-";
-
 /// Prints the points of the student, and the next step.
 pub fn status(root: &Path, source: &Source) -> Result<()> {
     let graded = run_checks(source, is_asked_for)?;
-    let title = &rubric::course().title;
-    if !title.is_empty() {
-        println!("{title}\n");
+    let course = rubric::course();
+    if !course.title.is_empty() {
+        println!("{}\n", course.title);
     }
     if graded.iter().all(|one| matches!(one.verdict, Verdict::NotWritten { .. })) {
-        println!("{WELCOME}");
+        println!("{}\n", course.text("welcome"));
     }
     for (number, _) in STAGES.iter().filter(|(number, _)| is_asked_for(*number)) {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
         println!("{}", stage_line(*number, &of_stage));
+        if let Some(due) = course.due.get(number).filter(|_| of_stage.iter().any(|one| !one.passed())) {
+            println!("           {} {due}", course.text("due"));
+        }
     }
     println!();
     match graded.iter().find(|one| !one.passed()) {
@@ -171,14 +167,15 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
             match &next.verdict {
                 Verdict::NotWritten { task, place } => {
                     let slide = rubric::entry(stage, name).slide;
-                    println!("Next: {place}\n  {task}\n  slides: {slide}\n");
+                    let (next, slides) = (course.text("next"), course.text("slides"));
+                    println!("{next}: {place}\n  {task}\n  {slides}: {slide}\n");
                 }
-                Verdict::Failed(message) => println!("Next, `{name}` fails:\n{message}"),
+                Verdict::Failed(message) => println!("{}, `{name}` fails:\n{message}", course.text("next")),
                 Verdict::Passed => {}
             }
-            println!("  run it:  cargo test --test stage{stage} {name}");
-            println!("  a hint:  cargo run -- hint {name}");
-            println!("  all the time, after each save:  cargo run -- watch");
+            println!("  {}:  cargo test --test stage{stage} {name}", course.text("run_it"));
+            println!("  {}:  cargo run -- hint {name}", course.text("a_hint"));
+            println!("  {}:  cargo run -- watch", course.text("after_each_save"));
         }
     }
     Ok(())

@@ -6,11 +6,12 @@
 
 use super::landscape::{scene, sides};
 use super::measure::Bench;
+use crate::journal::Journal;
 use crate::report::{FrameBar, Thousands, make_folder};
 use anyhow::{Context, Result};
 use raykata::kit::{RenderJob, Rendering, View};
 use raykata::scene::{Accelerator, Scene};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::Path;
 
@@ -24,7 +25,7 @@ const TESTS_OF_SLICE: u64 = 200_000_000;
 const SHARE_COUNTED: u32 = 4;
 
 /// The results for one size.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Row {
     triangles: u64,
     build_seconds: f64,
@@ -67,8 +68,14 @@ impl Row {
     }
 }
 
-/// Measures 12 times each power of ten up to `most` triangles with this hierarchy, prints the table, and writes it to a file.
-pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path) -> Result<bool> {
+/// Measures 12 times each power of ten up to `most` triangles with this hierarchy, prints the table, and writes it to a file. The
+/// rows are kept until then, so that a run that is stopped continues where it was, if `code` is the same.
+pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, code: &str) -> Result<bool> {
+    let file = out.join("unfinished.jsonl");
+    let about = format!("rows of {hierarchy:?} with {} threads by the program {code}", bench.threads);
+    let is_ours = Journal::<Row>::about(&file).is_some_and(|theirs| theirs == about);
+    let mut kept: Journal<Row> =
+        if is_ours { Journal::resume(&file, &about)? } else { Journal::create(&file, &about)? };
     println!(
         "A landscape of n triangles on {} × {} pixels: one ray per pixel,\nnormals as colours, {} \
          threads. Brute force is timed on a slice of rays, and\nthe counts per ray are means over a sixteenth \
@@ -83,7 +90,14 @@ pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path) -> 
     );
     let mut rows: Vec<Row> = Vec::new();
     for triangles in sizes(most) {
-        let Some(row) = measure(bench, hierarchy, triangles, rows.last())? else { break };
+        let row = match kept.take(&triangles.to_string()) {
+            Some(row) => row,
+            None => {
+                let Some(row) = measure(bench, hierarchy, triangles, rows.last())? else { break };
+                kept.add(&triangles.to_string(), &row)?;
+                row
+            }
+        };
         println!(
             "{:>10} {:>6.1} {:>8} {:>5.1} {:>9.2} {:>6.0} {:>8} {:>11} {:>9}",
             Thousands(row.triangles).to_string(),
@@ -108,6 +122,9 @@ pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path) -> 
     let json = serde_json::to_vec_pretty(&rows)?;
     raykata::film::write_atomically(&file, |file| file.write_all(&json))
         .with_context(|| format!("cannot write {}", file.display()))?;
+    if !bench.stopped() {
+        kept.finish()?;
+    }
     println!("the numbers: {}", file.display());
     Ok(rows.iter().all(|row| row.different_pixels == 0) && !bench.stopped())
 }

@@ -2,6 +2,7 @@
 
 use super::error::{Errors, errors};
 use super::hits::Verdicts;
+use super::kept::Kept;
 use super::ladder::{Ladder, Parameter};
 use super::reference::Reference;
 use super::setting::Setting;
@@ -30,6 +31,8 @@ pub struct Bench<'a> {
     pub seed: u64,
     /// Set when the program is being stopped.
     pub stop: &'a AtomicBool,
+    /// The pictures that a stopped run has measured, and where this run keeps its own.
+    pub kept: Option<&'a Kept>,
 }
 
 /// The measurements of one setting.
@@ -171,7 +174,18 @@ impl Bench<'_> {
         until: Option<Instant>,
         bar: Option<&FrameBar>,
     ) -> Result<Option<Rendering>> {
-        Ok(kit_error::catch(|| self.kit.render(job, &Patience { stop: self.stop, until, bar }))?)
+        let name = match self.kept {
+            Some(kept) => Some((kept, Kept::name(job)?)),
+            None => None,
+        };
+        if let Some(known) = name.as_ref().and_then(|(kept, name)| kept.take(name)) {
+            return Ok(Some(known));
+        }
+        let frame = kit_error::catch(|| self.kit.render(job, &Patience { stop: self.stop, until, bar }))?;
+        if let (Some((kept, name)), Some(frame)) = (name, &frame) {
+            kept.add(&name, frame)?;
+        }
+        Ok(frame)
     }
 
     /// Measures one setting: errors, one time, and counts if `count` is set, which takes longer. `None` if it

@@ -1,7 +1,7 @@
 //! `raykata cost`: measures how much each parameter of a scene lowers the error and how much time it costs.
 //!
 //! `options` (the command line) · `called`, `ladder` and `setting` (the parameters and their values) ·
-//! `reference` (the converged picture) · `error` (differences from it) · `hits` (exact verdicts) · `measure`
+//! `kept` (the pictures of a stopped run) · `reference` (the converged picture) · `error` (differences from it) · `hits` (exact verdicts) · `measure`
 //! (counts, times) · `slope` (how fast the error falls) · `advice` and `greedy` (the best settings for a time
 //! or an error) · `equal_time` (values with equal times) · `table`, `page`, `plot`, `files` (the report) · `headline` and `landscape` (brute force
 //! against a hierarchy)
@@ -14,6 +14,7 @@ mod files;
 mod greedy;
 mod headline;
 mod hits;
+mod kept;
 mod ladder;
 mod landscape;
 mod measure;
@@ -34,6 +35,7 @@ use advice::{Advice, Goal};
 use anyhow::{Context, Result, bail};
 use called::Called;
 pub use hits::Verdicts;
+use kept::Kept;
 use ladder::{Ladder, Parameter};
 use measure::{Bench, Measured, pareto_front};
 pub use options::{Options, SPEC};
@@ -120,13 +122,15 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         threads: options.threads.count(),
         seed: options.seed,
         stop: &stop,
+        kept: None,
     };
 
     // Without a scene, measure the headline example.
     let Some(file) = &options.scene else {
         let out = options.out.clone().unwrap_or_else(|| Path::new("out").join("headline"));
         let hierarchy = options.quality.accelerator().unwrap_or_default();
-        return headline::run(&bench, hierarchy, options.most, &out);
+        let _lock = Lock::on(&out)?;
+        return headline::run(&bench, hierarchy, options.most, &out, &fingerprint(&source)?);
     };
     // Read the scene, in its own size and in that of the measured pictures.
     let mut full = load_scene(file, options.quality.limits())?;
@@ -146,6 +150,11 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
     let _lock = Lock::on(&out)?;
 
+    // Continue a run that was stopped.
+    let code = fingerprint(&source)?;
+    let kept = Kept::open(&out, &code)?;
+    let bench = Bench { kept: Some(&kept), ..bench };
+
     // Choose the values to measure.
     let (ladders, not_offered) = ladders(kit, &bench, &small, options)?;
     for (parameter, why) in &not_offered {
@@ -159,11 +168,14 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     if !options.full {
         println!("`--full` measures larger pictures, more rounds and a better reference");
     }
-    let code = fingerprint(&source)?;
     let cache = Path::new("out").join("references");
     if options.equal_time {
         let reference = |scene: &Scene| reference::reference(&bench, scene, options.reference, &cache, &code);
-        return equal_time::run(&bench, &small, &ladders, &options.light_sizes, &out, reference);
+        let complete = equal_time::run(&bench, &small, &ladders, &options.light_sizes, &out, reference)?;
+        if complete {
+            kept.finish()?;
+        }
+        return Ok(complete);
     }
     let Some(right) = reference::reference(&bench, &small, options.reference, &cache, &code)? else {
         println!("stopped; the next run continues this reference");
@@ -218,6 +230,9 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     make_folder(&out)?;
     files::write(&out, &report)?;
     page::write(&out.join("index.html"), &report)?;
+    if !report.partial {
+        kept.finish()?;
+    }
     println!("\nthe report: {} ({:.0} s)", out.join("index.html").display(), report.took);
     Ok(!report.partial)
 }

@@ -85,6 +85,44 @@ fn two_runs_have_the_same_errors_and_counts() {
     drop(lock);
 }
 
+/// Waits until a file has some lines, and kills the process then.
+fn kill_when(run: &mut std::process::Child, file: &Path, n_lines: usize) {
+    let late = std::time::Instant::now() + std::time::Duration::from_secs(300);
+    while fs::read_to_string(file).map_or(0, |text| text.lines().count()) < n_lines {
+        assert!(run.try_wait().unwrap().is_none(), "it ended before it was killed");
+        assert!(std::time::Instant::now() < late, "{} has not {n_lines} lines", file.display());
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    run.kill().unwrap();
+    run.wait().unwrap();
+}
+
+#[test]
+fn a_measurement_that_is_killed_continues_and_gives_the_same_report() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = |out: &'static str| {
+        let parameters = ["scenes/stage5.toml", "--parameter", "samples,depth", "--reference", "128"];
+        [&parameters[..], &["--out", out], &QUICK].concat()
+    };
+    let output = cost(folder.path(), &arguments("whole"));
+    assert!(output.status.success(), "{}", said(&output));
+    let mut run = Command::new(env!("CARGO_BIN_EXE_raykata"));
+    run.current_dir(folder.path()).arg("cost").args(arguments("killed")).stdout(Stdio::null());
+    let unfinished = folder.path().join("killed/unfinished.jsonl");
+    kill_when(&mut run.stderr(Stdio::null()).spawn().unwrap(), &unfinished, 5);
+    let kept = fs::read_to_string(&unfinished).unwrap().lines().count() - 1;
+    let output = cost(folder.path(), &arguments("killed"));
+    assert!(output.status.success(), "{}", said(&output));
+    // The last line may be incomplete.
+    let words = |n: usize| format!("continues a run that was stopped: {n} measured pictures");
+    assert!(
+        said(&output).contains(&words(kept)) || said(&output).contains(&words(kept - 1)),
+        "{}",
+        said(&output)
+    );
+    assert_eq!(without_times(&folder.path().join("killed")), without_times(&folder.path().join("whole")));
+}
+
 #[test]
 fn a_proposal_is_tried_out() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,11 @@
 //! Pieces of a picture, as users render and merge them.
 
 use super::program_runs::{printed, raykata};
+use raykata_cli::lock::Lock;
+use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 /// Renders a scene with these options, and returns what was printed.
 #[track_caller]
@@ -85,4 +89,50 @@ fn pieces_that_make_no_picture_are_refused_and_nothing_is_written() {
         let complaint = printed(&output).1;
         assert!(!output.status.success() && complaint.contains(part), "{words:?}: {complaint}");
     }
+}
+
+/// The names of the finished pieces in a folder.
+fn finished(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.filter(|name| name.ends_with(".piece") && !name.starts_with('.')).collect()
+}
+
+#[test]
+fn a_render_in_pieces_that_is_killed_continues_and_gives_the_same_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let scene = "scenes/showcase.toml";
+    let whole = render(scene, &[], &at("whole.png"));
+    let pieces = at("killed.pieces");
+    let killed = at("killed.png").to_string_lossy().into_owned();
+    let words = ["render", scene, "--size", "60x50", "--spp", "2", "--out", &killed, "--pieces", "4"];
+    // Kill the run as soon as the first piece is there.
+    let mut run = Command::new(env!("CARGO_BIN_EXE_raykata"));
+    run.current_dir(super::program_runs::root()).args(words).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut run = run.spawn().expect("the program starts");
+    let late = Instant::now() + Duration::from_secs(300);
+    while finished(&pieces).is_empty() && run.try_wait().expect("its state").is_none() {
+        assert!(Instant::now() < late, "no piece is finished");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    run.kill().expect("killed");
+    run.wait().expect("ended");
+    assert!(!Path::new(&killed).exists(), "the run ended before it was killed");
+    // A piece that was cut off is rendered again.
+    let kept = finished(&pieces);
+    assert!(!kept.is_empty());
+    fs::write(pieces.join("48-50.piece"), "raykata piece 1\n{").expect("written");
+    // Another run on the same folder is refused.
+    let lock = Lock::on(&pieces).expect("a lock");
+    let complaint = printed(&raykata(&words)).1;
+    assert!(complaint.contains("another run is writing to"), "{complaint}");
+    drop(lock);
+    let output = raykata(&words);
+    let (said, complaint) = printed(&output);
+    assert!(output.status.success(), "{complaint}");
+    assert!(said.contains("of 4 pieces were rendered before"), "{said}");
+    assert_eq!(counts(&said), counts(&whole));
+    assert!(fs::read(&killed).expect("a picture") == fs::read(at("whole.png")).expect("a picture"));
+    assert!(!pieces.exists());
 }

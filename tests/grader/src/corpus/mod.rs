@@ -2,11 +2,12 @@
 //! named check must catch and diagnose, or another right solution, which every check must accept.
 //!
 //! `carry` (updates patches) · `entry` (reads `tests/corpus`) · `workshop` (builds an entry) · `verdict` (its result) ·
-//! `records` (the stored results)
+//! `records` (the stored results) · `tested` (the results of a run that was stopped)
 
 pub mod carry;
 pub mod entry;
 pub mod records;
+mod tested;
 pub mod verdict;
 pub mod workshop;
 
@@ -22,6 +23,7 @@ use raykata_cli::lock::Lock;
 use records::Matrix;
 use std::path::Path;
 use std::sync::Arc;
+use tested::Tested;
 use verdict::{Fate, Tried};
 use workshop::{Built, Workshop};
 
@@ -40,6 +42,7 @@ pub static SPEC: Spec = Spec {
         Opt::flag("--check", "Also compare with tests/corpus/matrix.txt and tests/corpus/messages."),
         Opt::flag("--bless", "Write tests/corpus/matrix.txt and tests/corpus/messages."),
         Opt::flag("--right", "Only right solutions."),
+        Opt::flag("--resume", "Continue a run that was stopped: skip the entries that it has tested."),
         Opt::value(
             "--seed",
             "N",
@@ -58,6 +61,7 @@ pub struct Options {
     check: bool,
     bless: bool,
     right: bool,
+    resume: bool,
     seed: Option<u64>,
 }
 
@@ -80,6 +84,7 @@ impl Options {
             check: given.has("--check"),
             bless: given.has("--bless"),
             right: given.has("--right"),
+            resume: given.has("--resume"),
             seed: given.number("--seed", 0..=u64::MAX)?,
         })
     }
@@ -92,7 +97,9 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let chosen = choose(all, options)?;
     let complete = chosen.len() == n_all;
     let _lock = Lock::on(&root.join(FOLDER))?;
-    let tried = try_all(root, &chosen, options.jobs.max(1), options.seed)?;
+    let tested = Tested::open(root, options.resume, options.seed)?;
+    let tried = try_all(root, &chosen, options.jobs.max(1), options.seed, &tested)?;
+    tested.finish()?;
 
     let matrix = Matrix::read(root);
     let differences = if options.check { records::differences(root, &matrix, &tried) } else { Vec::new() };
@@ -146,7 +153,13 @@ fn slice(all: &[Entry]) -> Vec<String> {
 }
 
 /// Tests entries, with one workshop per job.
-fn try_all(root: &Path, entries: &[Entry], jobs: usize, seed: Option<u64>) -> Result<Vec<Tried>> {
+fn try_all(
+    root: &Path,
+    entries: &[Entry],
+    jobs: usize,
+    seed: Option<u64>,
+    tested: &Tested,
+) -> Result<Vec<Tried>> {
     let bar = bar_of_steps(entries.len());
     bar.set_message("foreign crates");
     let jobs = jobs.min(entries.len());
@@ -160,7 +173,14 @@ fn try_all(root: &Path, entries: &[Entry], jobs: usize, seed: Option<u64>) -> Re
     let inputs = Inputs { drawn: Some(Arc::default()), reference, ..Inputs::default() };
     let tried = queue::run(&workshops, entries, |workshop, entry| {
         bar.set_message(entry.to_string());
-        let one = try_one(workshop, entry, threads, seed, &inputs)?;
+        let one = match tested.take(entry) {
+            Some(known) => known,
+            None => {
+                let one = try_one(workshop, entry, threads, seed, &inputs)?;
+                tested.add(&one)?;
+                one
+            }
+        };
         bar.inc(1);
         Ok(one)
     })?;

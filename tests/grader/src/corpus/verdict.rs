@@ -3,6 +3,7 @@
 use super::entry::{Claim, Entry};
 use all_checks::STAGES;
 use checks::{Check, Verdict};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -13,7 +14,7 @@ pub type Failures = BTreeMap<&'static str, String>;
 const DIAGNOSIS: &str = "looks like:";
 
 /// How an entry ended.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fate {
     /// A mistake: the named check caught it, and its message contains the words.
     Killed,

@@ -85,7 +85,9 @@ impl Workshop {
         )?;
         // The build of the scaffold reads the rubric.
         fs::create_dir_all(workshop.folder.join("tests"))?;
-        write_if_new(&workshop.folder.join("tests/rubric.toml"), &read(&root.join("tests/rubric.toml"))?)?;
+        for file in ["tests/course.toml", "tests/language.toml", "tests/rubric.toml"] {
+            write_if_new(&workshop.folder.join(file), &read(&root.join(file))?)?;
+        }
         if !workshop.folder.join("Cargo.lock").exists() {
             // Use the kit's versions of all crates. Cargo removes the crates that are not needed here.
             write_if_new(&workshop.folder.join("Cargo.lock"), &read(&root.join("Cargo.lock"))?)?;

@@ -1,5 +1,7 @@
 //! Packs the whole kit into a zip.
 
+use super::COURSE;
+use crate::course::CourseFiles;
 use anyhow::{Context, Result};
 use std::fs;
 use std::io::{Cursor, Write};
@@ -25,11 +27,15 @@ const PARTS: [&str; 11] = [
 /// Folders that are generated or that only authors need.
 const LEFT_OUT: [&str; 3] = ["target", "tests/corpus", "tests/grader/target"];
 
-/// Returns a zip of the kit and these executable scripts. The same kit gives the same bytes.
-pub(super) fn zip(root: &Path, scripts: &[(&str, String)]) -> Result<Vec<u8>> {
+/// Returns a zip of the kit, these executable scripts and the course file. The same kit gives the same bytes.
+pub(super) fn zip(root: &Path, scripts: &[(&str, String)], course: Option<&CourseFiles>) -> Result<Vec<u8>> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, text) in scripts {
         zip.start_file(*name, SimpleFileOptions::default().unix_permissions(0o755))?;
+        zip.write_all(text.as_bytes())?;
+    }
+    for (name, text) in course.iter().flat_map(|files| [&files.course].into_iter().chain(&files.language)) {
+        zip.start_file(format!("{COURSE}/{name}"), SimpleFileOptions::default().unix_permissions(0o644))?;
         zip.write_all(text.as_bytes())?;
     }
     for part in PARTS {

@@ -5,6 +5,7 @@ mod slurm;
 
 pub use slurm::{PICTURE, PictureOptions, SLURM, SlurmOptions, picture, slurm};
 
+use crate::course::{self, CourseFiles};
 use crate::grade::{draw_seed, stages};
 use anyhow::{Context, Result, ensure};
 use raykata::film::write_atomically;
@@ -67,36 +68,66 @@ impl Options {
 /// Most jobs of a matrix on GitHub.
 const MOST_JOBS: u16 = 256;
 
-/// Stages and seed, the same for all students.
+/// Stages, seed and course file, the same for all students.
 struct Grading {
+    course: Option<PathBuf>,
     stages: Option<String>,
     seed: Option<u64>,
 }
 
-fn known_stages(text: &str) -> Result<String> {
+fn known_stages(text: &str) -> Result<String, String> {
     stages(text)?;
     Ok(text.replace(' ', ""))
 }
 
 impl Grading {
     const OPTIONS: &[Opt] = &[
+        course::OPTION,
         Opt::value("--stages", "LIST", "The stages, as `3`, `1-4` or `1-4,10` [default: all]."),
         Opt::value("--seed", "N", "Picks the hidden inputs [default: drawn at random]."),
     ];
 
     fn read(given: &Given) -> Result<Grading, Misuse> {
         Ok(Grading {
+            course: given.path("--course"),
             stages: given.parsed("--stages", known_stages)?,
             seed: given.number("--seed", 0..=u64::MAX)?,
         })
     }
 
-    /// Returns these as options of `grader grade-one`.
-    fn options(&self) -> String {
+    /// Reads the course file.
+    fn course(&self) -> Result<Option<CourseFiles>> {
+        let files = self.course.as_deref().map(CourseFiles::read).transpose()?;
+        if let (Some(files), Some(list)) = (&files, &self.stages) {
+            let course = files.parse()?;
+            let left_out = stages(list)
+                .map_err(anyhow::Error::msg)?
+                .0
+                .into_iter()
+                .find(|&stage| course.leaves_out(stage));
+            ensure!(
+                left_out.is_none(),
+                "--stages names a stage that the course file leaves out: change one of the two"
+            );
+        }
+        Ok(files)
+    }
+
+    /// Returns these as options of `grader grade-one`. `course` is the path of the copied course file, as a word of a shell.
+    fn options(&self, course: Option<&str>) -> String {
         let seed = self.seed.unwrap_or_else(draw_seed);
         let stages = self.stages.as_ref().map_or_else(String::new, |stages| format!("--stages {stages} "));
-        format!("{stages}--seed {seed}")
+        let course = course.map_or_else(String::new, |file| format!("--course {file} "));
+        format!("{course}{stages}--seed {seed}")
     }
+}
+
+/// The folder of the course file, in the folder of the kit.
+const COURSE: &str = "course";
+
+/// Returns the path of the course file from the folder of the kit, as a word of a shell.
+fn in_folder(course: &CourseFiles) -> Result<String> {
+    slurm::quoted(format!("{COURSE}/{}", course.course.0).as_ref())
 }
 
 const SETUP: &str = include_str!("setup.sh");
@@ -111,11 +142,13 @@ const NUMBERS: &str = "{numbers}";
 
 /// Writes the zip for Gradescope.
 pub fn gradescope(root: &Path, options: &Options) -> Result<()> {
+    let course = options.grading.course()?;
+    let file = course.as_ref().map(in_folder).transpose()?;
     let scripts = [
         ("setup.sh", SETUP.to_owned()),
-        ("run_autograder", RUN.replace(OPTIONS, &options.grading.options())),
+        ("run_autograder", RUN.replace(OPTIONS, &options.grading.options(file.as_deref()))),
     ];
-    let zip = bundle::zip(root, &scripts)?;
+    let zip = bundle::zip(root, &scripts, course.as_ref())?;
     write(&options.out, &zip)?;
     println!("{}: upload it as the autograder of a programming assignment", options.out.display());
     Ok(())
@@ -124,7 +157,9 @@ pub fn gradescope(root: &Path, options: &Options) -> Result<()> {
 /// Writes the workflows for GitHub.
 pub fn classroom(options: &Options) -> Result<()> {
     let folder = options.out.join(".github/workflows");
-    let graded = options.grading.options();
+    let course = options.grading.course()?;
+    let file = course.as_ref().map(in_folder).transpose()?;
+    let graded = options.grading.options(file.as_deref());
     let numbers: Vec<String> = (1..=options.parts).map(|part| part.to_string()).collect();
     let (parts, numbers) = (options.parts.to_string(), numbers.join(", "));
     for (name, template) in [("classroom.yml", EACH_PUSH), ("class.yml", WHOLE_CLASS)] {
@@ -132,6 +167,10 @@ pub fn classroom(options: &Options) -> Result<()> {
         ensure!(!file.exists(), "{} already exists", file.display());
         let text = template.replace(OPTIONS, &graded).replace(PARTS, &parts).replace(NUMBERS, &numbers);
         write(&file, text.as_bytes())?;
+    }
+    if let Some(course) = course {
+        course.write_to(&options.out.join(COURSE))?;
+        println!("{}: copy this folder into the repository of the kit", options.out.join(COURSE).display());
     }
     println!("{}: read the comment at the top of each file before you use it", folder.display());
     Ok(())

@@ -1,7 +1,7 @@
 //! `grader export slurm` and `grader export slurm-picture`: job scripts for a cluster that runs Slurm. The engine queues, limits
 //! and starts again; the parts that it runs can be stopped at any time, and the merge refuses a result with holes.
 
-use super::{Grading, write};
+use super::{COURSE, Grading, write};
 use crate::grade::submissions_in;
 use anyhow::{Context, Result, ensure};
 use raykata::rows::Rows;
@@ -106,7 +106,13 @@ pub fn slurm(root: &Path, options: &SlurmOptions) -> Result<()> {
     ensure!(n_submissions > 0, "there is no submission in {}", submissions.display());
     let parts = n_submissions.div_ceil(options.chunk);
     let grader = std::env::current_exe().context("the path of this program is unknown")?;
+    let course = options.grading.course()?;
     let folder = Folder::make(&options.out, "parts")?;
+    let file = course.map(|course| -> Result<String> {
+        course.write_to(&folder.path.join(COURSE))?;
+        quoted(folder.path.join(COURSE).join(&course.course.0).as_os_str())
+    });
+    let file = file.transpose()?;
     folder.fill(
         &[
             ("grade.sbatch", include_str!("grade.sbatch")),
@@ -121,7 +127,7 @@ pub fn slurm(root: &Path, options: &SlurmOptions) -> Result<()> {
             ("submissions", quoted(submissions.as_os_str())?),
             ("parts", parts.to_string()),
             ("chunk", options.chunk.to_string()),
-            ("options", options.grading.options()),
+            ("options", options.grading.options(file.as_deref())),
             ("results", "parts".into()),
             ("first", "grade.sbatch".into()),
             ("second", "merge.sbatch".into()),
@@ -233,7 +239,7 @@ fn absolute(path: &Path) -> Result<PathBuf> {
 }
 
 /// Returns a word as a shell reads it back. Plain words stay as they are.
-fn quoted(word: &OsStr) -> Result<String> {
+pub(super) fn quoted(word: &OsStr) -> Result<String> {
     let text = word.to_str().with_context(|| format!("{} is not UTF-8: rename it", word.display()))?;
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:,@".contains(c);
     Ok(match !text.is_empty() && text.chars().all(is_plain) {

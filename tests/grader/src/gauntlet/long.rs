@@ -4,9 +4,9 @@
 use super::secondary_rays;
 use crate::kits::Source;
 use crate::queue;
-use crate::report::{Thousands, bar_of_steps, make_folder_of};
+use crate::report::{Thousands, bar_of_steps};
 use crate::worker::Worker;
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use judge::gauntlet::Input;
 use judge::leak_table::leaks_of;
 use judge::table::Table;
@@ -20,12 +20,12 @@ use oracle::splitmix::Random;
 use raykata::kit::{Door, Kit, SlabQuery, TriangleQuery, kit_error};
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality, Split};
+use raykata_cli::journal::Journal;
 use raykata_cli::lock::Lock;
-use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The number of rays of one piece of work in closed meshes.
 const IN_MESHES: u64 = 50_000;
@@ -37,18 +37,15 @@ const PIECE: u64 = secondary_rays::RAYS;
 const TIMES_AS_MANY: usize = 8;
 /// Time limit for a piece in one mesh, with the build of the structure and without much optimisation.
 const PATIENCE: Duration = Duration::from_secs(600);
-/// The time between two writes of the progress.
-const PAUSE: Duration = Duration::from_secs(2);
 
 /// The progress.
-#[derive(Default, Serialize, Deserialize, PartialEq)]
 struct State {
     seed: u64,
     /// The finished pieces of work per trial.
     done: BTreeMap<String, Done>,
 }
 
-#[derive(Default, Serialize, Deserialize, PartialEq)]
+#[derive(Default)]
 struct Done {
     /// The numbers of the pieces.
     pieces: Vec<u64>,
@@ -116,6 +113,18 @@ enum Trial {
     Slab,
     SelfHit,
     Contact,
+}
+
+/// Finished work of a trial in the journal: the numbers of its pieces, and their failures.
+type Piece = (Vec<u64>, u64);
+
+impl State {
+    fn add(&mut self, trial: Trial, (pieces, failures): &Piece) {
+        let done = self.done.entry(trial.name()).or_default();
+        done.pieces.extend(pieces);
+        done.rays += trial.rays() * pieces.len() as u64;
+        done.failures += failures;
+    }
 }
 
 impl Trial {
@@ -188,15 +197,18 @@ fn lost_boxes(kit: &dyn Kit, mut random: Random) -> u64 {
 /// Runs until `rays` rays of each kind are done. Returns the numbers, and whether no ray failed.
 pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<(Table, bool)> {
     let _lock = Lock::on(file)?;
-    let mut state = read(file)?;
-    if state.seed != seed && !state.done.is_empty() {
-        bail!(
-            "{} is from a run with --seed {}: use that seed, or name another file with --state",
-            file.display(),
-            state.seed
-        );
+    let about = format!("a gauntlet with --seed {seed}");
+    if let Some(theirs) = Journal::<Piece>::about(file).filter(|theirs| *theirs != about) {
+        bail!("{} is of {theirs}: use that seed, or name another file with --state", file.display());
     }
-    state.seed = seed;
+    let journal: Journal<Piece> = Journal::resume(file, &about)?;
+    let mut state = State { seed, done: BTreeMap::new() };
+    let trials = Trial::all();
+    for (name, piece) in journal.kept() {
+        if let Some(trial) = trials.iter().find(|trial| trial.name() == *name) {
+            state.add(*trial, piece);
+        }
+    }
     // List the pieces of work that are not done, and put some of each trial together.
     let work: Vec<(Trial, Vec<u64>)> = Trial::all()
         .into_iter()
@@ -217,25 +229,19 @@ pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<(Tab
     let kit = || Door(Worker::new(reference.program.clone(), PATIENCE));
     let kits: Vec<_> = (0..queue::cores()).map(|_| kit()).collect();
     let bar = bar_of_steps(work.iter().map(|(_, pieces)| pieces.len()).sum());
-    let state = Mutex::new((state, Instant::now()));
+    let state = Mutex::new((state, journal));
     queue::run(&kits, &work, |kit, (trial, pieces)| {
         let failures = kit_error::catch(|| trial.failures(kit, &meshes, seed, pieces))??;
         bar.inc(pieces.len() as u64);
         let mut guard = state.lock().unwrap_or_else(|broken| broken.into_inner());
-        let (state, kept) = &mut *guard;
-        let done = state.done.entry(trial.name()).or_default();
-        done.pieces.extend(pieces);
-        done.rays += trial.rays() * pieces.len() as u64;
-        done.failures += failures;
-        if kept.elapsed() > PAUSE {
-            write(state, file)?;
-            *kept = Instant::now();
-        }
+        let (state, journal) = &mut *guard;
+        let piece = (pieces.clone(), failures);
+        journal.add(&trial.name(), &piece)?;
+        state.add(*trial, &piece);
         Ok(())
     })?;
     bar.finish_and_clear();
     let (state, _) = state.into_inner().unwrap_or_else(|broken| broken.into_inner());
-    write(&state, file)?;
     let succeeded = state.done.values().all(|done| done.failures == 0);
     Ok((table(&state, &meshes), succeeded))
 }
@@ -254,22 +260,4 @@ fn table(state: &State, meshes: &[Closed]) -> Table {
             format!("{TIMES_AS_MANY} in {}.", turns.len()),
         ],
     }
-}
-
-fn read(file: &Path) -> Result<State> {
-    match std::fs::read(file) {
-        Ok(bytes) => serde_json::from_slice(&bytes).with_context(|| {
-            format!("{} is not the state of a gauntlet: name another file with --state", file.display())
-        }),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(State::default()),
-        Err(error) => Err(error).with_context(|| format!("cannot read {}", file.display())),
-    }
-}
-
-fn write(state: &State, file: &Path) -> Result<()> {
-    make_folder_of(file)?;
-    let bytes = serde_json::to_vec_pretty(state)?;
-    raykata::film::write_atomically(file, |out| std::io::Write::write_all(out, &bytes))
-        .with_context(|| format!("cannot write {}", file.display()))?;
-    Ok(())
 }

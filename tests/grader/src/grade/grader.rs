@@ -8,6 +8,7 @@ use super::result::{Graded, Outcome, Remark};
 use super::scratch;
 use super::store::Store;
 use super::submission::{self, Submission, Taken};
+use crate::course::HandedIn;
 use crate::queue;
 use crate::sandbox::{self, Confinement, How, Purpose, Sandbox};
 use crate::sync::stage_of;
@@ -30,6 +31,8 @@ pub struct Grader {
     pub confinement: Confinement,
     /// Rules of the syntax check that do not apply.
     pub allowed: Vec<String>,
+    /// When submissions were handed in, as far as it is known.
+    pub handed_in: HandedIn,
 }
 
 /// Most findings that are reported per file. More of them would not help a student.
@@ -60,13 +63,19 @@ impl Grader {
     ) -> Result<()> {
         let grade = |_: &(), submission: &Submission| {
             let taken = self.take(&submission.path);
-            if let Some(known) = store.known(&submission.student, &taken.content())? {
+            let handed_in = self.handed_in.get(&submission.student).map(ToString::to_string);
+            if let Some(mut known) = store.known(&submission.student, &taken.content())? {
+                if let Some(handed_in) = handed_in.filter(|time| *time != known.handed_in) {
+                    known.handed_in = handed_in;
+                    store.keep(&known)?;
+                }
                 done(&known);
                 return Ok(());
             }
             let empty = self.graded(&submission.student, &taken);
-            let graded =
+            let mut graded =
                 self.grade(&submission.student, taken).unwrap_or_else(|error| self.broken(empty, &error));
+            graded.handed_in = handed_in.unwrap_or_default();
             store.keep(&graded)?;
             done(&graded);
             Ok(())
@@ -133,6 +142,7 @@ impl Grader {
             compiler: String::new(),
             trouble: taken.trouble.clone().unwrap_or_default(),
             cpu_ms: 0,
+            handed_in: String::new(),
         }
     }
 

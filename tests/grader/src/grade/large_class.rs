@@ -52,6 +52,7 @@ fn student(number: usize, last_stage: u8, png: &str, random: &mut Random) -> Gra
         compiler: String::new(),
         trouble,
         cpu_ms: 400 + (number * 7919 % 1000) as u64,
+        handed_in: String::new(),
     }
 }
 
@@ -61,8 +62,13 @@ fn parts(folder: &Path, n_students: usize, last_stage: u8) -> Vec<PathBuf> {
     let png =
         fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../golden/stage1_sphere_on_a_plane.png")).unwrap();
     let png = base64::engine::general_purpose::STANDARD.encode(png);
-    let session =
-        Session { kit: "1".into(), stages: (1..=last_stage).collect(), seed: 7, isolation: "none".into() };
+    let session = Session {
+        kit: "1".into(),
+        stages: (1..=last_stage).collect(),
+        seed: 7,
+        isolation: "none".into(),
+        ..Session::default()
+    };
     let of = n_students.div_ceil(CHUNK);
     let part = |index: usize| {
         let path = folder.join(index.to_string());

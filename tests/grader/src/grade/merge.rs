@@ -3,6 +3,7 @@
 use super::finish;
 use super::shard;
 use super::store::{self, Store};
+use crate::course::CourseFiles;
 use anyhow::{Result, bail, ensure};
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use std::path::{Path, PathBuf};
@@ -54,7 +55,14 @@ pub fn run(Options { parts, out }: &Options) -> Result<bool> {
     crate::report::make_folder(out)?;
     let store = Store::claim(out)?;
     ensure!(store.session()?.is_none(), "{} already contains grades; choose another folder", out.display());
+    // The titles and texts of the reports are those of the course.
+    let course = match parts.first() {
+        Some(first) => Store::open(first)?.course()?,
+        None => None,
+    };
+    course.as_ref().map_or(Ok(()), CourseFiles::apply)?;
     store.take_over(parts)?;
+    store.keep_course(course.as_ref())?;
     finish(&store, out)
 }
 

@@ -29,13 +29,15 @@ mod submission;
 pub use grader::{Grader, lint_if_asked};
 pub use merge::{Options as MergeOptions, SPEC as MERGE, run as merge};
 pub use one::{Options as OneOptions, SPEC as ONE, run as one};
-pub(crate) use options::{Stages, draw_seed, stages};
+pub(crate) use options::{draw_seed, stages};
 pub use rehearsal::{Options as RehearsalOptions, SPEC as REHEARSE, run as rehearse};
 pub use run_attacks::{Options as AttackOptions, SPEC as ATTACKS, run as attack};
 
+use crate::course::CourseFiles;
 use crate::queue;
 use anyhow::{Context, Result, ensure};
 use options::GradingOptions;
+use raykata::rubric;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use report::clean::clean_line;
 use shard::{Part, Shard, shard};
@@ -74,6 +76,12 @@ pub static SPEC: Spec = Spec {
                 "Continue with the grades in the folder: grade only submissions that are new or have changed. Grades of \
                  other submissions stay, so SUBMISSIONS may be a folder of late ones.",
             ),
+            Opt::value(
+                "--handed-in",
+                "FILE",
+                "A table of students and times, such as `ann,2026-11-02T18:30:00` below a header. Reports mark what was handed in \
+                 after the dates of the course file; the points stay the same.",
+            ),
             Opt::flag(
                 "--forget-missing",
                 "With `--resume`: delete the grades of submissions that are not in SUBMISSIONS.",
@@ -91,6 +99,7 @@ pub struct Options {
     shard: Option<Shard>,
     resume: bool,
     forget_missing: bool,
+    handed_in: Option<PathBuf>,
     grading: GradingOptions,
 }
 
@@ -104,6 +113,7 @@ impl Options {
             shard: given.parsed("--shard", shard)?,
             resume: given.has("--resume"),
             forget_missing: given.has("--forget-missing"),
+            handed_in: given.path("--handed-in"),
             grading: GradingOptions::read(given)?,
         };
         given.require("--shard", "--seed")?;
@@ -121,6 +131,7 @@ pub(crate) fn submissions_in(folder: &Path) -> Result<usize> {
 
 /// Grades the class. Returns `Ok(true)` if every submission could be graded, with any grade.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
+    let course = options.grading.course()?;
     // Find the submissions of this part of the class.
     let (submissions, others) = submission::find(&options.submissions)
         .with_context(|| format!("cannot read the folder {}", options.submissions.display()))?;
@@ -142,8 +153,22 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         "{} already contains grades: continue them by --resume, or choose another folder",
         options.out.display()
     );
-    let (grader, session) = options.grading.begin(root, begun.as_ref())?;
+    let course = course.or(store.course()?);
+    course.as_ref().map_or(Ok(()), CourseFiles::apply)?;
+    let (mut grader, session) = options.grading.begin(root, begun.as_ref())?;
+    if let Some(file) = &options.handed_in {
+        grader.handed_in = crate::course::handed_in(file, rubric::course())?;
+        let unknown = |student: &&String| !submissions.iter().any(|one| one.student == **student);
+        if let (None, Some(student)) = (options.shard, grader.handed_in.keys().find(unknown)) {
+            eprintln!(
+                "note: {} has a time for {}, who has handed in nothing here",
+                file.display(),
+                clean_line(student, 80)
+            );
+        }
+    }
     store.begin(&session)?;
+    store.keep_course(course.as_ref())?;
     store.begin_part(part.as_ref())?;
     // Keep the grades of submissions that are not there, unless the instructor says otherwise.
     let names: Vec<&str> = submissions.iter().map(|one| one.student.as_str()).collect();

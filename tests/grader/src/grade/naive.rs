@@ -8,7 +8,6 @@ use super::attacks::{self, Attack, AttackFolders, CANARY};
 use crate::handout;
 use crate::sandbox::{self, Ended, How};
 use anyhow::{Context, Result, bail, ensure};
-use raykata::rubric::Course;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -44,7 +43,7 @@ impl Naive {
     /// Hands out the kit at `root` and builds the tests of these stages.
     pub fn prepare(root: &Path, stages: &[u8]) -> Result<Naive> {
         let kit = tempfile::tempdir()?;
-        handout::write(root, kit.path(), &Course::default())?;
+        handout::write(root, kit.path(), None)?;
         let mut cargo = cargo(stages);
         let built = cargo.arg("--no-run").current_dir(kit.path()).output()?;
         ensure!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));

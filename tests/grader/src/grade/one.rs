@@ -79,6 +79,9 @@ pub fn run(root: impl FnOnce() -> Result<PathBuf>, options: &Options) -> Result<
 }
 
 fn grade(root: &Path, options: &Options) -> Result<(Graded, Session)> {
+    if let Some(course) = options.grading.course()? {
+        course.apply()?;
+    }
     let (grader, session) = options.grading.begin(root, None)?;
     let graded = grader.grade("submission", grader.take(&options.submission))?;
     Ok((graded, session))
@@ -94,12 +97,14 @@ fn broken(options: &Options, trouble: &str) -> (Graded, Session) {
         compiler: String::new(),
         trouble: trouble.into(),
         cpu_ms: 0,
+        handed_in: String::new(),
     };
     let session = Session {
         kit: env!("CARGO_PKG_VERSION").into(),
         stages: Vec::new(),
         seed: options.grading.seed.unwrap_or_default(),
         isolation: String::new(),
+        ..Session::default()
     };
     (graded, session)
 }

@@ -4,9 +4,11 @@ use super::forge::{self, Forge};
 use super::grader::Grader;
 use super::judge::Judge;
 use super::result::Session;
+use crate::course::{self, CourseFiles, HandedIn};
 use crate::sandbox::{self, Confinement};
 use all_checks::STAGES;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail};
+use raykata::rubric;
 use raykata_cli::args::{Given, Misuse, Opt};
 use sha2::{Digest, Sha256};
 use std::fs;
@@ -21,6 +23,7 @@ pub struct GradingOptions {
     pub(super) seed: Option<u64>,
     pub(super) allow: Vec<String>,
     pub(super) insecure: bool,
+    pub(super) course: Option<PathBuf>,
 }
 
 impl GradingOptions {
@@ -39,6 +42,7 @@ impl GradingOptions {
             "Rules of the syntax check to switch off, by the names in its messages.",
         )
         .many(),
+        course::OPTION,
         Opt::flag("--insecure", "Grade even if there is no sandbox. Submissions then have all your rights."),
     ];
 
@@ -49,25 +53,44 @@ impl GradingOptions {
             seed: given.number("--seed", 0..=u64::MAX)?,
             allow: given.list("--allow", |rule| Ok::<_, String>(rule.to_owned()))?,
             insecure: given.has("--insecure"),
+            course: given.path("--course"),
         })
     }
 
+    /// Reads the course file.
+    pub fn course(&self) -> Result<Option<CourseFiles>> {
+        self.course.as_deref().map(CourseFiles::read).transpose()
+    }
+
     /// Makes a grader, and the session that the reports describe. Without the options, stages and seed are those of
-    /// `begun`, the earlier run.
+    /// `begun`, the earlier run, or the stages are those of the course.
     pub fn begin(&self, root: &Path, begun: Option<&Session>) -> Result<(Grader, Session)> {
         let (confinement, isolation) = self.confinement()?;
         let forge = Forge::prepare(root, confinement)?;
+        let course = rubric::course();
         let stages = self.stages.as_ref().map(|Stages(stages)| stages.clone());
+        if let Some(stage) = stages.iter().flatten().find(|stage| course.leaves_out(**stage)) {
+            bail!("--stages names stage {stage}, which the course file leaves out: change one of the two");
+        }
         let session = Session {
             kit: kit(root, &self.allow, &forge)?,
-            stages: stages.or(begun.map(|session| session.stages.clone())).unwrap_or_else(all_stages),
+            stages: stages.or(begun.map(|session| session.stages.clone())).unwrap_or_else(stages_of_course),
             seed: self.seed.or(begun.map(|session| session.seed)).unwrap_or_else(draw_seed),
             isolation,
+            course: course::name(course),
+            due: course.due.iter().map(|(stage, due)| (*stage, due.to_string())).collect(),
         };
         // Run the checks against the reference to prepare the judge.
         let judge = Judge::of(root, &session.stages, session.seed, confinement)?;
         let allowed = self.allow.clone();
-        Ok((Grader { forge: Arc::new(forge), judge: Arc::new(judge), confinement, allowed }, session))
+        let grader = Grader {
+            forge: Arc::new(forge),
+            judge: Arc::new(judge),
+            confinement,
+            allowed,
+            handed_in: HandedIn::new(),
+        };
+        Ok((grader, session))
     }
 
     /// Tests the sandbox. Returns how strict it is, and a line about it for the reports.
@@ -92,25 +115,14 @@ impl GradingOptions {
 pub(crate) struct Stages(pub(crate) Vec<u8>);
 
 /// Reads a list of stages such as `1-4,10`.
-pub(crate) fn stages(text: &str) -> Result<Stages> {
-    let number =
-        |text: &str| text.trim().parse::<u8>().with_context(|| format!("`{text}` is not a stage number"));
-    let mut stages = Vec::new();
-    for part in text.split(',') {
-        let (first, last) = part.split_once('-').unwrap_or((part, part));
-        stages.extend(number(first)?..=number(last)?);
-    }
-    stages.sort_unstable();
-    stages.dedup();
-    ensure!(!stages.is_empty(), "`{text}` names no stage");
-    for stage in &stages {
-        ensure!(STAGES.iter().any(|(number, _)| number == stage), "there is no stage {stage}");
-    }
-    Ok(Stages(stages))
+pub(crate) fn stages(text: &str) -> Result<Stages, String> {
+    raykata::course::stages_of(text).map(Stages)
 }
 
-fn all_stages() -> Vec<u8> {
-    STAGES.iter().map(|(number, _)| *number).collect()
+/// All stages that the course does not leave out.
+fn stages_of_course() -> Vec<u8> {
+    let all = STAGES.iter().map(|(number, _)| *number);
+    all.filter(|number| !rubric::course().leaves_out(*number)).collect()
 }
 
 /// Draws a random seed from the random keys of the standard library's hash tables.

@@ -28,6 +28,10 @@ pub static SPEC: Spec = Spec {
         Opt::value("--jobs", "N", "How many submissions to grade at the same time [default: one per core]."),
         Opt::flag("--honest", "Leave out the attacks."),
         Opt::flag(
+            "--resume",
+            "Continue a run that was stopped, with the same --out and --students: grade only what it has not graded.",
+        ),
+        Opt::flag(
             "--against-cargo",
             "Also measure one fresh `cargo test` of the same stages, for comparison.",
         ),
@@ -40,17 +44,20 @@ pub struct Options {
     out: Option<PathBuf>,
     jobs: Option<u16>,
     honest: bool,
+    resume: bool,
     against_cargo: bool,
 }
 
 impl Options {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
+        given.require("--resume", "--out")?;
         Ok(Options {
             students: given.number("--students", 0..=usize::MAX)?.unwrap_or(200),
             out: given.path("--out"),
             jobs: given.number("--jobs", 1..=u16::MAX)?,
             honest: given.has("--honest"),
+            resume: given.has("--resume"),
             against_cargo: given.has("--against-cargo"),
         })
     }
@@ -114,8 +121,9 @@ fn grade_options(class: &Path, out: &Path, options: &Options) -> GradeOptions {
         out: out.to_owned(),
         jobs: options.jobs,
         shard: None,
-        resume: false,
-        forget_missing: false,
+        resume: options.resume,
+        forget_missing: options.resume,
+        handed_in: None,
         grading: GradingOptions {
             stages: Some(Stages(STAGES_OF_CLASS.to_vec())),
             ..GradingOptions::default()

@@ -1,6 +1,8 @@
 //! The results of grading, from which all reports are made.
 
+use raykata::course::Moment;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// How a check ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -119,6 +121,9 @@ pub struct Graded {
     /// `results.json` leaves it out.
     #[serde(default)]
     pub cpu_ms: u64,
+    /// When the submission was handed in, as the instructor's table says; empty if unknown.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub handed_in: String,
 }
 
 impl Graded {
@@ -134,6 +139,13 @@ impl Graded {
         stages
     }
 
+    /// Returns the stages that were handed in late, with how much later than they were due.
+    pub fn late(&self, session: &Session) -> Vec<(u8, String)> {
+        let Ok(time) = self.handed_in.parse::<Moment>() else { return Vec::new() };
+        let late = |stage: u8| Some((stage, time.later_than(&session.due.get(&stage)?.parse().ok()?)?));
+        self.stages().into_iter().filter_map(late).collect()
+    }
+
     /// Returns the checks of a stage.
     pub fn of_stage(&self, stage: u8) -> impl Iterator<Item = &CheckResult> {
         self.checks.iter().filter(move |check| check.stage == stage)
@@ -146,7 +158,7 @@ pub fn sum<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> (u32, u32) {
 }
 
 /// Kit, stages, seed and sandbox of the grading, the same for every submission of a class.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Session {
     /// Version of the kit and fingerprint of its checks and rubric.
     pub kit: String,
@@ -156,6 +168,12 @@ pub struct Session {
     pub seed: u64,
     /// The kind of sandbox, in one line.
     pub isolation: String,
+    /// The title of the course and a fingerprint of its course file; empty without one.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub course: String,
+    /// When stages are due. No grade depends on it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub due: BTreeMap<u8, String>,
 }
 
 /// A class, graded.

@@ -6,6 +6,7 @@ use super::grader::Grader;
 use super::judge::Judge;
 use super::naive::Naive;
 use super::result::Outcome;
+use crate::course::HandedIn;
 use crate::queue;
 use crate::report::bar_of_steps;
 use crate::sandbox::{self, Confinement};
@@ -60,7 +61,8 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     };
     let grade = |submission: &Path, stages: &[u8], allowed: &[String]| {
         let (forge, judge, allowed) = (forge.clone(), judge(stages)?, allowed.to_owned());
-        let grader = Grader { forge, judge, confinement: Confinement::Full, allowed };
+        let handed_in = HandedIn::new();
+        let grader = Grader { forge, judge, confinement: Confinement::Full, allowed, handed_in };
         let student = submission.file_name().unwrap_or_default().to_string_lossy().into_owned();
         grader.grade(&student, grader.take(submission))
     };

@@ -1,8 +1,10 @@
 //! Stores the grades of a class in an SQLite database beside the reports. Each grade is written in one transaction when it
 //! is complete, so a killed run loses only the submissions that were in progress.
 
+use super::report::clean::clean_line;
 use super::result::{Class, Graded, Session};
 use super::shard::Part;
+use crate::course::CourseFiles;
 use anyhow::{Context, Result, bail, ensure};
 use nix::fcntl::{Flock, FlockArg};
 use rusqlite::{Connection, OptionalExtension, params};
@@ -25,11 +27,14 @@ const TABLES: &str = "
         content TEXT NOT NULL,
         json TEXT NOT NULL
     );
+    CREATE TABLE IF NOT EXISTS course (id INTEGER PRIMARY KEY CHECK (id = 0), json TEXT NOT NULL);
     CREATE TABLE IF NOT EXISTS part (id INTEGER PRIMARY KEY CHECK (id = 0), json TEXT NOT NULL);";
 
 /// The grades of a class.
 pub struct Store {
     connection: Mutex<Connection>,
+    /// The path of the database, for errors.
+    file: PathBuf,
     /// Kept until the store is dropped, if this process may write grades.
     _lock: Option<Flock<File>>,
 }
@@ -62,7 +67,7 @@ impl Store {
         };
         make()
             .with_context(|| format!("{} is not a grade database; choose another folder", path.display()))?;
-        Ok(Store { connection: Mutex::new(connection), _lock: None })
+        Ok(Store { connection: Mutex::new(connection), file: path, _lock: None })
     }
 
     /// Returns the session, if grading was begun.
@@ -79,7 +84,7 @@ impl Store {
             ensure!(
                 begun.same_grades(session),
                 "the grades there were made in another way ({}) than asked for now ({}){}; choose another folder, or use \
-                 the same kit and options",
+                 the same kit, course file and options",
                 begun.words(),
                 session.words(),
                 if begun.seed == session.seed { "" } else { ", with another --seed" }
@@ -87,6 +92,22 @@ impl Store {
         }
         let json = serde_json::to_string(session)?;
         self.lock().execute("INSERT OR REPLACE INTO session (id, json) VALUES (0, ?1)", [json])?;
+        Ok(())
+    }
+
+    /// Returns the course file with which the grades were made.
+    pub fn course(&self) -> Result<Option<CourseFiles>> {
+        let json: Option<String> =
+            self.lock().query_row("SELECT json FROM course", [], |row| row.get(0)).optional()?;
+        json.map(|json| serde_json::from_str(&json).context("the course is from another version")).transpose()
+    }
+
+    /// Stores the course file, so that later runs and merges need not be given it again.
+    pub fn keep_course(&self, course: Option<&CourseFiles>) -> Result<()> {
+        if let Some(course) = course {
+            let json = serde_json::to_string(course)?;
+            self.lock().execute("INSERT OR REPLACE INTO course (id, json) VALUES (0, ?1)", [json])?;
+        }
         Ok(())
     }
 
@@ -106,11 +127,17 @@ impl Store {
     /// Stores a grade durably.
     pub fn keep(&self, graded: &Graded) -> Result<()> {
         let json = serde_json::to_string(graded)?;
-        self.lock().execute(
+        let stored = self.lock().execute(
             "INSERT OR REPLACE INTO graded (student, content, json) VALUES (?1, ?2, ?3)",
             params![graded.student, graded.content, json],
-        )?;
-        Ok(())
+        );
+        let student = clean_line(&graded.student, 80);
+        stored.map(drop).with_context(|| {
+            format!(
+                "cannot store the grade of {student} in {}: the grades before it are stored, and `--resume` continues there",
+                self.file.display()
+            )
+        })
     }
 
     /// Stores many grades in one transaction.
@@ -213,10 +240,16 @@ impl Store {
             let session = known.get_or_insert_with(|| theirs.clone());
             ensure!(
                 session.same_grades(&theirs),
-                "{} was graded in another way ({}) than the other parts ({}): all parts need the same kit, stages and --seed",
+                "{} was graded in another way ({}) than the other parts ({}): all parts need the same kit, course file, stages and --seed",
                 folder.display(),
                 theirs.words(),
                 session.words()
+            );
+            ensure!(
+                session.due == theirs.due,
+                "{} has other dates than the other parts: `grader grade … --resume --course FILE` with the new dates takes them \
+                 over, and grades nothing again",
+                folder.display()
             );
             self.copy_from(folder)?;
         }
@@ -247,13 +280,17 @@ impl Store {
 impl Session {
     /// Returns whether a submission gets the same grade in both sessions.
     fn same_grades(&self, other: &Session) -> bool {
-        (&self.kit, &self.stages, self.seed) == (&other.kit, &other.stages, other.seed)
+        let decide = |session: &Session| {
+            (session.kit.clone(), session.course.clone(), session.stages.clone(), session.seed)
+        };
+        decide(self) == decide(other)
     }
 
-    /// Describes the stages and the kit, on which grades depend. The seed stays secret.
+    /// Describes stages, kit and course, on which grades depend. The seed stays secret.
     fn words(&self) -> String {
         let stages: Vec<String> = self.stages.iter().map(u8::to_string).collect();
-        format!("stages {}, kit {}", stages.join(", "), self.kit)
+        let course = if self.course.is_empty() { "none" } else { &self.course };
+        format!("stages {}, kit {}, course file: {course}", stages.join(", "), self.kit)
     }
 }
 
@@ -284,7 +321,7 @@ mod tests {
     use crate::grade::shard::Shard;
 
     fn session(seed: u64) -> Session {
-        Session { kit: "1".into(), stages: vec![1], seed, isolation: String::new() }
+        Session { kit: "1".into(), stages: vec![1], seed, isolation: String::new(), ..Session::default() }
     }
 
     fn graded(student: &str, content: &str) -> Graded {
@@ -296,6 +333,7 @@ mod tests {
             compiler: String::new(),
             trouble: String::new(),
             cpu_ms: 0,
+            handed_in: String::new(),
         }
     }
 

@@ -6,9 +6,9 @@ mod manifests;
 
 pub use leaks::{CANARY, answers, leaks};
 
-use crate::grade::{Stages, stages};
+use crate::course::{self, CourseFiles};
 use anyhow::{Context, Result, bail, ensure};
-use raykata::rubric::Course;
+use raykata::course::{Course, stages_of};
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -21,6 +21,7 @@ pub static SPEC: Spec = Spec {
     about: "Make the student's repository, without answers and instructors' files (for instructors).",
     arguments: &[Argument::required("FOLDER", "An empty or new folder.")],
     options: &[&[
+        course::OPTION,
         Opt::value("--title", "TEXT", "The title of the course, above its README and the start page."),
         Opt::value(
             "--stages",
@@ -33,15 +34,33 @@ pub static SPEC: Spec = Spec {
 /// The options of `grader handout`.
 pub struct Options {
     folder: PathBuf,
-    course: Course,
+    /// The course file.
+    file: Option<PathBuf>,
+    title: Option<String>,
+    stages: Option<String>,
 }
 
 impl Options {
+    /// Reads the course file, or makes one of the title and the stages; `None` if there is none of these.
+    fn course(&self) -> Result<Option<CourseFiles>> {
+        match (&self.file, &self.title, &self.stages) {
+            (Some(file), ..) => CourseFiles::read(file).map(Some),
+            (None, None, None) => Ok(None),
+            (None, title, stages) => CourseFiles::of(title.as_deref(), stages.as_deref()).map(Some),
+        }
+    }
+
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
-        let title = given.parsed("--title", title)?.unwrap_or_default();
-        let stages = given.parsed("--stages", stages)?.map(|Stages(stages)| stages).unwrap_or_default();
-        Ok(Options { folder: given.required(0)?.into(), course: Course { title, stages } })
+        given.exclude("--course", "--title")?;
+        given.exclude("--course", "--stages")?;
+        let stages = |text: &str| stages_of(text).map(|_| text.to_owned());
+        Ok(Options {
+            folder: given.required(0)?.into(),
+            file: given.path("--course"),
+            title: given.parsed("--title", title)?,
+            stages: given.parsed("--stages", stages)?,
+        })
     }
 }
 
@@ -72,7 +91,7 @@ const FOLDERS: [(&str, &[&str]); 11] = [
 const KEPT_BACK: [&str; 2] = ["src/cli/tests", "tests/checks/all/tests"];
 
 /// Files that are handed out unchanged.
-const FILES: [&str; 10] = [
+const FILES: [&str; 12] = [
     ".cargo/config.toml",
     ".gitignore",
     "Cargo.lock",
@@ -81,6 +100,8 @@ const FILES: [&str; 10] = [
     "exercises/Cargo.toml",
     "rustfmt.toml",
     "scenes/showcase.png",
+    "tests/course.toml",
+    "tests/language.toml",
     "tests/rubric.toml",
     "tests/stubs.toml",
 ];
@@ -101,7 +122,7 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
     crate::report::make_folder(parent)?;
     // Write all files into a draft folder.
     let draft = tempfile::tempdir_in(parent)?;
-    let n_files = write(root, draft.path(), &options.course)?;
+    let n_files = write(root, draft.path(), options.course()?.as_ref())?;
     // Stop if the draft contains an answer.
     let found = leaks(root, draft.path())?;
     ensure!(
@@ -121,9 +142,11 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
 }
 
 /// Writes the files of a hand-out into a folder, with Cargo.lock if cargo can make it. Returns the number of the others.
-pub fn write(root: &Path, folder: &Path, course: &Course) -> Result<usize> {
+pub fn write(root: &Path, folder: &Path, course: Option<&CourseFiles>) -> Result<usize> {
     let mut files = files(root)?;
-    name_course(&mut files, course)?;
+    if let Some(course) = course {
+        name_course(&mut files, course)?;
+    }
     for (path, bytes) in &files {
         let file = folder.join(path);
         fs::create_dir_all(file.parent().unwrap_or(folder))?;
@@ -168,37 +191,27 @@ fn list<'a>(files: impl Iterator<Item = &'a String>) -> String {
     )
 }
 
-/// Writes the title and the stages of the course into the rubric, which the programs read, and into the README.
-fn name_course(files: &mut BTreeMap<String, Vec<u8>>, course: &Course) -> Result<()> {
-    if *course == Course::default() {
-        return Ok(());
+/// Puts the course file and its language file in the place of the kit's own, which the programs read, and the title and the
+/// stages of the course into the README.
+fn name_course(files: &mut BTreeMap<String, Vec<u8>>, course: &CourseFiles) -> Result<()> {
+    let of_course: Course = course.parse()?;
+    files.insert("tests/course.toml".into(), course.course.1.clone().into_bytes());
+    if let Some((_, text)) = &course.language {
+        files.insert("tests/language.toml".into(), text.clone().into_bytes());
     }
-    let mut change = |path: &str, change: &dyn Fn(&str) -> String| -> Result<()> {
-        let file = files.get_mut(path).with_context(|| format!("{path} is missing"))?;
-        *file = change(std::str::from_utf8(file)?).into_bytes();
-        Ok(())
+    let readme = files.get_mut("README.md").context("README.md is missing")?;
+    let is_kept = |line: &&str| {
+        let number = line.strip_prefix("| ").and_then(|rest| rest.split(' ').next()?.parse::<u8>().ok());
+        number.is_none_or(|number| !of_course.leaves_out(number))
     };
-    let stages: Vec<String> = course.stages.iter().map(u8::to_string).collect();
-    // A string of JSON without control characters is also one of TOML.
-    let title = serde_json::to_string(&course.title)?;
-    let table = format!("[course]\ntitle = {title}\nstages = [{}]\n\n", stages.join(", "));
-    change("tests/rubric.toml", &|text| {
-        // The first table follows the comment at the beginning.
-        let at = text.find("\n[").map_or(0, |at| at + 1);
-        format!("{}{table}{}", &text[..at], &text[at..])
-    })?;
-    change("README.md", &|text| {
-        let is_kept = |line: &&str| {
-            let number = line.strip_prefix("| ").and_then(|rest| rest.split(' ').next()?.parse::<u8>().ok());
-            number.is_none_or(|number| course.stages.is_empty() || course.stages.contains(&number))
-        };
-        let lines = text.lines().filter(is_kept).map(|line| format!("{line}\n")).collect::<String>();
-        if course.title.is_empty() {
-            lines
-        } else {
-            lines.replacen("# Raykata\n", &format!("# {}: Raykata\n", course.title), 1)
-        }
-    })
+    let lines = std::str::from_utf8(readme)?.lines().filter(is_kept);
+    let lines = lines.map(|line| format!("{line}\n")).collect::<String>();
+    *readme = match of_course.title.is_empty() {
+        true => lines,
+        false => lines.replacen("# Raykata\n", &format!("# {}: Raykata\n", of_course.title), 1),
+    }
+    .into_bytes();
+    Ok(())
 }
 
 /// Adds the files with these extensions in a folder and below it.

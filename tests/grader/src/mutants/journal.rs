@@ -1,45 +1,30 @@
-//! Stores the tested changes, one line each, so that a stopped run can be continued.
+//! Keeps the fates of the tested changes, so that a stopped run can be continued.
 
 use super::Fate;
 use super::list::Mutant;
-use anyhow::{Context, Result};
+use anyhow::{Result, ensure};
+use raykata_cli::journal::Journal as Kept;
 use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions};
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The fates of changes, in memory and in a file.
 pub struct Journal {
-    file: PathBuf,
-    out: File,
+    kept: Kept<Fate>,
     fates: BTreeMap<String, Fate>,
 }
+
+/// What the file is about. The code may differ between runs: `--again` tests survivors after a new check.
+const ABOUT: &str = "mutants";
 
 impl Journal {
     /// Opens the journal of the last run, or an empty one.
     pub fn open(root: &Path, keep: bool) -> Result<Journal> {
         let file = root.join(crate::corpus::FOLDER).join("mutants.jsonl");
-        let text = || format!("{}", file.display());
-        std::fs::create_dir_all(file.parent().unwrap_or(root)).with_context(text)?;
-        let mut fates = BTreeMap::new();
-        if keep {
-            let text = std::fs::read_to_string(&file)
-                .with_context(|| format!("{}: there is no earlier run", text()))?;
-            // The last line of a killed run may be incomplete. Then that change is tested again.
-            fates.extend(text.lines().filter_map(|line| serde_json::from_str::<(String, Fate)>(line).ok()));
-        }
-        let out = OpenOptions::new()
-            .create(true)
-            .write(true)
-            .append(keep)
-            .truncate(!keep)
-            .open(&file)
-            .with_context(text)?;
-        let mut journal = Journal { file, out, fates };
-        if keep {
-            journal.line("")?;
-        }
-        Ok(journal)
+        ensure!(!keep || file.exists(), "{}: there is no earlier run", file.display());
+        let kept = if keep { Kept::resume(&file, ABOUT)? } else { Kept::create(&file, ABOUT)? };
+        // A change that was tested again has a second line, which counts.
+        let fates = kept.kept().cloned().collect();
+        Ok(Journal { kept, fates })
     }
 
     /// Returns the fate of this change, if it was tested.
@@ -55,12 +40,8 @@ impl Journal {
     }
 
     pub(super) fn write(&mut self, mutant: &Mutant, fate: Fate) -> Result<()> {
-        self.line(&serde_json::to_string(&(mutant.change(), &fate))?)?;
+        self.kept.add(&mutant.change(), &fate)?;
         self.fates.insert(mutant.change(), fate);
         Ok(())
-    }
-
-    fn line(&mut self, line: &str) -> Result<()> {
-        writeln!(self.out, "{line}").with_context(|| format!("cannot write {}", self.file.display()))
     }
 }

@@ -7,14 +7,19 @@ mod cases;
 mod command_line;
 mod corpus;
 #[cfg(target_os = "linux")]
+mod course;
+#[cfg(target_os = "linux")]
 mod export;
 #[cfg(target_os = "linux")]
 mod grade;
 mod handout;
+#[cfg(target_os = "linux")]
+mod long_runs;
 mod one_build;
 mod paste;
 mod pictures;
 mod program_runs;
+mod release;
 #[cfg(target_os = "linux")]
 mod sandbox;
 #[cfg(target_os = "linux")]

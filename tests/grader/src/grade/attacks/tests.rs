@@ -48,6 +48,7 @@ fn graded(outcome: impl Fn(&str) -> Outcome) -> Graded {
         compiler: String::new(),
         trouble: String::new(),
         cpu_ms: 0,
+        handed_in: String::new(),
     }
 }
 

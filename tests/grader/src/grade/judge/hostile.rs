@@ -259,8 +259,15 @@ fn try_row(row: &Row, judge: &Judge) -> String {
         compiler: String::new(),
         trouble: String::new(),
         cpu_ms: 0,
+        handed_in: String::new(),
     };
-    let session = Session { kit: String::new(), stages: vec![1, 3, 9], seed: SEED, isolation: String::new() };
+    let session = Session {
+        kit: String::new(),
+        stages: vec![1, 3, 9],
+        seed: SEED,
+        isolation: String::new(),
+        ..Session::default()
+    };
     let outputs = [
         report::gradescope(&graded, &session).to_string(),
         report::classroom(&graded).to_string(),

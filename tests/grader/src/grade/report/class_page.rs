@@ -111,16 +111,22 @@ fn to_look_at(lines: &[Line]) -> Markup {
         let such: Vec<&Line> = lines.iter().filter(|line| line.has(outcome)).collect();
         (words, such)
     });
+    let late: Vec<&Line> = lines.iter().filter(|line| !line.late.is_empty()).collect();
     html! {
         section #look.screen {
             h2 { "Problems" }
-            @if troubled.is_empty() && kinds.iter().all(|(_, such)| such.is_empty()) {
+            @if troubled.is_empty() && late.is_empty() && kinds.iter().all(|(_, such)| such.is_empty()) {
                 p { "None: every submission compiles and answers." }
             }
             @if !troubled.is_empty() {
                 h3 { "Could not be graded " small { (troubled.len()) } }
                 ul { @for line in troubled.iter().take(N_LINKS) { li { (student_list::link(line)) ": " (line.trouble) } } }
                 (more(troubled.len(), "grades.csv"))
+            }
+            @if !late.is_empty() {
+                h3 { "Handed in late " small { (late.len()) } }
+                p.links { @for line in late.iter().take(N_LINKS) { (student_list::link(line)) " " } }
+                (more(late.len(), "grades.csv"))
             }
             @for (words, such) in kinds.iter().filter(|(_, such)| !such.is_empty()) {
                 h3 { (words) " " small { (such.len()) } }

@@ -1,7 +1,7 @@
 //! What the overview of a class keeps of each submission. A class may have many thousands, so it is little.
 
 use super::names::FileNames;
-use crate::grade::result::{Graded, Outcome, sum};
+use crate::grade::result::{Graded, Outcome, Session, sum};
 
 /// A submission in the overview.
 pub(super) struct Line {
@@ -18,13 +18,17 @@ pub(super) struct Line {
     /// Why nothing could be graded; empty otherwise.
     pub trouble: String,
     pub cpu_ms: u64,
+    /// When it was handed in; empty if unknown.
+    pub handed_in: String,
+    /// The stages that were handed in late.
+    pub late: Vec<u8>,
     /// Which outcomes occur, a bit for each of [`Outcome::ALL`].
     outcomes: u16,
 }
 
 impl Line {
     /// The line of a cleaned submission. `student` is its name before it was cleaned.
-    pub fn new(graded: &Graded, student: &str, names: &mut FileNames) -> Line {
+    pub fn new(graded: &Graded, student: &str, session: &Session, names: &mut FileNames) -> Line {
         let of_stage = |stage| (stage, sum(graded.of_stage(stage)).0);
         Line {
             student: graded.student.clone(),
@@ -35,6 +39,8 @@ impl Line {
             n_remarks: graded.remarks.len(),
             trouble: graded.trouble.clone(),
             cpu_ms: graded.cpu_ms,
+            handed_in: graded.handed_in.clone(),
+            late: graded.late(session).into_iter().map(|(stage, _)| stage).collect(),
             outcomes: graded.checks.iter().fold(0, |bits, check| bits | bit(check.outcome)),
         }
     }

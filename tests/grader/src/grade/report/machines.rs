@@ -21,6 +21,8 @@ struct GradedView<'a> {
     remarks: &'a [Remark],
     compiler: &'a str,
     trouble: &'a str,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    handed_in: &'a str,
 }
 
 /// Writes the class as JSON for the instructor's tools, one submission after the other. It can be read back as a
@@ -40,6 +42,7 @@ pub(super) fn results(session: &Session, each: &Each<'_>, out: &mut dyn Write) -
             remarks: &graded.remarks,
             compiler: &graded.compiler,
             trouble: &graded.trouble,
+            handed_in: &graded.handed_in,
         };
         write!(out, "{before}\n    {}", indented(&view, 4)?)?;
         before = ",";
@@ -87,8 +90,13 @@ pub fn gradescope(graded: &Graded, session: &Session) -> Value {
         })
         .collect();
     let kit = clean_line(&session.kit, super::LINE);
+    let course = match clean_line(&session.course, super::LINE) {
+        course if course.is_empty() => String::new(),
+        course => format!("\ncourse: {course}"),
+    };
+    let late: String = messages::late(graded, session).iter().map(|line| format!("\n{line}")).collect();
     let mut results = json!({
-        "output": format!("{}\n\nkit: {kit}", messages::summary(graded)),
+        "output": format!("{}{late}\n\nkit: {kit}{course}", messages::summary(graded)),
         "output_format": "text",
         "test_output_format": "text",
         "test_name_format": "text",

@@ -1,6 +1,6 @@
 //! The text about a check that a student reads. It is the same in every format.
 
-use crate::grade::result::{CheckResult, Graded, Outcome};
+use crate::grade::result::{CheckResult, Graded, Outcome, Session};
 use checks::rubric::{self, CheckEntry, Visibility};
 
 /// Returns the rubric entry of a check.
@@ -61,6 +61,15 @@ pub fn failing_on_hidden(graded: &Graded) -> Vec<(u8, usize)> {
     let count =
         |stage| graded.of_stage(stage).filter(|check| check.outcome == Outcome::WrongOnHidden).count();
     graded.stages().into_iter().map(|stage| (stage, count(stage))).filter(|(_, n)| *n > 0).collect()
+}
+
+/// Says which stages were handed in late.
+pub fn late(graded: &Graded, session: &Session) -> Vec<String> {
+    let line = |(stage, by): (u8, String)| {
+        let due = session.due.get(&stage).map_or("", String::as_str);
+        format!("stage {stage} was handed in {by} late, at {}; it was due {due}", graded.handed_in)
+    };
+    graded.late(session).into_iter().map(line).collect()
 }
 
 /// Summarises a submission as plain text: points, reasons and the compiler's messages.

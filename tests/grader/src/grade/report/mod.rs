@@ -74,6 +74,7 @@ pub fn write_from(session: &Session, each: &Each<'_>, folder: &Path) -> Result<S
     let session = &Session {
         kit: clean_line(&session.kit, LINE),
         isolation: clean_line(&session.isolation, LINE),
+        course: clean_line(&session.course, LINE),
         ..session.clone()
     };
     let each_cleaned: &Each<'_> = &|work| each(&mut |graded| work(presentable(&graded)));
@@ -85,13 +86,13 @@ pub fn write_from(session: &Session, each: &Each<'_>, folder: &Path) -> Result<S
         let cleaned = presentable(&graded);
         tallies.add(&cleaned);
         totals.add(&cleaned);
-        lines.push(Line::new(&cleaned, &graded.student, &mut names));
+        lines.push(Line::new(&cleaned, &graded.student, session, &mut names));
         Ok(())
     })?;
     let tallies = tallies.in_order();
 
     // Write the tables and the files for programs.
-    write(folder, "grades.csv", &tables::grades(&lines, &tallies)?)?;
+    write(folder, "grades.csv", &tables::grades(&lines, &tallies, session)?)?;
     write_with(folder, "checks.csv", |out| tables::checks(each_cleaned, out))?;
     write(folder, "timings.csv", &tables::timings(&lines)?)?;
     write_with(folder, "results.json", |out| machines::results(session, each_cleaned, out))?;
@@ -136,6 +137,7 @@ fn presentable(graded: &Graded) -> Graded {
         compiler: clean(&graded.compiler, COMPILER),
         trouble: clean_line(&graded.trouble, MESSAGE),
         cpu_ms: graded.cpu_ms,
+        handed_in: clean_line(&graded.handed_in, LINE),
     }
 }
 

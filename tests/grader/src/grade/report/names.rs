@@ -78,6 +78,7 @@ mod tests {
             compiler: String::new(),
             trouble: String::new(),
             cpu_ms: 0,
+            handed_in: String::new(),
         });
         file_names(&graded.collect::<Vec<_>>())
     }

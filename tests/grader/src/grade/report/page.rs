@@ -28,10 +28,11 @@ pub(super) fn page(title: &str, body: &Markup) -> String {
     page.into_string()
 }
 
-/// Describes kit, stages and sandbox of the grading, in one line.
+/// Describes course, kit, stages and sandbox of the grading, in one line.
 pub(super) fn session_line(session: &Session) -> Markup {
     html! {
         p.session {
+            @if !session.course.is_empty() { (session.course) " · " }
             "Kit " (session.kit) " · " (stages(&session.stages)) " · sandbox: " (session.isolation)
         }
     }

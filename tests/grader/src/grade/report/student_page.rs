@@ -21,6 +21,10 @@ pub(super) fn student_page(graded: &Graded, session: &Session) -> String {
         @if !graded.trouble.is_empty() {
             section.alarm { h2 { "This submission could not be graded" } p { (graded.trouble) } }
         }
+        @let late = messages::late(graded, session);
+        @if !late.is_empty() {
+            section { h2 { "Late" } ul { @for line in &late { li { (line) "." } } } p.note { "The points are as if it was in time." } }
+        }
         (blocked(graded))
         (overview(graded))
         (remarks(graded))

@@ -3,20 +3,25 @@
 use super::Each;
 use super::line::Line;
 use super::tally::{self, Tally};
+use crate::grade::result::Session;
 use anyhow::{Result, anyhow};
 use std::io::Write;
 
-/// Returns one row per student: points in total and per stage.
-pub(super) fn grades(lines: &[Line], tallies: &[Tally]) -> Result<Vec<u8>> {
+/// Returns one row per student: points in total and per stage, and what is late if the course has dates.
+pub(super) fn grades(lines: &[Line], tallies: &[Tally], session: &Session) -> Result<Vec<u8>> {
     let (stages, of) = (tally::stages(tallies), tally::of(tallies));
     let mut table = Table::new(Vec::new());
     let header = ["name", "points", "of", "percent"].map(str::to_owned).into_iter();
     let header = header.chain(stages.iter().map(|stage| format!("stage{stage}")));
+    let dates: &[&str] = if session.due.is_empty() { &[] } else { &["handed_in", "late_stages"] };
+    let header = header.chain(dates.iter().map(|&name| name.to_owned()));
     table.row(header.chain(["remarks", "trouble", "page"].map(str::to_owned)))?;
     for line in lines {
         let percent = tally::percent(line.points, of);
         let row = [line.student.clone(), line.points.to_string(), of.to_string(), percent].into_iter();
         let row = row.chain(stages.iter().map(|&stage| line.of_stage(stage).to_string()));
+        let late: Vec<String> = line.late.iter().map(u8::to_string).collect();
+        let row = row.chain([line.handed_in.clone(), late.join(" ")].into_iter().take(dates.len()));
         table.row(row.chain([line.n_remarks.to_string(), line.trouble.clone(), line.page.clone()]))?;
     }
     table.finish()

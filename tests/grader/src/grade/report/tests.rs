@@ -33,6 +33,7 @@ fn student(name: &str, outcomes: [(Outcome, &str); 4]) -> Graded {
         compiler: String::new(),
         trouble: String::new(),
         cpu_ms: 1234,
+        handed_in: String::new(),
     }
 }
 
@@ -68,6 +69,7 @@ fn class() -> Class {
         stages: vec![1, 2],
         seed: 7,
         isolation: "rlimits + Landlock <6> + seccomp".to_owned(),
+        ..Session::default()
     };
     Class { session, students: vec![formula, script, picture, best, broken] }
 }

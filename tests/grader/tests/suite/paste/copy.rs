@@ -10,7 +10,8 @@ pub fn copy(root: &Path, to: &Path, open: &[String]) {
     for folder in ["src", "solutions/src", "tests/checks", "tests/judge", "tests/oracle", "tests/golden"] {
         copy_folder(root, to, folder, open);
     }
-    for file in ["Cargo.lock", ".cargo/config.toml", "tests/rubric.toml"] {
+    let of_rubric = ["tests/course.toml", "tests/language.toml", "tests/rubric.toml"];
+    for file in ["Cargo.lock", ".cargo/config.toml"].into_iter().chain(of_rubric) {
         write(&to.join(file), &read(&root.join(file)));
     }
     // The test of the reference against its checks, as a program of its own.

@@ -1,0 +1,107 @@
+//! The measured pictures of a run that was stopped. They lie beside the report until it is written, so that the next run with the
+//! same code measures only the others. Times of both runs count: measure on an idle machine in both.
+
+use crate::fingerprint::fingerprint;
+use crate::journal::Journal;
+use anyhow::{Context, Result};
+use glam::Vec3;
+use raykata::film::Film;
+use raykata::kit::{RenderJob, Rendering};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// A picture as it is kept. JSON has no NaN, so the numbers of the pixels are written as bits.
+#[derive(Serialize, Deserialize)]
+struct Picture {
+    /// The rendering without its pixels.
+    rendering: Rendering,
+    pixels: Vec<[u32; 3]>,
+}
+
+/// The kept pictures.
+pub struct Kept {
+    file: PathBuf,
+    journal: Mutex<Journal<Picture>>,
+}
+
+impl Kept {
+    /// Opens the file in the folder of a report. Pictures of other code are forgotten.
+    pub fn open(out: &Path, code: &str) -> Result<Kept> {
+        let file = out.join("unfinished.jsonl");
+        let about = format!("pictures by the program {code}");
+        let is_ours = Journal::<Picture>::about(&file).is_some_and(|theirs| theirs == about);
+        let journal: Journal<Picture> =
+            if is_ours { Journal::resume(&file, &about)? } else { Journal::create(&file, &about)? };
+        match journal.kept().count() {
+            0 => {}
+            n => {
+                println!("continues a run that was stopped: {n} measured pictures are in {}", file.display())
+            }
+        }
+        Ok(Kept { file, journal: Mutex::new(journal) })
+    }
+
+    /// A name for a job: jobs that differ in anything have different names.
+    pub fn name(job: &RenderJob) -> Result<String> {
+        Ok(fingerprint([&serde_json::to_vec(job).context("the scene cannot be serialised")?[..]]))
+    }
+
+    /// Takes a picture of the stopped run. Each is taken once: a job that is measured twice has two.
+    pub fn take(&self, name: &str) -> Option<Rendering> {
+        let Picture { mut rendering, pixels } =
+            self.journal.lock().unwrap_or_else(PoisonError::into_inner).take(name)?;
+        rendering.film.pixels =
+            pixels.into_iter().map(|pixel| Vec3::from_array(pixel.map(f32::from_bits))).collect();
+        Some(rendering)
+    }
+
+    /// Keeps a picture.
+    pub fn add(&self, name: &str, frame: &Rendering) -> Result<()> {
+        let Film { width, height, .. } = frame.film;
+        let rendering = Rendering { film: Film { width, height, pixels: Vec::new() }, ..frame.clone() };
+        let pixels = frame.film.pixels.iter().map(|pixel| pixel.to_array().map(f32::to_bits)).collect();
+        self.journal.lock().unwrap_or_else(PoisonError::into_inner).add(name, &Picture { rendering, pixels })
+    }
+
+    /// Deletes the file, because the report is written.
+    pub fn finish(&self) -> Result<()> {
+        std::fs::remove_file(&self.file).with_context(|| format!("cannot delete {}", self.file.display()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_come_back_to_the_last_bit_once_each() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = Film { width: 1, height: 2, pixels: vec![Vec3::new(0.1, -0.0, f32::INFINITY), Vec3::NAN] };
+        let frame = Rendering {
+            film,
+            counts: Default::default(),
+            primitives: 3,
+            accelerator: None,
+            structure: None,
+            bytes_of_parts: 0,
+            build_seconds: 0.25,
+            render_seconds: 1.0 / 3.0,
+            notes: vec!["x".into()],
+        };
+        let kept = Kept::open(folder.path(), "a").unwrap();
+        kept.add("one", &frame).unwrap();
+        assert!(kept.take("one").is_none(), "only pictures of an earlier run are taken");
+        drop(kept);
+        let kept = Kept::open(folder.path(), "a").unwrap();
+        let back = kept.take("one").unwrap();
+        let bits = |film: &Film| -> Vec<[u32; 3]> {
+            film.pixels.iter().map(|pixel| pixel.to_array().map(f32::to_bits)).collect()
+        };
+        assert_eq!(bits(&back.film), bits(&frame.film));
+        assert_eq!((back.render_seconds, back.notes), (frame.render_seconds, frame.notes));
+        assert!(kept.take("one").is_none());
+        drop(kept);
+        assert!(Kept::open(folder.path(), "other code").unwrap().take("one").is_none());
+    }
+}

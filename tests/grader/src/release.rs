@@ -1,0 +1,230 @@
+//! `grader release`: the archives of a version, for students and for instructors. The same sources give the same bytes.
+
+use crate::course::{self, CourseFiles};
+use crate::handout;
+use anyhow::{Context, Result, bail, ensure};
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use raykata::film::write_atomically;
+use raykata_cli::args::{Given, Misuse, Opt, Spec};
+use raykata_cli::lock::Lock;
+use raykata_cli::report::Bytes;
+use sha2::{Digest as _, Sha256};
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// `grader release`.
+pub static SPEC: Spec = Spec {
+    name: "grader release",
+    about: "Write the archives of this version: the hand-out for students, and the whole kit for instructors.",
+    arguments: &[],
+    options: &[&[
+        Opt::value("--out", "FOLDER", "The folder for the archives and their checksums.").required(),
+        course::OPTION,
+        Opt::flag(
+            "--vendor",
+            "Put the sources of all packages into the archives, by `cargo vendor`, so that they build without a network.",
+        ),
+        Opt::flag(
+            "--draft",
+            "Also if CHANGELOG.md has no chapter of this version. The names then end in `-draft`.",
+        ),
+    ]],
+};
+
+/// The options of `grader release`.
+pub struct Options {
+    out: PathBuf,
+    course: Option<PathBuf>,
+    vendor: bool,
+    draft: bool,
+}
+
+impl Options {
+    /// Reads the options from the command line.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options {
+            out: given.required_path("--out")?,
+            course: given.path("--course"),
+            vendor: given.has("--vendor"),
+            draft: given.has("--draft"),
+        })
+    }
+}
+
+/// What the archive for instructors contains.
+const KIT: [&str; 19] = [
+    ".cargo",
+    ".ci",
+    ".gitignore",
+    ".typos.toml",
+    "ARCHITECTURE.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "Cargo.lock",
+    "Cargo.toml",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "README.md",
+    "exercises",
+    "rustfmt.toml",
+    "scenes",
+    "slides",
+    "solutions",
+    "src",
+    "tests",
+];
+
+/// Folders of that list that tools generate.
+const GENERATED: [&str; 3] = ["target", "node_modules", "out"];
+
+/// Tells cargo to build from the folder `vendor`.
+const VENDORED: &str = "
+# All packages are in this archive, so that it builds without a network.
+[source.crates-io]
+replace-with = \"vendored\"
+
+[source.vendored]
+directory = \"vendor\"
+";
+
+/// Writes both archives and their checksums.
+pub fn run(root: &Path, options: &Options) -> Result<()> {
+    let version = env!("CARGO_PKG_VERSION");
+    let changelog = fs::read_to_string(root.join("CHANGELOG.md")).context("cannot read CHANGELOG.md")?;
+    let has_chapter = changelog.lines().any(|line| {
+        line.strip_prefix("## ")
+            .and_then(|title| title.split(' ').next())
+            .is_some_and(|title| title == version)
+    });
+    ensure!(
+        has_chapter || options.draft,
+        "CHANGELOG.md has no chapter `## {version}`: rename `## Unreleased`, or write a draft by --draft"
+    );
+    let version = if options.draft { format!("{version}-draft") } else { version.to_owned() };
+    let course = options.course.as_deref().map(CourseFiles::read).transpose()?;
+    let _lock = Lock::on(&options.out)?;
+    crate::report::make_folder(&options.out)?;
+
+    // Gather the files of both archives in folders, so that cargo can add the packages that they need.
+    let place = tempfile::tempdir()?;
+    let mut sums = String::new();
+    for name in ["course", "grader"] {
+        let name = format!("raykata-{name}-{version}");
+        let folder = place.path().join(&name);
+        fs::create_dir(&folder)?;
+        if name.starts_with("raykata-course") {
+            handout::write(root, &folder, course.as_ref())?;
+            let found = handout::leaks(root, &folder)?;
+            ensure!(found.is_empty(), "the hand-out would contain answers:\n  {}", found.join("\n  "));
+        } else {
+            for part in KIT {
+                copy(&root.join(part), &folder.join(part))?;
+            }
+            if let Some(course) = &course {
+                course.write_to(&folder.join("course"))?;
+            }
+        }
+        if options.vendor {
+            vendor(&folder)?;
+        }
+        let file = options.out.join(format!("{name}.tar.gz"));
+        let sum = archive(place.path(), &name, &file)?;
+        let size = fs::metadata(&file).map_or(0, |about| about.len());
+        println!("{}  {}", file.display(), Bytes(size));
+        sums += &format!("{sum}  {name}.tar.gz\n");
+    }
+    let file = options.out.join("SHA256SUMS");
+    write_atomically(&file, |out| out.write_all(sums.as_bytes()))
+        .with_context(|| format!("cannot write {}", file.display()))?;
+    println!("{}", file.display());
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    let cannot = || format!("cannot copy {}: is this the whole kit?", from.display());
+    let kind = fs::symlink_metadata(from).with_context(cannot)?;
+    if kind.is_dir() {
+        fs::create_dir_all(to).with_context(cannot)?;
+        for entry in fs::read_dir(from).with_context(cannot)? {
+            let name = entry.with_context(cannot)?.file_name();
+            if !GENERATED.iter().any(|generated| name == *generated) {
+                copy(&from.join(&name), &to.join(&name))?;
+            }
+        }
+    } else if kind.is_file() {
+        fs::copy(from, to).with_context(cannot)?;
+    }
+    Ok(())
+}
+
+/// Adds the sources of all packages that the lock file names, and tells cargo to use them.
+fn vendor(folder: &Path) -> Result<()> {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(folder).args(["vendor", "--locked", "--versioned-dirs", "--quiet"]);
+    let output = cargo.output().context("cargo cannot be started")?;
+    if !output.status.success() {
+        bail!(
+            "`cargo vendor` failed; it downloads the packages of all systems once:\n{}",
+            String::from_utf8_lossy(&output.stderr).trim()
+        );
+    }
+    let config = folder.join(".cargo/config.toml");
+    let mut text =
+        fs::read_to_string(&config).with_context(|| format!("cannot read {}", config.display()))?;
+    text += VENDORED;
+    fs::write(&config, text).with_context(|| format!("cannot write {}", config.display()))
+}
+
+/// Packs a folder, sorted by name and without times, owners and other properties of this machine. Returns the checksum.
+fn archive(around: &Path, name: &str, file: &Path) -> Result<String> {
+    let mut paths = Vec::new();
+    gather(around, name, &mut paths)?;
+    paths.sort();
+    let packed = write_atomically(file, |out| {
+        let mut tar = tar::Builder::new(GzEncoder::new(out, Compression::default()));
+        for path in &paths {
+            let from = around.join(path);
+            let mut header = tar::Header::new_gnu();
+            header.set_size(fs::metadata(&from)?.len());
+            header.set_mode(if is_executable(&from) { 0o755 } else { 0o644 });
+            header.set_mtime(0);
+            header.set_cksum();
+            tar.append_data(&mut header, path, File::open(&from)?)?;
+        }
+        tar.into_inner()?.finish()?;
+        Ok(())
+    });
+    packed.with_context(|| format!("cannot write {}", file.display()))?;
+    let bytes = fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
+    Ok(Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+fn gather(around: &Path, folder: &str, paths: &mut Vec<String>) -> Result<()> {
+    for entry in fs::read_dir(around.join(folder))? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let name = name.to_str().with_context(|| format!("{} is not UTF-8", entry.path().display()))?;
+        let path = format!("{folder}/{name}");
+        match entry.file_type()?.is_dir() {
+            true => gather(around, &path, paths)?,
+            false => paths.push(path),
+        }
+    }
+    Ok(())
+}
+
+fn is_executable(file: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        fs::metadata(file).is_ok_and(|about| about.permissions().mode() & 0o100 != 0)
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        false
+    }
+}

@@ -1,0 +1,163 @@
+//! Long runs that are killed continue where they were, and a full disk is an error that names the file and loses nothing.
+
+use super::grade::{graded, hand_in, right};
+use super::program_runs::{grader, printed, root};
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+fn said(output: &Output) -> String {
+    let (said, complained) = printed(output);
+    format!("{said}{complained}")
+}
+
+fn started(arguments: &[&str]) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_grader"));
+    command.current_dir(root()).args(arguments).stdin(Stdio::null());
+    command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts")
+}
+
+/// Kills a run as soon as something is true.
+fn kill_when(mut run: Child, is_time: impl Fn() -> bool) {
+    let late = Instant::now() + Duration::from_secs(900);
+    while !is_time() {
+        assert!(run.try_wait().expect("its state").is_none(), "it ended before it was killed");
+        assert!(Instant::now() < late, "the run makes no progress");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    run.kill().expect("killed");
+    run.wait().expect("ended");
+}
+
+fn lines(file: &Path) -> usize {
+    fs::read_to_string(file).map_or(0, |text| text.lines().count())
+}
+
+#[test]
+fn a_gauntlet_that_is_killed_continues_with_the_same_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("state.jsonl");
+    let state = file.to_string_lossy().into_owned();
+    let arguments = ["gauntlet", "--rays", "1", "--state", &state];
+    kill_when(started(&arguments), || lines(&file) >= 4);
+    let kept: Vec<String> = fs::read_to_string(&file).unwrap().lines().map(str::to_owned).collect();
+    let output = grader(&arguments);
+    assert!(output.status.success(), "{}", said(&output));
+    let after = fs::read_to_string(&file).unwrap();
+    assert!(kept[..kept.len() - 1].iter().all(|line| after.lines().any(|other| other == line)));
+    // Each trial is done once.
+    let mut trials: Vec<&str> =
+        after.lines().skip(1).map(|line| line.split("\",[").next().unwrap_or_default()).collect();
+    trials.sort_unstable();
+    let n = trials.len();
+    trials.dedup();
+    assert_eq!(trials.len(), n, "{after}");
+    let other = grader(&["gauntlet", "--rays", "1", "--seed", "2", "--state", &state]);
+    assert!(said(&other).contains("is of a gauntlet with --seed 1"), "{}", said(&other));
+}
+
+/// The corpus and a rehearsal take minutes, so they are killed only with `CI_LONG=1`.
+#[test]
+fn a_corpus_and_a_rehearsal_that_are_killed_continue() {
+    if std::env::var_os("CI_LONG").is_none() {
+        return println!("killed only with CI_LONG=1");
+    }
+    let file = root().join("target/corpus/corpus.jsonl");
+    let _ = fs::remove_file(&file);
+    let arguments = ["corpus", "--stage", "4", "--right", "--jobs", "1"];
+    kill_when(started(&arguments), || lines(&file) >= 3);
+    let kept = lines(&file) - 1;
+    // The kept results are not tested again: the run would otherwise say so by other times only, so one is changed here.
+    let text = fs::read_to_string(&file).unwrap();
+    let changed = text.replacen("\"Accepted\"", "\"Rejected\"", 1);
+    assert_ne!(text, changed);
+    fs::write(&file, &changed).unwrap();
+    let output = grader(&[&arguments[..], &["--resume"]].concat());
+    assert!(!output.status.success(), "the changed result of {kept} counts: {}", said(&output));
+    assert!(!file.exists(), "a complete run leaves no journal");
+
+    let out = tempfile::tempdir().unwrap();
+    let folder = out.path().to_string_lossy().into_owned();
+    let arguments = ["rehearse", "--honest", "--students", "9", "--jobs", "1", "--out", &folder];
+    kill_when(started(&arguments), || graded(out.path()).len() >= 2);
+    let before = graded(out.path());
+    assert!(before.len() < 9);
+    let again = grader(&arguments);
+    assert!(said(&again).contains("--resume"), "{}", said(&again));
+    let output = grader(&[&arguments[..], &["--resume"]].concat());
+    assert!(said(&output).contains("0 of 9 grades are wrong"), "{}", said(&output));
+    let after = graded(out.path());
+    assert!(before.iter().all(|row| after.contains(row)), "nothing was graded twice");
+}
+
+/// A shell that may mount a small file system, which no other process sees; `None` without the rights for it.
+fn small_disk(script: &str) -> Option<Command> {
+    let mut try_it = Command::new("unshare");
+    try_it.args(["--mount", "sh", "-c", "mount -t tmpfs -o size=4k tmpfs /mnt"]);
+    if !try_it.output().is_ok_and(|output| output.status.success()) {
+        return None;
+    }
+    let mut shell = Command::new("unshare");
+    shell.args(["--mount", "sh", "-eu", "-c", script]).current_dir(root()).stdin(Stdio::null());
+    Some(shell)
+}
+
+#[test]
+fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
+    let folder = tempfile::tempdir().unwrap();
+    let class = folder.path().join("class");
+    for number in 0..4 {
+        hand_in(&class, &format!("student-{number}"), &right().replace("0.5", &format!("0.5{number}")));
+    }
+    let disk = folder.path().join("disk");
+    fs::create_dir(&disk).unwrap();
+    // Only the results are on the small disk. It is filled, and later made larger, as someone who makes room does.
+    let script = format!(
+        "mount -t tmpfs -o size=200k tmpfs {disk}\n\
+         run() {{ {grader} \"$@\" && echo 'ended well' || echo 'ended badly'; }}\n\
+         run grade {class} --stages 1 --seed 5 --jobs 1 --out {disk}/grades\n\
+         echo '--- room'\n\
+         mount -o remount,size=64m {disk}\n\
+         run grade {class} --stages 1 --seed 5 --jobs 1 --out {disk}/grades --resume\n\
+         cp {disk}/grades/grades.csv {around}/resumed.csv\n\
+         mount -o remount,size=66m {disk}\n\
+         head -c 100m /dev/zero >{disk}/filler || true\n\
+         echo '--- gauntlet'\n\
+         run gauntlet --rays 1 --state {disk}/state.jsonl\n\
+         rm {disk}/filler\n\
+         run gauntlet --rays 1 --state {disk}/state.jsonl\n",
+        disk = disk.display(),
+        grader = env!("CARGO_BIN_EXE_grader"),
+        class = class.display(),
+        around = folder.path().display(),
+    );
+    let Some(mut shell) = small_disk(&script) else {
+        return println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
+    };
+    let output = shell.output().unwrap();
+    let text = said(&output);
+    let (said, complained) = printed(&output);
+    assert!(output.status.success(), "{text}");
+    let parts: Vec<&str> = said.split("---").collect();
+    assert!(parts[0].contains("ended badly") && parts[1].contains("ended well"), "{text}");
+    assert!(parts[2].contains("ended badly") && parts[2].contains("ended well"), "{text}");
+    let names_a_file = |folder: &str| complained.contains(&format!("{}/{folder}", disk.display()));
+    assert!(names_a_file("grades/") && names_a_file("state.jsonl"), "{text}");
+    assert!(complained.contains("full") || complained.contains("No space left"), "{text}");
+    // The grades are those of a run with room.
+    let whole = folder.path().join("whole");
+    let grade = [
+        "grade",
+        &class.to_string_lossy(),
+        "--stages",
+        "1",
+        "--seed",
+        "5",
+        "--out",
+        &whole.to_string_lossy(),
+    ];
+    assert!(grader(&grade).status.success());
+    let table = |file: &Path| fs::read_to_string(file).unwrap();
+    assert_eq!(table(&folder.path().join("resumed.csv")), table(&whole.join("grades.csv")));
+}
