@@ -6,18 +6,19 @@ use super::tally::{self, Tally};
 use anyhow::{Result, anyhow};
 use std::io::Write;
 
-/// Returns one row per student: points in total and per stage.
+/// Returns one row per student: points in total and per stage, and bonus points.
 pub(super) fn grades(lines: &[Line], tallies: &[Tally]) -> Result<Vec<u8>> {
     let (stages, of) = (tally::stages(tallies), tally::of(tallies));
     let mut table = Table::new(Vec::new());
     let header = ["name", "points", "of", "percent"].map(str::to_owned).into_iter();
     let header = header.chain(stages.iter().map(|stage| format!("stage{stage}")));
-    table.row(header.chain(["remarks", "trouble", "page"].map(str::to_owned)))?;
+    table.row(header.chain(["bonus", "remarks", "trouble", "page"].map(str::to_owned)))?;
     for line in lines {
         let percent = tally::percent(line.points, of);
         let row = [line.student.clone(), line.points.to_string(), of.to_string(), percent].into_iter();
         let row = row.chain(stages.iter().map(|&stage| line.of_stage(stage).to_string()));
-        table.row(row.chain([line.n_remarks.to_string(), line.trouble.clone(), line.page.clone()]))?;
+        let [bonus, remarks] = [line.bonus.to_string(), line.n_remarks.to_string()];
+        table.row(row.chain([bonus, remarks, line.trouble.clone(), line.page.clone()]))?;
     }
     table.finish()
 }
@@ -25,12 +26,13 @@ pub(super) fn grades(lines: &[Line], tallies: &[Tally]) -> Result<Vec<u8>> {
 /// Writes one row per check of each student.
 pub(super) fn checks(each: &Each<'_>, out: &mut dyn Write) -> Result<()> {
     let mut table = Table::new(out);
-    table.row(["name", "stage", "check", "outcome", "points", "earned"].map(str::to_owned))?;
+    table.row(["name", "stage", "check", "outcome", "points", "earned", "bonus"].map(str::to_owned))?;
     each(&mut |graded| {
         graded.checks.iter().try_for_each(|check| {
             let (name, words) = (check.name.clone(), check.outcome.words().to_owned());
-            let (points, earned) = (check.points.to_string(), check.earned.to_string());
-            table.row([graded.student.clone(), check.stage.to_string(), name, words, points, earned])
+            let [points, earned] = [check.points, check.earned].map(|points| points.to_string());
+            let bonus = if check.bonus { "yes" } else { "no" }.to_owned();
+            table.row([graded.student.clone(), check.stage.to_string(), name, words, points, earned, bonus])
         })
     })?;
     table.finish().map(drop)
