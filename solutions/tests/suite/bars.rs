@@ -2,7 +2,7 @@
 
 use checks::tree::{around, half_area};
 use raykata::aabb::Aabb;
-use raykata::kit::ReinsertQuery;
+use raykata::kit::{ReinsertQuery, StreamQuery, WideQuery};
 use raykata::wide::{BLOCK, BLOCK_COST, MAX_LEAF, NODE_COST};
 use stage12_checks::bars::{CALLS_OF_SEARCH, CALLS_OF_STREAMS, NODES_OPENED, REINSERTED_COSTS, SWEEP_COSTS};
 use stage12_checks::places::places_in_scenes;
@@ -80,6 +80,17 @@ fn the_bars_are_those_of_the_reference() {
     let of_streams: u64 = streams.iter().map(|answer| u64::from(answer.n_calls)).sum();
     let fetched: usize = streams.iter().map(|answer| answer.nodes.len() + answer.blocks.len()).sum();
     println!("{of_streams} calls of streams, {fetched} nodes and blocks fetched");
+    // What the same rays cost one by one, for the slides.
+    let one_by_one = streams_through_a_cloud().into_iter().flat_map(|query| {
+        let StreamQuery { tree, rays, entries, hits } = query;
+        let rays = rays.into_iter().zip(entries).zip(hits);
+        rays.map(move |((ray, entries), hits)| WideQuery { tree: tree.clone(), ray, entries, hits })
+    });
+    let alone = kit.wide_closest_hit(&one_by_one.collect::<Vec<_>>());
+    let (calls_alone, fetched_alone) = alone.iter().fold((0, 0), |(calls, fetched), one| {
+        (calls + n_calls(one), fetched + one.nodes.len() + one.blocks.len())
+    });
+    println!("{calls_alone} calls one by one, {fetched_alone} nodes and blocks fetched");
     let trees: Vec<ReinsertQuery> = morton_trees().into_iter().map(|(_, query)| query).collect();
     let reinserted: Vec<f64> = kit.reinsert(&trees).iter().map(cost).collect();
     for (((name, _), query), after) in REINSERTED_COSTS.iter().zip(&trees).zip(&reinserted) {
