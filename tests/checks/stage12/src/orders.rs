@@ -22,9 +22,11 @@ fn rays(most: usize) -> impl Strategy<Value = Vec<Ray>> + Clone {
         .prop_map(|rays| rays.into_iter().map(|(origin, direction)| Ray::new(origin, direction)).collect())
 }
 
-/// Rays of one octant, whose origins lie anywhere.
+/// Rays of one octant, whose origins lie anywhere, and half of them so close together that they share larger cells.
 fn one_octant(most: usize) -> impl Strategy<Value = Vec<Ray>> + Clone {
-    prop::collection::vec(checks::generate::rough_point(8.0), 2..=most)
+    let origin = (checks::generate::rough_point(8.0), any::<bool>())
+        .prop_map(|(point, is_near)| if is_near { point / 64.0 } else { point });
+    prop::collection::vec(origin, 2..=most)
         .prop_map(|origins| origins.into_iter().map(|origin| Ray::new(origin, Vec3::ONE)).collect())
 }
 
