@@ -72,7 +72,8 @@ pub fn stream_closest_hits<P: StreamProbe>(probe: &mut P, rays: &[Ray]) -> Vec<O
     // A place on the stack has the rays in `waiting` from an index on, each with the t at which it enters.
     let mut waiting: Vec<(u32, f32)> = (0..).zip(&rays).map(|(ray, one)| (ray, one.t_min + 0.0)).collect();
     let mut stack = vec![(Child::ROOT, 0)];
-    let (mut active, mut below): (Vec<(u32, f32)>, [Vec<(u32, f32)>; 8]) = Default::default();
+    let mut active: Vec<(u32, f32)> = Vec::new();
+    let mut below: [Vec<(u32, f32)>; 8] = Default::default();
     while let Some((child, start)) = stack.pop() {
         // Take the rays of the place, without those that have a hit in front of it.
         active.clear();
