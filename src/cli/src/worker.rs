@@ -364,10 +364,28 @@ fn spawn(mut command: Command, launcher: Option<&dyn Launcher>) -> io::Result<Pi
     command.stdin(Stdio::from(OwnedFd::from(theirs)));
     let child = match launcher {
         Some(launcher) => launcher.spawn(command)?,
-        None => command.spawn()?,
+        None => spawn_when_written(&mut command)?,
     };
     let writer = ours.try_clone()?;
     Ok((child, Box::new(BufWriter::new(writer)), Box::new(BufReader::new(ours))))
+}
+
+/// Starts a program that has just been written. For a moment another thread of this process may have it open for writing: in a
+/// process that it is about to start, which has inherited the file.
+#[cfg(unix)]
+fn spawn_when_written(command: &mut Command) -> io::Result<Child> {
+    let begin = std::time::Instant::now();
+    loop {
+        match command.spawn() {
+            Err(error)
+                if error.kind() == io::ErrorKind::ExecutableFileBusy
+                    && begin.elapsed() < Duration::from_secs(2) =>
+            {
+                std::thread::sleep(Duration::from_millis(10));
+            }
+            result => return result,
+        }
+    }
 }
 
 #[cfg(not(unix))]

@@ -13,7 +13,7 @@ use std::net::{IpAddr, TcpStream, UdpSocket};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::time::{Duration, Instant};
-use view_kit::{Kit, PATIENCE, SCENE, answer};
+use view_kit::{Kit, PATIENCE, SCENE, View, answer};
 
 #[test]
 fn strangers_are_refused() {
@@ -160,6 +160,23 @@ fn each_save_renders_again_and_ends_what_is_stale() {
     kit.write("scenes/a.toml", &SCENE.replace("width", "widht"));
     let failure = events.wait_for("errors", |data| data["failure"] != "");
     assert!(failure["failure"].as_str().unwrap().contains("widht"), "{failure}");
+}
+
+#[test]
+fn two_pages_follow_one_kit() {
+    let kit = Kit::new();
+    let views = [kit.view(), kit.view()];
+    let mut all = views.each_ref().map(View::events);
+    all.iter_mut().for_each(|events| events.wait_for_phase("done"));
+    for save in ["// red", "// green!", "// red again"] {
+        kit.save(save);
+        for events in &mut all {
+            let begins = if save.starts_with("// red") { "/wAA" } else { "AP8A" };
+            events.wait_for("tile", |tile| {
+                tile["pass"] == "all samples" && tile["rgb"].as_str().unwrap().starts_with(begins)
+            });
+        }
+    }
 }
 
 /// Whether a process runs.

@@ -16,6 +16,13 @@ pub struct Plot<'a> {
     pub floor: f64,
 }
 
+impl Plot<'_> {
+    /// Whether a point lies below the floor.
+    fn holds_less(&self) -> bool {
+        self.lines.iter().flat_map(|line| &line.points).any(|point| point[1] < self.floor)
+    }
+}
+
 /// Points with a name.
 pub struct Line {
     pub name: String,
@@ -109,7 +116,10 @@ fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, x: &Axis, y: &Axis) {
         let at = y.at(value);
         drawing.line([LEFT, at], [RIGHT, at], pen);
         if is_named {
-            drawing.text([LEFT - 10.0, at + 7.0], Anchor::End, SMALL, Ink::Text, &number(value));
+            // Everything below the floor is drawn there, for example 0, which has no place on a logarithmic axis.
+            let below = if plot.holds_less() && value <= plot.floor { "≤ " } else { "" };
+            let name = format!("{below}{}", number(value));
+            drawing.text([LEFT - 10.0, at + 7.0], Anchor::End, SMALL, Ink::Text, &name);
         }
     }
     drawing.text([RIGHT, BOTTOM + 76.0], Anchor::End, SMALL, Ink::Text, plot.x_axis);
@@ -238,6 +248,7 @@ mod tests {
         let flat = Line { name: "exact".into(), points: vec![[0.001, 0.0, 0.0, 0.0]] };
         let drawn = plot(vec![flat]);
         assert!(!drawn.contains("NaN") && !drawn.contains("inf"), "{drawn}");
+        assert!(drawn.contains("≤ 1e-6"), "{drawn}");
     }
 
     #[test]

@@ -281,14 +281,34 @@ impl Work {
             self.studio.errors(self.number, errors);
             return Ok(None);
         }
-        // Copy the program, because the next build replaces it.
-        let folder = program.parent().context("the program is in no folder")?.join("programs-of-view");
-        std::fs::create_dir_all(&folder).context("the folder for the program cannot be created")?;
-        let name = if quick { "exercises-quick" } else { "exercises-full" };
-        let copy = folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
-        let _ = std::fs::remove_file(&copy);
-        std::fs::copy(program, &copy).with_context(|| format!("cannot write {}", copy.display()))?;
-        Ok(Some(copy))
+        Ok(Some(copied(program, if quick { "exercises-quick" } else { "exercises-full" })?))
+    }
+}
+
+/// The folder of copies of programs, beside the programs themselves.
+const COPIES: &str = "programs-of-view";
+
+/// Copies a program, because the next build replaces it. Each process of `view` has copies of its own: two may show two scenes.
+fn copied(program: &Path, name: &str) -> Result<PathBuf> {
+    let folder = program.parent().context("the program is in no folder")?.join(COPIES);
+    std::fs::create_dir_all(&folder).context("the folder for the program cannot be created")?;
+    let copy = folder.join(format!("{name}-{}{}", std::process::id(), std::env::consts::EXE_SUFFIX));
+    if !copy.exists() {
+        remove_old_copies(&folder);
+    }
+    let _ = std::fs::remove_file(&copy);
+    std::fs::copy(program, &copy).with_context(|| format!("cannot write {}", copy.display()))?;
+    Ok(copy)
+}
+
+/// Removes copies that no process of `view` has renewed for a day. One that is still in use only starts again at its next save.
+fn remove_old_copies(folder: &Path) {
+    const DAY: Duration = Duration::from_secs(24 * 3600);
+    for file in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let age = file.metadata().and_then(|data| data.modified()).ok().and_then(|time| time.elapsed().ok());
+        if age.is_some_and(|age| age > DAY) {
+            let _ = std::fs::remove_file(file.path());
+        }
     }
 }
 
