@@ -33,7 +33,7 @@ pub fn cheapest_place<P: PlaceProbe>(probe: &mut P, root: u32, area: f64) -> Sub
 /// A move takes a node that is not the root, with everything below it, out of the tree; its sibling takes the place of its
 /// parent. Then the subtree is inserted beside another node, as [`cheapest_place`] describes. It makes at most `most_moves` moves,
 /// and none that makes the areas of all inner nodes together larger. It ends where no move makes them smaller by more than a
-/// rounding error, or earlier.
+/// rounding error. It may end earlier, but makes at least one move if one is allowed and makes them clearly smaller.
 ///
 /// Each leaf stays a leaf, with the same box and the same primitives in the same order. The box of an inner node is the smallest
 /// box around the boxes of its two children; an empty box changes no union. `order` lists the leaves in the new order of the

@@ -2,7 +2,7 @@
 
 use super::bars::REINSERTED_COSTS;
 use super::scenes::scenes;
-use super::trees::{boxes, cost, drawn_tree, drawn_trees, fault, in_morton_order};
+use super::trees::{boxes, cost, drawn_tree, drawn_trees, fault, in_morton_order, tree_in_order};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::compare;
@@ -78,7 +78,33 @@ fn judge_leaves(case: &Case, yours: &FlatTree) -> CheckResult {
         .explained_by([(same, "a leaf lists its primitives in another order: copy them as they are")]))
 }
 
+/// Two pairs of neighbours, of which the tree joins the wrong ones. One move makes it cheaper.
+fn crossed(trial: &Trial<'_>) -> Case {
+    let x = trial.varied(8.0, 2.0..64f32);
+    let cube = |at: f32| Aabb::new(vec3(at, 0.0, 0.0), vec3(at + 1.0, 1.0, 1.0));
+    let boxes = vec![cube(0.0), cube(4.0 * x), cube(1.0), cube(4.0 * x + 1.0)];
+    let tree = tree_in_order(&boxes, vec![0, 1, 2, 3], 1, &[]);
+    Case::new(boxes, tree, 4)
+}
+
+/// Demands that an obvious move is made. A function that returns the tree as it is keeps all leaves, and improves nothing.
+fn moves_something(trial: &Trial<'_>) -> CheckResult {
+    let case = crossed(trial);
+    let yours = ask(trial, std::slice::from_ref(&case)).remove(0);
+    judge_leaves(&case, &yours)?;
+    let (mine, before) = (cost(&yours), cost(&case.query.tree));
+    if mine < before {
+        return Ok(());
+    }
+    let input =
+        "reinsert of two pairs of neighbours, of which the tree joins the wrong ones, 4 moves at most";
+    let (mine, expected) = (format!("cost {mine:.3}"), format!("less than {before:.3}"));
+    let broken = Broken::with_texts(input, mine, expected, "the surface areas");
+    Err(broken.explained_by([(yours == case.query.tree, "no subtree is moved")]))
+}
+
 pub(super) fn reinsert_keeps_every_leaf(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
     trial.forall(200, cases(60), |cases| {
         compare(cases, ask(trial, cases), |case, yours| judge_leaves(case, &yours))
     })
@@ -112,6 +138,7 @@ fn judge_boxes(case: &Case, yours: &FlatTree) -> CheckResult {
 }
 
 pub(super) fn reinsert_fits_the_boxes(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
     trial.forall(200, cases(40), |cases| {
         compare(cases, ask(trial, cases), |case, yours| judge_boxes(case, &yours))
     })
@@ -137,6 +164,7 @@ fn judge_cost(case: &Case, yours: &FlatTree) -> CheckResult {
 }
 
 pub(super) fn reinsert_never_costs_more(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
     trial.forall(300, cases(60), |cases| {
         compare(cases, ask(trial, cases), |case, yours| judge_cost(case, &yours))
     })
@@ -191,6 +219,7 @@ impl Form {
 }
 
 pub(super) fn reinsert_makes_at_most_so_many_moves(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
     let small = (boxes(6), prop::collection::vec(any::<u16>(), 1..12), 0..=2u32)
         .prop_map(|(boxes, cuts, moves)| Case::new(boxes.clone(), drawn_tree(&boxes, 1, &cuts), moves));
     trial.forall(150, small, |cases| {
@@ -298,6 +327,7 @@ fn tree_over(boxes: &[Aabb]) -> FlatTree {
 }
 
 pub(super) fn reinsert_ends_on_special_trees(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
     let x = trial.varied(1.0, 0.25..8f32);
     let cube = |half: f32| Aabb::new(Vec3::splat(x - half), Vec3::splat(x + half));
     let line = |i: i32| Aabb::new(vec3(i as f32, x, x), vec3(i as f32 + x, x, x));
@@ -330,6 +360,7 @@ pub(super) fn reinsert_ends_on_special_trees(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn reinsert_of_any_size(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
     let boxes: Vec<Aabb> = scenes().swap_remove(0).1.into_iter().take(200).collect();
     let x = trial.varied(1.0, 0.5..1f32);
     let mut first = None;

@@ -37,7 +37,7 @@ pub(super) fn drawn_tree(boxes: &[Aabb], leaf_size: usize, cuts: &[u16]) -> Flat
 }
 
 /// A tree over boxes that lists its primitives in this order.
-fn tree_in_order(boxes: &[Aabb], order: Vec<u32>, leaf_size: usize, cuts: &[u16]) -> FlatTree {
+pub(super) fn tree_in_order(boxes: &[Aabb], order: Vec<u32>, leaf_size: usize, cuts: &[u16]) -> FlatTree {
     let mut tree = FlatTree { nodes: Vec::new(), order };
     if !boxes.is_empty() {
         tree.nodes.push(GAP);
