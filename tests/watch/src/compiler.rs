@@ -32,7 +32,17 @@ pub fn error_in(line: &str) -> Option<CompilerError> {
     let place = format!("{}:{}:{}", text(&span["file_name"]), span["line_start"], span["column_start"]);
     let code = text(&span["text"][0]["text"]).trim().to_owned();
     let help = message["children"].as_array().map_or(&[][..], Vec::as_slice).iter();
-    let suggestions = help.filter(|child| child["level"] == "help").map(|child| text(&child["message"]));
+    let suggestions = help.filter(|child| child["level"] == "help").map(|child| {
+        let said = text(&child["message"]);
+        // What to write instead. With several places they are parts of one change, which make no sense without the code.
+        match child["spans"].as_array().map(Vec::as_slice) {
+            Some([place]) => match text(&place["suggested_replacement"]).trim() {
+                "" => said,
+                code => format!("{said}: {}", code.lines().next().unwrap_or_default()),
+            },
+            _ => said,
+        }
+    });
     // Another place of the error, such as the bracket that is not closed, is named by its line.
     let elsewhere = spans.iter().filter(|span| span["is_primary"] != true).map(|span| {
         let label = text(&span["label"]);
@@ -62,6 +72,18 @@ mod tests {
             error.notes,
             ["expected `Option<f32>`, found `f32`", "try wrapping the expression in `Some`"]
         );
+    }
+
+    #[test]
+    fn a_suggestion_says_what_to_write() {
+        let line = r#"{"reason":"compiler-message","message":{"level":"error","message":"cannot find type `DVec3`","spans":[
+            {"is_primary":true,"file_name":"a.rs","line_start":4,"column_start":5,"label":null,"text":[{"text":"DVec3::Z"}]}],
+            "children":[{"level":"help","message":"consider importing this struct","spans":[
+             {"suggested_replacement":"use glam::DVec3;\n\n"}]},
+             {"level":"help","message":"try wrapping it","spans":[
+             {"suggested_replacement":"Some("},{"suggested_replacement":")"}]}]}}"#;
+        let error = error_in(&line.replace('\n', " ")).unwrap();
+        assert_eq!(error.notes, ["consider importing this struct: use glam::DVec3;", "try wrapping it"]);
     }
 
     #[test]
