@@ -19,6 +19,9 @@ pub struct CheckEntry {
     pub place: usize,
     /// The number of points for a passed check.
     pub points: u32,
+    /// Whether the points are a bonus: they are shown apart, and a stage has all of its points without them.
+    #[serde(default)]
+    pub bonus: bool,
     /// The law that the check tests, in one sentence.
     pub title: String,
     /// The lecture and the slide that teach it.
@@ -143,9 +146,17 @@ impl Stage {
 }
 
 impl CheckEntry {
+    /// The points in words: `1 point`, `4 points`, `4 bonus points`.
+    pub fn worth(&self) -> String {
+        let bonus = if self.bonus { "bonus " } else { "" };
+        let s = if self.points == 1 { "" } else { "s" };
+        format!("{} {bonus}point{s}", self.points)
+    }
+
     /// The two lines with which every report about the check begins: stage and title, then the slide.
     pub fn header(&self) -> String {
-        format!("stage {} · {}\n  slides: {}\n", self.stage, self.title, self.slide)
+        let bonus = if self.bonus { " (bonus)" } else { "" };
+        format!("stage {}{bonus} · {}\n  slides: {}\n", self.stage, self.title, self.slide)
     }
 }
 

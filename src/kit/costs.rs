@@ -1,6 +1,9 @@
 //! The answers of searches with their costs, for a judge that does not trust them.
 
-use super::{Answer, CellsAnswer, GraphAnswer, PacketAnswer, SearchAnswer, ShadeAnswer, WideAnswer};
+use super::{
+    Answer, CellsAnswer, GraphAnswer, PacketAnswer, PlaceAnswer, SearchAnswer, ShadeAnswer, StreamAnswer,
+    WideAnswer,
+};
 
 /// The answer to one query whose cost is counted.
 pub enum Costs<'a> {
@@ -16,6 +19,10 @@ pub enum Costs<'a> {
     Shade(&'a mut ShadeAnswer),
     /// Of a search in a wide tree.
     Wide(&'a mut WideAnswer),
+    /// Of a search in a wide tree with several rays.
+    Stream(&'a mut StreamAnswer),
+    /// Of a search for the place of a subtree.
+    Place(&'a mut PlaceAnswer),
 }
 
 impl Answer {
@@ -42,6 +49,8 @@ impl Answer {
             Answer::WideClosestHit(answers) | Answer::WideAnyHit(answers) => {
                 answers.iter_mut().map(Costs::Wide).collect()
             }
+            Answer::StreamClosestHits(answers) => answers.iter_mut().map(Costs::Stream).collect(),
+            Answer::CheapestPlace(answers) => answers.iter_mut().map(Costs::Place).collect(),
             Answer::Shade(answers) => answers.iter_mut().map(Costs::Shade).collect(),
             _ => Vec::new(),
         }

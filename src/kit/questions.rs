@@ -3,7 +3,7 @@
 
 use crate::bvh::{Contents, PrimitiveHit};
 use crate::ray::Ray;
-use crate::wide::Entered;
+use crate::wide::{Entered, OpenedNode};
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::io;
@@ -39,6 +39,14 @@ pub enum Call {
     Candidates(u32, u32, f32),
     /// Asks for the hit with the primitive in a lane of a block: block, lane, ray.
     HitLane(u32, u32, Ray),
+    /// Asks which children of a wide node a ray of a stream enters: ray, node, `t_max`.
+    EnterWideOf(u32, u32, f32),
+    /// Asks which lanes of a block a ray of a stream may hit: ray, block, `n`, `t_max`.
+    CandidatesOf(u32, u32, u32, f32),
+    /// Asks for the hit of a ray of a stream: number of the ray, block, lane, ray.
+    HitLaneOf(u32, u32, u32, Ray),
+    /// Asks for a node in a search for the place of a subtree.
+    OpenPlace(u32),
     /// Asks nothing: reports the last visits.
     End,
 }
@@ -58,6 +66,8 @@ pub enum Response {
     Entered(Entered),
     /// The lanes of a block that may be hit, as bits.
     Lanes(u32),
+    /// A node in a search for the place of a subtree.
+    Place(OpenedNode),
     /// The visits were recorded.
     Recorded,
     /// The call is not allowed. The text is the message of the panic that it causes.
@@ -148,26 +158,37 @@ impl Asker {
         }
     }
 
+    /// Asks which children of a wide node are entered.
     #[track_caller]
-    pub(super) fn enter_wide(&mut self, node: u32, t_max: f32) -> Entered {
-        match self.ask(Call::EnterWide(node, t_max)) {
+    pub(super) fn entered(&mut self, call: Call) -> Entered {
+        match self.ask(call) {
             Response::Entered(entered) => entered,
             other => out_of_step(&other),
         }
     }
 
+    /// Asks which lanes of a block may be hit.
     #[track_caller]
-    pub(super) fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
-        match self.ask(Call::Candidates(block, n, t_max)) {
+    pub(super) fn lanes(&mut self, call: Call) -> u32 {
+        match self.ask(call) {
             Response::Lanes(lanes) => lanes,
             other => out_of_step(&other),
         }
     }
 
+    /// Asks for the hit with the primitive in a lane.
     #[track_caller]
-    pub(super) fn hit_lane(&mut self, block: u32, lane: u32, ray: &Ray) -> Option<PrimitiveHit> {
-        match self.ask(Call::HitLane(block, lane, *ray)) {
+    pub(super) fn found(&mut self, call: Call) -> Option<PrimitiveHit> {
+        match self.ask(call) {
             Response::Found(hit) => hit,
+            other => out_of_step(&other),
+        }
+    }
+
+    #[track_caller]
+    pub(super) fn open_place(&mut self, node: u32) -> OpenedNode {
+        match self.ask(Call::OpenPlace(node)) {
+            Response::Place(opened) => opened,
             other => out_of_step(&other),
         }
     }

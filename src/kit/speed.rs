@@ -1,7 +1,7 @@
 //! Stage 12, speed: queries and answers.
 
 use crate::bvh::PrimitiveHit;
-use crate::kit::questions::Asker;
+use crate::kit::questions::{Asker, Call};
 use crate::ray::Ray;
 use crate::wide::{
     BinGrid, BinSplit, Bins, Child, Entered, NO_PRIMITIVE, PrimitiveBox, TriangleBlock, WideNode, WideProbe,
@@ -128,7 +128,7 @@ impl<'a> WideTableProbe<'a> {
 impl WideProbe for WideTableProbe<'_> {
     fn enter(&mut self, node: u32, t_max: f32) -> Entered {
         if let Some(asker) = &mut self.asker {
-            return asker.enter_wide(node, t_max);
+            return asker.entered(Call::EnterWide(node, t_max));
         }
         self.note();
         self.calls.nodes.push(node);
@@ -143,7 +143,7 @@ impl WideProbe for WideTableProbe<'_> {
 
     fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
         if let Some(asker) = &mut self.asker {
-            return asker.candidates(block, n, t_max);
+            return asker.lanes(Call::Candidates(block, n, t_max));
         }
         self.note();
         self.calls.blocks.push(block);
@@ -153,7 +153,7 @@ impl WideProbe for WideTableProbe<'_> {
 
     fn hit(&mut self, block: u32, lane: u32, ray: &Ray) -> Option<PrimitiveHit> {
         if let Some(asker) = &mut self.asker {
-            return asker.hit_lane(block, lane, ray);
+            return asker.found(Call::HitLane(block, lane, *ray));
         }
         self.note();
         let primitive = self.primitive(block, lane);

@@ -25,6 +25,10 @@ pub enum Accelerator {
     Bvh,
     /// A bounding volume hierarchy with eight children per node, whose boxes are tested at once (stage 12).
     WideBvh,
+    /// The same, and its binary tree is improved by moves of subtrees before (stage 12, bonus).
+    ReinsertedBvh,
+    /// The same as [`Accelerator::WideBvh`], and camera rays go through it in streams of 64 (stage 12, bonus).
+    StreamBvh,
     /// A bounding volume hierarchy whose search visits both children of every node that the ray enters, in any order:
     /// the baseline that shows what the order and the shorter ray save (stage 3). Shadow rays stop at the first hit,
     /// as with [`Accelerator::Bvh`].
@@ -53,7 +57,7 @@ pub enum Accelerator {
 impl Accelerator {
     /// Every structure once, so without [`Accelerator::Auto`]: brute force, the volumes of the scene graph, the hierarchies, then the
     /// structures that divide space.
-    pub const ALL: [Accelerator; 16] = [
+    pub const ALL: [Accelerator; 18] = [
         Accelerator::BruteForce,
         Accelerator::BoundingBoxes,
         Accelerator::BoundingSpheres,
@@ -63,6 +67,8 @@ impl Accelerator {
         Accelerator::CachedBvh,
         Accelerator::PacketBvh,
         Accelerator::WideBvh,
+        Accelerator::ReinsertedBvh,
+        Accelerator::StreamBvh,
         Accelerator::Grid,
         Accelerator::Octree,
         Accelerator::OctreeByCells,
@@ -73,8 +79,8 @@ impl Accelerator {
     ];
 
     /// The names of all values in scene files.
-    pub fn names() -> [(&'static str, Accelerator); 17] {
-        let mut names = [(Accelerator::Auto.name(), Accelerator::Auto); 17];
+    pub fn names() -> [(&'static str, Accelerator); 19] {
+        let mut names = [(Accelerator::Auto.name(), Accelerator::Auto); 19];
         for (place, one) in names[1..].iter_mut().zip(Accelerator::ALL) {
             *place = (one.name(), one);
         }
@@ -94,6 +100,11 @@ impl Accelerator {
         )
     }
 
+    /// Whether the structure is a tree of stage 12 with eight children per node.
+    pub fn is_wide(self) -> bool {
+        matches!(self, Accelerator::WideBvh | Accelerator::ReinsertedBvh | Accelerator::StreamBvh)
+    }
+
     /// The name in scene files, in snake case, for example `bounding_boxes`.
     pub fn name(self) -> &'static str {
         match self {
@@ -107,6 +118,8 @@ impl Accelerator {
             Accelerator::CachedBvh => "cached_bvh",
             Accelerator::PacketBvh => "packet_bvh",
             Accelerator::WideBvh => "wide_bvh",
+            Accelerator::ReinsertedBvh => "reinserted_bvh",
+            Accelerator::StreamBvh => "stream_bvh",
             Accelerator::Grid => "grid",
             Accelerator::Octree => "octree",
             Accelerator::OctreeByCells => "octree_by_cells",

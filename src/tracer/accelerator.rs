@@ -17,10 +17,20 @@ pub(super) fn choose_accelerator<F: StudentFunctions>(
         let boxes = written.has(Function::slab) || written.has(Function::conservative_slab);
         if boxes && written.has_all(HIERARCHY) {
             let (stage, functions) = own_functions(wanted);
+            let name = wanted.name();
+            if wanted.is_wide() && !written.has_all(own_functions(Accelerator::WideBvh).1) {
+                notes.push(format!("a hierarchy replaces `{name}`: stage {stage} is not written yet"));
+                return Some(Accelerator::Bvh);
+            }
             if written.has_all(functions) {
                 return Some(wanted);
             }
-            let name = wanted.name();
+            if wanted.is_wide() {
+                notes.push(format!(
+                    "a wide tree replaces `{name}`: the bonus of stage {stage} is not written yet"
+                ));
+                return Some(Accelerator::WideBvh);
+            }
             notes.push(format!("a hierarchy replaces `{name}`: stage {stage} is not written yet"));
             return Some(Accelerator::Bvh);
         }
@@ -84,6 +94,8 @@ fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
                 Function::wide_any_hit,
             ],
         ),
+        Accelerator::ReinsertedBvh => (12, &[Function::cheapest_place, Function::reinsert]),
+        Accelerator::StreamBvh => (12, &[Function::stream_order, Function::stream_closest_hits]),
         Accelerator::PacketBvh => (9, &[Function::packet_search]),
         Accelerator::Grid => (
             9,

@@ -9,12 +9,14 @@ use super::solids::{bounds_of_solid, placed_bounds};
 use super::structure::Structure;
 use super::wide::Wide;
 use crate::aabb::Aabb;
+use crate::bvh::PrimitiveHit;
 use crate::count::{Event, Tally};
 use crate::graph::{ChildCache, Graph};
 use crate::kit::StudentFunctions;
 use crate::ray::Ray;
 use crate::scene::{Accelerator, Quality};
 use crate::shape::Triangle;
+use crate::wide::STREAM;
 use crate::world::{Geometry, InfinitePlane, Primitive, World};
 use glam::Vec3;
 use std::marker::PhantomData;
@@ -59,7 +61,7 @@ impl<F: StudentFunctions> Intersector<F> {
         // Build one structure over the scene and one over each shared mesh.
         let mut notes = Vec::new();
         let mut over = |bounds: &[Aabb], primitives: &[Primitive], graph: Option<Graph>| {
-            if plan.accelerator == Some(Accelerator::WideBvh) {
+            if plan.accelerator.is_some_and(Accelerator::is_wide) {
                 let triangle = |index: u32| still_triangle(&primitives[index as usize]);
                 let build = || Wide::build::<F>(bounds, triangle, plan.wide, quality);
                 return Structure::Wide(on_threads(threads, build));
@@ -132,9 +134,9 @@ impl<F: StudentFunctions> Intersector<F> {
     /// The closest hit of each of `rays`, in their order. A structure that searches several rays at once gets
     /// them in one packet.
     pub fn closest_hits<T: Tally>(&self, rays: &[Ray], tally: &mut T) -> Vec<Option<Hit>> {
-        let (Structure::Hierarchy(bvh), true, Some(first)) =
-            (&self.scene.structure, self.takes_batches(), rays.first())
-        else {
+        let structure = &self.scene.structure;
+        let is_searched = matches!(structure, Structure::Hierarchy(_) | Structure::Wide(_));
+        let (true, Some(first)) = (self.takes_batches() && is_searched, rays.first()) else {
             let mut cache = Cache::default();
             return rays.iter().map(|ray| self.closest_hit(ray, tally, &mut cache)).collect();
         };
@@ -143,17 +145,32 @@ impl<F: StudentFunctions> Intersector<F> {
             rays.iter().map(|ray| self.closest_plane(ray, tally)).collect();
         let rays: Vec<Ray> =
             rays.iter().zip(&shortened).map(|(ray, (shorter, _))| shorter.unwrap_or(*ray)).collect();
-        // Search the hierarchy with all rays at once.
+        // Search the structure with all rays at once.
         let mut notes = Notes::for_closest_hit();
         let mut probe = PacketProbe(SceneProbe::<F, T>::new(&self.scene, first, tally, &mut notes));
-        let found = F::packet_search(bvh, &mut probe, &rays);
+        let found = match structure {
+            Structure::Hierarchy(bvh) => F::packet_search(bvh, &mut probe, &rays),
+            Structure::Wide(wide) => in_streams(wide, &mut probe.0, &rays),
+            _ => vec![None; rays.len()],
+        };
         let found = found.into_iter().zip(&rays).zip(shortened);
         found.map(|((hit, ray), (_, plane))| hit.map(|hit| probe.hit_of(hit, ray)).or(plane)).collect()
     }
 
     /// Whether the structure searches several rays at once, so that camera rays should come in packets.
     pub fn takes_batches(&self) -> bool {
-        self.accelerator == Some(Accelerator::PacketBvh)
+        matches!(self.accelerator, Some(Accelerator::PacketBvh | Accelerator::StreamBvh))
+    }
+
+    /// The number of rays that the structure searches at once.
+    pub fn batch(&self) -> usize {
+        let (columns, rows) = self.batch_of_pixels();
+        (columns * rows) as usize
+    }
+
+    /// The columns and rows of neighbouring pixels whose camera rays are searched at once.
+    pub fn batch_of_pixels(&self) -> (u32, u32) {
+        if self.accelerator == Some(Accelerator::StreamBvh) { (8, 8) } else { (4, 2) }
     }
 
     /// Whether `ray` hits anything for `t_min < t < t_max` (occlusion of a shadow ray).
@@ -186,6 +203,26 @@ impl<F: StudentFunctions> Intersector<F> {
         }
         (Some(ray), closest)
     }
+}
+
+/// The closest hits of rays in a wide tree, in streams of rays that visit the same nodes.
+fn in_streams<F: StudentFunctions, T: Tally>(
+    wide: &Wide,
+    probe: &mut SceneProbe<'_, F, T>,
+    rays: &[Ray],
+) -> Vec<Option<PrimitiveHit>> {
+    let mut hits = vec![None; rays.len()];
+    // A wrong order may lose rays, but names none that does not exist.
+    let order = F::stream_order(rays);
+    let order: Vec<usize> =
+        order.into_iter().map(|ray| ray as usize).filter(|&ray| ray < rays.len()).collect();
+    for numbers in order.chunks(STREAM) {
+        let stream: Vec<Ray> = numbers.iter().map(|&number| rays[number]).collect();
+        for (&number, hit) in numbers.iter().zip(wide.closest_hits(probe, &stream)) {
+            hits[number] = hit;
+        }
+    }
+    hits
 }
 
 /// The `t` of the hit of `ray` with an infinite plane within its range, by the form in which the plane is given.

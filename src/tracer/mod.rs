@@ -37,6 +37,7 @@ mod random_choices;
 mod record;
 mod rough_lobe;
 mod solids;
+mod stream;
 mod structure;
 mod texture_filter;
 mod wide;
@@ -59,7 +60,6 @@ use glam::Vec3;
 use hit::{Hit, Target};
 use intersector::Intersector;
 use kept::Built;
-use packets::PACKET;
 use path::{Path, Scratch};
 use plan::Plan;
 use record::{NoRecord, Rays};
@@ -241,7 +241,8 @@ fn first_hits<F: StudentFunctions>(
         Target::Plane(index) => PrimitiveHit { t: hit.t, primitive: n_primitives + index },
         Target::Primitive(primitive) | Target::Instance(primitive, _) => PrimitiveHit { t: hit.t, primitive },
     };
-    // Search in packets, as for camera rays.
-    let hits = rays.chunks(PACKET).flat_map(|rays| intersector.closest_hits(rays, &mut Uncounted));
+    // Search in packets or streams, as for camera rays.
+    let hits =
+        rays.chunks(intersector.batch()).flat_map(|rays| intersector.closest_hits(rays, &mut Uncounted));
     hits.map(|hit| hit.map(primitive_of)).collect()
 }

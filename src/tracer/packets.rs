@@ -9,13 +9,8 @@ use crate::kit::StudentFunctions;
 use crate::ray::Ray;
 use std::collections::HashMap;
 
-/// Columns and rows of pixels that share a packet. They divide a tile evenly, so that no two threads trace
-/// the same packet.
-const BLOCK: (u32, u32) = (4, 2);
-const _: () = assert!(TILE.is_multiple_of(BLOCK.0) && TILE.is_multiple_of(BLOCK.1));
-
-/// The number of rays in a packet: one for each pixel of a block of 4 by 2.
-pub const PACKET: usize = (BLOCK.0 * BLOCK.1) as usize;
+/// All columns and rows of pixels that share a packet divide a tile evenly, so that no two threads trace the same packet.
+const _: () = assert!(TILE.is_multiple_of(8));
 
 /// The hits of packets whose pixels have not all been asked for yet.
 #[derive(Default)]
@@ -41,8 +36,9 @@ impl Packets {
             return hit;
         }
         // Make the camera rays of all pixels of the block that lie on the film.
-        let (left, top) = (sample.column - sample.column % BLOCK.0, sample.row - sample.row % BLOCK.1);
-        let (right, bottom) = (settings.width.min(left + BLOCK.0), settings.height.min(top + BLOCK.1));
+        let (columns, rows) = intersector.batch_of_pixels();
+        let (left, top) = (sample.column - sample.column % columns, sample.row - sample.row % rows);
+        let (right, bottom) = (settings.width.min(left + columns), settings.height.min(top + rows));
         let pixels = (top..bottom).flat_map(|row| (left..right).map(move |column| (column, row)));
         let samples: Vec<CameraSample> =
             pixels.map(|(column, row)| CameraSample::draw(settings, column, row, sample.sample)).collect();

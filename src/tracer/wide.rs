@@ -4,6 +4,7 @@ use super::hit::Detail;
 use super::intersection::TriangleTest;
 use super::plan::WidePlan;
 use super::probe::SceneProbe;
+use super::stream::ClosestOfStream;
 use super::structure::Primitives;
 use crate::aabb::Aabb;
 use crate::bvh::PrimitiveHit;
@@ -49,6 +50,8 @@ impl Wide {
         } else {
             F::flatten(&F::build(bounds, quality.split, (quality.leaf_size as usize).min(MAX_LEAF)))
         };
+        let most_moves = u32::try_from(tree.nodes.len()).unwrap_or(u32::MAX);
+        let tree = if plan.reinserts { F::reinsert(&tree, most_moves) } else { tree };
         // Collapse it, and copy the triangles into the blocks.
         let wide = F::collapse(&tree);
         drop(tree);
@@ -72,6 +75,18 @@ impl Wide {
             return None;
         }
         self.instructions.run(Closest { wide: self, probe, ray })
+    }
+
+    /// The closest hit of each of `rays`, at most [`STREAM`](crate::wide::STREAM), within its range.
+    pub fn closest_hits<F: StudentFunctions, T: Tally>(
+        &self,
+        probe: &mut SceneProbe<'_, F, T>,
+        rays: &[Ray],
+    ) -> Vec<Option<PrimitiveHit>> {
+        if self.nodes.is_empty() {
+            return vec![None; rays.len()];
+        }
+        self.instructions.run(ClosestOfStream { wide: self, probe, rays })
     }
 
     /// Whether `ray` hits any primitive of `probe` within its range.
@@ -161,9 +176,9 @@ impl<F: StudentFunctions, T: Tally> Vectorized for Any<'_, '_, '_, F, T> {
 }
 
 /// Answers the questions of a search in a wide tree, and counts them.
-struct WideSceneProbe<'s, 'p, F, T, L> {
+pub(super) struct WideSceneProbe<'s, 'p, F, T, L> {
     wide: &'s Wide,
-    probe: &'s mut SceneProbe<'p, F, T>,
+    pub(super) probe: &'s mut SceneProbe<'p, F, T>,
     ray: WideRay,
     /// Whether `may_hit` sorts out triangles. It does not for methods whose rounding errors are larger than its own: they
     /// may report a hit that is none, and every accelerator has to report the same.
@@ -173,19 +188,23 @@ struct WideSceneProbe<'s, 'p, F, T, L> {
 
 impl<'s, 'p, F: StudentFunctions, T: Tally, L: Level> WideSceneProbe<'s, 'p, F, T, L> {
     #[inline(always)]
-    fn new(wide: &'s Wide, probe: &'s mut SceneProbe<'p, F, T>, ray: &Ray, level: L) -> Self {
+    pub(super) fn new(wide: &'s Wide, probe: &'s mut SceneProbe<'p, F, T>, ray: &Ray, level: L) -> Self {
         let ray = WideRay::new(ray);
-        let is_exact = matches!(probe.tests.triangles, TriangleTest::Watertight | TriangleTest::InDouble);
-        let sorts_out = is_exact && ray.in_range && probe.may_hit;
+        let sorts_out = sorts_out(probe, &ray);
         WideSceneProbe { wide, probe, ray, sorts_out, level }
     }
-}
 
-impl<F: StudentFunctions, T: Tally, L: Level> WideProbe for WideSceneProbe<'_, '_, F, T, L> {
+    /// Asks about another ray from now on.
     #[inline(always)]
-    fn enter(&mut self, node: u32, t_max: f32) -> Entered {
+    pub(super) fn select(&mut self, ray: &WideRay) {
+        self.ray = *ray;
+        self.sorts_out = sorts_out(self.probe, ray);
+    }
+
+    /// [`WideProbe::enter`] without a node visit.
+    #[inline(always)]
+    pub(super) fn enter_uncounted(&mut self, node: u32, t_max: f32) -> Entered {
         let node = &self.wide.nodes[node as usize];
-        self.probe.note(Event::NodeVisit);
         let entered = F::enter_boxes(self.level, node, &self.ray, t_max);
         if T::COUNTS {
             // The children come first, then the empty places.
@@ -197,14 +216,9 @@ impl<F: StudentFunctions, T: Tally, L: Level> WideProbe for WideSceneProbe<'_, '
         entered
     }
 
+    /// [`WideProbe::candidates`] without a node visit.
     #[inline(always)]
-    fn children(&self, node: u32) -> &[Child; 8] {
-        &self.wide.nodes[node as usize].children
-    }
-
-    #[inline(always)]
-    fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
-        self.probe.note(Event::NodeVisit);
+    pub(super) fn candidates_uncounted(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
         if T::COUNTS {
             for _ in 0..n {
                 self.probe.note(Event::PrimitiveTest);
@@ -216,6 +230,32 @@ impl<F: StudentFunctions, T: Tally, L: Level> WideProbe for WideSceneProbe<'_, '
         } else {
             lanes
         }
+    }
+}
+
+/// Whether `may_hit` sorts out triangles for this ray.
+#[inline(always)]
+fn sorts_out<F: StudentFunctions, T: Tally>(probe: &SceneProbe<'_, F, T>, ray: &WideRay) -> bool {
+    let is_exact = matches!(probe.tests.triangles, TriangleTest::Watertight | TriangleTest::InDouble);
+    is_exact && ray.in_range && probe.may_hit
+}
+
+impl<F: StudentFunctions, T: Tally, L: Level> WideProbe for WideSceneProbe<'_, '_, F, T, L> {
+    #[inline(always)]
+    fn enter(&mut self, node: u32, t_max: f32) -> Entered {
+        self.probe.note(Event::NodeVisit);
+        self.enter_uncounted(node, t_max)
+    }
+
+    #[inline(always)]
+    fn children(&self, node: u32) -> &[Child; 8] {
+        &self.wide.nodes[node as usize].children
+    }
+
+    #[inline(always)]
+    fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
+        self.probe.note(Event::NodeVisit);
+        self.candidates_uncounted(block, n, t_max)
     }
 
     #[inline(always)]

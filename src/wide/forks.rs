@@ -1,5 +1,6 @@
 //! Work in parallel, with a log from which work and span follow.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// A place in a parallel build where two pieces of work may run at the same time.
@@ -45,6 +46,24 @@ impl Forks {
     /// The log so far.
     pub fn into_log(self) -> Vec<Fork> {
         self.log
+    }
+
+    /// Sorts the primitives of a node into bins in pieces: logs the node, from position `first` of the order of the finished tree on,
+    /// with [`ForkKind::Binning`], and runs `work` for all `pieces` at the same time if threads are free. The results are in the
+    /// order of the pieces.
+    pub fn each<P: Send, A: Send>(
+        &mut self,
+        first: u32,
+        count: u32,
+        pieces: Vec<P>,
+        work: impl Fn(P) -> A + Sync + Send,
+    ) -> Vec<A> {
+        self.log.push(Fork { first, count, kind: ForkKind::Binning { pieces: pieces.len() as u32 } });
+        if self.in_parallel {
+            pieces.into_par_iter().map(work).collect()
+        } else {
+            pieces.into_iter().map(work).collect()
+        }
     }
 
     /// Logs `fork`, and runs `left` and `right` at the same time if a thread is free. Each gets a log of its own, which is

@@ -5,10 +5,14 @@
 
 mod boxes;
 mod forks;
+mod reinsertion;
 pub mod simd;
+mod stream;
 
 pub use boxes::{Bin, BinGrid, BinSplit, Bins, BoxA, MAX_BINS, PrimitiveBox};
 pub use forks::{Fork, ForkKind, Forks};
+pub use reinsertion::{OpenedNode, PlaceProbe, SubtreePlace};
+pub use stream::{STREAM, StreamProbe};
 
 use crate::aabb::Aabb;
 use crate::bvh::PrimitiveHit;

@@ -74,7 +74,7 @@ pub fn stage(given: &Given) -> Result<Option<u8>, Misuse> {
     })
 }
 
-/// The checks of a stage, or of all stages, with their points and titles.
+/// The checks of a stage, or of all stages, with their points and titles. Bonus points have a plus.
 pub fn list(stage: Option<u8>) -> String {
     let mut text = String::new();
     for (number, about) in
@@ -86,7 +86,8 @@ pub fn list(stage: Option<u8>) -> String {
             let _ = writeln!(text, "  {line}");
         }
         for (name, entry) in about.in_order() {
-            let _ = writeln!(text, "  {:>2}  {name}", entry.points);
+            let sign = if entry.bonus { "+" } else { "" };
+            let _ = writeln!(text, "  {:>2}  {name}", format!("{sign}{}", entry.points));
             for line in lines(&entry.title, WIDTH - 6) {
                 let _ = writeln!(text, "      {line}");
             }

@@ -125,7 +125,7 @@ const SPLITS: [(&str, Split); 3] = [
     ("surface-area", Split::SurfaceArea),
 ];
 
-pub(crate) const ACCELERATORS: [(&str, Accelerator); 17] = [
+pub(crate) const ACCELERATORS: [(&str, Accelerator); 19] = [
     ("auto", Accelerator::Auto),
     ("brute-force", Accelerator::BruteForce),
     ("bounding-boxes", Accelerator::BoundingBoxes),
@@ -136,6 +136,8 @@ pub(crate) const ACCELERATORS: [(&str, Accelerator); 17] = [
     ("cached-bvh", Accelerator::CachedBvh),
     ("packet-bvh", Accelerator::PacketBvh),
     ("wide-bvh", Accelerator::WideBvh),
+    ("reinserted-bvh", Accelerator::ReinsertedBvh),
+    ("stream-bvh", Accelerator::StreamBvh),
     ("grid", Accelerator::Grid),
     ("octree", Accelerator::Octree),
     ("octree-by-cells", Accelerator::OctreeByCells),

@@ -94,7 +94,16 @@ fn result(stage: u8, name: &str, outcome: Outcome) -> CheckResult {
         _ => String::new(),
     };
     let picture = (outcome == Outcome::Wrong && name.contains("picture")).then(picture).flatten();
-    CheckResult { stage, name: name.to_owned(), outcome, points: entry.points, earned, message, picture }
+    CheckResult {
+        stage,
+        name: name.to_owned(),
+        outcome,
+        points: entry.points,
+        earned,
+        bonus: entry.bonus,
+        message,
+        picture,
+    }
 }
 
 /// Uses a golden picture in place of a picture of differences.

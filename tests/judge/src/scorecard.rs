@@ -19,6 +19,8 @@ pub struct Graded {
     pub verdict: Verdict,
     /// The points of the check.
     pub points: u32,
+    /// Whether they are a bonus.
+    pub bonus: bool,
 }
 
 impl Graded {
@@ -45,7 +47,8 @@ pub fn run_checks_on(
     let grade = |_: &(), &check: &&'static Check| {
         let examined = checks::examine_with(check, &source.fresh(), seed, inputs.clone());
         let verdict = checks::verdict(check, examined);
-        Ok(Graded { check, verdict, points: rubric::entry(check.stage, check.name).points })
+        let entry = rubric::entry(check.stage, check.name);
+        Ok(Graded { check, verdict, points: entry.points, bonus: entry.bonus })
     };
     queue::run(&vec![(); threads], &checks, grade)
 }
@@ -67,7 +70,7 @@ pub fn tell(source: &Source, stage: u8, out: impl Write + Send) -> Result<()> {
     Ok(())
 }
 
-/// Prints the scorecard; `Ok(true)` if all checks passed.
+/// Prints the scorecard; `Ok(true)` if all checks passed, except for bonus ones.
 pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
     let wanted = |number| is_asked_for(number) && stage.is_none_or(|stage| stage == number);
     let graded = run_checks(source, wanted)?;
@@ -82,7 +85,8 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
             };
             let entry = rubric::entry(*number, one.check.name);
             let earned = if one.passed() { one.points } else { 0 };
-            println!("  {word:<11}  {earned:>2}/{:<2}  {:<52}  {}", one.points, one.check.name, entry.title);
+            let of = if one.bonus { format!("+{}", one.points) } else { one.points.to_string() };
+            println!("  {word:<11}  {earned:>2}/{of:<2}  {:<52}  {}", one.check.name, entry.title);
         }
         println!();
     }
@@ -95,9 +99,8 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
         println!("not written yet: {place}\n  {task} ({})", wait_for_it(waiting));
     }
     let passed = graded.iter().filter(|one| one.passed()).count();
-    let (earned, all) = points(graded.iter());
-    println!("\n{earned} of {all} points\n{passed} passed, {} failed", graded.len() - passed);
-    Ok(passed == graded.len())
+    println!("\n{}\n{passed} passed, {} failed", points(graded.iter()), graded.len() - passed);
+    Ok(graded.iter().all(|one| one.bonus || one.passed()))
 }
 
 /// Whether the course asks for this stage.
@@ -123,19 +126,30 @@ fn gaps(graded: &[Graded]) -> Vec<(String, (String, usize))> {
     gaps
 }
 
-fn points<'a>(graded: impl Iterator<Item = &'a Graded>) -> (u32, u32) {
-    graded.fold((0, 0), |(earned, all), one| {
-        (earned + if one.passed() { one.points } else { 0 }, all + one.points)
-    })
+/// The earned and the possible points in words: `12 of 20 points`. Earned bonus points stand apart.
+fn points<'a>(graded: impl Iterator<Item = &'a Graded>) -> String {
+    let (mut earned, mut all, mut bonus) = (0, 0, 0);
+    for one in graded {
+        let of_check = if one.passed() { one.points } else { 0 };
+        if one.bonus {
+            bonus += of_check;
+        } else {
+            earned += of_check;
+            all += one.points;
+        }
+    }
+    let bonus = if bonus > 0 { format!(", and {bonus} bonus") } else { String::new() };
+    format!("{earned} of {all} points{bonus}")
 }
 
 fn stage_line(number: u8, graded: &[&Graded]) -> String {
     let title = RUBRIC.get(&format!("stage{number}")).map_or("", |stage| &stage.title);
-    let passed = graded.iter().filter(|one| one.passed()).count();
-    let (earned, all) = points(graded.iter().copied());
+    let asked_for = || graded.iter().filter(|one| !one.bonus);
+    let passed = asked_for().filter(|one| one.passed()).count();
+    let n = asked_for().count();
     format!(
-        "stage {number:>2} · {title:<28} {passed:>2} of {:<2} checks   {earned:>3} of {all:<3} points",
-        graded.len()
+        "stage {number:>2} · {title:<28} {passed:>2} of {n:<2} checks   {:>17}",
+        points(graded.iter().copied())
     )
 }
 
@@ -157,7 +171,9 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
         }
     }
     println!();
-    match graded.iter().find(|one| !one.passed()) {
+    // A bonus comes after everything else.
+    let open = |bonus: bool| graded.iter().find(move |one| one.bonus == bonus && !one.passed());
+    match open(false).or(open(true)) {
         None => println!(
             "Everything passes. `cargo run --release -- render scenes/showcase.toml{}` shows it.",
             with_exercises(root)

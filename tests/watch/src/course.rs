@@ -31,6 +31,10 @@ pub struct Check {
     pub slide: String,
     /// Its points.
     pub points: u32,
+    /// Whether its points are a bonus.
+    pub bonus: bool,
+    /// Its points in words.
+    pub worth: String,
     /// Its three hints.
     pub hints: [String; 3],
     /// The last verdict.
@@ -45,20 +49,25 @@ impl Check {
 }
 
 impl Stage {
-    /// The checks that pass, and their points.
-    pub fn earned(&self) -> (usize, u32) {
-        let passing = || self.checks.iter().filter(|check| check.passes());
-        (passing().count(), passing().map(|check| check.points).sum())
+    /// The checks that pass of those that are asked for: `5 of 8 checks`, `12 of 20 points`, and the bonus points if there are any.
+    pub fn earned(&self) -> (String, String) {
+        let asked_for = || self.checks.iter().filter(|check| !check.bonus);
+        let points = |passes: bool, bonus: bool| -> u32 {
+            let counts = |check: &&Check| check.bonus == bonus && (check.passes() || !passes);
+            self.checks.iter().filter(counts).map(|check| check.points).sum()
+        };
+        let passed = asked_for().filter(|check| check.passes()).count();
+        let bonus = match points(true, true) {
+            0 => String::new(),
+            earned => format!(" +{earned}"),
+        };
+        let checks = format!("{passed} of {} checks", asked_for().count());
+        (checks, format!("{} of {}{bonus} points", points(true, false), points(false, false)))
     }
 
-    /// The points of all checks.
-    pub fn points(&self) -> u32 {
-        self.checks.iter().map(|check| check.points).sum()
-    }
-
-    /// Whether every check passes.
+    /// Whether every check passes that is asked for.
     pub fn is_done(&self) -> bool {
-        self.checks.iter().all(Check::passes)
+        self.checks.iter().all(|check| check.bonus || check.passes())
     }
 
     /// The first check after `from` (or from it on, if `inclusive`) that does not pass, also from the beginning.
@@ -83,6 +92,8 @@ impl Course {
             title: entry.title.clone(),
             slide: entry.slide.clone(),
             points: entry.points,
+            bonus: entry.bonus,
+            worth: entry.worth(),
             hints: entry.hints.clone(),
             verdict: None,
         };

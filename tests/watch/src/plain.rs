@@ -46,14 +46,8 @@ pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
 /// The result of a run, in lines.
 fn lines(app: &App) -> String {
     let stage = app.stage();
-    let (passed, points) = stage.earned();
-    let head = format!(
-        "\nstage {} · {}: {passed} of {} checks pass, {points} of {} points\n",
-        stage.number,
-        stage.title,
-        stage.checks.len(),
-        stage.points()
-    );
+    let (checks, points) = stage.earned();
+    let head = format!("\nstage {} · {}: {checks} pass, {points}\n", stage.number, stage.title);
     let body = match (&app.phase, &app.check().verdict) {
         (Phase::Errors(errors), _) => {
             let error = |error: &watch::compiler::CompilerError| {

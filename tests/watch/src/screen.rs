@@ -133,9 +133,9 @@ pub fn rows(app: &App, look: Look) -> Vec<Row> {
 /// The stage, its points, and a sign for each check.
 fn head(app: &App, look: Look) -> Vec<Row> {
     let stage = app.stage();
-    let (passed, points) = stage.earned();
+    let (checks, points) = stage.earned();
     let name = format!("stage {} · {}", stage.number, stage.title);
-    let counts = format!("{passed} of {} checks   {points} of {} points", stage.checks.len(), stage.points());
+    let counts = format!("{checks}   {points}");
     let signs = stage.checks.iter().enumerate().map(|(index, check)| match index == app.check {
         true => format!("[{}]", look.sign(check)),
         false => look.sign(check).to_string(),
@@ -152,10 +152,9 @@ fn head(app: &App, look: Look) -> Vec<Row> {
 fn check(app: &App, hints: usize, unfolded: bool, columns: usize) -> Vec<Row> {
     let check = app.check();
     let plain = |text: String| Row::Words(Tone::Plain, text);
-    let points = if check.points == 1 { "1 point".into() } else { format!("{} points", check.points) };
     let mut rows = Vec::new();
     let mut law = |tone, word: &str| {
-        let title = wrapped(&format!("{word}: {} ({points})", check.title), columns);
+        let title = wrapped(&format!("{word}: {} ({})", check.title, check.worth), columns);
         rows.extend(title.into_iter().map(|line| Row::Words(tone, line)));
         rows.push(Row::Words(Tone::Quiet, format!("  slides: {}", check.slide)));
     };

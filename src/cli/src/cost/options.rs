@@ -120,7 +120,7 @@ impl Options {
         given.exclude("--equal-time", "--error")?;
         given.exclude("--equal-time", "--headline")?;
         let quality = QualityOptions::read(given)?;
-        let is_tree = |one: Accelerator| one.is_hierarchy() || one == Accelerator::WideBvh;
+        let is_tree = |one: Accelerator| one.is_hierarchy() || one.is_wide();
         if headline && !quality.accelerator().is_none_or(is_tree) {
             return Err(given.misuse("`--headline` needs a hierarchy, such as `--accelerator bvh`"));
         }

@@ -124,6 +124,7 @@ fields! {
     PathEffects { diffuse, sampled, environment }
     BinSplit { axis, bin, cost }
     Entered { mask, t }
+    SubtreePlace { node, increase }
 }
 
 impl Constant for Bounce {

@@ -8,7 +8,7 @@ use checks::broken::{Broken, CheckResult, all_hold};
 use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
 use raykata::wide::{FlatTree, Fork, ForkKind, ForkedTree};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// An even cloud of small boxes.
 fn cloud(seed: u64, n: usize) -> Vec<Aabb> {
@@ -63,10 +63,19 @@ fn ranges(tree: &FlatTree) -> Vec<(u32, u32)> {
 
 /// The work and the span of a build that forks at the nodes for which `forks` returns true, in primitives.
 fn work_and_span(tree: &FlatTree, ranges: &[(u32, u32)], forks: impl Fn(usize) -> bool) -> (u64, u64) {
+    work_and_span_of(tree, ranges, |index| u64::from(ranges[index].1), forks)
+}
+
+/// The same, with the span of each node's own work.
+fn work_and_span_of(
+    tree: &FlatTree,
+    ranges: &[(u32, u32)],
+    own_span: impl Fn(usize) -> u64,
+    forks: impl Fn(usize) -> bool,
+) -> (u64, u64) {
     let mut sums = vec![(0u64, 0u64); tree.nodes.len()];
     for (index, node) in tree.nodes.iter().enumerate().rev() {
-        let own = u64::from(ranges[index].1);
-        let (mut work, mut span) = (own, own);
+        let (mut work, mut span) = (u64::from(ranges[index].1), own_span(index));
         if !node.is_leaf() {
             let [left, right] = [sums[node.first as usize], sums[node.first as usize + 1]];
             work += left.0 + right.0;
@@ -158,6 +167,58 @@ fn judge_span(trial: &Trial<'_>, n: usize, share: u64) -> CheckResult {
                 "too few nodes are forked: with forks at all nodes above 2,000 primitives the span is short enough",
             ),
         ]))
+}
+
+/// The smallest number of primitives of a piece: smaller pieces take longer to hand over than to sort.
+const LEAST_PIECE: u32 = 1000;
+
+/// The span of the own work of a node that sorts its primitives into bins in pieces: half of it is sorting.
+fn own_span(count: u32, pieces: u32) -> u64 {
+    let (half, pieces) = (u64::from(count) / 2, u64::from(pieces.max(1)));
+    u64::from(count) - half + half.div_ceil(pieces)
+}
+
+pub(super) fn build_parallel_has_an_eighth_of_the_span(trial: &Trial<'_>) -> CheckResult {
+    let n = 100_000;
+    let Forked { tree, ranges, forks } = build_many(trial, n)?;
+    let children = forked_ranges(&forks);
+    let mut binning = HashMap::new();
+    let input = format!("build_parallel of {n} boxes, with {} forks", forks.len());
+    for fork in &forks {
+        let ForkKind::Binning { pieces } = fork.kind else { continue };
+        let most = fork.count / LEAST_PIECE;
+        if pieces > most || binning.insert((fork.first, fork.count), pieces).is_some() {
+            let (yours, expected) = (format!("{fork:?}"), format!("once per node, at most {most} pieces"));
+            return Err(Broken::with_texts(input, yours, expected, "the log of forks").explained_by([
+                (pieces > most, "a piece has fewer than 1,000 primitives"),
+                (pieces <= most, "a node is logged twice"),
+            ]));
+        }
+    }
+    let forked = |index: usize| children.contains(&ranges[index]);
+    let own = |index: usize| match binning.get(&ranges[index]) {
+        Some(&pieces) => own_span(ranges[index].1, pieces),
+        None => u64::from(ranges[index].1),
+    };
+    let (work, span) = work_and_span_of(&tree, &ranges, own, forked);
+    if 8 * span <= work {
+        return Ok(());
+    }
+    let yours = format!("work {work}, span {span}: a ratio of {:.2}", work as f64 / span as f64);
+    let expected = format!("a span of at most {}", work / 8);
+    // Would the span be short enough with these forks of children, and all large nodes sorted in pieces?
+    let in_pieces = |index: usize| own_span(ranges[index].1, (ranges[index].1 / 2 / LEAST_PIECE).min(8));
+    let possible = 8 * work_and_span_of(&tree, &ranges, in_pieces, forked).1 <= work;
+    Err(Broken::with_texts(input, yours, expected, "the tree and the log of forks").explained_by([
+        (
+            binning.is_empty() && possible,
+            "no node sorts its primitives into bins in pieces: use `forks.each` at large nodes",
+        ),
+        (
+            !binning.is_empty() && possible,
+            "too few nodes sort their primitives in pieces, or in too few pieces",
+        ),
+    ]))
 }
 
 pub(super) fn build_parallel_has_a_third_of_the_span(trial: &Trial<'_>) -> CheckResult {

@@ -45,7 +45,7 @@ fn add_node(spheres: &[Sphere], range: Range<usize>, tree: &mut WideTree) -> u32
 }
 
 /// The search of `ray` in a tree over spheres, with the table of all answers in double precision.
-fn search(tree: &WideTree, spheres: &[Sphere], ray: &Ray) -> WideQuery {
+pub(super) fn search(tree: &WideTree, spheres: &[Sphere], ray: &Ray) -> WideQuery {
     let t = |sphere: &Sphere| match double::sphere(ray, sphere) {
         double::Expected::Hit { t, .. } => t as f32,
         _ => f32::INFINITY,
@@ -67,9 +67,13 @@ fn search(tree: &WideTree, spheres: &[Sphere], ray: &Ray) -> WideQuery {
     }
 }
 
-/// Rays through a cloud of 600 spheres. The spheres are listed along a curve of Morton, so that neighbours are close.
-pub fn rays_through_a_cloud() -> Vec<WideQuery> {
-    let mut random = Random::new(12, 2);
+/// A cloud of 600 spheres, and a tree over it.
+pub(super) fn cloud() -> (WideTree, Vec<Sphere>) {
+    cloud_by(&mut Random::new(12, 2))
+}
+
+/// The spheres are listed along a curve of Morton, so that neighbours are close.
+fn cloud_by(random: &mut Random) -> (WideTree, Vec<Sphere>) {
     let mut spheres: Vec<Sphere> =
         (0..600).map(|_| Sphere { center: random.in_cube(), radius: 0.08 + 0.12 * random.unit() }).collect();
     let code = |sphere: &Sphere| -> u32 {
@@ -77,7 +81,13 @@ pub fn rays_through_a_cloud() -> Vec<WideQuery> {
         (0..4).map(|bit| (0..3).map(|axis| (cell[axis] >> bit & 1) << (3 * bit + axis)).sum::<u32>()).sum()
     };
     spheres.sort_by_key(code);
-    let tree = tree_over(&spheres);
+    (tree_over(&spheres), spheres)
+}
+
+/// Rays through a cloud of 600 spheres.
+pub fn rays_through_a_cloud() -> Vec<WideQuery> {
+    let mut random = Random::new(12, 2);
+    let (tree, spheres) = cloud_by(&mut random);
     let ray = |_| {
         let origin = 2.0 * random.direction();
         search(&tree, &spheres, &Ray::new(origin, (0.8 * random.in_cube() - origin).normalize()))

@@ -3,7 +3,7 @@
 
 use super::options::GradingOptions;
 use super::report;
-use super::result::{Graded, Session};
+use super::result::{Graded, Session, and_bonus};
 use anyhow::{Context, Result, anyhow};
 use raykata::film::write_atomically;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
@@ -74,7 +74,7 @@ pub fn run(root: impl FnOnce() -> Result<PathBuf>, options: &Options) -> Result<
         write(file, &report::classroom(&graded))?;
     }
     let (earned, of) = graded.points();
-    println!("{earned} of {of} points");
+    println!("{earned} of {of} points{}", and_bonus(graded.bonus()));
     Ok(graded.trouble.is_empty())
 }
 

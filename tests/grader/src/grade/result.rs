@@ -76,6 +76,9 @@ pub struct CheckResult {
     pub points: u32,
     /// The points that were earned: `points` or 0.
     pub earned: u32,
+    /// Whether the points are a bonus, which counts apart.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub bonus: bool,
     /// Tells the student why the check failed, without hidden inputs. Empty if it passed. Plain text of several lines that
     /// may quote output of the student's code, without control characters.
     pub message: String,
@@ -127,9 +130,14 @@ pub struct Graded {
 }
 
 impl Graded {
-    /// Returns the earned points and the possible points.
+    /// Returns the earned points and the possible points, without bonus points.
     pub fn points(&self) -> (u32, u32) {
         sum(self.checks.iter())
+    }
+
+    /// Returns the earned bonus points.
+    pub fn bonus(&self) -> u32 {
+        bonus(self.checks.iter())
     }
 
     /// Returns the stages in ascending order.
@@ -152,9 +160,24 @@ impl Graded {
     }
 }
 
-/// Returns the earned points and the possible points of these checks.
+/// Returns the earned points and the possible points of these checks, without bonus points.
 pub fn sum<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> (u32, u32) {
-    checks.fold((0, 0), |(earned, points), check| (earned + check.earned, points + check.points))
+    let counted = checks.filter(|check| !check.bonus);
+    counted.fold((0, 0), |(earned, points), check| (earned + check.earned, points + check.points))
+}
+
+/// Returns the earned bonus points of these checks.
+pub fn bonus<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> u32 {
+    checks.filter(|check| check.bonus).map(|check| check.earned).sum()
+}
+
+/// Returns earned bonus points as an addition to `12 of 20 points`; empty if there are none.
+pub fn and_bonus(bonus: u32) -> String {
+    match bonus {
+        0 => String::new(),
+        1 => ", and 1 bonus point".into(),
+        n => format!(", and {n} bonus points"),
+    }
 }
 
 /// Kit, stages, seed and sandbox of the grading, the same for every submission of a class.

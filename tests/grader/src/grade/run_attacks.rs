@@ -5,7 +5,7 @@ use super::forge::Forge;
 use super::grader::Grader;
 use super::judge::Judge;
 use super::naive::Naive;
-use super::result::Outcome;
+use super::result::{Outcome, and_bonus};
 use crate::course::HandedIn;
 use crate::queue;
 use crate::report::bar_of_steps;
@@ -115,7 +115,7 @@ fn ours(tried: &Tried) -> String {
                 .filter(|outcome| count(*outcome) > 0)
                 .map(|outcome| format!(", {} {}", count(outcome), outcome.words()))
                 .collect();
-            format!("{earned} of {of} points{}", others.concat())
+            format!("{earned} of {of} points{}{}", and_bonus(graded.bonus()), others.concat())
         }
     };
     words.replace(['\n', '|'], " ")

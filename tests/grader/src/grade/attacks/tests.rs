@@ -38,7 +38,16 @@ fn graded(outcome: impl Fn(&str) -> Outcome) -> Graded {
             Outcome::Passed => (points, String::new()),
             other => (0, format!("it is {}", other.words())),
         };
-        CheckResult { stage: 1, name: check.name.into(), outcome, points, earned, message, picture: None }
+        CheckResult {
+            stage: 1,
+            name: check.name.into(),
+            outcome,
+            points,
+            earned,
+            bonus: false,
+            message,
+            picture: None,
+        }
     };
     Graded {
         student: "ann".into(),

@@ -61,6 +61,9 @@ fn suite(graded: &Graded) -> TestSuite {
     let (earned, of) = graded.points();
     suite.add_property(("points", earned.to_string().as_str()));
     suite.add_property(("of", of.to_string().as_str()));
+    if graded.bonus() > 0 {
+        suite.add_property(("bonus", graded.bonus().to_string().as_str()));
+    }
     suite.add_test_cases(graded.checks.iter().map(case));
     if !graded.trouble.is_empty() {
         let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);

@@ -9,8 +9,10 @@ pub(super) struct Line {
     pub student: String,
     /// The name of the files of the student, without an ending.
     pub page: String,
-    /// The earned points of all stages.
+    /// The earned points of all stages, without bonus points.
     pub points: u32,
+    /// The earned bonus points of all stages.
+    pub bonus: u32,
     /// The earned points of each graded stage.
     pub of_stages: Vec<(u8, u32)>,
     pub n_checks: usize,
@@ -34,6 +36,7 @@ impl Line {
             student: graded.student.clone(),
             page: names.name(student),
             points: graded.points().0,
+            bonus: graded.bonus(),
             of_stages: graded.stages().into_iter().map(of_stage).collect(),
             n_checks: graded.checks.len(),
             n_remarks: graded.remarks.len(),

@@ -17,6 +17,7 @@ struct GradedView<'a> {
     content: &'a str,
     earned: u32,
     of: u32,
+    bonus: u32,
     checks: Vec<CheckResult>,
     remarks: &'a [Remark],
     compiler: &'a str,
@@ -38,6 +39,7 @@ pub(super) fn results(session: &Session, each: &Each<'_>, out: &mut dyn Write) -
             content: &graded.content,
             earned,
             of,
+            bonus: graded.bonus(),
             checks: graded.checks.iter().map(without_picture).collect(),
             remarks: &graded.remarks,
             compiler: &graded.compiler,
@@ -66,7 +68,8 @@ pub(super) fn pretty(value: &impl Serialize) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Returns the content of Gradescope's `/autograder/results/results.json`. The student may see all of it.
+/// Returns the content of Gradescope's `/autograder/results/results.json`. The student may see all of it. Gradescope adds up scores
+/// and takes the points of a test with a `max_score` of 0 as extra credit.
 pub fn gradescope(graded: &Graded, session: &Session) -> Value {
     let graded = &presentable(graded);
     let mut place = (0, 0);
@@ -80,7 +83,7 @@ pub fn gradescope(graded: &Graded, session: &Session) -> Value {
                 "name": title(check),
                 "number": format!("{}.{}", place.0, place.1),
                 "score": check.earned,
-                "max_score": check.points,
+                "max_score": if check.bonus { 0 } else { check.points },
                 "status": status,
                 "output": messages::message(check),
                 "output_format": "text",
@@ -112,7 +115,8 @@ pub fn gradescope(graded: &Graded, session: &Session) -> Value {
 }
 
 /// Returns the result that GitHub Classroom reads from a runner, before base64. Classroom adds up the scores of `tests`.
-/// The share of tests that it prints does not weight them by points.
+/// The share of tests that it prints does not weight them by points. It has no extra credit, so a bonus check has the score 0
+/// there, and its title says what it earned.
 pub fn classroom(graded: &Graded) -> Value {
     let graded = &presentable(graded);
     let (earned, of) = graded.points();
@@ -120,7 +124,14 @@ pub fn classroom(graded: &Graded) -> Value {
         .checks
         .iter()
         .map(|check| {
-            classroom_test(&title(check), status(check.outcome), &messages::message(check), check.earned)
+            let (title, message) = (title(check), messages::message(check));
+            match check.bonus {
+                true => {
+                    let title = format!("{title} (bonus: {} of {})", check.earned, check.points);
+                    classroom_test(&title, status(check.outcome), &message, 0)
+                }
+                false => classroom_test(&title, status(check.outcome), &message, check.earned),
+            }
         })
         .collect();
     if graded.checks.is_empty() {

@@ -57,8 +57,11 @@ fn ends(lines: &[Line]) -> String {
 /// Returns the table. `to_class` leads from the page to the folder of the class.
 fn table(lines: &[Line], tallies: &[Tally], to_class: &str) -> Markup {
     let stages = tally::stages(tallies);
-    let of_stage =
-        |stage| tallies.iter().filter(|tally| tally.stage == stage).map(|tally| tally.points).sum::<u32>();
+    let of_stage = |stage| -> u32 {
+        let counted = tallies.iter().filter(|tally| tally.stage == stage && !tally.entry.bonus);
+        counted.map(|tally| tally.points).sum()
+    };
+    let has_bonus = tally::has_bonus(tallies);
     html! {
         div.scroll {
             table.plain {
@@ -66,6 +69,7 @@ fn table(lines: &[Line], tallies: &[Tally], to_class: &str) -> Markup {
                     tr {
                         th { "student" }
                         th.number { "points" div.note { "of " (tally::of(tallies)) } }
+                        @if has_bonus { th.number { "bonus" } }
                         @for &stage in &stages {
                             th.number { "stage " (stage) div.note { "of " (of_stage(stage)) } }
                         }
@@ -80,6 +84,7 @@ fn table(lines: &[Line], tallies: &[Tally], to_class: &str) -> Markup {
                                 b { (line.points) }
                                 div.note { (tally::percent(line.points, tally::of(tallies))) " %" }
                             }
+                            @if has_bonus { td.number { (line.bonus) } }
                             @for &stage in &stages {
                                 td.number { (line.of_stage(stage)) }
                             }

@@ -3,7 +3,7 @@
 use super::chart;
 use super::page::{page, session_line, with_code};
 use super::{messages, tally};
-use crate::grade::result::{CheckResult, Graded, Outcome, Picture, Session, sum};
+use crate::grade::result::{self, CheckResult, Graded, Outcome, Picture, Session, and_bonus, sum};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use checks::rubric::Visibility;
@@ -15,7 +15,7 @@ pub(super) fn student_page(graded: &Graded, session: &Session) -> String {
     let body = html! {
         header {
             h1.student { (graded.student) }
-            @if !graded.checks.is_empty() { p.points { b { (earned) } " of " (of) " points (" (tally::percent(earned, of)) " %)" } }
+            @if !graded.checks.is_empty() { p.points { b { (earned) } " of " (of) " points (" (tally::percent(earned, of)) " %)" (and_bonus(graded.bonus())) } }
             (session_line(session))
         }
         @if !graded.trouble.is_empty() {
@@ -44,8 +44,8 @@ fn blocked(graded: &Graded) -> Markup {
     for check in graded.checks.iter().filter(is_blocked) {
         let reason = messages::message_without_header(check);
         match reasons.iter_mut().find(|(outcome, other, _)| *outcome == check.outcome && *other == reason) {
-            Some((.., points)) => *points += check.points,
-            None => reasons.push((check.outcome, reason, check.points)),
+            Some((.., points)) => *points += counted(check),
+            None => reasons.push((check.outcome, reason, counted(check))),
         }
     }
     html! {
@@ -59,6 +59,11 @@ fn blocked(graded: &Graded) -> Markup {
     }
 }
 
+/// Returns the points of a check, or 0 for bonus points.
+fn counted(check: &CheckResult) -> u32 {
+    if check.bonus { 0 } else { check.points }
+}
+
 fn overview(graded: &Graded) -> Markup {
     html! {
         @if !graded.checks.is_empty() {
@@ -68,7 +73,8 @@ fn overview(graded: &Graded) -> Markup {
                         @let (earned, of) = sum(graded.of_stage(stage));
                         tr {
                             td { a href={ "#stage" (stage) } { (tally::stage_title(stage)) } }
-                            td.number { (earned) " of " (of) }
+                            @let bonus = result::bonus(graded.of_stage(stage));
+                            td.number { (earned) " of " (of) @if bonus > 0 { " +" (bonus) } }
                             td.wide { (chart::share(earned, of)) }
                         }
                     }
@@ -153,7 +159,7 @@ fn failed(check: &CheckResult, alone: bool) -> Markup {
 
 fn heading(check: &CheckResult) -> Markup {
     html! {
-        span.worth { (check.earned) " of " (check.points) }
+        span.worth { (check.earned) " of " @if check.bonus { "+" } (check.points) }
         (with_code(&messages::entry(check).title)) " " span.name { (check.name) }
     }
 }

@@ -84,9 +84,14 @@ pub(super) fn stages(tallies: &[Tally]) -> Vec<u8> {
     stages
 }
 
-/// Returns the sum of all possible points.
+/// Returns the sum of all possible points, without bonus points.
 pub(super) fn of(tallies: &[Tally]) -> u32 {
-    tallies.iter().map(|tally| tally.points).sum()
+    tallies.iter().filter(|tally| !tally.entry.bonus).map(|tally| tally.points).sum()
+}
+
+/// Returns whether any check is worth bonus points.
+pub(super) fn has_bonus(tallies: &[Tally]) -> bool {
+    tallies.iter().any(|tally| tally.entry.bonus)
 }
 
 /// Returns the percentage of the points, rounded to the nearest integer; 0 of 0 points are 0 %.

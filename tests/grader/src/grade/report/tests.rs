@@ -12,7 +12,7 @@ type Files = BTreeMap<String, String>;
 fn check(stage: u8, name: &str, outcome: Outcome, points: u32, message: &str) -> CheckResult {
     let earned = if outcome == Outcome::Passed { points } else { 0 };
     let (name, message) = (name.to_owned(), message.to_owned());
-    CheckResult { stage, name, outcome, points, earned, message, picture: None }
+    CheckResult { stage, name, outcome, points, earned, bonus: false, message, picture: None }
 }
 
 fn student(name: &str, outcomes: [(Outcome, &str); 4]) -> Graded {
@@ -209,6 +209,34 @@ fn points_are_the_same_in_every_format() -> Result<()> {
         assert_eq!(html.contains(&shown), !graded.checks.is_empty());
         assert!(files["junit.xml"].contains(&format!("<property name=\"points\" value=\"{earned}\"/>")));
     }
+    Ok(())
+}
+
+/// A bonus is in no maximum, and is shown apart.
+#[test]
+fn bonus_points_stand_apart() -> Result<()> {
+    let mut graded = student("Anna", [(Outcome::Passed, ""); 4]);
+    for (name, outcome) in
+        [("reinsert_keeps_every_leaf", Outcome::Passed), ("reinsert_fits_the_boxes", Outcome::Wrong)]
+    {
+        graded.checks.push(CheckResult { bonus: true, ..check(12, name, outcome, 2, "") });
+    }
+    assert_eq!((graded.points(), graded.bonus()), ((17, 17), 2));
+    let session = class().session;
+    let files = files_of(&Class { session, students: vec![graded] })?;
+    assert!(files["grades.csv"].contains("\"Anna\",17,17,100,"), "{}", files["grades.csv"]);
+    let html = &files["students/Anna.html"];
+    assert!(html.contains("<b>17</b> of 17 points (100 %), and 2 bonus points"), "{html}");
+    // Gradescope adds up scores beyond the maximum; Classroom has no extra credit.
+    let sums = |file: &str, key: &str| -> Result<u64> {
+        let value: Value = serde_json::from_str(&files[file])?;
+        let tests = value["tests"].as_array().cloned().unwrap_or_default();
+        Ok(tests.iter().filter_map(|test| test[key].as_u64()).sum())
+    };
+    assert_eq!(sums("gradescope/Anna.json", "score")?, 19);
+    assert_eq!(sums("gradescope/Anna.json", "max_score")?, 17);
+    assert_eq!(sums("classroom/Anna.json", "score")?, 17);
+    assert!(files["classroom/Anna.json"].contains("(bonus: 2 of 2)"));
     Ok(())
 }
 

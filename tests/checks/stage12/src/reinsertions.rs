@@ -1,0 +1,392 @@
+//! `reinsert`: the leaves, the boxes and the cost of an improved tree, and the number of moves.
+
+use super::bars::REINSERTED_COSTS;
+use super::scenes::scenes;
+use super::trees::{boxes, cost, drawn_tree, drawn_trees, fault, in_morton_order, tree_in_order};
+use checks::Trial;
+use checks::broken::{Broken, CheckResult};
+use checks::judge::compare;
+use checks::tree::around;
+use glam::{Vec3, vec3};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::kit::{KitError, ReinsertQuery, kit_error};
+use raykata::wide::FlatTree;
+use std::collections::BTreeSet;
+
+/// A tree over boxes, and the largest number of moves.
+#[derive(Clone, Debug)]
+struct Case {
+    boxes: Vec<Aabb>,
+    query: ReinsertQuery,
+}
+
+impl Case {
+    fn new(boxes: Vec<Aabb>, tree: FlatTree, most_moves: u32) -> Case {
+        Case { boxes, query: ReinsertQuery { tree, most_moves } }
+    }
+
+    fn describe(&self) -> String {
+        let leaves = self.query.tree.nodes.iter().filter(|node| node.is_leaf()).count();
+        let moves = self.query.most_moves;
+        format!(
+            "reinsert of a tree of {leaves} leaves over {} boxes, {moves} moves at most",
+            self.boxes.len()
+        )
+    }
+
+    fn broken(&self, yours: String, expected: impl Into<String>, source: &'static str) -> Broken {
+        Broken::with_texts(self.describe(), yours, expected, source)
+    }
+}
+
+fn ask(trial: &Trial<'_>, cases: &[Case]) -> Vec<FlatTree> {
+    let queries: Vec<ReinsertQuery> = cases.iter().map(|case| case.query.clone()).collect();
+    trial.kit.reinsert(&queries)
+}
+
+fn cases(most: usize) -> impl Strategy<Value = Case> + Clone {
+    (drawn_trees(most), 0..4u32).prop_map(|((boxes, tree), few)| {
+        let most_moves = if few == 0 { 3 } else { tree.nodes.len() as u32 };
+        Case::new(boxes, tree, most_moves)
+    })
+}
+
+/// The leaves of a tree without faults: the primitives of each.
+fn leaves(tree: &FlatTree) -> BTreeSet<&[u32]> {
+    let of = |first: u32, count: u32| &tree.order[first as usize..(first + count) as usize];
+    tree.nodes.iter().filter(|node| node.is_leaf()).map(|node| of(node.first, node.count)).collect()
+}
+
+/// Judges the layout of a tree, and its leaves.
+fn judge_leaves(case: &Case, yours: &FlatTree) -> CheckResult {
+    if let Some((yours, expected, cause)) = fault(yours, &case.boxes) {
+        let broken = case.broken(yours, expected, "the layout of FlatTree");
+        return Err(broken.explained_by(cause.map(|text| (true, text))));
+    }
+    let (mine, expected) = (leaves(yours), leaves(&case.query.tree));
+    let Some(stray) = mine.difference(&expected).next() else { return Ok(()) };
+    let mut sorted = stray.to_vec();
+    sorted.sort_unstable();
+    let same = expected.iter().any(|leaf| {
+        let mut leaf = leaf.to_vec();
+        leaf.sort_unstable();
+        leaf == sorted
+    });
+    Err(case
+        .broken(format!("a leaf of {stray:?}"), "the leaves of the tree that was given", "the given tree")
+        .explained_by([(same, "a leaf lists its primitives in another order: copy them as they are")]))
+}
+
+/// Two pairs of neighbours, of which the tree joins the wrong ones. One move makes it cheaper.
+fn crossed(trial: &Trial<'_>) -> Case {
+    let x = trial.varied(8.0, 2.0..64f32);
+    let cube = |at: f32| Aabb::new(vec3(at, 0.0, 0.0), vec3(at + 1.0, 1.0, 1.0));
+    let boxes = vec![cube(0.0), cube(4.0 * x), cube(1.0), cube(4.0 * x + 1.0)];
+    let tree = tree_in_order(&boxes, vec![0, 1, 2, 3], 1, &[]);
+    Case::new(boxes, tree, 4)
+}
+
+/// Demands that an obvious move is made. A function that returns the tree as it is keeps all leaves, and improves nothing.
+fn moves_something(trial: &Trial<'_>) -> CheckResult {
+    let case = crossed(trial);
+    let yours = ask(trial, std::slice::from_ref(&case)).remove(0);
+    judge_leaves(&case, &yours)?;
+    let (mine, before) = (cost(&yours), cost(&case.query.tree));
+    if mine < before {
+        return Ok(());
+    }
+    let input =
+        "reinsert of two pairs of neighbours, of which the tree joins the wrong ones, 4 moves at most";
+    let (mine, expected) = (format!("cost {mine:.3}"), format!("less than {before:.3}"));
+    let broken = Broken::with_texts(input, mine, expected, "the surface areas");
+    Err(broken.explained_by([(yours == case.query.tree, "no subtree is moved")]))
+}
+
+pub(super) fn reinsert_keeps_every_leaf(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
+    trial.forall(200, cases(60), |cases| {
+        compare(cases, ask(trial, cases), |case, yours| judge_leaves(case, &yours))
+    })
+}
+
+/// Judges the boxes: each is the smallest one around the boxes of both children.
+fn judge_boxes(case: &Case, yours: &FlatTree) -> CheckResult {
+    judge_leaves(case, yours)?;
+    for (index, node) in yours.nodes.iter().enumerate() {
+        let bounds = node.bounds();
+        let expected = if node.is_leaf() {
+            let of_leaf = &yours.order[node.first as usize..(node.first + node.count) as usize];
+            around(of_leaf.iter().map(|&id| &case.boxes[id as usize]).filter(|bounds| !bounds.is_empty()))
+        } else {
+            let [left, right] =
+                [node.first, node.first + 1].map(|child| yours.nodes[child as usize].bounds());
+            around([&left, &right])
+        };
+        if bounds == expected || bounds.is_empty() && expected.is_empty() {
+            continue;
+        }
+        let of = |bounds: &Aabb| format!("{:?}..{:?} for node {index}", bounds.min, bounds.max);
+        let is_larger = bounds.contains_box(&expected);
+        let broken = case.broken(of(&bounds), of(&expected), "the boxes of both children");
+        return Err(broken.explained_by([(
+            is_larger && !node.is_leaf(),
+            "a box is larger than those of its children: fit the boxes above the old place of a subtree as well",
+        )]));
+    }
+    Ok(())
+}
+
+pub(super) fn reinsert_fits_the_boxes(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
+    trial.forall(200, cases(40), |cases| {
+        compare(cases, ask(trial, cases), |case, yours| judge_boxes(case, &yours))
+    })
+}
+
+/// Areas in single precision have a relative error of about 2⁻²², and a student may add them in single precision.
+const ROUNDING: f64 = 1e-6;
+
+/// Judges the cost: it does not grow.
+fn judge_cost(case: &Case, yours: &FlatTree) -> CheckResult {
+    judge_leaves(case, yours)?;
+    let (mine, before) = (cost(yours), cost(&case.query.tree));
+    // Nodes without any area have no costs.
+    if mine <= before * (1.0 + ROUNDING) || !before.is_finite() {
+        return Ok(());
+    }
+    let broken = case.broken(
+        format!("cost {mine:.6}"),
+        format!("at most {before:.6}, as before"),
+        "the surface areas",
+    );
+    Err(broken.explained_by([]))
+}
+
+pub(super) fn reinsert_never_costs_more(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
+    trial.forall(300, cases(60), |cases| {
+        compare(cases, ask(trial, cases), |case, yours| judge_cost(case, &yours))
+    })
+}
+
+/// The shape of a tree whose leaves are known by their first primitives. The order of the children does not matter.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Form {
+    Leaf(u32),
+    Inner(Box<(Form, Form)>),
+}
+
+impl Form {
+    fn of(tree: &FlatTree, node: u32) -> Form {
+        let at = &tree.nodes[node as usize];
+        if at.is_leaf() {
+            return Form::Leaf(tree.order[at.first as usize]);
+        }
+        Form::joined(Form::of(tree, at.first), Form::of(tree, at.first + 1))
+    }
+
+    fn joined(one: Form, other: Form) -> Form {
+        Form::Inner(Box::new(if one <= other { (one, other) } else { (other, one) }))
+    }
+
+    /// Each subtree with the rest of the tree, except for the whole tree.
+    fn parts(&self) -> Vec<(Form, Form)> {
+        let Form::Inner(pair) = self else { return Vec::new() };
+        let (left, right) = &**pair;
+        let mut parts = vec![(left.clone(), right.clone()), (right.clone(), left.clone())];
+        parts.extend(left.parts().into_iter().map(|(part, rest)| (part, Form::joined(rest, right.clone()))));
+        parts.extend(right.parts().into_iter().map(|(part, rest)| (part, Form::joined(left.clone(), rest))));
+        parts
+    }
+
+    /// The trees in which `part` is beside some node of this one.
+    fn with(&self, part: &Form) -> Vec<Form> {
+        let mut all = vec![Form::joined(self.clone(), part.clone())];
+        if let Form::Inner(pair) = self {
+            let (left, right) = &**pair;
+            all.extend(left.with(part).into_iter().map(|left| Form::joined(left, right.clone())));
+            all.extend(right.with(part).into_iter().map(|right| Form::joined(left.clone(), right)));
+        }
+        all
+    }
+
+    /// The trees that one move makes of this one, and the tree itself.
+    fn one_move_away(&self) -> BTreeSet<Form> {
+        let moved = self.parts().into_iter().flat_map(|(part, rest)| rest.with(&part));
+        moved.chain([self.clone()]).collect()
+    }
+}
+
+pub(super) fn reinsert_makes_at_most_so_many_moves(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
+    let small = (boxes(6), prop::collection::vec(any::<u16>(), 1..12), 0..=2u32)
+        .prop_map(|(boxes, cuts, moves)| Case::new(boxes.clone(), drawn_tree(&boxes, 1, &cuts), moves));
+    trial.forall(150, small, |cases| {
+        // The tree of a student that counts nothing is the same with any number of moves.
+        let unlimited: Vec<Case> = cases
+            .iter()
+            .map(|case| Case::new(case.boxes.clone(), case.query.tree.clone(), u32::MAX))
+            .collect();
+        let unlimited = ask(trial, &unlimited);
+        let judge = |(case, unlimited): &(&Case, FlatTree), yours: FlatTree| {
+            judge_leaves(case, &yours)?;
+            if case.boxes.is_empty() {
+                return Ok(());
+            }
+            let mut reached = BTreeSet::from([Form::of(&case.query.tree, 0)]);
+            for _ in 0..case.query.most_moves {
+                reached = reached.iter().flat_map(Form::one_move_away).collect();
+            }
+            if reached.contains(&Form::of(&yours, 0)) {
+                return Ok(());
+            }
+            let moves = case.query.most_moves;
+            let broken = case.broken(
+                "a tree that is further away".into(),
+                format!("a tree that {moves} moves can make of the given one"),
+                "all trees that are so many moves away",
+            );
+            let is_unlimited = Form::of(&yours, 0) == Form::of(unlimited, 0);
+            Err(broken.explained_by([(
+                is_unlimited,
+                "`most_moves` is ignored: the tree is that of any number of moves",
+            )]))
+        };
+        let cases_and_trees: Vec<(&Case, FlatTree)> = cases.iter().zip(unlimited).collect();
+        compare(&cases_and_trees, ask(trial, cases), judge)
+    })
+}
+
+/// The trees over the scenes in Morton order, with the names of the scenes and as many moves as the tree has nodes.
+pub fn morton_trees() -> Vec<(&'static str, ReinsertQuery)> {
+    let of_scene = |(name, boxes): (&'static str, Vec<Aabb>)| {
+        let tree = in_morton_order(&boxes, 4);
+        let most_moves = tree.nodes.len() as u32;
+        (name, ReinsertQuery { tree, most_moves })
+    };
+    scenes().into_iter().map(of_scene).collect()
+}
+
+/// Judges what the moves save in the scenes, on average: at least `percent` of what the reference saves.
+fn judge_saving(trial: &Trial<'_>, percent: f64) -> CheckResult {
+    let (mut mine, mut expected, mut shown) = (0.0, 0.0, Vec::new());
+    let cases = scenes().into_iter().zip(morton_trees());
+    for (((_, boxes), (name, query)), (of, reference)) in cases.zip(REINSERTED_COSTS) {
+        assert_eq!(name, of, "the bars are in the order of the scenes");
+        let before = cost(&query.tree);
+        let case = Case { boxes, query };
+        let yours = ask(trial, std::slice::from_ref(&case)).remove(0);
+        judge_leaves(&case, &yours)?;
+        // In percent of the cost, as a mean over six scenes.
+        let saved = |after: f64| 100.0 * (1.0 - after / before);
+        let of_scene = saved(cost(&yours));
+        mine += of_scene / REINSERTED_COSTS.len() as f64;
+        expected += saved(reference) / REINSERTED_COSTS.len() as f64;
+        shown.push(format!("{name} {of_scene:.1} %"));
+    }
+    let least = percent / 100.0 * expected;
+    if mine >= least {
+        return Ok(());
+    }
+    let input = "reinsert, trees over six scenes in Morton order, as many moves as nodes";
+    let yours = format!("{mine:.1} % of the cost are saved: {}", shown.join(", "));
+    let expected = format!("at least {least:.1} %, {percent} % of what the reference saves");
+    let broken = Broken::with_texts(input, yours, expected, "the surface areas");
+    Err(broken.explained_by([(mine == 0.0, "no subtree is moved")]))
+}
+
+pub(super) fn reinsert_saves_half_as_much_as_the_reference(trial: &Trial<'_>) -> CheckResult {
+    judge_saving(trial, 50.0)
+}
+
+pub(super) fn reinsert_saves_nine_tenths_as_much_as_the_reference(trial: &Trial<'_>) -> CheckResult {
+    judge_saving(trial, 90.0)
+}
+
+/// Improves a tree on which the search may never end.
+fn improved(trial: &Trial<'_>, what: &str, boxes: Vec<Aabb>, tree: FlatTree) -> Result<FlatTree, Broken> {
+    let case = Case::new(boxes, tree, u32::MAX);
+    let input = format!("reinsert of {what}");
+    let yours = match kit_error::catch(|| ask(trial, std::slice::from_ref(&case)).remove(0)) {
+        Ok(tree) => tree,
+        Err(KitError::Panicked { message, place }) => {
+            let panic = format!("a panic at {place}: {message}");
+            return Err(Broken::with_texts(input, panic, "a tree", "the definition").explained_by([]));
+        }
+        Err(error) => kit_error::unwind(error),
+    };
+    let judged = judge_boxes(&case, &yours).and_then(|()| judge_cost(&case, &yours));
+    judged.map_err(|broken| Broken { input, ..broken })?;
+    Ok(yours)
+}
+
+/// Every seventh box, again and again, so that neighbours in a drawn tree are no neighbours in space.
+fn tree_over(boxes: &[Aabb]) -> FlatTree {
+    drawn_tree(boxes, 1, &[])
+}
+
+pub(super) fn reinsert_ends_on_special_trees(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
+    let x = trial.varied(1.0, 0.25..8f32);
+    let cube = |half: f32| Aabb::new(Vec3::splat(x - half), Vec3::splat(x + half));
+    let line = |i: i32| Aabb::new(vec3(i as f32, x, x), vec3(i as f32 + x, x, x));
+    let mut sets: Vec<(&str, Vec<Aabb>)> = vec![
+        ("nothing", Vec::new()),
+        ("one leaf", vec![cube(1.0)]),
+        ("two leaves", vec![cube(1.0), cube(0.5)]),
+        ("200 equal boxes", vec![cube(1.0); 200]),
+        ("200 boxes around one point", (1..=200).map(|i| cube(i as f32)).collect()),
+        ("200 equal points", vec![Aabb::new(Vec3::splat(x), Vec3::splat(x)); 200]),
+        ("200 segments along a line", (0..200).map(line).collect()),
+    ];
+    // Some boxes are empty.
+    let some = |i: i32| {
+        if i % 5 == 0 {
+            Aabb::EMPTY
+        } else {
+            Aabb::new(vec3(i as f32, 0.0, x), vec3(i as f32 + 1.0, x, 2.0 * x))
+        }
+    };
+    sets.push(("100 boxes, of which 20 are empty", (0..100).map(some).collect()));
+    for (what, boxes) in sets {
+        let tree = tree_over(&boxes);
+        improved(trial, what, boxes, tree)?;
+    }
+    // A chain of 300 inner nodes.
+    let boxes: Vec<Aabb> = (0..300).map(line).collect();
+    let chain = drawn_tree(&boxes, 1, &[0]);
+    improved(trial, "a chain of 300 nodes", boxes, chain).map(drop)
+}
+
+pub(super) fn reinsert_of_any_size(trial: &Trial<'_>) -> CheckResult {
+    moves_something(trial)?;
+    let boxes: Vec<Aabb> = scenes().swap_remove(0).1.into_iter().take(200).collect();
+    let x = trial.varied(1.0, 0.5..1f32);
+    let mut first = None;
+    for exponent in [0, -70, 70, -110, 110] {
+        let scale = x * 2f32.powi(exponent);
+        let scaled: Vec<Aabb> = boxes.iter().map(|one| Aabb::new(scale * one.min, scale * one.max)).collect();
+        let tree = tree_over(&scaled);
+        let before = cost(&tree);
+        let mine = cost(&improved(trial, &format!("200 boxes of size 2^{exponent}"), scaled, tree)?);
+        let share = mine / before;
+        // A scale that is no power of two rounds coordinates, which may change a choice between two places.
+        let expected = *first.get_or_insert(share);
+        if (share - expected).abs() > 0.01 {
+            let input = format!("reinsert of 200 boxes of size 2^{exponent}");
+            let of = |share: f64| format!("{:.1} % of the cost", 100.0 * share);
+            return Err(Broken::with_texts(
+                input,
+                of(share),
+                format!("{}, as at size 1", of(expected)),
+                "your own tree",
+            )
+            .explained_by([(
+                share == 1.0,
+                "areas of this size leave the range of single precision: compute them in double precision",
+            )]));
+        }
+    }
+    Ok(())
+}
