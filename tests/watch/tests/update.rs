@@ -100,3 +100,26 @@ fn what_is_no_newer_hand_out_is_refused_and_nothing_changes() {
     fs::create_dir(old.join("solutions")).unwrap();
     refused("is the complete kit");
 }
+
+/// In the complete kit no exercise is written, so `update` must find its files untouched. Students may have written theirs.
+#[test]
+fn the_kits_own_exercises_are_untouched() {
+    let kit_root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    if !kit_root.join("solutions").is_dir() {
+        return println!("only in the complete kit");
+    }
+    let exercises = fs::read_dir(kit_root.join("exercises/src")).unwrap();
+    let names = exercises.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let paths: Vec<String> = names.map(|name| format!("exercises/src/{name}")).collect();
+    let texts: Vec<String> = paths.iter().map(|path| read(&kit_root, path).unwrap()).collect();
+    let files: Vec<(&str, &str)> =
+        paths.iter().map(String::as_str).zip(texts.iter().map(String::as_str)).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let [old, new] = ["old", "new"].map(|name| folder.path().join(name));
+    for root in [&old, &new] {
+        kit(root, "1.0.0", &files);
+        fs::copy(kit_root.join("tests/stubs.toml"), root.join("tests/stubs.toml")).unwrap();
+    }
+    let (said, success) = update(&old, &new);
+    assert!(success && said.contains("Everything is as in the new kit."), "{said}");
+}

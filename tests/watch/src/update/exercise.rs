@@ -28,7 +28,8 @@ pub struct Merged {
 /// A function of `new` is not found in it.
 pub fn merge(yours: &str, old_stubs: &StubsOfFile, new: &str, new_stubs: &StubsOfFile) -> Result<Merged> {
     // Take the new file as a whole if nothing of the student's is in it.
-    if is_untouched(yours, old_stubs) {
+    let given = beside_unwritten(new, new_stubs).unwrap_or_default();
+    if beside_unwritten(yours, old_stubs).is_some_and(|beside| beside.is_empty() || beside == given) {
         let added = new_stubs.keys().filter(|name| !old_stubs.contains_key(*name)).cloned().collect();
         return Ok(Merged { text: new.to_owned(), added, ..Merged::default() });
     }
@@ -72,27 +73,31 @@ pub fn merge(yours: &str, old_stubs: &StubsOfFile, new: &str, new_stubs: &StubsO
     merged
         .notes
         .extend(gone.filter(in_yours).map(|name| format!("`{name}` is no exercise any more; it is kept")));
+    if let Some(line) = given.iter().find(|given| !yours.lines().any(|line| line.trim() == *given)) {
+        merged.notes.push(format!("the new file has the line `{line}`, and yours does not"));
+    }
     if needs_imports {
         import(&mut merged, new);
     }
     Ok(merged)
 }
 
-/// Whether the file consists of unwritten functions, imports and comments.
-pub fn is_untouched(text: &str, stubs: &StubsOfFile) -> bool {
+/// The lines of code beside functions and imports, such as types that are given; `None` if a function is written.
+pub fn beside_unwritten(text: &str, stubs: &StubsOfFile) -> Option<Vec<String>> {
     let mut rest = text.to_owned();
     for (name, stub) in stubs {
         let lines: Vec<&str> = rest.split_inclusive('\n').collect();
-        let Ok(function) = span(&lines, name) else { return false };
-        if !same(stub, &lines[function.clone()].concat()) {
-            return false;
+        let function = span(&lines, name).ok()?;
+        if !same(stub, &lines[function].concat()) {
+            return None;
         }
-        rest = replaced(&lines, function, "");
+        rest = replaced(&lines, documented_span(&lines, name).ok()?, "");
     }
     for statement in imports(&rest).into_iter().rev() {
         rest.replace_range(statement, "");
     }
-    rest.lines().all(|line| line.trim().is_empty() || line.starts_with("//"))
+    let lines = rest.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
+    Some(lines.map(str::to_owned).collect())
 }
 
 /// Whether two texts are equal except for white space.
@@ -252,12 +257,27 @@ mod tests {
     }
 
     #[test]
-    fn a_file_with_a_line_of_code_is_touched() {
+    fn lines_beside_unwritten_functions_are_code() {
         let (old, stubs) = old();
-        assert!(is_untouched(&old, &stubs));
-        assert!(is_untouched(&old.replace("\n\n", "\n\n\n"), &stubs));
-        assert!(!is_untouched(&(old.clone() + "const A: f32 = 1.0;\n"), &stubs));
-        assert!(!is_untouched(&old.replace("todo!(\"the first\")", "a"), &stubs));
-        assert!(!is_untouched(&old.replace("pub fn one", "fn one"), &stubs));
+        let beside = |text: &str| beside_unwritten(text, &stubs);
+        assert_eq!(beside(&old), Some(vec![]));
+        assert_eq!(beside(&old.replace("\n\n", "\n\n\n")), Some(vec![]));
+        assert_eq!(beside(&old.replace("pub fn one", "#[inline]\npub fn one")), Some(vec![]));
+        let line = "const A: f32 = 1.0;";
+        assert_eq!(beside(&format!("{old}{line}\n")), Some(vec![line.to_owned()]));
+        assert_eq!(beside(&old.replace("todo!(\"the first\")", "a")), None);
+        assert_eq!(beside(&old.replace("pub fn one", "fn one")), None);
+    }
+
+    #[test]
+    fn code_that_is_given_is_no_work_of_the_student() {
+        let ((old, old_stubs), (new, new_stubs)) = (old(), new());
+        let [old, new] = [old, new].map(|text| text + "\n/// Given.\npub const A: f32 = 1.0;\n");
+        assert_eq!(merge(&old, &old_stubs, &new, &new_stubs).unwrap().text, new);
+        // If it changes, the student's text stays, and the student is told.
+        let changed = new.replace("1.0", "2.0");
+        let merged = merge(&old, &old_stubs, &changed, &new_stubs).unwrap();
+        assert!(merged.text.contains("1.0;") && !merged.text.contains("2.0;"));
+        assert_eq!(merged.notes, ["the new file has the line `pub const A: f32 = 2.0;`, and yours does not"]);
     }
 }

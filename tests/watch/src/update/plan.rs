@@ -1,6 +1,6 @@
 //! The changes of an update, and how they are made.
 
-use crate::exercise::{Merged, StubsOfFile, is_untouched, merge};
+use crate::exercise::{Merged, StubsOfFile, beside_unwritten, merge};
 use crate::kit::Kit;
 use anyhow::{Context, Result, bail};
 use raykata::film::write_atomically;
@@ -71,7 +71,7 @@ impl Plan {
         let stem = Path::new(path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let none = StubsOfFile::new();
         let [old_stubs, new_stubs] = [old, new].map(|kit| kit.stubs.get(&stem).unwrap_or(&none));
-        if !is_untouched(text, new_stubs) {
+        if beside_unwritten(text, new_stubs).is_none() {
             bail!("{} is no fresh hand-out: functions of {path} are written in it", new.root.display());
         }
         let Some(yours) = yours else { return Ok(text.to_owned().into_bytes()) };
