@@ -63,6 +63,10 @@ fn files_of_the_kit_change_and_those_of_the_student_stay() {
         said.starts_with("raykata 0.9.0 → 0.10.0\n  files of the kit: 1 changed, 1 new, 1 removed\n"),
         "{said}"
     );
+    assert!(
+        said.contains("exercises/src/stage1_a.rs: the function that you have written stays; new: `two`"),
+        "{said}"
+    );
     assert_eq!(read(&old, "src/a.rs").as_deref(), Some("better"));
     assert_eq!(read(&old, "src/b.rs"), None);
     assert_eq!(read(&old, "src/c.rs").as_deref(), Some("c"));

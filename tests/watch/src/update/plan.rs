@@ -105,7 +105,8 @@ impl Plan {
         for path in self.files.keys().filter(|path| path.starts_with(EXERCISES)) {
             let what = match self.merged.get(path) {
                 Some(merged) if !merged.kept.is_empty() => {
-                    format!("{} that you have written stay", counted(merged.kept.len()))
+                    let stay = if merged.kept.len() == 1 { "stays" } else { "stay" };
+                    format!("{} that you have written {stay}", counted(merged.kept.len()))
                 }
                 Some(_) => "brought up to date".to_owned(),
                 None if is_new(path) => "new".to_owned(),
