@@ -117,10 +117,11 @@ const HINTS: [(u8, &str, &str); 30] = [
     ),
 ];
 
-/// The reference passes every check, so code that is a part of it leads to code that passes. Spaces and line breaks do not count.
+/// The reference passes every check, so code that is a part of it leads to code that passes. Spaces, line breaks and the last comma
+/// of a list do not count.
 #[test]
 fn the_code_of_the_bonus_hints_is_that_of_the_reference() {
-    let dense = |text: &str| text.split_whitespace().collect::<String>();
+    let dense = |text: &str| text.split_whitespace().collect::<String>().replace(",)", ")");
     let reference = dense(
         &[
             include_str!("../../src/stage12_build.rs"),

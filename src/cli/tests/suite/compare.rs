@@ -32,6 +32,8 @@ fn structures_are_compared_side_by_side() {
         "cached bvh",
         "packet bvh",
         "wide bvh",
+        "reinserted bvh",
+        "stream bvh",
         "grid",
         "octree",
         "octree by cells",

@@ -50,10 +50,10 @@ fn a_course_file_decides_stages_points_and_titles_of_a_class_and_marks_what_is_l
     let table = text(out, "grades.csv");
     let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(rows[0][..5], ["\"name\"", "\"points\"", "\"of\"", "\"percent\"", "\"stage1\""]);
-    assert_eq!(rows[0][5..7], ["\"handed_in\"", "\"late_stages\""]);
+    assert_eq!(rows[0][5..8], ["\"bonus\"", "\"handed_in\"", "\"late_stages\""]);
     assert_eq!(rows[1][..5], ["\"ann\"", "200", "200", "100", "200"], "all points of the stage");
-    assert_eq!(rows[1][5..7], ["\"2026-11-02 20:00:00\"", "\"\""]);
-    assert_eq!((rows[2][0], rows[2][6]), ("\"bob\"", "1"));
+    assert_eq!(rows[1][6..8], ["\"2026-11-02 20:00:00\"", "\"\""]);
+    assert_eq!((rows[2][0], rows[2][7]), ("\"bob\"", "1"));
     let page = text(out, "students/bob.html");
     for words in
         ["NaN ist kein Treffer", "Stage 1 · Formen", "Computergrafik (", "1 day late", "as if it was in time"]

@@ -304,7 +304,7 @@ fn an_empty_class_has_reports_too() -> Result<()> {
     let files = files_of(&class)?;
     assert_eq!(
         files["grades.csv"],
-        "\"name\",\"points\",\"of\",\"percent\",\"remarks\",\"trouble\",\"page\"\n"
+        "\"name\",\"points\",\"of\",\"percent\",\"bonus\",\"remarks\",\"trouble\",\"page\"\n"
     );
     assert!(files["index.html"].contains("No submission tried a check and failed."));
     Ok(())
