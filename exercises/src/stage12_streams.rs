@@ -3,7 +3,7 @@
 //! Sources: Pharr, Kolb, Gershbein and Hanrahan, "Rendering Complex Scenes with Memory-Coherent Ray Tracing", SIGGRAPH 1997;
 //! Fuetterling, Lojewski, Pfreundt and Ebert, "Efficient Ray Tracing Kernels for Modern CPU Architectures", JCGT 2015.
 //!
-//! Given: [`StreamProbe`], whose calls take the number of a ray; [`Child`](raykata::wide::Child), what a place of a node holds.
+//! Given: [`StreamProbe`], whose calls take the number of a ray; [`raykata::wide::Child`], what a place of a node holds.
 
 use raykata::bvh::PrimitiveHit;
 use raykata::ray::Ray;
