@@ -274,7 +274,7 @@ mod tests {
         let ((old, old_stubs), (new, new_stubs)) = (old(), new());
         let [old, new] = [old, new].map(|text| text + "\n/// Given.\npub const A: f32 = 1.0;\n");
         assert_eq!(merge(&old, &old_stubs, &new, &new_stubs).unwrap().text, new);
-        // If it changes, the student's text stays, and the student is told.
+        // If it changes, the student's text stays, and a note says so.
         let changed = new.replace("1.0", "2.0");
         let merged = merge(&old, &old_stubs, &changed, &new_stubs).unwrap();
         assert!(merged.text.contains("1.0;") && !merged.text.contains("2.0;"));
