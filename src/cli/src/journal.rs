@@ -22,6 +22,9 @@ struct Head {
 
 const VERSION: u32 = 1;
 
+/// How every journal begins.
+const FIRST: &[u8] = br#"{"raykata_journal""#;
+
 /// The pieces of an earlier run, and the file to which this run adds its own.
 pub struct Journal<T> {
     file: PathBuf,
@@ -52,20 +55,21 @@ impl<T: Serialize + DeserializeOwned> Journal<T> {
     ///
     /// If the file is not a journal, or is about other work, or cannot be read or written. Then it is left as it is.
     pub fn resume(file: &Path, about: &str) -> Result<Journal<T>> {
-        let text = match fs::read(file) {
-            Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
+        let bytes = match fs::read(file) {
+            Ok(bytes) => bytes,
             Err(error) if error.kind() == ErrorKind::NotFound => return Journal::create(file, about),
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
         };
-        let mut lines = text.split_inclusive('\n').take_while(|line| line.ends_with('\n'));
+        let mut lines = bytes.split_inclusive(|byte| *byte == b'\n').take_while(|line| line.ends_with(b"\n"));
         let Some(first) = lines.next() else {
             // A run that was killed at once has left an empty file, or a part of the first line.
-            if text.len() > 200 || !r#"{"raykata_journal""#.starts_with(text.get(..18).unwrap_or(&text)) {
+            let begins = bytes.len().min(FIRST.len());
+            if bytes.len() > 200 || bytes[..begins] != FIRST[..begins] {
                 bail!("{} is not a journal of this program: name another file", file.display());
             }
             return Journal::create(file, about);
         };
-        match serde_json::from_str::<Head>(first) {
+        match serde_json::from_slice::<Head>(first) {
             Ok(Head { raykata_journal: VERSION, about: theirs }) if theirs == about => {}
             Ok(Head { raykata_journal: VERSION, about: theirs }) => bail!(
                 "{} is of other work: {theirs}, and not {about}. Continue with the same, or begin again",
@@ -80,7 +84,7 @@ impl<T: Serialize + DeserializeOwned> Journal<T> {
         let mut length = first.len() as u64;
         let mut kept = VecDeque::new();
         for line in lines {
-            let Ok(piece) = serde_json::from_str(line) else { break };
+            let Ok(piece) = serde_json::from_slice(line) else { break };
             kept.push_back(piece);
             length += line.len() as u64;
         }
@@ -124,7 +128,7 @@ impl<T: Serialize + DeserializeOwned> Journal<T> {
     /// # Errors
     ///
     /// If the file cannot be deleted.
-    pub fn finish(self) -> Result<()> {
+    pub fn finish(&self) -> Result<()> {
         fs::remove_file(&self.file).with_context(|| format!("cannot delete {}", self.file.display()))
     }
 

@@ -7,9 +7,10 @@ use anyhow::{Context, Result};
 use glam::Vec3;
 use raykata::film::Film;
 use raykata::kit::{RenderJob, Rendering};
+use raykata::scene::Scene;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A picture as it is kept. JSON has no NaN, so the numbers of the pixels are written as bits.
 #[derive(Serialize, Deserialize)]
@@ -21,8 +22,10 @@ struct Picture {
 
 /// The kept pictures.
 pub struct Kept {
-    file: PathBuf,
     journal: Mutex<Journal<Picture>>,
+    /// The scene of the last job, and its fingerprint. Most jobs of a run have the same scene with other settings, and the
+    /// fingerprint of a large one takes longer than a picture.
+    scene: Mutex<Option<(Scene, String)>>,
 }
 
 impl Kept {
@@ -39,18 +42,35 @@ impl Kept {
                 println!("continues a run that was stopped: {n} measured pictures are in {}", file.display())
             }
         }
-        Ok(Kept { file, journal: Mutex::new(journal) })
+        Ok(Kept { journal: Mutex::new(journal), scene: Mutex::default() })
     }
 
     /// A name for a job: jobs that differ in anything have different names.
-    pub fn name(job: &RenderJob) -> Result<String> {
-        Ok(fingerprint([&serde_json::to_vec(job).context("the scene cannot be serialised")?[..]]))
+    pub fn name(&self, job: &RenderJob) -> Result<String> {
+        let RenderJob { scene, view, seed, threads, count, reuse } = job;
+        let settings = (scene.film, &scene.quality, view, seed, threads, count, reuse);
+        let settings = serde_json::to_vec(&settings).context("the settings cannot be serialised")?;
+        Ok(fingerprint([self.fingerprint_of(scene)?.as_bytes(), &settings]))
+    }
+
+    /// The fingerprint of a scene without its film and quality.
+    fn fingerprint_of(&self, scene: &Scene) -> Result<String> {
+        let mut last = lock(&self.scene);
+        if let Some((known, name)) = &*last {
+            let alike = Scene { film: known.film, quality: known.quality, ..scene.clone() };
+            if alike == *known {
+                return Ok(name.clone());
+            }
+        }
+        let alike = Scene { film: Default::default(), quality: Default::default(), ..scene.clone() };
+        let name = fingerprint([&serde_json::to_vec(&alike).context("the scene cannot be serialised")?[..]]);
+        *last = Some((alike, name.clone()));
+        Ok(name)
     }
 
     /// Takes a picture of the stopped run. Each is taken once: a job that is measured twice has two.
     pub fn take(&self, name: &str) -> Option<Rendering> {
-        let Picture { mut rendering, pixels } =
-            self.journal.lock().unwrap_or_else(PoisonError::into_inner).take(name)?;
+        let Picture { mut rendering, pixels } = lock(&self.journal).take(name)?;
         rendering.film.pixels =
             pixels.into_iter().map(|pixel| Vec3::from_array(pixel.map(f32::from_bits))).collect();
         Some(rendering)
@@ -61,13 +81,17 @@ impl Kept {
         let Film { width, height, .. } = frame.film;
         let rendering = Rendering { film: Film { width, height, pixels: Vec::new() }, ..frame.clone() };
         let pixels = frame.film.pixels.iter().map(|pixel| pixel.to_array().map(f32::to_bits)).collect();
-        self.journal.lock().unwrap_or_else(PoisonError::into_inner).add(name, &Picture { rendering, pixels })
+        lock(&self.journal).add(name, &Picture { rendering, pixels })
     }
 
     /// Deletes the file, because the report is written.
     pub fn finish(&self) -> Result<()> {
-        std::fs::remove_file(&self.file).with_context(|| format!("cannot delete {}", self.file.display()))
+        lock(&self.journal).finish()
     }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]

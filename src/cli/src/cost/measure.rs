@@ -175,7 +175,7 @@ impl Bench<'_> {
         bar: Option<&FrameBar>,
     ) -> Result<Option<Rendering>> {
         let name = match self.kept {
-            Some(kept) => Some((kept, Kept::name(job)?)),
+            Some(kept) => Some((kept, kept.name(job)?)),
             None => None,
         };
         if let Some(known) = name.as_ref().and_then(|(kept, name)| kept.take(name)) {
