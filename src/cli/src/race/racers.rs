@@ -186,6 +186,9 @@ mod tests {
 
     #[test]
     fn all_racers_have_the_options_of_the_solutions() {
+        if !repository().join("solutions").is_dir() {
+            return println!("a hand-out has no solutions, whose options racers get");
+        }
         let root = std::fs::read_to_string(repository().join("Cargo.toml")).expect("the manifest");
         let text = workspace_manifest(&root, 2);
         let section = |text: &str, name: &str| {
