@@ -136,6 +136,11 @@ pub fn stages() -> Vec<(u8, &'static Stage)> {
 }
 
 impl Stage {
+    /// The points of all checks, without bonus points.
+    pub fn points(&self) -> u32 {
+        self.checks.values().filter(|check| !check.bonus).map(|check| check.points).sum()
+    }
+
     /// The checks of the stage with their names, in the order of the rubric, which is that of the lecture.
     pub fn in_order(&self) -> Vec<(&str, &CheckEntry)> {
         let mut checks: Vec<(&str, &CheckEntry)> =

@@ -38,7 +38,8 @@ pub struct Course {
 pub struct StageChange {
     /// Another title.
     pub title: Option<String>,
-    /// The points of the whole stage, which are divided among its checks in proportion to their points.
+    /// The points of the whole stage, which are divided among its checks in proportion to their points. Bonus points, which
+    /// count apart, stay as they are.
     pub points: Option<u32>,
     /// The changes of each check, by its name.
     pub checks: BTreeMap<String, CheckChange>,
@@ -117,7 +118,7 @@ impl Course {
             }
             if let Some(points) = change.points {
                 // The order of the rubric decides between equal checks.
-                let mut checks: Vec<_> = stage.checks.values_mut().collect();
+                let mut checks: Vec<_> = stage.checks.values_mut().filter(|check| !check.bonus).collect();
                 checks.sort_by_key(|check| check.place);
                 let weights: Vec<u32> = checks.iter().map(|check| check.points).collect();
                 for (check, points) in checks.into_iter().zip(points::divide(points, &weights)) {

@@ -51,9 +51,10 @@ fn read(file: &Path, text: &str, is_language: bool) -> Result<Course, LoadError>
             }
             name => {
                 let Some(stage) = PLAIN.get(name) else { continue };
-                course.changes.insert(name.to_owned(), stage_change(value, stage, is_language)?);
+                let number = name.trim_start_matches("stage").parse().unwrap_or_default();
+                course.changes.insert(name.to_owned(), stage_change(value, number, stage, is_language)?);
                 if let Some(due) = value.any_table()?.get("due") {
-                    course.due.insert(number(name), moment(due)?);
+                    course.due.insert(number, moment(due)?);
                 }
             }
         }
@@ -88,12 +89,12 @@ pub fn stages_of(text: &str) -> Result<Vec<u8>, String> {
     }
 }
 
-/// The number in the name of a stage.
-fn number(name: &str) -> u8 {
-    name.trim_start_matches("stage").parse().unwrap_or_default()
-}
-
-fn stage_change(value: Value<'_>, stage: &Stage, is_language: bool) -> Result<StageChange, LoadError> {
+fn stage_change(
+    value: Value<'_>,
+    number: u8,
+    stage: &Stage,
+    is_language: bool,
+) -> Result<StageChange, LoadError> {
     let known: &[&str] =
         if is_language { &["title", "checks"] } else { &["title", "points", "due", "checks"] };
     let mut change = StageChange::default();
@@ -106,12 +107,9 @@ fn stage_change(value: Value<'_>, stage: &Stage, is_language: bool) -> Result<St
                 let names: Vec<&str> = stage.checks.keys().map(String::as_str).collect();
                 for value in value.any_table()?.values() {
                     if !names.contains(&value.key) {
-                        let what = format!("check of {}", value_of_stage(stage));
-                        let span = value.span();
-                        return Err(value.source.unknown(span, &what, value.key, &names).help(format!(
-                            "`cargo run -- list {}` shows the names of the checks",
-                            stage_number(stage)
-                        )));
+                        let what = format!("check of stage {number}");
+                        let help = format!("`cargo run -- list {number}` shows the names of the checks");
+                        return Err(value.source.unknown(value.span(), &what, value.key, &names).help(help));
                     }
                     change.checks.insert(value.key.to_owned(), check_change(value, is_language)?);
                 }
@@ -124,7 +122,8 @@ fn stage_change(value: Value<'_>, stage: &Stage, is_language: bool) -> Result<St
         let counts = |name: &String, points: u32| {
             change.checks.get(name).and_then(|check| check.points).unwrap_or(points) > 0
         };
-        let n = stage.checks.iter().filter(|(name, check)| counts(name, check.points)).count();
+        let asked_for = stage.checks.iter().filter(|(_, check)| !check.bonus);
+        let n = asked_for.filter(|(name, check)| counts(name, check.points)).count();
         if n == 0 {
             return Err(
                 value.error("no check of the stage has points, so the points of the stage cannot be divided")
@@ -138,14 +137,6 @@ fn stage_change(value: Value<'_>, stage: &Stage, is_language: bool) -> Result<St
         change.points = Some(points);
     }
     Ok(change)
-}
-
-fn stage_number(stage: &Stage) -> u8 {
-    stage.checks.values().next().map_or(0, |check| check.stage)
-}
-
-fn value_of_stage(stage: &Stage) -> String {
-    format!("stage {}", stage_number(stage))
 }
 
 fn check_change(value: Value<'_>, is_language: bool) -> Result<CheckChange, LoadError> {

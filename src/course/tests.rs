@@ -17,10 +17,6 @@ fn rubric(course: &Course) -> BTreeMap<String, Stage> {
     stages
 }
 
-fn sum(stage: &Stage) -> u32 {
-    stage.checks.values().map(|check| check.points).sum()
-}
-
 const NEAREST: &str = "nearest_root_of_nan_is_the_other_one";
 
 #[test]
@@ -48,6 +44,17 @@ fn the_examples_in_the_kits_files_are_valid() {
 }
 
 #[test]
+fn the_points_of_a_stage_are_those_without_the_bonus() {
+    let with = rubric(&course("[stage12]\npoints = 100\n"));
+    assert_eq!(with["stage12"].points(), 100);
+    let bonus = |stage: &Stage| -> u32 {
+        stage.checks.values().filter(|check| check.bonus).map(|check| check.points).sum()
+    };
+    assert!(bonus(&PLAIN["stage12"]) > 0);
+    assert_eq!(bonus(&with["stage12"]), bonus(&PLAIN["stage12"]));
+}
+
+#[test]
 fn a_course_pins_stages_points_titles_and_dates() {
     let course = course(&format!(
         "title = \"Graphics\"\nstages = \"1-2,4\"\nlanguage = \"german.toml\"\n[stage1]\ntitle = \"rays\"\npoints = 50\n\
@@ -58,7 +65,7 @@ fn a_course_pins_stages_points_titles_and_dates() {
     assert_eq!(course.due[&1].to_string(), "2026-11-02");
     let stages = rubric(&course);
     let (stage, before) = (&stages["stage1"], &PLAIN["stage1"]);
-    assert_eq!((stage.title.as_str(), sum(stage)), ("rays", 50));
+    assert_eq!((stage.title.as_str(), stage.points()), ("rays", 50));
     let (check, was) = (&stage.checks[NEAREST], &before.checks[NEAREST]);
     assert_eq!((check.points, check.title.as_str()), (0, "NaN"));
     assert_eq!(check.hints, [was.hints[0].clone(), "b".into(), was.hints[2].clone()]);

@@ -162,7 +162,7 @@ pub fn show(file: &Path) -> Result<()> {
     say(format_args!("{:>5}  {:>6}  {:>6}  {:<25}  title\n", "stage", "checks", "points", "due"));
     let mut total = 0;
     for (number, stage) in rubric::stages() {
-        let points: u32 = stage.checks.values().map(|check| check.points).sum();
+        let points = stage.points();
         total += points;
         let due = course.due.get(&number).map_or("-".to_owned(), Moment::to_string);
         let n = stage.checks.len();

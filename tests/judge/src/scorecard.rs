@@ -166,7 +166,9 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
     for (number, _) in STAGES.iter().filter(|(number, _)| is_asked_for(*number)) {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
         println!("{}", stage_line(*number, &of_stage));
-        if let Some(due) = course.due.get(number).filter(|_| of_stage.iter().any(|one| !one.passed())) {
+        if let Some(due) =
+            course.due.get(number).filter(|_| of_stage.iter().any(|one| !one.bonus && !one.passed()))
+        {
             println!("           {} {due}", course.text("due"));
         }
     }

@@ -18,13 +18,15 @@ type Kept = (Fate, BTreeMap<String, String>);
 pub(super) struct Tested(Mutex<Journal<Kept>>);
 
 /// Everything in the kit that decides a result besides the entry itself.
-const DECIDE: [&str; 8] = [
+const DECIDE: [&str; 10] = [
     "Cargo.lock",
     "Cargo.toml",
     "solutions/src",
     "src",
     "tests/checks",
+    "tests/course.toml",
     "tests/golden",
+    "tests/language.toml",
     "tests/oracle",
     "tests/rubric.toml",
 ];
