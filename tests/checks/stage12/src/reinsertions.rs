@@ -151,7 +151,7 @@ const ROUNDING: f64 = 1e-6;
 fn judge_cost(case: &Case, yours: &FlatTree) -> CheckResult {
     judge_leaves(case, yours)?;
     let (mine, before) = (cost(yours), cost(&case.query.tree));
-    // Nodes without any area have no costs.
+    // The cost of a tree whose root has no area is not a number.
     if mine <= before * (1.0 + ROUNDING) || !before.is_finite() {
         return Ok(());
     }
@@ -364,14 +364,15 @@ pub(super) fn reinsert_of_any_size(trial: &Trial<'_>) -> CheckResult {
     let boxes: Vec<Aabb> = scenes().swap_remove(0).1.into_iter().take(200).collect();
     let x = trial.varied(1.0, 0.5..1f32);
     let mut first = None;
-    for exponent in [0, -70, 70, -110, 110] {
+    for exponent in [0, 70, 110, -70, -110] {
         let scale = x * 2f32.powi(exponent);
         let scaled: Vec<Aabb> = boxes.iter().map(|one| Aabb::new(scale * one.min, scale * one.max)).collect();
         let tree = tree_over(&scaled);
         let before = cost(&tree);
         let mine = cost(&improved(trial, &format!("200 boxes of size 2^{exponent}"), scaled, tree)?);
         let share = mine / before;
-        // A scale that is no power of two rounds coordinates, which may change a choice between two places.
+        // Powers of two round nothing, so the same moves are cheapest at each size. One percent is a small part of what the moves save,
+        // and leaves a function free to choose between moves that save nearly the same.
         let expected = *first.get_or_insert(share);
         if (share - expected).abs() > 0.01 {
             let input = format!("reinsert of 200 boxes of size 2^{exponent}");
@@ -383,7 +384,7 @@ pub(super) fn reinsert_of_any_size(trial: &Trial<'_>) -> CheckResult {
                 "your own tree",
             )
             .explained_by([(
-                share == 1.0,
+                share == 1.0 && exponent > 0,
                 "areas of this size leave the range of single precision: compute them in double precision",
             )]));
         }

@@ -72,6 +72,9 @@ fn judge_hits(query: &StreamQuery, yours: &StreamAnswer) -> CheckResult {
     Ok(())
 }
 
+const SAME_RANGE: &str =
+    "all rays are searched in the same range: each has its own, from its t_min to its t_max";
+
 /// The known mistakes that give exactly these hits.
 fn mistakes(query: &StreamQuery, yours: &StreamAnswer) -> Vec<(bool, &'static str)> {
     let (found, alone) = (found(yours), alone(query));
@@ -97,10 +100,8 @@ fn mistakes(query: &StreamQuery, yours: &StreamAnswer) -> Vec<(bool, &'static st
         Some((last.0, t))
     };
     vec![
-        (
-            all(&by_first) || all(&by_all),
-            "all rays are searched in the same range: each has its own, from its t_min to its t_max",
-        ),
+        (all(&by_first), SAME_RANGE),
+        (all(&by_all), SAME_RANGE),
         (all(&largest_of_equal), "of two hits at the same t the smaller primitive number wins"),
     ]
 }
@@ -128,16 +129,22 @@ pub(super) fn stream_closest_hits_fetch_nothing_twice(trial: &Trial<'_>) -> Chec
         compare(queries, trial.kit.stream_closest_hits(queries), |query, yours| {
             judge_hits(query, &yours)?;
             let (node, block) = (twice(&yours.nodes), twice(&yours.blocks));
-            let (kind, list, cause) = match (node, block) {
+            let (kind, list) = match (node, block) {
                 (None, None) => return Ok(()),
-                (Some(_), _) => ("nodes", &yours.nodes, "a node is fetched again for another ray: enter it with all of its rays, one after the other"),
-                _ => ("blocks", &yours.blocks, "a block is fetched again for another ray: test each block with all rays before the next block"),
+                (Some(_), _) => ("nodes", &yours.nodes),
+                _ => ("blocks", &yours.blocks),
             };
+            // If no ray enters the node twice, the second fetch is for another ray than the first.
+            let is_for_another = node.is_some_and(|node| {
+                let of_node = yours.entered.iter().filter(|(_, entered)| *entered == node);
+                twice(&of_node.map(|(ray, _)| *ray).collect::<Vec<u32>>()).is_none()
+            });
             let input = format!("stream_closest_hits of {} rays", query.rays.len());
-            // One ray alone fetches nothing twice, if its search is right.
-            let is_shared = query.rays.len() > 1;
             Err(Broken::with_texts(input, format!("the {kind} {list:?}"), "each at most once", "counted")
-                .explained_by([(is_shared, cause)]))
+                .explained_by([
+                    (is_for_another, "a node is fetched again for another ray: enter it with all of its rays, one after the other"),
+                    (node.is_none(), "a block is fetched again: test it with all rays before the next block"),
+                ]))
         })
     })
 }
