@@ -4,7 +4,8 @@ use crate::bvh::PrimitiveHit;
 use crate::kit::questions::{Asker, Call};
 use crate::ray::Ray;
 use crate::wide::{
-    Child, Entered, FlatTree, NO_PRIMITIVE, OpenedNode, PlaceProbe, StreamProbe, SubtreePlace, WideTree,
+    Child, Entered, FlatTree, LastFetch, NO_PRIMITIVE, OpenedNode, PlaceProbe, StreamProbe, SubtreePlace,
+    WideTree,
 };
 use serde::{Deserialize, Serialize};
 
@@ -100,15 +101,19 @@ pub struct StreamTableProbe<'a> {
     query: &'a StreamQuery,
     /// The calls so far.
     calls: StreamAnswer,
-    /// The node, or the block with `true`, of the last call.
-    last: Option<(bool, u32)>,
+    last: LastFetch,
     asker: Option<Asker>,
 }
 
 impl<'a> StreamTableProbe<'a> {
     /// A probe without calls.
     pub fn new(query: &'a StreamQuery) -> Self {
-        StreamTableProbe { query, calls: StreamAnswer::default(), last: None, asker: Asker::for_next_query() }
+        StreamTableProbe {
+            query,
+            calls: StreamAnswer::default(),
+            last: LastFetch::default(),
+            asker: Asker::for_next_query(),
+        }
     }
 
     /// The answer with the lists of all fetches.
@@ -119,11 +124,10 @@ impl<'a> StreamTableProbe<'a> {
     /// Counts a call, and the fetch of a node or block unless the last call was about the same one.
     fn note(&mut self, is_block: bool, index: u32) {
         self.calls.n_calls += 1;
-        if self.last != Some((is_block, index)) {
+        if self.last.fetches(is_block, index) {
             let list = if is_block { &mut self.calls.blocks } else { &mut self.calls.nodes };
             list.push(index);
         }
-        self.last = Some((is_block, index));
     }
 
     /// The `t` of the hit of a ray with the primitive in a lane, and the number of the primitive.

@@ -7,7 +7,7 @@ use crate::count::{Event, Tally};
 use crate::kit::StudentFunctions;
 use crate::ray::Ray;
 use crate::wide::simd::{Level, Vectorized};
-use crate::wide::{Child, Entered, StreamProbe, WideProbe, WideRay};
+use crate::wide::{Child, Entered, LastFetch, StreamProbe, WideProbe, WideRay};
 
 /// The search of the closest hits of several rays, for each level of instructions.
 pub(super) struct ClosestOfStream<'s, 'p, 'w, F, T> {
@@ -25,7 +25,10 @@ impl<F: StudentFunctions, T: Tally> Vectorized for ClosestOfStream<'_, '_, '_, F
         let Some(first) = rays.first() else { return Vec::new() };
         let prepared: Vec<WideRay> = rays.iter().map(WideRay::new).collect();
         let one = WideSceneProbe::new(wide, probe, first, level);
-        F::stream_closest_hits(&mut StreamSceneProbe { one, rays: &prepared, last: None }, rays)
+        F::stream_closest_hits(
+            &mut StreamSceneProbe { one, rays: &prepared, last: LastFetch::default() },
+            rays,
+        )
     }
 }
 
@@ -34,8 +37,7 @@ impl<F: StudentFunctions, T: Tally> Vectorized for ClosestOfStream<'_, '_, '_, F
 struct StreamSceneProbe<'s, 'p, 'w, F, T, L> {
     one: WideSceneProbe<'s, 'p, F, T, L>,
     rays: &'w [WideRay],
-    /// The node, or the block with `true`, of the last call.
-    last: Option<(bool, u32)>,
+    last: LastFetch,
 }
 
 impl<F: StudentFunctions, T: Tally, L: Level> StreamSceneProbe<'_, '_, '_, F, T, L> {
@@ -43,10 +45,9 @@ impl<F: StudentFunctions, T: Tally, L: Level> StreamSceneProbe<'_, '_, '_, F, T,
     #[inline(always)]
     fn select(&mut self, ray: u32, is_block: bool, index: u32) {
         self.one.select(&self.rays[ray as usize]);
-        if self.last != Some((is_block, index)) {
+        if self.last.fetches(is_block, index) {
             self.one.probe.note(Event::NodeVisit);
         }
-        self.last = Some((is_block, index));
     }
 }
 

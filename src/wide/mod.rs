@@ -12,6 +12,7 @@ mod stream;
 pub use boxes::{Bin, BinGrid, BinSplit, Bins, BoxA, MAX_BINS, PrimitiveBox};
 pub use forks::{Fork, ForkKind, Forks};
 pub use reinsertion::{OpenedNode, PlaceProbe, SubtreePlace};
+pub(crate) use stream::LastFetch;
 pub use stream::{STREAM, StreamProbe};
 
 use crate::aabb::Aabb;

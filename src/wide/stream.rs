@@ -7,6 +7,18 @@ use crate::ray::Ray;
 /// The largest number of rays in a stream: as many as a mask of 64 bits has.
 pub const STREAM: usize = 64;
 
+/// The node or the block of the last call, from which follows what a call fetches.
+#[derive(Debug, Default)]
+pub(crate) struct LastFetch(Option<(bool, u32)>);
+
+impl LastFetch {
+    /// Whether a call about this node, or about this block, fetches it: the last call was about another one.
+    #[inline(always)]
+    pub(crate) fn fetches(&mut self, is_block: bool, index: u32) -> bool {
+        self.0.replace((is_block, index)) != Some((is_block, index))
+    }
+}
+
 /// All that a search of a wide tree with several rays may ask. Rays have the numbers `0..rays.len()`.
 ///
 /// Each call is counted. A call about another node, or about another block, than the call before *fetches* it from memory, and each

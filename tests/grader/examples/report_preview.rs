@@ -85,7 +85,6 @@ fn outcome(ability: f32, check: &str, random: &mut Random) -> Outcome {
 
 fn result(stage: u8, name: &str, outcome: Outcome) -> CheckResult {
     let entry = rubric::entry(stage, name);
-    let earned = if outcome == Outcome::Passed { entry.points } else { 0 };
     let message = match outcome {
         Outcome::Wrong => format!(
             "{}  input     sphere.hit(&Ray::new(vec3(0.25, -1.5, 4.0), vec3(0.0, 0.0, -1.0), 0.001..1000.0))\n  yours     Some(6.5)\n  expected  Some(1.5) (double precision)\n  looks like: the far root\n  again: cargo test --test stage{stage} {name}\n  stuck: cargo run -- hint {name}\n",
@@ -94,16 +93,7 @@ fn result(stage: u8, name: &str, outcome: Outcome) -> CheckResult {
         _ => String::new(),
     };
     let picture = (outcome == Outcome::Wrong && name.contains("picture")).then(picture).flatten();
-    CheckResult {
-        stage,
-        name: name.to_owned(),
-        outcome,
-        points: entry.points,
-        earned,
-        bonus: entry.bonus,
-        message,
-        picture,
-    }
+    CheckResult { picture, ..CheckResult::new(stage, name, outcome, message) }
 }
 
 /// Uses a golden picture in place of a picture of differences.

@@ -111,11 +111,11 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
     // Gather the files of both archives in folders, so that cargo can add the packages that they need.
     let place = tempfile::tempdir()?;
     let mut sums = String::new();
-    for name in ["course", "grader"] {
-        let name = format!("raykata-{name}-{version}");
+    for contents in ["course", "grader"] {
+        let name = format!("raykata-{contents}-{version}");
         let folder = place.path().join(&name);
         fs::create_dir(&folder)?;
-        if name.starts_with("raykata-course") {
+        if contents == "course" {
             handout::write(root, &folder, course.as_ref())?;
             let found = handout::leaks(root, &folder)?;
             ensure!(found.is_empty(), "the hand-out would contain answers:\n  {}", found.join("\n  "));

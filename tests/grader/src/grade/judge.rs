@@ -13,7 +13,7 @@ use all_checks::STAGES;
 use anyhow::{Result, ensure};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use checks::rubric::{self, CheckEntry};
+use checks::rubric;
 use checks::{Broken, Check, Drawn, Inputs, Verdict};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, KitError, Request, Transport, kit_error};
@@ -321,11 +321,8 @@ fn picture(examined: &Result<checks::CheckResult, KitError>) -> Option<Picture> 
 
 fn result(check: &Check, answered: Answered) -> CheckResult {
     let Answered { outcome, message, picture } = answered;
-    let CheckEntry { points, bonus, .. } = rubric::entry(check.stage, check.name);
-    let earned = if outcome == Outcome::Passed { points } else { 0 };
     let message = clean::clean(message.trim_end(), MOST_SAID);
-    let (stage, name) = (check.stage, check.name.into());
-    CheckResult { stage, name, outcome, points, earned, bonus, message, picture }
+    CheckResult { picture, ..CheckResult::new(check.stage, check.name, outcome, message) }
 }
 
 /// Runs a check against the reference. Returns a fingerprint of the questions, the functions that were called, and whether

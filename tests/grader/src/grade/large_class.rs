@@ -36,17 +36,7 @@ fn student(number: usize, last_stage: u8, png: &str, random: &mut Random) -> Gra
         };
         let picture = (wrong && name.contains("picture"))
             .then(|| Picture { caption: "reference | yours | difference".into(), png: png.to_owned() });
-        let earned = if outcome == Outcome::Passed { entry.points } else { 0 };
-        CheckResult {
-            stage,
-            name: name.to_owned(),
-            outcome,
-            points: entry.points,
-            earned,
-            bonus: entry.bonus,
-            message,
-            picture,
-        }
+        CheckResult { picture, ..CheckResult::new(stage, name, outcome, message) }
     };
     let checks = STAGES.iter().filter(|(stage, _)| *stage <= last_stage);
     let checks = checks.flat_map(|(stage, checks)| checks.iter().map(|one| (*stage, one.name)));

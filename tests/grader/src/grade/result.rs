@@ -1,5 +1,6 @@
 //! The results of grading, from which all reports are made.
 
+use checks::rubric::{self, CheckEntry};
 use raykata::course::Moment;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -127,6 +128,15 @@ pub struct Graded {
     /// When the submission was handed in, as the instructor's table says; empty if unknown.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub handed_in: String,
+}
+
+impl CheckResult {
+    /// Returns the result of a check that ended in this way, with the points of the rubric and without a picture.
+    pub fn new(stage: u8, name: &str, outcome: Outcome, message: String) -> CheckResult {
+        let CheckEntry { points, bonus, .. } = rubric::entry(stage, name);
+        let earned = if outcome == Outcome::Passed { points } else { 0 };
+        CheckResult { stage, name: name.to_owned(), outcome, points, earned, bonus, message, picture: None }
+    }
 }
 
 impl Graded {

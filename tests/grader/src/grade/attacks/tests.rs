@@ -2,7 +2,6 @@ use super::*;
 use crate::grade::result::{CheckResult, Graded, Outcome, Remark};
 use crate::queue;
 use all_checks::STAGES;
-use checks::rubric;
 use std::collections::BTreeSet;
 use std::os::unix::fs::FileTypeExt;
 use std::sync::Mutex;
@@ -33,21 +32,12 @@ fn shapes_of(text: &str) -> String {
 fn graded(outcome: impl Fn(&str) -> Outcome) -> Graded {
     let stage = STAGES.iter().find(|(stage, _)| *stage == 1).unwrap();
     let result = |check: &checks::Check| {
-        let (points, outcome) = (rubric::entry(1, check.name).points, outcome(check.name));
-        let (earned, message) = match outcome {
-            Outcome::Passed => (points, String::new()),
-            other => (0, format!("it is {}", other.words())),
+        let outcome = outcome(check.name);
+        let message = match outcome {
+            Outcome::Passed => String::new(),
+            other => format!("it is {}", other.words()),
         };
-        CheckResult {
-            stage: 1,
-            name: check.name.into(),
-            outcome,
-            points,
-            earned,
-            bonus: false,
-            message,
-            picture: None,
-        }
+        CheckResult::new(1, check.name, outcome, message)
     };
     Graded {
         student: "ann".into(),
