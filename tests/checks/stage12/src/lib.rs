@@ -3,7 +3,7 @@
 //! `flat` (flattened hierarchies) · `bins`, `splits`, `partitions` (the steps of the binned builder) · `builds`, `forks`
 //! (whole trees, and their work and span) · `wide_trees` (eight children per node) · `slabs`, `blocks` (eight boxes and four
 //! triangles at once) · `searches`, `visits` (what searches find, and what they cost) · `table` · `picture`. A bonus are
-//! `places`, `reinsertions` (trees that are improved), `orders` and `streams` (many rays at once). `trees`,
+//! `places`, `reinsertions`, `moves` (trees that are improved), `orders` and `streams` (many rays at once). `trees`,
 //! `wide_tables` and `scenes` make inputs; `bars` has the counts of the reference.
 //!
 //! No check reads a clock: speed is judged by the counts that decide it.
@@ -14,6 +14,7 @@ mod blocks;
 mod builds;
 mod flat;
 mod forks;
+mod moves;
 mod orders;
 mod partitions;
 mod picture;
@@ -50,6 +51,7 @@ use forks::{
     build_parallel_has_a_third_of_the_span, build_parallel_has_an_eighth_of_the_span,
     build_parallel_logs_the_nodes_that_it_forks,
 };
+use moves::reinsert_makes_at_most_so_many_moves;
 use orders::{
     stream_order_follows_the_curve_of_morton, stream_order_lists_every_ray_once, stream_order_of_flat_sets,
     stream_order_sorts_by_octant,
@@ -64,8 +66,8 @@ use places::{
 };
 use reinsertions::{
     reinsert_ends_on_special_trees, reinsert_fits_the_boxes, reinsert_keeps_every_leaf,
-    reinsert_makes_at_most_so_many_moves, reinsert_never_costs_more, reinsert_of_any_size,
-    reinsert_saves_half_as_much_as_the_reference, reinsert_saves_nine_tenths_as_much_as_the_reference,
+    reinsert_never_costs_more, reinsert_of_any_size, reinsert_saves_half_as_much_as_the_reference,
+    reinsert_saves_nine_tenths_as_much_as_the_reference,
 };
 use searches::{
     wide_any_hit_agrees_with_brute_force, wide_any_hit_enters_only_boxes_it_meets,

@@ -1,8 +1,8 @@
-//! `reinsert`: the leaves, the boxes and the cost of an improved tree, and the number of moves.
+//! `reinsert`: the leaves, the boxes and the cost of an improved tree.
 
 use super::bars::REINSERTED_COSTS;
 use super::scenes::scenes;
-use super::trees::{boxes, cost, drawn_tree, drawn_trees, fault, in_morton_order, tree_in_order};
+use super::trees::{cost, drawn_tree, drawn_trees, fault, in_morton_order, tree_in_order};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::compare;
@@ -16,13 +16,13 @@ use std::collections::BTreeSet;
 
 /// A tree over boxes, and the largest number of moves.
 #[derive(Clone, Debug)]
-struct Case {
-    boxes: Vec<Aabb>,
-    query: ReinsertQuery,
+pub(super) struct Case {
+    pub boxes: Vec<Aabb>,
+    pub query: ReinsertQuery,
 }
 
 impl Case {
-    fn new(boxes: Vec<Aabb>, tree: FlatTree, most_moves: u32) -> Case {
+    pub fn new(boxes: Vec<Aabb>, tree: FlatTree, most_moves: u32) -> Case {
         Case { boxes, query: ReinsertQuery { tree, most_moves } }
     }
 
@@ -35,12 +35,12 @@ impl Case {
         )
     }
 
-    fn broken(&self, yours: String, expected: impl Into<String>, source: &'static str) -> Broken {
+    pub fn broken(&self, yours: String, expected: impl Into<String>, source: &'static str) -> Broken {
         Broken::with_texts(self.describe(), yours, expected, source)
     }
 }
 
-fn ask(trial: &Trial<'_>, cases: &[Case]) -> Vec<FlatTree> {
+pub(super) fn ask(trial: &Trial<'_>, cases: &[Case]) -> Vec<FlatTree> {
     let queries: Vec<ReinsertQuery> = cases.iter().map(|case| case.query.clone()).collect();
     trial.kit.reinsert(&queries)
 }
@@ -59,7 +59,7 @@ fn leaves(tree: &FlatTree) -> BTreeSet<&[u32]> {
 }
 
 /// Judges the layout of a tree, and its leaves.
-fn judge_leaves(case: &Case, yours: &FlatTree) -> CheckResult {
+pub(super) fn judge_leaves(case: &Case, yours: &FlatTree) -> CheckResult {
     if let Some((yours, expected, cause)) = fault(yours, &case.boxes) {
         let broken = case.broken(yours, expected, "the layout of FlatTree");
         return Err(broken.explained_by(cause.map(|text| (true, text))));
@@ -88,7 +88,7 @@ fn crossed(trial: &Trial<'_>) -> Case {
 }
 
 /// Demands that an obvious move is made. A function that returns the tree as it is keeps all leaves, and improves nothing.
-fn moves_something(trial: &Trial<'_>) -> CheckResult {
+pub(super) fn moves_something(trial: &Trial<'_>) -> CheckResult {
     let case = crossed(trial);
     let yours = ask(trial, std::slice::from_ref(&case)).remove(0);
     judge_leaves(&case, &yours)?;
@@ -167,94 +167,6 @@ pub(super) fn reinsert_never_costs_more(trial: &Trial<'_>) -> CheckResult {
     moves_something(trial)?;
     trial.forall(300, cases(60), |cases| {
         compare(cases, ask(trial, cases), |case, yours| judge_cost(case, &yours))
-    })
-}
-
-/// The shape of a tree whose leaves are known by their first primitives. The order of the children does not matter.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Form {
-    Leaf(u32),
-    Inner(Box<(Form, Form)>),
-}
-
-impl Form {
-    fn of(tree: &FlatTree, node: u32) -> Form {
-        let at = &tree.nodes[node as usize];
-        if at.is_leaf() {
-            return Form::Leaf(tree.order[at.first as usize]);
-        }
-        Form::joined(Form::of(tree, at.first), Form::of(tree, at.first + 1))
-    }
-
-    fn joined(one: Form, other: Form) -> Form {
-        Form::Inner(Box::new(if one <= other { (one, other) } else { (other, one) }))
-    }
-
-    /// Each subtree with the rest of the tree, except for the whole tree.
-    fn parts(&self) -> Vec<(Form, Form)> {
-        let Form::Inner(pair) = self else { return Vec::new() };
-        let (left, right) = &**pair;
-        let mut parts = vec![(left.clone(), right.clone()), (right.clone(), left.clone())];
-        parts.extend(left.parts().into_iter().map(|(part, rest)| (part, Form::joined(rest, right.clone()))));
-        parts.extend(right.parts().into_iter().map(|(part, rest)| (part, Form::joined(left.clone(), rest))));
-        parts
-    }
-
-    /// The trees in which `part` is beside some node of this one.
-    fn with(&self, part: &Form) -> Vec<Form> {
-        let mut all = vec![Form::joined(self.clone(), part.clone())];
-        if let Form::Inner(pair) = self {
-            let (left, right) = &**pair;
-            all.extend(left.with(part).into_iter().map(|left| Form::joined(left, right.clone())));
-            all.extend(right.with(part).into_iter().map(|right| Form::joined(left.clone(), right)));
-        }
-        all
-    }
-
-    /// The trees that one move makes of this one, and the tree itself.
-    fn one_move_away(&self) -> BTreeSet<Form> {
-        let moved = self.parts().into_iter().flat_map(|(part, rest)| rest.with(&part));
-        moved.chain([self.clone()]).collect()
-    }
-}
-
-pub(super) fn reinsert_makes_at_most_so_many_moves(trial: &Trial<'_>) -> CheckResult {
-    moves_something(trial)?;
-    let small = (boxes(6), prop::collection::vec(any::<u16>(), 1..12), 0..=2u32)
-        .prop_map(|(boxes, cuts, moves)| Case::new(boxes.clone(), drawn_tree(&boxes, 1, &cuts), moves));
-    trial.forall(150, small, |cases| {
-        // The tree of a student that counts nothing is the same with any number of moves.
-        let unlimited: Vec<Case> = cases
-            .iter()
-            .map(|case| Case::new(case.boxes.clone(), case.query.tree.clone(), u32::MAX))
-            .collect();
-        let unlimited = ask(trial, &unlimited);
-        let judge = |(case, unlimited): &(&Case, FlatTree), yours: FlatTree| {
-            judge_leaves(case, &yours)?;
-            if case.boxes.is_empty() {
-                return Ok(());
-            }
-            let mut reached = BTreeSet::from([Form::of(&case.query.tree, 0)]);
-            for _ in 0..case.query.most_moves {
-                reached = reached.iter().flat_map(Form::one_move_away).collect();
-            }
-            if reached.contains(&Form::of(&yours, 0)) {
-                return Ok(());
-            }
-            let moves = case.query.most_moves;
-            let broken = case.broken(
-                "a tree that is further away".into(),
-                format!("a tree that {moves} moves can make of the given one"),
-                "all trees that are so many moves away",
-            );
-            let is_unlimited = Form::of(&yours, 0) == Form::of(unlimited, 0);
-            Err(broken.explained_by([(
-                is_unlimited,
-                "`most_moves` is ignored: the tree is that of any number of moves",
-            )]))
-        };
-        let cases_and_trees: Vec<(&Case, FlatTree)> = cases.iter().zip(unlimited).collect();
-        compare(&cases_and_trees, ask(trial, cases), judge)
     })
 }
 
