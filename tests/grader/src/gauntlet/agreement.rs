@@ -150,6 +150,8 @@ fn structures(with: impl Fn(Accelerator, u32) -> Quality) -> Vec<(String, Qualit
     structures.push(("hierarchy, last hit first".into(), with(Accelerator::CachedBvh, 2)));
     structures.push(("hierarchy, packets".into(), with(Accelerator::PacketBvh, 2)));
     structures.push(("wide hierarchy".into(), with(Accelerator::WideBvh, 2)));
+    structures.push(("wide hierarchy, subtrees moved".into(), with(Accelerator::ReinsertedBvh, 2)));
+    structures.push(("wide hierarchy, streams".into(), with(Accelerator::StreamBvh, 2)));
     structures
 }
 

@@ -63,7 +63,7 @@ struct Structure {
 }
 
 /// Every structure that finds hits of single rays in another way.
-const STRUCTURES: [Structure; 16] = {
+const STRUCTURES: [Structure; 18] = {
     const fn new(name: &'static str, accelerator: Accelerator, split: Split) -> Structure {
         Structure { name, accelerator, split }
     }
@@ -77,6 +77,8 @@ const STRUCTURES: [Structure; 16] = {
         new("bvh, packets of eight", Accelerator::PacketBvh, Split::SurfaceArea),
         new("bvh, eight children", Accelerator::WideBvh, Split::SurfaceArea),
         new("bvh, eight children, object median", Accelerator::WideBvh, Split::ObjectMedian),
+        new("bvh, subtrees moved", Accelerator::ReinsertedBvh, Split::SurfaceArea),
+        new("bvh, streams of 64", Accelerator::StreamBvh, Split::SurfaceArea),
         new("grid", Accelerator::Grid, Split::SurfaceArea),
         new("octree", Accelerator::Octree, Split::SurfaceArea),
         new("octree by cells", Accelerator::OctreeByCells, Split::SurfaceArea),
