@@ -3,8 +3,8 @@
 //!
 //! Slides: "Surface Area Heuristic". Source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007.
 //!
-//! Given: [`PrimitiveBox`], a primitive with its box in 32 bytes; [`BinGrid`] and [`Bins`]; [`Forks`], which runs two pieces
-//! of work in parallel and logs it; the costs [`NODE_COST`] and [`BLOCK_COST`]; [`DEEPEST_SPLIT`].
+//! Given: [`PrimitiveBox`], a primitive with its box in 32 bytes; [`BinGrid`] and [`Bins`]; [`Forks`], which makes these boxes, runs
+//! two pieces of work in parallel and logs it; the costs [`NODE_COST`] and [`BLOCK_COST`]; [`DEEPEST_SPLIT`].
 
 use raykata::aabb::Aabb;
 use raykata::bvh::DEEPEST_SPLIT;
@@ -96,7 +96,7 @@ pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
 /// span is `n/2 + n/(2 pieces)` in place of `n`. A piece has at least 1,000 primitives. The span must be at most an eighth of the work
 /// at 100,000 primitives.
 ///
-/// Pitfall: each side needs an array of its own for its nodes, and indices shift when the arrays are joined.
+/// Pitfall: two sides that are built in parallel cannot append to one array, and indices shift when arrays are joined.
 ///
 /// Source: Blumofe and Leiserson, "Scheduling Multithreaded Computations by Work Stealing", 1999.
 pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {

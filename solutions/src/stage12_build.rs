@@ -3,8 +3,8 @@
 //!
 //! Slides: "Surface Area Heuristic". Source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007.
 //!
-//! Given: [`PrimitiveBox`], a primitive with its box in 32 bytes; [`BinGrid`] and [`Bins`]; [`Forks`], which runs two pieces
-//! of work in parallel and logs it; the costs [`NODE_COST`] and [`BLOCK_COST`]; [`DEEPEST_SPLIT`].
+//! Given: [`PrimitiveBox`], a primitive with its box in 32 bytes; [`BinGrid`] and [`Bins`]; [`Forks`], which makes these boxes, runs
+//! two pieces of work in parallel and logs it; the costs [`NODE_COST`] and [`BLOCK_COST`]; [`DEEPEST_SPLIT`].
 
 use raykata::aabb::Aabb;
 use raykata::bvh::DEEPEST_SPLIT;
@@ -214,7 +214,7 @@ pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
 /// span is `n/2 + n/(2 pieces)` in place of `n`. A piece has at least 1,000 primitives. The span must be at most an eighth of the work
 /// at 100,000 primitives.
 ///
-/// Pitfall: each side needs an array of its own for its nodes, and indices shift when the arrays are joined.
+/// Pitfall: two sides that are built in parallel cannot append to one array, and indices shift when arrays are joined.
 ///
 /// Source: Blumofe and Leiserson, "Scheduling Multithreaded Computations by Work Stealing", 1999.
 pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {
@@ -222,33 +222,35 @@ pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {
     if bounds.is_empty() {
         return FlatTree::default();
     }
-    let number = |(id, bounds): (usize, &Aabb)| PrimitiveBox::new(id as u32, bounds);
-    let mut primitives: Vec<PrimitiveBox> = bounds.iter().enumerate().map(number).collect();
+    let mut primitives = forks.boxes(bounds);
+    // With many more forks than processors, copying the nodes of the right sides takes longer than waiting.
+    let fork_from = FORK_FROM.max(bounds.len() / 128);
 
     // Reserve what a tree with leaves of three primitives needs, which is usual.
     let mut nodes = Vec::with_capacity(2 * bounds.len() / 3 + 1);
     // The root comes first, and is known last.
     nodes.push(LEAF);
-    nodes[0] = build_node(&mut primitives, 0, 0, &mut nodes, forks);
+    nodes[0] = build_node(&mut primitives, 0, 0, &mut nodes, forks, fork_from);
     FlatTree { nodes, order: primitives.iter().map(PrimitiveBox::id).collect() }
     // <stub> todo!("build as before; where both sides are large, join them by a fork")
     // </solution>
 }
 
 // <solution>
-/// From this number of primitives on, the two sides of a node are built in parallel.
+/// Both sides of a node of fewer primitives are built one after the other: they would take less time than a fork.
 const FORK_FROM: usize = 2048;
 
 const LEAF: FlatNode = FlatNode { low: Vec3::ZERO, first: 0, high: Vec3::ZERO, count: 0 };
 
 /// The node over these primitives, of which the first is at position `first` of the finished order. All nodes below it are
-/// appended to `nodes`.
+/// appended to `nodes`. From `fork_from` primitives on, the two sides of a node are built in parallel.
 fn build_node(
     primitives: &mut [PrimitiveBox],
     first: u32,
     depth: usize,
     nodes: &mut Vec<FlatNode>,
     forks: &mut Forks,
+    fork_from: usize,
 ) -> FlatNode {
     // Find the box around all primitives, and the box around their centroids.
     let (bounds, centroids) = bounds_of(primitives);
@@ -260,7 +262,7 @@ fn build_node(
         return node(first, primitives.len() as u32);
     };
     let fork = Fork { first, count: primitives.len() as u32, kind: ForkKind::Children };
-    let in_parallel = primitives.len() >= FORK_FROM;
+    let in_parallel = primitives.len() >= fork_from;
     let (below, above) = primitives.split_at_mut(middle);
     let first_above = first + middle as u32;
 
@@ -268,29 +270,25 @@ fn build_node(
     let pair = nodes.len();
     nodes.extend([LEAF, LEAF]);
     if in_parallel {
-        let ((mut left, mut nodes_left), (mut right, mut nodes_right)) = forks.join(
+        // The left side appends its nodes to this array, the right side to one of its own.
+        let (left, (mut right, mut nodes_right)) = forks.join(
             fork,
-            |forks| {
-                let mut nodes = Vec::with_capacity(2 * below.len() / 3 + 1);
-                (build_node(below, first, depth + 1, &mut nodes, forks), nodes)
-            },
+            |forks| build_node(below, first, depth + 1, nodes, forks, fork_from),
             |forks| {
                 let mut nodes = Vec::with_capacity(2 * above.len() / 3 + 1);
-                (build_node(above, first_above, depth + 1, &mut nodes, forks), nodes)
+                (build_node(above, first_above, depth + 1, &mut nodes, forks, fork_from), nodes)
             },
         );
-        for (child, below) in [(&mut left, &mut nodes_left), (&mut right, &mut nodes_right)] {
-            // Indices start at 0 in the array of each side.
-            let shift = nodes.len() as u32;
-            for inner in below.iter_mut().chain([child]).filter(|node| !node.is_leaf()) {
-                inner.first += shift;
-            }
-            nodes.append(below);
+        // Indices start at 0 in the array of the right side: add the number of nodes in front of it.
+        let shift = nodes.len() as u32;
+        for inner in nodes_right.iter_mut().chain([&mut right]).filter(|node| !node.is_leaf()) {
+            inner.first += shift;
         }
+        nodes.append(&mut nodes_right);
         (nodes[pair], nodes[pair + 1]) = (left, right);
     } else {
-        nodes[pair] = build_node(below, first, depth + 1, nodes, forks);
-        nodes[pair + 1] = build_node(above, first_above, depth + 1, nodes, forks);
+        nodes[pair] = build_node(below, first, depth + 1, nodes, forks, fork_from);
+        nodes[pair + 1] = build_node(above, first_above, depth + 1, nodes, forks, fork_from);
     }
     node(pair as u32, 0)
 }

@@ -1,5 +1,7 @@
 //! Work in parallel, with a log from which work and span follow.
 
+use super::PrimitiveBox;
+use crate::aabb::Aabb;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +43,21 @@ impl Forks {
     /// An empty log. If `in_parallel` is false, forks are logged, and this thread does all the work.
     pub fn new(in_parallel: bool) -> Forks {
         Forks { in_parallel, log: Vec::new() }
+    }
+
+    /// The primitives with these boxes, as the binned builder sees them: primitive `i` has the box `bounds[i]`. They are made in
+    /// parallel if threads are free, which is not logged.
+    ///
+    /// # Panics
+    ///
+    /// If there are more than a billion boxes.
+    pub fn boxes(&self, bounds: &[Aabb]) -> Vec<PrimitiveBox> {
+        let numbered = |(id, bounds): (usize, &Aabb)| PrimitiveBox::new(id as u32, bounds);
+        if self.in_parallel {
+            bounds.par_iter().enumerate().map(numbered).collect()
+        } else {
+            bounds.iter().enumerate().map(numbered).collect()
+        }
     }
 
     /// The log so far.

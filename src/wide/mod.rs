@@ -261,9 +261,12 @@ impl TriangleBlock {
     /// The triangle of a lane; its coordinates are NaN if the lane holds none.
     #[inline(always)]
     pub fn triangle(&self, lane: usize) -> Triangle {
-        let [a, b, c] =
-            self.corners.map(|corner| Vec3::new(corner[0][lane], corner[1][lane], corner[2][lane]));
-        Triangle { a, b, c }
+        let [a, b, c] = &self.corners;
+        Triangle {
+            a: Vec3::new(a[0][lane], a[1][lane], a[2][lane]),
+            b: Vec3::new(b[0][lane], b[1][lane], b[2][lane]),
+            c: Vec3::new(c[0][lane], c[1][lane], c[2][lane]),
+        }
     }
 }
 
