@@ -5,10 +5,12 @@
 //! round: above 1 the reference is faster. Camera rays come in tiles of 16 × 16 pixels, as in frames; diffuse rays leave their
 //! hits in random directions; shadow rays go from the hits to a light.
 //!
-//! `-- --dump FOLDER SCENE` writes triangles and rays as binary files of `f32`, for programs that are not Rust crates.
+//! `-- --alone SCENE …` leaves out the crates. `-- --scaling SCENE …` builds the binary tree on one and on two threads in turn.
+//! `-- --dump FOLDER SCENE …` writes triangles and rays as binary files of `f32`, for programs that are not Rust crates.
 
 mod crates;
 mod reference;
+mod scaling;
 mod scenes;
 
 use cpu_time::ThreadTime;
@@ -23,15 +25,12 @@ const ROUNDS: usize = 7;
 
 fn main() {
     let mut names: Vec<String> = std::env::args().skip(1).collect();
-    let mut folder = None;
-    let mut alone = false;
-    if names.first().is_some_and(|name| name == "--dump") {
-        folder = Some(names[1].clone());
-        names.drain(..2);
-    }
-    if names.first().is_some_and(|name| name == "--alone") {
-        alone = true;
-        names.remove(0);
+    let (mut folder, mut alone, mut scaling) = (None, false, false);
+    match names.first().map(String::as_str) {
+        Some("--dump") if names.len() > 1 => folder = names.drain(..2).next_back(),
+        Some("--alone") => alone = names.drain(..1).next().is_some(),
+        Some("--scaling") => scaling = names.drain(..1).next().is_some(),
+        _ => {}
     }
     if names.is_empty() {
         names = scenes::NAMES.map(String::from).into();
@@ -41,7 +40,11 @@ fn main() {
             eprintln!("no scene `{name}`; there are {:?} and \"terrain-12m\"", scenes::NAMES);
             std::process::exit(2);
         };
-        measure(&scene, folder.as_deref(), alone);
+        if scaling {
+            println!("{name}: {}", scaling::measured(&scene.triangles));
+        } else {
+            measure(&scene, folder.as_deref(), alone);
+        }
     }
 }
 

@@ -17,8 +17,7 @@ pub struct Wide {
 
 impl Wide {
     pub fn build(triangles: &[Triangle], in_parallel: bool) -> Wide {
-        let bounds = |t: &Triangle| Aabb::new(t.a.min(t.b).min(t.c), t.a.max(t.b).max(t.c));
-        let bounds: Vec<Aabb> = triangles.iter().map(bounds).collect();
+        let bounds = bounds(triangles);
         let tree = stage12_build::build_parallel(&bounds, &mut Forks::new(in_parallel));
         drop(bounds);
         let wide = stage12_wide::collapse(&tree);
@@ -56,15 +55,18 @@ impl Wide {
                     } else {
                         let _ = stage12_search::wide_closest_hit(&mut probe, ray);
                     }
-                    for i in 0..3 {
-                        sum[i] += probe.counts[i];
-                    }
+                    sum.iter_mut().zip(probe.counts).for_each(|(sum, count)| *sum += count);
                 }
                 sum
             }
         }
         self.instructions.run(Counting(self, rays, any))
     }
+}
+
+/// The boxes around the triangles.
+pub fn bounds(triangles: &[Triangle]) -> Vec<Aabb> {
+    triangles.iter().map(|t| Aabb::new(t.a.min(t.b).min(t.c), t.a.max(t.b).max(t.c))).collect()
 }
 
 struct Closest<'a>(&'a Wide, &'a [Ray], &'a mut [f32]);

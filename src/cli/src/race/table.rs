@@ -69,7 +69,8 @@ impl Race {
         let rounds = baseline.seconds.len();
         let mut text = format!("{}\n", wrapped(&self.title, 0));
         let what = if self.processor_time { "processor time" } else { "ELAPSED time" };
-        let _ = writeln!(text, "{what} of whole frames on one thread, {rounds} rounds, all kits in turn\n");
+        let rounds = if rounds == 1 { "1 round".into() } else { format!("{rounds} rounds") };
+        let _ = writeln!(text, "{what} of whole frames on one thread, {rounds}, all kits in turn\n");
         let _ = writeln!(
             text,
             "{:NAMES$} {:>9}  {:^19}  {:>5}  95 % interval",
