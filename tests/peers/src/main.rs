@@ -5,11 +5,12 @@
 //! round: above 1 the reference is faster. Camera rays come in tiles of 16 × 16 pixels, as in frames; diffuse rays leave their
 //! hits in random directions; shadow rays go from the hits to a light.
 //!
-//! `-- --alone SCENE …` leaves out the crates. `-- --scaling SCENE …` builds the binary tree on one and on two threads in turn.
+//! `-- --rungs SCENE …` prints what each rung of stage 12 changes, in counts. `-- --alone SCENE …` leaves out the crates. `-- --scaling SCENE …` builds the binary tree on one and on two threads in turn.
 //! `-- --dump FOLDER SCENE …` writes triangles and rays as binary files of `f32`, for programs that are not Rust crates.
 
 mod crates;
 mod reference;
+mod rungs;
 mod scaling;
 mod scenes;
 
@@ -25,10 +26,11 @@ const ROUNDS: usize = 7;
 
 fn main() {
     let mut names: Vec<String> = std::env::args().skip(1).collect();
-    let (mut folder, mut alone, mut scaling) = (None, false, false);
+    let (mut folder, mut alone, mut scaling, mut rungs) = (None, false, false, false);
     match names.first().map(String::as_str) {
         Some("--dump") if names.len() > 1 => folder = names.drain(..2).next_back(),
         Some("--alone") => alone = names.drain(..1).next().is_some(),
+        Some("--rungs") => rungs = names.drain(..1).next().is_some(),
         Some("--scaling") => scaling = names.drain(..1).next().is_some(),
         _ => {}
     }
@@ -42,6 +44,10 @@ fn main() {
         };
         if scaling {
             println!("{name}: {}", scaling::measured(&scene.triangles));
+        } else if rungs {
+            println!("{name}: {} triangles", scene.triangles.len());
+            let [camera, ..] = rays(&scene, &Wide::build(&scene.triangles, true));
+            rungs::print(&scene.triangles, &camera);
         } else {
             measure(&scene, folder.as_deref(), alone);
         }

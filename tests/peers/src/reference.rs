@@ -49,7 +49,7 @@ impl Wide {
             fn run<L: Level>(self, level: L) -> [u64; 3] {
                 let mut sum = [0; 3];
                 for ray in self.1 {
-                    let mut probe = Triangles { wide: self.0, ray: WideRay::new(ray), level, counts: [0; 3] };
+                    let mut probe = Triangles::new(self.0, ray, level);
                     if self.2 {
                         let _ = stage12_search::wide_any_hit(&mut probe, ray);
                     } else {
@@ -77,7 +77,7 @@ impl Vectorized for Closest<'_> {
     #[inline(always)]
     fn run<L: Level>(self, level: L) {
         for (ray, found) in self.1.iter().zip(self.2) {
-            let mut probe = Triangles { wide: self.0, ray: WideRay::new(ray), level, counts: [0; 3] };
+            let mut probe = Triangles::new(self.0, ray, level);
             *found = stage12_search::wide_closest_hit(&mut probe, ray).map_or(f32::INFINITY, |hit| hit.t);
         }
     }
@@ -91,17 +91,25 @@ impl Vectorized for Any<'_> {
     #[inline(always)]
     fn run<L: Level>(self, level: L) {
         for (ray, found) in self.1.iter().zip(self.2) {
-            let mut probe = Triangles { wide: self.0, ray: WideRay::new(ray), level, counts: [0; 3] };
+            let mut probe = Triangles::new(self.0, ray, level);
             *found = stage12_search::wide_any_hit(&mut probe, ray);
         }
     }
 }
 
-struct Triangles<'a, L> {
+/// Answers the questions of a search, and counts them: node visits, blocks and exact tests.
+pub struct Triangles<'a, L> {
     wide: &'a Wide,
     ray: WideRay,
     level: L,
-    counts: [u64; 3],
+    pub counts: [u64; 3],
+}
+
+impl<'a, L: Level> Triangles<'a, L> {
+    #[inline(always)]
+    pub fn new(wide: &'a Wide, ray: &Ray, level: L) -> Self {
+        Triangles { wide, ray: WideRay::new(ray), level, counts: [0; 3] }
+    }
 }
 
 impl<L: Level> WideProbe for Triangles<'_, L> {
