@@ -55,6 +55,9 @@ pub struct Stage {
     /// The checks of the stage by name, in alphabetical order; [`Stage::in_order`] has them in the order of
     /// the lecture.
     pub checks: BTreeMap<String, CheckEntry>,
+    /// The counts of the reference, by name, by which the counts of students are judged. `grader bars` writes them.
+    #[serde(default)]
+    pub bars: BTreeMap<String, f64>,
 }
 
 static FILE: LazyLock<BTreeMap<String, Stage>> = LazyLock::new(|| {
@@ -175,6 +178,18 @@ pub fn entry(stage: u8, check: &str) -> CheckEntry {
     RUBRIC.get(&format!("stage{stage}")).and_then(|stage| stage.checks.get(check)).cloned().unwrap_or_else(
         || CheckEntry { stage, points: 1, title: check.replace('_', " "), ..CheckEntry::default() },
     )
+}
+
+/// The bar of this name in the table `[stageN.bars]` of the rubric: what the reference needs.
+///
+/// # Panics
+///
+/// On the first use of [`RUBRIC`], if `tests/rubric.toml` is malformed, and if there is no such bar.
+pub fn bar(stage: u8, name: &str) -> f64 {
+    let bar = RUBRIC.get(&format!("stage{stage}")).and_then(|stage| stage.bars.get(name));
+    *bar.unwrap_or_else(|| {
+        panic!("tests/rubric.toml has no bar {name:?} in [stage{stage}.bars]; `grader bars` writes it")
+    })
 }
 
 #[cfg(test)]

@@ -2,7 +2,9 @@
 
 use anyhow::Result;
 use grader::kits::root;
-use grader::{cases, corpus, course, gaps, gauntlet, generate, handout, mutants, release, sandbox, sync};
+use grader::{
+    bars, cases, corpus, course, gaps, gauntlet, generate, handout, mutants, release, sandbox, sync,
+};
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
 use raykata_cli::args::{Given, Misuse, Read, Spec, did_you_mean, entry};
@@ -42,6 +44,7 @@ const COMMANDS: &[Command] = &[
     (&grade::REHEARSE, |given| in_kit(grade::RehearsalOptions::read(given), grade::rehearse)),
     (&cases::SPEC, |_| done(cases::list(&root()?))),
     (&sync::SPEC, |given| done(in_kit(sync::Options::read(given), sync::run))),
+    (&bars::SPEC, |given| done(in_kit(bars::Options::read(given), bars::run))),
     (&corpus::SPEC, |given| in_kit(corpus::Options::read(given), corpus::run)),
     (&corpus::carry::SPEC, |given| in_kit(corpus::carry::Options::read(given), corpus::carry::run)),
     (&gaps::SPEC, |given| gaps::run(&gaps::Options::read(given)?)),

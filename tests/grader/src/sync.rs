@@ -259,7 +259,8 @@ fn read(file: &Path) -> Result<String> {
     fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))
 }
 
-fn write(file: &Path, text: &str) -> Result<()> {
+/// Writes a file, whole or not at all.
+pub(crate) fn write(file: &Path, text: &str) -> Result<()> {
     raykata::film::write_atomically(file, |out| std::io::Write::write_all(out, text.as_bytes()))
         .with_context(|| format!("cannot write {}", file.display()))
 }

@@ -1,36 +1,121 @@
-//! The counts of the reference, by which the counts of students are judged.
-//!
-//! The test `the_bars_are_those_of_the_reference` of the solutions measures them again. Run it after a change of the
-//! reference, of a scene or of a count: it prints the new values.
+//! The bars: what the reference needs, by which the counts of students are judged. They stand in `[stage12.bars]` of
+//! `tests/rubric.toml`. `grader bars` measures them and writes them there; run it after a change of the reference, of a scene
+//! or of a count.
 
-/// For each of the scenes the cost of the tree that a full sweep gives: at each node it tries every split of the primitives,
-/// sorted along each axis, by the costs of this stage.
-pub const SWEEP_COSTS: [(&str, f64); 6] = [
-    ("an even cloud", 10.499),
-    ("a soup of large boxes", 22.603),
-    ("a small object in a stadium", 4.402),
-    ("hair", 10.375),
-    ("a landscape", 4.274),
-    ("boxes of all sizes", 7.672),
-];
+use super::places::places_in_scenes;
+use super::reinsertions::morton_trees;
+use super::scenes::scenes;
+use super::streams::streams_through_a_cloud;
+use super::trees::cost;
+use super::visits::rays_through_a_cloud;
+use super::wide_tables::n_calls;
+use checks::tree::{around, half_area};
+use raykata::aabb::Aabb;
+use raykata::kit::{Kit, ReinsertQuery};
+use raykata::rubric;
+use raykata::wide::{BLOCK, BLOCK_COST, MAX_LEAF, NODE_COST};
 
-/// For each of the scenes the cost of the tree in Morton order after the reference's `reinsert`, with as many moves as the tree has
-/// nodes.
-pub const REINSERTED_COSTS: [(&str, f64); 6] = [
-    ("an even cloud", 17.466),
-    ("a soup of large boxes", 33.083),
-    ("a small object in a stadium", 6.671),
-    ("hair", 17.029),
-    ("a landscape", 6.262),
-    ("boxes of all sizes", 12.716),
-];
+/// The calls of `wide_closest_hit` for all [`rays_through_a_cloud`]: nodes, blocks and exact tests together.
+pub fn calls_of_search() -> usize {
+    rubric::bar(12, SEARCH) as usize
+}
 
-/// The nodes that the reference's `cheapest_place` opens for all [`places_in_scenes`](super::places::places_in_scenes).
-pub const NODES_OPENED: usize = 1950;
+/// The calls of `stream_closest_hits` for all [`streams_through_a_cloud`].
+pub fn calls_of_streams() -> u64 {
+    rubric::bar(12, STREAMS) as u64
+}
 
-/// The calls of the reference's `stream_closest_hits` for all [`streams_through_a_cloud`](super::streams::streams_through_a_cloud).
-pub const CALLS_OF_STREAMS: u64 = 14_552;
+/// The nodes that `cheapest_place` opens for all [`places_in_scenes`].
+pub fn nodes_opened() -> usize {
+    rubric::bar(12, PLACES) as usize
+}
 
-/// The calls of the reference's `wide_closest_hit` for all
-/// [`rays_through_a_cloud`](super::visits::rays_through_a_cloud): nodes, blocks and exact tests together.
-pub const CALLS_OF_SEARCH: usize = 2162;
+/// The cost of the tree over a scene that a full sweep gives: at each node it tries every split of the primitives, sorted along
+/// each axis, by the costs of this stage.
+pub fn sweep_cost(scene: &str) -> f64 {
+    rubric::bar(12, &swept(scene))
+}
+
+/// The cost of the tree over a scene in Morton order after `reinsert`, with as many moves as the tree has nodes.
+pub fn reinserted_cost(scene: &str) -> f64 {
+    rubric::bar(12, &reinserted(scene))
+}
+
+const SEARCH: &str = "calls of wide_closest_hit";
+const STREAMS: &str = "calls of stream_closest_hits";
+const PLACES: &str = "nodes opened by cheapest_place";
+
+fn swept(scene: &str) -> String {
+    format!("cost after a full sweep: {scene}")
+}
+
+fn reinserted(scene: &str) -> String {
+    format!("cost after reinsert: {scene}")
+}
+
+/// All bars as `kit` gives them, in the order in which the rubric lists them. Costs are rounded to thousandths.
+pub fn measured(kit: &dyn Kit) -> Vec<(String, f64)> {
+    let rounded = |cost: f64| (1000.0 * cost).round() / 1000.0;
+    let calls: usize = kit.wide_closest_hit(&rays_through_a_cloud()).iter().map(n_calls).sum();
+    let streams = kit.stream_closest_hits(&streams_through_a_cloud());
+    let calls_of_streams: u32 = streams.iter().map(|answer| answer.n_calls).sum();
+    let opened: usize =
+        kit.cheapest_place(&places_in_scenes()).iter().map(|answer| answer.opened.len()).sum();
+    let mut bars = vec![
+        (SEARCH.into(), calls as f64),
+        (STREAMS.into(), f64::from(calls_of_streams)),
+        (PLACES.into(), opened as f64),
+    ];
+    for (scene, mut boxes) in scenes() {
+        let root = half_area(&around(&boxes));
+        bars.push((swept(scene), rounded(sweep(&mut boxes) / root)));
+    }
+    let (names, trees): (Vec<_>, Vec<ReinsertQuery>) = morton_trees().into_iter().unzip();
+    for (scene, tree) in names.into_iter().zip(kit.reinsert(&trees)) {
+        bars.push((reinserted(scene), rounded(cost(&tree))));
+    }
+    bars
+}
+
+/// The cost of a leaf over this number of primitives, for a box of area 1.
+fn leaf_cost(n: usize) -> f64 {
+    f64::from(BLOCK_COST) * n.div_ceil(BLOCK) as f64
+}
+
+/// The cost of the tree that a full sweep gives, times the half area of its root: at each node every split of the primitives
+/// is tried, sorted by their centroids along each axis.
+fn sweep(boxes: &mut [Aabb]) -> f64 {
+    let area = half_area(&around(&*boxes));
+    let n = boxes.len();
+    if n <= BLOCK {
+        return area * leaf_cost(n);
+    }
+    let (mut best, mut best_at) = (f64::INFINITY, (0, n / 2));
+    for axis in 0..3 {
+        boxes.sort_by(|p, q| (p.min + p.max)[axis].total_cmp(&(q.min + q.max)[axis]));
+        let areas = |boxes: &mut dyn Iterator<Item = &Aabb>| -> Vec<f64> {
+            let mut all = Aabb::EMPTY;
+            boxes
+                .map(|one| {
+                    all = around([&all, one]);
+                    half_area(&all)
+                })
+                .collect()
+        };
+        let (left, right) = (areas(&mut boxes.iter()), areas(&mut boxes.iter().rev()));
+        for middle in 1..n {
+            let cost = left[middle - 1] * leaf_cost(middle) + right[n - middle - 1] * leaf_cost(n - middle);
+            if cost < best {
+                (best, best_at) = (cost, (axis, middle));
+            }
+        }
+    }
+    let node = f64::from(NODE_COST) * area;
+    if n <= MAX_LEAF && node + best >= area * leaf_cost(n) {
+        return area * leaf_cost(n);
+    }
+    let (axis, middle) = best_at;
+    boxes.sort_by(|p, q| (p.min + p.max)[axis].total_cmp(&(q.min + q.max)[axis]));
+    let (left, right) = boxes.split_at_mut(middle);
+    node + sweep(left) + sweep(right)
+}

@@ -1,6 +1,6 @@
 //! The counted cost of a search: how many nodes, blocks and primitives it asks for.
 
-use super::bars::CALLS_OF_SEARCH;
+use super::bars::calls_of_search;
 use super::wide_tables::{Flaw, closest, flawed_search, n_calls};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
@@ -167,7 +167,7 @@ fn judge_calls(trial: &Trial<'_>, percent: usize) -> CheckResult {
     let what = format!("{} rays through a cloud of 600 spheres", queries.len());
     judge_hits(&queries, &answers, &what)?;
     let yours: usize = answers.iter().map(n_calls).sum();
-    let most = CALLS_OF_SEARCH * percent / 100;
+    let most = calls_of_search() * percent / 100;
     if yours <= most {
         return Ok(());
     }
