@@ -237,7 +237,7 @@ pub(crate) fn write_if_new(file: &Path, text: &str) -> Result<()> {
     write().with_context(|| format!("{} cannot be written", file.display()))
 }
 
-/// Makes `to` an exact copy of `from`.
+/// Makes `to` an exact copy of `from`, without packages that lie in either.
 pub(crate) fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     let mut wanted = BTreeSet::new();
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
@@ -255,7 +255,7 @@ pub(crate) fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     }
     for entry in fs::read_dir(to).with_context(|| to.display().to_string())? {
         let entry = entry?;
-        if !wanted.contains(&entry.file_name()) {
+        if !wanted.contains(&entry.file_name()) && !entry.path().join("Cargo.toml").is_file() {
             let gone = if entry.file_type()?.is_dir() { fs::remove_dir_all } else { fs::remove_file };
             gone(entry.path()).with_context(|| entry.path().display().to_string())?;
         }
