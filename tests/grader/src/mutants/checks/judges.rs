@@ -85,8 +85,8 @@ impl Judges {
         copy_with_times(&self.root.join("tests/golden"), &self.folder.join("tests/golden"))
     }
 
-    /// Starts the judge with a changed check. `None` if it does not compile.
-    pub fn changed(&self, mutant: &Mutant) -> Result<Option<Judge>> {
+    /// Builds the judge with a changed check. `None` if it does not compile.
+    pub fn changed(&self, mutant: &Mutant) -> Result<Option<PathBuf>> {
         let original = read(&self.root.join(&mutant.file))?;
         let text = entry::apply(&mutant.file, &mutant.diff, &original)?;
         let file = self.folder.join(&mutant.file);
@@ -99,7 +99,7 @@ impl Judges {
         if modified(&judge) == before {
             bail!("cargo found no change in {}: remove it and run this again", self.folder.display());
         }
-        Judge::start(&judge).map(Some)
+        Ok(Some(judge))
     }
 
     fn program(&self) -> PathBuf {
