@@ -31,7 +31,6 @@ use reviewed::Reviewed;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
 /// `grader mutants`.
 pub static SPEC: Spec = Spec {
@@ -241,9 +240,6 @@ fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) ->
     elsewhere.map_or(Fate::Survived, Fate::ByAnotherStage)
 }
 
-/// The longest time for a call of a check. Many changes never end; the slowest call of a change that ends takes half a second.
-const PATIENCE: Duration = Duration::from_secs(3);
-
 /// The checks that failed, the latest one first. The next change is often one of the same function, which they notice as well,
 /// so they are tried first.
 #[derive(Default)]
@@ -264,7 +260,8 @@ impl Latest {
 
 /// Returns the first check of the `wanted` stages that the worker fails.
 fn failed_check(worker: &Path, wanted: impl Fn(u8) -> bool, latest: &Latest) -> Option<String> {
-    let kit = || -> Arc<dyn Kit + Send + Sync> { Arc::new(Door(Worker::new(worker.to_owned(), PATIENCE))) };
+    let kit =
+        || -> Arc<dyn Kit + Send + Sync> { Arc::new(Door(Worker::new(worker.to_owned(), CALL_PATIENCE))) };
     let wanted = STAGES.iter().filter(|(stage, _)| wanted(*stage));
     let mut checks: Vec<&'static Check> = wanted.flat_map(|(_, checks)| checks.iter()).collect();
     latest.sort(&mut checks);
