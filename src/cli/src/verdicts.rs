@@ -1,6 +1,7 @@
-//! The messages of `judge verdicts`: the verdicts of a stage, each as soon as it is known.
+//! The messages of `judge verdicts`, the verdicts of a stage, each as soon as it is known, and of `judge trials`.
 
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// A check and its verdict.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,4 +26,17 @@ pub enum Verdict {
     },
     /// The law is broken, or the code crashed or did not end: the message for the student.
     Failed(String),
+}
+
+/// A request to `judge trials`: one check of one worker. The answer is a [`Verdict`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CheckTrial {
+    /// The stage of the check.
+    pub stage: u8,
+    /// The name of the check.
+    pub check: String,
+    /// The program of the worker.
+    pub worker: PathBuf,
+    /// Whether a failure needs a message. Without one the verdict comes sooner.
+    pub needs_message: bool,
 }

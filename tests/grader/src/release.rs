@@ -145,9 +145,10 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
 
 fn copy(from: &Path, to: &Path) -> Result<()> {
     let cannot = || format!("cannot copy {}: is this the whole kit?", from.display());
+    let cannot_write = || format!("cannot write {}", to.display());
     let kind = fs::symlink_metadata(from).with_context(cannot)?;
     if kind.is_dir() {
-        fs::create_dir_all(to).with_context(cannot)?;
+        fs::create_dir_all(to).with_context(cannot_write)?;
         for entry in fs::read_dir(from).with_context(cannot)? {
             let name = entry.with_context(cannot)?.file_name();
             if !GENERATED.iter().any(|generated| name == *generated) {
@@ -155,7 +156,7 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
             }
         }
     } else if kind.is_file() {
-        fs::copy(from, to).with_context(cannot)?;
+        fs::copy(from, to).with_context(|| format!("cannot copy {} to {}", from.display(), to.display()))?;
     }
     Ok(())
 }

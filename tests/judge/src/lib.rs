@@ -14,3 +14,4 @@ pub mod leak_table;
 pub mod pixel;
 pub mod scorecard;
 pub mod table;
+pub mod trials;

@@ -1,9 +1,9 @@
 //! The program that `raykata` starts: `judge check ROOT WORKER [STAGE]`, `judge status ROOT WORKER`, `judge
-//! pixel ROOT WORKER CHECK X,Y`, `judge gauntlet ROOT WORKER INPUTS SEED`, `judge verdicts ROOT WORKER STAGE`, which writes messages, and `judge hits`, which reads
-//! requests from standard input.
+//! pixel ROOT WORKER CHECK X,Y`, `judge gauntlet ROOT WORKER INPUTS SEED`, `judge verdicts ROOT WORKER STAGE`, which writes messages, `judge hits` and `judge trials`, which
+//! read requests from standard input.
 
 use anyhow::{Result, bail};
-use judge::{boxes_and_offsets, gauntlet, hits, pixel, scorecard};
+use judge::{boxes_and_offsets, gauntlet, hits, pixel, scorecard, trials};
 use raykata_cli::kits::{Source, Which};
 use std::path::Path;
 use std::process::ExitCode;
@@ -42,6 +42,7 @@ fn run() -> Result<bool> {
             scorecard::tell(&source(worker), stage.parse()?, std::io::stdout()).map(|()| true)
         }
         ["hits"] => hits::serve(std::io::stdin().lock(), std::io::stdout().lock()).map(|()| true),
+        ["trials"] => trials::serve(std::io::stdin().lock(), std::io::stdout().lock()).map(|()| true),
         _ => bail!("this is the judge: `raykata check` starts it. It is not started by hand"),
     }
 }

@@ -1,7 +1,7 @@
 //! Multiple importance sampling.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::magnitude;
 use checks::judge::compare;
 use checks::paste::call;
@@ -104,7 +104,16 @@ pub(super) fn mis_weight_of_a_lone_density_is_one(trial: &Trial<'_>) -> CheckRes
                 (pair.1 == 0.0, "the other technique never takes this sample: its weight is 1"),
             ]))
         })
-    })
+    })?;
+    // Where neither technique takes the sample, or both always do, any weight passes that is one.
+    let alike = [(0.0, 0.0), (f32::INFINITY, f32::INFINITY)];
+    all_hold(compare(&alike, trial.kit.mis_weight(&alike), |pair, yours| {
+        if (0.0..=1.0).contains(&yours) {
+            return Ok(());
+        }
+        Err(Broken::with_texts(paste(pair), format!("{yours:?}"), "any weight in 0..=1", "the definition")
+            .explained_by([(yours.is_nan(), "you return NaN: 0 / 0 or ∞ / ∞")]))
+    }))
 }
 
 pub(super) fn mis_weight_survives_extreme_densities(trial: &Trial<'_>) -> CheckResult {

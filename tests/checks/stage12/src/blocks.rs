@@ -107,25 +107,45 @@ pub(super) fn may_hit_keeps_what_is_hit(trial: &Trial<'_>) -> CheckResult {
     Ok(())
 }
 
+/// A ray whose range begins one float before its hit, or ends one float behind it; `None` without a hit.
+fn at_the_ends(random: &mut Random, ray: &Ray, triangle: Triangle) -> Option<Four> {
+    let ray = Ray::new(ray.origin, ray.direction);
+    let t = exact(&ray, &triangle)?;
+    let (t_min, t_max) = match random.below(3) {
+        0 => (t.next_down().max(0.0), f32::INFINITY),
+        1 => (0.0, t.next_up()),
+        _ => (t.next_down().max(0.0), t.next_up()),
+    };
+    let triangles = vec![triangle; 1 + random.below(4) as usize];
+    Some(Four { triangles, ray: ray.with_range(t_min, t_max) })
+}
+
+/// A ray that starts near the corner a of a triangle and hits it far from there, at any `t`. So the error of `t` depends on the way
+/// of the ray, and not on the distance of the corner.
+fn a_long_way(random: &mut Random) -> (Ray, Triangle) {
+    let scale = 2f32.powi(random.below(121) as i32 - 81);
+    let [a, b, c] = [(); 3].map(|()| scale * random.in_cube());
+    let origin = a + scale * 2f32.powi(-1 - random.below(12) as i32) * random.in_cube();
+    let target = a.lerp(b.lerp(c, random.unit()), 0.5 + 0.5 * random.unit());
+    let t = 2f32.powi(random.below(81) as i32 - 40);
+    (Ray::new(origin, (target - origin) / t), Triangle { a, b, c })
+}
+
 pub(super) fn may_hit_keeps_hits_at_the_ends_of_the_range(trial: &Trial<'_>) -> CheckResult {
     for (index, distribution) in DISTRIBUTIONS.iter().enumerate() {
         let mut random = Random::new(trial.seed, 50 + index as u64);
-        let mut drawn = Vec::new();
-        for _ in 0..300 {
+        let drawn = (0..300).filter_map(|_| {
             let (ray, first) = (distribution.draw)(&mut random);
-            let Some(t) = exact(&Ray::new(ray.origin, ray.direction), &first) else { continue };
-            // The range begins one float before the hit, or ends one float behind it.
-            let (t_min, t_max) = match random.below(3) {
-                0 => (t.next_down().max(0.0), f32::INFINITY),
-                1 => (0.0, t.next_up()),
-                _ => (t.next_down().max(0.0), t.next_up()),
-            };
-            let ray = Ray::new(ray.origin, ray.direction).with_range(t_min, t_max);
-            drawn.push(Four { triangles: vec![first; 1 + random.below(4) as usize], ray });
-        }
-        judge_all(trial, drawn)?;
+            at_the_ends(&mut random, &ray, first)
+        });
+        judge_all(trial, drawn.collect())?;
     }
-    Ok(())
+    let mut random = Random::new(trial.seed, 49);
+    let drawn = (0..1000).filter_map(|_| {
+        let (ray, first) = a_long_way(&mut random);
+        at_the_ends(&mut random, &ray, first)
+    });
+    judge_all(trial, drawn.collect())
 }
 
 /// Rays from inside closed meshes, each with the triangles around the vertex near which it should hit.

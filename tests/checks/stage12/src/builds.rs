@@ -284,7 +284,16 @@ pub(super) fn build_binned_is_not_too_deep(trial: &Trial<'_>) -> CheckResult {
         Aabb::new(at, at)
     };
     let what = "600 points on the three axes, each at half the distance of the one before";
-    build_of(trial, what, (0..600).map(point).collect())
+    let points: Vec<Aabb> = (0..600).map(point).collect();
+    build_of(trial, what, points.clone())?;
+    // On the other side of the origin, the many points are the second side of each split.
+    let mirrored = |points: &[Aabb]| points.iter().map(|point| Aabb::new(-point.max, -point.min)).collect();
+    build_of(trial, "these points on the other side of the origin", mirrored(&points))?;
+    // With so many points at the origin, each of these splits is one of a large node, which a student may fork. All costs are
+    // finite: the largest 60 points are left out.
+    let crowd = [&points[60..], &vec![Aabb::new(Vec3::ZERO, Vec3::ZERO); 4000]].concat();
+    build_of(trial, "540 of these points, and 4000 at the origin", crowd.clone())?;
+    build_of(trial, "4540 such points on the other side of the origin", mirrored(&crowd))
 }
 
 pub(super) fn build_binned_isolates_what_is_not_a_number(trial: &Trial<'_>) -> CheckResult {

@@ -5,9 +5,11 @@ use super::trees::{boxes, drawn_tree};
 use checks::Trial;
 use checks::broken::CheckResult;
 use checks::judge::compare;
+use checks::tree::{around, half_area};
 use proptest::prelude::*;
+use raykata::aabb::Aabb;
 use raykata::wide::FlatTree;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The shape of a tree whose leaves are known by their first primitives. The order of the children does not matter.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -50,11 +52,48 @@ impl Form {
         all
     }
 
+    /// The box of the tree over these leaves, and the areas of all inner nodes together.
+    fn areas(&self, leaves: &BTreeMap<u32, Aabb>) -> (Aabb, f64) {
+        match self {
+            Form::Leaf(first) => (leaves[first], 0.0),
+            Form::Inner(pair) => {
+                let [(left, of_left), (right, of_right)] =
+                    [&pair.0, &pair.1].map(|child| child.areas(leaves));
+                let bounds = around([&left, &right]);
+                (bounds, of_left + of_right + half_area(&bounds))
+            }
+        }
+    }
+
     /// The trees that one move makes of this one, and the tree itself.
     fn one_move_away(&self) -> BTreeSet<Form> {
         let moved = self.parts().into_iter().flat_map(|(part, rest)| rest.with(&part));
         moved.chain([self.clone()]).collect()
     }
+}
+
+/// The part of the areas that a move must save so that it has to be made. Rounding errors are much smaller.
+const CLEARLY: f64 = 0.01;
+
+/// Judges that something is moved if one move makes the areas of all inner nodes together clearly smaller.
+fn judge_that_it_moves(case: &Case, yours: &FlatTree) -> CheckResult {
+    let tree = &case.query.tree;
+    let leaves = tree.nodes.iter().filter(|node| node.is_leaf());
+    let leaves = leaves.map(|leaf| (tree.order[leaf.first as usize], leaf.bounds())).collect();
+    let given = Form::of(tree, 0);
+    let areas = |form: &Form| form.areas(&leaves).1;
+    let before = areas(&given);
+    let least = given.one_move_away().iter().map(areas).fold(f64::INFINITY, f64::min);
+    let (mine, pays) = (Form::of(yours, 0), least < (1.0 - CLEARLY) * before);
+    if !pays || areas(&mine) < before {
+        return Ok(());
+    }
+    let broken = case.broken(
+        format!("areas of {:.4} together", areas(&mine)),
+        format!("less than {before:.4}: one move makes {least:.4} of it"),
+        "all trees that are one move away",
+    );
+    Err(broken.explained_by([(mine == given, "no subtree is moved")]))
 }
 
 pub(super) fn reinsert_makes_at_most_so_many_moves(trial: &Trial<'_>) -> CheckResult {
@@ -78,7 +117,7 @@ pub(super) fn reinsert_makes_at_most_so_many_moves(trial: &Trial<'_>) -> CheckRe
                 reached = reached.iter().flat_map(Form::one_move_away).collect();
             }
             if reached.contains(&Form::of(&yours, 0)) {
-                return Ok(());
+                return if case.query.most_moves > 0 { judge_that_it_moves(case, &yours) } else { Ok(()) };
             }
             let moves = case.query.most_moves;
             let broken = case.broken(

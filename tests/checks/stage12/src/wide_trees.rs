@@ -278,15 +278,17 @@ fn broken_rule(tree: &FlatTree, meaning: &Meaning) -> Option<(String, &'static s
     None
 }
 
+/// Judges which children were opened.
+fn judge_opened(tree: &FlatTree, wide: &WideTree) -> CheckResult {
+    judge_leaves(tree, wide)?;
+    let broken = meaning(tree, wide).ok().and_then(|meaning| broken_rule(tree, &meaning));
+    let Some((yours, expected)) = broken else { return Ok(()) };
+    Err(Broken::with_texts(describe(tree), yours, expected, "the areas of the nodes").explained_by([]))
+}
+
 pub(super) fn collapse_opens_the_largest_child(trial: &Trial<'_>) -> CheckResult {
     trial.forall(200, trees_only(120), |trees| {
-        let judge = |tree: &FlatTree, wide: WideTree| {
-            judge_leaves(tree, &wide)?;
-            let broken = meaning(tree, &wide).ok().and_then(|meaning| broken_rule(tree, &meaning));
-            let Some((yours, expected)) = broken else { return Ok(()) };
-            Err(Broken::with_texts(describe(tree), yours, expected, "the areas of the nodes")
-                .explained_by([]))
-        };
+        let judge = |tree: &FlatTree, wide: WideTree| judge_opened(tree, &wide);
         let formulas = |tree: &FlatTree, wide: &WideTree| {
             let Ok(meaning) = meaning(tree, wide) else {
                 return WRONG_RULES.map(|(_, text)| (false, text)).to_vec();
@@ -303,7 +305,11 @@ pub(super) fn collapse_opens_the_largest_child(trial: &Trial<'_>) -> CheckResult
             WRONG_RULES.map(|(rule, text)| (follows(rule), text)).to_vec()
         };
         compare_formulas(trees, trial.kit.collapse(trees), judge, formulas)
-    })
+    })?;
+    // No node has an area, so any of them may be opened next, until there are eight children.
+    let point = Vec3::splat(trial.varied(1.0, 0.25..8f32));
+    let trees = [drawn_tree(&[Aabb::new(point, point); 40], 1, &[])];
+    all_hold(compare(&trees, trial.kit.collapse(&trees), |tree, wide| judge_opened(tree, &wide)))
 }
 
 /// A tree over boxes in a row whose nodes are divided in half down to leaves of four. A node is larger than all nodes of the

@@ -7,7 +7,7 @@
 pub mod carry;
 pub mod entry;
 pub mod records;
-mod tested;
+pub(crate) mod tested;
 pub mod verdict;
 pub mod workshop;
 

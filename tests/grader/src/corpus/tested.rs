@@ -36,7 +36,7 @@ impl Tested {
     pub fn open(root: &Path, resume: bool, seed: Option<u64>) -> Result<Tested> {
         let file = root.join(FOLDER).join("corpus.jsonl");
         let seed = seed.map_or("no seed".to_owned(), |seed| format!("--seed {seed}"));
-        let about = format!("the corpus with {seed} and the code {}", code(root)?);
+        let about = format!("the corpus with {seed} and the code {}", code(root, &DECIDE)?);
         let journal = if resume { Journal::resume(&file, &about)? } else { Journal::create(&file, &about)? };
         Ok(Tested(Mutex::new(journal)))
     }
@@ -70,9 +70,10 @@ fn name(entry: &Entry) -> String {
     format!("{entry} {}", fingerprint([format!("{entry:?}").as_bytes()]))
 }
 
-fn code(root: &Path) -> Result<String> {
+/// A fingerprint of these files and folders of the kit.
+pub(crate) fn code(root: &Path, paths: &[&str]) -> Result<String> {
     let mut files: Vec<PathBuf> = Vec::new();
-    let mut waiting: Vec<PathBuf> = DECIDE.iter().map(|path| root.join(path)).collect();
+    let mut waiting: Vec<PathBuf> = paths.iter().map(|path| root.join(path)).collect();
     while let Some(path) = waiting.pop() {
         if path.is_dir() {
             let inside = fs::read_dir(&path).with_context(|| format!("cannot read {}", path.display()))?;

@@ -6,6 +6,7 @@
 //! solutions unchanged is an error, because its verdict would belong to the previous entry.
 
 use super::entry;
+use crate::grade::scratch::has_room;
 use crate::kits::Need;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
@@ -18,8 +19,11 @@ use std::process::{Command, Stdio};
 const QUICK_BUILD: [&str; 4] =
     ["--config", "profile.dev.debug=false", "--config", "profile.dev.package.solutions.overflow-checks=true"];
 
-/// The optimisation level of an entry. Without frames, building an entry takes longer than its answers: a changed function
-/// needs 0.4 s of processor time at level 0, compared with 1.9 s at level 3. With frames, the pictures take longer.
+/// With this option, only the functions that changed are compiled: 0.6 s in place of 1.8 s at level 0.
+const INCREMENTAL: [&str; 2] = ["--config", "profile.dev.package.solutions.incremental=true"];
+
+/// The optimisation level of an entry. Without frames, building an entry takes longer than its answers, so it is built at level
+/// 0. With frames, the pictures take longer.
 fn level(need: Need) -> &'static str {
     match need {
         Need::Checks => "profile.dev.package.solutions.opt-level=0",
@@ -77,11 +81,15 @@ impl Workshop {
         let workshop = Workshop { root: root.to_owned(), folder, need };
         write_if_new(
             &workshop.folder.join("Cargo.toml"),
-            &cut_manifest(&read(&root.join("Cargo.toml"))?, &["dev-dependencies", "[test]", "[bench]"]),
+            &cut_manifest(
+                &read(&root.join("Cargo.toml"))?,
+                &["dev-dependencies", "[test]", "[bench]"],
+                &["solutions"],
+            ),
         )?;
         write_if_new(
             &workshop.folder.join("solutions/Cargo.toml"),
-            &cut_manifest(&read(&root.join("solutions/Cargo.toml"))?, &["dev-dependencies", "[bench]"]),
+            &cut_manifest(&read(&root.join("solutions/Cargo.toml"))?, &["dev-dependencies", "[bench]"], &[]),
         )?;
         // The build of the scaffold reads the rubric.
         fs::create_dir_all(workshop.folder.join("tests"))?;
@@ -116,7 +124,7 @@ impl Workshop {
     }
 
     /// Builds the solutions without a change.
-    fn build_original(&self) -> Result<Built> {
+    pub(crate) fn build_original(&self) -> Result<Built> {
         self.reset()?;
         Ok(self.cargo()?.1)
     }
@@ -162,6 +170,7 @@ impl Workshop {
             .args(QUICK_BUILD)
             .args(["--config", level(self.need)])
             .args(scaffold(self.need).into_iter().flat_map(|level| ["--config", level]))
+            .args(INCREMENTAL.iter().filter(|_| self.need == Need::Checks))
             .stdin(Stdio::null())
             .output()
             .context("cargo, which builds the entries, cannot be started")?;
@@ -181,6 +190,7 @@ impl Workshop {
         match worker {
             Some(worker) if output.status.success() => Ok((fresh, Built::Worker(worker.into()))),
             _ => {
+                has_room(&self.folder, "delete something")?;
                 let errors = messages.iter().filter(|message| message["message"]["level"] == "error");
                 let first = errors.filter_map(|message| message["message"]["rendered"].as_str()).next();
                 let stderr = String::from_utf8_lossy(&output.stderr);
@@ -190,8 +200,8 @@ impl Workshop {
     }
 }
 
-/// Returns a manifest without the sections of these names, with `solutions` as its only member.
-fn cut_manifest(manifest: &str, without: &[&str]) -> String {
+/// Returns a manifest without the sections of these names, and with these members if it is that of a workspace.
+pub(crate) fn cut_manifest(manifest: &str, without: &[&str], members: &[&str]) -> String {
     let mut cut = String::new();
     let mut keep = true;
     for line in manifest.lines() {
@@ -201,7 +211,7 @@ fn cut_manifest(manifest: &str, without: &[&str]) -> String {
         }
         match line {
             _ if !keep || line.starts_with("default-members") => {}
-            _ if line.starts_with("members = ") => cut.push_str("members = [\"solutions\"]\n"),
+            _ if line.starts_with("members = ") => cut.push_str(&format!("members = {members:?}\n")),
             _ => {
                 cut.push_str(line);
                 cut.push('\n');
@@ -211,12 +221,12 @@ fn cut_manifest(manifest: &str, without: &[&str]) -> String {
     cut
 }
 
-fn read(file: &Path) -> Result<String> {
+pub(crate) fn read(file: &Path) -> Result<String> {
     fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))
 }
 
 /// Writes a file only if its text differs, so that cargo rebuilds only changed files.
-fn write_if_new(file: &Path, text: &str) -> Result<()> {
+pub(crate) fn write_if_new(file: &Path, text: &str) -> Result<()> {
     if fs::read_to_string(file).is_ok_and(|old| old == text) {
         return Ok(());
     }
@@ -227,8 +237,8 @@ fn write_if_new(file: &Path, text: &str) -> Result<()> {
     write().with_context(|| format!("{} cannot be written", file.display()))
 }
 
-/// Makes `to` an exact copy of `from`.
-fn copy_folder(from: &Path, to: &Path) -> Result<()> {
+/// Makes `to` an exact copy of `from`, without packages that lie in either.
+pub(crate) fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     let mut wanted = BTreeSet::new();
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
         let entry = entry?;
@@ -245,7 +255,7 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     }
     for entry in fs::read_dir(to).with_context(|| to.display().to_string())? {
         let entry = entry?;
-        if !wanted.contains(&entry.file_name()) {
+        if !wanted.contains(&entry.file_name()) && !entry.path().join("Cargo.toml").is_file() {
             let gone = if entry.file_type()?.is_dir() { fs::remove_dir_all } else { fs::remove_file };
             gone(entry.path()).with_context(|| entry.path().display().to_string())?;
         }
@@ -254,7 +264,7 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
 }
 
 /// Copies a folder with the modification times of its files, from which cargo sees which files are up to date.
-fn copy_with_times(from: &Path, to: &Path) -> Result<()> {
+pub(crate) fn copy_with_times(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
         let (entry, target) = entry.map(|entry| (entry.path(), to.join(entry.file_name())))?;
@@ -278,7 +288,7 @@ mod tests {
         let root = "[workspace]\nmembers = [\"a\", \"b\"]\ndefault-members = [\".\"]\n[package]\nname = \"r\"\n\
                     [dev-dependencies]\nchecks = \"1\"\n[[test]]\nname = \"s\"\n[lints]\nworkspace = true\n";
         assert_eq!(
-            cut_manifest(root, &["dev-dependencies", "[test]"]),
+            cut_manifest(root, &["dev-dependencies", "[test]"], &["solutions"]),
             "[workspace]\nmembers = [\"solutions\"]\n[package]\nname = \"r\"\n[lints]\nworkspace = true\n"
         );
     }

@@ -21,6 +21,9 @@ use std::time::Duration;
 /// Time limit of the syntax check. It reads tokens and needs a few milliseconds for the longest file.
 const LINT_PATIENCE: Duration = Duration::from_secs(10);
 
+/// What to do if the disk of the temporary folders is full.
+const MAKE_ROOM: &str = "delete something, or set TMPDIR to a folder on another disk";
+
 /// Everything that grading a submission needs.
 pub struct Grader {
     /// Makes workers.
@@ -103,7 +106,7 @@ impl Grader {
         }
         // Compile in a temporary folder outside of the kit and of the submission.
         let scratch = scratch::folder()?;
-        scratch::has_room(scratch.path())?;
+        scratch::has_room(scratch.path(), MAKE_ROOM)?;
         // Leave out the files that the syntax check refuses, and build the others.
         let Read { refused, may_remember } = self.read(&files, &mut remarks)?;
         let kept: BTreeMap<String, String> =
@@ -111,7 +114,7 @@ impl Grader {
         let forged = self.forge.build(scratch.path(), &kept);
         // Blame no file for a disk that has become full.
         if forged.as_ref().map_or(true, |forged| !forged.replaced.is_empty()) {
-            scratch::has_room(scratch.path())?;
+            scratch::has_room(scratch.path(), MAKE_ROOM)?;
         }
         let forged = forged?;
         graded.cpu_ms = forged.cpu.as_millis() as u64;

@@ -21,7 +21,7 @@ pub mod report;
 pub mod result;
 mod run_attacks;
 mod sanity;
-mod scratch;
+pub(crate) mod scratch;
 mod shard;
 mod store;
 mod submission;

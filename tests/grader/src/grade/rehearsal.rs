@@ -172,7 +172,7 @@ fn hand_in(root: &Path, class: &Path, number: usize, role: &Role) -> Result<Stri
     if let Role::Attack(attack) = role {
         // The files that an attack must not reach lie beside the class.
         let folder = class.with_extension(format!("attack-{number}"));
-        fs::create_dir_all(&folder)?;
+        fs::create_dir_all(&folder).with_context(|| format!("cannot write {}", folder.display()))?;
         let made = attacks::make(attack, &AttackFolders { root, folder: &folder })?;
         let name = made.file_name().context("a submission without a name")?;
         let ending =
@@ -187,9 +187,11 @@ fn hand_in(root: &Path, class: &Path, number: usize, role: &Role) -> Result<Stri
         fs::rename(&made, class.join(to))?;
     } else {
         let folder = class.join(format!("student-{number:04}/exercises/src"));
-        fs::create_dir_all(&folder)?;
         for (name, text) in texts(root, role)? {
-            fs::write(folder.join(name), text)?;
+            let file = folder.join(name);
+            fs::create_dir_all(&folder)
+                .and_then(|()| fs::write(&file, text))
+                .with_context(|| format!("cannot write {}", file.display()))?;
         }
     }
     Ok(format!("student-{number:04}"))

@@ -149,10 +149,11 @@ pub fn write(root: &Path, folder: &Path, course: Option<&CourseFiles>) -> Result
     }
     for (path, bytes) in &files {
         let file = folder.join(path);
-        fs::create_dir_all(file.parent().unwrap_or(folder))?;
-        fs::write(&file, bytes).with_context(|| format!("cannot write {path}"))?;
+        fs::create_dir_all(file.parent().unwrap_or(folder))
+            .and_then(|()| fs::write(&file, bytes))
+            .with_context(|| format!("cannot write {}", file.display()))?;
     }
-    settle_versions(folder);
+    settle_versions(folder, &files["Cargo.lock"])?;
     Ok(files.len())
 }
 
@@ -259,12 +260,18 @@ fn readme(of_kit: &str) -> Result<String> {
     Ok(README.replace("{greeting}", greeting.trim()).replace("{student}", student.trim()))
 }
 
-/// Removes unused packages from Cargo.lock. Without cargo's copy of the registry this fails, and cargo does it at the first
-/// build.
-fn settle_versions(folder: &Path) {
+/// Removes unused packages from Cargo.lock, which holds `whole`. Without cargo's copy of the registry this fails, and cargo does
+/// it at the first build.
+fn settle_versions(folder: &Path, whole: &[u8]) -> Result<()> {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(folder).args(["update", "--workspace", "--offline", "--quiet"]);
-    let _ = cargo.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    let status = cargo.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    if status.is_ok_and(|status| status.success()) {
+        return Ok(());
+    }
+    // Cargo may have written a part of the file, for example on a full disk.
+    let file = folder.join("Cargo.lock");
+    fs::write(&file, whole).with_context(|| format!("cannot write {}", file.display()))
 }
 
 /// Makes a hand-out readable for others. A temporary folder is readable only for its owner.

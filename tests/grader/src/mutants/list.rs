@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 const MARK: &str = " /* ~ changed by cargo-mutants ~ */";
 
 /// One change of one function.
-#[derive(Deserialize)]
+#[derive(Clone, Deserialize)]
 pub struct Mutant {
     /// The file, from the root of the kit: `solutions/src/…`.
     pub file: String,
@@ -60,11 +60,12 @@ impl fmt::Display for Mutant {
     }
 }
 
-/// Lists all changes of solutions/src.
-pub fn all(root: &Path) -> Result<Vec<Mutant>> {
+/// Lists all changes of these packages.
+pub fn all(root: &Path, packages: &[String]) -> Result<Vec<Mutant>> {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(root)
-        .args(["mutants", "--list", "--json", "--diff", "--package", "solutions"])
+        .args(["mutants", "--list", "--json", "--diff"])
+        .args(packages.iter().flat_map(|package| ["--package", package]))
         .stdin(Stdio::null())
         .output()
         .context("cargo cannot be started")?;

@@ -4,8 +4,9 @@
 //! renders all scenes. A change that survives is either a gap in the checks or equivalent to the original. Equivalent
 //! changes are listed in tests/corpus/equivalent.toml, each with a reason.
 //!
-//! `list` (the changes) · `journal` (the tested changes) · `reviewed` (the equivalent changes)
+//! `list` (the changes) · `journal` (the tested changes) · `reviewed` (the equivalent changes) · `checks` (changes of the checks)
 
+mod checks;
 mod journal;
 mod list;
 pub mod reviewed;
@@ -18,26 +19,30 @@ use crate::pictures::{Scenes, Shown};
 use crate::queue;
 use crate::report::bar_of_steps;
 use crate::worker::{CALL_PATIENCE, Worker};
+use ::checks::Check;
 use all_checks::STAGES;
 use anyhow::{Result, bail};
-use checks::Check;
 use journal::Journal;
 use list::Mutant;
-use raykata::kit::Door;
+use raykata::kit::{Door, Kit};
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use raykata_cli::lock::Lock;
 use reviewed::Reviewed;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// `grader mutants`.
 pub static SPEC: Spec = Spec {
     name: "grader mutants",
     about: "Test the checks with changes that cargo-mutants makes to the solutions (for authors).",
-    arguments: &[Argument::optional("FILE", "Only files of solutions/src whose names contain this.")],
+    arguments: &[Argument::optional("FILE", "Only files whose names contain this.")],
     options: &[&[
+        Opt::flag("--checks", "Change the checks instead, and test them with the entries of the corpus."),
+        Opt::value("--sample", "N", "With --checks: only N changes of each stage."),
+        Opt::value("--seed", "N", "With --sample: another sample [default: 0]."),
         Opt::flag("--resume", "Continue the last run: skip the changes that it has tested."),
+        Opt::flag("--quick", "Only the checks of the change's own stage, without pictures and other stages."),
         Opt::flag("--again", "Only the changes that survived the last run."),
         Opt::value("--jobs", "N", "How many to test at the same time [default: one per core]."),
     ]],
@@ -48,18 +53,37 @@ pub struct Options {
     file: Option<String>,
     resume: bool,
     again: bool,
+    quick: bool,
     jobs: usize,
+    checks: bool,
+    sample: Option<usize>,
+    seed: u64,
 }
+
+/// The list of reviewed changes of the solutions.
+const REVIEWED: &str = "tests/corpus/equivalent.toml";
+
+/// The list of reviewed changes of the checks.
+const REVIEWED_CHECKS: &str = "tests/corpus/harmless.toml";
 
 impl Options {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--again", "--resume")?;
+        given.exclude("--checks", "--jobs")?;
+        given.exclude("--checks", "--quick")?;
+        if !given.has("--checks") && given.has("--sample") {
+            return Err(given.misuse("`--sample` chooses changes of checks: add `--checks`"));
+        }
         Ok(Options {
             file: given.argument(0).map(|file| file.to_string_lossy().into_owned()),
             resume: given.has("--resume"),
             again: given.has("--again"),
+            quick: given.has("--quick"),
             jobs: given.number("--jobs", 0..=usize::MAX)?.unwrap_or_else(queue::cores),
+            checks: given.has("--checks"),
+            sample: given.number("--sample", 1..=usize::MAX)?,
+            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
         })
     }
 }
@@ -85,14 +109,17 @@ enum Fate {
 
 /// Tests the changes and prints a report. Returns whether every survivor is a reviewed one and no reviewed one was noticed.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
-    let reviewed = Reviewed::read(root)?;
-    let mut mutants = list::all(root)?;
+    if options.checks {
+        return checks::run(root, options);
+    }
+    let reviewed = Reviewed::read(root, REVIEWED)?;
+    let mut mutants = list::all(root, &["solutions".to_owned()])?;
     if let Some(file) = &options.file {
         mutants.retain(|mutant| mutant.file.contains(file.as_str()));
     }
     // Choose the changes to test.
     let _lock = Lock::on(&root.join(FOLDER))?;
-    let mut journal = Journal::open(root, options.resume || options.again)?;
+    let mut journal = Journal::open(root, "mutants", options.resume || options.again)?;
     if options.again {
         mutants.retain(|mutant| journal.of(mutant) == Some(&Fate::Survived));
         journal.forget(&mutants);
@@ -101,12 +128,14 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         bail!("there is no change to test");
     }
     // Test them, and report the survivors that were not reviewed.
-    try_all(root, &mutants, &mut journal, options.jobs.clamp(1, mutants.len()))?;
+    try_all(root, &mutants, &mut journal, options)?;
     let tried: Vec<(&Mutant, Fate)> = mutants
         .iter()
-        .filter_map(|mutant| match journal.of(mutant)? {
-            Fate::Survived if reviewed.has(mutant) => Some((mutant, Fate::Equivalent)),
-            fate => Some((mutant, fate.clone())),
+        .map(|mutant| match journal.of(mutant) {
+            // A quick run keeps no fate of a survivor, which other checks or pictures may notice.
+            None | Some(Fate::Survived) if reviewed.has(mutant) => (mutant, Fate::Equivalent),
+            None => (mutant, Fate::Survived),
+            Some(fate) => (mutant, fate.clone()),
         })
         .collect();
     let survivors: Vec<&Mutant> =
@@ -125,39 +154,48 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     Ok(survivors.is_empty() && noticed.is_empty())
 }
 
-fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) -> Result<()> {
-    let workshops = Workshop::open_all(root, jobs, Need::Frames)?;
+fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal<Fate>, options: &Options) -> Result<()> {
+    let jobs = options.jobs.clamp(1, mutants.len());
+    let workshops = Workshop::open_all(root, jobs, if options.quick { Need::Checks } else { Need::Frames })?;
+    let journal = Mutex::new(journal);
+    // Test all changes by the checks of their stage first, which is quick and notices most of them.
+    let bar = bar_of_steps(mutants.len());
+    let latest = Latest::default();
+    queue::run(&workshops, mutants, |workshop, mutant| {
+        bar.set_message(mutant.file.clone());
+        if lock(&journal).of(mutant).is_none()
+            && let Some(fate) = first_failure(workshop, mutant, &latest)?
+        {
+            lock(&journal).write(mutant, fate)?;
+        }
+        bar.inc(1);
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    let others: Vec<&Mutant> = mutants.iter().filter(|mutant| lock(&journal).of(mutant).is_none()).collect();
+    if options.quick || others.is_empty() { Ok(()) } else { try_others(root, &others, &journal, &workshops) }
+}
+
+/// Tests the changes that the checks of their stage do not notice by everything else.
+fn try_others(
+    root: &Path,
+    others: &[&Mutant],
+    journal: &Mutex<&mut Journal<Fate>>,
+    workshops: &[Workshop],
+) -> Result<()> {
     let reference = Source::prepare(root, Which::Solutions, Need::Frames)?.fresh();
     let scenes = Scenes::read(root, &*reference)?;
     let expected = scenes.shown_by(&*reference);
     let of_gaps = scenes.of_gaps();
     let of_gaps = (of_gaps.shown_by(&*reference), of_gaps);
-    let bar = bar_of_steps(mutants.len());
+    let bar = bar_of_steps(others.len());
     bar.set_message("pictures of gaps");
-    let needs_gaps = |mutant: &Mutant| mutant.stage().is_none() && journal.of(mutant).is_none();
-    let gaps = if mutants.iter().any(needs_gaps) {
-        gaps::that_show(root, &workshops, &of_gaps.1, &of_gaps.0)?
+    let gaps = if others.iter().any(|mutant| mutant.stage().is_none()) {
+        gaps::that_show(root, workshops, &of_gaps.1, &of_gaps.0)?
     } else {
         Vec::new()
     };
-    let journal = Mutex::new(journal);
-    let lock = || journal.lock().unwrap_or_else(|broken| broken.into_inner());
-    // Test all changes by the checks of their stage first, which is quick and notices most of them.
-    queue::run(&workshops, mutants, |workshop, mutant| {
-        bar.set_message(mutant.file.clone());
-        if lock().of(mutant).is_none()
-            && let Some(fate) = first_failure(workshop, mutant)?
-        {
-            lock().write(mutant, fate)?;
-        }
-        bar.inc(1);
-        Ok(())
-    })?;
-    // Test the others by everything else.
-    let others: Vec<&Mutant> = mutants.iter().filter(|mutant| lock().of(mutant).is_none()).collect();
-    bar.finish_and_clear();
-    let bar = bar_of_steps(others.len());
-    queue::run(&workshops, &others, |workshop, &mutant| {
+    queue::run(workshops, others, |workshop, &mutant| {
         bar.set_message(mutant.file.clone());
         let fate = match workshop.build(&mutant.file, &mutant.diff)? {
             Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
@@ -169,7 +207,7 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
             Built::DoesNotCompile(_) => Fate::DoesNotCompile,
             Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
         };
-        lock().write(mutant, fate)?;
+        lock(journal).write(mutant, fate)?;
         bar.inc(1);
         Ok(())
     })?;
@@ -177,11 +215,15 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     Ok(())
 }
 
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Tests a change of an exercise by the checks of its stage. They need no frames, without which the build is much quicker.
-fn first_failure(workshop: &Workshop, mutant: &Mutant) -> Result<Option<Fate>> {
+fn first_failure(workshop: &Workshop, mutant: &Mutant, latest: &Latest) -> Result<Option<Fate>> {
     let Some(own) = mutant.stage() else { return Ok(None) };
     Ok(match workshop.with(Need::Checks).build(&mutant.file, &mutant.diff)? {
-        Built::Worker(worker) => failed_check(&worker, |stage| stage == own).map(Fate::ByItsStage),
+        Built::Worker(worker) => failed_check(&worker, |stage| stage == own, latest).map(Fate::ByItsStage),
         Built::DoesNotCompile(_) => Some(Fate::DoesNotCompile),
         Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
     })
@@ -193,16 +235,41 @@ fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) ->
     if let Some(scene) = scenes.first_difference(&shown, expected) {
         return Fate::ByPicture(scene);
     }
-    let elsewhere = mutant.stage().and_then(|own| failed_check(worker, |stage| stage != own));
+    let elsewhere =
+        mutant.stage().and_then(|own| failed_check(worker, |stage| stage != own, &Latest::default()));
     elsewhere.map_or(Fate::Survived, Fate::ByAnotherStage)
 }
 
+/// The checks that failed, the latest one first. The next change is often one of the same function, which they notice as well,
+/// so they are tried first.
+#[derive(Default)]
+struct Latest(Mutex<Vec<&'static str>>);
+
+impl Latest {
+    fn add(&self, check: &'static str) {
+        let mut latest = lock(&self.0);
+        latest.retain(|other| *other != check);
+        latest.insert(0, check);
+    }
+
+    fn sort(&self, checks: &mut [&Check]) {
+        let latest = lock(&self.0);
+        checks.sort_by_key(|check| latest.iter().position(|name| *name == check.name).unwrap_or(usize::MAX));
+    }
+}
+
 /// Returns the first check of the `wanted` stages that the worker fails.
-fn failed_check(worker: &Path, wanted: impl Fn(u8) -> bool) -> Option<String> {
-    let source = Source { which: Which::Solutions, program: worker.to_owned() };
-    let mut checks = STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter());
-    let failed = |check: &&Check| !checks::passes(check, &source.fresh(), 0);
-    checks.find(failed).map(|check| check.name.into())
+fn failed_check(worker: &Path, wanted: impl Fn(u8) -> bool, latest: &Latest) -> Option<String> {
+    let kit =
+        || -> Arc<dyn Kit + Send + Sync> { Arc::new(Door(Worker::new(worker.to_owned(), CALL_PATIENCE))) };
+    let wanted = STAGES.iter().filter(|(stage, _)| wanted(*stage));
+    let mut checks: Vec<&'static Check> = wanted.flat_map(|(_, checks)| checks.iter()).collect();
+    latest.sort(&mut checks);
+    // Ask twice: on a busy machine, a call can exceed its time limit.
+    let fails = |check: &&Check| (0..2).all(|_| !::checks::passes(check, &kit(), 0));
+    let failed = checks.into_iter().find(fails)?;
+    latest.add(failed.name);
+    Some(failed.name.into())
 }
 
 /// Tests a change with each gap that changes a picture. The code that leaves out parts of a picture runs only while a

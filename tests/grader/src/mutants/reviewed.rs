@@ -1,4 +1,4 @@
-//! The equivalent changes, each reviewed by a person: tests/corpus/equivalent.toml.
+//! The equivalent and harmless changes, each reviewed by a person: tests/corpus/equivalent.toml and harmless.toml.
 
 use super::list::Mutant;
 use anyhow::{Context, Result};
@@ -9,13 +9,13 @@ use std::path::Path;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Review {
-    /// A file of solutions/src.
+    /// A file of solutions/src, or of tests/checks.
     pub file: String,
     /// The original line.
     pub was: String,
     /// The changed lines.
     pub becomes: Vec<String>,
-    /// The reason why no check can notice.
+    /// The reason why no check or entry can notice.
     pub because: String,
 }
 
@@ -29,9 +29,9 @@ pub struct Reviewed {
 }
 
 impl Reviewed {
-    /// Reads the list of the kit at `root`.
-    pub fn read(root: &Path) -> Result<Reviewed> {
-        let file = root.join("tests/corpus/equivalent.toml");
+    /// Reads a list of the kit at `root`, for example [`super::REVIEWED`].
+    pub fn read(root: &Path, list: &str) -> Result<Reviewed> {
+        let file = root.join(list);
         let text = std::fs::read_to_string(&file).with_context(|| file.display().to_string())?;
         toml::from_str(&text).with_context(|| file.display().to_string())
     }

@@ -1,6 +1,6 @@
-//! Long runs that are killed continue where they were, and a full disk is an error that names the file and loses nothing.
+//! Long runs that are killed continue where they were.
 
-use super::grade::{graded, hand_in, right};
+use super::grade::graded;
 use super::program_runs::{grader, printed, root};
 use std::fs;
 use std::path::Path;
@@ -89,75 +89,4 @@ fn a_corpus_and_a_rehearsal_that_are_killed_continue() {
     assert!(said(&output).contains("0 of 9 grades are wrong"), "{}", said(&output));
     let after = graded(out.path());
     assert!(before.iter().all(|row| after.contains(row)), "nothing was graded twice");
-}
-
-/// A shell that may mount a small file system, which no other process sees; `None` without the rights for it.
-fn small_disk(script: &str) -> Option<Command> {
-    let mut try_it = Command::new("unshare");
-    try_it.args(["--mount", "sh", "-c", "mount -t tmpfs -o size=4k tmpfs /mnt"]);
-    if !try_it.output().is_ok_and(|output| output.status.success()) {
-        return None;
-    }
-    let mut shell = Command::new("unshare");
-    shell.args(["--mount", "sh", "-eu", "-c", script]).current_dir(root()).stdin(Stdio::null());
-    Some(shell)
-}
-
-#[test]
-fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
-    let folder = tempfile::tempdir().unwrap();
-    let class = folder.path().join("class");
-    for number in 0..4 {
-        hand_in(&class, &format!("student-{number}"), &right().replace("0.5", &format!("0.5{number}")));
-    }
-    let disk = folder.path().join("disk");
-    fs::create_dir(&disk).unwrap();
-    // Only the results are on the small disk. It is filled, and later made larger, as someone who makes room does.
-    let script = format!(
-        "mount -t tmpfs -o size=200k tmpfs {disk}\n\
-         run() {{ {grader} \"$@\" && echo 'ended well' || echo 'ended badly'; }}\n\
-         run grade {class} --stages 1 --seed 5 --jobs 1 --out {disk}/grades\n\
-         echo '--- room'\n\
-         mount -o remount,size=64m {disk}\n\
-         run grade {class} --stages 1 --seed 5 --jobs 1 --out {disk}/grades --resume\n\
-         cp {disk}/grades/grades.csv {around}/resumed.csv\n\
-         mount -o remount,size=66m {disk}\n\
-         head -c 100m /dev/zero >{disk}/filler || true\n\
-         echo '--- gauntlet'\n\
-         run gauntlet --rays 1 --state {disk}/state.jsonl\n\
-         rm {disk}/filler\n\
-         run gauntlet --rays 1 --state {disk}/state.jsonl\n",
-        disk = disk.display(),
-        grader = env!("CARGO_BIN_EXE_grader"),
-        class = class.display(),
-        around = folder.path().display(),
-    );
-    let Some(mut shell) = small_disk(&script) else {
-        return println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
-    };
-    let output = shell.output().unwrap();
-    let text = said(&output);
-    let (said, complained) = printed(&output);
-    assert!(output.status.success(), "{text}");
-    let parts: Vec<&str> = said.split("---").collect();
-    assert!(parts[0].contains("ended badly") && parts[1].contains("ended well"), "{text}");
-    assert!(parts[2].contains("ended badly") && parts[2].contains("ended well"), "{text}");
-    let names_a_file = |folder: &str| complained.contains(&format!("{}/{folder}", disk.display()));
-    assert!(names_a_file("grades/") && names_a_file("state.jsonl"), "{text}");
-    assert!(complained.contains("full") || complained.contains("No space left"), "{text}");
-    // The grades are those of a run with room.
-    let whole = folder.path().join("whole");
-    let grade = [
-        "grade",
-        &class.to_string_lossy(),
-        "--stages",
-        "1",
-        "--seed",
-        "5",
-        "--out",
-        &whole.to_string_lossy(),
-    ];
-    assert!(grader(&grade).status.success());
-    let table = |file: &Path| fs::read_to_string(file).unwrap();
-    assert_eq!(table(&folder.path().join("resumed.csv")), table(&whole.join("grades.csv")));
 }

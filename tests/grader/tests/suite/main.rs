@@ -11,6 +11,8 @@ mod course;
 #[cfg(target_os = "linux")]
 mod export;
 #[cfg(target_os = "linux")]
+mod full_disk;
+#[cfg(target_os = "linux")]
 mod grade;
 mod handout;
 #[cfg(target_os = "linux")]

@@ -1,0 +1,273 @@
+//! A full disk is an error that names the file and loses nothing that was finished.
+
+use super::grade::{hand_in, right};
+use super::program_runs::{grader, printed, root};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+fn said(output: &Output) -> String {
+    let (said, complained) = printed(output);
+    format!("{said}{complained}")
+}
+
+/// A shell that may mount a small file system, which no other process sees; `None` without the rights for it.
+fn small_disk(script: &str) -> Option<Command> {
+    let mut try_it = Command::new("unshare");
+    try_it.args(["--mount", "sh", "-c", "mount -t tmpfs -o size=4k tmpfs /mnt"]);
+    if !try_it.output().is_ok_and(|output| output.status.success()) {
+        return None;
+    }
+    let mut shell = Command::new("unshare");
+    shell.args(["--mount", "sh", "-eu", "-c", script]).current_dir(root()).stdin(Stdio::null());
+    Some(shell)
+}
+
+#[test]
+fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
+    let folder = tempfile::tempdir().unwrap();
+    let class = folder.path().join("class");
+    for number in 0..4 {
+        hand_in(&class, &format!("student-{number}"), &right().replace("0.5", &format!("0.5{number}")));
+    }
+    let disk = folder.path().join("disk");
+    fs::create_dir(&disk).unwrap();
+    // Only the results are on the small disk. It is filled, and later made larger, as someone who makes room does.
+    let script = format!(
+        "mount -t tmpfs -o size=200k tmpfs {disk}\n\
+         run() {{ {grader} \"$@\" && echo 'ended well' || echo 'ended badly'; }}\n\
+         run grade {class} --stages 1 --seed 5 --jobs 1 --out {disk}/grades\n\
+         echo '--- room'\n\
+         mount -o remount,size=64m {disk}\n\
+         run grade {class} --stages 1 --seed 5 --jobs 1 --out {disk}/grades --resume\n\
+         cp {disk}/grades/grades.csv {around}/resumed.csv\n\
+         mount -o remount,size=66m {disk}\n\
+         head -c 100m /dev/zero >{disk}/filler || true\n\
+         echo '--- gauntlet'\n\
+         run gauntlet --rays 1 --state {disk}/state.jsonl\n\
+         rm {disk}/filler\n\
+         run gauntlet --rays 1 --state {disk}/state.jsonl\n",
+        disk = disk.display(),
+        grader = env!("CARGO_BIN_EXE_grader"),
+        class = class.display(),
+        around = folder.path().display(),
+    );
+    let Some(mut shell) = small_disk(&script) else {
+        return println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
+    };
+    let output = shell.output().unwrap();
+    let text = said(&output);
+    let (said, complained) = printed(&output);
+    assert!(output.status.success(), "{text}");
+    let parts: Vec<&str> = said.split("---").collect();
+    assert!(parts[0].contains("ended badly") && parts[1].contains("ended well"), "{text}");
+    assert!(parts[2].contains("ended badly") && parts[2].contains("ended well"), "{text}");
+    let names_a_file = |folder: &str| complained.contains(&format!("{}/{folder}", disk.display()));
+    assert!(names_a_file("grades/") && names_a_file("state.jsonl"), "{text}");
+    assert!(complained.contains("full") || complained.contains("No space left"), "{text}");
+    // The grades are those of a run with room.
+    let whole = folder.path().join("whole");
+    let grade = [
+        "grade",
+        &class.to_string_lossy(),
+        "--stages",
+        "1",
+        "--seed",
+        "5",
+        "--out",
+        &whole.to_string_lossy(),
+    ];
+    assert!(grader(&grade).status.success());
+    let table = |file: &Path| fs::read_to_string(file).unwrap();
+    assert_eq!(table(&folder.path().join("resumed.csv")), table(&whole.join("grades.csv")));
+}
+
+/// A command whose result is on a small disk.
+struct Case {
+    program: PathBuf,
+    /// The command. `DISK` is the small disk.
+    command: String,
+    /// What must be added so that it continues.
+    resume: &'static str,
+    /// The size of the disk while it is small, as `mount` reads it.
+    size: &'static str,
+    /// A part of the name of a file with finished work, which is kept.
+    keeps: Option<&'static str>,
+    /// A file of the result, below the disk, which is the same as without the small disk.
+    result: &'static str,
+}
+
+impl Case {
+    /// Runs the command on the small disk, and once more with room.
+    fn holds(&self) -> bool {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+        for name in ["disk", "whole"] {
+            fs::create_dir(at(name)).unwrap();
+        }
+        let on = |disk: &str| format!("{} {}", self.program.display(), self.command.replace("DISK", disk));
+        let script = format!(
+            "cd {folder}\n\
+             mount -t tmpfs -o size={size} tmpfs {disk}\n\
+             {small} && echo 'ended well' || echo 'ended badly'\n\
+             echo '--- left'\n\
+             find {disk} -type f\n\
+             echo '--- room'\n\
+             mount -o remount,size=400m {disk}\n\
+             {small} {resume} && echo 'ended well' || echo 'ended badly'\n\
+             {whole} >/dev/null\n\
+             cmp {disk}/{result} {whole_folder}/{result} && echo 'the same'\n",
+            folder = folder.path().display(),
+            size = self.size,
+            disk = at("disk"),
+            small = on(&at("disk")),
+            resume = self.resume,
+            whole = on(&at("whole")),
+            result = self.result,
+            whole_folder = at("whole"),
+        );
+        let Some(mut shell) = small_disk(&script) else { return false };
+        let output = shell.output().unwrap();
+        let text = format!("{}\n{}", self.command, said(&output));
+        let (said, complained) = printed(&output);
+        let (small, rest) = said.split_once("--- left").expect(&text);
+        let (left, room) = rest.split_once("--- room").expect(&text);
+        assert!(small.contains("ended badly"), "{text}");
+        // The message names a file or a folder of the disk, and the reason.
+        assert!(complained.contains(&at("disk")) && complained.contains("No space left"), "{text}");
+        // No half-written file is left.
+        assert!(!left.contains(".part"), "{text}");
+        assert!(self.keeps.is_none_or(|kept| left.contains(kept)), "{text}");
+        assert!(room.contains("ended well") && room.contains("the same"), "{text}");
+        true
+    }
+}
+
+/// Grades two submissions in two parts.
+fn parts_of_a_class(around: &Path) -> [String; 2] {
+    let class = around.join("class");
+    for number in 0..2 {
+        hand_in(&class, &format!("student-{number}"), &right().replace("0.5", &format!("0.5{number}")));
+    }
+    let class = class.to_string_lossy();
+    ["1/2", "2/2"].map(|part| {
+        let out = around.join(&part[..1]).to_string_lossy().into_owned();
+        let output =
+            grader(&["grade", &class, "--stages", "1", "--seed", "5", "--shard", part, "--out", &out]);
+        assert!(output.status.success(), "{}", said(&output));
+        out
+    })
+}
+
+#[test]
+fn every_command_names_the_file_on_a_full_disk_and_continues_with_room() {
+    let around = tempfile::tempdir().unwrap();
+    let [one, other] = parts_of_a_class(around.path());
+    let grader = PathBuf::from(env!("CARGO_BIN_EXE_grader"));
+    let raykata = grader.with_file_name("raykata");
+    let gamma = root().join("scenes/gamma.toml").to_string_lossy().into_owned();
+    let case = |program: &Path, command: &str, size, result| Case {
+        program: program.to_owned(),
+        command: command.to_owned(),
+        resume: "",
+        size,
+        keeps: None,
+        result,
+    };
+    let mut cases = vec![
+        case(&grader, &format!("merge {one} {other} --out DISK/merged"), "40k", "merged/grades.csv"),
+        case(&grader, "export gradescope --out DISK/autograder.zip", "100k", "autograder.zip"),
+        case(&grader, "handout DISK/course", "500k", "course/exercises/src/lib.rs"),
+        case(&grader, "release --draft --out DISK/release", "500k", "release/SHA256SUMS"),
+    ];
+    if raykata.is_file() {
+        let render = format!("render {gamma} --size 200x150 --spp 2 --out DISK/picture.hdr");
+        cases.push(case(&raykata, &render, "16k", "picture.hdr"));
+        cases.push(Case {
+            keeps: Some(".piece"),
+            ..case(&raykata, &format!("{render} --pieces 6"), "160k", "picture.hdr")
+        });
+    } else {
+        // The tests of the grader do not build this program.
+        println!("SKIPPED: {} is not built", raykata.display());
+    }
+    for case in &cases {
+        if !case.holds() {
+            return println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
+        }
+    }
+}
+
+/// These take minutes, so they run only with `CI_LONG=1`.
+#[test]
+fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
+    if std::env::var_os("CI_LONG").is_none() {
+        return println!("tried only with CI_LONG=1");
+    }
+    let grader = PathBuf::from(env!("CARGO_BIN_EXE_grader"));
+    let shadows = root().join("scenes/soft_shadows.toml");
+    let cost = format!(
+        "cost {} --full --size 16x12 --rounds 1 --reference 16 --parameter samples --out DISK/cost",
+        shadows.display()
+    );
+    let cases = [
+        Case {
+            program: grader.with_file_name("raykata"),
+            command: cost,
+            resume: "",
+            size: "16k",
+            keeps: Some("cost/unfinished.jsonl"),
+            // The other files contain measured times.
+            result: "cost/samplers.svg",
+        },
+        Case {
+            program: grader,
+            command: "rehearse --honest --students 4 --jobs 1 --out DISK/grades".into(),
+            resume: "--resume",
+            size: "200k",
+            keeps: Some("grades/grades.sqlite"),
+            result: "grades/grades.csv",
+        },
+    ];
+    for case in &cases {
+        if !case.holds() {
+            return println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
+        }
+    }
+}
+
+/// A compiler without room fails for any entry, which then must not count as one that does not compile. What the programs write
+/// goes to the small disk, over the folder of earlier builds.
+#[test]
+fn a_full_disk_is_no_result_of_an_entry_or_of_a_change() {
+    if std::env::var_os("CI_LONG").is_none() {
+        return println!("tried only with CI_LONG=1");
+    }
+    let grader = env!("CARGO_BIN_EXE_grader");
+    let entry = "right/stage4/specular_double";
+    let before = super::program_runs::grader(&["corpus", entry, "--jobs", "1"]);
+    assert!(before.status.success(), "{}", said(&before));
+    for command in [format!("corpus {entry}"), "mutants stage1_shapes --quick".into()] {
+        let folder = tempfile::tempdir().unwrap();
+        let (disk, corpus) = (folder.path().display(), root().join("target/corpus"));
+        let corpus = corpus.display();
+        let script = format!(
+            "mount -t tmpfs -o size=6m tmpfs {disk}\n\
+             mkdir {disk}/upper {disk}/work\n\
+             mount -t overlay -o lowerdir={corpus},upperdir={disk}/upper,workdir={disk}/work overlay {corpus}\n\
+             {grader} {command} --jobs 1 && echo 'ended well' || echo 'ended badly'\n\
+             cat {corpus}/*.jsonl\n"
+        );
+        let Some(mut shell) = small_disk(&script) else {
+            return println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
+        };
+        let output = shell.output().unwrap();
+        let text = said(&output);
+        if text.contains("cargo-mutants, which lists the changes, does not run") {
+            println!("SKIPPED: cargo-mutants is not installed");
+            continue;
+        }
+        assert!(text.contains("ended badly") && text.contains("target/corpus"), "{text}");
+        assert!(!text.contains("DoesNotCompile"), "{text}");
+    }
+}
