@@ -257,6 +257,18 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
                 (&[2], &[], false),
                 &[((&[1, 2], &[], false), "glass and highlights send no diffuse rays"), (NOTHING, LIGHTS)],
             ),
+            case(
+                "a diffuse sphere in a gradient whose zenith and horizon have the same colour",
+                with(gradient(one, one, zero)),
+                WALL,
+                &background,
+            ),
+            case(
+                "a diffuse sphere in a gradient whose horizon and nadir have the same colour",
+                with(gradient(zero, one, one)),
+                WALL,
+                &background,
+            ),
         ],
     )
 }
@@ -399,6 +411,12 @@ pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckRe
                     (WALL, "a surface that reflects light can be sampled as a light, too"),
                     (NOTHING, "a surface can emit and reflect light"),
                 ],
+            ),
+            case(
+                "two diffuse spheres of the same colour, and an emitter",
+                scene(&[wall(), wall(), emitter()]),
+                (&[1, 2], &[3], false),
+                &[],
             ),
         ],
     )

@@ -177,10 +177,21 @@ pub(super) fn may_hit_of_any_size(trial: &Trial<'_>) -> CheckResult {
         let [a, b, c] = [(); 3].map(|()| corner(&mut random));
         let origin = scale * (place + 4.0 * random.in_cube());
         let target = a.lerp(b, random.unit()).lerp(c, [0.0, 0.5][random.below(2) as usize] * random.unit());
-        let way = target - origin;
-        let direction = if random.below(2) == 0 { way } else { way.as_dvec3().normalize_or_zero().as_vec3() };
-        if direction != Vec3::ZERO {
-            drawn.push(Four { triangles: vec![Triangle { a, b, c }; 2], ray: Ray::new(origin, direction) });
+        // Half of the directions have a length of their own, and half of their ranges begin one float before the hit.
+        let way = (target - origin).as_dvec3();
+        let length = 2f64.powi(random.below(79) as i32 - 39);
+        let ray = match random.below(4) {
+            0 => Ray::new(origin, way.as_vec3()),
+            1 => Ray::new(origin, way.normalize_or_zero().as_vec3()),
+            2 => Ray::new(origin, (length * way.normalize_or_zero()).as_vec3()),
+            _ => {
+                let ray = Ray::new(origin, (length * way.normalize_or_zero()).as_vec3());
+                let t = exact(&ray, &Triangle { a, b, c }).unwrap_or(0.0);
+                ray.with_range(t.next_down().max(0.0), f32::INFINITY)
+            }
+        };
+        if ray.direction != Vec3::ZERO {
+            drawn.push(Four { triangles: vec![Triangle { a, b, c }; 2], ray });
         }
     }
     judge_all(trial, drawn)
