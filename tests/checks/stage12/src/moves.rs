@@ -100,38 +100,45 @@ pub(super) fn reinsert_makes_at_most_so_many_moves(trial: &Trial<'_>) -> CheckRe
     moves_something(trial)?;
     let small = (boxes(6), prop::collection::vec(any::<u16>(), 1..12), 0..=2u32)
         .prop_map(|(boxes, cuts, moves)| Case::new(boxes.clone(), drawn_tree(&boxes, 1, &cuts), moves));
-    trial.forall(150, small, |cases| {
-        // The tree of a student that counts nothing is the same with any number of moves.
-        let unlimited: Vec<Case> = cases
-            .iter()
-            .map(|case| Case::new(case.boxes.clone(), case.query.tree.clone(), u32::MAX))
-            .collect();
-        let unlimited = ask(trial, &unlimited);
-        let judge = |(case, unlimited): &(&Case, FlatTree), yours: FlatTree| {
-            judge_leaves(case, &yours)?;
-            if case.boxes.is_empty() {
-                return Ok(());
-            }
-            let mut reached = BTreeSet::from([Form::of(&case.query.tree, 0)]);
-            for _ in 0..case.query.most_moves {
-                reached = reached.iter().flat_map(Form::one_move_away).collect();
-            }
-            if reached.contains(&Form::of(&yours, 0)) {
-                return if case.query.most_moves > 0 { judge_that_it_moves(case, &yours) } else { Ok(()) };
-            }
-            let moves = case.query.most_moves;
-            let broken = case.broken(
-                "a tree that is further away".into(),
-                format!("a tree that {moves} moves can make of the given one"),
-                "all trees that are so many moves away",
-            );
-            let is_unlimited = Form::of(&yours, 0) == Form::of(unlimited, 0);
-            Err(broken.explained_by([(
-                is_unlimited,
-                "`most_moves` is ignored: the tree is that of any number of moves",
-            )]))
-        };
-        let cases_and_trees: Vec<(&Case, FlatTree)> = cases.iter().zip(unlimited).collect();
-        compare(&cases_and_trees, ask(trial, cases), judge)
-    })
+    trial.forall(150, small, |cases| judge_moves(trial, cases))?;
+    // Boxes of one size at places of their own: often only few moves pay, and each of them changes areas at several levels.
+    let box_at = (checks::generate::point(6), 1..=4u8)
+        .prop_map(|(low, size)| Aabb::new(low, low + f32::from(size) / 4.0));
+    let larger = (prop::collection::vec(box_at, 5..=7), prop::collection::vec(any::<u16>(), 1..12))
+        .prop_map(|(boxes, cuts)| Case::new(boxes.clone(), drawn_tree(&boxes, 1, &cuts), 1));
+    trial.forall(400, larger, |cases| judge_moves(trial, cases))
+}
+
+/// Judges that the trees can be made by so many moves, and that a move is made where one pays.
+fn judge_moves(trial: &Trial<'_>, cases: &[Case]) -> Vec<CheckResult> {
+    // The tree of a student that counts nothing is the same with any number of moves.
+    let unlimited: Vec<Case> =
+        cases.iter().map(|case| Case::new(case.boxes.clone(), case.query.tree.clone(), u32::MAX)).collect();
+    let unlimited = ask(trial, &unlimited);
+    let judge = |(case, unlimited): &(&Case, FlatTree), yours: FlatTree| {
+        judge_leaves(case, &yours)?;
+        if case.boxes.is_empty() {
+            return Ok(());
+        }
+        let mut reached = BTreeSet::from([Form::of(&case.query.tree, 0)]);
+        for _ in 0..case.query.most_moves {
+            reached = reached.iter().flat_map(Form::one_move_away).collect();
+        }
+        if reached.contains(&Form::of(&yours, 0)) {
+            return if case.query.most_moves > 0 { judge_that_it_moves(case, &yours) } else { Ok(()) };
+        }
+        let moves = case.query.most_moves;
+        let broken = case.broken(
+            "a tree that is further away".into(),
+            format!("a tree that {moves} moves can make of the given one"),
+            "all trees that are so many moves away",
+        );
+        let is_unlimited = Form::of(&yours, 0) == Form::of(unlimited, 0);
+        Err(broken.explained_by([(
+            is_unlimited,
+            "`most_moves` is ignored: the tree is that of any number of moves",
+        )]))
+    };
+    let cases_and_trees: Vec<(&Case, FlatTree)> = cases.iter().zip(unlimited).collect();
+    compare(&cases_and_trees, ask(trial, cases), judge)
 }
