@@ -5,14 +5,14 @@
 //! round: above 1 the reference is faster. Camera rays come in tiles of 16 × 16 pixels, as in frames; diffuse rays leave their
 //! hits in random directions; shadow rays go from the hits to a light.
 //!
-//! `-- --rungs SCENE …` prints what each rung of stage 12 changes, in counts. `-- --alone SCENE …` leaves out the crates. `-- --scaling SCENE …` builds the binary tree on one and on two threads in turn.
+//! `-- --steps SCENE …` prints what each step of stage 12 changes, in counts. `-- --alone SCENE …` leaves out the crates. `-- --scaling SCENE …` builds the binary tree on one and on two threads in turn.
 //! `-- --dump FOLDER SCENE …` writes triangles and rays as binary files of `f32`, for programs that are not Rust crates.
 
 mod crates;
 mod reference;
-mod rungs;
 mod scaling;
 mod scenes;
+mod steps;
 
 use cpu_time::ThreadTime;
 use crates::{Bvh, Contestant, Obvhs2, ObvhsWide, Parry};
@@ -26,11 +26,11 @@ const ROUNDS: usize = 7;
 
 fn main() {
     let mut names: Vec<String> = std::env::args().skip(1).collect();
-    let (mut folder, mut alone, mut scaling, mut rungs) = (None, false, false, false);
+    let (mut folder, mut alone, mut scaling, mut steps) = (None, false, false, false);
     match names.first().map(String::as_str) {
         Some("--dump") if names.len() > 1 => folder = names.drain(..2).next_back(),
         Some("--alone") => alone = names.drain(..1).next().is_some(),
-        Some("--rungs") => rungs = names.drain(..1).next().is_some(),
+        Some("--steps") => steps = names.drain(..1).next().is_some(),
         Some("--scaling") => scaling = names.drain(..1).next().is_some(),
         _ => {}
     }
@@ -44,10 +44,10 @@ fn main() {
         };
         if scaling {
             println!("{name}: {}", scaling::measured(&scene.triangles));
-        } else if rungs {
+        } else if steps {
             println!("{name}: {} triangles", scene.triangles.len());
             let [camera, ..] = rays(&scene, &Wide::build(&scene.triangles, true));
-            rungs::print(&scene.triangles, &camera);
+            steps::print(&scene.triangles, &camera);
         } else {
             measure(&scene, folder.as_deref(), alone);
         }

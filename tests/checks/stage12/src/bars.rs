@@ -77,14 +77,10 @@ pub fn measured(kit: &dyn Kit) -> Vec<(String, f64)> {
     bars
 }
 
-/// The cost of a leaf over this number of primitives, for a box of area 1.
-fn leaf_cost(n: usize) -> f64 {
-    f64::from(BLOCK_COST) * n.div_ceil(BLOCK) as f64
-}
-
 /// The cost of the tree that a full sweep gives, times the half area of its root: at each node every split of the primitives
 /// is tried, sorted by their centroids along each axis.
 fn sweep(boxes: &mut [Aabb]) -> f64 {
+    let leaf_cost = |n: usize| f64::from(BLOCK_COST) * n.div_ceil(BLOCK) as f64;
     let area = half_area(&around(&*boxes));
     let n = boxes.len();
     if n <= BLOCK {

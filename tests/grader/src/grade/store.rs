@@ -5,7 +5,7 @@ use super::report::clean::clean_line;
 use super::result::{Class, Graded, Session};
 use super::shard::Part;
 use crate::course::CourseFiles;
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use nix::fcntl::{Flock, FlockArg};
 use rusqlite::{Connection, OptionalExtension, params};
 use std::collections::HashSet;
@@ -65,8 +65,12 @@ impl Store {
             connection.busy_timeout(std::time::Duration::from_secs(10))?;
             connection.execute_batch(TABLES)
         };
-        make()
-            .with_context(|| format!("{} is not a grade database; choose another folder", path.display()))?;
+        make().map_err(|error| {
+            let is_full = error.sqlite_error_code() == Some(rusqlite::ErrorCode::DiskFull);
+            let what =
+                if is_full { "cannot be written" } else { "is not a grade database; choose another folder" };
+            anyhow!(error).context(format!("{} {what}", path.display()))
+        })?;
         Ok(Store { connection: Mutex::new(connection), file: path, _lock: None })
     }
 

@@ -1,4 +1,4 @@
-//! What each rung of stage 12 changes, in counts: the same in every run and on every machine.
+//! What each step of stage 12 changes, in counts: the same in every run and on every machine.
 
 use crate::reference::{self, Triangles, Wide};
 use raykata::bvh::{Node, PrimitiveHit};
@@ -13,9 +13,9 @@ use raykata::wide::{
 use solutions::{stage3_build, stage12_build, stage12_reinsertion, stage12_search, stage12_wide};
 use std::collections::HashMap;
 
-/// Prints the counts of all rungs for these triangles and camera rays.
+/// Prints the counts of all steps for these triangles and camera rays.
 pub fn print(triangles: &[Triangle], rays: &[Ray]) {
-    let line = |rung: &str, text: String| println!("  {rung:<34} {text}");
+    let line = |step: &str, text: String| println!("  {step:<34} {text}");
     let bounds = reference::bounds(triangles);
 
     let swept = stage12_wide::flatten(&stage3_build::build(&bounds, Split::SurfaceArea, BLOCK));
