@@ -29,7 +29,7 @@ pub struct Reviewed {
 }
 
 impl Reviewed {
-    /// Reads a list of the kit at `root`, for example [`super::REVIEWED`].
+    /// Reads a list of the kit at `root`.
     pub fn read(root: &Path, list: &str) -> Result<Reviewed> {
         let file = root.join(list);
         let text = std::fs::read_to_string(&file).with_context(|| file.display().to_string())?;
