@@ -22,6 +22,7 @@ pub mod handout;
 pub mod mutants;
 pub mod pictures;
 pub mod release;
+mod room;
 pub mod sandbox;
 pub mod sync;
 

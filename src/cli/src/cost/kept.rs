@@ -57,14 +57,16 @@ impl Kept {
     fn fingerprint_of(&self, scene: &Scene) -> Result<String> {
         let mut last = lock(&self.scene);
         if let Some((known, name)) = &*last {
-            let alike = Scene { film: known.film, quality: known.quality, ..scene.clone() };
-            if alike == *known {
+            let without_settings = Scene { film: known.film, quality: known.quality, ..scene.clone() };
+            if without_settings == *known {
                 return Ok(name.clone());
             }
         }
-        let alike = Scene { film: Default::default(), quality: Default::default(), ..scene.clone() };
-        let name = fingerprint([&serde_json::to_vec(&alike).context("the scene cannot be serialised")?[..]]);
-        *last = Some((alike, name.clone()));
+        let without_settings =
+            Scene { film: Default::default(), quality: Default::default(), ..scene.clone() };
+        let bytes = serde_json::to_vec(&without_settings).context("the scene cannot be serialised")?;
+        let name = fingerprint([&bytes[..]]);
+        *last = Some((without_settings, name.clone()));
         Ok(name)
     }
 

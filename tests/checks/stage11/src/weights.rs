@@ -105,9 +105,9 @@ pub(super) fn mis_weight_of_a_lone_density_is_one(trial: &Trial<'_>) -> CheckRes
             ]))
         })
     })?;
-    // Where neither technique takes the sample, or both always do, any weight passes that is one.
-    let alike = [(0.0, 0.0), (f32::INFINITY, f32::INFINITY)];
-    all_hold(compare(&alike, trial.kit.mis_weight(&alike), |pair, yours| {
+    // Where neither technique takes the sample, or both always do, any weight from 0 to 1 passes.
+    let undecided = [(0.0, 0.0), (f32::INFINITY, f32::INFINITY)];
+    all_hold(compare(&undecided, trial.kit.mis_weight(&undecided), |pair, yours| {
         if (0.0..=1.0).contains(&yours) {
             return Ok(());
         }

@@ -6,8 +6,8 @@
 //! solutions unchanged is an error, because its verdict would belong to the previous entry.
 
 use super::entry;
-use crate::grade::scratch::has_room;
 use crate::kits::Need;
+use crate::room::has_room;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -237,7 +237,7 @@ pub(crate) fn write_if_new(file: &Path, text: &str) -> Result<()> {
     write().with_context(|| format!("{} cannot be written", file.display()))
 }
 
-/// Makes `to` an exact copy of `from`, without packages that lie in either.
+/// Makes `to` an exact copy of `from`. Folders with a manifest of their own are neither copied nor deleted.
 pub(crate) fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     let mut wanted = BTreeSet::new();
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {

@@ -10,6 +10,7 @@ use super::store::Store;
 use super::submission::{self, Submission, Taken};
 use crate::course::HandedIn;
 use crate::queue;
+use crate::room::has_room;
 use crate::sandbox::{self, Confinement, How, Purpose, Sandbox};
 use crate::sync::stage_of;
 use anyhow::{Context, Result};
@@ -106,7 +107,7 @@ impl Grader {
         }
         // Compile in a temporary folder outside of the kit and of the submission.
         let scratch = scratch::folder()?;
-        scratch::has_room(scratch.path(), MAKE_ROOM)?;
+        has_room(scratch.path(), MAKE_ROOM)?;
         // Leave out the files that the syntax check refuses, and build the others.
         let Read { refused, may_remember } = self.read(&files, &mut remarks)?;
         let kept: BTreeMap<String, String> =
@@ -114,7 +115,7 @@ impl Grader {
         let forged = self.forge.build(scratch.path(), &kept);
         // Blame no file for a disk that has become full.
         if forged.as_ref().map_or(true, |forged| !forged.replaced.is_empty()) {
-            scratch::has_room(scratch.path(), MAKE_ROOM)?;
+            has_room(scratch.path(), MAKE_ROOM)?;
         }
         let forged = forged?;
         graded.cpu_ms = forged.cpu.as_millis() as u64;

@@ -21,7 +21,7 @@ pub mod report;
 pub mod result;
 mod run_attacks;
 mod sanity;
-pub(crate) mod scratch;
+mod scratch;
 mod shard;
 mod store;
 mod submission;

@@ -1,6 +1,6 @@
 //! The temporary folders in which submissions are compiled.
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -15,28 +15,6 @@ pub fn folder() -> Result<TempDir> {
         .prefix(&prefix)
         .tempdir()
         .context("cannot make a temporary folder for the compiler")
-}
-
-/// Free space that a build needs, in bytes. Most builds write 10 megabytes.
-const ROOM: u64 = 64 << 20;
-
-/// Returns an error with this advice if the disk of a folder is nearly full. A compiler without room fails for any code, so its
-/// errors say nothing about the code.
-pub fn has_room(folder: &Path, advice: &str) -> Result<()> {
-    #[cfg(target_os = "linux")]
-    {
-        let disk = nix::sys::statvfs::statvfs(folder).with_context(|| folder.display().to_string())?;
-        let free = disk.blocks_available().saturating_mul(disk.fragment_size());
-        ensure!(
-            free >= ROOM,
-            "the disk of {} has only {} MB left, and a build needs {} MB: {advice}",
-            folder.display(),
-            free >> 20,
-            ROOM >> 20
-        );
-    }
-    let _ = (folder, advice);
-    Ok(())
 }
 
 /// Deletes the folders of graders that were killed before they could.

@@ -28,6 +28,7 @@ use raykata::kit::{Door, Kit};
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use raykata_cli::lock::Lock;
 use reviewed::Reviewed;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -42,7 +43,10 @@ pub static SPEC: Spec = Spec {
         Opt::value("--sample", "N", "With --checks: only N changes of each stage."),
         Opt::value("--seed", "N", "With --sample: another sample [default: 0]."),
         Opt::flag("--resume", "Continue the last run: skip the changes that it has tested."),
-        Opt::flag("--quick", "Only the checks of the change's own stage, without pictures and other stages."),
+        Opt::flag(
+            "--quick",
+            "Only the checks of the change's own stage, without pictures and other stages; --resume tests the survivors once more.",
+        ),
         Opt::flag("--again", "Only the changes that survived the last run."),
         Opt::value("--jobs", "N", "How many to test at the same time [default: one per core]."),
     ]],
@@ -70,6 +74,7 @@ impl Options {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--again", "--resume")?;
+        given.exclude("--again", "--quick")?;
         given.exclude("--checks", "--jobs")?;
         given.exclude("--checks", "--quick")?;
         if !given.has("--checks") && given.has("--sample") {
@@ -117,17 +122,10 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     if let Some(file) = &options.file {
         mutants.retain(|mutant| mutant.file.contains(file.as_str()));
     }
-    // Choose the changes to test.
     let _lock = Lock::on(&root.join(FOLDER))?;
     let mut journal = Journal::open(root, "mutants", options.resume || options.again)?;
-    if options.again {
-        mutants.retain(|mutant| journal.of(mutant) == Some(&Fate::Survived));
-        journal.forget(&mutants);
-    }
-    if mutants.is_empty() {
-        bail!("there is no change to test");
-    }
-    // Test them, and report the survivors that were not reviewed.
+    choose(&mut mutants, options, &mut journal, &Fate::Survived)?;
+    // Test them, and report what the reviews do not say.
     try_all(root, &mutants, &mut journal, options)?;
     let tried: Vec<(&Mutant, Fate)> = mutants
         .iter()
@@ -138,20 +136,52 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
             Some(fate) => (mutant, fate.clone()),
         })
         .collect();
+    let is_noticed = |fate: &Fate| !matches!(fate, Fate::Survived | Fate::Equivalent | Fate::DoesNotCompile);
+    let is_reviewed = tell_unreviewed(&tried, &reviewed, "equivalent", &Fate::Survived, is_noticed);
+    report(&tried);
+    Ok(is_reviewed)
+}
+
+/// Keeps the changes that are to be tested. `--again` keeps those that `survived` the last run, and forgets their fates.
+fn choose<F>(
+    mutants: &mut Vec<Mutant>,
+    options: &Options,
+    journal: &mut Journal<F>,
+    survived: &F,
+) -> Result<()>
+where
+    F: Clone + PartialEq + Serialize + DeserializeOwned,
+{
+    if options.again {
+        mutants.retain(|mutant| journal.of(mutant) == Some(survived));
+        journal.forget(mutants);
+    }
+    if mutants.is_empty() {
+        bail!("there is no change to test");
+    }
+    Ok(())
+}
+
+/// Prints the changes that survived, and those that were noticed although they are reviewed as changes that nothing can notice.
+/// Returns whether there are none.
+fn tell_unreviewed<F: PartialEq>(
+    tried: &[(&Mutant, F)],
+    reviewed: &Reviewed,
+    reviewed_as: &str,
+    survived: &F,
+    is_noticed: impl Fn(&F) -> bool,
+) -> bool {
     let survivors: Vec<&Mutant> =
-        tried.iter().filter(|(_, fate)| *fate == Fate::Survived).map(|(mutant, _)| *mutant).collect();
+        tried.iter().filter(|(_, fate)| fate == survived).map(|(mutant, _)| *mutant).collect();
     for mutant in &survivors {
         println!("SURVIVED  {mutant}\n");
     }
-    // Report the reviewed changes that were noticed.
-    let is_noticed = |fate: &Fate| !matches!(fate, Fate::Equivalent | Fate::DoesNotCompile);
-    let noticed = tried.iter().filter(|(mutant, fate)| reviewed.has(mutant) && is_noticed(fate));
+    let noticed = tried.iter().filter(|(mutant, fate)| is_noticed(fate) && reviewed.has(mutant));
     let noticed: Vec<&Mutant> = noticed.map(|(mutant, _)| *mutant).collect();
     for mutant in &noticed {
-        println!("NOTICED, but reviewed as equivalent: {mutant}\n");
+        println!("NOTICED, but reviewed as {reviewed_as}: {mutant}\n");
     }
-    report(&tried);
-    Ok(survivors.is_empty() && noticed.is_empty())
+    survivors.is_empty() && noticed.is_empty()
 }
 
 fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal<Fate>, options: &Options) -> Result<()> {

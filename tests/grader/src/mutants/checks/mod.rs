@@ -14,7 +14,7 @@ mod workers;
 use super::journal::Journal;
 use super::list::{self, Mutant};
 use super::reviewed::Reviewed;
-use super::{Options, REVIEWED_CHECKS};
+use super::{Options, REVIEWED_CHECKS, choose, tell_unreviewed};
 use crate::corpus::FOLDER;
 use crate::report::bar_of_steps;
 use affected::StageFiles;
@@ -57,18 +57,10 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     if let Some(n) = options.sample {
         mutants = sample(mutants, n, options.seed);
     }
-    // Choose the changes to test.
     let _lock = Lock::on(&root.join(FOLDER))?;
     let mut journal = Journal::open(root, "mutants-of-checks", options.resume || options.again)?;
-    if options.again {
-        mutants.retain(|mutant| journal.of(mutant) == Some(&Fate::Survived));
-        journal.forget(&mutants);
-    }
-    if mutants.is_empty() {
-        bail!("there is no change to test");
-    }
+    choose(&mut mutants, options, &mut journal, &Fate::Survived)?;
     try_all(root, &mutants, &mut journal)?;
-    // Report the survivors that were not reviewed, and the reviewed changes that were noticed.
     let tried: Vec<(&Mutant, Fate)> = mutants
         .iter()
         .filter_map(|mutant| match journal.of(mutant)? {
@@ -76,18 +68,11 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
             fate => Some((mutant, fate.clone())),
         })
         .collect();
-    let survived = tried.iter().filter(|(_, fate)| *fate == Fate::Survived);
     let is_noticed =
         |fate: &Fate| matches!(fate, Fate::RejectsRight(..) | Fate::AcceptsMistake(..) | Fate::ByMessage(..));
-    let noticed = tried.iter().filter(|(mutant, fate)| is_noticed(fate) && reviewed.has(mutant));
-    for (mutant, _) in survived.clone() {
-        println!("SURVIVED  {mutant}\n");
-    }
-    for (mutant, _) in noticed.clone() {
-        println!("NOTICED, but reviewed as harmless: {mutant}\n");
-    }
+    let is_reviewed = tell_unreviewed(&tried, &reviewed, "harmless", &Fate::Survived, is_noticed);
     report(&tried, n_all);
-    Ok(survived.count() == 0 && noticed.count() == 0)
+    Ok(is_reviewed)
 }
 
 /// Chooses `n` changes of each stage. A larger sample with the same seed contains a smaller one, also after other code has
