@@ -5,7 +5,8 @@
 //! round: above 1 the reference is faster. Camera rays come in tiles of 16 × 16 pixels, as in frames; diffuse rays leave their
 //! hits in random directions; shadow rays go from the hits to a light.
 //!
-//! `-- --steps SCENE …` prints what each step of stage 12 changes, in counts. `-- --alone SCENE …` leaves out the crates. `-- --scaling SCENE …` builds the binary tree on one and on two threads in turn.
+//! `-- --steps SCENE …` prints what each step of stage 12 changes, in counts. `-- --alone SCENE …` leaves out the crates.
+//! `-- --scaling SCENE …` builds the binary tree on one and on two threads in turn.
 //! `-- --dump FOLDER SCENE …` writes triangles and rays as binary files of `f32`, for programs that are not Rust crates.
 
 mod crates;
@@ -17,7 +18,7 @@ mod steps;
 use cpu_time::ThreadTime;
 use crates::{Bvh, Contestant, Obvhs2, ObvhsWide, Parry};
 use raykata::ray::Ray;
-use reference::Wide;
+use reference::{Search, Wide};
 use scenes::{Random, Scene};
 use std::time::Duration;
 
@@ -25,33 +26,38 @@ const SIDE: u32 = 256;
 const ROUNDS: usize = 7;
 
 fn main() {
-    let mut names: Vec<String> = std::env::args().skip(1).collect();
-    let (mut folder, mut alone, mut scaling, mut steps) = (None, false, false, false);
-    match names.first().map(String::as_str) {
-        Some("--dump") if names.len() > 1 => folder = names.drain(..2).next_back(),
-        Some("--alone") => alone = names.drain(..1).next().is_some(),
-        Some("--steps") => steps = names.drain(..1).next().is_some(),
-        Some("--scaling") => scaling = names.drain(..1).next().is_some(),
-        _ => {}
-    }
+    let mut words = std::env::args().skip(1).peekable();
+    let option = words.next_if(|word| word.starts_with("--"));
+    let option = option.as_deref();
+    let folder = if option == Some("--dump") { words.next() } else { None };
+    let mut names: Vec<String> = words.collect();
     if names.is_empty() {
         names = scenes::NAMES.map(String::from).into();
     }
     for name in names {
         let Some(scene) = scenes::by_name(&name) else {
-            eprintln!("no scene `{name}`; there are {:?} and \"terrain-12m\"", scenes::NAMES);
-            std::process::exit(2);
+            fail(&format!("no scene `{name}`; there are {:?} and \"terrain-12m\"", scenes::NAMES));
         };
-        if scaling {
-            println!("{name}: {}", scaling::measured(&scene.triangles));
-        } else if steps {
-            println!("{name}: {} triangles", scene.triangles.len());
-            let [camera, ..] = rays(&scene, &Wide::build(&scene.triangles, true));
-            steps::print(&scene.triangles, &camera);
-        } else {
-            measure(&scene, folder.as_deref(), alone);
+        match option {
+            None | Some("--alone" | "--dump") => {
+                measure(&scene, folder.as_deref(), option == Some("--alone"))
+            }
+            Some("--scaling") => println!("{name}: {}", scaling::measured(&scene.triangles)),
+            Some("--steps") => {
+                println!("{name}: {} triangles", scene.triangles.len());
+                let [camera, ..] = rays(&scene, &Wide::build(&scene.triangles, true));
+                steps::print(&scene.triangles, &camera);
+            }
+            Some(other) => {
+                fail(&format!("no option `{other}`; there are --alone, --steps, --scaling and --dump FOLDER"))
+            }
         }
     }
+}
+
+fn fail(message: &str) -> ! {
+    eprintln!("error: {message}");
+    std::process::exit(2);
 }
 
 fn timed<R>(work: impl FnOnce() -> R) -> (R, Duration) {
@@ -126,7 +132,9 @@ fn measure(scene: &Scene, folder: Option<&str>, alone: bool) {
         build.as_secs_f64()
     );
     for (name, rays) in ["primary", "diffuse", "shadow"].iter().zip(&rays) {
-        let per_ray = wide.counts(rays, *name == "shadow").map(|count| count as f64 / rays.len() as f64);
+        let per_ray = wide
+            .counts(rays, if *name == "shadow" { Search::Any } else { Search::Closest })
+            .map(|count| count as f64 / rays.len() as f64);
         println!(
             "  {name}: {:.2} nodes, {:.2} blocks, {:.2} exact tests per ray",
             per_ray[0], per_ray[1], per_ray[2]

@@ -39,29 +39,41 @@ impl Wide {
         self.instructions.run(Any(self, rays, found));
     }
 
-    /// Node visits, blocks, and exact tests of closest hits or of any hits.
-    pub fn counts(&self, rays: &[Ray], any: bool) -> [u64; 3] {
-        struct Counting<'a>(&'a Wide, &'a [Ray], bool);
+    /// Node visits, blocks, and exact tests of a search for each ray.
+    pub fn counts(&self, rays: &[Ray], search: Search) -> [u64; 3] {
+        struct Counting<'a>(&'a Wide, &'a [Ray], Search);
         impl Vectorized for Counting<'_> {
             type Output = [u64; 3];
 
             #[inline(always)]
             fn run<L: Level>(self, level: L) -> [u64; 3] {
-                let mut sum = [0; 3];
-                for ray in self.1 {
+                let counts = |ray: &Ray| {
                     let mut probe = Triangles::new(self.0, ray, level);
-                    if self.2 {
+                    probe.is_ordered = self.2 != Search::ClosestWithoutOrder;
+                    if self.2 == Search::Any {
                         let _ = stage12_search::wide_any_hit(&mut probe, ray);
                     } else {
                         let _ = stage12_search::wide_closest_hit(&mut probe, ray);
                     }
-                    sum.iter_mut().zip(probe.counts).for_each(|(sum, count)| *sum += count);
-                }
-                sum
+                    probe.counts
+                };
+                let add = |sum: [u64; 3], one: [u64; 3]| std::array::from_fn(|i| sum[i] + one[i]);
+                self.1.iter().map(counts).fold([0; 3], add)
             }
         }
-        self.instructions.run(Counting(self, rays, any))
+        self.instructions.run(Counting(self, rays, search))
     }
+}
+
+/// What is searched, and how.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Search {
+    /// The closest hit.
+    Closest,
+    /// The closest hit, by a search that does not know where a ray enters a child: nothing is sorted or skipped.
+    ClosestWithoutOrder,
+    /// Any hit.
+    Any,
 }
 
 /// The boxes around the triangles.
@@ -98,17 +110,18 @@ impl Vectorized for Any<'_> {
 }
 
 /// Answers the questions of a search, and counts them: node visits, blocks and exact tests.
-pub struct Triangles<'a, L> {
+struct Triangles<'a, L> {
     wide: &'a Wide,
     ray: WideRay,
     level: L,
-    pub counts: [u64; 3],
+    counts: [u64; 3],
+    is_ordered: bool,
 }
 
 impl<'a, L: Level> Triangles<'a, L> {
     #[inline(always)]
-    pub fn new(wide: &'a Wide, ray: &Ray, level: L) -> Self {
-        Triangles { wide, ray: WideRay::new(ray), level, counts: [0; 3] }
+    fn new(wide: &'a Wide, ray: &Ray, level: L) -> Self {
+        Triangles { wide, ray: WideRay::new(ray), level, counts: [0; 3], is_ordered: true }
     }
 }
 
@@ -116,7 +129,9 @@ impl<L: Level> WideProbe for Triangles<'_, L> {
     #[inline(always)]
     fn enter(&mut self, node: u32, t_max: f32) -> Entered {
         self.counts[0] += 1;
-        stage12_simd::enter_boxes(self.level, &self.wide.nodes[node as usize], &self.ray, t_max)
+        let entered =
+            stage12_simd::enter_boxes(self.level, &self.wide.nodes[node as usize], &self.ray, t_max);
+        if self.is_ordered { entered } else { Entered { t: [0.0; 8], ..entered } }
     }
 
     #[inline(always)]

@@ -61,6 +61,22 @@ fn ranges(tree: &FlatTree) -> Vec<(u32, u32)> {
     ranges
 }
 
+/// The work and the span of a build without faults that has logged these forks, in primitives.
+pub fn work_and_span_of_log(tree: &FlatTree, forks: &[Fork]) -> (u64, u64) {
+    let ranges = ranges(tree);
+    let children = forked_ranges(forks);
+    let pieces_of = |fork: &Fork| match fork.kind {
+        ForkKind::Binning { pieces } => Some(((fork.first, fork.count), pieces)),
+        ForkKind::Children => None,
+    };
+    let binning: HashMap<(u32, u32), u32> = forks.iter().filter_map(pieces_of).collect();
+    let own = |index: usize| match binning.get(&ranges[index]) {
+        Some(&pieces) => own_span(ranges[index].1, pieces),
+        None => u64::from(ranges[index].1),
+    };
+    work_and_span_of(tree, &ranges, own, |index| children.contains(&ranges[index]))
+}
+
 /// The work and the span of a build that forks at the nodes for which `forks` returns true, in primitives.
 fn work_and_span(tree: &FlatTree, ranges: &[(u32, u32)], forks: impl Fn(usize) -> bool) -> (u64, u64) {
     work_and_span_of(tree, ranges, |index| u64::from(ranges[index].1), forks)
@@ -182,12 +198,12 @@ pub(super) fn build_parallel_has_an_eighth_of_the_span(trial: &Trial<'_>) -> Che
     let n = 100_000;
     let Forked { tree, ranges, forks } = build_many(trial, n)?;
     let children = forked_ranges(&forks);
-    let mut binning = HashMap::new();
+    let mut binning = HashSet::new();
     let input = format!("build_parallel of {n} boxes, with {} forks", forks.len());
     for fork in &forks {
         let ForkKind::Binning { pieces } = fork.kind else { continue };
         let most = fork.count / LEAST_PIECE;
-        if pieces > most || binning.insert((fork.first, fork.count), pieces).is_some() {
+        if pieces > most || !binning.insert((fork.first, fork.count)) {
             let (yours, expected) = (format!("{fork:?}"), format!("once per node, at most {most} pieces"));
             return Err(Broken::with_texts(input, yours, expected, "the log of forks").explained_by([
                 (pieces > most, "a piece has fewer than 1,000 primitives"),
@@ -195,18 +211,14 @@ pub(super) fn build_parallel_has_an_eighth_of_the_span(trial: &Trial<'_>) -> Che
             ]));
         }
     }
-    let forked = |index: usize| children.contains(&ranges[index]);
-    let own = |index: usize| match binning.get(&ranges[index]) {
-        Some(&pieces) => own_span(ranges[index].1, pieces),
-        None => u64::from(ranges[index].1),
-    };
-    let (work, span) = work_and_span_of(&tree, &ranges, own, forked);
+    let (work, span) = work_and_span_of_log(&tree, &forks);
     if 8 * span <= work {
         return Ok(());
     }
     let yours = format!("work {work}, span {span}: a ratio of {:.2}", work as f64 / span as f64);
     let expected = format!("a span of at most {}", work / 8);
     // Would the span be short enough with these forks of children, and all large nodes sorted in pieces?
+    let forked = |index: usize| children.contains(&ranges[index]);
     let in_pieces = |index: usize| own_span(ranges[index].1, (ranges[index].1 / 2 / LEAST_PIECE).min(8));
     let possible = 8 * work_and_span_of(&tree, &ranges, in_pieces, forked).1 <= work;
     Err(Broken::with_texts(input, yours, expected, "the tree and the log of forks").explained_by([

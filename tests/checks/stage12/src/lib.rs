@@ -13,7 +13,7 @@ mod bins;
 mod blocks;
 mod builds;
 mod flat;
-mod forks;
+pub mod forks;
 mod moves;
 mod orders;
 mod partitions;
