@@ -11,6 +11,7 @@ mod drawn;
 pub mod generate;
 pub mod golden;
 pub mod judge;
+mod law;
 pub mod nasty;
 pub mod offset;
 pub mod paste;

@@ -1,14 +1,14 @@
 //! Running a check: on a thread with a large stack, with a time limit, and with the same inputs in each run.
 
-use crate::broken::{self, Broken, CheckResult};
+use crate::broken::{self, CheckResult};
 use crate::drawn::{Drawn, Values};
+use crate::law::{Judged, Law, judge_one, shrink};
 use crate::picture::Replay;
 use crate::rubric;
 use crate::symmetry::{Symmetries, Symmetry, TurnedKit};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use raykata::kit::{Door, Kit, KitError, kit_error};
-use std::any::Any;
 use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::panic::Location;
@@ -17,9 +17,6 @@ use std::time::Duration;
 
 /// The time limit of a check. The slowest check takes a third of a second in a development build.
 const PATIENCE: Duration = Duration::from_secs(15);
-
-/// The largest number of smaller inputs that are tried when a law is broken.
-const SHRINK_STEPS: usize = 400;
 
 /// A check: a law with the stage and the name under which it is graded.
 #[derive(Clone, Copy)]
@@ -222,137 +219,6 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// Inputs together with their judge, for code that does not know their type. `values` is always a `Vec` of inputs.
-trait Law {
-    /// Draws `cases` inputs.
-    fn draw(&self, cases: usize, runner: &mut TestRunner) -> Values;
-    /// The number of inputs.
-    fn count(&self, values: &AnyValues) -> usize;
-    /// Judges all inputs.
-    fn judge(&self, values: &AnyValues) -> Vec<CheckResult>;
-    /// Judges one input.
-    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<CheckResult>;
-    /// The text of one input for a message.
-    fn words(&self, values: &AnyValues, index: usize) -> String;
-    /// The tree of smaller inputs to which the input with this index can shrink.
-    fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>>;
-}
-
-type AnyValues = dyn Any + Send + Sync;
-
-/// A tree of smaller inputs, for code that does not know their type.
-trait Tree {
-    fn simplify(&mut self) -> bool;
-    fn complicate(&mut self) -> bool;
-    /// Judges the current input.
-    fn judge(&self) -> Vec<CheckResult>;
-    /// The text of the current input for a message.
-    fn words(&self) -> String;
-}
-
-struct Judged<S: Strategy, J> {
-    inputs: S,
-    judge: J,
-    /// The inputs before those that are drawn.
-    chosen: Vec<S::Value>,
-}
-
-impl<S: Strategy, J: Fn(&[S::Value]) -> Vec<CheckResult>> Law for Judged<S, J>
-where
-    S::Value: Clone + Send + Sync + 'static,
-{
-    fn draw(&self, cases: usize, runner: &mut TestRunner) -> Values {
-        let mut values = self.chosen.clone();
-        for _ in 0..cases {
-            if let Ok(tree) = self.inputs.new_tree(runner) {
-                values.push(tree.current());
-            }
-        }
-        Arc::new(values)
-    }
-
-    fn count(&self, values: &AnyValues) -> usize {
-        values.downcast_ref::<Vec<S::Value>>().map_or(0, Vec::len)
-    }
-
-    fn judge(&self, values: &AnyValues) -> Vec<CheckResult> {
-        values.downcast_ref::<Vec<S::Value>>().map_or_else(Vec::new, |values| (self.judge)(values))
-    }
-
-    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<CheckResult> {
-        let values = values.downcast_ref::<Vec<S::Value>>();
-        values.map_or_else(Vec::new, |values| (self.judge)(&values[index..=index]))
-    }
-
-    fn words(&self, values: &AnyValues, index: usize) -> String {
-        values
-            .downcast_ref::<Vec<S::Value>>()
-            .map_or_else(String::new, |values| format!("{:?}", values[index]))
-    }
-
-    fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>> {
-        // A chosen input is small already.
-        let drawn = index.checked_sub(self.chosen.len())?;
-        let tree = (0..cases).filter_map(|_| self.inputs.new_tree(runner).ok()).nth(drawn)?;
-        Some(Box::new(JudgedTree { tree, judge: &self.judge }))
-    }
-}
-
-struct JudgedTree<'a, T, J> {
-    tree: T,
-    judge: &'a J,
-}
-
-impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<CheckResult>> Tree for JudgedTree<'_, T, J> {
-    fn simplify(&mut self) -> bool {
-        self.tree.simplify()
-    }
-
-    fn complicate(&mut self) -> bool {
-        self.tree.complicate()
-    }
-
-    fn judge(&self) -> Vec<CheckResult> {
-        (self.judge)(&[self.tree.current()])
-    }
-
-    fn words(&self) -> String {
-        format!("{:?}", self.tree.current())
-    }
-}
-
-/// The broken law of one input, if it breaks one. A panic counts.
-fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, input: &dyn Fn() -> String) -> Option<Broken> {
-    match kit_error::catch(judge) {
-        Ok(outcomes) => outcomes.into_iter().find_map(Result::err),
-        Err(KitError::Panicked { message, place }) => {
-            let panic = format!("a panic at {place}: {message}");
-            Some(Broken::with_texts(input(), panic, "an answer", "the definition"))
-        }
-        Err(error) => kit_error::unwind(error),
-    }
-}
-
-/// Searches for a smaller input that breaks the law as well, by the same mistake if one is known.
-fn shrink(mut tree: Box<dyn Tree + '_>, mut smallest: Broken) -> Broken {
-    // All failing inputs together prove the mistake, so a smaller input keeps its diagnosis.
-    let (mistakes, diagnosis) = (smallest.mistakes.clone(), smallest.diagnosis.clone());
-    let mistake = smallest.named();
-    let mut steps = 0;
-    let mut going = tree.simplify();
-    while going && steps < SHRINK_STEPS {
-        steps += 1;
-        going = match judge_one(&|| tree.judge(), &|| tree.words()) {
-            Some(broken) if mistake.is_none_or(|mistake| broken.is_explained_by(mistake)) => {
-                smallest = broken;
-                tree.simplify()
-            }
-            _ => tree.complicate(),
-        };
-    }
-    if mistakes.is_some() { Broken { mistakes, diagnosis, ..smallest } } else { smallest }
-}
-
 /// The FNV-1a hash, which is the same on every machine and in every version.
 fn fingerprint(name: &str) -> u64 {
     name.bytes()
@@ -458,6 +324,7 @@ pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::broken::Broken;
     use raykata::kit::KitError;
 
     /// A trial whose kit is never called: every call would end with an error.

@@ -3,7 +3,7 @@
 //! `directions` (cosine-weighted directions), `emitters` (inputs, and their geometry in double precision), `lights` (samples of
 //! emitters), `irradiance` (closed forms), `weights` (multiple importance sampling), `roulette`, `bounces`,
 //! `integrating_sphere`, `table`, `picture`; `lobes` (the choice of a lobe), `contributions` (light that counts), `steps` (one
-//! step of a path), `rooms` (geometry for whole paths), `references` (their closed forms) and `room_picture` (their picture),
+//! step of a path) and `light_steps` (its light sample), `rooms` (geometry for whole paths), `references` (their closed forms) and `room_picture` (their picture),
 //! `called_for` (what scenes need).
 //!
 //! Distributions are judged by [`checks::statistics`], with 1 false alarm in 10 million per test.
@@ -15,6 +15,7 @@ mod directions;
 mod emitters;
 mod integrating_sphere;
 mod irradiance;
+mod light_steps;
 mod lights;
 mod lobes;
 mod picture;
@@ -43,6 +44,7 @@ use directions::{
 };
 use integrating_sphere::paths_in_an_integrating_sphere_find_its_light;
 use irradiance::{polygon_lights_give_lamberts_irradiance, sphere_lights_give_their_irradiance};
+use light_steps::{steps_ask_for_no_useless_shadow_ray, steps_sample_the_light};
 use lights::{
     dark_sides_send_no_light, far_sphere_lights_keep_their_density, light_pdf_beside_the_light_is_zero,
     light_pdf_integrates_to_one, light_pdf_is_that_of_the_sample, light_samples_have_their_density,
@@ -64,8 +66,7 @@ use roulette::{
     roulette_ends_no_bright_and_no_young_path, roulette_ends_paths_without_weight, roulette_keeps_the_mean,
 };
 use steps::{
-    steps_ask_for_no_useless_shadow_ray, steps_collect_the_emission,
-    steps_continue_with_the_weight_of_the_sample, steps_end_at_the_greatest_depth, steps_sample_the_light,
+    steps_collect_the_emission, steps_continue_with_the_weight_of_the_sample, steps_end_at_the_greatest_depth,
 };
 use table::table_of_closed_rooms;
 use weights::{
