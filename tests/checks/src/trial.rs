@@ -149,7 +149,7 @@ impl<'a> Trial<'a> {
     /// The same as [`Trial::forall`], with the inputs `chosen` before those that are drawn, in one batch.
     ///
     /// A chosen input is reported as it is. Choose inputs to which every known mistake gives another answer: a message
-    /// names a mistake only if it [explains](Broken::explained_by) all failing inputs.
+    /// names a mistake only if it [explains](crate::Broken::explained_by) all failing inputs.
     #[track_caller]
     pub fn forall_and<S: Strategy>(
         &self,
