@@ -99,8 +99,14 @@ pub trait Frames {
     fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>>;
 }
 
+/// Each value, to print it.
 fn each<T: Debug>(values: &[T]) -> Vec<&dyn Debug> {
-    values.iter().map(|value| value as &dyn Debug).collect()
+    list(values.len(), &|index| &values[index])
+}
+
+/// The values by their indices. [`each`] is compiled for each of a hundred types, and this loop once.
+fn list<'a>(n: usize, value: &dyn Fn(usize) -> &'a dyn Debug) -> Vec<&'a dyn Debug> {
+    (0..n).map(value).collect()
 }
 
 macro_rules! door {
