@@ -70,10 +70,15 @@ fn is_of_a_program(function: &Function) -> bool {
     PROGRAMS.iter().any(|(_, name)| function.path.starts_with(&format!("{name}::")))
 }
 
-/// Returns the functions of those crates, in the kit or in a copy of it.
-fn handed_out(root: &Path) -> Vec<Function> {
-    let bundles = bundles(root);
-    crates().iter().flat_map(|(folder, name)| functions(root, folder, name, &bundles)).collect()
+/// Returns the functions of those crates, in the kit or in a copy of it. A copy has no programs, so they are always those of
+/// the kit.
+fn handed_out(copy: &Path) -> Vec<Function> {
+    let (kit, bundles) = (root(), bundles(copy));
+    let of_crate = |(folder, name): &(String, String)| {
+        let is_program = PROGRAMS.iter().any(|(_, program)| program == name);
+        functions(if is_program { &kit } else { copy }, folder, name, &bundles)
+    };
+    crates().iter().flat_map(of_crate).collect()
 }
 
 /// Returns the functions that students write.

@@ -15,6 +15,7 @@ use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
 use raykata::worker::{receive, send};
 use raykata_cli::verdicts::{CheckTrial, Verdict};
+use std::ffi::OsString;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -39,6 +40,9 @@ const QUICK_BUILD: [&str; 12] = [
 
 /// The most memory of a changed judge in KB: a changed loop may allocate without end.
 const MEMORY: u64 = 8 << 20;
+
+/// The most processor time of a changed judge in seconds: a changed loop may not end. All trials of a change take less.
+const SECONDS: u64 = 90;
 
 /// The folder in which judges are built.
 pub(super) struct Judges {
@@ -87,19 +91,40 @@ impl Judges {
 
     /// Builds the judge with a changed check. `None` if it does not compile.
     pub fn changed(&self, mutant: &Mutant) -> Result<Option<PathBuf>> {
-        let original = read(&self.root.join(&mutant.file))?;
-        let text = entry::apply(&mutant.file, &mutant.diff, &original)?;
-        let file = self.folder.join(&mutant.file);
         let before = modified(&self.program());
-        write_if_new(&file, &text)?;
-        let built = self.build();
-        write_if_new(&file, &original)?;
-        let Some(judge) = built? else { return Ok(None) };
+        let Some(judge) = self.with_change(mutant, || self.build())? else { return Ok(None) };
         // Its verdicts would be those of another change.
         if modified(&judge) == before {
             bail!("cargo found no change in {}: remove it and run this again", self.folder.display());
         }
         Ok(Some(judge))
+    }
+
+    /// Whether a unit test of what all checks share notices a change of it. Such a test needs no judge, whose build takes long.
+    pub fn fails_unit_test(&self, mutant: &Mutant) -> Result<bool> {
+        let run = |only_build: &[&str]| {
+            let limits = format!("ulimit -v {MEMORY}; ulimit -t {SECONDS}; exec \"$@\"");
+            let mut command = Command::new("sh");
+            command.current_dir(&self.folder).args(["-c", &limits, "sh"]).arg(cargo());
+            command.args(["test", "--quiet", "--package", "checks", "--lib", "--target-dir", "target"]);
+            command.args(QUICK_BUILD).args(only_build).stdin(Stdio::null());
+            command.output().context("cargo, which tests the checks, cannot be started")
+        };
+        self.with_change(mutant, || {
+            // What does not compile fails no test.
+            Ok(run(&["--no-run"])?.status.success() && !run(&[])?.status.success())
+        })
+    }
+
+    /// Does something while a check is changed.
+    fn with_change<T>(&self, mutant: &Mutant, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        let original = read(&self.root.join(&mutant.file))?;
+        let text = entry::apply(&mutant.file, &mutant.diff, &original)?;
+        let file = self.folder.join(&mutant.file);
+        write_if_new(&file, &text)?;
+        let done = work();
+        write_if_new(&file, &original)?;
+        done
     }
 
     fn program(&self) -> PathBuf {
@@ -108,7 +133,7 @@ impl Judges {
 
     /// Builds the judge. `None` if it does not compile.
     fn build(&self) -> Result<Option<PathBuf>> {
-        let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        let output = Command::new(cargo())
             .current_dir(&self.folder)
             .args(["build", "--quiet", "--package", "judge", "--bin", "judge", "--target-dir", "target"])
             .args(QUICK_BUILD)
@@ -121,6 +146,10 @@ impl Judges {
         has_room(&self.folder, "delete something")?;
         Ok(None)
     }
+}
+
+fn cargo() -> OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
 fn modified(file: &Path) -> Option<SystemTime> {
@@ -138,7 +167,7 @@ impl Judge {
     /// Starts a judge.
     pub fn start(program: &Path) -> Result<Judge> {
         let mut process = Command::new("sh")
-            .args(["-c", &format!("ulimit -v {MEMORY}; exec \"$0\" trials")])
+            .args(["-c", &format!("ulimit -v {MEMORY}; ulimit -t {SECONDS}; exec \"$0\" trials")])
             .arg(program)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

@@ -5,6 +5,9 @@
 //! corpus keeps. A change that survives is a gap in the corpus, a part of the check that decides nothing, or harmless, for
 //! example another number of random inputs. Those that were reviewed are listed in tests/corpus/harmless.toml.
 //!
+//! A change of what all checks share is tested by the unit tests of that code, by all checks with the reference, and by each
+//! check with one of the mistakes that it names.
+//!
 //! `affected` (the checks that a file decides) · `judges` (builds and asks a changed judge) · `workers` (the entries, built once)
 
 mod affected;
@@ -33,6 +36,8 @@ use workers::Workers;
 enum Fate {
     /// It does not compile.
     DoesNotCompile,
+    /// A unit test of what all checks share fails.
+    FailsUnitTest,
     /// This check rejects a right solution: the reference, or this entry.
     RejectsRight(String, String),
     /// This check accepts this mistake.
@@ -48,7 +53,8 @@ enum Fate {
 /// Tests the changes and prints a report. Returns whether every survivor is a reviewed one and no reviewed one was noticed.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let reviewed = Reviewed::read(root, REVIEWED_CHECKS)?;
-    let packages: Vec<String> = STAGES.iter().map(|(stage, _)| format!("stage{stage}")).collect();
+    let mut packages = vec!["checks".to_owned()];
+    packages.extend(STAGES.iter().map(|(stage, _)| format!("stage{stage}")));
     let mut mutants = list::all(root, &packages)?;
     if let Some(file) = &options.file {
         mutants.retain(|mutant| mutant.file.contains(file.as_str()));
@@ -68,8 +74,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
             fate => Some((mutant, fate.clone())),
         })
         .collect();
-    let is_noticed =
-        |fate: &Fate| matches!(fate, Fate::RejectsRight(..) | Fate::AcceptsMistake(..) | Fate::ByMessage(..));
+    let is_noticed = |fate: &Fate| !matches!(fate, Fate::Survived | Fate::Harmless | Fate::DoesNotCompile);
     let is_reviewed = tell_unreviewed(&tried, &reviewed, "harmless", &Fate::Survived, is_noticed);
     report(&tried, n_all);
     Ok(is_reviewed)
@@ -95,10 +100,13 @@ fn sample(mutants: Vec<Mutant>, n: usize, seed: u64) -> Vec<Mutant> {
     chosen
 }
 
-/// The stage of a changed check; 0 for a file of no stage.
+/// The number of no stage: what the checks of all stages share.
+const SHARED: u8 = 0;
+
+/// The stage of a changed check, or [`SHARED`].
 fn stage_of(mutant: &Mutant) -> u8 {
     let name = mutant.file.strip_prefix("tests/checks/stage").unwrap_or_default();
-    name.split('/').next().and_then(|number| number.parse().ok()).unwrap_or(0)
+    name.split('/').next().and_then(|number| number.parse().ok()).unwrap_or(SHARED)
 }
 
 fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal<Fate>) -> Result<()> {
@@ -119,10 +127,15 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal<Fate>) -> Resu
 
 fn try_one(root: &Path, mutant: &Mutant, judges: &Judges, workers: &Workers) -> Result<Fate> {
     let stage = stage_of(mutant);
-    let checks = StageFiles::read(root, stage)?.decided_by(&mutant.file)?;
+    if stage == SHARED && judges.fails_unit_test(mutant)? {
+        return Ok(Fate::FailsUnitTest);
+    }
     let Some(changed) = judges.changed(mutant)? else { return Ok(Fate::DoesNotCompile) };
     let mut judge = Judge::start(&changed)?;
-    let trials = workers.trials(stage, &checks);
+    let trials = match stage {
+        SHARED => workers.trials_of_all(),
+        _ => workers.trials(stage, &StageFiles::read(root, stage)?.decided_by(&mutant.file)?),
+    };
     for trial in &trials {
         // Ask twice: on a busy machine, a check can exceed its time limit.
         if judge.fails(trial, workers)? != trial.fails
@@ -155,7 +168,7 @@ fn report(tried: &[(&Mutant, Fate)], n_all: usize) {
     let mut stages: Vec<u8> = tried.iter().map(|(mutant, _)| stage_of(mutant)).collect();
     stages.dedup();
     println!(
-        "stage  changes  no program  rejects right  accepts mistake  message  harmless  survived    score"
+        "stage   changes  no program  unit test  rejects right  accepts mistake  message  harmless  survived    score"
     );
     for stage in stages.into_iter().map(Some).chain([None]) {
         let count = |which: fn(&Fate) -> bool| {
@@ -163,18 +176,26 @@ fn report(tried: &[(&Mutant, Fate)], n_all: usize) {
                 tried.iter().filter(|(mutant, _)| stage.is_none_or(|stage| stage == stage_of(mutant)));
             of_stage.filter(|(_, fate)| which(fate)).count()
         };
+        let unit = count(|fate| *fate == Fate::FailsUnitTest);
         let rejects = count(|fate| matches!(fate, Fate::RejectsRight(..)));
         let accepts = count(|fate| matches!(fate, Fate::AcceptsMistake(..)));
         let messages = count(|fate| matches!(fate, Fate::ByMessage(..)));
         let survived = count(|fate| *fate == Fate::Survived);
-        let noticed = rejects + accepts + messages;
+        let noticed = unit + rejects + accepts + messages;
+        let score = match noticed + survived {
+            0 => "-".into(),
+            judged => format!("{:.1} %", 100.0 * noticed as f64 / judged as f64),
+        };
         println!(
-            "{:<5}  {:>7}  {:>10}  {rejects:>13}  {accepts:>15}  {messages:>7}  {:>8}  {survived:>8}  {:>5.1} %",
-            stage.map_or("all".into(), |stage| stage.to_string()),
+            "{:<6}  {:>7}  {:>10}  {unit:>9}  {rejects:>13}  {accepts:>15}  {messages:>7}  {:>8}  {survived:>8}  {score:>7}",
+            match stage {
+                None => "all".into(),
+                Some(SHARED) => "shared".into(),
+                Some(stage) => stage.to_string(),
+            },
             count(|_| true),
             count(|fate| *fate == Fate::DoesNotCompile),
             count(|fate| *fate == Fate::Harmless),
-            100.0 * noticed as f64 / ((noticed + survived).max(1)) as f64,
         );
     }
     println!(

@@ -6,6 +6,7 @@ use crate::corpus::records::{Matrix, message_file};
 use crate::corpus::tested;
 use crate::corpus::workshop::{Built, Workshop};
 use crate::kits::Need;
+use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
 use checks::Check;
 use raykata_cli::fingerprint::fingerprint;
@@ -49,6 +50,16 @@ impl Trial<'_> {
     }
 }
 
+/// A trial that the check passes.
+fn trial<'a>(stage: u8, check: &'static Check, entry: Option<&'a Entry>) -> Trial<'a> {
+    Trial { check: check.name, entry, fails: false, message: None, stage }
+}
+
+/// Whether the entry is a mistake that this check names.
+fn names(entry: &Entry, check: &Check) -> bool {
+    matches!(&entry.claim, Claim::Wrong { caught_by, .. } if caught_by == check.name)
+}
+
 impl fmt::Display for Trial<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "the verdict of `{}` about {}", self.check, self.entry_name())
@@ -77,13 +88,7 @@ impl Workers {
             let row = self.matrix.0.get(&entry.to_string());
             row.is_some_and(|row| row.split(' ').any(|name| name.trim_start_matches('=') == check.name))
         };
-        let trial = |check: &'static Check, entry| Trial {
-            check: check.name,
-            entry,
-            fails: false,
-            message: None,
-            stage,
-        };
+        let trial = |check: &'static Check, entry| trial(stage, check, entry);
         let mut trials: Vec<Trial<'_>> = checks.iter().map(|check| trial(check, None)).collect();
         let mut files: Vec<BTreeSet<&str>> = Vec::new();
         for check in checks {
@@ -91,10 +96,8 @@ impl Workers {
                 of_stage.iter().copied().filter(|entry| fails(entry, check)).collect();
             files.push(rejected.iter().map(|entry| entry.file.as_str()).collect());
             trials.extend(rejected.into_iter().map(|entry| {
-                let is_named =
-                    matches!(&entry.claim, Claim::Wrong { caught_by, .. } if caught_by == check.name);
-                let kept = is_named.then(|| fs::read_to_string(message_file(&self.root, entry)).ok());
-                Trial { fails: true, message: kept.flatten(), ..trial(check, Some(entry)) }
+                let message = names(entry, check).then(|| self.kept_message(entry)).flatten();
+                Trial { fails: true, message, ..trial(check, Some(entry)) }
             }));
         }
         for (check, files) in checks.iter().zip(files) {
@@ -104,6 +107,23 @@ impl Workers {
             trials.extend(right.map(|entry| trial(check, Some(*entry))));
         }
         trials
+    }
+
+    /// A short series of trials of all checks, for code that all of them share: first the reference, then one mistake per
+    /// check, which that check names.
+    pub fn trials_of_all(&self) -> Vec<Trial<'_>> {
+        let checks = || STAGES.iter().flat_map(|(stage, checks)| checks.iter().map(|check| (*stage, check)));
+        let mut trials: Vec<Trial<'_>> = checks().map(|(stage, check)| trial(stage, check, None)).collect();
+        trials.extend(checks().filter_map(|(stage, check)| {
+            let entry = self.entries.iter().find(|entry| entry.stage == stage && names(entry, check))?;
+            Some(Trial { fails: true, message: self.kept_message(entry), ..trial(stage, check, Some(entry)) })
+        }));
+        trials
+    }
+
+    /// The message about a mistake that the corpus keeps.
+    fn kept_message(&self, entry: &Entry) -> Option<String> {
+        fs::read_to_string(message_file(&self.root, entry)).ok()
     }
 
     /// The worker of an entry, or of the reference.
