@@ -92,10 +92,25 @@ pub fn functions_of(file: &str, module: &str, text: &str, bundles: &Bundles) -> 
     found
 }
 
-/// Returns the functions that fit each exercise.
+/// Returns whether a function calls those of the student, of which it has a type parameter.
+fn calls_the_student(function: &Function) -> bool {
+    let generics = function.signature.generics.params.iter().chain(&function.outer.params);
+    let bounds = generics.filter_map(|parameter| match parameter {
+        GenericParam::Type(parameter) => Some(&parameter.bounds),
+        _ => None,
+    });
+    bounds.flatten().any(|bound| match bound {
+        TypeParamBound::Trait(bound) => bound.path.is_ident("StudentFunctions"),
+        _ => false,
+    })
+}
+
+/// Returns the functions that fit each exercise. One that calls the student's functions answers with what they return, so it
+/// fits none.
 pub fn candidates<'a>(exercises: &'a [Function], all: &'a [Function]) -> Vec<(&'a Function, &'a Function)> {
     let mut by_key: BTreeMap<&Key, Vec<&Function>> = BTreeMap::new();
-    all.iter().for_each(|function| by_key.entry(&function.key).or_default().push(function));
+    let answering = all.iter().filter(|function| !calls_the_student(function));
+    answering.for_each(|function| by_key.entry(&function.key).or_default().push(function));
     let fitting = |exercise: &'a Function| {
         let found = by_key.get(&exercise.key).into_iter().flatten();
         found.map(move |function| (exercise, *function)).collect::<Vec<_>>()
