@@ -146,50 +146,63 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> CheckResult {
     };
     let answers = trial.kit.light_effects(&queries);
     all_hold(compare_formulas(&cases, answers, judge, light_mistakes))?;
-    trial.forall(200, drawn_lights(), |queries| {
-        let answers = queries.iter().zip(trial.kit.light_effects(queries));
-        let judge = |(query, yours): (&LightQuery, LightEffects)| {
-            let expected = needs(query);
-            match yours == expected {
-                true => Ok(()),
-                false => {
-                    let input = format!("light_effects of {query:?}");
-                    Err(Broken::new(input, yours, expected, "the definition").explained_by([]))
-                }
+    trial.forall(200, drawn_lights(), |drawn| {
+        let queries: Vec<LightQuery> = drawn.iter().map(|(query, _)| query.clone()).collect();
+        let answers = drawn.iter().zip(trial.kit.light_effects(&queries));
+        let judge = |((query, expected), yours): (&(LightQuery, LightEffects), LightEffects)| {
+            if yours == *expected {
+                return Ok(());
             }
+            let input = format!("light_effects of {query:?}");
+            Err(Broken::new(input, yours, *expected, "the definition").explained_by([]))
         };
         answers.map(judge).collect()
     })
 }
 
-/// Lights of all kinds, one in five of them dark, with up to 64 samples.
-fn drawn_lights() -> impl Strategy<Value = LightQuery> + 'static {
+/// Why a light is drawn dark.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Dark {
+    No,
+    Black,
+    WithoutIntensity,
+}
+
+/// Lights of all kinds, one in five of them dark, with up to 64 samples, and what each needs.
+fn drawn_lights() -> impl Strategy<Value = (LightQuery, LightEffects)> + 'static {
     let channel = || prop_oneof![Just(0.0), 0.01f32..5.0];
-    let color = (channel(), channel(), channel()).prop_map(Vec3::from);
-    let intensity = prop_oneof![1 => Just(0.0), 8 => 0.01f32..9.0];
+    // One channel is not 0.
+    let color = (channel(), channel(), 0.01f32..5.0, 0..3usize).prop_map(|(one, other, bright, axis)| {
+        let mut channels = [one, other, bright];
+        channels.swap(2, axis);
+        Vec3::from(channels)
+    });
+    let dark = prop_oneof![8 => Just(Dark::No), 1 => Just(Dark::Black), 1 => Just(Dark::WithoutIntensity)];
     let position = (-9f32..9.0, -9f32..9.0, -9f32..9.0).prop_map(Vec3::from);
-    (0..4, position, color, intensity, any::<bool>(), 0..=64u32).prop_map(
-        |(kind, position, color, intensity, shadows, light_samples)| {
+    (0..4, position, color, 0.01f32..9.0, dark, any::<bool>(), 0..=64u32).prop_map(
+        |(kind, position, color, intensity, dark, shadows, light_samples)| {
             let falloff = Falloff::None;
             let sphere = AreaShape::Sphere(Sphere { center: position, radius: 0.5 });
             let rectangle = AreaShape::Rectangle { corner: position, edges: (Vec3::X, Vec3::Z) };
-            let emitter = match kind {
-                0 => Emitter::Point { position, falloff },
-                1 => Emitter::Directional { direction: Vec3::NEG_Y },
-                2 => Emitter::Area { shape: sphere, falloff },
-                _ => Emitter::Area { shape: rectangle, falloff },
+            let one_sample = LightEffects { samples: 1, area: false, shadows };
+            let by_area = match light_samples {
+                0 => one_sample,
+                samples => LightEffects { samples, area: true, shadows },
+            };
+            let (emitter, bright) = match kind {
+                0 => (Emitter::Point { position, falloff }, one_sample),
+                1 => (Emitter::Directional { direction: Vec3::NEG_Y }, one_sample),
+                2 => (Emitter::Area { shape: sphere, falloff }, by_area),
+                _ => (Emitter::Area { shape: rectangle, falloff }, by_area),
+            };
+            let (color, intensity, expected) = match dark {
+                Dark::No => (color, intensity, bright),
+                Dark::Black => (Vec3::ZERO, intensity, LightEffects::default()),
+                Dark::WithoutIntensity => (color, 0.0, LightEffects::default()),
             };
             let light = Light { emitter, color, intensity, shadows };
-            LightQuery { light, quality: Quality { light_samples, ..Quality::default() } }
+            let quality = Quality { light_samples, ..Quality::default() };
+            (LightQuery { light, quality }, expected)
         },
     )
-}
-
-/// The definition of `light_effects`.
-fn needs(LightQuery { light, quality }: &LightQuery) -> LightEffects {
-    if light.color == Vec3::ZERO || light.intensity == 0.0 {
-        return LightEffects::default();
-    }
-    let area = matches!(light.emitter, Emitter::Area { .. }) && quality.light_samples > 0;
-    LightEffects { samples: if area { quality.light_samples } else { 1 }, area, shadows: light.shadows }
 }

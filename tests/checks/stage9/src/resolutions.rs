@@ -67,13 +67,19 @@ fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
         // or a flat box within this distance, both answers are accepted.
         let room = |t: f64| (-18f64).exp2() * (1.0 + t.abs());
         let close = |p: f64, q: f64| p == q || (p - q).abs() <= room(q);
+        // Range and faces have room for rounding, 2⁻²⁰ of `t`. Demand half of it at both ends, because the product may be
+        // rounded.
+        let rounding = match expected {
+            (t, t_end) if t.is_finite() && t_end.is_finite() => (-21f64).exp2() * (t.abs() + t_end.abs()),
+            _ => 0.0,
+        };
         let fits = match yours {
             Some((t, t_end)) => {
                 expected.0 <= expected.1 + room(expected.1)
                     && close(t, expected.0)
                     && close(t_end, expected.1)
             }
-            None => !(expected.0 <= expected.1),
+            None => !(expected.0 <= expected.1 + rounding),
         };
         if fits {
             return Ok(());
@@ -122,9 +128,17 @@ fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
                 parallel,
                 "your answer is wrong for a ray along a face: its direction is 0 there, so compare its origin with both planes",
             ),
+            (
+                is_none && expected.0 > expected.1,
+                "you leave out the room for rounding: the range of the ray and the faces have ROUNDING as room",
+            ),
             (is_none && near == far, "you return None for a ray that touches the cell: the cell is closed"),
         ];
-        let expected = (expected.0 <= expected.1).then_some(expected);
+        let expected = match expected {
+            (t, t_end) if t <= t_end => Some(expected),
+            (t, t_end) if t <= t_end + rounding => Some((t - rounding, t_end + rounding)),
+            _ => None,
+        };
         let at_scale = |span: Option<(f64, f64)>| span.map(|(t, t_end)| (t_scale * t, t_scale * t_end));
         let input = spanned.asked().call("span");
         Err(Broken::new(input, at_scale(yours), at_scale(expected), "double precision")
