@@ -169,6 +169,8 @@ impl Judge {
         let mut process = Command::new("sh")
             .args(["-c", &format!("ulimit -v {MEMORY}; ulimit -t {SECONDS}; exec \"$0\" trials")])
             .arg(program)
+            // A judge writes messages to its output, so a snapshot that differs may not be printed there.
+            .envs([("INSTA_OUTPUT", "none"), ("INSTA_UPDATE", "no")])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
