@@ -15,7 +15,7 @@ use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
 use raykata::worker::{receive, send};
 use raykata_cli::verdicts::{CheckTrial, Verdict};
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -103,11 +103,9 @@ impl Judges {
     /// Whether a unit test of what all checks share notices a change of it. Such a test needs no judge, whose build takes long.
     pub fn fails_unit_test(&self, mutant: &Mutant) -> Result<bool> {
         let run = |only_build: &[&str]| {
-            let limits = format!("ulimit -v {MEMORY}; ulimit -t {SECONDS}; exec \"$@\"");
-            let mut command = Command::new("sh");
-            command.current_dir(&self.folder).args(["-c", &limits, "sh"]).arg(cargo());
+            let mut command = limited(&cargo());
             command.args(["test", "--quiet", "--package", "checks", "--lib", "--target-dir", "target"]);
-            command.args(QUICK_BUILD).args(only_build).stdin(Stdio::null());
+            command.args(QUICK_BUILD).args(only_build).current_dir(&self.folder).stdin(Stdio::null());
             command.output().context("cargo, which tests the checks, cannot be started")
         };
         self.with_change(mutant, || {
@@ -148,6 +146,15 @@ impl Judges {
     }
 }
 
+/// A program that may not use more memory and processor time than a changed judge.
+fn limited(program: &OsStr) -> Command {
+    let mut command = Command::new("sh");
+    command
+        .args(["-c", &format!("ulimit -v {MEMORY}; ulimit -t {SECONDS}; exec \"$0\" \"$@\"")])
+        .arg(program);
+    command
+}
+
 fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
@@ -166,9 +173,8 @@ pub(super) struct Judge {
 impl Judge {
     /// Starts a judge.
     pub fn start(program: &Path) -> Result<Judge> {
-        let mut process = Command::new("sh")
-            .args(["-c", &format!("ulimit -v {MEMORY}; ulimit -t {SECONDS}; exec \"$0\" trials")])
-            .arg(program)
+        let mut process = limited(program.as_os_str())
+            .arg("trials")
             // A judge writes messages to its output, so a snapshot that differs may not be printed there.
             .envs([("INSTA_OUTPUT", "none"), ("INSTA_UPDATE", "no")])
             .stdin(Stdio::piped())

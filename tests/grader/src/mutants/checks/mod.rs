@@ -6,7 +6,7 @@
 //! example another number of random inputs. Those that were reviewed are listed in tests/corpus/harmless.toml.
 //!
 //! A change of what all checks share is tested by the unit tests of that code, by all checks with the reference, and by each
-//! check with one of the mistakes that it names.
+//! check with one of the mistakes that it catches.
 //!
 //! `affected` (the checks that a file decides) · `judges` (builds and asks a changed judge) · `workers` (the entries, built once)
 

@@ -55,8 +55,8 @@ fn trial<'a>(stage: u8, check: &'static Check, entry: Option<&'a Entry>) -> Tria
     Trial { check: check.name, entry, fails: false, message: None, stage }
 }
 
-/// Whether the entry is a mistake that this check names.
-fn names(entry: &Entry, check: &Check) -> bool {
+/// Whether the corpus says that this check catches the entry.
+fn catches(entry: &Entry, check: &Check) -> bool {
     matches!(&entry.claim, Claim::Wrong { caught_by, .. } if caught_by == check.name)
 }
 
@@ -96,7 +96,7 @@ impl Workers {
                 of_stage.iter().copied().filter(|entry| fails(entry, check)).collect();
             files.push(rejected.iter().map(|entry| entry.file.as_str()).collect());
             trials.extend(rejected.into_iter().map(|entry| {
-                let message = names(entry, check).then(|| self.kept_message(entry)).flatten();
+                let message = catches(entry, check).then(|| self.kept_message(entry)).flatten();
                 Trial { fails: true, message, ..trial(check, Some(entry)) }
             }));
         }
@@ -110,12 +110,12 @@ impl Workers {
     }
 
     /// A short series of trials of all checks, for code that all of them share: first the reference, then one mistake per
-    /// check, which that check names.
+    /// check, which that check catches.
     pub fn trials_of_all(&self) -> Vec<Trial<'_>> {
         let checks = || STAGES.iter().flat_map(|(stage, checks)| checks.iter().map(|check| (*stage, check)));
         let mut trials: Vec<Trial<'_>> = checks().map(|(stage, check)| trial(stage, check, None)).collect();
         trials.extend(checks().filter_map(|(stage, check)| {
-            let entry = self.entries.iter().find(|entry| entry.stage == stage && names(entry, check))?;
+            let entry = self.entries.iter().find(|entry| entry.stage == stage && catches(entry, check))?;
             Some(Trial { fails: true, message: self.kept_message(entry), ..trial(stage, check, Some(entry)) })
         }));
         trials
