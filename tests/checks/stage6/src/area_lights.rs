@@ -135,14 +135,14 @@ fn judge_disk_point((disk, u): &(Disk, Vec2), point: Vec3, places: &mut Vec<Vec2
     let height = offset.dot(normal);
     // A rotation from z to the normal by the library is off by up to 7e-4, because it takes almost parallel vectors as
     // parallel. A wrong plane is much farther off for most disks.
-    if height.abs() <= 1e-3 * radius + slack && offset.length() <= radius + slack {
+    let beside = !(height.abs() <= 1e-3 * radius + slack);
+    let far = offset.length() > radius + slack;
+    if !beside && !far {
         let (x, y) = normal.any_orthonormal_pair();
         places.push(Vec2::new((offset.dot(x) / radius) as f32, (offset.dot(y) / radius) as f32));
         return Ok(());
     }
     let flat = [DVec3::X, DVec3::Y, DVec3::Z].iter().any(|axis| offset.dot(*axis) == 0.0);
-    let beside = !(height.abs() <= 1e-3 * radius + slack);
-    let far = offset.length() > radius + slack;
     let input = format!("sample_light_disk({}, {})", disk.paste(), u.paste());
     Err(Broken::new(input, point, "a point of the disk", "the definition").explained_by([
         (point.is_nan(), "you return NaN: your two axes do not exist for this normal"),

@@ -161,7 +161,7 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> CheckResult {
 }
 
 /// Why a light is drawn dark.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 enum Dark {
     No,
     Black,
