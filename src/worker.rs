@@ -11,8 +11,39 @@ use crate::kit::{Answer, KitError, Request, StudentKit, kit_error};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::cell::RefCell;
 use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+/// A thread, by the folder in which Linux describes it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Thread(Option<PathBuf>);
+
+impl Thread {
+    /// The calling thread.
+    pub fn current() -> Thread {
+        let link = std::fs::read_link("/proc/thread-self").ok();
+        Thread(link.map(|link| Path::new("/proc").join(link)))
+    }
+
+    /// The thread in this folder, such as `/proc/PID/task/TID`.
+    pub fn at(folder: PathBuf) -> Thread {
+        Thread(Some(folder))
+    }
+
+    /// The time for which the thread has been ready to compute but had no processor, because others used them. It is 0 after
+    /// the end of the thread, and on other systems.
+    pub fn waited(&self) -> Duration {
+        let text = self.0.as_ref().and_then(|folder| std::fs::read_to_string(folder.join("schedstat")).ok());
+        text.and_then(|text| waiting(&text)).unwrap_or_default()
+    }
+}
+
+/// The second of three numbers: nanoseconds on a processor, nanoseconds of waiting for one, and the number of turns.
+fn waiting(schedstat: &str) -> Option<Duration> {
+    Some(Duration::from_nanos(schedstat.split_whitespace().nth(1)?.parse().ok()?))
+}
 
 /// The longest message that [`receive`] accepts, in bytes (1 GiB).
 pub const LONGEST_MESSAGE: usize = 1 << 30;
@@ -244,6 +275,22 @@ mod tests {
             let torn = receive::<Reply>(&mut &bytes[..end]).unwrap_err();
             assert_eq!(torn.kind(), io::ErrorKind::UnexpectedEof);
         }
+    }
+
+    #[test]
+    fn the_time_without_a_processor_is_the_second_number() {
+        assert_eq!(waiting("123456789 42 7\n"), Some(Duration::from_nanos(42)));
+        assert_eq!(waiting(""), None);
+        assert_eq!(Thread::at("no/such/folder".into()).waited(), Duration::ZERO);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_thread_is_described_until_it_ends() {
+        let folder = || Thread::current().0.expect("it is described").join("schedstat");
+        assert!(folder().exists());
+        let ended = std::thread::spawn(folder).join().expect("it ends");
+        assert_ne!(ended, folder());
     }
 
     #[test]

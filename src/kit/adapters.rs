@@ -86,6 +86,8 @@ macro_rules! linked {
 
 crate::student_functions! { linked }
 
+impl<F: StudentKit> Hosted for Linked<F> {}
+
 impl<F: StudentKit> Frames for Linked<F> {
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         frames::<F>().render(job, watch)

@@ -18,6 +18,7 @@ use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 use crate::wide::{BinSplit, Bins, Entered, FlatTree, ForkedTree, WideTree};
 use glam::{Affine3A, UVec3, Vec2, Vec3};
 use std::fmt::Debug;
+use std::time::Duration;
 
 /// Carries a request to the process that contains the student's code, and brings back the answer.
 ///
@@ -30,6 +31,11 @@ pub trait Transport: Sync {
     ///
     /// Unwinds with a [`KitError`] if there is no answer.
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer;
+
+    /// The same as [`Hosted::waited`], of the process at the other end.
+    fn waited(&self) -> Duration {
+        Duration::ZERO
+    }
 }
 
 /// A [`Kit`] whose functions run at the other end of a transport.
@@ -50,6 +56,7 @@ pub trait Kit:
     + LightTransport
     + Speed
     + Frames
+    + Hosted
     + Sync
 {
 }
@@ -67,8 +74,19 @@ impl<T> Kit for T where
         + LightTransport
         + Speed
         + Frames
+        + Hosted
         + Sync
 {
+}
+
+/// What is known of the process that runs the functions.
+pub trait Hosted {
+    /// The time for which this process has been ready to compute but had no processor, because others used them. It is 0
+    /// if the process is the caller's own, and where it is not known. A time limit that leaves it out is the same on a busy
+    /// machine.
+    fn waited(&self) -> Duration {
+        Duration::ZERO
+    }
 }
 
 /// Whole frames, rendered in the process that contains the student's code, so that no single ray crosses a
@@ -232,6 +250,12 @@ impl dyn Kit + '_ {
             }
         };
         queries.iter().flat_map(divide).collect()
+    }
+}
+
+impl<T: Transport> Hosted for Door<T> {
+    fn waited(&self) -> Duration {
+        self.0.waited()
     }
 }
 

@@ -35,8 +35,8 @@ pub use distribution::{
     FILTER_RADIUS, LensQuery, PhongLobeQuery, RectangleQuery, SphereSampleQuery, TimeQuery, WeightedColor,
 };
 pub use door::{
-    Answer, Distribution, Door, EffectsAnalysis, Frames, Hierarchies, Kit, LightTransport, Partitions,
-    Recursion, Request, SceneGraph, Shading, Shapes, Speed, Stability, Transport, Triangles,
+    Answer, Distribution, Door, EffectsAnalysis, Frames, Hierarchies, Hosted, Kit, LightTransport,
+    Partitions, Recursion, Request, SceneGraph, Shading, Shapes, Speed, Stability, Transport, Triangles,
 };
 pub use effects_analysis::{
     BoundQuery, HitsQuery, LightQuery, MaterialHits, MaterialQuery, RayCounts, TexelQuery, TextureQuery,

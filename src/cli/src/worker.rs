@@ -4,6 +4,7 @@
 //! process.
 
 mod autopsy;
+mod waiting;
 mod watchdog;
 mod withheld;
 
@@ -61,9 +62,6 @@ pub trait Launcher: Send + Sync {
 
     /// The processor time that the process has used so far.
     fn cpu_time(&self, process: u32) -> Duration;
-
-    /// The time for which the process could not compute because others used the processors.
-    fn waited(&self, process: u32) -> Duration;
 }
 
 /// The reason why the process of a worker ended.
@@ -222,6 +220,11 @@ impl Transport for Worker {
             self.asks_again.store(!late(&answer), Ordering::Relaxed);
         }
         answer.unwrap_or_else(|error| kit_error::unwind(error))
+    }
+
+    fn waited(&self) -> Duration {
+        let process = lock(&self.running).as_ref().map(|child| lock(child).id());
+        process.map_or(Duration::ZERO, waiting::waited)
     }
 }
 

@@ -15,6 +15,7 @@ mod law;
 pub mod nasty;
 pub mod offset;
 pub mod paste;
+mod patience;
 pub mod picture;
 pub mod radiosity;
 pub mod rubric;

@@ -3,20 +3,19 @@
 use crate::broken::{self, CheckResult};
 use crate::drawn::{Drawn, Values};
 use crate::law::{Judged, Law, judge_one, shrink};
+use crate::patience::{self, PATIENCE};
 use crate::picture::Replay;
 use crate::rubric;
 use crate::symmetry::{Symmetries, Symmetry, TurnedKit};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use raykata::kit::{Door, Kit, KitError, kit_error};
+use raykata::worker::Thread;
 use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::panic::Location;
-use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, mpsc};
 use std::time::Duration;
-
-/// The time limit of a check. The slowest check takes a third of a second in a development build.
-const PATIENCE: Duration = Duration::from_secs(15);
 
 /// A check: a law with the stage and the name under which it is graded.
 #[derive(Clone, Copy)]
@@ -258,12 +257,16 @@ fn on_a_thread(
     shrinks: bool,
 ) -> Result<CheckResult, KitError> {
     let (send, outcome) = mpsc::channel();
-    let (check, kit) = (*check, kit.clone());
+    let check = *check;
+    let thread = Arc::new(OnceLock::new());
+    let (itself, its_kit) = (thread.clone(), kit.clone());
     // A thread that exceeds the time limit is left running and ends with the process.
     let spawned = std::thread::Builder::new()
         .name(check.name.into())
         .stack_size(raykata::worker::STACK_BYTES)
         .spawn(move || {
+            let _ = itself.set(Thread::current());
+            let kit = its_kit;
             let trial = Trial { inputs, shrinks, ..Trial::new(&*kit, check.name, seed) };
             // A scene that is drawn needs no turn.
             let is_drawn = check.symmetries == Symmetries::Composed && trial.reference().is_some();
@@ -277,7 +280,9 @@ fn on_a_thread(
     if let Err(error) = spawned {
         return Err(KitError::Crashed { how: format!("the check could not be started: {error}") });
     }
-    outcome.recv_timeout(PATIENCE).unwrap_or(Err(KitError::TimedOut { seconds: PATIENCE.as_secs() }))
+    let late = Err(KitError::TimedOut { seconds: PATIENCE.as_secs() });
+    patience::receive(&outcome, || thread.get().map_or(Duration::ZERO, Thread::waited) + kit.waited())
+        .unwrap_or(late)
 }
 
 /// The result of [`examine`] with the message for the student.

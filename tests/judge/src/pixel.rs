@@ -10,6 +10,7 @@ use raykata::kit::{Answer, Door, Kit, KitError, Request, Transport};
 use raykata_cli::kits::Source;
 use std::fmt::{Debug, Write};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 /// The largest number of calls that are printed for one batch; a cell of a picture of random samples has hundreds.
 const MOST_CALLS: usize = 16;
@@ -39,6 +40,10 @@ impl Transport for Recorder {
             batch.1 = Some(answer.clone());
         }
         answer
+    }
+
+    fn waited(&self) -> Duration {
+        self.kit.waited()
     }
 }
 

@@ -1,25 +1,28 @@
 //! Ends a process that does not answer in time.
 
-use super::{Launcher, lock};
+use super::{Launcher, lock, waiting};
+use raykata::worker::Thread;
 use std::process::Child;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The limit of elapsed time in units of the patience, for a process that sleeps or reads. The time that it waits for a
-/// processor does not count. With a larger limit a process that sleeps would delay the grading of a class.
+/// The limit of elapsed time in units of the patience, for a process of untrusted code that sleeps or reads. With a larger
+/// limit it would delay the grading of a class.
 const MOST_TIMES: u32 = 3;
 
-/// The fraction of its patience after which the processor time of a call is measured. Most calls end earlier
-/// and cost no measurement.
+/// The fraction of its patience after which the times of a call are measured. Most calls end earlier and cost no
+/// measurement.
 const COUNTED_AFTER: u32 = 20;
 
 /// Ends a process that exceeds its time. It has one thread per process, which sleeps between calls.
+///
+/// The time for which the process or its caller waits for a processor does not count, so that a busy machine does not end it.
 pub(super) struct Watchdog {
     state: Mutex<State>,
     changed: Condvar,
     barked: AtomicBool,
-    /// Measures the times of the process. If it is set, time counts only while the process computes.
+    /// Measures the processor time of untrusted code. If it is set, time counts only while the process computes.
     launcher: Option<Arc<dyn Launcher>>,
 }
 
@@ -30,15 +33,17 @@ struct State {
     wakes: Option<Instant>,
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, PartialEq)]
 enum Deadline {
     None,
     At(Call, Instant),
     Retired,
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, PartialEq)]
 struct Call {
+    /// The thread that waits for the answer.
+    caller: Thread,
     asked: Instant,
     patience: Duration,
     /// The times of the process when measuring began.
@@ -48,7 +53,9 @@ struct Call {
 /// The times of a process so far.
 #[derive(Clone, Copy, Default, PartialEq)]
 struct Times {
-    computed: Duration,
+    /// Its processor time, if nothing else counts.
+    computed: Option<Duration>,
+    /// The time for which it or its caller had no processor.
     waited: Duration,
 }
 
@@ -68,31 +75,28 @@ impl Watchdog {
 
     fn watch(&self, child: &Mutex<Child>) {
         let process = lock(child).id();
-        let fair = self.launcher.is_some();
-        let times = || match &self.launcher {
-            Some(launcher) => {
-                Times { computed: launcher.cpu_time(process), waited: launcher.waited(process) }
-            }
-            None => Times { computed: Duration::MAX, waited: Duration::ZERO },
+        let times = |call: &Call| Times {
+            computed: self.launcher.as_ref().map(|launcher| launcher.cpu_time(process)),
+            waited: waiting::waited(process) + call.caller.waited(),
         };
         let mut state = lock(&self.state);
         loop {
-            let (call, end) = match state.deadline {
+            let (call, end) = match &state.deadline {
                 Deadline::Retired => return,
                 Deadline::None => {
                     state.wakes = None;
                     state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
                     continue;
                 }
-                Deadline::At(call, end) => (call, end),
+                Deadline::At(call, end) => (call.clone(), *end),
             };
             let now = Instant::now();
             if now < end {
-                // Sleep until the processor time is to be measured, or else until the deadline.
+                // Sleep until the times are to be measured, or else until the deadline.
                 let measured = call.asked + call.patience / COUNTED_AFTER;
-                let measures = fair && call.before.is_none();
+                let measures = call.before.is_none();
                 if measures && now >= measured {
-                    state.deadline = Deadline::At(Call { before: Some(times()), ..call }, end);
+                    state.deadline = Deadline::At(Call { before: Some(times(&call)), ..call }, end);
                     continue;
                 }
                 let wakes = if measures { measured.min(end) } else { end };
@@ -101,7 +105,7 @@ impl Watchdog {
                 state = waited.unwrap_or_else(PoisonError::into_inner).0;
                 continue;
             }
-            match call.more_time(times()) {
+            match call.more_time(times(&call)) {
                 Some(later) => state.deadline = Deadline::At(call, later),
                 None => {
                     self.barked.store(true, Ordering::Relaxed);
@@ -117,12 +121,11 @@ impl Watchdog {
     }
 
     pub(super) fn bark_after(&self, patience: Duration) {
-        let asked = Instant::now();
+        let (asked, caller) = (Instant::now(), Thread::current());
         let mut state = lock(&self.state);
-        state.deadline = Deadline::At(Call { asked, patience, before: None }, asked + patience);
+        state.deadline = Deadline::At(Call { caller, asked, patience, before: None }, asked + patience);
         // A thread that wakes early enough by itself then sees the new deadline.
-        let first = if self.launcher.is_some() { patience / COUNTED_AFTER } else { patience };
-        if state.wakes.is_none_or(|wakes| wakes > asked + first) {
+        if state.wakes.is_none_or(|wakes| wakes > asked + patience / COUNTED_AFTER) {
             self.changed.notify_one();
         }
     }
@@ -141,10 +144,14 @@ impl Call {
     /// The time of the next test if the process may continue.
     fn more_time(&self, times: Times) -> Option<Instant> {
         let before = self.before.unwrap_or_default();
-        let computed = times.computed.saturating_sub(before.computed);
-        let last = self.asked + self.patience * MOST_TIMES + times.waited.saturating_sub(before.waited);
-        let wanting = self.patience.checked_sub(computed).filter(|wanting| !wanting.is_zero())?;
+        let waited = times.waited.saturating_sub(before.waited);
         let now = Instant::now();
+        let (spent, most) = match times.computed {
+            Some(computed) => (computed.saturating_sub(before.computed.unwrap_or_default()), MOST_TIMES),
+            None => ((now - self.asked).saturating_sub(waited), 1),
+        };
+        let last = self.asked + self.patience * most + waited;
+        let wanting = self.patience.checked_sub(spent).filter(|wanting| !wanting.is_zero())?;
         (now < last).then(|| (now + wanting).min(last))
     }
 }

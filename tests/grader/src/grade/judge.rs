@@ -386,6 +386,10 @@ impl Transport for StoppableWorker {
             Some(what) => kit_error::unwind(KitError::Malformed { what }),
         }
     }
+
+    fn waited(&self) -> Duration {
+        self.worker.waited()
+    }
 }
 
 #[cfg(test)]

@@ -235,16 +235,6 @@ impl Launcher for Sandbox {
     fn cpu_time(&self, _: u32) -> Duration {
         Duration::MAX
     }
-
-    #[cfg(target_os = "linux")]
-    fn waited(&self, process: u32) -> Duration {
-        processes::waited(process).unwrap_or_default()
-    }
-
-    #[cfg(not(target_os = "linux"))]
-    fn waited(&self, _: u32) -> Duration {
-        Duration::ZERO
-    }
 }
 
 /// Returns the absolute path, because the program starts in another working folder.

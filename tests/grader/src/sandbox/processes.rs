@@ -37,13 +37,6 @@ pub fn cpu_time(process: u32) -> Option<Duration> {
     Some(status(process as i32)?.cpu)
 }
 
-/// Returns the time for which the first thread of a process was ready to compute but had no processor.
-pub fn waited(process: u32) -> Option<Duration> {
-    // Three numbers: nanoseconds on a processor, nanoseconds of waiting for one, and the number of turns.
-    let numbers = std::fs::read_to_string(format!("/proc/{process}/schedstat")).ok()?;
-    Some(Duration::from_nanos(numbers.split(' ').nth(1)?.parse().ok()?))
-}
-
 /// Returns the processes of a group except its leader, with their parents.
 fn members(group: i32) -> io::Result<Vec<(i32, i32)>> {
     let mut members = Vec::new();
