@@ -5,6 +5,7 @@
 //! the albedo ρᵢ of each patch. A closed room of one albedo, the furnace, has this value for any distribution of directions;
 //! here wrong directions find too much or too little light.
 
+use crate::rooms::MOST_STEPS;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::nasty;
@@ -23,10 +24,6 @@ struct Cap {
 /// The number of paths. With half of them the test misses paths that end after 5 bounces, with 9 % of the light missing, for
 /// one seed in ten.
 const PATHS: usize = 2 * SAMPLES;
-
-/// Paths still alive after so many bounces are not expected: the largest albedo is 0.9, and roulette ends one in ten of them
-/// at each bounce.
-const LONGEST: u32 = 400;
 
 pub(super) fn paths_in_an_integrating_sphere_find_its_light(trial: &Trial<'_>) -> CheckResult {
     let hidden = (nasty::unit(), 0.1..0.3f64, 0.85..0.9f64, 0.5..0.65f64);
@@ -55,10 +52,16 @@ pub(super) fn paths_in_an_integrating_sphere_find_its_light(trial: &Trial<'_>) -
     let mut light = vec![0.0; PATHS];
     let mut paths: Vec<Path> =
         (0..PATHS).map(|index| Path { index, point: start(index), weight: 1.0 }).collect();
-    for bounce in 1..LONGEST {
-        if paths.is_empty() {
-            break;
+    let what = "49,152 paths by cosine_direction and survives in an integrating sphere";
+    let (mut bounce, mut steps) = (0, 0);
+    while !paths.is_empty() {
+        if steps > MOST_STEPS * PATHS {
+            let yours = format!("{} paths are alive after {bounce} bounces", paths.len());
+            let broken = Broken::with_texts(what, yours, "no path", "Russian roulette");
+            return Err(broken.looks_like(Some("your roulette ends too few paths")));
         }
+        bounce += 1;
+        steps += paths.len();
         let u = pairs(trial.seed ^ (u64::from(bounce) << 40), 2 * paths.len());
         let (to_hit, to_survive) = u.split_at(paths.len());
         let queries: Vec<_> =
@@ -83,12 +86,6 @@ pub(super) fn paths_in_an_integrating_sphere_find_its_light(trial: &Trial<'_>) -
             light[path.index] = f64::NAN;
         }
         paths.retain(|path| path.weight > 0.0);
-    }
-    let what = "49,152 paths by cosine_direction and survives in an integrating sphere";
-    if !paths.is_empty() {
-        let yours = format!("{} paths are alive after {LONGEST} bounces", paths.len());
-        let broken = Broken::with_texts(what, yours, "no path", "Russian roulette");
-        return Err(broken.looks_like(Some("your roulette ends no path")));
     }
     has_mean(what, &light, expected, |mean| vec![(mean.is_nan(), "a direction or a factor is NaN")])
 }

@@ -205,7 +205,7 @@ impl Found {
 
 /// The most steps per path, on average, and some more for a few long paths. In a room that does not end paths by their depth,
 /// light is lost at each bounce, and the slowest roulette that passes takes fewer than 20 steps per path.
-const MOST_STEPS: usize = 40;
+pub(super) const MOST_STEPS: usize = 40;
 
 /// Follows paths that start with these rays, all at once: each call of `step` gets the next surface of every path. Random
 /// numbers depend on `seed`.

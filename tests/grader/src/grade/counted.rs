@@ -8,6 +8,7 @@ use raykata::frame::Watch;
 use raykata::kit::{Answer, Costs, Request, SearchAnswer, Transport};
 use raykata::ray::Ray;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// How much larger than the costs of the reference those of [`Costly`] are. No limit of a check is that generous.
 const TIMES: u64 = 20;
@@ -24,6 +25,10 @@ impl Transport for Costly {
         let mut answer = self.0.call(request, watch);
         raise_costs(&mut answer, &lights);
         answer
+    }
+
+    fn waited(&self) -> Duration {
+        self.0.waited()
     }
 }
 

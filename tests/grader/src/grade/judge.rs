@@ -96,7 +96,7 @@ impl Judge {
         let drawn = Arc::<Drawn>::default();
         let put = |reference: &Arc<Worker>, check: &&'static Check| {
             let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Shared(reference.clone())));
-            let [(known, asks, passes), (hidden, _, passes_hidden)] =
+            let [(known, passes), (hidden, passes_hidden)] =
                 [0, seed].map(|seed| asked(reference, check, seed, inputs(seed, &drawn, &kit)));
             ensure!(
                 passes,
@@ -108,8 +108,9 @@ impl Judge {
                 eprintln!("warning: {} of stage {} uses only the public inputs", check.name, check.stage);
             }
             let costly: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Costly(reference.clone())));
-            let counts = !matches!(checks::examine(check, &costly, 0), Ok(Ok(())));
-            Ok(Put { check, varies: passes_hidden && known != hidden, counts, asks })
+            let counts = known.has_costs && !checks::passes(check, &costly, 0);
+            let varies = passes_hidden && known.questions.finalize() != hidden.questions.finalize();
+            Ok(Put { check, varies, counts, asks: known.functions })
         };
         let worker = || Arc::new(Worker::new(reference.clone(), worker::CALL_PATIENCE));
         let workers: Vec<_> = (0..queue::cores()).map(|_| worker()).collect();
@@ -325,20 +326,25 @@ fn result(check: &Check, answered: Answered) -> CheckResult {
     CheckResult { picture, ..CheckResult::new(check.stage, check.name, outcome, message) }
 }
 
-/// Runs a check against the reference. Returns a fingerprint of the questions, the functions that were called, and whether
-/// the reference passes.
-fn asked(
-    reference: &Arc<Worker>,
-    check: &Check,
-    seed: u64,
-    inputs: Inputs,
-) -> (Vec<u8>, HashSet<Discriminant<Request>>, bool) {
-    let heard = Arc::new(Mutex::new((Sha256::new(), HashSet::new())));
+/// What the reference heard while a check asked it.
+#[derive(Clone, Default)]
+struct Heard {
+    /// A fingerprint of the questions.
+    questions: Sha256,
+    /// The functions that were called.
+    functions: HashSet<Discriminant<Request>>,
+    /// Whether an answer contains costs.
+    has_costs: bool,
+}
+
+/// Runs a check against the reference. Returns what it heard, and whether it passes.
+fn asked(reference: &Arc<Worker>, check: &Check, seed: u64, inputs: Inputs) -> (Heard, bool) {
+    let heard = Arc::<Mutex<Heard>>::default();
     let overheard = Overheard { reference: reference.clone(), heard: heard.clone() };
     let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(overheard));
     let passes = matches!(checks::examine_with(check, &kit, seed, inputs), Ok(Ok(())));
-    let (questions, functions) = heard.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    (questions.finalize().to_vec(), functions, passes)
+    let heard = heard.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    (heard, passes)
 }
 
 /// The reference, which several checks ask.
@@ -348,24 +354,35 @@ impl Transport for Shared {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         self.0.call(request, watch)
     }
+
+    fn waited(&self) -> Duration {
+        self.0.waited()
+    }
 }
 
 /// The reference, with a record of the questions.
 struct Overheard {
     reference: Arc<Worker>,
-    heard: Arc<Mutex<(Sha256, HashSet<Discriminant<Request>>)>>,
+    heard: Arc<Mutex<Heard>>,
 }
 
 impl Transport for Overheard {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let mut message = Vec::new();
         // Writing into a vector cannot fail.
-        let _ = raykata::worker::send(&mut message, &request);
+        let _ = raykata::worker::send_request(&mut message, &request);
+        let function = discriminant(&request);
+        let mut answer = self.reference.call(request, watch);
         let mut heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
-        heard.0.update(message);
-        heard.1.insert(discriminant(&request));
+        heard.questions.update(message);
+        heard.functions.insert(function);
+        heard.has_costs |= !answer.costs().is_empty();
         drop(heard);
-        self.reference.call(request, watch)
+        answer
+    }
+
+    fn waited(&self) -> Duration {
+        self.reference.waited()
     }
 }
 

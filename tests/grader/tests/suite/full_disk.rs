@@ -1,7 +1,7 @@
 //! A full disk is an error that names the file and loses nothing that was finished.
 
 use super::grade::{hand_in, right};
-use super::program_runs::{grader, printed, root};
+use super::program_runs::{grader, leaves_out_what_takes_long, printed, root};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -23,8 +23,12 @@ fn small_disk(script: &str) -> Option<Command> {
     Some(shell)
 }
 
+/// Grading takes a quarter of a minute, so this runs only with `CI_LONG=1`.
 #[test]
 fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
+    if leaves_out_what_takes_long() {
+        return;
+    }
     let folder = tempfile::tempdir().unwrap();
     let class = folder.path().join("class");
     for number in 0..4 {
@@ -169,46 +173,45 @@ fn parts_of_a_class(around: &Path) -> [String; 2] {
     })
 }
 
+fn case(program: &Path, command: &str, size: &'static str, result: &'static str) -> Case {
+    Case { program: program.to_owned(), command: command.to_owned(), resume: "", size, keeps: None, result }
+}
+
+#[test]
+fn a_picture_that_does_not_fit_on_the_disk_is_rendered_when_there_is_room() {
+    let raykata = Path::new(env!("CARGO_BIN_EXE_grader")).with_file_name("raykata");
+    if !raykata.is_file() {
+        // The tests of the grader do not build this program.
+        return println!("SKIPPED: {} is not built", raykata.display());
+    }
+    let gamma = root().join("scenes/gamma.toml").to_string_lossy().into_owned();
+    let render = format!("render {gamma} --size 200x150 --spp 2 --out DISK/picture.hdr");
+    let in_pieces = case(&raykata, &format!("{render} --pieces 6"), "160k", "picture.hdr");
+    try_all(&[case(&raykata, &render, "16k", "picture.hdr"), Case { keeps: Some(".piece"), ..in_pieces }]);
+}
+
+/// These take a third of a minute, so they run only with `CI_LONG=1`.
 #[test]
 fn every_command_names_the_file_on_a_full_disk_and_continues_with_room() {
+    if leaves_out_what_takes_long() {
+        return;
+    }
     let around = tempfile::tempdir().unwrap();
     let [one, other] = parts_of_a_class(around.path());
     let grader = PathBuf::from(env!("CARGO_BIN_EXE_grader"));
-    let raykata = grader.with_file_name("raykata");
-    let gamma = root().join("scenes/gamma.toml").to_string_lossy().into_owned();
-    let case = |program: &Path, command: &str, size, result| Case {
-        program: program.to_owned(),
-        command: command.to_owned(),
-        resume: "",
-        size,
-        keeps: None,
-        result,
-    };
-    let mut cases = vec![
+    try_all(&[
         case(&grader, &format!("merge {one} {other} --out DISK/merged"), "40k", "merged/grades.csv"),
         case(&grader, "export gradescope --out DISK/autograder.zip", "100k", ""),
         case(&grader, "handout DISK/course", "500k", "course/exercises/src/lib.rs"),
         case(&grader, "release --draft --out DISK/release", "500k", "release/SHA256SUMS"),
-    ];
-    if raykata.is_file() {
-        let render = format!("render {gamma} --size 200x150 --spp 2 --out DISK/picture.hdr");
-        cases.push(case(&raykata, &render, "16k", "picture.hdr"));
-        cases.push(Case {
-            keeps: Some(".piece"),
-            ..case(&raykata, &format!("{render} --pieces 6"), "160k", "picture.hdr")
-        });
-    } else {
-        // The tests of the grader do not build this program.
-        println!("SKIPPED: {} is not built", raykata.display());
-    }
-    try_all(&cases);
+    ]);
 }
 
 /// These take minutes, so they run only with `CI_LONG=1`.
 #[test]
 fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
-    if std::env::var_os("CI_LONG").is_none() {
-        return println!("tried only with CI_LONG=1");
+    if leaves_out_what_takes_long() {
+        return;
     }
     let grader = PathBuf::from(env!("CARGO_BIN_EXE_grader"));
     let shadows = root().join("scenes/soft_shadows.toml");
@@ -242,8 +245,8 @@ fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
 /// goes to the small disk, over the folder of earlier builds.
 #[test]
 fn a_full_disk_is_no_result_of_an_entry_or_of_a_change() {
-    if std::env::var_os("CI_LONG").is_none() {
-        return println!("tried only with CI_LONG=1");
+    if leaves_out_what_takes_long() {
+        return;
     }
     let grader = env!("CARGO_BIN_EXE_grader");
     let entry = "right/stage4/specular_double";

@@ -1,7 +1,7 @@
 //! Long runs that are killed continue where they were.
 
 use super::grade::graded;
-use super::program_runs::{grader, printed, root};
+use super::program_runs::{grader, leaves_out_what_takes_long, printed, root};
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
@@ -60,8 +60,8 @@ fn a_gauntlet_that_is_killed_continues_with_the_same_numbers() {
 /// The corpus and a rehearsal take minutes, so they are killed only with `CI_LONG=1`.
 #[test]
 fn a_corpus_and_a_rehearsal_that_are_killed_continue() {
-    if std::env::var_os("CI_LONG").is_none() {
-        return println!("killed only with CI_LONG=1");
+    if leaves_out_what_takes_long() {
+        return;
     }
     let file = root().join("target/corpus/corpus.jsonl");
     let _ = fs::remove_file(&file);

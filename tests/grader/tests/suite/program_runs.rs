@@ -15,3 +15,12 @@ pub fn grader(arguments: &[&str]) -> Output {
 pub fn printed(output: &Output) -> (String, String) {
     (String::from_utf8_lossy(&output.stdout).into(), String::from_utf8_lossy(&output.stderr).into())
 }
+
+/// Whether tests that take long are left out, which the test then says.
+pub fn leaves_out_what_takes_long() -> bool {
+    let leaves_out = std::env::var_os("CI_LONG").is_none();
+    if leaves_out {
+        println!("SKIPPED: tried only with CI_LONG=1");
+    }
+    leaves_out
+}
