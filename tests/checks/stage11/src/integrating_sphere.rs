@@ -5,7 +5,7 @@
 //! the albedo ρᵢ of each patch. A closed room of one albedo, the furnace, has this value for any distribution of directions;
 //! here wrong directions find too much or too little light.
 
-use crate::rooms::MOST_STEPS;
+use crate::rooms::are_endless;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::nasty;
@@ -55,7 +55,7 @@ pub(super) fn paths_in_an_integrating_sphere_find_its_light(trial: &Trial<'_>) -
     let what = "49,152 paths by cosine_direction and survives in an integrating sphere";
     let (mut bounce, mut steps) = (0, 0);
     while !paths.is_empty() {
-        if steps > MOST_STEPS * PATHS {
+        if are_endless(PATHS, steps) {
             let yours = format!("{} paths are alive after {bounce} bounces", paths.len());
             let broken = Broken::with_texts(what, yours, "no path", "Russian roulette");
             return Err(broken.looks_like(Some("your roulette ends too few paths")));

@@ -203,9 +203,12 @@ impl Found {
     }
 }
 
-/// The most steps per path, on average, and some more for a few long paths. In a room that does not end paths by their depth,
-/// light is lost at each bounce, and the slowest roulette that passes takes fewer than 20 steps per path.
-pub(super) const MOST_STEPS: usize = 40;
+/// Whether so many steps show that paths do not end: more than 40 per path, on average, and some more for a few long paths. In a
+/// room that does not end paths by their depth, light is lost at each bounce, and the slowest roulette that passes takes fewer
+/// than 20 steps per path.
+pub(super) fn are_endless(paths: usize, steps: usize) -> bool {
+    steps > 40 * paths + 200_000
+}
 
 /// Follows paths that start with these rays, all at once: each call of `step` gets the next surface of every path. Random
 /// numbers depend on `seed`.
@@ -230,7 +233,7 @@ pub(super) fn follow(
     let mut found = Found { light: vec![DVec3::ZERO; starts.len()], steps: 0, shadows: 0 };
     let mut generation = 0u64;
     while !paths.is_empty() {
-        if found.steps > MOST_STEPS * starts.len() + 200_000 {
+        if are_endless(starts.len(), found.steps) {
             let yours =
                 format!("{} of {} paths are alive after {} steps", paths.len(), starts.len(), found.steps);
             let broken =
