@@ -3,7 +3,7 @@
 //! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `bounding_spheres` (around points) · `graph`
 //! (searches; `child_cache`: with a cache in each node) · `solid` (one description per solid) · `solids` (laws for all
 //! solids) · `mistakes` (known mistakes in them) · `hard`, `flat` (pitfalls of their formulas) · `surfaces` (patches) ·
-//! `splines` (B-spline and NURBS surfaces) · `subdivision` (meshes; `quarters`: their triangles) · `table` · `picture`
+//! `splines` (B-spline and NURBS surfaces) · `subdivision` (meshes; `quarters`: their triangles; `loop_weights`: where vertices go) · `table` · `picture`
 
 mod bounding_spheres;
 mod boxes;
@@ -11,6 +11,7 @@ mod child_cache;
 mod flat;
 mod graph;
 mod hard;
+mod loop_weights;
 mod mistakes;
 mod picture;
 mod quarters;
@@ -39,6 +40,7 @@ use hard::{
     cone_at_its_tip_and_rim, cone_is_not_its_mirror_image, cone_seen_along_its_side,
     cuboid_seen_along_its_faces, cylinder_at_its_rim, cylinder_seen_along_its_axis,
 };
+use loop_weights::{loop_borders_depend_on_borders, loop_places_vertices_by_the_rule};
 use picture::picture_of_placed_solids;
 use solids::{
     cone_agrees_with_exact_arithmetic, cone_keeps_to_the_rules, cone_normals_point_outwards,
@@ -55,9 +57,7 @@ use splines::{
     bspline_basis_follows_the_recursion, bspline_basis_sums_to_one, nurbs_arcs_are_exact,
     nurbs_point_is_the_weighted_mean_of_its_net,
 };
-use subdivision::{
-    loop_borders_depend_on_borders, loop_makes_four_triangles_of_each, loop_places_vertices_by_the_rule,
-};
+use subdivision::loop_makes_four_triangles_of_each;
 use surfaces::{bezier_point_is_the_mean_of_its_net, bezier_starts_and_ends_at_its_corners};
 use table::table_of_curved_surfaces;
 
