@@ -155,3 +155,38 @@ impl Call {
         (now < last).then(|| (now + wanting).min(last))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a call with a limit of 2 s goes on after so many seconds.
+    fn goes_on(elapsed: u64, computed: Option<u64>, waited: u64) -> bool {
+        let call = Call {
+            caller: Thread::default(),
+            asked: Instant::now() - Duration::from_secs(elapsed),
+            patience: Duration::from_secs(2),
+            before: Some(Times { computed: computed.map(|_| Duration::ZERO), waited: Duration::from_secs(5) }),
+        };
+        let times = Times {
+            computed: computed.map(Duration::from_secs),
+            waited: Duration::from_secs(5) + Duration::from_secs(waited),
+        };
+        call.more_time(times).is_some()
+    }
+
+    #[test]
+    fn time_without_a_processor_does_not_count() {
+        assert!(!goes_on(3, None, 0));
+        assert!(goes_on(3, None, 2));
+        assert!(!goes_on(9, None, 6));
+    }
+
+    #[test]
+    fn untrusted_code_may_sleep_for_a_while_but_compute_no_longer() {
+        assert!(goes_on(3, Some(1), 0));
+        assert!(!goes_on(3, Some(2), 0));
+        assert!(!goes_on(7, Some(1), 0));
+        assert!(goes_on(7, Some(1), 3));
+    }
+}
