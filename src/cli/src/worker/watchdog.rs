@@ -166,7 +166,10 @@ mod tests {
             caller: Thread::default(),
             asked: Instant::now() - Duration::from_secs(elapsed),
             patience: Duration::from_secs(2),
-            before: Some(Times { computed: computed.map(|_| Duration::ZERO), waited: Duration::from_secs(5) }),
+            before: Some(Times {
+                computed: computed.map(|_| Duration::ZERO),
+                waited: Duration::from_secs(5),
+            }),
         };
         let times = Times {
             computed: computed.map(Duration::from_secs),

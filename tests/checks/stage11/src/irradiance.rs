@@ -1,7 +1,8 @@
 //! The irradiance of a point by an emitter, which has a closed form: the mean of `cos θ / density` over the samples.
 
 use crate::emitters::{KINDS, Lit};
-use crate::lights::{seen_well, with_corners};
+use crate::light_densities::seen_well;
+use crate::lights::with_corners;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::statistics::has_mean;

@@ -1,10 +1,10 @@
 //! The checks of stage 11: light transport.
 //!
-//! `directions` (cosine-weighted directions), `emitters` (inputs, and their geometry in double precision), `lights` (samples of
-//! emitters), `irradiance` (closed forms), `weights` (multiple importance sampling), `roulette`, `bounces`,
-//! `integrating_sphere`, `table`, `picture`; `lobes` (the choice of a lobe), `contributions` (light that counts), `steps` (one
-//! step of a path) and `light_steps` (its light sample), `rooms` (geometry for whole paths), `references` (their closed forms) and `room_picture` (their picture),
-//! `called_for` (what scenes need).
+//! `directions` (cosine-weighted directions) · `emitters` (inputs, and their geometry in double precision) · `lights` (samples of
+//! emitters) · `light_densities` (and their densities) · `irradiance` (closed forms) · `weights` (multiple importance sampling) ·
+//! `roulette` · `bounces` · `integrating_sphere` · `lobes` (the choice of a lobe) · `contributions` (light that counts) · `steps`
+//! (one step of a path) · `light_steps` (its light sample) · `rooms` (geometry for whole paths) · `references` (their closed
+//! forms) · `called_for` (what scenes need) · `table` · `picture` · `room_picture`
 //!
 //! Distributions are judged by [`checks::statistics`], with 1 false alarm in 10 million per test.
 
@@ -15,6 +15,7 @@ mod directions;
 mod emitters;
 mod integrating_sphere;
 mod irradiance;
+mod light_densities;
 mod light_steps;
 mod lights;
 mod lobes;
@@ -44,12 +45,12 @@ use directions::{
 };
 use integrating_sphere::paths_in_an_integrating_sphere_find_its_light;
 use irradiance::{polygon_lights_give_lamberts_irradiance, sphere_lights_give_their_irradiance};
-use light_steps::{steps_ask_for_no_useless_shadow_ray, steps_sample_the_light};
-use lights::{
-    dark_sides_send_no_light, far_sphere_lights_keep_their_density, light_pdf_beside_the_light_is_zero,
-    light_pdf_integrates_to_one, light_pdf_is_that_of_the_sample, light_samples_have_their_density,
-    light_samples_lie_on_the_light,
+use light_densities::{
+    far_sphere_lights_keep_their_density, light_pdf_beside_the_light_is_zero, light_pdf_integrates_to_one,
+    light_pdf_is_that_of_the_sample, light_samples_have_their_density,
 };
+use light_steps::{steps_ask_for_no_useless_shadow_ray, steps_sample_the_light};
+use lights::{dark_sides_send_no_light, light_samples_lie_on_the_light};
 use lobes::{
     bsdf_pdf_is_that_of_the_sample, bsdf_pdf_of_other_directions_is_zero,
     bsdf_samples_choose_lobes_that_reflect, bsdf_samples_keep_the_light,

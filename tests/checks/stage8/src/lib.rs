@@ -1,6 +1,6 @@
 //! Checks of stage 8: scene graph, solids and curved surfaces.
 //!
-//! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `bounding_spheres` (around points) · `graph`
+//! `spaces` (rays, normals) · `placements` · `boxes` (after transforms) · `bounding_spheres` (around points) · `graph`
 //! (searches; `child_cache`: with a cache in each node) · `solid` (one description per solid) · `solids` (laws for all
 //! solids) · `mistakes` (known mistakes in them) · `hard`, `flat` (pitfalls of their formulas) · `surfaces` (patches) ·
 //! `splines` (B-spline and NURBS surfaces) · `subdivision` (meshes; `quarters`: their triangles; `loop_weights`: where vertices go) · `table` · `picture`
@@ -14,6 +14,7 @@ mod hard;
 mod loop_weights;
 mod mistakes;
 mod picture;
+mod placements;
 mod quarters;
 mod solid;
 mod solids;
@@ -42,6 +43,7 @@ use hard::{
 };
 use loop_weights::{loop_borders_depend_on_borders, loop_places_vertices_by_the_rule};
 use picture::picture_of_placed_solids;
+use placements::{placement_multiplies_in_the_right_order, placement_refuses_what_cannot_be_undone};
 use solids::{
     cone_agrees_with_exact_arithmetic, cone_keeps_to_the_rules, cone_normals_point_outwards,
     cuboid_agrees_with_exact_arithmetic, cuboid_keeps_to_the_rules, cuboid_normals_point_outwards,
@@ -50,7 +52,6 @@ use solids::{
 };
 use spaces::{
     normals_are_at_right_angles_to_the_surface, normals_stay_outside_in_a_mirror,
-    placement_multiplies_in_the_right_order, placement_refuses_what_cannot_be_undone,
     rays_keep_their_t_in_every_space, rays_pass_the_same_points_in_every_space,
 };
 use splines::{
