@@ -18,6 +18,7 @@ use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 use crate::wide::{BinSplit, Bins, Entered, FlatTree, ForkedTree, WideTree};
 use glam::{Affine3A, UVec3, Vec2, Vec3};
 use std::fmt::Debug;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Carries a request to the process that contains the student's code, and brings back the answer.
@@ -35,6 +36,16 @@ pub trait Transport: Sync {
     /// The same as [`Hosted::waited`], of the process at the other end.
     fn waited(&self) -> Duration {
         Duration::ZERO
+    }
+}
+
+impl<T: Transport + Send> Transport for Arc<T> {
+    fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
+        (**self).call(request, watch)
+    }
+
+    fn waited(&self) -> Duration {
+        (**self).waited()
     }
 }
 

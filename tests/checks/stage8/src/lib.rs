@@ -3,7 +3,8 @@
 //! `spaces` (rays, normals) · `placements` · `boxes` (after transforms) · `bounding_spheres` (around points) · `graph`
 //! (searches; `child_cache`: with a cache in each node) · `solid` (one description per solid) · `solids` (laws for all
 //! solids) · `mistakes` (known mistakes in them) · `hard`, `flat` (pitfalls of their formulas) · `surfaces` (patches) ·
-//! `splines` (B-spline and NURBS surfaces) · `subdivision` (meshes; `quarters`: their triangles; `loop_weights`: where vertices go) · `table` · `picture`
+//! `splines` (B-spline and NURBS surfaces) · `subdivision` (meshes; `quarters`: their triangles; `loop_weights`: where
+//! vertices go) · `table` · `picture`
 
 mod bounding_spheres;
 mod boxes;

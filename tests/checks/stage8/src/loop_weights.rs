@@ -167,13 +167,13 @@ impl<'a> Step<'a> {
         // A vertex whose neighbours have moved before it depends on their neighbours. Those may all be its own; then only
         // uneven weights tell.
         let is_uneven = others.iter().any(|other| (weight(other) - weight(&others[0])).abs() > NEAR_WEIGHT);
-        let from_after = (self.depends_on_others() || !self.reaches_others())
-            && (is_uneven || self.takes_of_others(index, &[&around[..], &[vertex]].concat()));
+        let uses_moved = (is_uneven || self.takes_of_others(index, &self.ring(vertex)))
+            && (self.depends_on_others() || !self.reaches_others());
         let adds_up = (sum - 1.0).abs() <= NEAR_WEIGHT;
         let mistakes = vec![
             (around.is_empty(), "you move a vertex that belongs to no triangle: it stays"),
             (!around.is_empty() && own_only, "you do not move the old vertices: they move, too"),
-            (from_after, FROM_BEFORE),
+            (uses_moved, FROM_BEFORE),
             (border && self.takes(index, &shared(vertex, &around, inner_share(around.len()))), BORDER),
             (
                 border && !own_only && is_even(&along),
@@ -201,7 +201,7 @@ impl<'a> Step<'a> {
             (false, [r, s]) => vec![(p, 0.375), (q, 0.375), (*r, 0.125), (*s, 0.125)],
             _ => ends.clone(),
         };
-        let mut fresh = self.mesh.positions.len()..self.yours.positions.len();
+        let fresh = self.mesh.positions.len()..self.yours.positions.len();
         if fresh.clone().any(|vertex| self.takes(vertex, &shares)) {
             return Ok(());
         }
@@ -216,6 +216,11 @@ impl<'a> Step<'a> {
         let of_these = fresh.clone().any(|vertex| {
             around.iter().all(|old| has(vertex, old)) && !self.takes_of_others(vertex, &around)
         });
+        // Moved ends depend on their neighbours. If there are no other ones, any wrong weights may come from that.
+        let from_moved = !self.reaches(&around)
+            || fresh
+                .clone()
+                .any(|vertex| has(vertex, &p) && has(vertex, &q) && self.takes_of_others(vertex, &around));
         let mistakes = vec![
             (border && of_these, BORDER),
             (!border && !mixed && of_these, "the weights are 3/8 for each end and 1/8 for each third corner"),
@@ -223,14 +228,7 @@ impl<'a> Step<'a> {
                 !border && fresh.clone().any(|vertex| self.takes(vertex, &ends)),
                 "you use the midpoint for an inner edge: there the two third corners have weights, too",
             ),
-            (
-                !border
-                    && (!self.reaches(&around)
-                        || fresh.any(|vertex| {
-                            has(vertex, &p) && has(vertex, &q) && self.takes_of_others(vertex, &around)
-                        })),
-                FROM_BEFORE,
-            ),
+            (!border && from_moved, FROM_BEFORE),
         ];
         Err(Unlike::new(
             format!("no new vertex for the edge {p} {q}"),

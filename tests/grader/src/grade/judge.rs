@@ -95,7 +95,7 @@ impl Judge {
         // composes the expected texts and pictures, so that no submission waits for the reference or fails with it.
         let drawn = Arc::<Drawn>::default();
         let put = |reference: &Arc<Worker>, check: &&'static Check| {
-            let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Shared(reference.clone())));
+            let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(reference.clone()));
             let [(known, passes), (hidden, passes_hidden)] =
                 [0, seed].map(|seed| asked(reference, check, seed, inputs(seed, &drawn, &kit)));
             ensure!(
@@ -115,7 +115,7 @@ impl Judge {
         let worker = || Arc::new(Worker::new(reference.clone(), worker::CALL_PATIENCE));
         let workers: Vec<_> = (0..queue::cores()).map(|_| worker()).collect();
         let checks = queue::run(&workers, &checks, put)?;
-        let reference: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Shared(worker())));
+        let reference: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker()));
         Ok(Judge { checks, seed, confinement, drawn, reference })
     }
 
@@ -345,19 +345,6 @@ fn asked(reference: &Arc<Worker>, check: &Check, seed: u64, inputs: Inputs) -> (
     let passes = matches!(checks::examine_with(check, &kit, seed, inputs), Ok(Ok(())));
     let heard = heard.lock().unwrap_or_else(PoisonError::into_inner).clone();
     (heard, passes)
-}
-
-/// The reference, which several checks ask.
-struct Shared(Arc<Worker>);
-
-impl Transport for Shared {
-    fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
-        self.0.call(request, watch)
-    }
-
-    fn waited(&self) -> Duration {
-        self.0.waited()
-    }
 }
 
 /// The reference, with a record of the questions.
