@@ -3,7 +3,7 @@
 use anyhow::Result;
 use grader::kits::root;
 use grader::{
-    bars, cases, corpus, course, gaps, gauntlet, generate, handout, mutants, release, sandbox, sync,
+    bars, cases, corpus, course, gaps, gauntlet, generate, handout, mutants, release, sandbox, sync, weaken,
 };
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
@@ -46,8 +46,9 @@ const COMMANDS: &[Command] = &[
     (&sync::SPEC, |given| done(in_kit(sync::Options::read(given), sync::run))),
     (&bars::SPEC, |given| done(in_kit(bars::Options::read(given), bars::run))),
     (&corpus::SPEC, |given| in_kit(corpus::Options::read(given), corpus::run)),
-    (&corpus::carry::SPEC, |given| in_kit(corpus::carry::Options::read(given), corpus::carry::run)),
+    (&corpus::import::SPEC, |given| in_kit(corpus::import::Options::read(given), corpus::import::run)),
     (&gaps::SPEC, |given| gaps::run(&gaps::Options::read(given)?)),
+    (&weaken::SPEC, |given| in_kit(weaken::Options::read(given), weaken::run)),
     (&mutants::SPEC, |given| in_kit(mutants::Options::read(given), mutants::run)),
     (&generate::SPEC, |given| done(generate::write(&generate::folder(given)))),
 ];

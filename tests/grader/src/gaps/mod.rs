@@ -179,7 +179,7 @@ pub fn lacks(
 ) -> Result<String> {
     Ok(match workshop.build_with(changes)? {
         Built::Worker(worker) => differences(worker, scenes, whole),
-        Built::DoesNotApply(error) | Built::DoesNotCompile(error) => format!("  {error}\n"),
+        Built::DoesNotCompile(error) => format!("  {error}\n"),
     })
 }
 

@@ -6,7 +6,7 @@ use super::attacks::{self, Attack, AttackFolders};
 use super::options::{GradingOptions, Stages};
 use super::result::{Class, Graded, Outcome};
 use super::store::Store;
-use crate::corpus::entry::{self, Claim, Entry};
+use crate::corpus::entry::{self, Claim, Entry, Original};
 use crate::corpus::records::Matrix;
 use crate::sync::{answer, stage_of};
 use anyhow::{Context, Result, ensure};
@@ -137,7 +137,7 @@ fn roles(root: &Path, options: &Options) -> Result<Vec<Role>> {
     let calls_later = |entry: &Entry| {
         ["stage5_", "stage6_", "stage7_", "stage8_", "stage9_", "stage10_", "stage11_", "stage12_"]
             .iter()
-            .any(|later| entry.diff.contains(later))
+            .any(|later| entry.changes.iter().flat_map(|change| &change.lines).any(|(_, line)| line.contains(later)))
     };
     let of_class = |entry: &Entry| STAGES_OF_CLASS.contains(&entry.stage) && !calls_later(entry);
     let (right, wrong): (Vec<Entry>, Vec<Entry>) =
@@ -205,10 +205,10 @@ fn texts(root: &Path, role: &Role) -> Result<BTreeMap<String, String>> {
     for (name, text) in &mut texts {
         if stage_of(name).is_some_and(|stage| stage <= last) {
             let file = format!("solutions/src/{name}");
-            let solution = fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
+            let solution = Original::read(root, &file)?;
             let changed = match role {
                 Role::Entry(entry) if entry.file == file => entry.apply(&solution)?,
-                _ => solution,
+                _ => solution.text,
             };
             *text = answer(&changed, Path::new(&file))?;
         }
