@@ -54,11 +54,11 @@ pub(super) fn of_octree(octree: &Octree, ray: &Ray, hits: &[f32], found: Hit) ->
     vec![
         (
             gives(true),
-            "trap A9: of octants that the ray enters at the same t you search only one, the last one",
+            "of octants that the ray enters at the same t you search only one, the last one",
         ),
         (
             gives(false),
-            "trap A9: of octants that the ray enters at the same t you search only one, the first one",
+            "of octants that the ray enters at the same t you search only one, the first one",
         ),
     ]
 }
