@@ -1,18 +1,15 @@
 //! `grader attacks`: grades every attack of the corpus and lists those with a wrong result.
 
-use super::attacks::{self, Tried};
+use super::attacks;
 use super::forge::Forge;
 use super::grader::Grader;
 use super::judge::Judge;
-use super::naive::Naive;
-use super::result::{Outcome, and_bonus};
 use crate::course::HandedIn;
-use crate::queue;
 use crate::report::bar_of_steps;
 use crate::sandbox::{self, Confinement};
 use anyhow::Result;
-use raykata_cli::args::{Argument, Given, Opt, Spec};
-use std::collections::{BTreeMap, BTreeSet};
+use raykata_cli::args::{Argument, Given, Spec};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -21,23 +18,19 @@ pub static SPEC: Spec = Spec {
     name: "grader attacks",
     about: "Test the grader with submissions that try to get points without earning them (for authors).",
     arguments: &[Argument::optional("NAME", "The names of attacks [default: all].").many()],
-    options: &[&[Opt::flag(
-        "--against-cargo",
-        "Also run `cargo test` on each attack that is a folder, in a namespace, and print both results as a table.",
-    )]],
+    options: &[&[]],
 };
 
 /// The options of `grader attacks`.
 pub struct Options {
     names: Vec<String>,
-    against_cargo: bool,
 }
 
 impl Options {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Options {
         let names = given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned());
-        Options { names: names.collect(), against_cargo: given.has("--against-cargo") }
+        Options { names: names.collect() }
     }
 }
 
@@ -74,49 +67,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         bar.inc(1);
     })?;
     bar.finish_and_clear();
-    if options.against_cargo {
-        compare(root, &tried)?;
-    }
     let repelled = tried.iter().filter(|tried| tried.complaints.is_empty()).count();
     println!("{repelled} of {} attacks got the expected result", tried.len());
     Ok(repelled == tried.len())
-}
-
-/// Prints the results of `cargo test` and of this grader as a table.
-fn compare(root: &Path, tried: &[Tried]) -> Result<()> {
-    let stages: BTreeSet<u8> = tried.iter().flat_map(|tried| tried.attack.stages.iter().copied()).collect();
-    let naive = Naive::prepare(root, &stages.into_iter().collect::<Vec<u8>>())?;
-    let bar = bar_of_steps(tried.len());
-    let results = queue::run(&queue::one_a_core(), tried, |(), tried| {
-        let result = naive.grade(&tried.attack);
-        bar.inc(1);
-        result
-    })?;
-    bar.finish_and_clear();
-    println!("| attack | `cargo test` | this grader |\n|---|---|---|");
-    for (tried, result) in tried.iter().zip(results) {
-        if let Some(result) = result {
-            println!("| {} | {result} | {} |", tried.attack.title, ours(tried));
-        }
-    }
-    Ok(())
-}
-
-/// Returns the result of this grader in words.
-fn ours(tried: &Tried) -> String {
-    let words = match &tried.graded {
-        Err(error) => format!("the grader failed: {error:#}"),
-        Ok(graded) if !graded.trouble.is_empty() => format!("not graded: {}", graded.trouble),
-        Ok(graded) => {
-            let (earned, of) = graded.points();
-            let count = |outcome| graded.checks.iter().filter(|check| check.outcome == outcome).count();
-            let others = Outcome::ALL.into_iter().filter(|outcome| *outcome != Outcome::Passed);
-            let others: Vec<String> = others
-                .filter(|outcome| count(*outcome) > 0)
-                .map(|outcome| format!(", {} {}", count(outcome), outcome.words()))
-                .collect();
-            format!("{earned} of {of} points{}{}", and_bonus(graded.bonus()), others.concat())
-        }
-    };
-    words.replace(['\n', '|'], " ")
 }

@@ -16,7 +16,7 @@ mod step;
 mod verdict;
 
 pub use make::{AttackFolders, CANARY, make};
-pub use run::{Tried, changes, fingerprints, run_all};
+pub use run::{Tried, run_all};
 pub use verdict::{Earned, Expectation, complaints};
 
 use anyhow::{Context, Result, bail, ensure};
@@ -145,7 +145,8 @@ pub fn load(root: &Path) -> Result<Vec<Attack>> {
         let of_family = read(file).with_context(|| file.display().to_string())?;
         attacks.extend(of_family.attack);
         for (name, text) in of_family.fragments {
-            let twice = format!("{}: another file has a fragment `{name}`: choose another name", file.display());
+            let twice =
+                format!("{}: another file has a fragment `{name}`: choose another name", file.display());
             ensure!(fragments.insert(name, text).is_none(), twice);
         }
     }
@@ -169,7 +170,8 @@ pub fn choose(attacks: Vec<Attack>, names: &[String]) -> Result<Vec<Attack>> {
 
 fn read(file: &Path) -> Result<FamilyFile> {
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let family: Family = toml::Value::String(name).try_into().context("the file has the name of no family")?;
+    let family: Family =
+        toml::Value::String(name).try_into().context("the file has the name of no family")?;
     let mut of_family: FamilyFile = toml::from_str(&fs::read_to_string(file)?)?;
     of_family.attack.iter_mut().for_each(|attack| attack.family = family);
     let unsorted = of_family.attack.windows(2).find(|pair| pair[0].name > pair[1].name);

@@ -76,7 +76,7 @@ fn try_one(
 }
 
 /// Returns kind, size and content of everything in a folder. Links are not followed.
-pub fn fingerprints(folder: &Path) -> Result<BTreeMap<PathBuf, String>> {
+fn fingerprints(folder: &Path) -> Result<BTreeMap<PathBuf, String>> {
     let mut found = BTreeMap::new();
     let mut waiting = vec![folder.to_owned()];
     while let Some(path) = waiting.pop() {
@@ -100,7 +100,7 @@ pub fn fingerprints(folder: &Path) -> Result<BTreeMap<PathBuf, String>> {
 }
 
 /// Returns the paths that are new, gone or different.
-pub fn changes(before: &BTreeMap<PathBuf, String>, after: &BTreeMap<PathBuf, String>) -> Vec<PathBuf> {
+fn changes(before: &BTreeMap<PathBuf, String>, after: &BTreeMap<PathBuf, String>) -> Vec<PathBuf> {
     let paths = before.keys().chain(after.keys().filter(|path| !before.contains_key(*path)));
     paths.filter(|path| before.get(*path) != after.get(*path)).cloned().collect()
 }
