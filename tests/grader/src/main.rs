@@ -39,7 +39,7 @@ const COMMANDS: &[Command] = &[
     (&gauntlet::SPEC, |given| done(in_kit(gauntlet::Options::read(given), gauntlet::run))),
     (&gauntlet::COST, |given| gauntlet::cost(&cost::Options::read(given)?)),
     #[cfg(target_os = "linux")]
-    (&grade::ATTACKS, |given| grade::attack(&root()?, &grade::AttackOptions::read(given))),
+    (&grade::ATTACKS, |given| grade::attack(&root()?, &grade::AttackOptions::read(given)?)),
     #[cfg(target_os = "linux")]
     (&grade::REHEARSE, |given| in_kit(grade::RehearsalOptions::read(given), grade::rehearse)),
     (&cases::SPEC, |_| done(cases::list(&root()?))),

@@ -11,6 +11,7 @@ mod grader;
 mod judge;
 mod lint;
 mod merge;
+mod once;
 mod one;
 mod options;
 mod rehearsal;

@@ -30,7 +30,7 @@ const COMMANDS: [(&str, &[&str]); 19] = [
     ("export classroom", &["--out", "--stages", "--seed", "--parts"]),
     ("gauntlet", &["--kit", "--inputs", "--seed", "--out", "20000"]),
     ("cost", &["[SCENE]", "--headline", "--rounds", "--sampler"]),
-    ("attacks", &["[NAME]..."]),
+    ("attacks", &["[NAME]...", "--shard"]),
     ("rehearse", &["--students", "--out", "--jobs", "--honest", "200"]),
     ("cases", &[]),
     ("sync", &["--check", "--force"]),

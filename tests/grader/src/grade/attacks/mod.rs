@@ -19,8 +19,10 @@ pub use make::{AttackFolders, CANARY, make};
 pub use run::{Tried, run_all};
 pub use verdict::{Earned, Expectation, complaints};
 
+use super::shard::Shard;
 use anyhow::{Context, Result, bail, ensure};
 use serde::Deserialize;
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -106,6 +108,10 @@ pub struct Attack {
     /// The time limit for grading it on an idle machine, in seconds.
     #[serde(default = "a_minute")]
     pub most_seconds: u64,
+    /// Whether calls and the compiler have a quarter of the time. This is for attacks that run into a time limit while others
+    /// of the same kind test the whole limit.
+    #[serde(default)]
+    pub hasty: bool,
     /// The steps that make the submission, in order.
     #[serde(default)]
     pub step: Vec<step::Step>,
@@ -166,6 +172,20 @@ pub fn choose(attacks: Vec<Attack>, names: &[String]) -> Result<Vec<Attack>> {
         ensure!(attacks.iter().any(|attack| attack.name == *name), "{FOLDER} has no attack `{name}`");
     }
     Ok(attacks.into_iter().filter(|attack| names.is_empty() || names.contains(&attack.name)).collect())
+}
+
+/// Returns a part of the attacks. Those of stage 1 are divided evenly. All others of a stage are in one part, because preparing
+/// a judge for it takes some seconds.
+pub fn part(attacks: Vec<Attack>, shard: Shard) -> Vec<Attack> {
+    let (mut of_stage_1, mut others): (Vec<_>, Vec<_>) =
+        attacks.into_iter().partition(|attack| attack.stages == stage_one());
+    let last = |attack: &Attack| attack.stages.iter().max().copied().unwrap_or_default();
+    others.retain(|attack| u64::from(last(attack)) % shard.of == shard.index - 1);
+    // Sort by the time limit, so that each part gets a share of the attacks that take long.
+    of_stage_1.sort_by_key(|attack| Reverse(attack.most_seconds));
+    let mine = (1..=shard.of).cycle().zip(of_stage_1).filter(|(index, _)| *index == shard.index);
+    others.extend(mine.map(|(_, attack)| attack));
+    others
 }
 
 fn read(file: &Path) -> Result<FamilyFile> {

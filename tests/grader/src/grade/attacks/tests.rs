@@ -141,6 +141,17 @@ fn attacks_of_every_family_are_there() {
 }
 
 #[test]
+fn five_parts_hold_every_attack_once() {
+    let all = load(&root()).unwrap();
+    let parts: Vec<Vec<Attack>> = (1..=5).map(|index| part(all.clone(), Shard { index, of: 5 })).collect();
+    let sizes: Vec<usize> = parts.iter().map(Vec::len).collect();
+    assert!(sizes.iter().all(|size| size.abs_diff(all.len() / 5) < 15), "{sizes:?}");
+    let mut names: Vec<String> = parts.into_iter().flatten().map(|attack| attack.name).collect();
+    names.sort();
+    assert_eq!(names, all.into_iter().map(|attack| attack.name).collect::<Vec<_>>());
+}
+
+#[test]
 fn bodies_are_right_or_wrong_as_a_step_says() {
     assert!(shapes_of("").contains("todo!(\"solve the quadratic"));
     assert!(shapes_of("base = \"solutions\"").contains("let half_chord_squared ="));
