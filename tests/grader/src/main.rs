@@ -36,10 +36,10 @@ const COMMANDS: &[Command] = &[
     (&export::PICTURE, |given| done(in_kit(export::PictureOptions::read(given), export::picture))),
     #[cfg(target_os = "linux")]
     (&export::CLASSROOM, |given| done(export::classroom(&export::Options::of_classroom(given)?))),
-    (&gauntlet::SPEC, |given| in_kit(gauntlet::Options::read(given), gauntlet::run)),
+    (&gauntlet::SPEC, |given| done(in_kit(gauntlet::Options::read(given), gauntlet::run))),
     (&gauntlet::COST, |given| gauntlet::cost(&cost::Options::read(given)?)),
     #[cfg(target_os = "linux")]
-    (&grade::ATTACKS, |given| grade::attack(&root()?, &grade::AttackOptions::read(given))),
+    (&grade::ATTACKS, |given| grade::attack(&root()?, &grade::AttackOptions::read(given)?)),
     #[cfg(target_os = "linux")]
     (&grade::REHEARSE, |given| in_kit(grade::RehearsalOptions::read(given), grade::rehearse)),
     (&cases::SPEC, |_| done(cases::list(&root()?))),

@@ -28,13 +28,10 @@ const COMMANDS: [(&str, &[&str]); 19] = [
     ("export slurm", &["SUBMISSIONS", "--out", "--chunk", "--stages", "--seed"]),
     ("export slurm-picture", &["SCENE", "--out", "--pieces", "--seed", "--size", "--tone"]),
     ("export classroom", &["--out", "--stages", "--seed", "--parts"]),
-    (
-        "gauntlet",
-        &["--kit", "--inputs", "--seed", "--rays", "--state", "--out", "20000", "out/gauntlet.json"],
-    ),
+    ("gauntlet", &["--kit", "--inputs", "--seed", "--out", "20000"]),
     ("cost", &["[SCENE]", "--headline", "--rounds", "--sampler"]),
-    ("attacks", &["[NAME]...", "--against-cargo"]),
-    ("rehearse", &["--students", "--out", "--jobs", "--honest", "--against-cargo", "200"]),
+    ("attacks", &["[NAME]...", "--shard"]),
+    ("rehearse", &["--students", "--out", "--jobs", "--honest", "200"]),
     ("cases", &[]),
     ("sync", &["--check", "--force"]),
     (
