@@ -4,6 +4,7 @@
 //! lines. So a forgotten one cannot stay.
 
 use crate::sync;
+use all_checks::STAGES;
 use anyhow::{Context, Result, bail, ensure};
 use raykata::kit::Function;
 use raykata::rubric::CheckEntry;
@@ -16,7 +17,7 @@ use std::path::Path;
 /// `grader new-check`.
 pub static SPEC: Spec = Spec {
     name: "grader new-check",
-    about: "Write a new check with blanks, its line in the list and its entry in the rubric, and say which blanks are left (for \
+    about: "Write a new check with blanks, its entry in the rubric and two in the corpus, and say which blanks are left (for \
             authors). Run it again to see what is still missing.",
     arguments: &[Argument::required("NAME", "The law in snake case, such as slab_respects_the_range.")],
     options: &[&[
@@ -90,7 +91,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let stage = StageFiles::read(root, options.stage)?;
     let is_new = !stage.listed().iter().any(|(_, name)| *name == options.name);
     if is_new {
-        write(root, stage, options)?;
+        write(root, &stage, options)?;
     }
     let missing = missing(root, options)?;
     match missing.is_empty() {
@@ -100,7 +101,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
             missing.iter().map(|blank| format!("  {blank}\n")).collect::<String>()
         ),
     }
-    println!("Then:\n{}", next_steps(options));
+    println!("Then:\n{}", next_steps(options).trim_end());
     Ok(is_new || missing.is_empty())
 }
 
@@ -110,6 +111,12 @@ struct StageFiles {
     list: String,
     rubric: String,
 }
+
+/// The folder of the corpus.
+const CORPUS: &str = "tests/corpus";
+
+/// The text of a blank in the corpus.
+const BLANK: &str = "…";
 
 /// The last line of the list of a stage.
 const END_OF_LIST: &str = "\n] }\n";
@@ -142,9 +149,14 @@ fn checked(line: &str) -> Option<(&str, &str)> {
     Some((module, rest.split(':').next().unwrap_or(rest)))
 }
 
-/// Writes the check, its line in the list and its entry in the rubric.
-fn write(root: &Path, mut stage: StageFiles, options: &Options) -> Result<()> {
+/// Writes the check, its line in the list, its entry in the rubric and its entries in the corpus.
+fn write(root: &Path, stage: &StageFiles, options: &Options) -> Result<()> {
     // Find the function, the check before and the module.
+    if let Some((stage, _)) =
+        STAGES.iter().find(|(_, checks)| checks.iter().any(|check| check.name == options.name))
+    {
+        bail!("`{}` is a check of stage {stage}: each check has a name of its own", options.name);
+    }
     let asked = function(options)?;
     let listed = stage.listed();
     let known: Vec<&str> = listed.iter().map(|(_, name)| *name).collect();
@@ -163,7 +175,7 @@ fn write(root: &Path, mut stage: StageFiles, options: &Options) -> Result<()> {
     let module =
         module.context("no check before it shows the module: add `--module NAME` or `--after CHECK`")?;
 
-    // Write the function at the end of its module, before the module's tests.
+    // Add the function at the end of its module, before the module's tests.
     let path = format!("{}/src/{module}.rs", stage.folder);
     let skeleton = skeleton(&options.name, asked);
     let text = match root.join(&path).exists() {
@@ -172,45 +184,59 @@ fn write(root: &Path, mut stage: StageFiles, options: &Options) -> Result<()> {
             let end = text.find("\n#[cfg(test)]").unwrap_or(text.len());
             format!("{}\n{skeleton}{}", &text[..end], &text[end..])
         }
-        false => {
-            stage.list = with_module(&stage.list, &module)?;
-            format!("//! Checks of `{}`.\n\n{skeleton}", asked.function.name())
-        }
+        false => format!("//! Checks of `{}`.\n\n{skeleton}", asked.function.name()),
     };
+
+    // Add the module, if it is new, and the line of the list behind the check before, or at the end.
+    let mut list = match root.join(&path).exists() {
+        true => stage.list.clone(),
+        false => with_module(&stage.list, &module)?,
+    };
+    let is_before = |line: &str| checked(line).is_some_and(|(_, name)| Some(name) == before.as_deref());
+    let place = after_line(&list, is_before).or_else(|| Some(list.find(END_OF_LIST)? + 1));
+    list.insert_str(place.context("the list has no end")?, &format!("    {module}::{}\n", options.name));
+
+    // Write all files, after all has been found.
+    let rubric = with_entry(&stage.rubric, options, before.as_deref())?;
     save(root, &path, &text)?;
+    save(root, &format!("{}/src/lib.rs", stage.folder), &list)?;
+    save(root, &format!("{}/rubric.toml", stage.folder), &rubric)?;
+    write_entries(root, asked, &options.name)
+}
 
-    // Add the line of the list behind the check before, or at the end.
-    let line = format!("    {module}::{}\n", options.name);
-    let place = match &before {
-        Some(before) => {
-            after_line(&stage.list, |line| checked(line).is_some_and(|(_, name)| name == before.as_str()))
-        }
-        None => stage.list.find(END_OF_LIST).map(|end| end + 1),
-    };
-    stage.list.insert_str(place.context("the list has no such line")?, &line);
-    save(root, &format!("{}/src/lib.rs", stage.folder), &stage.list)?;
-
-    // Add the entry of the rubric behind that of the check before, with the same slide.
+/// The text of a rubric with a blank entry behind that of the check before, with the same slide, or at the end.
+fn with_entry(rubric: &str, options: &Options, before: Option<&str>) -> Result<String> {
     let table = |check: &str| format!("[stage{}.checks.{check}]\n", options.stage);
-    let (end, slide) = match &before {
+    let (end, slide) = match before {
         Some(before) => {
-            let start = stage
-                .rubric
-                .find(&table(before))
-                .with_context(|| format!("the rubric has no entry {before}"))?;
-            let entry = &stage.rubric[start..];
+            let start =
+                rubric.find(&table(before)).with_context(|| format!("the rubric has no entry `{before}`"))?;
+            let entry = &rubric[start..];
             let length = entry.find("\n\n").map_or(entry.len(), |end| end + 1);
             let slide = entry[..length].lines().find_map(|line| line.strip_prefix("slide = "));
-            (start + length, slide.unwrap_or("\"\"").to_owned())
+            (start + length, slide.unwrap_or("\"\""))
         }
-        None => (stage.rubric.len(), "\"\"".to_owned()),
+        None => (rubric.len(), "\"\""),
     };
-    let table = table(&options.name);
-    let entry = format!(
-        "\n{table}points = 0\ntitle = \"\"\nslide = {slide}\nhints = [\n    \"\",\n    \"\",\n    \"\",\n]\n"
-    );
-    stage.rubric.insert_str(end, &entry);
-    save(root, &format!("{}/rubric.toml", stage.folder), &stage.rubric)
+    let hints = "hints = [\n    \"\",\n    \"\",\n    \"\",\n]\n";
+    let entry = format!("\n{}points = 0\ntitle = \"\"\nslide = {slide}\n{hints}", table(&options.name));
+    Ok(format!("{}{entry}{}", &rubric[..end], &rubric[end..]))
+}
+
+/// Writes a mistake and another correct solution into the corpus, behind those of the same function.
+fn write_entries(root: &Path, asked: &Asked, name: &str) -> Result<()> {
+    let path = format!("{CORPUS}/{}.corpus", asked.function.file());
+    let mut text = if root.join(&path).exists() { read(root, &path)? } else { String::new() };
+    let heading = format!("\n=== {} ===\n", asked.function.name());
+    if !text.contains(&heading) {
+        text += &heading;
+    }
+    let begin = text.find(&heading).map_or(text.len(), |start| start + heading.len());
+    let end = text[begin..].find("\n=== ").map_or(text.len(), |length| begin + length);
+    let entries =
+        format!("\nwrong {name}: {BLANK}\ncaught_by: {name}\nsays: {BLANK}\n\nright {name}: {BLANK}\n");
+    text.insert_str(end, &entries);
+    save(root, &path, &text)
 }
 
 /// The function that the check asks.
@@ -237,8 +263,8 @@ fn function(options: &Options) -> Result<&'static Asked> {
 
 /// A check with blanks. It names all paths in full, because it must compile in any module.
 fn skeleton(name: &str, asked: &Asked) -> String {
-    let Asked { name: method, query, answer, function } = asked;
-    let function = function.name();
+    let (method, function) = (asked.name, asked.function.name());
+    let [query, answer] = [asked.query, asked.answer].map(|text| text.replace(" < ", "<").replace(" >", ">"));
     // Types of the language need no import.
     let types = format!("{query} {answer}");
     let mut words = types.split(|letter: char| !letter.is_alphanumeric());
@@ -335,6 +361,48 @@ fn missing(root: &Path, options: &Options) -> Result<Vec<String>> {
     missing.extend(
         blanks.iter().filter(|(is_blank, _)| *is_blank).map(|(_, what)| format!("{path}:{line}: {what}")),
     );
+    missing.extend(missing_entries(root, options)?);
+    Ok(missing)
+}
+
+/// The blanks of the corpus: of each mistake that the check must catch, and of the correct solution with its name.
+fn missing_entries(root: &Path, options: &Options) -> Result<Vec<String>> {
+    let (mut missing, mut is_caught, name) = (Vec::new(), false, options.name.as_str());
+    let mut files: Vec<String> = Vec::new();
+    for file in fs::read_dir(root.join(CORPUS)).with_context(|| format!("cannot read {CORPUS}"))? {
+        files.push(file?.file_name().to_string_lossy().into_owned());
+    }
+    files.retain(|file| file.starts_with(&format!("stage{}_", options.stage)) && file.ends_with(".corpus"));
+    files.sort();
+    for path in files.iter().map(|file| format!("{CORPUS}/{file}")) {
+        let text = read(root, &path)?;
+        let mut number = 1;
+        for entry in text.split_inclusive("\n\n") {
+            let catches = entry.lines().any(|line| line.strip_prefix("caught_by: ") == Some(name));
+            if catches || entry.starts_with(&format!("right {name}: ")) {
+                let kind = entry.split(' ').next().unwrap_or_default();
+                let is_blank = |line: &str| line.ends_with(&format!(": {BLANK}"));
+                let blanks = [
+                    (entry.lines().next().is_some_and(is_blank), "the mistake or the method, in a sentence"),
+                    (
+                        entry.lines().skip(1).any(is_blank),
+                        "words of the message, or `diagnosis: none` in place of `says:`",
+                    ),
+                    (
+                        !entry.contains("\n-") && !entry.contains("\n+"),
+                        "the lines that go (`-`) and come (`+`)",
+                    ),
+                ];
+                let blanks = blanks.iter().filter(|(is_blank, _)| *is_blank);
+                missing.extend(blanks.map(|(_, what)| format!("{path}:{number}: {kind}: {what}")));
+            }
+            is_caught |= catches;
+            number += entry.matches('\n').count();
+        }
+    }
+    if !is_caught {
+        missing.push(format!("{CORPUS}: no mistake of stage {} has `caught_by: {name}`", options.stage));
+    }
     Ok(missing)
 }
 
@@ -342,14 +410,15 @@ fn missing(root: &Path, options: &Options) -> Result<Vec<String>> {
 fn next_steps(options: &Options) -> String {
     let Options { name, stage, .. } = options;
     let steps = [
-        (format!("cargo test -p solutions --test suite {name}"), "the reference passes"),
-        (format!("cargo test --test stage{stage} {name}"), "an exercise that is not written is named"),
-        ("cargo test -p all-checks".to_owned(), "rubric and list agree, and constants earn nothing"),
-        ("cargo test -p grader --lib every_check".to_owned(), "hidden inputs differ from the public ones"),
-        (format!("cargo run -p grader -- corpus {name}"), "the mistakes are caught and named"),
-        ("cargo run -p grader -- sync".to_owned(), "the numbers in documents are right"),
+        ("the code has its format", "cargo fmt --all".to_owned()),
+        ("the reference passes", format!("cargo test -p solutions --test suite {name}")),
+        ("the gap of an exercise is named", format!("cargo test --test stage{stage} {name}")),
+        ("constants earn nothing", "cargo test -p all-checks".to_owned()),
+        ("hidden inputs are not the public ones", "cargo test -p grader --lib every_check".to_owned()),
+        ("the mistake is caught and named", format!("cargo run -p grader -- corpus {name}")),
+        ("numbers in documents are right", "cargo run -p grader -- sync".to_owned()),
     ];
-    steps.iter().map(|(command, why)| format!("  {command:<60} {why}\n")).collect()
+    steps.iter().map(|(why, command)| format!("  {why:<38} {command}\n")).collect()
 }
 
 fn read(root: &Path, path: &str) -> Result<String> {
@@ -374,6 +443,12 @@ mod tests {
         for file in ["rubric.toml", "src/lib.rs", "src/slabs.rs"] {
             fs::copy(root.join(folder).join(file), copy.path().join(folder).join(file)).unwrap();
         }
+        fs::create_dir(copy.path().join(CORPUS)).unwrap();
+        let entry = "caught_by: slab_of_a_flat_box_is_hit\nsays: flat\n-    1\n";
+        let corpus = format!(
+            "\n=== slab ===\n\nwrong one: it is\n{entry}\n=== union ===\n\nwrong two: it is\n{entry}"
+        );
+        fs::write(copy.path().join(CORPUS).join("stage3_boxes.corpus"), corpus).unwrap();
         copy
     }
 
@@ -399,13 +474,20 @@ mod tests {
         assert!(read(root, &slabs).unwrap().contains("trial.kit.slab(queries)"));
         assert!(!run(root, &options).unwrap(), "the second run finds blanks");
         let blanks = missing(root, &options).unwrap();
-        assert_eq!(blanks.len(), 6, "{blanks:?}");
+        assert_eq!(blanks.len(), 11, "{blanks:?}");
         assert!(
             blanks[0].starts_with("tests/checks/stage3/src/slabs.rs:")
                 && blanks[0].ends_with(": draw a query")
         );
         assert!(blanks[3].starts_with(&format!("{rubric}:")), "{blanks:?}");
 
+        let corpus = format!("{CORPUS}/stage3_boxes.corpus");
+        assert!(read(root, &corpus).unwrap().contains("\n\nright slab_is_quick: …\n\n=== union ===\n"));
+        assert_eq!(blanks[9], format!("{corpus}:13: right: the mistake or the method, in a sentence"));
+
+        change(root, &corpus, "says: …\n", "says: slow\n-    1\n+    2\n");
+        change(root, &corpus, "right slab_is_quick: …\n", "right slab_is_quick: …\n-    1\n+    3\n");
+        change(root, &corpus, ": …", ": a sentence");
         change(root, &slabs, "todo!", "unwrap_or_default!");
         change(root, &rubric, "points = 0", "points = 2");
         change(root, &rubric, "\"\"", "\"a text\"");
@@ -432,6 +514,7 @@ mod tests {
         let copy = copy();
         let error = |options: Options| format!("{:#}", run(copy.path(), &options).unwrap_err());
         assert!(error(options("boxes_are_quick")).contains("add `--function NAME`, one of "));
+        assert!(error(options("nearest_root_of_nan_is_the_other_one")).contains("is a check of stage 1"));
         assert!(
             error(Options { after: Some("slab_is".to_owned()), ..options("slab_is_quick") })
                 .contains("no check `slab_is`")
