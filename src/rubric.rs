@@ -1,5 +1,8 @@
-//! The rubric: points, title, slide and three hints of each check, read from `tests/rubric.toml`. A [`Course`] may
-//! change them. It is part of this crate so that `raykata list` and `raykata hint` need not build the checks.
+//! The rubric: points, title, slide and three hints of each check, read from `tests/checks/stageN/rubric.toml`. A
+//! [`Course`] may change them. It is part of this crate so that `raykata list` and `raykata hint` need not build the checks.
+//!
+//! Rubric, course file and language file write a check in the same way, as a table `[stageN.checks.NAME]`: a lecturer copies an
+//! entry of the rubric into the course file and edits it there.
 
 use crate::course::{self, Course};
 use serde::Deserialize;
@@ -11,10 +14,10 @@ use std::sync::{LazyLock, OnceLock};
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CheckEntry {
-    /// The number of the check's stage. It is filled in from the name of the table.
+    /// The number of the check's stage. It is filled in from the file.
     #[serde(skip)]
     pub stage: u8,
-    /// The byte offset of the entry in the text of the rubric, which gives the order of the checks.
+    /// The byte offset of the entry in the rubric of its stage, which gives the order of the checks.
     #[serde(skip)]
     pub place: usize,
     /// The number of points for a passed check.
@@ -68,7 +71,7 @@ static FILE: LazyLock<BTreeMap<String, Stage>> = LazyLock::new(|| {
 
 /// The rubric before a course changes it.
 pub(crate) static PLAIN: LazyLock<BTreeMap<String, Stage>> =
-    LazyLock::new(|| read(TEXT).unwrap_or_else(|error| panic!("tests/rubric.toml: {error}")));
+    LazyLock::new(|| read(&RUBRIC_FILES).unwrap_or_else(|error| panic!("{error}")));
 
 /// The course of this program: that of [`use_course`], or that of the kit, which is the default outside of hand-outs.
 static COURSE: OnceLock<Course> = OnceLock::new();
@@ -93,26 +96,48 @@ fn of_kit() -> Course {
     course
 }
 
-fn read(text: &str) -> Result<BTreeMap<String, Stage>, toml::de::Error> {
-    let mut stages: BTreeMap<String, Stage> = toml::from_str(text)?;
-    for (name, stage) in &mut stages {
-        let number = name.trim_start_matches("stage").parse().unwrap_or_default();
+/// Reads the rubric from the paths and texts of its files. File number N holds the table `stageN` and no other.
+fn read(files: &[(&str, &str)]) -> Result<BTreeMap<String, Stage>, String> {
+    let mut stages = BTreeMap::new();
+    for (number, (path, text)) in (1..).zip(files) {
+        let mut file: BTreeMap<String, Stage> =
+            toml::from_str(text).map_err(|error| format!("{path}: {error}"))?;
+        let name = format!("stage{number}");
+        let Some(mut stage) = file.remove(&name).filter(|_| file.is_empty()) else {
+            return Err(format!("{path} must hold the table [{name}] and its subtables, and no other"));
+        };
         for (check, entry) in &mut stage.checks {
             entry.stage = number;
             entry.place = text.find(&format!("[{name}.checks.{check}]")).unwrap_or(usize::MAX);
         }
+        stages.insert(name, stage);
     }
     Ok(stages)
 }
 
-/// The text of the rubric.
-const TEXT: &str = include_str!("../tests/rubric.toml");
+macro_rules! rubric_files {
+    ($($number:literal)*) => {
+        [$((
+            concat!("tests/checks/stage", $number, "/rubric.toml"),
+            include_str!(concat!("../tests/checks/stage", $number, "/rubric.toml")),
+        )),*]
+    };
+}
+
+/// The path and the text of the rubric of each stage, in ascending order.
+const RUBRIC_FILES: [(&str, &str); 12] = rubric_files!(1 2 3 4 5 6 7 8 9 10 11 12);
+
+/// The paths, from the root of the kit, of all files of `tests` that this crate needs when it is built: the rubric, the course
+/// and its language.
+pub fn files() -> impl Iterator<Item = &'static str> {
+    RUBRIC_FILES.iter().map(|(path, _)| *path).chain(["tests/course.toml", "tests/language.toml"])
+}
 
 /// The whole rubric, by stage name (`stage1`, `stage2`, …), as the course changes it. It is parsed on first use.
 ///
 /// # Panics
 ///
-/// On first use, if `tests/rubric.toml`, `tests/course.toml` or `tests/language.toml` is malformed.
+/// On first use, if one of [`files`] is malformed.
 pub static RUBRIC: LazyLock<&BTreeMap<String, Stage>> = LazyLock::new(|| &FILE);
 
 /// The course of this program.
@@ -128,7 +153,7 @@ pub fn course() -> &'static Course {
 ///
 /// # Panics
 ///
-/// On the first use of [`RUBRIC`], if `tests/rubric.toml` is malformed.
+/// On the first use of [`RUBRIC`], if one of [`files`] is malformed.
 pub fn stages() -> Vec<(u8, &'static Stage)> {
     let number = |name: &str| name.trim_start_matches("stage").parse().ok();
     let mut stages: Vec<(u8, &Stage)> =
@@ -173,7 +198,7 @@ impl CheckEntry {
 ///
 /// # Panics
 ///
-/// On the first use of [`RUBRIC`], if `tests/rubric.toml` is malformed.
+/// On the first use of [`RUBRIC`], if one of [`files`] is malformed.
 pub fn entry(stage: u8, check: &str) -> CheckEntry {
     RUBRIC.get(&format!("stage{stage}")).and_then(|stage| stage.checks.get(check)).cloned().unwrap_or_else(
         || CheckEntry { stage, points: 1, title: check.replace('_', " "), ..CheckEntry::default() },
@@ -184,11 +209,13 @@ pub fn entry(stage: u8, check: &str) -> CheckEntry {
 ///
 /// # Panics
 ///
-/// On the first use of [`RUBRIC`], if `tests/rubric.toml` is malformed, and if there is no such bar.
+/// On the first use of [`RUBRIC`], if one of [`files`] is malformed, and if there is no such bar.
 pub fn bar(stage: u8, name: &str) -> f64 {
     let bar = RUBRIC.get(&format!("stage{stage}")).and_then(|stage| stage.bars.get(name));
     *bar.unwrap_or_else(|| {
-        panic!("tests/rubric.toml has no bar {name:?} in [stage{stage}.bars]; `grader bars` writes it")
+        panic!(
+            "tests/checks/stage{stage}/rubric.toml has no bar {name:?} in [stage{stage}.bars]; `grader bars` writes it"
+        )
     })
 }
 
@@ -202,8 +229,20 @@ mod tests {
         assert_eq!(numbers, (1..=12).collect::<Vec<_>>());
         for (number, stage) in stages() {
             let checks = stage.in_order();
-            assert!(checks.iter().all(|(_, entry)| entry.stage == number && entry.place < TEXT.len()));
+            assert!(checks.iter().all(|(_, entry)| entry.stage == number && entry.place < usize::MAX));
             assert!(checks.is_sorted_by_key(|(_, entry)| entry.place));
         }
+    }
+
+    #[test]
+    fn a_file_holds_its_own_stage() {
+        let stage2 = "[stage2]\ntitle = \"triangles\"\nfile = \"a.rs\"\n[stage2.checks]\n";
+        assert_eq!(
+            read(&[("1.toml", stage2)]).unwrap_err(),
+            "1.toml must hold the table [stage1] and its subtables, and no other"
+        );
+        let both = stage2.replace("stage2", "stage1") + stage2;
+        assert!(read(&[("1.toml", &both)]).is_err());
+        assert!(read(&[("1.toml", "points = ")]).unwrap_err().starts_with("1.toml: "));
     }
 }

@@ -294,7 +294,7 @@ pub fn root() -> Result<PathBuf> {
     let here = std::env::current_dir().context("the current folder is gone")?;
     let program = std::env::current_exe().unwrap_or_default();
     let is_kit = |folder: &&Path| {
-        folder.join("exercises/Cargo.toml").is_file() && folder.join("tests/rubric.toml").is_file()
+        folder.join("exercises/Cargo.toml").is_file() && folder.join("tests/course.toml").is_file()
     };
     match here.ancestors().chain(program.ancestors()).find(is_kit) {
         Some(root) => Ok(root.to_owned()),

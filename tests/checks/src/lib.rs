@@ -37,9 +37,9 @@ pub fn linked(functions: impl StudentKit) -> Arc<dyn Kit + Send + Sync> {
 }
 
 /// Lists the checks of a stage in the crate of that stage, and makes the macro that turns them into tests of a kit:
-/// `stage1_checks::tests!(kit)`. The requests of a check with `: turned` or `: mirrored` are
-/// [turned](crate::symmetry) for hidden seeds. A check with `: composed` compares a text or a picture, and draws its scene
-/// by [`Trial::composed`](crate::Trial::composed) for hidden seeds.
+/// `stage1_checks::tests!(kit)`. A line is `module::check`, and the order is that of the lecture and of the rubric. The requests
+/// of a check with `: turned` or `: mirrored` are [turned](crate::symmetry) for hidden seeds. A check with `: composed` compares
+/// a text or a picture, and draws its scene by [`Trial::composed`](crate::Trial::composed) for hidden seeds.
 ///
 /// The leading `($ crate)` passes a dollar sign and the crate of the stage to the inner macro.
 #[macro_export]
@@ -48,13 +48,13 @@ macro_rules! stage {
     (@symmetries turned) => { $crate::symmetry::Symmetries::Turned };
     (@symmetries composed) => { $crate::symmetry::Symmetries::Composed };
     (@symmetries mirrored) => { $crate::symmetry::Symmetries::Mirrored };
-    (($d:tt $crate_of_stage:tt) $number:literal [$($name:ident $(: $symmetries:ident)?)*]) => {
+    (($d:tt $crate_of_stage:tt) $number:literal [$($module:ident::$name:ident $(: $symmetries:ident)?)*]) => {
         /// The checks of this stage, in the order of the lecture.
         pub const CHECKS: &[$crate::Check] =
             &[$($crate::Check {
                 stage: $number,
                 name: stringify!($name),
-                law: $name,
+                law: $module::$name,
                 symmetries: $crate::stage!(@symmetries $($symmetries)?),
             }),*];
 

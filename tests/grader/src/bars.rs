@@ -12,7 +12,7 @@ use std::path::Path;
 /// `grader bars`.
 pub static SPEC: Spec = Spec {
     name: "grader bars",
-    about: "Write what the reference needs into tests/rubric.toml, by which counts are judged (for authors).",
+    about: "Write what the reference needs into the rubric of stage 12, by which counts are judged (for authors).",
     arguments: &[],
     options: &[&[Opt::flag("--check", "Only report differences, and write nothing.")]],
 };
@@ -29,7 +29,7 @@ impl Options {
     }
 }
 
-const FILE: &str = "tests/rubric.toml";
+const FILE: &str = "tests/checks/stage12/rubric.toml";
 const TABLE: &str = "[stage12.bars]\n";
 
 /// Measures the bars and writes them.

@@ -20,6 +20,8 @@ pub mod generate;
 pub mod grade;
 pub mod handout;
 pub mod mutants;
+pub mod new_check;
+pub mod numbers;
 pub mod pictures;
 pub mod release;
 mod room;

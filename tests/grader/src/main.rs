@@ -3,7 +3,8 @@
 use anyhow::Result;
 use grader::kits::root;
 use grader::{
-    bars, cases, corpus, course, gaps, gauntlet, generate, handout, mutants, release, sandbox, sync, weaken,
+    bars, cases, corpus, course, gaps, gauntlet, generate, handout, mutants, new_check, release, sandbox,
+    sync, weaken,
 };
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
@@ -44,6 +45,7 @@ const COMMANDS: &[Command] = &[
     (&grade::REHEARSE, |given| in_kit(grade::RehearsalOptions::read(given), grade::rehearse)),
     (&cases::SPEC, |_| done(cases::list(&root()?))),
     (&sync::SPEC, |given| done(in_kit(sync::Options::read(given), sync::run))),
+    (&new_check::SPEC, |given| in_kit(new_check::Options::read(given), new_check::run)),
     (&bars::SPEC, |given| done(in_kit(bars::Options::read(given), bars::run))),
     (&corpus::SPEC, |given| in_kit(corpus::Options::read(given), corpus::run)),
     (&corpus::import::SPEC, |given| in_kit(corpus::import::Options::read(given), corpus::import::run)),

@@ -1,8 +1,9 @@
-//! `grader sync`: makes `exercises/src` from `solutions/src`.
+//! `grader sync`: makes `exercises/src` from `solutions/src`, and writes the [numbers] in documents.
 //!
 //! An answer stands between `// <solution>` and `// </solution>`. In the exercise, the lines marked `// <stub>` inside
 //! replace it, without that mark. The marks are removed as well. All other lines are the same in both.
 
+use crate::numbers;
 use anyhow::{Context, Result, bail};
 use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use sha2::{Digest, Sha256};
@@ -13,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// `grader sync`.
 pub static SPEC: Spec = Spec {
     name: "grader sync",
-    about: "Make exercises/ from solutions/ (for authors). Keeps exercises that you have begun.",
+    about: "Make exercises/ from solutions/, and write the numbers in documents (for authors). Keeps exercises that you have begun.",
     arguments: &[],
     options: &[&[
         Opt::flag("--check", "Only report differences, and write nothing."),
@@ -96,7 +97,7 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
     if options.check { check(root) } else { sync(root, options.force) }
 }
 
-/// Compares the exercises with the files that `sync` would write. Returns an error that lists the differences.
+/// Compares the exercises and the documents with the files that `sync` would write. Returns an error that lists the differences.
 pub fn check(root: &Path) -> Result<()> {
     let exercises = exercises(root)?;
     let mut different: Vec<String> = exercises
@@ -107,14 +108,16 @@ pub fn check(root: &Path) -> Result<()> {
     if fs::read_to_string(root.join(STUBS)).ok() != Some(stubs(&exercises)) {
         different.push(format!("  {STUBS}"));
     }
+    let stale = numbers::documents(root)?.into_iter().filter(|document| document.present != document.synced);
+    different.extend(stale.map(|document| format!("  {}", document.path.display())));
     if different.is_empty() {
-        println!("exercises/ is up to date with solutions/");
+        println!("exercises/ is up to date with solutions/, and documents have the right numbers");
         return Ok(());
     }
     bail!("these files differ from what `grader sync` would write:\n{}", different.join("\n"))
 }
 
-/// Writes all untouched exercises; with `force`, the others as well.
+/// Writes all untouched exercises, with `force` the others as well, and the documents whose numbers are stale.
 pub fn sync(root: &Path, force: bool) -> Result<()> {
     let exercises = exercises(root)?;
     let mut record = BTreeMap::new();
@@ -134,6 +137,10 @@ pub fn sync(root: &Path, force: bool) -> Result<()> {
         record.iter().map(|(path, print)| format!("{print} {}\n", path.display())).collect();
     write(&root.join(RECORD), &lines.concat())?;
     write(&root.join(STUBS), &stubs(&exercises))?;
+    for document in numbers::documents(root)?.iter().filter(|document| document.present != document.synced) {
+        write(&root.join(&document.path), &document.synced)?;
+        println!("wrote {}", document.path.display());
+    }
     for path in &kept {
         println!("kept {path}: you have begun it (`grader sync --force` would overwrite it)");
     }
@@ -326,5 +333,20 @@ mod tests {
         assert_eq!(fs::read_to_string(at("exercises/src/a.rs")).unwrap(), "fn f() -> u16 { 8 }\n");
         sync(root.path(), true).unwrap();
         check(root.path()).unwrap();
+    }
+
+    #[test]
+    fn a_stale_number_in_a_document_is_found_and_written() {
+        let root = tempfile::tempdir().unwrap();
+        let at = |path: &str| root.path().join(path);
+        for folder in ["solutions/src", "exercises", "tests"] {
+            fs::create_dir_all(at(folder)).unwrap();
+        }
+        fs::write(at("README.md"), "There are 11<!--=stages--> stages.\n").unwrap();
+        sync(root.path(), false).unwrap();
+        assert_eq!(fs::read_to_string(at("README.md")).unwrap(), "There are 12<!--=stages--> stages.\n");
+        check(root.path()).unwrap();
+        fs::write(at("README.md"), "There are 13<!--=stages--> stages.\n").unwrap();
+        assert!(check(root.path()).unwrap_err().to_string().ends_with("\n  README.md"));
     }
 }

@@ -16,32 +16,12 @@ mod roots;
 mod table;
 mod triangles;
 
-use boxes::{
-    slab_is_entered_before_what_it_holds, slab_meets_no_box_that_is_passed, slab_misses_no_box_in_any_range,
-    slab_misses_no_box_that_is_met, slab_of_special_numbers_is_finite,
-};
 use checks::Trial;
-use doubles::{
-    double_of_special_numbers_is_finite, double_triangle_has_the_nearest_t, double_triangle_is_right_at_edges,
-};
 use glam::Vec3;
 use oracle::splitmix::Random;
-use picture::picture_at_three_scales;
-use points::{
-    directions_have_length_one_at_every_length, offsets_are_as_small_as_they_can_be,
-    offsets_leave_the_surface_at_any_scale, zero_has_no_direction,
-};
 use raykata::kit::TriangleQuery;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
-use rims::{double_sphere_has_the_nearest_t, double_sphere_is_right_at_rims};
-use roots::{roots_do_not_cancel, roots_of_special_numbers_are_finite, roots_that_touch_are_found};
-use table::table_of_seven_scales;
-use triangles::{
-    watertight_errs_only_where_roundings_decide, watertight_has_a_good_t, watertight_meshes_do_not_leak,
-    watertight_of_special_numbers_is_finite, watertight_sees_size_alike,
-    watertight_walls_seen_edge_on_do_not_leak,
-};
 
 /// Numbers for which formulas often fail.
 pub const SPECIAL: [f32; 10] =
@@ -77,29 +57,29 @@ impl Odd {
 }
 
 checks::stage! { ($ crate) 10 [
-    roots_do_not_cancel
-    roots_that_touch_are_found
-    roots_of_special_numbers_are_finite
-    watertight_errs_only_where_roundings_decide
-    watertight_meshes_do_not_leak
-    watertight_walls_seen_edge_on_do_not_leak
-    watertight_has_a_good_t
-    watertight_sees_size_alike
-    watertight_of_special_numbers_is_finite
-    slab_misses_no_box_that_is_met
-    slab_misses_no_box_in_any_range
-    slab_meets_no_box_that_is_passed
-    slab_is_entered_before_what_it_holds
-    slab_of_special_numbers_is_finite
-    offsets_leave_the_surface_at_any_scale
-    offsets_are_as_small_as_they_can_be
-    directions_have_length_one_at_every_length
-    zero_has_no_direction: turned
-    double_triangle_is_right_at_edges
-    double_triangle_has_the_nearest_t
-    double_sphere_is_right_at_rims
-    double_sphere_has_the_nearest_t
-    double_of_special_numbers_is_finite
-    table_of_seven_scales: composed
-    picture_at_three_scales: composed
+    roots::roots_do_not_cancel
+    roots::roots_that_touch_are_found
+    roots::roots_of_special_numbers_are_finite
+    triangles::watertight_errs_only_where_roundings_decide
+    triangles::watertight_meshes_do_not_leak
+    triangles::watertight_walls_seen_edge_on_do_not_leak
+    triangles::watertight_has_a_good_t
+    triangles::watertight_sees_size_alike
+    triangles::watertight_of_special_numbers_is_finite
+    boxes::slab_misses_no_box_that_is_met
+    boxes::slab_misses_no_box_in_any_range
+    boxes::slab_meets_no_box_that_is_passed
+    boxes::slab_is_entered_before_what_it_holds
+    boxes::slab_of_special_numbers_is_finite
+    points::offsets_leave_the_surface_at_any_scale
+    points::offsets_are_as_small_as_they_can_be
+    points::directions_have_length_one_at_every_length
+    points::zero_has_no_direction: turned
+    doubles::double_triangle_is_right_at_edges
+    doubles::double_triangle_has_the_nearest_t
+    rims::double_sphere_is_right_at_rims
+    rims::double_sphere_has_the_nearest_t
+    doubles::double_of_special_numbers_is_finite
+    table::table_of_seven_scales: composed
+    picture::picture_at_three_scales: composed
 ] }

@@ -1,6 +1,6 @@
 //! The bars: what the reference needs, by which the counts of students are judged. They stand in `[stage12.bars]` of
-//! `tests/rubric.toml`. `grader bars` measures them and writes them there; run it after a change of the reference, of a scene
-//! or of a count.
+//! `rubric.toml`. `grader bars` measures them and writes them there; run it after a change of the reference, of a scene or of a
+//! count.
 
 use super::places::places_in_scenes;
 use super::reinsertions::morton_trees;

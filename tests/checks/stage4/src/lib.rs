@@ -10,35 +10,21 @@ mod shades;
 mod shadows;
 mod terms;
 
-use gamma::{gamma_is_two, gamma_survives_invalid_numbers};
-use golden::{picture_of_a_lit_sphere, shading_table};
-use normals::{shading_normal_faces_the_viewer, shading_normal_falls_back_to_flat};
-use shades::{
-    shade_adds_up_the_lights, shade_leaves_out_what_is_hidden, shade_traces_at_most_one_ray_per_light,
-};
-use shadows::{
-    shadow_ray_is_not_traced_without_effect, shadow_ray_leaves_its_own_surface_at_any_scale,
-    shadow_ray_reaches_just_short_of_the_light, shadow_ray_sees_what_is_close,
-};
-use terms::{
-    diffuse_term_is_the_cosine, light_from_behind_adds_nothing, specular_term_is_the_mirrored_cosine,
-};
-
 checks::stage! { ($ crate) 4 [
-    shading_normal_faces_the_viewer
-    shading_normal_falls_back_to_flat
-    diffuse_term_is_the_cosine
-    specular_term_is_the_mirrored_cosine
-    light_from_behind_adds_nothing
-    shadow_ray_reaches_just_short_of_the_light
-    shadow_ray_leaves_its_own_surface_at_any_scale
-    shadow_ray_sees_what_is_close
-    shadow_ray_is_not_traced_without_effect
-    shade_adds_up_the_lights
-    shade_leaves_out_what_is_hidden
-    shade_traces_at_most_one_ray_per_light
-    gamma_is_two
-    gamma_survives_invalid_numbers
-    shading_table: composed
-    picture_of_a_lit_sphere: composed
+    normals::shading_normal_faces_the_viewer
+    normals::shading_normal_falls_back_to_flat
+    terms::diffuse_term_is_the_cosine
+    terms::specular_term_is_the_mirrored_cosine
+    terms::light_from_behind_adds_nothing
+    shadows::shadow_ray_reaches_just_short_of_the_light
+    shadows::shadow_ray_leaves_its_own_surface_at_any_scale
+    shadows::shadow_ray_sees_what_is_close
+    shadows::shadow_ray_is_not_traced_without_effect
+    shades::shade_adds_up_the_lights
+    shades::shade_leaves_out_what_is_hidden
+    shades::shade_traces_at_most_one_ray_per_light
+    gamma::gamma_is_two
+    gamma::gamma_survives_invalid_numbers
+    golden::shading_table: composed
+    golden::picture_of_a_lit_sphere: composed
 ] }

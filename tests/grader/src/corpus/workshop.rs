@@ -8,6 +8,7 @@
 use crate::kits::Need;
 use crate::room::has_room;
 use anyhow::{Context, Result, bail};
+use raykata::rubric;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -89,8 +90,7 @@ impl Workshop {
             &cut_manifest(&read(&root.join("solutions/Cargo.toml"))?, &["dev-dependencies", "[bench]"], &[]),
         )?;
         // The build of the scaffold reads the rubric.
-        fs::create_dir_all(workshop.folder.join("tests"))?;
-        for file in ["tests/course.toml", "tests/language.toml", "tests/rubric.toml"] {
+        for file in rubric::files() {
             write_if_new(&workshop.folder.join(file), &read(&root.join(file))?)?;
         }
         if !workshop.folder.join("Cargo.lock").exists() {

@@ -138,7 +138,7 @@ fn kit(root: &Path, allow: &[String], forge: &Forge) -> Result<String> {
     hash.update(forge.fingerprint());
     hash.update(allow.join(","));
     // Add all files that decide a grade to the fingerprint.
-    let decide = ["tests/checks", "tests/golden", "tests/oracle", "tests/rubric.toml"];
+    let decide = ["tests/checks", "tests/golden", "tests/oracle"];
     let mut waiting: Vec<PathBuf> =
         decide.iter().map(|path| root.join(path)).filter(|path| path.exists()).collect();
     while let Some(path) = waiting.pop() {

@@ -24,7 +24,6 @@ pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
     for (known, _) in of_code.filter(|(folder, _)| root.join(folder).exists()) {
         public.extend(texts(&root.join(known))?.into_iter().map(|(_, text)| text));
     }
-    public += &super::text(root, "tests/rubric.toml")?;
     // Collect the long lines of each answer.
     let mut answers = BTreeMap::new();
     for exercise in &exercises {

@@ -91,7 +91,7 @@ const FOLDERS: [(&str, &[&str]); 11] = [
 const KEPT_BACK: [&str; 2] = ["src/cli/tests", "tests/checks/all/tests"];
 
 /// Files that are handed out unchanged.
-const FILES: [&str; 12] = [
+const FILES: [&str; 11] = [
     ".cargo/config.toml",
     ".gitignore",
     "Cargo.lock",
@@ -102,7 +102,6 @@ const FILES: [&str; 12] = [
     "scenes/showcase.png",
     "tests/course.toml",
     "tests/language.toml",
-    "tests/rubric.toml",
     "tests/stubs.toml",
 ];
 

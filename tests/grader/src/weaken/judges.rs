@@ -12,6 +12,7 @@ use crate::room::has_room;
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
 use checks::Check;
+use raykata::rubric;
 use raykata::worker::{receive, send};
 use raykata_cli::verdicts::{CheckTrial, Verdict};
 use std::ffi::{OsStr, OsString};
@@ -75,7 +76,7 @@ impl Judges {
             let without = ["dev-dependencies", "[test]", "[bench]"];
             write_if_new(&to.join("Cargo.toml"), &cut_manifest(&manifest, &without, &members))?;
         }
-        for file in ["Cargo.lock", "tests/course.toml", "tests/language.toml", "tests/rubric.toml"] {
+        for file in rubric::files().chain(["Cargo.lock"]) {
             if file != "Cargo.lock" || !self.folder.join(file).exists() {
                 write_if_new(&self.folder.join(file), &read(&self.root.join(file))?)?;
             }

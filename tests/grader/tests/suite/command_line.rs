@@ -3,7 +3,7 @@ use super::program_runs::{grader, printed};
 use std::process::Command;
 
 /// The commands with their arguments and options.
-const COMMANDS: [(&str, &[&str]); 19] = [
+const COMMANDS: [(&str, &[&str]); 20] = [
     (
         "grade",
         &[
@@ -34,6 +34,7 @@ const COMMANDS: [(&str, &[&str]); 19] = [
     ("rehearse", &["--students", "--out", "--jobs", "--honest", "200"]),
     ("cases", &[]),
     ("sync", &["--check", "--force"]),
+    ("new-check", &["NAME", "--stage", "--function", "--module", "--after"]),
     (
         "corpus",
         &["[NAME]...", "--stage", "--slice", "--jobs", "--check", "--bless", "--right", "--seed", "carry"],

@@ -50,7 +50,7 @@ fn gradescope_gets_the_kit_and_two_scripts_that_can_be_run() {
         ".cargo/config.toml",
         "Cargo.lock",
         "solutions/src/lib.rs",
-        "tests/rubric.toml",
+        "tests/checks/stage1/rubric.toml",
         "tests/golden/pictures.snap",
     ] {
         assert!(names.contains(&needed), "{needed}");

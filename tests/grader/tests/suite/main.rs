@@ -16,6 +16,8 @@ mod grade;
 mod handout;
 #[cfg(target_os = "linux")]
 mod long_runs;
+#[cfg(target_os = "linux")]
+mod new_check;
 mod one_build;
 mod paste;
 mod pictures;

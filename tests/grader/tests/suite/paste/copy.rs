@@ -10,8 +10,7 @@ pub fn copy(root: &Path, to: &Path, open: &[String]) {
     for folder in ["src", "solutions/src", "tests/checks", "tests/judge", "tests/oracle", "tests/golden"] {
         copy_folder(root, to, folder, open);
     }
-    let of_rubric = ["tests/course.toml", "tests/language.toml", "tests/rubric.toml"];
-    for file in ["Cargo.lock", ".cargo/config.toml"].into_iter().chain(of_rubric) {
+    for file in raykata::rubric::files().chain(["Cargo.lock", ".cargo/config.toml"]) {
         write(&to.join(file), &read(&root.join(file)));
     }
     // The test of the reference against its checks, as a program of its own.
