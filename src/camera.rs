@@ -131,7 +131,7 @@ impl Camera {
     /// the lower right one.
     ///
     /// The direction is computed from the axes and never as the difference of two far points. So a camera a
-    /// million units from the origin has as many distinct directions as one at the origin (hard case K1).
+    /// million units from the origin has as many distinct directions as one at the origin.
     #[inline]
     pub fn ray(&self, x: f32, y: f32) -> Ray {
         let film = Vec2::new((2.0 * x - 1.0) * self.aspect, 1.0 - 2.0 * y) * self.half_height;
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_far_camera_sees_640_directions_in_640_pixels() {
-        // K1: `normalize(P - P0)` leaves 19 distinct directions at this distance.
+        // `normalize(P - P0)` leaves 19 distinct directions at this distance.
         let camera = Camera::new(Vec3::splat(1e6), Vec3::NEG_Z, Vec3::Y, 40.0, 16.0 / 9.0).expect("a camera");
         let mut xs: Vec<u32> =
             (0..640).map(|i| camera.ray((i as f32 + 0.5) / 640.0, 0.5).direction.x.to_bits()).collect();
@@ -159,12 +159,12 @@ mod tests {
         let angle = camera.ray(0.5, 0.0).direction.angle_between(Vec3::X).to_degrees();
         assert!((angle - 30.0).abs() < 1e-3, "{angle}"); // a few roundings of f32 around 30
         let side = camera.ray(1.0, 0.5).direction;
-        assert!((side.z / side.x - 2.0 * 30f32.to_radians().tan()).abs() < 1e-6); // aspect 2, not 1 (K3)
+        assert!((side.z / side.x - 2.0 * 30f32.to_radians().tan()).abs() < 1e-6); // aspect 2, not 1
     }
 
     #[test]
     fn a_slanted_up_does_not_narrow_the_picture() {
-        // K2: `right = towards × up` has unit length only if `up` is perpendicular to `towards`.
+        // `right = towards × up` has unit length only if `up` is perpendicular to `towards`.
         let camera = Camera::new(Vec3::ZERO, Vec3::X, Vec3::new(0.8, 0.6, 0.0), 60.0, 1.0).expect("a camera");
         assert!((camera.right.length() - 1.0).abs() < 1e-6);
         assert!((camera.up - Vec3::Y).length() < 1e-6);

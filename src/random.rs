@@ -145,7 +145,7 @@ pub fn grid_of(samples: u32) -> UVec2 {
 }
 
 /// Two random numbers, `0 <= u < 1` each, of 24 bits, which an `f32` holds exactly. With 32 bits, 128 of the
-/// values would round up to 1.0 (hard case D1).
+/// values would round up to 1.0.
 fn random_pair(key: u64, index: u32) -> Vec2 {
     let bits = mix(key.wrapping_add(mix(u64::from(index))));
     let unit = |bits: u32| (bits >> 8) as f32 * (1.0 / 16_777_216.0);
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn the_largest_numbers_stay_below_one() {
-        // D1: all bits set must not round up to 1.
+        // All bits set must not round up to 1.
         let unit = |bits: u32| (bits >> 8) as f32 * (1.0 / 16_777_216.0);
         assert!(unit(u32::MAX) < 1.0);
     }

@@ -45,7 +45,7 @@ pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
 /// `None` if there is no hit, or if the ray misses the grid. Visit each cell at most once. At a corner, visit any
 /// sequence of cells that share a face.
 ///
-/// Pitfall: a primitive of a cell may be hit outside the cell, and a later cell may hold a nearer hit (trap A8).
+/// Pitfall: a primitive of a cell may be hit outside the cell, and a later cell may hold a nearer hit.
 ///
 /// Pitfall: the quotient that gives the index of the first cell is rounded, as in [`build`].
 ///

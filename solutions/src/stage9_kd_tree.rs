@@ -205,9 +205,9 @@ fn position(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeur
 /// `None` if there is no hit, if the ray misses the bounds, or if there is no node. Visit a node at most once, and only
 /// if the ray enters it before the best hit. A hit may lie outside the leaf that lists its primitive.
 ///
-/// Pitfall: `hit.distance < t'` loses a wall on the face of the box, and a primitive that extends beyond its leaf
-/// (traps A4 and A6). A ray in the plane, or one that starts on it, is on both sides (trap A5), because a builder may
-/// list a primitive in the plane on one side only.
+/// Pitfall: `hit.distance < t'` loses a wall on the face of the box, and a primitive that extends beyond its leaf.
+/// A ray in the plane, or one that starts on it, is on both sides, because a builder may list a primitive in the plane
+/// on one side only.
 ///
 /// Slide: "kd-Tree Traversal" with `t` and `t'`.
 pub fn closest_hit(tree: &KdTree, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {

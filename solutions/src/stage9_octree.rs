@@ -164,7 +164,7 @@ pub fn octant_at(cell: &Cell, point: DVec3, direction: DVec3) -> usize {
 /// only if the ray enters it before the best hit.
 ///
 /// Pitfall: "sort eight boxes" needs an order also for octants that the ray enters at the same `t`. A primitive of an
-/// octant may be hit outside the octant, so stop only at an octant that begins behind the best hit (trap A9).
+/// octant may be hit outside the octant, so stop only at an octant that begins behind the best hit.
 ///
 /// Slide: "Octree" (sort eight boxes front-to-back).
 pub fn closest_hit(octree: &Octree, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {

@@ -5,43 +5,44 @@ use oracle::gauntlet::job::job;
 use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::splitmix::Random;
 use raykata::ray::Ray;
-use raykata::scene::{Accelerator, Quality};
+use raykata::scene::{Accelerator, Quality, Split};
 
-/// The number of rays per mesh and structure. `RAYS=100000 cargo test --release -p solutions --test suite leaks --
-/// --nocapture` tests more, and `grader gauntlet --rays N` hundreds of millions.
+/// The number of rays per mesh and structure. `RAYS=100000 cargo test --release -p solutions --test suite leaks`
+/// tests more.
 fn n_rays() -> usize {
     std::env::var("RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(200)
 }
 
 #[test]
 fn no_ray_leaks_in_any_structure() {
-    let structures = [
-        Accelerator::BruteForce,
-        Accelerator::Bvh,
-        Accelerator::Grid,
-        Accelerator::Octree,
-        Accelerator::OctreeByCells,
-        Accelerator::OctreeByNeighbours,
-        Accelerator::KdTree,
-        Accelerator::Bsp,
-        Accelerator::PolygonBsp,
+    // The other structures are hierarchies of whole objects, which search a mesh as `Bvh` does.
+    let of_objects = [
+        Accelerator::Auto,
+        Accelerator::BoundingBoxes,
+        Accelerator::BoundingSpheres,
+        Accelerator::CachedBoundingBoxes,
     ];
+    let others = Accelerator::ALL.into_iter().filter(|accelerator| !of_objects.contains(accelerator));
+    let structures = others.map(|accelerator| Quality { accelerator, ..Quality::default() });
+    let medians = [Split::ObjectMedian, Split::SpatialMedian];
+    let structures = structures.chain(medians.map(|split| Quality { split, ..Quality::default() }));
+    let structures: Vec<Quality> = structures.collect();
     let mut leaks = Vec::new();
     for mesh in families() {
         let mut random = Random::new(1, mesh.positions.len() as u64);
         let rays: Vec<Ray> = (0..n_rays()).map(|n| aimed(&mesh, Aim::ALL[n % 2], &mut random).0).collect();
-        for accelerator in structures {
+        for quality in &structures {
             let started = std::time::Instant::now();
-            let quality = Quality { accelerator, ..Quality::default() };
-            let hits = solutions::kit().first_hits(&job(&mesh.all(), quality), &rays);
+            let Quality { accelerator, split, .. } = quality;
+            let hits = solutions::kit().first_hits(&job(&mesh.all(), quality.clone()), &rays);
             let lost: Vec<&Ray> =
                 rays.iter().zip(&hits).filter(|(_, hit)| hit.is_none()).map(|(ray, _)| ray).collect();
             if std::env::var("TIMES").is_ok() {
-                println!("{} {accelerator:?} {} ms", mesh.name, started.elapsed().as_millis());
+                println!("{} {accelerator:?} {split:?} {} ms", mesh.name, started.elapsed().as_millis());
             }
             if let Some(ray) = lost.first() {
                 leaks.push(format!(
-                    "{}, {accelerator:?}: {} rays, for example {ray:?}",
+                    "{}, {accelerator:?}, {split:?}: {} rays, for example {ray:?}",
                     mesh.name,
                     lost.len()
                 ));

@@ -1,6 +1,7 @@
 //! The tests of the reference in one program, so that it is linked once and slow tests run in parallel.
 
 mod adversarial;
+mod agreement;
 mod bars;
 mod bounds;
 mod calibration;

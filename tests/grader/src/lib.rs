@@ -27,5 +27,6 @@ pub mod release;
 mod room;
 pub mod sandbox;
 pub mod sync;
+pub mod weaken;
 
 pub use raykata_cli::{kits, queue, report, worker};

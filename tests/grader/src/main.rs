@@ -4,7 +4,7 @@ use anyhow::Result;
 use grader::kits::root;
 use grader::{
     bars, cases, corpus, course, gaps, gauntlet, generate, handout, mutants, new_check, release, sandbox,
-    sync,
+    sync, weaken,
 };
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
@@ -37,10 +37,10 @@ const COMMANDS: &[Command] = &[
     (&export::PICTURE, |given| done(in_kit(export::PictureOptions::read(given), export::picture))),
     #[cfg(target_os = "linux")]
     (&export::CLASSROOM, |given| done(export::classroom(&export::Options::of_classroom(given)?))),
-    (&gauntlet::SPEC, |given| in_kit(gauntlet::Options::read(given), gauntlet::run)),
+    (&gauntlet::SPEC, |given| done(in_kit(gauntlet::Options::read(given), gauntlet::run))),
     (&gauntlet::COST, |given| gauntlet::cost(&cost::Options::read(given)?)),
     #[cfg(target_os = "linux")]
-    (&grade::ATTACKS, |given| grade::attack(&root()?, &grade::AttackOptions::read(given))),
+    (&grade::ATTACKS, |given| grade::attack(&root()?, &grade::AttackOptions::read(given)?)),
     #[cfg(target_os = "linux")]
     (&grade::REHEARSE, |given| in_kit(grade::RehearsalOptions::read(given), grade::rehearse)),
     (&cases::SPEC, |_| done(cases::list(&root()?))),
@@ -48,8 +48,9 @@ const COMMANDS: &[Command] = &[
     (&new_check::SPEC, |given| in_kit(new_check::Options::read(given), new_check::run)),
     (&bars::SPEC, |given| done(in_kit(bars::Options::read(given), bars::run))),
     (&corpus::SPEC, |given| in_kit(corpus::Options::read(given), corpus::run)),
-    (&corpus::carry::SPEC, |given| in_kit(corpus::carry::Options::read(given), corpus::carry::run)),
+    (&corpus::import::SPEC, |given| in_kit(corpus::import::Options::read(given), corpus::import::run)),
     (&gaps::SPEC, |given| gaps::run(&gaps::Options::read(given)?)),
+    (&weaken::SPEC, |given| in_kit(weaken::Options::read(given), weaken::run)),
     (&mutants::SPEC, |given| in_kit(mutants::Options::read(given), mutants::run)),
     (&generate::SPEC, |given| done(generate::write(&generate::folder(given)))),
 ];

@@ -195,7 +195,7 @@ pub(super) fn plane_by_coefficients_is_missed_by_rays_along_it(trial: &Trial<'_>
 }
 
 pub(super) fn plane_by_coefficients_far_from_the_origin(trial: &Trial<'_>) -> CheckResult {
-    // T12: D and n·o are as large as the coordinates, and their sum is as small as the distance.
+    // D and n·o are as large as the coordinates, and their sum is as small as the distance.
     let inputs = (rough_point(4.0), direction(), direction()).prop_map(|(offset, direction, normal)| {
         let on = Vec3::new(148_376.0, 1_234.0, -223_423.0);
         PlaneEquationQuery { ray: Ray::new(on + offset, direction), plane: through(on, normal) }

@@ -197,7 +197,7 @@ pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> CheckResult
 }
 
 pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> CheckResult {
-    // T12: -(D + n·o) subtracts two numbers as large as the coordinates; (p0 - o)·n does not.
+    // -(D + n·o) subtracts two numbers as large as the coordinates; (p0 - o)·n does not.
     let inputs = (rough_point(4.0), direction(), direction()).prop_map(|(offset, direction, normal)| {
         let point = Vec3::new(148_376.0, 1_234.0, -223_423.0);
         PlaneQuery { ray: Ray::new(point + offset, direction), plane: Plane { point, normal } }

@@ -170,7 +170,7 @@ fn judge_ends(trial: &Trial<'_>, method: SphereFunction, queries: &[SphereQuery]
     outcomes
 }
 
-/// S2, S4: spheres of radius 0.001 to 1 at distances of 10 to 100,000. Each ray is aimed at its sphere.
+/// Spheres of radius 0.001 to 1 at distances of 10 to 100,000. Each ray is aimed at its sphere.
 fn distant() -> impl Strategy<Value = SphereQuery> + Clone {
     (unit(), rough_point(0.55), magnitude(1.0, 5.0), magnitude(-3.0, 0.0)).prop_map(
         |(away, at, distance, radius)| {
@@ -183,7 +183,7 @@ fn distant() -> impl Strategy<Value = SphereQuery> + Clone {
     )
 }
 
-/// S6: the ground is a sphere of radius 100,000, about 100 below the origins. No formula in single precision keeps all digits
+/// The ground is a sphere of radius 100,000, about 100 below the origins. No formula in single precision keeps all digits
 /// there, but the error must stay within the rounding of the inputs.
 fn ground() -> impl Strategy<Value = SphereQuery> + Clone {
     (rough_point(100.0), unit()).prop_map(|(origin, direction)| {

@@ -86,7 +86,7 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
         let beside = u.any_orthogonal_vector() * 2f32.powi(-thinness);
         Triangle { a, b: a + u, c: a + (u + beside) }
     });
-    // T3: the formula UV² - UU·VV gives 0 for the first triangle and +9.5e-7 for the second.
+    // The formula UV² - UU·VV gives 0 for the first triangle and +9.5e-7 for the second.
     let drawn = [
         Triangle { a: Vec3::ONE, b: vec3(3.0, 1.0, 1.0), c: vec3(2.0, 4.0, 1.0) },
         Triangle { a: Vec3::ZERO, b: Vec3::X, c: vec3(2.0, 1e-4, 0.0) },

@@ -167,7 +167,7 @@ fn judge_inside(
 }
 
 pub(super) fn inside_by_planes_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
-    // T10: the ray's origin lies on the line of a side, so that plane's normal is 0, and normalizing it gives NaN.
+    // The ray's origin lies on the line of a side, so that plane's normal is 0, and normalizing it gives NaN.
     let triangle = Triangle { a: Vec3::ZERO, b: vec3(4.0, 0.0, 0.0), c: vec3(0.0, 4.0, 0.0) };
     let ray = Ray::new(vec3(-4.0, 0.0, 0.0), vec3(5.0, 0.0, 0.0));
     let on_the_line = (InsideQuery { ray, point: vec3(1.0, 0.0, 0.0), triangle }, [0.75, 0.25, 0.0], true);
@@ -252,7 +252,7 @@ pub(super) fn inside_by_areas_gives_barycentric_coordinates(trial: &Trial<'_>) -
     let ray = Ray::new(Vec3::Z, Vec3::NEG_Z);
     let query = |point, a, b, c| InsideQuery { ray, point, triangle: Triangle { a, b, c } };
     let p = vec3(0.25, 0.5, 0.0);
-    // T15: both other coordinates are at least 0 and their sum is rounded to 1, but 1 - β - γ is -2⁻²⁵.
+    // Both other coordinates are at least 0 and their sum is rounded to 1, but 1 - β - γ is -2⁻²⁵.
     let beyond = vec3(0.75, 0.25f32.next_up(), 0.0);
     let cases = [
         (query(p, Vec3::ZERO, Vec3::X, Vec3::Y), true),

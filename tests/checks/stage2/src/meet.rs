@@ -82,8 +82,8 @@ fn slanted() -> TriangleQuery {
     }
 }
 
-/// T1, T2, T7: the three regions beyond the sides and the three beyond the corners, for rays along an axis and for
-/// slanted rays.
+/// The three regions beyond the sides and the three beyond the corners, for rays along an axis and for slanted rays. A test of
+/// the sum β + γ alone, and areas without a sign, accept points of some of these regions.
 fn triangle_regions(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let places = [
         (0.25, 0.25),
@@ -202,7 +202,7 @@ fn triangle_edges(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     method.judge_exact(trial, &cases)
 }
 
-/// T11: a scene a million times smaller or larger gives the same verdict, the same β and γ, and `t` times the factor.
+/// A scene a million times smaller or larger gives the same verdict, the same β and γ, and `t` times the factor.
 fn triangle_sizes(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let factors = (nasty::scale(-24..=24), nasty::scale(-16..=16));
     let inputs = (aimed(triangle(), point(8)), factors).prop_map(|(query, (size, length))| {
@@ -213,7 +213,7 @@ fn triangle_sizes(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     trial.forall(3000, inputs, |queries| method.judge(trial, queries))
 }
 
-/// T4: small triangles at (148376, 1234, -223423), with the ray's origin near them.
+/// Small triangles at (148376, 1234, -223423), with the ray's origin near them.
 fn triangle_far(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let place = vec3(148_376.0, 1_234.0, -223_423.0);
     let triangles = (rough_point(4.0), rough_point(4.0), rough_point(4.0))

@@ -170,7 +170,7 @@ pub(super) fn vertex_normals_average_their_faces(trial: &Trial<'_>) -> CheckResu
 }
 
 pub(super) fn vertex_normals_that_cancel_are_still_normals(trial: &Trial<'_>) -> CheckResult {
-    // T14: a sheet whose two sides are faces, a face without area, and a vertex without faces.
+    // A sheet whose two sides are faces, a face without area, and a vertex without faces.
     let sheet = Mesh {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, vec3(5.0, 5.0, 5.0)],
         triangles: vec![[0, 1, 2], [0, 2, 1], [0, 1, 1]],

@@ -108,7 +108,7 @@ pub(super) fn slab_is_entered_at_once_from_inside(trial: &Trial<'_>) -> CheckRes
 }
 
 pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> CheckResult {
-    // B3: every sign of zero on the two axes along which the ray does not move, for rays that hit and rays that miss.
+    // Every sign of zero on the two axes along which the ray does not move, for rays that hit and rays that miss.
     let mut cases = Vec::new();
     for axis in 0..3 {
         for (first, second) in [(0.0, 0.0), (0.0, -0.0), (-0.0, 0.0), (-0.0, -0.0)] {
@@ -136,7 +136,7 @@ pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> CheckResult 
 }
 
 pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> CheckResult {
-    // B4: the origin lies in the plane of a face and the ray stays there, so (b - o)/d is 0/0 on that axis.
+    // The origin lies in the plane of a face and the ray stays there, so (b - o)/d is 0/0 on that axis.
     let mut cases = Vec::new();
     for axis in 0..3 {
         for plane in [0.0, 1.0] {
@@ -165,7 +165,7 @@ pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> CheckResul
 pub(super) fn slab_of_a_flat_box_is_hit(trial: &Trial<'_>) -> CheckResult {
     let mut cases = Vec::new();
     for axis in 0..3 {
-        // B6: at 100,000 a fixed padding is rounded away, and the box is flat again.
+        // At 100,000 a fixed padding is rounded away, and the box is flat again.
         for height in [0.0, 0.25, -3.0, 1e5] {
             let mut flat = UNIT_BOX;
             flat.min[axis] = height;
@@ -210,7 +210,7 @@ pub(super) fn slab_respects_the_range(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> CheckResult {
-    // A10: all numbers are multiples of 1/8, so o + 1 d is exactly the corner. The closed box must be hit, without
+    // All numbers are multiples of 1/8, so o + 1 d is exactly the corner. The closed box must be hit, without
     // tolerance.
     let inputs = (aabb(), point(8), 0..8usize).prop_map(|(bounds, origin, corner)| {
         let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };

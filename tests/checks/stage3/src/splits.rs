@@ -117,7 +117,7 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
 }
 
 pub(super) fn spatial_median_never_leaves_a_side_empty(trial: &Trial<'_>) -> CheckResult {
-    // A2: equal boxes, concentric boxes, and small boxes with a huge one.
+    // Equal boxes, concentric boxes, and small boxes with a huge one.
     let equal = vec![UNIT_BOX; 8];
     let concentric: Vec<Aabb> =
         (1..=8).map(|i| Aabb::new(Vec3::splat(-i as f32), Vec3::splat(i as f32))).collect();
@@ -139,7 +139,7 @@ pub(super) fn spatial_median_never_leaves_a_side_empty(trial: &Trial<'_>) -> Che
 }
 
 pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> CheckResult {
-    // A3: boxes in a line and boxes in a point have no area. The NaN of 0/0 must not decide and must not panic.
+    // Boxes in a line and boxes in a point have no area. The NaN of 0/0 must not decide and must not panic.
     let line: Vec<Aabb> =
         (0..6).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 0.0, 0.0))).collect();
     let points = vec![Aabb::new(Vec3::ONE, Vec3::ONE); 5];

@@ -72,7 +72,7 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> C
     trial.forall_and(&suns, 500, lit(), |queries| judge_shadow_rays(trial, queries, judge_end))
 }
 
-/// L2: the surface of the light itself must not occlude it. An object close to the light must.
+/// The surface of the light itself must not occlude it. An object close to the light must.
 fn judge_end(query: &ShadowQuery, ray: &Ray) -> Option<Fault> {
     let light = &query.light;
     let length = ray.direction.as_dvec3().length();
@@ -131,7 +131,7 @@ fn start(query: &ShadowQuery, ray: &Ray) -> Start {
 }
 
 pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) -> CheckResult {
-    // R6: the true surface is up to `error` above the point.
+    // The true surface is up to `error` above the point.
     trial.forall(1000, lit(), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
             let start = start(query, ray);

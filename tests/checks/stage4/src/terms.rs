@@ -136,7 +136,7 @@ fn judge_highlight(query: &TermQuery, yours: f32) -> CheckResult {
 }
 
 pub(super) fn light_from_behind_adds_nothing(trial: &Trial<'_>) -> CheckResult {
-    // L1: a negative cos φ to an even power is positive, to a fractional power NaN. Some lights are below the horizon, and
+    // A negative cos φ to an even power is positive, to a fractional power NaN. Some lights are below the horizon, and
     // some of these have a positive cos φ: only cos θ shows where they are.
     let below = vec3(0.6, -0.8, 0.0);
     let chosen = [

@@ -60,7 +60,7 @@ fn judge_reflection(query: &(Vec3, Vec3), yours: Vec3) -> CheckResult {
 }
 
 pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> CheckResult {
-    // R7: a thousand reflections on two mirrors that are not parallel to an axis.
+    // A thousand reflections on two mirrors that are not parallel to an axis.
     let normals = [vec3(0.6, 0.8, 0.0), vec3(-0.48, -0.64, 0.6)];
     let mut direction = vec3(0.3, -0.7, 0.2).normalize();
     for bounce in 0..1000 {
@@ -225,7 +225,7 @@ pub(super) fn refract_obeys_snell(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> CheckResult {
-    // R1: along the normal sin θ1 is 0. With equal indices the direction does not change.
+    // Along the normal sin θ1 is 0. With equal indices the direction does not change.
     let straight = (arrival(), indices(), any::<bool>()).prop_map(
         |((direction, normal), (n1, n2), along)| match along {
             true => RefractQuery { direction: -normal, normal, n1, n2 },
@@ -276,7 +276,7 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> CheckRes
 }
 
 pub(super) fn refract_beyond_the_critical_angle_is_none(trial: &Trial<'_>) -> CheckResult {
-    // R2: 60° inside glass; then the critical angle, and one float of the sine to either side, where NaN is wrong.
+    // 60° inside glass; then the critical angle, and one float of the sine to either side, where NaN is wrong.
     let at_sine = |sine: f32| {
         let direction = vec3(sine, -(1.0 - f64::from(sine).powi(2)).sqrt() as f32, 0.0);
         RefractQuery { direction, normal: Vec3::Y, n1: 1.5, n2: 1.0 }
@@ -304,7 +304,7 @@ pub(super) fn refract_beyond_the_critical_angle_is_none(trial: &Trial<'_>) -> Ch
 }
 
 pub(super) fn refract_survives_rounded_directions(trial: &Trial<'_>) -> CheckResult {
-    // R3: one unit vector in five is slightly longer than 1, and the root of 1 - cos² is NaN near the normal.
+    // One unit vector in five is slightly longer than 1, and the root of 1 - cos² is NaN near the normal.
     let inputs =
         (nasty::unit(), -40..=40i32, -40..=40i32, any::<bool>()).prop_map(|(normal, x, y, glass)| {
             let (u, v) = normal.any_orthonormal_pair();

@@ -236,7 +236,7 @@ fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Ch
     ]))
 }
 
-/// R4: on the way out of glass the indices change places, and both rays have the directions of `reflect` and `refract`.
+/// On the way out of glass the indices change places, and both rays have the directions of `reflect` and `refract`.
 pub(super) fn scatter_swaps_indices_when_leaving_glass(trial: &Trial<'_>) -> CheckResult {
     let both = |query: ScatterQuery| ScatterQuery {
         material: Material {
@@ -312,7 +312,7 @@ fn judge_directions(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) ->
 }
 
 pub(super) fn scatter_refracts_nothing_in_total_reflection(trial: &Trial<'_>) -> CheckResult {
-    // R5: 60° inside glass. No ray is refracted, and 0 · NaN makes no NaN.
+    // 60° inside glass. No ray is refracted, and 0 · NaN makes no NaN.
     let chosen = [Fresnel::None, Fresnel::Schlick, Fresnel::Exact].map(|fresnel| ScatterQuery {
         direction: vec3(0.866_025_4, -0.5, 0.0),
         normal: Vec3::Y,
@@ -366,7 +366,7 @@ fn judge_total_reflection(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> Che
 }
 
 pub(super) fn scatter_skips_rays_without_weight(trial: &Trial<'_>) -> CheckResult {
-    // R8: a secondary ray of weight 0 costs a whole tree of rays that add nothing. Every fourth surface does reflect.
+    // A secondary ray of weight 0 costs a whole tree of rays that add nothing. Every fourth surface does reflect.
     let dull = (queries(), 0..4i32).prop_map(|(query, which)| match which {
         0 => ScatterQuery { material: Material::default(), ..query },
         1 => ScatterQuery { weight: Vec3::ZERO, ..query },

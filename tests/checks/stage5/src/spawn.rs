@@ -45,7 +45,7 @@ fn describe((surface, child): &Leaving) -> String {
     format!("spawn_ray({}, {child})", surface.paste())
 }
 
-/// R6: the slide starts the ray at `hit.Point()`, which is rounded, so about half of the rays hit their own surface.
+/// The slide starts the ray at `hit.Point()`, which is rounded, so about half of the rays hit their own surface.
 pub(super) fn secondary_rays_leave_their_surface(trial: &Trial<'_>) -> CheckResult {
     // Begin with a point with a large error, because known mistakes differ most there.
     let surface = Surface {

@@ -132,7 +132,7 @@ fn judge(trial: &Trial<'_>, rooms: &[Room], allows: impl Fn(&Room, usize) -> boo
 pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> CheckResult {
     let deep = |max_depth: u32| (0.5, 0.5, Limits { max_depth, ..FAR });
     let (low, high) = trial.varied((5, 10), (3..=6u32, 7..=10u32));
-    // R8: surfaces that neither reflect nor transmit, depth 10: 1 ray instead of 2047.
+    // Surfaces that neither reflect nor transmit, depth 10: 1 ray instead of 2047.
     let dull = (0.0, 0.0, Limits { max_depth: 10, ..FAR });
     // Here the weight ends the tree before the depth does.
     let dim = (0.5, 0.5, Limits { max_depth: 4, min_contribution: 0.2 });
@@ -140,7 +140,7 @@ pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn tree_ends_below_min_contribution(trial: &Trial<'_>) -> CheckResult {
-    // R9: weights halve down to 0.01: 1/64 is traced and 1/128 is not. Testing the incoming ray gives 255 rays. No weight is
+    // Weights halve down to 0.01: 1/64 is traced and 1/128 is not. Testing the incoming ray gives 255 rays. No weight is
     // equal to the limit, because another check asks about that.
     let min_contribution = trial.varied(0.01, 0.008f32..0.0155);
     let halving = |mirror: f32, transmission: f32, max_depth: u32| {

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use raykata::kit::{Bounce, Limits, ScatterQuery, SecondaryRay};
 use raykata::material::{Fresnel, Material};
 
-/// X8: a secondary ray's own weight decides, not that of the incoming ray and not that of the other secondary ray.
+/// A secondary ray's own weight decides, not that of the incoming ray and not that of the other secondary ray.
 pub(super) fn scatter_tests_the_weight_of_each_ray(trial: &Trial<'_>) -> CheckResult {
     let [slanted, ..] = drawn();
     let (direction, normal) = (slanted.direction, slanted.normal);

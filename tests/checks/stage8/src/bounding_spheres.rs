@@ -304,7 +304,7 @@ fn along_x(from: f32) -> Entry {
 }
 
 pub(super) fn enter_bounding_sphere_finds_what_is_met(trial: &Trial<'_>) -> CheckResult {
-    // S3: the ray starts inside, and the centre lies behind it.
+    // The ray starts inside, and the centre lies behind it.
     let facing_away = along_x(0.5);
     trial.forall_and(&[facing_away], 3000, entries(true), |queries| judge_entries(trial, queries))?;
     ranges_that_begin_at_the_exit(trial)

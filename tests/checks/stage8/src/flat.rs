@@ -32,7 +32,7 @@ pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> CheckResul
 const IN_A_LINE: &str =
     "you lose polygons whose first three corners lie on a line: sum the normal over all edges";
 
-/// Rays at edges and corners, and at an edge that two polygons share (traps T8–T10, 35–37).
+/// Rays at edges and corners, and at an edge that two polygons share.
 pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> CheckResult {
     let square = Polygon {
         corners: vec![vec3(0.0, 0.0, 0.0), vec3(2.0, 0.0, 0.0), vec3(2.0, 2.0, 0.0), vec3(0.0, 2.0, 0.0)],
@@ -44,7 +44,7 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> CheckResult {
     let down = |polygon: &Polygon, x: f32, y: f32| of(polygon)(vec3(x, y, 3.0), Vec3::NEG_Z);
     let closed = "you lose rays exactly at edges or corners, which belong to the polygon: compare with <= instead of <";
     let diagonal = "you lose a ray on a diagonal of the fan: diagonals lie inside the polygon";
-    // T10: the ray starts on an edge and meets the plane only there, so its range must include t = 0.
+    // The ray starts on an edge and meets the plane only there, so its range must include t = 0.
     let on_an_edge = SolidQuery {
         ray: Ray::new(vec3(1.0, 0.0, 0.0), Vec3::NEG_Z).with_range(-1.0, 1.0),
         solid: square.clone(),

@@ -166,7 +166,7 @@ pub(super) fn judge_ties_at_the_rim<S: Solid>(
 const STARTS_ON_FACE: &str = "you are wrong for rays that start on a face: a hit at t = 0 does not count, and the exit is the \
     hit if the ray crosses the box";
 
-/// Rays in the plane of a face, at edges and at flat boxes (traps B3, B4, B7; 38–43, 46).
+/// Rays in the plane of a face, at edges and at flat boxes.
 pub(super) fn cuboid_seen_along_its_faces(trial: &Trial<'_>) -> CheckResult {
     let unit = Cuboid { min: Vec3::ZERO, max: Vec3::ONE };
     let ask = of(&unit);
@@ -217,7 +217,7 @@ pub(super) fn cuboid_seen_along_its_faces(trial: &Trial<'_>) -> CheckResult {
     all_hold(judged)
 }
 
-/// Rays parallel to the axis (traps C1; 29).
+/// Rays parallel to the axis.
 pub(super) fn cylinder_seen_along_its_axis(trial: &Trial<'_>) -> CheckResult {
     let can = Cylinder { base: Vec3::ZERO, top: vec3(0.0, 2.0, 0.0), radius: 1.0 };
     let ask = of(&can);
@@ -257,7 +257,7 @@ const IN_THE_SIDE: &str =
 const BESIDE_CYLINDER: &str =
     "you hit the cylinder with rays that are parallel to its axis and pass beside the cylinder";
 
-/// Rays from inside to the rim, and rays that touch the side (traps C1; 30, 31).
+/// Rays from inside to the rim, and rays that touch the side.
 pub(super) fn cylinder_at_its_rim(trial: &Trial<'_>) -> CheckResult {
     let can = Cylinder { base: vec3(0.25, -0.5, 0.125), top: vec3(0.75, 1.5, 0.5), radius: 0.8 };
     let (x, y) = (can.top - can.base).normalize().any_orthonormal_pair();
@@ -286,7 +286,7 @@ pub(super) fn cylinder_at_its_rim(trial: &Trial<'_>) -> CheckResult {
 
 const HAT: Cone = Cone { base: Vec3::ZERO, apex: Vec3::Y, radius: 1.0 };
 
-/// Rays above the apex, where the equation describes a second cone (traps C2; 33).
+/// Rays above the apex, where the equation describes a second cone.
 pub(super) fn cone_is_not_its_mirror_image(trial: &Trial<'_>) -> CheckResult {
     let ask = of(&HAT);
     judge_cases(
@@ -303,7 +303,7 @@ pub(super) fn cone_is_not_its_mirror_image(trial: &Trial<'_>) -> CheckResult {
     )
 }
 
-/// Rays parallel to the side, and steeper rays (traps C2; 34).
+/// Rays parallel to the side, and steeper rays.
 pub(super) fn cone_seen_along_its_side(trial: &Trial<'_>) -> CheckResult {
     let ask = of(&HAT);
     let linear = "you are wrong for rays parallel to the side: a is 0 there, so solve 2 b t + c = 0";
@@ -335,7 +335,7 @@ pub(super) fn cone_seen_along_its_side(trial: &Trial<'_>) -> CheckResult {
     )
 }
 
-/// Rays to the apex and to the rim (traps C2; 32).
+/// Rays to the apex and to the rim.
 pub(super) fn cone_at_its_tip_and_rim(trial: &Trial<'_>) -> CheckResult {
     let lost = "you lose a ray at the apex: a rounded point lies above the apex; intersect intervals instead \
         of testing points";

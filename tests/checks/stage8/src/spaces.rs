@@ -31,7 +31,7 @@ pub(super) fn determinant(transform: &Affine3A) -> f64 {
 }
 
 pub(super) fn rays_pass_the_same_points_in_every_space(trial: &Trial<'_>) -> CheckResult {
-    // X1: first a quarter turn of a stretched object, for which the matrix, its inverse and the transposes of both all
+    // First a quarter turn of a stretched object, for which the matrix, its inverse and the transposes of both all
     // differ. Scales along the axes do not show a wrong transpose.
     let matrix = Mat3::from_cols(Vec3::NEG_Y, 2.0 * Vec3::X, Vec3::Z);
     let to_object = Affine3A::from_mat3_translation(matrix, Vec3::new(0.5, -1.0, 2.0));
@@ -145,7 +145,7 @@ fn is_along(yours: Vec3, right: DVec3) -> bool {
 }
 
 pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> CheckResult {
-    // X2: an object that is scaled is hit at the same t, which counts lengths of the direction.
+    // An object that is scaled is hit at the same t, which counts lengths of the direction.
     let grown = ObjectRayQuery {
         ray: Ray::new(Vec3::new(0.0, 0.0, -5.0), 2.0 * Vec3::Z),
         to_object: Affine3A::from_scale(Vec3::splat(0.125)),

@@ -44,7 +44,7 @@ fn diagonal() -> CutPlane {
     CutPlane { normal: DVec3::new(1.0, 1.0, 0.0).normalize(), offset: 0.0 }
 }
 
-/// Trap A7: the plane lies behind the ray or beyond its end, or the ray is parallel to it.
+/// The plane lies behind the ray or beyond its end, or the ray is parallel to it.
 pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'_>) -> CheckResult {
     let scene = Scene::new(vec![
         sphere(-4.0, -4.0, 0.0, 1.0),

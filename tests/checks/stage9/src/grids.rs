@@ -60,7 +60,7 @@ pub(super) fn grid_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckRes
     agrees(trial, Searcher::Grid)
 }
 
-/// Trap A8: a large sphere of the first cell is hit in the third cell, and a small one in the second cell is nearer.
+/// A large sphere of the first cell is hit in the third cell, and a small one in the second cell is nearer.
 pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> CheckResult {
     let mut asked = Asked::new();
     for axis in 0..3 {
@@ -185,11 +185,11 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
     ]))
 }
 
-const ADDED_UP: &str = "trap A8: tMax += tDelta accumulates one rounding error per step: compute t from the index of the cell, in double precision";
+const ADDED_UP: &str = "tMax += tDelta accumulates one rounding error per step: compute t from the index of the cell, in double precision";
 
 const IN_SINGLE: &str = "you compute the t of a plane in single precision, which cannot tell these corners apart: use double precision";
 
-/// Trap A8, second part: 250 cells along an axis.
+/// Rays over 250 cells along an axis: rounding errors of the steps must not add up.
 pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> CheckResult {
     // The cell sides are not powers of two, so that each step is rounded. Cells are twice as long along the second axis, so
     // that one axis takes twice as many steps as the other.

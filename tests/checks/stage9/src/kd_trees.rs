@@ -128,7 +128,7 @@ fn two_leaves(bounds: Aabb, (axis, at): (usize, f32), left: &[u32], right: &[u32
     tree
 }
 
-/// Traps A4 and A6: the hit lies on the face at which its cell ends, and `t` and `t'` are rounded differently.
+/// The hit lies on the face at which its cell ends, and `t` and `t'` are rounded differently.
 pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> CheckResult {
     let mut asked = Asked::new();
     for (axis, (size, rough)) in (0..3)
@@ -166,7 +166,7 @@ fn along(axis: usize, v: Vec3) -> Vec3 {
     turned
 }
 
-/// Trap A6 alone: two primitives lie in one face; that of the right cell has a `t` one float smaller than that of the
+/// Two primitives lie in one face; that of the right cell has a `t` one float smaller than that of the
 /// left.
 pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> CheckResult {
     let (mut trees, mut grids) = (Asked::new(), Asked::new());
@@ -237,7 +237,7 @@ pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> CheckResult {
     asked.judge(|queries| trial.kit.kd_search(queries))
 }
 
-/// Trap A5: a ray in the plane of a cut, or that starts on it, is on both sides.
+/// A ray in the plane of a cut, or that starts on it, is on both sides.
 pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> CheckResult {
     let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
     let mut asked = Asked::new();

@@ -101,7 +101,7 @@ pub(super) fn listing_fault<N: std::fmt::Display>(
                     vec![
                         (
                             missing && touches && elsewhere(),
-                            "trap A5: a primitive that touches a plane belongs to both sides",
+                            "a primitive that touches a plane belongs to both sides",
                         ),
                         (
                             missing && elsewhere(),

@@ -52,13 +52,7 @@ fn one_of_equal_entries(octree: &Octree, ray: &Ray, hits: &[f32], keeps_last: bo
 pub(super) fn of_octree(octree: &Octree, ray: &Ray, hits: &[f32], found: Hit) -> Vec<(bool, &'static str)> {
     let gives = |keeps_last| one_of_equal_entries(octree, ray, hits, keeps_last) == found;
     vec![
-        (
-            gives(true),
-            "trap A9: of octants that the ray enters at the same t you search only one, the last one",
-        ),
-        (
-            gives(false),
-            "trap A9: of octants that the ray enters at the same t you search only one, the first one",
-        ),
+        (gives(true), "of octants that the ray enters at the same t you search only one, the last one"),
+        (gives(false), "of octants that the ray enters at the same t you search only one, the first one"),
     ]
 }

@@ -197,7 +197,7 @@ pub(super) fn octree_sorts_octants_that_are_entered_at_one_t(trial: &Trial<'_>) 
     along_edges(trial, Searcher::Octree)
 }
 
-/// Trap A9: a large sphere that overlaps the first octant is hit in the second, behind a small one.
+/// A large sphere that overlaps the first octant is hit in the second, behind a small one.
 pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> CheckResult {
     overlapping_two_octants("from the root down").judge(|queries| trial.kit.octree_search(queries))?;
     overlapping_two_octants("cell by cell").judge(|queries| trial.kit.octree_by_cells(queries))?;

@@ -37,47 +37,47 @@ enum AtPlane {
 const AT_PLANES: [(AtPlane, &str); 14] = [
     (
         AtPlane::InPlaneBelow,
-        "trap A5: a ray in the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side below only",
+        "a ray in the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side below only",
     ),
     (
         AtPlane::InPlaneAbove,
-        "trap A5: a ray in the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side above only",
+        "a ray in the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side above only",
     ),
     (
         AtPlane::StartAhead,
-        "trap A5: a ray that starts on the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side ahead only",
+        "a ray that starts on the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side ahead only",
     ),
     (
         AtPlane::StartBehind,
-        "trap A5: a ray that starts on the plane is on both sides: you search only the side from which it comes",
+        "a ray that starts on the plane is on both sides: you search only the side from which it comes",
     ),
     (
         AtPlane::BelowAndAhead,
-        "trap A5: a ray in the plane, or that starts on it, is on both sides: you search the side below only, or the side ahead only",
+        "a ray in the plane, or that starts on it, is on both sides: you search the side below only, or the side ahead only",
     ),
     (
         AtPlane::AboveAndAhead,
-        "trap A5: a ray in the plane, or that starts on it, is on both sides: you search the side above only, or the side ahead only",
+        "a ray in the plane, or that starts on it, is on both sides: you search the side above only, or the side ahead only",
     ),
     (
         AtPlane::OnPlaneBelow,
-        "trap A5: a ray in the plane, or that starts on it, is on both sides: you search the side below only",
+        "a ray in the plane, or that starts on it, is on both sides: you search the side below only",
     ),
     (
         AtPlane::OnPlaneAbove,
-        "trap A5: a ray in the plane, or that starts on it, is on both sides: you search the side above only",
+        "a ray in the plane, or that starts on it, is on both sides: you search the side above only",
     ),
     (
         AtPlane::NotCrossedNone,
-        "trap A7: if the plane is behind the ray or beyond its end, the whole ray is on one side, and you must search that side",
+        "if the plane is behind the ray or beyond its end, the whole ray is on one side, and you must search that side",
     ),
     (
         AtPlane::NotCrossedBelow,
-        "trap A7: if the plane is behind the ray or beyond its end, the ray is on the side of its origin: you always take the side below",
+        "if the plane is behind the ray or beyond its end, the ray is on the side of its origin: you always take the side below",
     ),
     (
         AtPlane::NotCrossedAbove,
-        "trap A7: if the plane is behind the ray or beyond its end, the ray is on the side of its origin: you always take the side above",
+        "if the plane is behind the ray or beyond its end, the ray is on the side of its origin: you always take the side above",
     ),
     (AtPlane::ParallelNone, "a ray parallel to the plane is on the side of its origin: you search no side"),
     (AtPlane::NearOnly, "you search only the side of the origin: the ray goes on to the other side"),

@@ -56,7 +56,7 @@ pub(super) fn polygon_bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> C
     agrees(trial, Searcher::PolygonBsp)
 }
 
-/// Trap A7, and rays that run in a plane, start on it, or end on it.
+/// Planes behind the ray or beyond its end, and rays that run in a plane, start on it, or end on it.
 pub(super) fn polygon_bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResult {
     let scene = Scene::new(vec![
         sphere(-4.0, -4.0, 0.0, 1.0),

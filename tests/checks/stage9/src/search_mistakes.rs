@@ -111,24 +111,24 @@ const MISTAKES: [(Wrong, &str); 11] = [
     (Wrong::Farthest, "you keep the farther of two hits"),
     (
         Wrong::BeforeTheEnd,
-        "traps A4 and A6: `hit.distance < t'` loses a hit on the far face of its cell, and behind it: a hit counts wherever its cell ends",
+        "`hit.distance < t'` loses a hit on the far face of its cell, and behind it: a hit counts wherever its cell ends",
     ),
     (
         Wrong::BeforeTheEndOrAt,
-        "traps A4 and A6: `hit.distance <= t'` loses a hit behind the end of its cell: a hit counts wherever its cell ends",
+        "`hit.distance <= t'` loses a hit behind the end of its cell: a hit counts wherever its cell ends",
     ),
     (
         Wrong::FirstCellWithAHit,
-        "trap A8 (A9 for octrees): `Some hit → Some hit` stops at the first cell with a hit, and a later cell has a nearer hit: go on until the next cell begins behind the best hit",
+        "`Some hit → Some hit` stops at the first cell with a hit, and a later cell has a nearer hit: go on until the next cell begins behind the best hit",
     ),
     (Wrong::FirstCellOnly, FIRST_CELL_ONLY),
     (
         Wrong::NoRoom,
-        "trap A6: t of a hit and t of a cell are rounded differently; stop only if the hit is before the cell by more than the rounding error",
+        "t of a hit and t of a cell are rounded differently; stop only if the hit is before the cell by more than the rounding error",
     ),
     (
         Wrong::NoRoomOrAt,
-        "trap A6: you stop at a cell that begins exactly at the best hit, but another primitive there may have the same t",
+        "you stop at a cell that begins exactly at the best hit, but another primitive there may have the same t",
     ),
 ];
 

@@ -1,13 +1,17 @@
 //! `grader corpus`: tests the checks. Each entry is the reference with one difference. It is either a mistake, which a
 //! named check must catch and diagnose, or another right solution, which every check must accept.
 //!
-//! `carry` (updates patches) · `entry` (reads `tests/corpus`) · `workshop` (builds an entry) · `verdict` (its result) ·
-//! `records` (the stored results) · `tested` (the results of a run that was stopped)
+//! `entry` (reads `tests/corpus`) · `source` (the functions of a file) · `schemata` (many entries in one file) · `program` (the
+//! program of all entries) · `verdict` (the result of an entry) · `records` (the
+//! stored results) · `workshop` (the folder in which solutions are built) · `patch`, `import` (patches of a course)
 
-pub mod carry;
 pub mod entry;
+pub mod import;
+pub mod patch;
+pub mod program;
 pub mod records;
-pub(crate) mod tested;
+pub mod schemata;
+pub mod source;
 pub mod verdict;
 pub mod workshop;
 
@@ -15,17 +19,17 @@ use crate::kits::{Need, Source, Which};
 use crate::queue;
 use crate::report::bar_of_steps;
 use anyhow::{Result, bail};
-use checks::Inputs;
+use checks::{Check, Inputs};
 use entry::{Claim, Entry};
-use judge::scorecard::run_checks_on;
+use program::Program;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use raykata_cli::lock::Lock;
-use records::Matrix;
+use records::{Matrix, Messages};
+use schemata::Form;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
-use tested::Tested;
 use verdict::{Fate, Tried};
-use workshop::{Built, Workshop};
 
 /// The folder in which entries and changes of the solutions are built. One run at a time uses it.
 pub(crate) const FOLDER: &str = "target/corpus";
@@ -35,98 +39,111 @@ pub static SPEC: Spec = Spec {
     name: "grader corpus",
     about: "Test the checks with known mistakes and other right solutions (for authors).",
     arguments: &[Argument::optional("NAME", "The names of entries [default: all].").many()],
-    options: &[&[
-        Opt::value("--stage", "N", "Only this stage."),
-        Opt::flag("--slice", "Only one mistake and one right solution per stage."),
-        Opt::value("--jobs", "N", "How many to test at the same time [default: one per core]."),
-        Opt::flag("--check", "Also compare with tests/corpus/matrix.txt and tests/corpus/messages."),
-        Opt::flag("--bless", "Write tests/corpus/matrix.txt and tests/corpus/messages."),
-        Opt::flag("--right", "Only right solutions."),
-        Opt::flag("--resume", "Continue a run that was stopped: skip the entries that it has tested."),
-        Opt::value(
-            "--seed",
-            "N",
-            "Pick the inputs of the checks with this seed instead of 0. The messages may then differ, so each mistake \
-             only has to fail the check that must catch it.",
-        ),
-    ]],
+    options: &[
+        &[
+            Opt::value("--stage", "N", "Only this stage."),
+            Opt::flag("--right", "Only right solutions."),
+            Opt::value("--function", "NAME", "List the entries that change this function."),
+            Opt::value("--check", "NAME", "List the mistakes that this check rejects; `=` marks those that it must catch."),
+            Opt::value("--saying", "WORDS", "List the mistakes whose stored message has these words."),
+            Opt::flag("--run", "Test the listed entries."),
+        ],
+        &[
+            Opt::flag("--bless", "Try every check of the stage, and store the matrix and the messages."),
+            Opt::flag("--reword", "Store the messages. Use it after a change of words in a diagnosis."),
+            Opt::value("--jobs", "N", "How many to test at the same time [default: one per core]."),
+            Opt::value(
+                "--seed",
+                "N",
+                "Pick the inputs of the checks with this seed instead of 0. The messages may then differ, so each mistake \
+                 only has to fail the check that must catch it.",
+            ),
+        ],
+    ],
 };
 
 /// The options of `grader corpus`.
 pub struct Options {
     names: Vec<String>,
     stage: Option<u8>,
-    slice: bool,
-    jobs: usize,
-    check: bool,
-    bless: bool,
     right: bool,
-    resume: bool,
+    function: Option<String>,
+    check: Option<String>,
+    saying: Option<String>,
+    lists: bool,
+    bless: bool,
+    reword: bool,
+    jobs: usize,
     seed: Option<u64>,
 }
 
 impl Options {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
-        given.exclude("--bless", "--check")?;
-        given.exclude("--seed", "--check")?;
+        given.exclude("--bless", "--reword")?;
         given.exclude("--seed", "--bless")?;
-        let names: Vec<String> =
-            given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned()).collect();
-        if names.iter().any(|name| name == "carry") {
-            return Err(given.misuse("`carry` is a separate command: `grader corpus carry`"));
-        }
+        given.exclude("--seed", "--reword")?;
+        let text = |name| given.path(name).map(|words| words.to_string_lossy().into_owned());
+        let (function, check, saying) = (text("--function"), text("--check"), text("--saying"));
+        let asks = function.is_some() || check.is_some() || saying.is_some();
         Ok(Options {
-            names,
+            names: given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned()).collect(),
             stage: given.number("--stage", 0..=u8::MAX)?,
-            slice: given.has("--slice"),
-            jobs: given.number("--jobs", 0..=usize::MAX)?.unwrap_or_else(queue::cores),
-            check: given.has("--check"),
-            bless: given.has("--bless"),
             right: given.has("--right"),
-            resume: given.has("--resume"),
+            function,
+            check,
+            saying,
+            lists: asks && !["--run", "--bless", "--reword"].iter().any(|action| given.has(action)),
+            bless: given.has("--bless"),
+            reword: given.has("--reword"),
+            jobs: given.number("--jobs", 1..=usize::MAX)?.unwrap_or_else(queue::cores),
             seed: given.number("--seed", 0..=u64::MAX)?,
         })
     }
 }
 
-/// Tests entries and prints a report. Returns whether all results are as required.
+/// Lists or tests entries and prints a report. Returns whether all results are as required.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let all = entry::read_all(root)?;
     let n_all = all.len();
-    let chosen = choose(all, options)?;
+    let (matrix, messages) = (Matrix::read(root), Messages::read(root));
+    let chosen = choose(all, options, &matrix, &messages)?;
+    if options.lists {
+        return Ok(list(&chosen, options, &matrix));
+    }
     let complete = chosen.len() == n_all;
     let _lock = Lock::on(&root.join(FOLDER))?;
-    let tested = Tested::open(root, options.resume, options.seed)?;
-    let tried = try_all(root, &chosen, options.jobs.max(1), options.seed, &tested)?;
-    tested.finish()?;
-
-    let matrix = Matrix::read(root);
-    let differences = if options.check { records::differences(root, &matrix, &tried) } else { Vec::new() };
-    if options.bless {
-        records::bless(root, &tried, complete)?;
+    let program = Program::build(root, &chosen)?;
+    let tried = try_all(root, &program, &chosen, options)?;
+    if options.bless || options.reword {
+        records::bless(root, &tried, options.bless, complete)?;
     }
-    report(&tried, &differences);
-    if complete {
-        report_idle_checks(&tried);
-    }
+    let differences = match options.seed {
+        None if !options.bless && !options.reword => records::differences(&messages, &tried),
+        _ => Vec::new(),
+    };
+    report(&program, &tried, &differences);
     Ok(differences.is_empty() && tried.iter().all(|one| one.fate.is_as_it_must_be()))
 }
 
-fn choose(all: Vec<Entry>, options: &Options) -> Result<Vec<Entry>> {
+fn choose(all: Vec<Entry>, options: &Options, matrix: &Matrix, messages: &Messages) -> Result<Vec<Entry>> {
     for name in &options.names {
         if !all.iter().any(|entry| is_named(entry, name)) {
             bail!("tests/corpus has no entry `{name}`");
         }
     }
-    let slice = slice(&all);
-    let wanted = |entry: &Entry| {
+    let is_said = |entry: &Entry, words: &str| {
+        messages.of(entry).is_some_and(|message| verdict::one_line(message).contains(&verdict::one_line(words)))
+    };
+    let is_wanted = |entry: &Entry| {
         (options.names.is_empty() || options.names.iter().any(|name| is_named(entry, name)))
             && options.stage.is_none_or(|stage| stage == entry.stage)
-            && (!options.slice || slice.contains(&entry.to_string()))
             && (!options.right || entry.claim == Claim::Right)
+            && options.function.as_ref().is_none_or(|name| entry.changes_function(name))
+            && options.check.as_ref().is_none_or(|check| matrix.fails(entry, check))
+            && options.saying.as_ref().is_none_or(|words| is_said(entry, words))
     };
-    let chosen: Vec<Entry> = all.into_iter().filter(wanted).collect();
+    let chosen: Vec<Entry> = all.into_iter().filter(is_wanted).collect();
     if chosen.is_empty() {
         bail!("tests/corpus has no entry for these options");
     }
@@ -137,95 +154,63 @@ fn is_named(entry: &Entry, name: &str) -> bool {
     entry.name == name || entry.to_string() == name
 }
 
-/// Chooses per stage the mistake and the right solution in the middle of the list.
-fn slice(all: &[Entry]) -> Vec<String> {
-    let mut stages: Vec<u8> = all.iter().map(|entry| entry.stage).collect();
-    stages.dedup();
-    let mut chosen = Vec::new();
-    for stage in stages {
-        let of_stage = all.iter().filter(|entry| entry.stage == stage);
-        let (right, wrong): (Vec<&Entry>, Vec<&Entry>) =
-            of_stage.partition(|entry| entry.claim == Claim::Right);
-        let picks = [wrong.get(wrong.len() / 2), right.get(right.len() / 2)];
-        chosen.extend(picks.into_iter().flatten().map(ToString::to_string));
+/// Prints the entries, each with its sentence.
+fn list(chosen: &[Entry], options: &Options, matrix: &Matrix) -> bool {
+    let mut file = "";
+    for entry in chosen {
+        if entry.file != file {
+            println!("{}{}", if file.is_empty() { "" } else { "\n" }, entry::corpus_file(&entry.file));
+            file = &entry.file;
+        }
+        let caught = options.check.as_deref().is_some_and(|check| entry.caught_by() == Some(check));
+        println!(" {}{} {}: {}", if caught { '=' } else { ' ' }, entry.kind(), entry.name, entry.title);
+        if options.check.is_none()
+            && let Some(checks) = matrix.0.get(&entry.to_string()).filter(|checks| *checks != "-")
+        {
+            println!("      fails {checks}");
+        }
     }
-    chosen
+    println!("\n{} entries", chosen.len());
+    true
 }
 
-/// Tests entries, with one workshop per job.
-fn try_all(
-    root: &Path,
-    entries: &[Entry],
-    jobs: usize,
-    seed: Option<u64>,
-    tested: &Tested,
-) -> Result<Vec<Tried>> {
-    let bar = bar_of_steps(entries.len());
-    bar.set_message("foreign crates");
-    let jobs = jobs.min(entries.len());
-    let workshops = Workshop::open_all(root, jobs, Need::Checks)?;
-    let threads = queue::cores().div_ceil(jobs);
+/// Tests entries.
+fn try_all(root: &Path, program: &Program, entries: &[Entry], options: &Options) -> Result<Vec<Tried>> {
+    // Find out which checks reach the functions that right solutions change. With `--bless` every check is tried.
+    let with_right: BTreeSet<u8> =
+        entries.iter().filter(|entry| entry.claim == Claim::Right).map(|entry| entry.stage).collect();
+    let checks = with_right.iter().flat_map(|stage| all_checks::of_stage(*stage)).filter(|_| !options.bless);
+    let reached = program.reached(&checks.collect::<Vec<_>>(), options.jobs)?;
+    let is_tried = |entry: &Entry, check: &Check| options.bless || program.is_tried(entry, check, &reached);
     // With a seed, texts and pictures are drawn, and the expected ones come from the reference.
-    let reference = match seed {
+    let reference = match options.seed {
         Some(_) => Some(Source::prepare(root, Which::Solutions, Need::Checks)?.fresh()),
         None => None,
     };
     let inputs = Inputs { drawn: Some(Arc::default()), reference, ..Inputs::default() };
-    let tried = queue::run(&workshops, entries, |workshop, entry| {
+    let bar = bar_of_steps(entries.len());
+    let tried = queue::run(&vec![(); options.jobs], entries, |(), entry| {
         bar.set_message(entry.to_string());
-        let one = match tested.take(entry) {
-            Some(known) => known,
-            None => {
-                let one = try_one(workshop, entry, threads, seed, &inputs)?;
-                tested.add(&one)?;
-                one
-            }
+        let checks = all_checks::of_stage(entry.stage).iter().filter(|check| is_tried(entry, check));
+        let failures: verdict::Failures = checks
+            .filter_map(|check| {
+                let kit = program.kit(entry).fresh();
+                let examined = checks::examine_with(check, &kit, options.seed.unwrap_or(0), inputs.clone());
+                Some((check.name, verdict::failure(checks::verdict(check, examined))?))
+            })
+            .collect();
+        let fate = match Fate::of(entry, &failures) {
+            Fate::Unnamed(_) | Fate::Misnamed if options.seed.is_some() => Fate::Killed,
+            fate => fate,
         };
         bar.inc(1);
-        Ok(one)
+        Ok(Tried { entry: entry.clone(), fate, failures })
     })?;
     bar.finish_and_clear();
     Ok(tried)
 }
 
-fn try_one(
-    workshop: &Workshop,
-    entry: &Entry,
-    threads: usize,
-    seed: Option<u64>,
-    inputs: &Inputs,
-) -> Result<Tried> {
-    let tried = |fate, failures| Ok(Tried { entry: entry.clone(), fate, failures });
-    let worker = match workshop.build(&entry.file, &entry.diff)? {
-        Built::Worker(worker) => worker,
-        Built::DoesNotApply(why) => return tried(Fate::DoesNotApply(why), Default::default()),
-        Built::DoesNotCompile(error) => return tried(Fate::DoesNotCompile(error), Default::default()),
-    };
-    let wanted = |stage| stage == entry.stage;
-    let source = Source { which: Which::Solutions, program: worker };
-    let graded = run_checks_on(threads, &source, wanted, seed.unwrap_or(0), inputs)?;
-    let failures: verdict::Failures =
-        graded.into_iter().filter_map(|one| Some((one.check.name, verdict::failure(one.verdict)?))).collect();
-    let fate = match Fate::of(entry, &failures) {
-        Fate::Unnamed(_) | Fate::Misnamed if seed.is_some() => Fate::Killed,
-        fate => fate,
-    };
-    tried(fate, failures)
-}
-
-/// Lists the checks that no mistake fails. The corpus does not show that they can fail.
-fn report_idle_checks(tried: &[Tried]) {
-    let is_tried = |stage: u8| tried.iter().any(|one| one.entry.stage == stage);
-    let fails = |name: &str| tried.iter().any(|one| one.failures.contains_key(name));
-    let checks =
-        all_checks::STAGES.iter().filter(|(stage, _)| is_tried(*stage)).flat_map(|(_, checks)| *checks);
-    let idle: Vec<&str> = checks.map(|check| check.name).filter(|name| !fails(name)).collect();
-    if !idle.is_empty() {
-        println!("\nchecks that no mistake fails: {}", idle.join(", "));
-    }
-}
-
-fn report(tried: &[Tried], differences: &[String]) {
+fn report(program: &Program, tried: &[Tried], differences: &[String]) {
     for one in tried.iter().filter(|one| !one.fate.is_as_it_must_be()) {
         println!("{one}\n");
     }
@@ -234,7 +219,7 @@ fn report(tried: &[Tried], differences: &[String]) {
     }
     let mut stages: Vec<u8> = tried.iter().map(|one| one.entry.stage).collect();
     stages.dedup();
-    println!("stage  mistakes  by name  otherwise  survived  diagnosed   right  accepted   broken");
+    println!("stage  mistakes   caught  otherwise  survived  diagnosed   right  accepted");
     for stage in stages.iter().map(|stage| Some(*stage)).chain([None]) {
         let count = |which: &dyn Fn(&Tried) -> bool| {
             let of_stage = tried.iter().filter(|one| stage.is_none_or(|stage| stage == one.entry.stage));
@@ -243,10 +228,9 @@ fn report(tried: &[Tried], differences: &[String]) {
         let fated = |fate: Fate| count(&|one| one.fate == fate);
         let otherwise =
             |one: &Tried| matches!(one.fate, Fate::Unnamed(_) | Fate::Misnamed | Fate::KilledByAnother);
-        let broken = |one: &Tried| matches!(one.fate, Fate::DoesNotApply(_) | Fate::DoesNotCompile(_));
         let right = |one: &Tried| one.entry.claim == Claim::Right;
         println!(
-            "{:<5}  {:>8}  {:>7}  {:>9}  {:>8}  {:>9}  {:>6}  {:>8}  {:>7}",
+            "{:<5}  {:>8}  {:>7}  {:>9}  {:>8}  {:>9}  {:>6}  {:>8}",
             stage.map_or("all".into(), |stage| stage.to_string()),
             count(&|one| !right(one)),
             fated(Fate::Killed),
@@ -255,19 +239,29 @@ fn report(tried: &[Tried], differences: &[String]) {
             count(&Tried::is_diagnosed),
             count(&right),
             fated(Fate::Accepted),
-            count(&broken),
         );
+    }
+    let names = |form: Form| -> Vec<String> {
+        let of_form = tried.iter().filter(|one| program.form(&one.entry) == form);
+        of_form.map(|one| one.entry.to_string()).collect()
+    };
+    let (modules, alone) = (names(Form::Module), names(Form::Alone));
+    println!("\nin one program: {} by their functions", names(Form::Functions).len());
+    for (form, names) in [("by a copy of their module", modules), ("in a program of their own", alone)] {
+        if !names.is_empty() {
+            println!("{} {form}: {}", names.len(), names.join(", "));
+        }
     }
     let undiagnosed = tried
         .iter()
         .filter(|one| one.message().is_some() && !one.is_diagnosed() && one.entry.has_a_known_mistake());
     let undiagnosed: Vec<String> = undiagnosed.map(|one| one.entry.to_string()).collect();
     if !undiagnosed.is_empty() {
-        println!("\ncaught without a diagnosis: {}", undiagnosed.join(", "));
+        println!("caught without a diagnosis: {}", undiagnosed.join(", "));
     }
     if !differences.is_empty() {
         println!(
-            "\n{} differences: look at them, then `cargo run -p grader -- corpus --bless`",
+            "\n{} messages differ: read them, then `cargo run -p grader -- corpus --reword` with the same options",
             differences.len()
         );
     }

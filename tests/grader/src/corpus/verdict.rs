@@ -3,7 +3,6 @@
 use super::entry::{Claim, Entry};
 use all_checks::STAGES;
 use checks::{Check, Verdict};
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -14,7 +13,7 @@ pub type Failures = BTreeMap<&'static str, String>;
 const DIAGNOSIS: &str = "looks like:";
 
 /// How an entry ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Fate {
     /// A mistake: the named check caught it, and its message contains the words.
     Killed,
@@ -24,16 +23,12 @@ pub enum Fate {
     Misnamed,
     /// A mistake: other checks caught it.
     KilledByAnother,
-    /// A mistake that no check caught.
+    /// A mistake that no check caught, of those that were tried.
     Survived,
     /// A right solution that every check accepts.
     Accepted,
     /// A right solution that a check rejects: a false alarm.
     Rejected,
-    /// The patch does not fit, for this reason.
-    DoesNotApply(String),
-    /// It does not compile, with this first error.
-    DoesNotCompile(String),
 }
 
 impl Fate {
@@ -62,8 +57,8 @@ impl Fate {
     }
 }
 
-/// Returns whether the message contains the words, with any line breaks.
-fn one_line(text: &str) -> String {
+/// A text with single spaces in place of line breaks and of several spaces.
+pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
@@ -80,10 +75,7 @@ pub struct Tried {
 impl Tried {
     /// Returns the message of the named check, if it failed.
     pub fn message(&self) -> Option<&str> {
-        match &self.entry.claim {
-            Claim::Wrong { caught_by, .. } => self.failures.get(caught_by.as_str()).map(String::as_str),
-            Claim::Right => None,
-        }
+        self.failures.get(self.entry.caught_by()?).map(String::as_str)
     }
 
     /// Returns whether the message of the named check contains a diagnosis.
@@ -97,10 +89,7 @@ impl fmt::Display for Tried {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Tried { entry, fate, failures } = self;
         let checks = || failures.keys().copied().collect::<Vec<_>>().join(", ");
-        let named = match &entry.claim {
-            Claim::Wrong { caught_by, .. } => caught_by,
-            Claim::Right => "",
-        };
+        let named = entry.caught_by().unwrap_or_default();
         write!(f, "{entry}: {}\n  ", entry.title)?;
         match fate {
             Fate::Killed => write!(f, "killed by {named}"),
@@ -114,15 +103,11 @@ impl fmt::Display for Tried {
                 write!(f, ":\n{}", failures.get(named).map_or("", String::as_str))
             }
             Fate::KilledByAnother => write!(f, "killed, but not by {named}: by {}", checks()),
-            Fate::Survived => write!(f, "SURVIVED: no check of stage {} fails", entry.stage),
+            Fate::Survived => write!(f, "SURVIVED: {named} accepts it"),
             Fate::Rejected => {
                 write!(f, "FALSE ALARM: it is right, but rejected by {}", checks())?;
                 failures.values().next().map_or(Ok(()), |message| write!(f, "\n{message}"))
             }
-            Fate::DoesNotApply(why) => {
-                write!(f, "the patch cannot be used: {why}; make a new one from the current solution")
-            }
-            Fate::DoesNotCompile(error) => write!(f, "does not compile:\n{error}"),
         }
     }
 }
@@ -176,7 +161,6 @@ mod tests {
     #[test]
     fn fates_follow_from_claims_and_failures() {
         let claim = Claim::Wrong {
-            trap: None,
             caught_by: "b".into(),
             says: vec!["far root".into()],
             is_unknown: false,
@@ -187,7 +171,7 @@ mod tests {
             title: "t".into(),
             claim: claim.clone(),
             file: "f".into(),
-            diff: String::new(),
+            changes: Vec::new(),
         };
         let fate = |claim: &Claim, failed: &[(&'static str, &str)]| {
             let failures = failed.iter().map(|(name, message)| (*name, (*message).to_owned())).collect();
@@ -197,7 +181,7 @@ mod tests {
         assert_eq!(fate(&claim, &[("a", "")]), Fate::KilledByAnother);
         assert_eq!(fate(&claim, &[("b", "the near root")]), Fate::Unnamed(vec!["far root".into()]));
         assert_eq!(fate(&claim, &[("b", "the far\n   root")]), Fate::Killed);
-        let unknown = Claim::Wrong { trap: None, caught_by: "b".into(), says: vec![], is_unknown: true };
+        let unknown = Claim::Wrong { caught_by: "b".into(), says: vec![], is_unknown: true };
         assert_eq!(fate(&unknown, &[("b", "  yours 3\n")]), Fate::Killed);
         assert_eq!(fate(&unknown, &[("b", "  yours 3\n  looks like: the far root\n")]), Fate::Misnamed);
         assert_eq!(fate(&Claim::Right, &[]), Fate::Accepted);

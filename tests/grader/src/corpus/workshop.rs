@@ -5,38 +5,40 @@
 //! workshop has its own target folder, and a file is written only if its text differs. A build in which cargo found the
 //! solutions unchanged is an error, because its verdict would belong to the previous entry.
 
-use super::entry;
 use crate::kits::Need;
 use crate::room::has_room;
 use anyhow::{Context, Result, bail};
 use raykata::rubric;
 use serde_json::Value;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+/// The most errors of the compiler that are shown.
+const MOST_ERRORS: usize = 20;
+
+/// The sources of the solutions.
+const SOLUTIONS: &str = "solutions/src";
+
 /// Options for a quick build without debug information. An overflow panics, as in the exercises.
-const QUICK_BUILD: [&str; 4] =
-    ["--config", "profile.dev.debug=false", "--config", "profile.dev.package.solutions.overflow-checks=true"];
+const QUICK_BUILD: [&str; 6] = [
+    "--config",
+    "profile.dev.debug=false",
+    "--config",
+    "profile.dev.package.solutions.overflow-checks=true",
+    "--config",
+    "profile.dev.package.solutions.opt-level=1",
+];
 
-/// With this option, only the functions that changed are compiled: 0.6 s in place of 1.8 s at level 0.
-const INCREMENTAL: [&str; 2] = ["--config", "profile.dev.package.solutions.incremental=true"];
-
-/// The optimisation level of an entry. Without frames, building an entry takes longer than its answers, so it is built at level
-/// 0. With frames, the pictures take longer.
-fn level(need: Need) -> &'static str {
-    match need {
-        Need::Checks => "profile.dev.package.solutions.opt-level=0",
-        Need::Frames => "profile.dev.package.solutions.opt-level=1",
-    }
-}
-
-/// The optimisation level of the scaffold. A worker without frames uses so little of it that building it for speed would take
-/// longer than all answers: a cold `grader corpus --slice` needs a sixth less processor time at level 0.
-fn scaffold(need: Need) -> Option<&'static str> {
-    (need == Need::Checks).then_some("profile.dev.package.raykata.opt-level=0")
-}
+/// Without frames, only the functions that changed are compiled, and the scaffold is built at level 1: its build takes half as
+/// long as at level 3, and few of its functions run for long.
+const WITHOUT_FRAMES: [&str; 4] = [
+    "--config",
+    "profile.dev.package.solutions.incremental=true",
+    "--config",
+    "profile.dev.package.raykata.opt-level=1",
+];
 
 /// A folder that builds one entry at a time.
 pub struct Workshop {
@@ -50,35 +52,30 @@ pub struct Workshop {
 pub enum Built {
     /// The worker that answers with the changed solutions.
     Worker(PathBuf),
-    /// The patch does not fit, for this reason.
-    DoesNotApply(String),
-    /// The entry does not compile, with this first error.
+    /// The solutions do not compile, with these first errors.
     DoesNotCompile(String),
 }
 
 impl Workshop {
     /// Opens `jobs` workshops for workers of this kind. The unchanged solutions are known to build in each.
     pub fn open_all(root: &Path, jobs: usize, need: Need) -> Result<Vec<Workshop>> {
-        let first = Workshop::open(root, 0, need)?;
+        let first = Workshop::open(root, "0", need)?;
         // Build the reference first. The other workshops copy its compiled crates.
-        match first.build_original()? {
-            Built::Worker(_) => {}
-            Built::DoesNotApply(error) | Built::DoesNotCompile(error) => {
-                bail!("the unchanged solutions do not compile:\n{error}");
-            }
+        if let Built::DoesNotCompile(error) = first.build_with(&[])? {
+            bail!("the unchanged solutions do not compile:\n{error}");
         }
         let mut workshops = vec![first];
         for number in 1..jobs {
-            let workshop = Workshop::open(root, number, need)?;
+            let workshop = Workshop::open(root, &number.to_string(), need)?;
             workshop.take_over(&workshops[0])?;
             workshops.push(workshop);
         }
         Ok(workshops)
     }
 
-    /// Opens the workshop of this number for the kit at `root` and updates its files.
-    fn open(root: &Path, number: usize, need: Need) -> Result<Workshop> {
-        let folder = root.join(super::FOLDER).join(number.to_string());
+    /// Opens the workshop of this name for the kit at `root` and updates its files, but not yet its solutions.
+    pub fn open(root: &Path, name: &str, need: Need) -> Result<Workshop> {
+        let folder = root.join(super::FOLDER).join(name);
         let workshop = Workshop { root: root.to_owned(), folder, need };
         write_if_new(
             &workshop.folder.join("Cargo.toml"),
@@ -101,18 +98,12 @@ impl Workshop {
             write_if_new(&workshop.folder.join("Cargo.lock"), &read(&root.join("Cargo.lock"))?)?;
         }
         copy_folder(&root.join("src"), &workshop.folder.join("src"))?;
-        workshop.reset()?;
         Ok(workshop)
     }
 
     /// Returns the same workshop for workers of another kind.
     pub fn with(&self, need: Need) -> Workshop {
         Workshop { root: self.root.clone(), folder: self.folder.clone(), need }
-    }
-
-    /// Restores the kit's solutions.
-    fn reset(&self) -> Result<()> {
-        copy_folder(&self.root.join("solutions/src"), &self.folder.join("solutions/src"))
     }
 
     /// Copies the compiled foreign crates of another workshop, so that they are not built again.
@@ -123,36 +114,36 @@ impl Workshop {
         Ok(())
     }
 
-    /// Builds the solutions without a change.
-    pub(crate) fn build_original(&self) -> Result<Built> {
-        self.reset()?;
-        Ok(self.cargo()?.1)
-    }
-
-    /// Builds the solutions with one difference of one file.
-    pub fn build(&self, file: &str, diff: &str) -> Result<Built> {
-        match entry::apply(file, diff, &self.original(file)?) {
-            Ok(changed) => self.build_with(&[(file, &changed)]),
-            Err(error) => Ok(Built::DoesNotApply(error.to_string())),
-        }
-    }
-
     /// Returns the text of a file of the kit.
     pub fn original(&self, file: &str) -> Result<String> {
         read(&self.root.join(file))
     }
 
-    /// Builds the solutions with the texts of some files replaced.
+    /// Builds the solutions with the texts of some files replaced, and with more files.
     pub fn build_with(&self, changes: &[(&str, &str)]) -> Result<Built> {
-        self.reset()?;
+        // Collect the files as they must be.
+        let (from, to) = (self.root.join(SOLUTIONS), self.folder.join(SOLUTIONS));
+        let mut texts: BTreeMap<String, String> = BTreeMap::new();
+        for name in names_in(&from)? {
+            texts.insert(name.clone(), read(&from.join(&name))?);
+        }
         for (file, text) in changes {
-            write_if_new(&self.folder.join(file), text)?;
+            let name = file.strip_prefix(SOLUTIONS).and_then(|name| name.strip_prefix('/'));
+            texts.insert(name.context("a file of the solutions")?.to_owned(), (*text).to_owned());
+        }
+        // Write those that differ, and remove all others. Cargo sees what has changed by the times of the files.
+        let mut is_changed = false;
+        for (name, text) in &texts {
+            is_changed |= write_if_new(&to.join(name), text)?;
+        }
+        for name in names_in(&to)?.iter().filter(|name| !texts.contains_key(*name)) {
+            fs::remove_file(to.join(name)).with_context(|| to.join(name).display().to_string())?;
+            is_changed = true;
         }
         let (fresh, built) = self.cargo()?;
-        if fresh && matches!(built, Built::Worker(_)) {
+        if fresh && is_changed && matches!(built, Built::Worker(_)) {
             bail!(
-                "cargo found no change in {:?}, so the answers would be those of another entry; remove {} and run \
-                 this again",
+                "cargo found no change in {:?}, so the answers would be those of other code; remove {} and run this again",
                 changes.iter().map(|(file, _)| *file).collect::<Vec<_>>(),
                 self.folder.display()
             );
@@ -168,9 +159,7 @@ impl Workshop {
             .args(["--message-format=json", "--target-dir", "target"])
             .args(self.need.feature().map(|feature| format!("--features={feature}")))
             .args(QUICK_BUILD)
-            .args(["--config", level(self.need)])
-            .args(scaffold(self.need).into_iter().flat_map(|level| ["--config", level]))
-            .args(INCREMENTAL.iter().filter(|_| self.need == Need::Checks))
+            .args(WITHOUT_FRAMES.iter().filter(|_| self.need == Need::Checks))
             .stdin(Stdio::null())
             .output()
             .context("cargo, which builds the entries, cannot be started")?;
@@ -192,9 +181,11 @@ impl Workshop {
             _ => {
                 has_room(&self.folder, "delete something")?;
                 let errors = messages.iter().filter(|message| message["message"]["level"] == "error");
-                let first = errors.filter_map(|message| message["message"]["rendered"].as_str()).next();
+                let errors = errors.filter_map(|message| message["message"]["rendered"].as_str());
+                let first: Vec<&str> = errors.take(MOST_ERRORS).map(str::trim).collect();
                 let stderr = String::from_utf8_lossy(&output.stderr);
-                Ok((fresh, Built::DoesNotCompile(first.unwrap_or(&stderr).trim().to_owned())))
+                let words = if first.is_empty() { stderr.trim().to_owned() } else { first.join("\n\n") };
+                Ok((fresh, Built::DoesNotCompile(words)))
             }
         }
     }
@@ -225,16 +216,26 @@ pub(crate) fn read(file: &Path) -> Result<String> {
     fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))
 }
 
-/// Writes a file only if its text differs, so that cargo rebuilds only changed files.
-pub(crate) fn write_if_new(file: &Path, text: &str) -> Result<()> {
+/// The names of the files in a folder. There are none if there is no folder.
+fn names_in(folder: &Path) -> Result<Vec<String>> {
+    if !folder.exists() {
+        return Ok(Vec::new());
+    }
+    let read = fs::read_dir(folder).with_context(|| folder.display().to_string())?;
+    read.map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned())).collect()
+}
+
+/// Writes a file only if its text differs, so that cargo rebuilds only changed files. Returns whether it was written.
+pub(crate) fn write_if_new(file: &Path, text: &str) -> Result<bool> {
     if fs::read_to_string(file).is_ok_and(|old| old == text) {
-        return Ok(());
+        return Ok(false);
     }
     let write = || {
         fs::create_dir_all(file.parent().unwrap_or(file))?;
         fs::write(file, text)
     };
-    write().with_context(|| format!("{} cannot be written", file.display()))
+    write().with_context(|| format!("{} cannot be written", file.display()))?;
+    Ok(true)
 }
 
 /// Makes `to` an exact copy of `from`. Folders with a manifest of their own are neither copied nor deleted.

@@ -1,12 +1,12 @@
 //! `grader gaps`: shows, for each function of the exercises, what pictures lack while that function is not written yet.
 //!
 //! The renderer must make a picture from the functions that are written, and name what is left out and why. The reference
-//! has no unwritten functions, so this command removes each function in turn. With `--subsets` it removes random sets of
-//! functions, and all functions from a stage on: a picture must be made, and it must say what it lacks.
+//! has no unwritten functions, so this command removes each function in turn. It also removes all functions from each stage
+//! on, as in the exercises of a course that has begun: a picture must be made, and it must say what it lacks.
 //!
-//! `switch` (one build for all sets of functions) · `subsets` (the random sets)
+//! `switch` (one build for all sets of functions) · `begun` (all functions from each stage on)
 
-mod subsets;
+mod begun;
 mod switch;
 
 use crate::corpus::verdict::without_lines;
@@ -31,12 +31,6 @@ pub static SPEC: Spec = Spec {
     options: &[&[
         Opt::flag("--check", "Compare with tests/corpus/gaps.txt."),
         Opt::flag("--bless", "Write tests/corpus/gaps.txt."),
-        Opt::value(
-            "--subsets",
-            "N",
-            "Instead: leave out N random sets of functions, and all functions from each stage on.",
-        ),
-        Opt::value("--seed", "N", "Picks the sets [default: 1]."),
     ]],
 };
 
@@ -44,22 +38,13 @@ pub static SPEC: Spec = Spec {
 pub struct Options {
     check: bool,
     bless: bool,
-    subsets: Option<u64>,
-    seed: u64,
 }
 
 impl Options {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--bless", "--check")?;
-        given.exclude("--subsets", "--check")?;
-        given.exclude("--subsets", "--bless")?;
-        Ok(Options {
-            check: given.has("--check"),
-            bless: given.has("--bless"),
-            subsets: given.number("--subsets", 1..=1_000_000)?,
-            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(1),
-        })
+        Ok(Options { check: given.has("--check"), bless: given.has("--bless") })
     }
 }
 
@@ -121,7 +106,8 @@ impl Gap {
     }
 }
 
-/// Prints what pictures lack. Returns whether that equals the stored results.
+/// Prints what pictures lack. Returns whether that equals the stored results, and whether each picture of a kit that is
+/// written up to some stage says what it lacks.
 pub fn run(options: &Options) -> Result<bool> {
     let root = root()?;
     let gaps = all(&root)?;
@@ -130,9 +116,7 @@ pub fn run(options: &Options) -> Result<bool> {
     let whole = scenes.shown_by(&*reference);
     let workshops = Workshop::open_all(&root, 1, Need::Frames)?;
     let switchable = Switchable::build(&workshops[0], &root, &gaps)?;
-    if let Some(n) = options.subsets {
-        return subsets::run(&switchable, &gaps, &scenes, &whole, (n, options.seed));
-    }
+    let says_what_it_lacks = begun::run(&switchable, &gaps, &scenes, &whole)?;
     let text = text(&switchable, &gaps, &scenes, &whole)?;
     let text: String =
         gaps.iter().zip(text).map(|(gap, text)| format!("{}\n{text}\n", gap.title())).collect();
@@ -143,7 +127,7 @@ pub fn run(options: &Options) -> Result<bool> {
     let kept = std::fs::read_to_string(&file).unwrap_or_default();
     if !options.check || kept == text {
         println!("{text}{} functions, each removed in turn", gaps.len());
-        return Ok(true);
+        return Ok(says_what_it_lacks);
     }
     for (now, before) in text.lines().zip(kept.lines()).filter(|(now, before)| now != before) {
         println!("now     {now}\nbefore  {before}\n");
@@ -179,7 +163,7 @@ pub fn lacks(
 ) -> Result<String> {
     Ok(match workshop.build_with(changes)? {
         Built::Worker(worker) => differences(worker, scenes, whole),
-        Built::DoesNotApply(error) | Built::DoesNotCompile(error) => format!("  {error}\n"),
+        Built::DoesNotCompile(error) => format!("  {error}\n"),
     })
 }
 

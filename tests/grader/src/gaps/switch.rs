@@ -52,7 +52,7 @@ impl Switchable {
         let changes: Vec<(&str, &str)> = changes.iter().map(|(file, text)| (*file, text.as_str())).collect();
         let program = match workshop.build_with(&changes)? {
             Built::Worker(program) => program,
-            Built::DoesNotApply(error) | Built::DoesNotCompile(error) => bail!(error),
+            Built::DoesNotCompile(error) => bail!(error),
         };
         // The links must be on the file system of the program.
         let folder = tempfile::tempdir_in(program.parent().context("a folder")?)?;

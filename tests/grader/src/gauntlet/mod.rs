@@ -1,23 +1,16 @@
 //! `grader gauntlet`: shows what accuracy costs. It runs intersection methods on distributions of hard inputs and judges
-//! them by exact arithmetic. With `--rays` it starts the long run, which searches for leaks in the reference.
+//! them by exact arithmetic.
 //!
-//! `agreement` (searches) · `long` (the long run) · `methods` and `printed` (triangle tests) · `secondary_rays` · `files`
-//! (the tables as a page)
+//! `methods` and `printed` (triangle tests) · `files` (the tables as a page)
 
-pub mod agreement;
 mod files;
-mod long;
 mod methods;
 mod printed;
-mod secondary_rays;
 
 use crate::kits::{Need, Source, Which};
-use crate::report::Thousands;
-use agreement::Agreement;
 use anyhow::Result;
 use judge::boxes_and_offsets;
 use judge::gauntlet::{Input, Row, rows_of_kit, tables};
-use judge::table::Table;
 use methods::METHODS;
 use raykata::kit::Kit;
 use raykata_cli::args::{Given, Misuse, Opt, Spec, names};
@@ -42,17 +35,6 @@ pub static SPEC: Spec = Spec {
             "The number of inputs per distribution, and of rays per closed mesh [default: 20000].",
         ),
         Opt::value("--seed", "N", "Picks the inputs [default: 1]."),
-        Opt::value(
-            "--rays",
-            "N",
-            "Instead of the tables: trace N rays at edges and N at vertices per structure of the reference, and N per \
-             other trial. Continues a stopped run.",
-        ),
-        Opt::value(
-            "--state",
-            "FILE",
-            "The file for the progress of the long run [default: out/gauntlet.json].",
-        ),
         Opt::value("--out", "FOLDER", "Also write the tables to this folder: index.html and gauntlet.csv.")
             .short("-o"),
     ]],
@@ -71,8 +53,6 @@ pub struct Options {
     kit: Which,
     inputs: u64,
     seed: u64,
-    rays: Option<u64>,
-    state: PathBuf,
     out: Option<PathBuf>,
 }
 
@@ -83,8 +63,6 @@ impl Options {
             kit: given.choice("--kit", &Which::NAMES)?.unwrap_or(Which::Solutions),
             inputs: given.number("--inputs", 100..=u64::MAX)?.unwrap_or(20_000),
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(1),
-            rays: given.number("--rays", 0..=u64::MAX)?,
-            state: given.path("--state").unwrap_or_else(|| "out/gauntlet.json".into()),
             out: given.path("--out"),
         })
     }
@@ -95,24 +73,12 @@ pub fn cost(options: &cost::Options) -> Result<bool> {
     cost::run(options, "cargo run --release -p grader --", Some(&summary))
 }
 
-/// Runs the gauntlet. Returns whether no ray leaked.
-pub fn run(root: &Path, options: &Options) -> Result<bool> {
-    let reference = Source::prepare(root, Which::Solutions, Need::Frames)?;
-    let (tables, succeeded) = match options.rays {
-        Some(rays) => {
-            let (table, succeeded) = long::run(&reference, rays, options.seed, &options.state)?;
-            (vec![table], succeeded)
-        }
-        None => {
-            let source = Source::prepare(root, options.kit, Need::Checks)?;
-            let kit = source.fresh();
-            let mut tables = tables(rows(&*kit), options.inputs, options.seed)?;
-            tables.extend(boxes_and_offsets::tables(&*kit, options.inputs, options.seed));
-            let (table, succeeded) = agreement_table(&reference, options)?;
-            tables.push(table);
-            (tables, succeeded)
-        }
-    };
+/// Runs the gauntlet.
+pub fn run(root: &Path, options: &Options) -> Result<()> {
+    let source = Source::prepare(root, options.kit, Need::Checks)?;
+    let kit = source.fresh();
+    let mut tables = tables(rows(&*kit), options.inputs, options.seed)?;
+    tables.extend(boxes_and_offsets::tables(&*kit, options.inputs, options.seed));
     for table in &tables {
         println!("{}", table.text());
     }
@@ -120,7 +86,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         files::write(out, "gauntlet", &tables)?;
         println!("the tables: {}", out.join("index.html").display());
     }
-    Ok(succeeded)
+    Ok(())
 }
 
 /// Returns the rows of all methods and of the kit's functions.
@@ -137,25 +103,4 @@ fn rows(kit: &dyn Kit) -> Vec<Row<'_>> {
 /// Returns the short results of all methods and of the kit's functions.
 pub fn summary(kit: &dyn Kit) -> Vec<Summary> {
     judge::gauntlet::summary(rows(kit))
-}
-
-/// The results of the reference's searches on scenes that are hard to search, and whether all answers are right.
-fn agreement_table(reference: &Source, options: &Options) -> Result<(Table, bool)> {
-    let all = agreement::all(reference, options.seed, (options.inputs / 20).max(100))?;
-    let row = |scene: &[Agreement]| {
-        let sum = |what: fn(&Agreement) -> u64| Thousands(scene.iter().map(what).sum()).to_string();
-        let cells =
-            [sum(|one| one.rays), sum(|one| one.hits), sum(|one| one.ties), sum(|one| one.mismatches)];
-        (scene[0].scene.to_owned(), cells.to_vec())
-    };
-    let table = Table {
-        title: "searches compared with exact tests of all triangles".into(),
-        heads: ["answers", "hits", "ties", "wrong"].map(str::to_owned).to_vec(),
-        rows: all.chunk_by(|one, next| one.scene == next.scene).map(row).collect(),
-        notes: vec![
-            "Brute force and the other searches of the reference in each scene. wrong: not a".into(),
-            "triangle that is met first by exact arithmetic, or not the hit of brute force.".into(),
-        ],
-    };
-    Ok((table, all.iter().all(|one| one.mismatches == 0)))
 }

@@ -14,7 +14,7 @@ pub(super) fn moeller_trumbore_cut_off(ray: &Ray, triangle: &Triangle) -> Option
     if det.abs() < 1e-6 { None } else { moeller_trumbore(ray, triangle) }
 }
 
-/// Lecture 002 prints terms of another numerator in the determinant (trap T1).
+/// Lecture 002 prints terms of another numerator in the determinant.
 pub(super) fn cramer(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     let [o, direction, corner, second, third] = numbers(ray, triangle);
     let (first, other, rhs) = (second - corner, third - corner, o - corner);
@@ -30,19 +30,19 @@ pub(super) fn cramer(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     if inside { in_range(ray, t) } else { None }
 }
 
-/// Lecture 001 tests only the sum of the barycentric coordinates (trap T2).
+/// Lecture 001 tests only the sum of the barycentric coordinates.
 pub(super) fn gram_sum_only(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     let (beta, gamma, t) = gram_weights(ray, triangle);
     if (0.0..=1.0).contains(&(beta + gamma)) { in_range(ray, t) } else { None }
 }
 
-/// Lecture 003 returns a miss at the first negative distance, which is right for one winding only (trap T9).
+/// Lecture 003 returns a miss at the first negative distance, which is right for one winding only.
 pub(super) fn by_planes_of_one_winding(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     let (t, sides) = plane_sides(ray, triangle);
     if sides.iter().any(|&side| side < 0.0) { None } else { in_range(ray, t) }
 }
 
-/// Lecture 003 uses areas without a sign (trap T7).
+/// Lecture 003 uses areas without a sign.
 pub(super) fn by_unsigned_areas(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     let [_, _, a, b, c] = numbers(ray, triangle);
     let (t, point, n) = on_plane(ray, triangle);

@@ -1,6 +1,7 @@
 //! Builds the worker of a submission: one call of `rustc` for the exercises and one for the program, both in a sandbox. The
 //! libraries were built once. Cargo is not used, because it might take the build of one submission for that of another.
 
+use super::once::Once;
 use super::result::Outcome;
 use super::submission::helpers;
 use crate::sandbox::{self, Confinement, Ended, How, Purpose, Sandbox};
@@ -11,20 +12,23 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;
 use std::io::Write;
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
 use std::time::Duration;
 
 mod blame;
 mod libraries;
 
 /// Time limit of the compiler per call. The reference takes a second.
-const COMPILER_PATIENCE: Duration = Duration::from_secs(60);
+pub const COMPILER_PATIENCE: Duration = Duration::from_secs(60);
 
 /// Most bytes of compiler messages that are read. Each error is a few kilobytes of JSON.
 const MOST_MESSAGES: usize = 4 << 20;
 
 /// Builds workers.
+#[derive(Clone)]
 pub struct Forge {
     rustc: PathBuf,
     toolchain: PathBuf,
@@ -34,6 +38,17 @@ pub struct Forge {
     pristine: BTreeMap<String, String>,
     /// The sandbox around the compiler.
     confinement: Confinement,
+    /// Time limit of the compiler per call.
+    patience: Duration,
+    /// The workers that were built before, by their files, if equal files need not be compiled again.
+    shared: Option<Arc<Once<BTreeMap<String, String>, Arc<SharedWorker>>>>,
+}
+
+/// A worker that may be used several times.
+struct SharedWorker {
+    program: Vec<u8>,
+    replaced: BTreeMap<String, (Outcome, String)>,
+    cpu: Duration,
 }
 
 /// The result of a build.
@@ -53,7 +68,25 @@ impl Forge {
         let rustc = toolchain.join("bin/rustc");
         ensure!(rustc.is_file(), "no compiler at {}", rustc.display());
         let pristine = crate::sync::pristine(root)?;
-        Ok(Forge { libraries: libraries::build(root)?, rustc, toolchain, pristine, confinement })
+        Ok(Forge {
+            libraries: libraries::build(root)?,
+            rustc,
+            toolchain,
+            pristine,
+            confinement,
+            patience: COMPILER_PATIENCE,
+            shared: None,
+        })
+    }
+
+    /// Ends the compiler after another time.
+    pub fn with_patience(self, patience: Duration) -> Forge {
+        Forge { patience, ..self }
+    }
+
+    /// Compiles equal files only once.
+    pub fn with_shared_workers(self) -> Forge {
+        Forge { shared: Some(Arc::default()), ..self }
     }
 
     /// Returns the names of the exercise files.
@@ -77,6 +110,23 @@ impl Forge {
     /// Compiles these files in the empty folder `scratch`. While the build fails, the empty exercise replaces the files
     /// that cause the errors.
     pub fn build(&self, scratch: &Path, files: &BTreeMap<String, String>) -> Result<Forged> {
+        let Some(shared) = &self.shared else { return self.build_alone(scratch, files) };
+        let written = files.iter().filter(|(name, text)| !self.is_untouched(name, text));
+        let written = written.map(|(name, text)| (name.clone(), text.clone())).collect();
+        let known = shared.get(written, || {
+            let Forged { worker, replaced, cpu } = self.build_alone(scratch, files)?;
+            Ok(Arc::new(SharedWorker { program: fs::read(worker)?, replaced, cpu }))
+        })?;
+        let worker = scratch.join("out/worker");
+        if !worker.exists() {
+            fs::create_dir_all(scratch.join("out"))?;
+            fs::write(&worker, &known.program)?;
+            fs::set_permissions(&worker, fs::Permissions::from_mode(0o755))?;
+        }
+        Ok(Forged { worker, replaced: known.replaced.clone(), cpu: known.cpu })
+    }
+
+    fn build_alone(&self, scratch: &Path, files: &BTreeMap<String, String>) -> Result<Forged> {
         let mut cpu = Duration::ZERO;
         let mut replaced = BTreeMap::new();
         // Compile the exercises. Replace the files with errors until the rest compiles.
@@ -94,8 +144,13 @@ impl Forge {
             let verdict = blame::blame(&ended, &suspects);
             if verdict.is_empty() {
                 // The compiler died without a message, or its errors lie in the glue. Compile each file alone to find the
-                // cause.
+                // cause, unless there is only one.
+                let is_only = suspects.len() == 1;
                 for name in suspects {
+                    if is_only {
+                        replaced.insert(name.clone(), (Outcome::DoesNotCompile, why(&ended)));
+                        break;
+                    }
                     let alone = files.keys().filter(|other| *other != name).chain(replaced.keys());
                     let alone = alone
                         .map(|other| (other.clone(), (Outcome::DoesNotCompile, String::new())))
@@ -104,13 +159,7 @@ impl Forge {
                     let ended = self.compile_exercises(scratch)?;
                     cpu += ended.cpu;
                     if ended.how != How::Exited(0) {
-                        let why = match blame::texts(&ended) {
-                            errors if errors.is_empty() => died(&ended),
-                            errors => format!(
-                                "a function has other arguments or another result than the exercise:\n{errors}"
-                            ),
-                        };
-                        replaced.insert(name.clone(), (Outcome::DoesNotCompile, why));
+                        replaced.insert(name.clone(), (Outcome::DoesNotCompile, why(&ended)));
                     }
                 }
                 ensure!(!replaced.is_empty(), "the compiler ended without a message: {}", died(&ended));
@@ -136,7 +185,7 @@ impl Forge {
                 .into_iter()
                 .map(|name| (name.clone(), (Outcome::DoesNotCompile, why.clone())))
                 .collect();
-            let mut empty = self.build(scratch, &BTreeMap::new())?;
+            let mut empty = self.build_alone(scratch, &BTreeMap::new())?;
             empty.replaced.extend(all);
             empty.cpu += cpu;
             return Ok(empty);
@@ -225,7 +274,7 @@ impl Forge {
             command
                 .arg(option(&format!("--extern={name}="), &self.libraries.join(format!("lib{name}.rlib"))));
         }
-        sandbox::run(command, &[], COMPILER_PATIENCE, MOST_MESSAGES).context("the compiler cannot be started")
+        sandbox::run(command, &[], self.patience, MOST_MESSAGES).context("the compiler cannot be started")
     }
 }
 
@@ -233,6 +282,14 @@ fn option(name: &str, path: &Path) -> OsString {
     let mut option = OsString::from(name);
     option.push(path);
     option
+}
+
+/// Returns why a file does not compile although no message of the compiler names it.
+fn why(ended: &Ended) -> String {
+    match blame::texts(ended) {
+        errors if errors.is_empty() => died(ended),
+        errors => format!("a function has other arguments or another result than the exercise:\n{errors}"),
+    }
 }
 
 fn died(ended: &Ended) -> String {

@@ -3,8 +3,9 @@
 use super::forge::Forge;
 use super::judge::Judge;
 use super::lint::{self, Finding, Reading};
+use super::once::Once;
 use super::report::clean::{clean, clean_line};
-use super::result::{Graded, Outcome, Remark};
+use super::result::{CheckResult, Graded, Outcome, Remark};
 use super::scratch;
 use super::store::Store;
 use super::submission::{self, Submission, Taken};
@@ -14,7 +15,7 @@ use crate::room::has_room;
 use crate::sandbox::{self, Confinement, How, Purpose, Sandbox};
 use crate::sync::stage_of;
 use anyhow::{Context, Result};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -37,6 +38,23 @@ pub struct Grader {
     pub allowed: Vec<String>,
     /// When submissions were handed in, as far as it is known.
     pub handed_in: HandedIn,
+    /// Time limit per call of a worker, in processor time.
+    pub call_patience: Duration,
+    /// The results of files that were judged before, if equal files need not be judged again.
+    pub shared: Option<Arc<SharedResults>>,
+}
+
+/// The results of submissions, by the judge's stages, the rules that are switched off, and the files.
+pub type SharedResults = Once<(BTreeSet<u8>, Vec<String>, BTreeMap<String, String>), Judged>;
+
+/// What compiling and judging the files of a submission gives.
+#[derive(Clone)]
+pub struct Judged {
+    checks: Vec<CheckResult>,
+    remarks: Vec<Remark>,
+    /// The compiler's messages.
+    compiler: String,
+    cpu: Duration,
 }
 
 /// Most findings that are reported per file. More of them would not help a student.
@@ -105,6 +123,24 @@ impl Grader {
             graded.remarks = remarks.into_iter().map(cleaned).collect();
             return Ok(graded);
         }
+        let judged = match &self.shared {
+            None => self.judged(files)?,
+            Some(shared) => {
+                let key = (self.judge.stages(), self.allowed.clone(), files.clone());
+                shared.get(key, || self.judged(files))?
+            }
+        };
+        remarks.extend(judged.remarks);
+        graded.checks = judged.checks;
+        graded.compiler = judged.compiler;
+        graded.cpu_ms = judged.cpu.as_millis() as u64;
+        graded.remarks = remarks.into_iter().map(cleaned).collect();
+        Ok(graded)
+    }
+
+    /// Compiles and judges these files.
+    fn judged(&self, files: BTreeMap<String, String>) -> Result<Judged> {
+        let mut remarks = Vec::new();
         // Compile in a temporary folder outside of the kit and of the submission.
         let scratch = scratch::folder()?;
         has_room(scratch.path(), MAKE_ROOM)?;
@@ -118,22 +154,23 @@ impl Grader {
             has_room(scratch.path(), MAKE_ROOM)?;
         }
         let forged = forged?;
-        graded.cpu_ms = forged.cpu.as_millis() as u64;
         // Report the files that do not compile.
+        let mut compiler = String::new();
         for (name, (_, messages)) in &forged.replaced {
             let what =
                 "does not compile; the empty exercise replaces it, so that the other files can be graded";
             remarks.push(Remark { file: name.clone(), what: what.into() });
-            graded.compiler += messages;
+            compiler += messages;
         }
-        graded.compiler = clean(&graded.compiler, MOST_FROM_COMPILER);
         // Run the checks.
         let lost: Lost = refused.into_iter().chain(forged.replaced).collect();
-        let (checks, spent) = self.judge.judge(&forged.worker, &lost, may_remember);
-        graded.checks = checks;
-        graded.cpu_ms += spent.as_millis() as u64;
-        graded.remarks = remarks.into_iter().map(cleaned).collect();
-        Ok(graded)
+        let (checks, spent) = self.judge.judge(&forged.worker, &lost, may_remember, self.call_patience);
+        Ok(Judged {
+            checks,
+            remarks,
+            compiler: clean(&compiler, MOST_FROM_COMPILER),
+            cpu: forged.cpu + spent,
+        })
     }
 
     /// Returns a grade without checks, to be filled in.

@@ -26,7 +26,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Time limit per call, in processor time. The reference's slowest call takes half a second without optimisation.
-const CALL_PATIENCE: Duration = Duration::from_secs(4);
+pub const CALL_PATIENCE: Duration = Duration::from_secs(4);
 
 /// Processor time for all checks of a submission together. The slowest failure is a call that never returns; the limit allows
 /// 70 of them. Checks beyond the limit are not tried.
@@ -130,10 +130,11 @@ impl Judge {
         worker: &Path,
         replaced: &BTreeMap<String, (Outcome, String)>,
         may_remember: bool,
+        call_patience: Duration,
     ) -> (Vec<CheckResult>, Duration) {
         let start = || {
             let sandbox = Sandbox::with(self.confinement, Purpose::Worker);
-            Arc::new(Worker::sandboxed(worker.to_owned(), CALL_PATIENCE, sandbox))
+            Arc::new(Worker::sandboxed(worker.to_owned(), call_patience, sandbox))
         };
         let processes = || Processes { start: &start, may_remember, seasoned: None, spent: Duration::ZERO };
         let (mut public, mut hidden) = (processes(), processes());

@@ -9,11 +9,9 @@ mod counted;
 mod forge;
 mod grader;
 mod judge;
-#[cfg(test)]
-mod large_class;
 mod lint;
 mod merge;
-mod naive;
+mod once;
 mod one;
 mod options;
 mod rehearsal;

@@ -2,7 +2,7 @@
 
 use super::forge::{self, Forge};
 use super::grader::Grader;
-use super::judge::Judge;
+use super::judge::{CALL_PATIENCE, Judge};
 use super::result::Session;
 use crate::course::{self, CourseFiles, HandedIn};
 use crate::sandbox::{self, Confinement};
@@ -89,6 +89,8 @@ impl GradingOptions {
             confinement,
             allowed,
             handed_in: HandedIn::new(),
+            call_patience: CALL_PATIENCE,
+            shared: None,
         };
         Ok((grader, session))
     }

@@ -6,7 +6,7 @@ use super::attacks::{self, Attack, AttackFolders};
 use super::options::{GradingOptions, Stages};
 use super::result::{Class, Graded, Outcome};
 use super::store::Store;
-use crate::corpus::entry::{self, Claim, Entry};
+use crate::corpus::entry::{self, Claim, Entry, Original};
 use crate::corpus::records::Matrix;
 use crate::sync::{answer, stage_of};
 use anyhow::{Context, Result, ensure};
@@ -14,7 +14,6 @@ use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::time::Instant;
 
 /// `grader rehearse`.
@@ -31,10 +30,6 @@ pub static SPEC: Spec = Spec {
             "--resume",
             "Continue a run that was stopped, with the same --out and --students: grade only what it has not graded.",
         ),
-        Opt::flag(
-            "--against-cargo",
-            "Also measure one fresh `cargo test` of the same stages, for comparison.",
-        ),
     ]],
 };
 
@@ -45,7 +40,6 @@ pub struct Options {
     jobs: Option<u16>,
     honest: bool,
     resume: bool,
-    against_cargo: bool,
 }
 
 impl Options {
@@ -58,7 +52,6 @@ impl Options {
             jobs: given.number("--jobs", 1..=u16::MAX)?,
             honest: given.has("--honest"),
             resume: given.has("--resume"),
-            against_cargo: given.has("--against-cargo"),
         })
     }
 }
@@ -104,13 +97,6 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     complaints.iter().for_each(|complaint| println!("{complaint}"));
     let n = students.len();
     println!("{n} submissions in {seconds:.0} s, {:.2} s each", seconds / n as f64);
-    if options.against_cargo {
-        let fresh = fresh_cargo_test(root)?;
-        let times = fresh * n as f64 / seconds;
-        println!(
-            "a fresh `cargo test` of the same stages takes {fresh:.1} s: {times:.0} times as long for the class"
-        );
-    }
     println!("{} of {n} grades are wrong", complaints.len());
     Ok(complaints.is_empty())
 }
@@ -137,7 +123,7 @@ fn roles(root: &Path, options: &Options) -> Result<Vec<Role>> {
     let calls_later = |entry: &Entry| {
         ["stage5_", "stage6_", "stage7_", "stage8_", "stage9_", "stage10_", "stage11_", "stage12_"]
             .iter()
-            .any(|later| entry.diff.contains(later))
+            .any(|later| entry.changes.iter().flat_map(|change| &change.lines).any(|(_, line)| line.contains(later)))
     };
     let of_class = |entry: &Entry| STAGES_OF_CLASS.contains(&entry.stage) && !calls_later(entry);
     let (right, wrong): (Vec<Entry>, Vec<Entry>) =
@@ -205,10 +191,10 @@ fn texts(root: &Path, role: &Role) -> Result<BTreeMap<String, String>> {
     for (name, text) in &mut texts {
         if stage_of(name).is_some_and(|stage| stage <= last) {
             let file = format!("solutions/src/{name}");
-            let solution = fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
+            let solution = Original::read(root, &file)?;
             let changed = match role {
                 Role::Entry(entry) if entry.file == file => entry.apply(&solution)?,
-                _ => solution,
+                _ => solution.text,
             };
             *text = answer(&changed, Path::new(&file))?;
         }
@@ -272,37 +258,4 @@ fn faults(role: &Role, matrix: &Matrix, graded: &Graded) -> Vec<String> {
                 .collect()
         }
     }
-}
-
-/// Measures `cargo test` of the class's stages in a copy of the kit with an empty target folder, in seconds.
-fn fresh_cargo_test(root: &Path) -> Result<f64> {
-    let copy = tempfile::tempdir()?;
-    for name in ["Cargo.toml", "Cargo.lock", ".cargo", "src", "exercises", "solutions", "tests", "scenes"] {
-        copy_all(&root.join(name), &copy.path().join(name))?;
-    }
-    let started = Instant::now();
-    let stages = STAGES_OF_CLASS.map(|stage| format!("--test=stage{stage}"));
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo
-        .current_dir(copy.path())
-        .args(["test", "--quiet", "--no-fail-fast", "--target-dir", "target"])
-        .args(stages);
-    cargo.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    cargo.status().context("cargo cannot be started")?;
-    Ok(started.elapsed().as_secs_f64())
-}
-
-fn copy_all(from: &Path, to: &Path) -> Result<()> {
-    if from.is_file() {
-        fs::copy(from, to).with_context(|| from.display().to_string())?;
-        return Ok(());
-    }
-    fs::create_dir_all(to)?;
-    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
-        let entry = entry?;
-        if entry.file_name() != "target" {
-            copy_all(&entry.path(), &to.join(entry.file_name()))?;
-        }
-    }
-    Ok(())
 }

@@ -1,122 +1,91 @@
 //! `grader attacks`: grades every attack of the corpus and lists those with a wrong result.
 
-use super::attacks::{self, Tried};
-use super::forge::Forge;
-use super::grader::Grader;
-use super::judge::Judge;
-use super::naive::Naive;
-use super::result::{Outcome, and_bonus};
+use super::attacks::{self, Attack};
+use super::forge::{COMPILER_PATIENCE, Forge};
+use super::grader::{Grader, SharedResults};
+use super::judge::{CALL_PATIENCE, Judge};
+use super::once::Once;
+use super::shard::{Shard, shard};
 use crate::course::HandedIn;
-use crate::queue;
 use crate::report::bar_of_steps;
 use crate::sandbox::{self, Confinement};
 use anyhow::Result;
-use raykata_cli::args::{Argument, Given, Opt, Spec};
-use std::collections::{BTreeMap, BTreeSet};
+use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// `grader attacks`.
 pub static SPEC: Spec = Spec {
     name: "grader attacks",
     about: "Test the grader with submissions that try to get points without earning them (for authors).",
     arguments: &[Argument::optional("NAME", "The names of attacks [default: all].").many()],
-    options: &[&[Opt::flag(
-        "--against-cargo",
-        "Also run `cargo test` on each attack that is a folder, in a namespace, and print both results as a table.",
-    )]],
+    options: &[&[Opt::value("--shard", "I/N", "Try only part I of N, such as 2/5.")]],
 };
 
 /// The options of `grader attacks`.
 pub struct Options {
     names: Vec<String>,
-    against_cargo: bool,
+    shard: Option<Shard>,
 }
 
 impl Options {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Options {
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
         let names = given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned());
-        Options { names: names.collect(), against_cargo: given.has("--against-cargo") }
+        Ok(Options { names: names.collect(), shard: given.parsed("--shard", shard)? })
     }
 }
 
 /// The seed of the hidden inputs. Any fixed number makes the verdicts reproducible.
 const SEED: u64 = 20_26;
 
+/// The number of times as long as for a hasty attack that calls and the compiler may take.
+const HASTE: u32 = 4;
+
+/// The number of attacks in the list of those that took longest.
+const SLOWEST: usize = 5;
+
 /// Grades the attacks. Returns `Ok(true)` if every attack got the expected result.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let level = sandbox::self_test()?;
     println!("sandbox: {level}");
-    let forge = Arc::new(Forge::prepare(root, Confinement::Full)?);
-    let judges: Mutex<BTreeMap<Vec<u8>, Arc<Judge>>> = Mutex::default();
-    let judge = |stages: &[u8]| -> Result<Arc<Judge>> {
-        let mut judges = judges.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(judge) = judges.get(stages) {
-            return Ok(judge.clone());
-        }
-        let judge = Arc::new(Judge::of(root, stages, SEED, Confinement::Full)?);
-        judges.insert(stages.to_owned(), judge.clone());
-        Ok(judge)
-    };
-    let grade = |submission: &Path, stages: &[u8], allowed: &[String]| {
-        let (forge, judge, allowed) = (forge.clone(), judge(stages)?, allowed.to_owned());
-        let handed_in = HandedIn::new();
-        let grader = Grader { forge, judge, confinement: Confinement::Full, allowed, handed_in };
+    // Many attacks have the same files: their archives are malformed, or the syntax check refuses what is their own. These
+    // files are compiled and judged once.
+    let patient = Forge::prepare(root, Confinement::Full)?.with_shared_workers();
+    let hasty = Arc::new(patient.clone().with_patience(COMPILER_PATIENCE / HASTE));
+    let patient = Arc::new(patient);
+    let shared = Arc::<SharedResults>::default();
+    let judges: Once<Vec<u8>, Arc<Judge>> = Once::default();
+    let judge = |stages: &[u8]| Ok(Arc::new(Judge::of(root, stages, SEED, Confinement::Full)?));
+    let grade = |submission: &Path, attack: &Attack, allowed: &[String]| {
+        let grader = Grader {
+            forge: if attack.hasty { hasty.clone() } else { patient.clone() },
+            judge: judges.get(attack.stages.clone(), || judge(&attack.stages))?,
+            confinement: Confinement::Full,
+            allowed: allowed.to_owned(),
+            handed_in: HandedIn::new(),
+            call_patience: if attack.hasty { CALL_PATIENCE / HASTE } else { CALL_PATIENCE },
+            shared: Some(shared.clone()),
+        };
         let student = submission.file_name().unwrap_or_default().to_string_lossy().into_owned();
         grader.grade(&student, grader.take(submission))
     };
-    let chosen = attacks::choose(attacks::load(root)?, &options.names)?;
+    let mut chosen = attacks::choose(attacks::load(root)?, &options.names)?;
+    if let Some(shard) = options.shard {
+        chosen = attacks::part(chosen, shard);
+    }
     let bar = bar_of_steps(chosen.len());
-    let tried = attacks::run_all(root, chosen, grade, |tried| {
+    let mut tried = attacks::run_all(root, chosen, grade, |tried| {
         let text = tried.complaints.iter().map(|complaint| format!("{}: {complaint}", tried.attack.name));
         bar.suspend(|| text.for_each(|line| println!("{line}")));
         bar.inc(1);
     })?;
     bar.finish_and_clear();
-    if options.against_cargo {
-        compare(root, &tried)?;
-    }
-    let repelled = tried.iter().filter(|tried| tried.complaints.is_empty()).count();
-    println!("{repelled} of {} attacks got the expected result", tried.len());
-    Ok(repelled == tried.len())
-}
-
-/// Prints the results of `cargo test` and of this grader as a table.
-fn compare(root: &Path, tried: &[Tried]) -> Result<()> {
-    let stages: BTreeSet<u8> = tried.iter().flat_map(|tried| tried.attack.stages.iter().copied()).collect();
-    let naive = Naive::prepare(root, &stages.into_iter().collect::<Vec<u8>>())?;
-    let bar = bar_of_steps(tried.len());
-    let results = queue::run(&queue::one_a_core(), tried, |(), tried| {
-        let result = naive.grade(&tried.attack);
-        bar.inc(1);
-        result
-    })?;
-    bar.finish_and_clear();
-    println!("| attack | `cargo test` | this grader |\n|---|---|---|");
-    for (tried, result) in tried.iter().zip(results) {
-        if let Some(result) = result {
-            println!("| {} | {result} | {} |", tried.attack.title, ours(tried));
-        }
-    }
-    Ok(())
-}
-
-/// Returns the result of this grader in words.
-fn ours(tried: &Tried) -> String {
-    let words = match &tried.graded {
-        Err(error) => format!("the grader failed: {error:#}"),
-        Ok(graded) if !graded.trouble.is_empty() => format!("not graded: {}", graded.trouble),
-        Ok(graded) => {
-            let (earned, of) = graded.points();
-            let count = |outcome| graded.checks.iter().filter(|check| check.outcome == outcome).count();
-            let others = Outcome::ALL.into_iter().filter(|outcome| *outcome != Outcome::Passed);
-            let others: Vec<String> = others
-                .filter(|outcome| count(*outcome) > 0)
-                .map(|outcome| format!(", {} {}", count(outcome), outcome.words()))
-                .collect();
-            format!("{earned} of {of} points{}{}", and_bonus(graded.bonus()), others.concat())
-        }
-    };
-    words.replace(['\n', '|'], " ")
+    let (n, repelled) = (tried.len(), tried.iter().filter(|tried| tried.complaints.is_empty()).count());
+    tried.sort_by_key(|tried| std::cmp::Reverse(tried.took));
+    let slowest = tried.iter().take(SLOWEST);
+    let slowest = slowest.map(|tried| format!("{} {:.0} s", tried.attack.name, tried.took.as_secs_f64()));
+    println!("slowest: {}", slowest.collect::<Vec<_>>().join(", "));
+    println!("{repelled} of {n} attacks got the expected result");
+    Ok(repelled == n)
 }

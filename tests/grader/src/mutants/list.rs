@@ -1,5 +1,7 @@
 //! Lists the changes that the tool cargo-mutants makes.
 
+use crate::corpus::patch;
+use crate::corpus::workshop::Workshop;
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 use std::fmt;
@@ -31,6 +33,12 @@ impl Mutant {
     fn words(&self) -> String {
         let words = self.name.splitn(4, ':').nth(3).unwrap_or(&self.name);
         format!("{}:{words}", self.file)
+    }
+
+    /// Returns the text of the file with the change.
+    pub fn apply(&self, workshop: &Workshop) -> Result<String> {
+        let original = workshop.original(&self.file)?;
+        patch::apply(&self.diff, &original).with_context(|| format!("{self}\n    does not fit {}", self.file))
     }
 
     /// Returns the lines that the change removes.
@@ -75,29 +83,7 @@ pub fn all(root: &Path, packages: &[String]) -> Result<Vec<Mutant>> {
             String::from_utf8_lossy(&output.stderr).trim()
         );
     }
-    let mut mutants: Vec<Mutant> = serde_json::from_slice(&output.stdout)
+    let mutants: Vec<Mutant> = serde_json::from_slice(&output.stdout)
         .context("the list of cargo-mutants cannot be read; its version may be too new")?;
-    for mutant in &mut mutants {
-        mutant.diff = with_plain_names(&mutant.diff, &mutant.file);
-    }
     Ok(mutants)
-}
-
-/// A difference whose two names are those of the file. The tool gives the description as a name, and one with quotes or
-/// backslashes is no valid name in a patch.
-fn with_plain_names(diff: &str, file: &str) -> String {
-    let changes = diff.splitn(3, '\n').nth(2).unwrap_or_default();
-    format!("--- a/{file}\n+++ b/{file}\n{changes}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::corpus::entry::apply;
-
-    #[test]
-    fn a_description_with_quotes_and_backslashes_still_applies() {
-        let diff = "--- src/a.rs\n+++ replace f -> String with \"\\xyzzy\"\n@@ -1,1 +1,1 @@\n-one\n+two\n";
-        assert_eq!(apply("src/a.rs", &with_plain_names(diff, "src/a.rs"), "one\n").unwrap(), "two\n");
-    }
 }

@@ -4,15 +4,14 @@
 //! renders all scenes. A change that survives is either a gap in the checks or equivalent to the original. Equivalent
 //! changes are listed in tests/corpus/equivalent.toml, each with a reason.
 //!
-//! `list` (the changes) · `journal` (the tested changes) · `reviewed` (the equivalent changes) · `checks` (changes of the checks)
+//! `list` (the changes) · `journal` (the tested changes) · `reviewed` (the equivalent changes)
 
-mod checks;
 mod journal;
 mod list;
 pub mod reviewed;
 
 use crate::corpus::workshop::{Built, Workshop};
-use crate::corpus::{FOLDER, entry};
+use crate::corpus::FOLDER;
 use crate::gaps::{self, Gap};
 use crate::kits::{Need, Source, Which};
 use crate::pictures::{Scenes, Shown};
@@ -28,7 +27,6 @@ use raykata::kit::{Door, Kit};
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use raykata_cli::lock::Lock;
 use reviewed::Reviewed;
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -39,9 +37,6 @@ pub static SPEC: Spec = Spec {
     about: "Test the checks with changes that cargo-mutants makes to the solutions (for authors).",
     arguments: &[Argument::optional("FILE", "Only files whose names contain this.")],
     options: &[&[
-        Opt::flag("--checks", "Change the checks instead, and test them with the entries of the corpus."),
-        Opt::value("--sample", "N", "With --checks: only N changes of each stage."),
-        Opt::value("--seed", "N", "With --sample: another sample [default: 0]."),
         Opt::flag("--resume", "Continue the last run: skip the changes that it has tested."),
         Opt::flag(
             "--quick",
@@ -59,36 +54,22 @@ pub struct Options {
     again: bool,
     quick: bool,
     jobs: usize,
-    checks: bool,
-    sample: Option<usize>,
-    seed: u64,
 }
 
 /// The list of reviewed changes of the solutions.
 const REVIEWED: &str = "tests/corpus/equivalent.toml";
-
-/// The list of reviewed changes of the checks.
-const REVIEWED_CHECKS: &str = "tests/corpus/harmless.toml";
 
 impl Options {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--again", "--resume")?;
         given.exclude("--again", "--quick")?;
-        given.exclude("--checks", "--jobs")?;
-        given.exclude("--checks", "--quick")?;
-        if !given.has("--checks") && given.has("--sample") {
-            return Err(given.misuse("`--sample` chooses changes of checks: add `--checks`"));
-        }
         Ok(Options {
             file: given.argument(0).map(|file| file.to_string_lossy().into_owned()),
             resume: given.has("--resume"),
             again: given.has("--again"),
             quick: given.has("--quick"),
             jobs: given.number("--jobs", 0..=usize::MAX)?.unwrap_or_else(queue::cores),
-            checks: given.has("--checks"),
-            sample: given.number("--sample", 1..=usize::MAX)?,
-            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
         })
     }
 }
@@ -114,46 +95,40 @@ enum Fate {
 
 /// Tests the changes and prints a report. Returns whether every survivor is a reviewed one and no reviewed one was noticed.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
-    if options.checks {
-        return checks::run(root, options);
-    }
     let reviewed = Reviewed::read(root, REVIEWED)?;
     let mut mutants = list::all(root, &["solutions".to_owned()])?;
     if let Some(file) = &options.file {
         mutants.retain(|mutant| mutant.file.contains(file.as_str()));
     }
     let _lock = Lock::on(&root.join(FOLDER))?;
-    let mut journal = Journal::open(root, "mutants", options.resume || options.again)?;
-    choose(&mut mutants, options, &mut journal, &Fate::Survived)?;
+    let mut journal = Journal::open(root, options.resume || options.again)?;
+    choose(&mut mutants, options, &mut journal)?;
     // Test them, and report what the reviews do not say.
     try_all(root, &mutants, &mut journal, options)?;
     let tried: Vec<(&Mutant, Fate)> = mutants
         .iter()
         .map(|mutant| match journal.of(mutant) {
             // A quick run keeps no fate of a survivor, which other checks or pictures may notice.
-            None | Some(Fate::Survived) if reviewed.has(mutant) => (mutant, Fate::Equivalent),
+            None | Some(Fate::Survived) if is_equivalent(&reviewed, mutant) => (mutant, Fate::Equivalent),
             None => (mutant, Fate::Survived),
             Some(fate) => (mutant, fate.clone()),
         })
         .collect();
     let is_noticed = |fate: &Fate| !matches!(fate, Fate::Survived | Fate::Equivalent | Fate::DoesNotCompile);
-    let is_reviewed = tell_unreviewed(&tried, &reviewed, "equivalent", &Fate::Survived, is_noticed);
+    let is_reviewed = tell_unreviewed(&tried, &reviewed, is_noticed);
     report(&tried);
     Ok(is_reviewed)
 }
 
-/// Keeps the changes that are to be tested. `--again` keeps those that `survived` the last run, and forgets their fates.
-fn choose<F>(
-    mutants: &mut Vec<Mutant>,
-    options: &Options,
-    journal: &mut Journal<F>,
-    survived: &F,
-) -> Result<()>
-where
-    F: Clone + PartialEq + Serialize + DeserializeOwned,
-{
+/// Whether a change was reviewed.
+fn is_equivalent(reviewed: &Reviewed, mutant: &Mutant) -> bool {
+    reviewed.has(&mutant.file, &mutant.was(), &mutant.becomes())
+}
+
+/// Keeps the changes that are to be tested. `--again` keeps those that survived the last run, and forgets their fates.
+fn choose(mutants: &mut Vec<Mutant>, options: &Options, journal: &mut Journal) -> Result<()> {
     if options.again {
-        mutants.retain(|mutant| journal.of(mutant) == Some(survived));
+        mutants.retain(|mutant| journal.of(mutant) == Some(&Fate::Survived));
         journal.forget(mutants);
     }
     if mutants.is_empty() {
@@ -164,27 +139,25 @@ where
 
 /// Prints the changes that survived, and those that were noticed although they are reviewed as changes that nothing can notice.
 /// Returns whether there are none.
-fn tell_unreviewed<F: PartialEq>(
-    tried: &[(&Mutant, F)],
+fn tell_unreviewed(
+    tried: &[(&Mutant, Fate)],
     reviewed: &Reviewed,
-    reviewed_as: &str,
-    survived: &F,
-    is_noticed: impl Fn(&F) -> bool,
+    is_noticed: impl Fn(&Fate) -> bool,
 ) -> bool {
     let survivors: Vec<&Mutant> =
-        tried.iter().filter(|(_, fate)| fate == survived).map(|(mutant, _)| *mutant).collect();
+        tried.iter().filter(|(_, fate)| *fate == Fate::Survived).map(|(mutant, _)| *mutant).collect();
     for mutant in &survivors {
         println!("SURVIVED  {mutant}\n");
     }
-    let noticed = tried.iter().filter(|(mutant, fate)| is_noticed(fate) && reviewed.has(mutant));
+    let noticed = tried.iter().filter(|(mutant, fate)| is_noticed(fate) && is_equivalent(reviewed, mutant));
     let noticed: Vec<&Mutant> = noticed.map(|(mutant, _)| *mutant).collect();
     for mutant in &noticed {
-        println!("NOTICED, but reviewed as {reviewed_as}: {mutant}\n");
+        println!("NOTICED, but reviewed as equivalent: {mutant}\n");
     }
     survivors.is_empty() && noticed.is_empty()
 }
 
-fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal<Fate>, options: &Options) -> Result<()> {
+fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, options: &Options) -> Result<()> {
     let jobs = options.jobs.clamp(1, mutants.len());
     let workshops = Workshop::open_all(root, jobs, if options.quick { Need::Checks } else { Need::Frames })?;
     let journal = Mutex::new(journal);
@@ -210,7 +183,7 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal<Fate>, options
 fn try_others(
     root: &Path,
     others: &[&Mutant],
-    journal: &Mutex<&mut Journal<Fate>>,
+    journal: &Mutex<&mut Journal>,
     workshops: &[Workshop],
 ) -> Result<()> {
     let reference = Source::prepare(root, Which::Solutions, Need::Frames)?.fresh();
@@ -227,7 +200,7 @@ fn try_others(
     };
     queue::run(workshops, others, |workshop, &mutant| {
         bar.set_message(mutant.file.clone());
-        let fate = match workshop.build(&mutant.file, &mutant.diff)? {
+        let fate = match workshop.build_with(&[(&mutant.file, &mutant.apply(workshop)?)])? {
             Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
                 Fate::Survived if mutant.stage().is_none() => {
                     judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
@@ -235,7 +208,6 @@ fn try_others(
                 fate => fate,
             },
             Built::DoesNotCompile(_) => Fate::DoesNotCompile,
-            Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
         };
         lock(journal).write(mutant, fate)?;
         bar.inc(1);
@@ -252,10 +224,9 @@ fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
 /// Tests a change of an exercise by the checks of its stage. They need no frames, without which the build is much quicker.
 fn first_failure(workshop: &Workshop, mutant: &Mutant, latest: &Latest) -> Result<Option<Fate>> {
     let Some(own) = mutant.stage() else { return Ok(None) };
-    Ok(match workshop.with(Need::Checks).build(&mutant.file, &mutant.diff)? {
+    Ok(match workshop.with(Need::Checks).build_with(&[(&mutant.file, &mutant.apply(workshop)?)])? {
         Built::Worker(worker) => failed_check(&worker, |stage| stage == own, latest).map(Fate::ByItsStage),
         Built::DoesNotCompile(_) => Some(Fate::DoesNotCompile),
-        Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
     })
 }
 
@@ -310,7 +281,7 @@ fn judge_by_gaps(
     gaps: &[(Gap, String)],
     (whole, scenes): &(Vec<Shown>, Scenes),
 ) -> Result<Fate> {
-    let changed = entry::apply(&mutant.file, &mutant.diff, &workshop.original(&mutant.file)?)?;
+    let changed = mutant.apply(workshop)?;
     for (gap, unchanged) in gaps {
         let changes = [(mutant.file.as_str(), changed.as_str()), (gap.file.as_str(), gap.text.as_str())];
         if gaps::lacks(workshop, &changes, scenes, whole)? != *unchanged {

@@ -1,6 +1,5 @@
 //! The equivalent and harmless changes, each reviewed by a person: tests/corpus/equivalent.toml and harmless.toml.
 
-use super::list::Mutant;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use std::path::Path;
@@ -37,10 +36,9 @@ impl Reviewed {
     }
 
     /// Returns whether this change is one of them.
-    pub(super) fn has(&self, mutant: &Mutant) -> bool {
-        let (was, becomes) = (mutant.was(), mutant.becomes());
+    pub fn has(&self, file: &str, was: &str, becomes: &str) -> bool {
         self.change.iter().any(|review| {
-            mutant.file.ends_with(&format!("/{}", review.file))
+            file.ends_with(&format!("/{}", review.file))
                 && review.was.trim() == was
                 && review.becomes.iter().any(|line| line.trim() == becomes)
         })

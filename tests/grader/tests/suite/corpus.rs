@@ -1,8 +1,8 @@
-//! Tests the files of the corpus: every patch fits, every named check exists, and the stored results are of exactly these
-//! entries. `cargo run -p grader -- corpus --check` builds and tests the entries, which takes minutes.
+//! Tests the files of the corpus: every entry fits, every named check exists, and the stored results are of exactly these
+//! entries. `cargo run -p grader -- corpus` builds and tests the entries, which takes minutes.
 
-use grader::corpus::entry::{Claim, Entry, read_all};
-use grader::corpus::records::{Matrix, message_file};
+use grader::corpus::entry::{Claim, Entry, Original, read_all, read_files};
+use grader::corpus::records::{Matrix, Messages};
 use grader::corpus::verdict::check_named;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -17,10 +17,17 @@ fn entries() -> Vec<Entry> {
 }
 
 #[test]
-fn every_patch_fits_the_solutions_as_they_are() {
-    for entry in entries() {
-        let original = std::fs::read_to_string(root().join(&entry.file)).expect("a file of the solutions");
-        entry.apply(&original).unwrap_or_else(|error| panic!("{entry}: {error}"));
+fn every_entry_fits_the_solutions_as_they_are() {
+    for (name, corpus) in read_files(&root()).unwrap() {
+        let original = Original::read(&root(), &format!("solutions/src/{name}.rs")).unwrap();
+        for entry in &corpus.entries {
+            entry.apply(&original).unwrap_or_else(|error| panic!("{error:#}"));
+        }
+        // The file is as the tools write it: sorted by function, mistakes first, then by name.
+        let mut sorted = corpus.clone();
+        sorted.sort(&original);
+        let text = std::fs::read_to_string(root().join(format!("tests/corpus/{name}.corpus"))).unwrap();
+        assert!(text == sorted.text(), "tests/corpus/{name}.corpus is not sorted: `grader corpus --sort` sorts it");
     }
 }
 
@@ -82,27 +89,17 @@ fn every_check_can_fail() {
 
 #[test]
 fn nine_of_ten_messages_say_what_the_mistake_looks_like() {
-    let (mut known, mut named, mut diagnosed) = (BTreeSet::new(), 0, 0);
-    for entry in entries() {
-        if entry.claim != Claim::Right {
-            let file = message_file(&root(), &entry);
-            let message = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{entry}: {error}"));
-            if entry.has_a_known_mistake() {
-                named += 1;
-                diagnosed += usize::from(message.contains("looks like:"));
-            }
-            known.insert(format!("stage{}/{}.txt", entry.stage, entry.name));
-        }
-    }
-    assert!(diagnosed * 10 >= named * 9, "{diagnosed} of {named}");
-    for stage in std::fs::read_dir(root().join("tests/corpus/messages")).expect("the folder of messages") {
-        let stage = stage.expect("a folder");
-        for file in std::fs::read_dir(stage.path()).expect("messages of a stage") {
-            let (folder, file) = (stage.file_name(), file.expect("a file").file_name());
-            let name = format!("{}/{}", folder.to_string_lossy(), file.to_string_lossy());
-            assert!(known.contains(&name), "tests/corpus/messages/{name} belongs to no entry");
-        }
-    }
+    let messages = Messages::read(&root());
+    let entries = entries();
+    let wrong = || entries.iter().filter(|entry| entry.claim != Claim::Right);
+    let names: BTreeSet<String> = wrong().map(ToString::to_string).collect();
+    let known: BTreeSet<String> = messages.0.keys().cloned().collect();
+    let different: Vec<&String> = names.symmetric_difference(&known).collect();
+    assert!(different.is_empty(), "run `cargo run -p grader -- corpus --bless`: {different:?}");
+    let named: Vec<&str> =
+        wrong().filter(|entry| entry.has_a_known_mistake()).filter_map(|entry| messages.of(entry)).collect();
+    let diagnosed = named.iter().filter(|message| message.contains("looks like:")).count();
+    assert!(diagnosed * 10 >= named.len() * 9, "{diagnosed} of {}", named.len());
 }
 
 #[test]
@@ -115,4 +112,24 @@ fn an_entry_that_does_not_exist_is_reported() {
     assert_eq!(output.status.code(), Some(1));
     let complaint = String::from_utf8_lossy(&output.stderr);
     assert!(complaint.contains("has no entry `no_such_entry`"), "{complaint}");
+}
+
+#[test]
+fn questions_about_the_corpus_are_answered_without_a_build() {
+    let answer = |question: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_grader"))
+            .current_dir(root())
+            .arg("corpus")
+            .args(question)
+            .output()
+            .expect("the program starts");
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let says = answer(&["--saying", "you take a box for a hit"]);
+    assert!(says.contains("wrong any_box_is_enough: ") && !says.contains("right "), "{says}");
+    let changes = answer(&["--function", "slab"]);
+    assert!(changes.starts_with("tests/corpus/stage3_boxes.corpus\n") && changes.contains("  right "), "{changes}");
+    let caught = answer(&["--check", "any_hit_stops_at_the_first"]);
+    assert!(caught.contains(" =wrong any_does_not_stop: "), "{caught}");
 }

@@ -44,13 +44,7 @@ fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
          echo '--- room'\n\
          mount -o remount,size=64m {disk}\n\
          run grade {class} --stages 1 --seed 5 --jobs 1 --out {disk}/grades --resume\n\
-         cp {disk}/grades/grades.csv {around}/resumed.csv\n\
-         mount -o remount,size=66m {disk}\n\
-         head -c 100m /dev/zero >{disk}/filler || true\n\
-         echo '--- gauntlet'\n\
-         run gauntlet --rays 1 --state {disk}/state.jsonl\n\
-         rm {disk}/filler\n\
-         run gauntlet --rays 1 --state {disk}/state.jsonl\n",
+         cp {disk}/grades/grades.csv {around}/resumed.csv\n",
         disk = disk.display(),
         grader = env!("CARGO_BIN_EXE_grader"),
         class = class.display(),
@@ -65,9 +59,7 @@ fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
     assert!(output.status.success(), "{text}");
     let parts: Vec<&str> = said.split("---").collect();
     assert!(parts[0].contains("ended badly") && parts[1].contains("ended well"), "{text}");
-    assert!(parts[2].contains("ended badly") && parts[2].contains("ended well"), "{text}");
-    let names_a_file = |folder: &str| complained.contains(&format!("{}/{folder}", disk.display()));
-    assert!(names_a_file("grades/") && names_a_file("state.jsonl"), "{text}");
+    assert!(complained.contains(&format!("{}/grades/", disk.display())), "{text}");
     assert!(complained.contains("full") || complained.contains("No space left"), "{text}");
     // The grades are those of a run with room.
     let whole = folder.path().join("whole");

@@ -34,29 +34,6 @@ fn lines(file: &Path) -> usize {
     fs::read_to_string(file).map_or(0, |text| text.lines().count())
 }
 
-#[test]
-fn a_gauntlet_that_is_killed_continues_with_the_same_numbers() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("state.jsonl");
-    let state = file.to_string_lossy().into_owned();
-    let arguments = ["gauntlet", "--rays", "1", "--state", &state];
-    kill_when(started(&arguments), || lines(&file) >= 4);
-    let kept: Vec<String> = fs::read_to_string(&file).unwrap().lines().map(str::to_owned).collect();
-    let output = grader(&arguments);
-    assert!(output.status.success(), "{}", said(&output));
-    let after = fs::read_to_string(&file).unwrap();
-    assert!(kept[..kept.len() - 1].iter().all(|line| after.lines().any(|other| other == line)));
-    // Each trial is done once.
-    let mut trials: Vec<&str> =
-        after.lines().skip(1).map(|line| line.split("\",[").next().unwrap_or_default()).collect();
-    trials.sort_unstable();
-    let n = trials.len();
-    trials.dedup();
-    assert_eq!(trials.len(), n, "{after}");
-    let other = grader(&["gauntlet", "--rays", "1", "--seed", "2", "--state", &state]);
-    assert!(said(&other).contains("is of a gauntlet with --seed 1"), "{}", said(&other));
-}
-
 /// The corpus and a rehearsal take minutes, so they are killed only with `CI_LONG=1`.
 #[test]
 fn a_corpus_and_a_rehearsal_that_are_killed_continue() {

@@ -1,6 +1,5 @@
 //! All tests of the grader in one program, so that it is linked once and slow tests run in parallel.
 
-mod agreement;
 mod boxes_and_offsets;
 mod cases;
 #[cfg(target_os = "linux")]
@@ -31,4 +30,3 @@ mod sandboxed_workers;
 #[cfg(target_os = "linux")]
 mod slurm;
 mod sync;
-mod words;

@@ -220,7 +220,12 @@ impl Maker<'_> {
         let content = match (step.content.take(), step.text.take(), step.fragment.take()) {
             (Some(content), None, None) => content,
             (None, None, None) => bail!("`text`, `fragment` or `content` is missing"),
-            (None, text, fragment) => Content { text, fragment, ..Content::default() },
+            (None, text @ Some(_), None) => Content { text, ..Content::default() },
+            (None, None, Some(name)) => {
+                let text = self.attack.fragments.get(&name).cloned();
+                let text = text.with_context(|| format!("no file of attacks has a fragment `{name}`"))?;
+                Content { text: Some(text), ..Content::default() }
+            }
             _ => bail!("use only one of `content`, `text` and `fragment`"),
         };
         self.bytes(content)
@@ -229,15 +234,11 @@ impl Maker<'_> {
     fn bytes(&self, content: Content) -> Result<Vec<u8>> {
         let filled = |text: Option<String>| text.map_or_else(String::new, |text| self.filled(&text));
         let (n, before, after) = (content.times.unwrap_or(1), filled(content.before), filled(content.after));
-        let text = match (content.text, content.fragment, content.solution, content.hex) {
-            (text, None, None, None) => filled(text),
-            (None, None, Some(solution), None) => self.solution(&solution)?,
-            (None, Some(fragment), None, None) => {
-                let file = self.attack.folder.join(fragment);
-                self.filled(&fs::read_to_string(&file).with_context(|| file.display().to_string())?)
-            }
-            (None, None, None, Some(hex)) => return Ok(bytes_of(&hex)?.repeat(n)),
-            _ => bail!("use only one of `text`, `fragment`, `solution` and `hex`"),
+        let text = match (content.text, content.solution, content.hex) {
+            (text, None, None) => filled(text),
+            (None, Some(solution), None) => self.solution(&solution)?,
+            (None, None, Some(hex)) => return Ok(bytes_of(&hex)?.repeat(n)),
+            _ => bail!("use only one of `text`, `solution` and `hex`"),
         };
         let repeated: String = match text.contains("@n@") {
             true => (0..n).map(|index| text.replace("@n@", &index.to_string())).collect(),

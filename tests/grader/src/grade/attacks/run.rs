@@ -9,7 +9,7 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// An attack and its result.
 pub struct Tried {
@@ -19,21 +19,26 @@ pub struct Tried {
     pub graded: Result<Graded>,
     /// The differences from the expected result, one sentence each.
     pub complaints: Vec<String>,
+    /// How long it took.
+    pub took: Duration,
 }
 
-/// Makes these attacks and grades each by `grade(submission, stages, rules of the syntax check to switch off)`. Calls
-/// `done` after each. An attack with an expected result without the syntax check is graded twice. The result is sorted by
+/// Makes these attacks and grades each by `grade(submission, attack, rules of the syntax check to switch off)`. Calls `done`
+/// after each. An attack with an expected result without the syntax check is graded twice. The result is sorted by
 /// name.
 pub fn run_all(
     root: &Path,
     mut attacks: Vec<Attack>,
-    grade: impl Fn(&Path, &[u8], &[String]) -> Result<Graded> + Sync,
+    grade: impl Fn(&Path, &Attack, &[String]) -> Result<Graded> + Sync,
     done: impl Fn(&Tried) + Sync,
 ) -> Result<Vec<Tried>> {
     let root = root.canonicalize().with_context(|| root.display().to_string())?;
     // Start with the longest ones, so that no long attack runs alone at the end.
     attacks.sort_by_key(|attack| Reverse(attack.most_seconds));
-    let mut tried = queue::run(&queue::one_a_core(), &attacks, |(), attack| {
+    // Some attacks wait and do not compute, so try more at the same time than there are cores. Time limits of calls count
+    // processor time.
+    let jobs = 2 * queue::cores();
+    let mut tried = queue::run(&vec![(); jobs], &attacks, |(), attack| {
         let tried = try_one(&root, attack, &grade)?;
         done(&tried);
         Ok(tried)
@@ -45,15 +50,16 @@ pub fn run_all(
 fn try_one(
     root: &Path,
     attack: &Attack,
-    grade: &impl Fn(&Path, &[u8], &[String]) -> Result<Graded>,
+    grade: &impl Fn(&Path, &Attack, &[String]) -> Result<Graded>,
 ) -> Result<Tried> {
+    let begun = Instant::now();
     let folder = tempfile::tempdir()?;
     let submission = make(attack, &AttackFolders { root, folder: folder.path() })?;
     // Grade the submission, with and without the syntax check.
     let before = fingerprints(folder.path())?;
     let try_it = |expected: &Expectation| {
         let begin = Instant::now();
-        let graded = grade(&submission, &attack.stages, &expected.allow);
+        let graded = grade(&submission, attack, &expected.allow);
         let mut found = match &graded {
             Ok(graded) => complaints(&attack.stages, expected, graded),
             Err(error) => vec![format!("the grader failed: {error:#}")],
@@ -72,11 +78,11 @@ fn try_one(
     // Report changed files.
     let changed = changes(&before, &fingerprints(folder.path())?);
     all.extend(changed.into_iter().map(|path| format!("the attack changed {}", path.display())));
-    Ok(Tried { attack: attack.clone(), graded, complaints: all })
+    Ok(Tried { attack: attack.clone(), graded, complaints: all, took: begun.elapsed() })
 }
 
 /// Returns kind, size and content of everything in a folder. Links are not followed.
-pub fn fingerprints(folder: &Path) -> Result<BTreeMap<PathBuf, String>> {
+fn fingerprints(folder: &Path) -> Result<BTreeMap<PathBuf, String>> {
     let mut found = BTreeMap::new();
     let mut waiting = vec![folder.to_owned()];
     while let Some(path) = waiting.pop() {
@@ -100,7 +106,7 @@ pub fn fingerprints(folder: &Path) -> Result<BTreeMap<PathBuf, String>> {
 }
 
 /// Returns the paths that are new, gone or different.
-pub fn changes(before: &BTreeMap<PathBuf, String>, after: &BTreeMap<PathBuf, String>) -> Vec<PathBuf> {
+fn changes(before: &BTreeMap<PathBuf, String>, after: &BTreeMap<PathBuf, String>) -> Vec<PathBuf> {
     let paths = before.keys().chain(after.keys().filter(|path| !before.contains_key(*path)));
     paths.filter(|path| before.get(*path) != after.get(*path)).cloned().collect()
 }

@@ -1,4 +1,4 @@
-//! A step of `attack.toml`.
+//! A step that makes a submission.
 
 use super::pack::{Format, Kind};
 use anyhow::{Context, Result, ensure};
@@ -57,13 +57,12 @@ pub(super) enum Encoding {
     Utf16,
 }
 
-/// Text or bytes: one of `text`, `fragment` (a file beside attack.toml), `solution` (a file of the reference) and `hex`. It
-/// is repeated `times` times, between `before` and `after`. `@n@` counts from 0.
+/// Text or bytes: one of `text`, `solution` (a file of the reference) and `hex`. It is repeated `times` times, between
+/// `before` and `after`. `@n@` counts from 0.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Content {
     pub(super) text: Option<String>,
-    pub(super) fragment: Option<String>,
     pub(super) solution: Option<String>,
     pub(super) hex: Option<String>,
     pub(super) times: Option<usize>,
@@ -88,7 +87,7 @@ pub struct Step {
     pub(super) content: Option<Content>,
     /// Short for a content of only text.
     pub(super) text: Option<String>,
-    /// Short for a content of only a file beside attack.toml.
+    /// Short for a content of only the text of this name in `[fragments]`.
     pub(super) fragment: Option<String>,
     pub(super) format: Option<Format>,
     /// The prefix of the names of packed files.

@@ -11,9 +11,9 @@ fn root() -> PathBuf {
 }
 
 fn attack(text: &str) -> Attack {
-    let head = "title = \"a\"\nwhat = \"b\"\nfamily = \"forging\"\n";
+    let head = "name = \"ann\"\ntitle = \"a\"\nwhat = \"b\"\n";
     let mut attack: Attack = toml::from_str(&format!("{head}{text}\n[expect]\nearned = \"none\"\n")).unwrap();
-    attack.name = "ann".into();
+    attack.fragments = Arc::new(BTreeMap::from([("shared".to_owned(), "// of several".to_owned())]));
     attack
 }
 
@@ -106,9 +106,49 @@ fn what_is_expected_names_checks_that_there_are() {
 }
 
 #[test]
+fn files_of_attacks_that_are_wrong_say_where_and_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = folder.path().join(FOLDER);
+    fs::create_dir_all(&files).unwrap();
+    let attack = |name: &str| {
+        format!("[[attack]]\nname = \"{name}\"\ntitle = \"a\"\nwhat = \"b\"\nexpect.earned = \"none\"\n")
+    };
+    let error = |name: &str, text: &str| {
+        let file = files.join(name);
+        fs::write(&file, text).unwrap();
+        let error = load(folder.path()).map(drop).unwrap_err();
+        fs::remove_file(file).unwrap();
+        format!("{error:#}")
+    };
+    fs::write(files.join("honest.toml"), format!("[fragments]\nf = \"\"\n{}", attack("b"))).unwrap();
+    assert_eq!(load(folder.path()).unwrap()[0].family, Family::Honest);
+    let unknown = error("cooking.toml", &attack("a"));
+    assert!(unknown.contains("cooking.toml: the file has the name of no family"), "{unknown}");
+    let unsorted = error("words.toml", &(attack("z") + &attack("a")));
+    assert!(unsorted.contains("words.toml: `z` stands before `a`: sort"), "{unsorted}");
+    let twice = error("words.toml", &attack("b"));
+    assert!(twice.contains("two attacks are called `b` (Honest, Words): rename one"), "{twice}");
+    let twice = error("words.toml", &format!("[fragments]\nf = \"\"\n{}", attack("a")));
+    assert!(twice.contains("words.toml: another file has a fragment `f`"), "{twice}");
+    let key = error("words.toml", &(attack("a") + "family = \"words\"\n"));
+    assert!(key.contains("unknown field `family`"), "{key}");
+}
+
+#[test]
 fn attacks_of_every_family_are_there() {
     let families: BTreeSet<Family> = load(&root()).unwrap().iter().map(|attack| attack.family).collect();
     assert_eq!(families.len(), 13, "{families:?}");
+}
+
+#[test]
+fn five_parts_hold_every_attack_once() {
+    let all = load(&root()).unwrap();
+    let parts: Vec<Vec<Attack>> = (1..=5).map(|index| part(all.clone(), Shard { index, of: 5 })).collect();
+    let sizes: Vec<usize> = parts.iter().map(Vec::len).collect();
+    assert!(sizes.iter().all(|size| size.abs_diff(all.len() / 5) < 15), "{sizes:?}");
+    let mut names: Vec<String> = parts.into_iter().flatten().map(|attack| attack.name).collect();
+    names.sort();
+    assert_eq!(names, all.into_iter().map(|attack| attack.name).collect::<Vec<_>>());
 }
 
 #[test]
@@ -121,6 +161,7 @@ fn bodies_are_right_or_wrong_as_a_step_says() {
     let both = shapes_of(step);
     assert!(both.contains("if normal.dot(direction) > 0.0 { -normal } else { normal }"));
     assert!(both.contains("else { Vec3::splat(-7.25) }"), "{both}");
+    assert!(shapes_of("[[step]]\ndo = \"append\"\nfragment = \"shared\"").ends_with("// of several"));
 }
 
 #[test]
@@ -150,6 +191,7 @@ fn a_step_that_lacks_something_or_has_too_much_is_an_error() {
     assert!(without.contains("ann: step 1: `to` is missing"), "{without}");
     assert!(error("[[step]]\ndo = \"link\"\npath = \"a\"\nto = \"b\"\ntimes = 3").contains("does not need"));
     assert!(error("[[step]]\ndo = \"write\"\npath = \"a\"").contains("`content` is missing"));
+    assert!(error("[[step]]\ndo = \"top\"\nfragment = \"nobody's\"").contains("a fragment `nobody's`"));
     assert!(error("[[step]]\ndo = \"write\"\npath = \"/a\"\ntext = \"\"").contains("`path` is missing"));
     assert!(error("[[step]]\ndo = \"body\"\nfunction = \"spher\"\ntext = \"\"").contains("`pub fn spher`"));
     assert!(

@@ -201,7 +201,7 @@ fn judged(judge: &Judge, name: &str) -> Vec<CheckResult> {
     std::fs::hard_link(hostile(), &worker)
         .or_else(|_| std::fs::copy(hostile(), &worker).map(drop))
         .expect("a copy");
-    judge.judge(&worker, &BTreeMap::new(), false).0
+    judge.judge(&worker, &BTreeMap::new(), false, CALL_PATIENCE).0
 }
 
 #[test]

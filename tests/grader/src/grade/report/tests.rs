@@ -309,3 +309,27 @@ fn an_empty_class_has_reports_too() -> Result<()> {
     assert!(files["index.html"].contains("No submission tried a check and failed."));
     Ok(())
 }
+
+#[test]
+fn a_large_class_has_small_pages_and_every_student_is_in_one() -> Result<()> {
+    let message = "  input     Ray::new(…)\n".repeat(40);
+    let outcomes = [Outcome::Passed, Outcome::Wrong, Outcome::NotWritten, Outcome::Crashed];
+    let students: Vec<Graded> = (0..1100)
+        .map(|number| student(&format!("student-{number:04}"), outcomes.map(|one| (one, message.as_str()))))
+        .collect();
+    let files = files_of(&Class { students, ..class() })?;
+    let index = &files["index.html"];
+    let lists: Vec<(&String, &String)> =
+        files.iter().filter(|(name, _)| name.starts_with("lists/")).collect();
+    assert_eq!(lists.len(), 2);
+    for (name, page) in lists.iter().copied().chain([(&"index.html".to_owned(), index)]) {
+        assert!(page.len() < 1_000_000, "{name} has {} bytes", page.len());
+        assert!(name == "index.html" || index.contains(&format!("href=\"{name}\"")), "no link to {name}");
+    }
+    for number in 0..1100 {
+        let page = format!("students/student-{number:04}.html");
+        let links = lists.iter().filter(|(_, list)| list.contains(&format!("href=\"../{page}\""))).count();
+        assert!(links == 1 && files.contains_key(&page), "{links} links to {page}");
+    }
+    Ok(())
+}
