@@ -1,6 +1,6 @@
 //! `grader attacks`: grades every attack of the corpus and lists those with a wrong result.
 
-use super::attacks::{self, Attack};
+use super::attacks::{self, Attack, Hasty};
 use super::forge::{COMPILER_PATIENCE, Forge};
 use super::grader::{Grader, SharedResults};
 use super::judge::{CALL_PATIENCE, Judge};
@@ -59,12 +59,16 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let judge = |stages: &[u8]| Ok(Arc::new(Judge::of(root, stages, SEED, Confinement::Full)?));
     let grade = |submission: &Path, attack: &Attack, allowed: &[String]| {
         let grader = Grader {
-            forge: if attack.hasty { hasty.clone() } else { patient.clone() },
+            forge: if attack.hasty == Some(Hasty::Compiler) { hasty.clone() } else { patient.clone() },
             judge: judges.get(attack.stages.clone(), || judge(&attack.stages))?,
             confinement: Confinement::Full,
             allowed: allowed.to_owned(),
             handed_in: HandedIn::new(),
-            call_patience: if attack.hasty { CALL_PATIENCE / HASTE } else { CALL_PATIENCE },
+            call_patience: if attack.hasty == Some(Hasty::Calls) {
+                CALL_PATIENCE / HASTE
+            } else {
+                CALL_PATIENCE
+            },
             shared: Some(shared.clone()),
         };
         let student = submission.file_name().unwrap_or_default().to_string_lossy().into_owned();

@@ -16,7 +16,7 @@ mod step;
 mod verdict;
 
 pub use make::{AttackFolders, CANARY, make};
-pub use run::{Tried, run_all};
+pub use run::run_all;
 pub use verdict::{Earned, Expectation, complaints};
 
 use super::shard::Shard;
@@ -79,6 +79,16 @@ pub enum Base {
     Nothing,
 }
 
+/// What has a quarter of its time for attacks that run into a time limit whose length they do not test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Hasty {
+    /// The calls of the judge. The right answers of such an attack take less than half of this shorter time.
+    Calls,
+    /// The compiler.
+    Compiler,
+}
+
 /// A submission and the result that it must get.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -108,10 +118,8 @@ pub struct Attack {
     /// The time limit for grading it on an idle machine, in seconds.
     #[serde(default = "a_minute")]
     pub most_seconds: u64,
-    /// Whether calls and the compiler have a quarter of the time. This is for attacks that run into a time limit while others
-    /// of the same kind test the whole limit.
-    #[serde(default)]
-    pub hasty: bool,
+    /// What has a quarter of its time.
+    pub hasty: Option<Hasty>,
     /// The steps that make the submission, in order.
     #[serde(default)]
     pub step: Vec<step::Step>,
