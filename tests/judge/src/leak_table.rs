@@ -54,7 +54,7 @@ fn in_batches(mesh: &Closed, aim: Aim, seed: u64, rays: u64, answer: impl Fn(&[I
 
 /// The number of rays that leak; each ray comes with a vertex near which it should hit. The triangles around
 /// the vertices of all rays are tested in one batch, and all triangles only for rays that hit none of these.
-pub fn leaks_of(mesh: &Closed, rays: &[(Ray, u32)], answer: impl Fn(&[Input]) -> Answers) -> u64 {
+fn leaks_of(mesh: &Closed, rays: &[(Ray, u32)], answer: impl Fn(&[Input]) -> Answers) -> u64 {
     let fan = |vertex: u32| &mesh.fans[vertex as usize];
     let near: Vec<Input> = rays
         .iter()

@@ -105,15 +105,15 @@ impl Options {
 /// Lists or tests entries and prints a report. Returns whether all results are as required.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let all = entry::read_all(root)?;
-    let n_all = all.len();
     let (matrix, messages) = (Matrix::read(root), Messages::read(root));
-    let chosen = choose(all, options, &matrix, &messages)?;
+    let chosen = choose(&all, options, &matrix, &messages)?;
     if options.lists {
         return Ok(list(&chosen, options, &matrix));
     }
-    let complete = chosen.len() == n_all;
+    let complete = chosen.len() == all.len();
     let _lock = Lock::on(&root.join(FOLDER))?;
-    let program = Program::build(root, &chosen)?;
+    // Build all entries, so that the next run with other ones needs no build.
+    let program = Program::build(root, &all)?;
     let tried = try_all(root, &program, &chosen, options)?;
     if options.bless || options.reword {
         records::bless(root, &tried, options.bless, complete)?;
@@ -126,7 +126,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     Ok(differences.is_empty() && tried.iter().all(|one| one.fate.is_as_it_must_be()))
 }
 
-fn choose(all: Vec<Entry>, options: &Options, matrix: &Matrix, messages: &Messages) -> Result<Vec<Entry>> {
+fn choose(all: &[Entry], options: &Options, matrix: &Matrix, messages: &Messages) -> Result<Vec<Entry>> {
     for name in &options.names {
         if !all.iter().any(|entry| is_named(entry, name)) {
             bail!("tests/corpus has no entry `{name}`");
@@ -143,7 +143,7 @@ fn choose(all: Vec<Entry>, options: &Options, matrix: &Matrix, messages: &Messag
             && options.check.as_ref().is_none_or(|check| matrix.fails(entry, check))
             && options.saying.as_ref().is_none_or(|words| is_said(entry, words))
     };
-    let chosen: Vec<Entry> = all.into_iter().filter(is_wanted).collect();
+    let chosen: Vec<Entry> = all.iter().filter(|entry| is_wanted(entry)).cloned().collect();
     if chosen.is_empty() {
         bail!("tests/corpus has no entry for these options");
     }

@@ -41,8 +41,11 @@ pub struct Forge {
     /// Time limit of the compiler per call.
     patience: Duration,
     /// The workers that were built before, by their files, if equal files need not be compiled again.
-    shared: Option<Arc<Once<BTreeMap<String, String>, Arc<SharedWorker>>>>,
+    shared: Option<Arc<SharedWorkers>>,
 }
+
+/// Workers by the texts of their files, without untouched exercises.
+type SharedWorkers = Once<BTreeMap<String, String>, Arc<SharedWorker>>;
 
 /// A worker that may be used several times.
 struct SharedWorker {

@@ -23,9 +23,6 @@ pub struct Closed {
     pub lattice: f32,
     /// For each vertex, the triangles around it.
     pub fans: Vec<Vec<u32>>,
-    /// Whether nearly every triangle needs exact arithmetic, so that a ray takes ten times as long as in other meshes. Long runs
-    /// aim fewer rays at such a mesh.
-    pub is_slow: bool,
 }
 
 impl Closed {
@@ -40,7 +37,7 @@ impl Closed {
         for (index, triangle) in triangles.iter().enumerate() {
             triangle.iter().for_each(|&vertex| fans[vertex as usize].push(index as u32));
         }
-        Closed { name, positions, triangles, inside, room, lattice: 0.0, fans, is_slow: false }
+        Closed { name, positions, triangles, inside, room, lattice: 0.0, fans }
     }
 
     /// The mesh with every position, and `inside`, mapped by `place`.
@@ -55,11 +52,6 @@ impl Closed {
     /// The mesh with rays that start on a lattice.
     pub(super) fn with_lattice(self, lattice: f32) -> Self {
         Closed { lattice, ..self }
-    }
-
-    /// The mesh, marked as slow.
-    pub(super) fn slow(self) -> Self {
-        Closed { is_slow: true, ..self }
     }
 
     /// A point inside at which a ray may start.
@@ -89,11 +81,11 @@ pub fn closed() -> Vec<Closed> {
         icosphere(3),
         rough_sphere(),
         lattice_cube(),
-        needle_prism().slow(),
+        needle_prism(),
         icosphere(3).placed("offset", |p| far + p),
         rough_sphere().placed("rough, offset", |p| far + p),
         icosphere(1).placed("8 steps wide", |p| Vec3::ONE + 4.0 * f32::EPSILON * p),
-        icosphere(3).placed("1e-6 at 1", |p| Vec3::ONE + 1e-6 * p).slow(),
+        icosphere(3).placed("1e-6 at 1", |p| Vec3::ONE + 1e-6 * p),
         icosphere(3).placed("size 1e-14", |p| 1e-14 * p),
         icosphere(3).placed("size 1e14", |p| 1e14 * p),
         icosphere(3).placed("size 1e6", |p| 1e6 * p),

@@ -131,7 +131,10 @@ fn known(name: &str) -> Result<Arc<Known>> {
 
 fn learned(name: &str) -> Result<Known> {
     let heard = Arc::new(Heard { name: name.to_owned(), known: Mutex::default() });
-    let reference = Source::prepare(&root()?, Which::Solutions, Need::Checks)?.fresh();
+    // Ask cargo once for all functions.
+    static REFERENCE: LazyLock<Once<(), Arc<Source>>> = LazyLock::new(Once::default);
+    let prepared = || Ok(Arc::new(Source::prepare(&root()?, Which::Solutions, Need::Checks)?));
+    let reference = REFERENCE.get((), prepared)?.fresh();
     let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Listener { reference, heard: heard.clone() }));
     let of_function = if name == "block_cost" { 12 } else { 1 };
     for check in STAGES.iter().filter(|(stage, _)| *stage == of_function).flat_map(|(_, checks)| *checks) {
