@@ -3,6 +3,7 @@
 //! Each blank is an error of an existing test: `todo!` in the check, empty texts in the rubric, entries of the corpus without
 //! lines. So a forgotten one cannot stay.
 
+use crate::corpus::entry::{FOLDER, corpus_file};
 use crate::sync;
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail, ensure};
@@ -112,9 +113,6 @@ struct StageFiles {
     rubric: String,
 }
 
-/// The folder of the corpus.
-const CORPUS: &str = "tests/corpus";
-
 /// The text of a blank in the corpus.
 const BLANK: &str = "…";
 
@@ -223,19 +221,38 @@ fn with_entry(rubric: &str, options: &Options, before: Option<&str>) -> Result<S
     Ok(format!("{}{entry}{}", &rubric[..end], &rubric[end..]))
 }
 
-/// Writes a mistake and another correct solution into the corpus, behind those of the same function.
+/// Writes a mistake and another correct solution into the corpus, among those of the same function.
 fn write_entries(root: &Path, asked: &Asked, name: &str) -> Result<()> {
-    let path = format!("{CORPUS}/{}.corpus", asked.function.file());
+    let path = corpus_file(&format!("solutions/src/{}.rs", asked.function.file()));
     let mut text = if root.join(&path).exists() { read(root, &path)? } else { String::new() };
+    // Find the entries of the function.
     let heading = format!("\n=== {} ===\n", asked.function.name());
     if !text.contains(&heading) {
         text += &heading;
     }
     let begin = text.find(&heading).map_or(text.len(), |start| start + heading.len());
     let end = text[begin..].find("\n=== ").map_or(text.len(), |length| begin + length);
-    let entries =
-        format!("\nwrong {name}: {BLANK}\ncaught_by: {name}\nsays: {BLANK}\n\nright {name}: {BLANK}\n");
-    text.insert_str(end, &entries);
+    let mut entries = text[begin..end].to_owned();
+    // Insert the new ones in their order: mistakes first, then by name.
+    let blanks = [
+        ("wrong", format!("wrong {name}: {BLANK}\ncaught_by: {name}\nsays: {BLANK}\n")),
+        ("right", format!("right {name}: {BLANK}\n")),
+    ];
+    for (kind, blank) in blanks {
+        let mut at = 0;
+        let later = entries.split_inclusive('\n').find_map(|line| {
+            let start = at;
+            at += line.len();
+            let head = line.split_once(' ').filter(|(kind, _)| ["wrong", "right"].contains(kind))?;
+            let is_later = (head.0 == "right", head.1) > (kind == "right", &format!("{name}:"));
+            is_later.then_some(start)
+        });
+        match later {
+            Some(start) => entries.insert_str(start, &format!("{blank}\n")),
+            None => entries += &format!("\n{blank}"),
+        }
+    }
+    text.replace_range(begin..end, &entries);
     save(root, &path, &text)
 }
 
@@ -369,12 +386,12 @@ fn missing(root: &Path, options: &Options) -> Result<Vec<String>> {
 fn missing_entries(root: &Path, options: &Options) -> Result<Vec<String>> {
     let (mut missing, mut is_caught, name) = (Vec::new(), false, options.name.as_str());
     let mut files: Vec<String> = Vec::new();
-    for file in fs::read_dir(root.join(CORPUS)).with_context(|| format!("cannot read {CORPUS}"))? {
+    for file in fs::read_dir(root.join(FOLDER)).with_context(|| format!("cannot read {FOLDER}"))? {
         files.push(file?.file_name().to_string_lossy().into_owned());
     }
     files.retain(|file| file.starts_with(&format!("stage{}_", options.stage)) && file.ends_with(".corpus"));
     files.sort();
-    for path in files.iter().map(|file| format!("{CORPUS}/{file}")) {
+    for path in files.iter().map(|file| format!("{FOLDER}/{file}")) {
         let text = read(root, &path)?;
         let mut number = 1;
         for entry in text.split_inclusive("\n\n") {
@@ -401,7 +418,7 @@ fn missing_entries(root: &Path, options: &Options) -> Result<Vec<String>> {
         }
     }
     if !is_caught {
-        missing.push(format!("{CORPUS}: no mistake of stage {} has `caught_by: {name}`", options.stage));
+        missing.push(format!("{FOLDER}: no mistake of stage {} has `caught_by: {name}`", options.stage));
     }
     Ok(missing)
 }
@@ -416,6 +433,7 @@ fn next_steps(options: &Options) -> String {
         ("constants earn nothing", "cargo test -p all-checks".to_owned()),
         ("hidden inputs are not the public ones", "cargo test -p grader --lib every_check".to_owned()),
         ("the mistake is caught and named", format!("cargo run -p grader -- corpus {name}")),
+        ("its message is stored", format!("cargo run -p grader -- corpus {name} --bless")),
         ("numbers in documents are right", "cargo run -p grader -- sync".to_owned()),
     ];
     steps.iter().map(|(why, command)| format!("  {why:<38} {command}\n")).collect()
@@ -434,6 +452,7 @@ fn save(root: &Path, path: &str, text: &str) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::corpus::entry::CorpusFile;
 
     /// A copy of the checks of stage 3.
     fn copy() -> tempfile::TempDir {
@@ -443,12 +462,12 @@ mod tests {
         for file in ["rubric.toml", "src/lib.rs", "src/slabs.rs"] {
             fs::copy(root.join(folder).join(file), copy.path().join(folder).join(file)).unwrap();
         }
-        fs::create_dir(copy.path().join(CORPUS)).unwrap();
+        fs::create_dir(copy.path().join(FOLDER)).unwrap();
         let entry = "caught_by: slab_of_a_flat_box_is_hit\nsays: flat\n-    1\n";
         let corpus = format!(
-            "\n=== slab ===\n\nwrong one: it is\n{entry}\n=== union ===\n\nwrong two: it is\n{entry}"
+            "\n=== slab ===\n\nwrong one: it is\n{entry}\nwrong two: it is\n{entry}\n=== union ===\n\nwrong three: it is\n{entry}"
         );
-        fs::write(copy.path().join(CORPUS).join("stage3_boxes.corpus"), corpus).unwrap();
+        fs::write(copy.path().join(FOLDER).join("stage3_boxes.corpus"), corpus).unwrap();
         copy
     }
 
@@ -481,9 +500,12 @@ mod tests {
         );
         assert!(blanks[3].starts_with(&format!("{rubric}:")), "{blanks:?}");
 
-        let corpus = format!("{CORPUS}/stage3_boxes.corpus");
-        assert!(read(root, &corpus).unwrap().contains("\n\nright slab_is_quick: …\n\n=== union ===\n"));
-        assert_eq!(blanks[9], format!("{corpus}:13: right: the mistake or the method, in a sentence"));
+        let corpus = format!("{FOLDER}/stage3_boxes.corpus");
+        assert!(read(root, &corpus).unwrap().contains("says: …\n\nwrong two: it is\n"));
+        assert_eq!(blanks[9], format!("{corpus}:18: right: the mistake or the method, in a sentence"));
+
+        let parsed = || CorpusFile::parse("stage3_boxes", &read(root, &corpus).unwrap());
+        assert!(format!("{:#}", parsed().unwrap_err()).ends_with("changes no line (`-` or `+`)"));
 
         change(root, &corpus, "says: …\n", "says: slow\n-    1\n+    2\n");
         change(root, &corpus, "right slab_is_quick: …\n", "right slab_is_quick: …\n-    1\n+    3\n");
@@ -492,6 +514,7 @@ mod tests {
         change(root, &rubric, "points = 0", "points = 2");
         change(root, &rubric, "\"\"", "\"a text\"");
         assert!(run(root, &options).unwrap(), "no blank is left");
+        assert_eq!(parsed().unwrap().entries.len(), 5);
     }
 
     #[test]

@@ -3,7 +3,7 @@ use super::program_runs::{grader, printed};
 use std::process::Command;
 
 /// The commands with their arguments and options.
-const COMMANDS: [(&str, &[&str]); 20] = [
+const COMMANDS: [(&str, &[&str]); 21] = [
     (
         "grade",
         &[
