@@ -293,21 +293,23 @@ fn quoted_messages_are_those_of_the_kit() {
     let rubric = lines_of_rubric();
     for (deck, source, quote) in quotes.iter().filter(|(_, source, _)| source.starts_with("tests/")) {
         // The message about a mistake of the corpus is named by its file and the mistake.
-        let (file, mistake) = source.split_once(' ').map_or((source.as_str(), None), |(file, name)| (file, Some(name)));
-        let text = fs::read_to_string(root().join(file)).unwrap_or_else(|_| panic!("{deck}: there is no {file}"));
+        let (file, mistake) =
+            source.split_once(' ').map_or((source.as_str(), None), |(file, name)| (file, Some(name)));
+        let text =
+            fs::read_to_string(root().join(file)).unwrap_or_else(|_| panic!("{deck}: there is no {file}"));
         let text = match mistake {
             None => text,
             Some(name) => {
-                let message = format!("\n{text}").split("\n=== ").find_map(|part| {
-                    part.strip_prefix(name)?.strip_prefix(" ===\n").map(str::to_owned)
-                });
+                let message = format!("\n{text}")
+                    .split("\n=== ")
+                    .find_map(|part| part.strip_prefix(name)?.strip_prefix(" ===\n").map(str::to_owned));
                 message.unwrap_or_else(|| panic!("{deck}: {file} has no message about {name}"))
             }
         };
         // The lines that every message takes from the rubric are not stored.
-        let (of_rubric, quote): (Vec<&str>, Vec<&str>) = quote
-            .lines()
-            .partition(|line| ["stage ", "  slides: ", "  again: ", "  stuck: "].iter().any(|start| line.starts_with(start)));
+        let (of_rubric, quote): (Vec<&str>, Vec<&str>) = quote.lines().partition(|line| {
+            ["stage ", "  slides: ", "  again: ", "  stuck: "].iter().any(|start| line.starts_with(start))
+        });
         assert_eq!(missing_line(&quote.join("\n"), &text), None, "{deck}: {source} has no such line");
         let missing = of_rubric.into_iter().find(|line| !rubric.lines().any(|other| other == *line));
         assert_eq!(missing, None, "{deck}: no message has such a line");
@@ -320,7 +322,9 @@ fn lines_of_rubric() -> String {
     for (stage, entries) in raykata::rubric::stages() {
         for (name, entry) in entries.in_order() {
             text += &format!("stage {stage} · {}\n  slides: {}\n", entry.title, entry.slide);
-            text += &format!("  again: cargo test --test stage{stage} {name}\n  stuck: cargo run -- hint {name}\n");
+            text += &format!(
+                "  again: cargo test --test stage{stage} {name}\n  stuck: cargo run -- hint {name}\n"
+            );
         }
     }
     text

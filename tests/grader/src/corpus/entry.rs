@@ -19,6 +19,7 @@
 
 use super::source::Source;
 use anyhow::{Context, Result, anyhow, bail, ensure};
+use raykata::film::write_atomically;
 use std::fmt::{self, Write};
 use std::ops::Range;
 use std::path::Path;
@@ -185,7 +186,13 @@ impl Entry {
         let mut replaced = Vec::new();
         for change in &self.changes {
             replaced.push(change.place(original).with_context(|| {
-                format!("{} `{}` in {} does not fit {}", self.kind(), self.name, corpus_file(&self.file), self.file)
+                format!(
+                    "{} `{}` in {} does not fit {}",
+                    self.kind(),
+                    self.name,
+                    corpus_file(&self.file),
+                    self.file
+                )
             })?);
         }
         replaced.sort_by_key(|(range, _)| range.start);
@@ -210,7 +217,10 @@ impl Change {
             lines.map(|(_, line)| line.as_str()).collect()
         };
         let old = with(&[Sign::Goes, Sign::Stays]);
-        ensure!(!old.is_empty(), "a place needs a line that is there already: add one that begins with a space");
+        ensure!(
+            !old.is_empty(),
+            "a place needs a line that is there already: add one that begins with a space"
+        );
         let place = original.place(&self.function)?;
         let found = original.occurrences(place, &old);
         let shown = || old.iter().fold(String::new(), |text, line| text + "\n    " + line);
@@ -352,7 +362,8 @@ impl Reader {
                 let (name, title) = rest
                     .split_once(": ")
                     .with_context(|| format!("`{line}` is not `{kind} NAME: a sentence`"))?;
-                let function = self.function.clone().context("there is no heading `=== FUNCTION ===` before")?;
+                let function =
+                    self.function.clone().context("there is no heading `=== FUNCTION ===` before")?;
                 self.draft = Some(Draft {
                     kind,
                     name: name.to_owned(),
@@ -407,7 +418,12 @@ impl Reader {
         let Some(draft) = self.draft.take() else { return Ok(()) };
         let entry = draft.entry(self.stage, &self.file)?;
         let is_known = |other: &Entry| other.name == entry.name && other.kind() == entry.kind();
-        ensure!(!self.corpus.entries.iter().any(is_known), "there are two entries `{} {}`", entry.kind(), entry.name);
+        ensure!(
+            !self.corpus.entries.iter().any(is_known),
+            "there are two entries `{} {}`",
+            entry.kind(),
+            entry.name
+        );
         self.corpus.entries.push(entry);
         Ok(())
     }
@@ -444,7 +460,8 @@ impl Draft {
                 Claim::Right
             }
             _ => {
-                let caught_by = caught_by.ok_or_else(|| anyhow!("wrong `{name}` lacks `caught_by: CHECK`"))?;
+                let caught_by =
+                    caught_by.ok_or_else(|| anyhow!("wrong `{name}` lacks `caught_by: CHECK`"))?;
                 ensure!(
                     !says.is_empty() || is_unknown,
                     "wrong `{name}` lacks `says: WORDS OF THE MESSAGE` or `diagnosis: none`"
@@ -476,6 +493,14 @@ pub fn read_files(root: &Path) -> Result<Vec<(String, CorpusFile)>> {
     names.into_iter().map(read).collect()
 }
 
+/// Writes a file of the corpus of the kit at `root`, sorted.
+pub fn write_file(root: &Path, name: &str, corpus: &mut CorpusFile) -> Result<()> {
+    corpus.sort(&Original::read(root, &format!("solutions/src/{name}.rs"))?);
+    let file = root.join(FOLDER).join(format!("{name}.corpus"));
+    let written = write_atomically(&file, |out| std::io::Write::write_all(out, corpus.text().as_bytes()));
+    written.with_context(|| format!("{} cannot be written", file.display()))
+}
+
 /// Reads all entries of the kit at `root`, sorted by stage, then wrong before right, then by name.
 pub fn read_all(root: &Path) -> Result<Vec<Entry>> {
     let mut entries: Vec<Entry> =
@@ -505,11 +530,19 @@ mod tests {
         let corpus = parse(CORPUS).unwrap();
         assert_eq!(corpus.text(), CORPUS);
         let [wrong, right] = &corpus.entries[..] else { panic!("{corpus:?}") };
-        assert_eq!((wrong.to_string(), wrong.caught_by()), ("wrong/stage1/counts".to_owned(), Some("a_check")));
-        assert!(right.claim == Claim::Right && right.changes_function("one") && !right.changes_function("two"));
+        assert_eq!(
+            (wrong.to_string(), wrong.caught_by()),
+            ("wrong/stage1/counts".to_owned(), Some("a_check"))
+        );
+        assert!(
+            right.claim == Claim::Right && right.changes_function("one") && !right.changes_function("two")
+        );
         let original = Original::new("solutions/src/stage1_a.rs", FILE.to_owned()).unwrap();
         let changed = wrong.apply(&original).unwrap();
-        assert!(changed.starts_with("/// About one.\npub fn one() -> u32 {\n    let a = 2;\n    a\n}\n"), "{changed}");
+        assert!(
+            changed.starts_with("/// About one.\npub fn one() -> u32 {\n    let a = 2;\n    a\n}\n"),
+            "{changed}"
+        );
         assert!(changed.ends_with("{\n    let a = 1;\n    let b = 1;\n    a + 1\n}\n"), "{changed}");
         assert!(right.apply(&original).unwrap().contains("    a.max(0)\n"));
     }
@@ -532,7 +565,9 @@ mod tests {
     #[test]
     fn a_line_that_is_wrong_is_named() {
         let error = |entry: &str| format!("{:#}", parse(&format!("=== f ===\n{entry}")).unwrap_err());
-        assert!(error("wrong m\n-a\n").starts_with("line 2 of tests/corpus/stage1_a.corpus: `wrong m` is not"));
+        assert!(
+            error("wrong m\n-a\n").starts_with("line 2 of tests/corpus/stage1_a.corpus: `wrong m` is not")
+        );
         assert!(error("wrong m: m\nsays: s\n-a\n").contains("lacks `caught_by"));
         assert!(error("wrong m: m\ncaught_by: c\n-a\n").contains("lacks `says"));
         assert!(error("wrong m: m\ncaught_by: c\nsays: s\ntarp: S3\n-a\n").contains("`tarp: S3` is not"));

@@ -3,15 +3,15 @@
 //! A patch is the output of `diff -u` below a header, in `FOLDER/wrong/stageN/NAME.patch` or `FOLDER/right/stageN/NAME.patch`.
 //! Its lines that go and come are kept. Lines around them are kept only until the place is unique within its function.
 
-use super::entry::{ANYWHERE, Change, Claim, CorpusFile, Entry, Original, Sign, corpus_file, read_files};
+use super::entry::{
+    ANYWHERE, Change, Claim, CorpusFile, Entry, Original, Sign, corpus_file, read_files, write_file,
+};
 use super::patch::{self, Hunk};
 use anyhow::{Context, Result, bail, ensure};
-use raykata::film::write_atomically;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -99,7 +99,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         for (place, file) in patches(&options.folder.join(kind))? {
             let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
             match imported(root, kind, &place, &text, &options.renames) {
-                Ok((name, entry, original)) => {
+                Ok((name, entry)) => {
                     let corpus = files.entry(name).or_default();
                     let is_known = |other: &Entry| other.name == entry.name && other.kind() == entry.kind();
                     ensure!(
@@ -109,7 +109,6 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
                         corpus_file(&entry.file)
                     );
                     corpus.entries.push(entry);
-                    corpus.sort(&original);
                     added += 1;
                 }
                 Err(error) => {
@@ -120,10 +119,8 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         }
     }
     if !options.check {
-        for (name, corpus) in &files {
-            let file = root.join(super::entry::FOLDER).join(format!("{name}.corpus"));
-            let written = write_atomically(&file, |out| out.write_all(corpus.text().as_bytes()));
-            written.with_context(|| format!("{} cannot be written", file.display()))?;
+        for (name, corpus) in &mut files {
+            write_file(root, name, corpus)?;
         }
     }
     println!("{added} patches fit, {lost} do not");
@@ -157,14 +154,8 @@ fn patches(folder: &Path) -> Result<Vec<(String, PathBuf)>> {
     Ok(found)
 }
 
-/// Makes an entry of a patch. Returns it with the name of its file of the corpus, and with the file that it changes.
-fn imported(
-    root: &Path,
-    kind: &str,
-    name: &str,
-    text: &str,
-    renames: &Renames,
-) -> Result<(String, Entry, Original)> {
+/// Makes an entry of a patch. Returns it with the name of its file of the corpus.
+fn imported(root: &Path, kind: &str, name: &str, text: &str, renames: &Renames) -> Result<(String, Entry)> {
     let start = if text.starts_with("--- ") { Some(0) } else { text.find("\n--- ").map(|at| at + 1) };
     let start = start.context("there is no difference after the header (a line `--- a/…`)")?;
     let (header, diff) = text.split_at(start);
@@ -178,12 +169,13 @@ fn imported(
         let original = Original::read(root, &file)?;
         match hunks.iter().map(|hunk| changes(hunk, &original)).collect::<Result<Vec<_>>>() {
             Ok(changes) => {
-                let name_of_file = file.trim_start_matches("solutions/src/").trim_end_matches(".rs").to_owned();
+                let name_of_file =
+                    file.trim_start_matches("solutions/src/").trim_end_matches(".rs").to_owned();
                 let text = written(kind, name, header, changes.concat())?;
                 let corpus = CorpusFile::parse(&name_of_file, &text)?;
                 let entry = corpus.entries.into_iter().next().context("the patch changes nothing")?;
                 entry.apply(&original)?;
-                return Ok((name_of_file, entry, original));
+                return Ok((name_of_file, entry));
             }
             Err(error) => errors.push(format!("{error:#}")),
         }
@@ -250,14 +242,15 @@ fn located(original: &Original, lines: &[&str], at: Range<usize>, run: &[(Sign, 
     let (mut first, mut last) = (at.start, at.end);
     loop {
         if first < last {
-            let function = around(first).filter(|function| {
-                around(last - 1).is_some_and(|other| other.whole == function.whole)
-            });
+            let function = around(first)
+                .filter(|function| around(last - 1).is_some_and(|other| other.whole == function.whole));
             let name = function.map_or(ANYWHERE, |function| &function.name);
             let place = original.place(name)?;
             if original.occurrences(place, &lines[first..last]).len() == 1 {
-                let stays = |range: Range<usize>| lines[range].iter().map(|line| (Sign::Stays, (*line).to_owned()));
-                let lines = stays(first..at.start).chain(run.iter().cloned()).chain(stays(at.end..last)).collect();
+                let stays =
+                    |range: Range<usize>| lines[range].iter().map(|line| (Sign::Stays, (*line).to_owned()));
+                let lines =
+                    stays(first..at.start).chain(run.iter().cloned()).chain(stays(at.end..last)).collect();
                 return Ok(Change { function: name.to_owned(), lines });
             }
         }
@@ -266,7 +259,12 @@ fn located(original: &Original, lines: &[&str], at: Range<usize>, run: &[(Sign, 
         let can_rise = first > 0;
         let can_fall = last < lines.len();
         match () {
-            () if can_fall && (below <= above || !can_rise) && (has_text(last) || !can_rise || !has_text(first - 1)) => last += 1,
+            () if can_fall
+                && (below <= above || !can_rise)
+                && (has_text(last) || !can_rise || !has_text(first - 1)) =>
+            {
+                last += 1
+            }
             () if can_rise => first -= 1,
             () if can_fall => last += 1,
             () => bail!("the place is not unique"),
@@ -300,7 +298,8 @@ mod tests {
         let diff = "--- a/x\n+++ b/x\n@@ -2,3 +2,3 @@\n     a();\n     b();\n-    a();\n+    c();\n }\n@@ -8 +8,2 @@\n fn two() {\n+    d();\n     a();\n";
         let hunks = patch::hunks(diff, str::to_owned).unwrap();
         let changes = hunks.iter().map(|hunk| changes(hunk, &original).unwrap()).collect::<Vec<_>>().concat();
-        let text = written("wrong", "n", "mistake: it is so\ntrap: X\ncaught_by: c\nsays: s\n", changes).unwrap();
+        let text =
+            written("wrong", "n", "mistake: it is so\ntrap: X\ncaught_by: c\nsays: s\n", changes).unwrap();
         assert_eq!(
             text,
             "\n=== one ===\n\nwrong n: it is so\ncaught_by: c\nsays: s\n-    a();\n+    c();\n }\n@ two\n+    d();\n     a();\n"

@@ -44,13 +44,23 @@ pub static SPEC: Spec = Spec {
             Opt::value("--stage", "N", "Only this stage."),
             Opt::flag("--right", "Only right solutions."),
             Opt::value("--function", "NAME", "List the entries that change this function."),
-            Opt::value("--check", "NAME", "List the mistakes that this check rejects; `=` marks those that it must catch."),
+            Opt::value(
+                "--check",
+                "NAME",
+                "List the mistakes that this check rejects; `=` marks those that it must catch.",
+            ),
             Opt::value("--saying", "WORDS", "List the mistakes whose stored message has these words."),
             Opt::flag("--run", "Test the listed entries."),
         ],
         &[
-            Opt::flag("--bless", "Try every check of the stage, and store the matrix and the messages."),
-            Opt::flag("--reword", "Store the messages. Use it after a change of words in a diagnosis."),
+            Opt::flag(
+                "--bless",
+                "Try every check of the stage, store the matrix and the messages, and sort the entries.",
+            ),
+            Opt::flag(
+                "--reword",
+                "Store the messages, and sort the entries. Use it after a change of words in a diagnosis.",
+            ),
             Opt::value("--jobs", "N", "How many to test at the same time [default: one per core]."),
             Opt::value(
                 "--seed",
@@ -117,6 +127,9 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let tried = try_all(root, &program, &chosen, options)?;
     if options.bless || options.reword {
         records::bless(root, &tried, options.bless, complete)?;
+        for (name, mut corpus) in entry::read_files(root)? {
+            entry::write_file(root, &name, &mut corpus)?;
+        }
     }
     let differences = match options.seed {
         None if !options.bless && !options.reword => records::differences(&messages, &tried),
@@ -133,7 +146,9 @@ fn choose(all: &[Entry], options: &Options, matrix: &Matrix, messages: &Messages
         }
     }
     let is_said = |entry: &Entry, words: &str| {
-        messages.of(entry).is_some_and(|message| verdict::one_line(message).contains(&verdict::one_line(words)))
+        messages
+            .of(entry)
+            .is_some_and(|message| verdict::one_line(message).contains(&verdict::one_line(words)))
     };
     let is_wanted = |entry: &Entry| {
         (options.names.is_empty() || options.names.iter().any(|name| is_named(entry, name)))

@@ -35,7 +35,12 @@ pub fn hunks(diff: &str, renamed: impl Fn(&str) -> String) -> Result<Vec<Hunk>> 
 impl Hunk {
     /// The line at which the old lines stand: the nearest to the place that the patch names.
     pub fn find(&self, lines: &[&str]) -> Result<usize> {
-        let old: Vec<&str> = self.lines.iter().filter(|(sign, _)| *sign != Sign::Comes).map(|(_, line)| line.as_str()).collect();
+        let old: Vec<&str> = self
+            .lines
+            .iter()
+            .filter(|(sign, _)| *sign != Sign::Comes)
+            .map(|(_, line)| line.as_str())
+            .collect();
         let first = self.lines.iter().position(|(sign, _)| *sign != Sign::Stays).unwrap_or_default();
         let last = self.lines.iter().rev().position(|(sign, _)| *sign != Sign::Stays).unwrap_or_default();
         // Try with all lines around the change, then with fewer.
@@ -61,7 +66,9 @@ pub fn apply(diff: &str, text: &str) -> Result<String> {
     // From the last part on, so that the lines of those before keep their places.
     for hunk in hunks.iter().rev() {
         let at = hunk.find(&lines)?;
-        let kept = |sign: Sign| hunk.lines.iter().filter(move |(other, _)| *other != sign).map(|(_, line)| line.as_str());
+        let kept = |sign: Sign| {
+            hunk.lines.iter().filter(move |(other, _)| *other != sign).map(|(_, line)| line.as_str())
+        };
         let old = kept(Sign::Comes).count();
         lines.splice(at..at + old, kept(Sign::Goes));
     }

@@ -115,9 +115,11 @@ impl Program {
         let text = workshop.original(library)?;
         texts.push((library.to_owned(), format!("#![allow(warnings)]\n{text}\n{modules}{SWITCH}")));
         let main = "solutions/src/worker.rs";
-        let text = workshop.original(main)?.replacen("fn main() {\n", "fn main() {\n    solutions::choose();\n", 1);
+        let text =
+            workshop.original(main)?.replacen("fn main() {\n", "fn main() {\n    solutions::choose();\n", 1);
         texts.push((main.to_owned(), text));
-        let changes: Vec<(&str, &str)> = texts.iter().map(|(file, text)| (file.as_str(), text.as_str())).collect();
+        let changes: Vec<(&str, &str)> =
+            texts.iter().map(|(file, text)| (file.as_str(), text.as_str())).collect();
         match workshop.build_with(&changes)? {
             Built::Worker(worker) => {
                 fs::hard_link(worker, self.path(0))?;
@@ -141,7 +143,12 @@ impl Program {
                     fs::copy(worker, self.path(schemata::number(entry)))?;
                 }
                 Built::DoesNotCompile(error) => {
-                    bail!("{} `{}` in {} does not compile:\n{error}", entry.kind(), entry.name, corpus_file(&entry.file))
+                    bail!(
+                        "{} `{}` in {} does not compile:\n{error}",
+                        entry.kind(),
+                        entry.name,
+                        corpus_file(&entry.file)
+                    )
                 }
             }
         }
@@ -171,7 +178,8 @@ impl Program {
     /// verdict of the check.
     pub fn reached(&self, checks: &[&'static Check], jobs: usize) -> Result<Reached> {
         let reached = queue::run(&vec![(); jobs], checks, |(), &check| {
-            let program = self.folder.path().join(format!("record-{}{}", check.name, std::env::consts::EXE_SUFFIX));
+            let program =
+                self.folder.path().join(format!("record-{}{}", check.name, std::env::consts::EXE_SUFFIX));
             fs::hard_link(self.path(0), &program)?;
             checks::passes(check, &Kits { which: Which::Solutions, program: program.clone() }.fresh(), 0);
             let functions = fs::read_to_string(program.with_extension("reached")).unwrap_or_default();

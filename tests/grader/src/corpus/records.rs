@@ -118,8 +118,10 @@ impl Messages {
     pub fn write(&self, root: &Path) -> Result<()> {
         for (stage, _) in all_checks::STAGES {
             let start = format!("wrong/stage{stage}/");
-            let of_stage = self.0.iter().filter_map(|(name, message)| Some((name.strip_prefix(&start)?, message)));
-            let text: String = of_stage.map(|(name, message)| format!("{}{message}", heading(name))).collect();
+            let of_stage =
+                self.0.iter().filter_map(|(name, message)| Some((name.strip_prefix(&start)?, message)));
+            let text: String =
+                of_stage.map(|(name, message)| format!("{}{message}", heading(name))).collect();
             write(&root.join(messages_file(*stage)), &text)?;
         }
         Ok(())

@@ -85,7 +85,8 @@ impl Difference {
         let mut hidden: BTreeSet<&str> = BTreeSet::new();
         // Compare the functions.
         for (index, function) in new.functions.iter().enumerate() {
-            let before = old.functions.iter().find(|one| one.name == function.name && one.owner == function.owner);
+            let before =
+                old.functions.iter().find(|one| one.name == function.name && one.owner == function.owner);
             let Some(before) = before else {
                 match function.owner {
                     Owner::File => inside.push(&new_text[function.whole.clone()]),
@@ -93,7 +94,10 @@ impl Difference {
                 }
                 continue;
             };
-            if is_same(&old_text[before.head.start..before.body.end], &new_text[function.head.start..function.body.end]) {
+            if is_same(
+                &old_text[before.head.start..before.body.end],
+                &new_text[function.head.start..function.body.end],
+            ) {
                 continue;
             }
             let is_same_shape = shape(old_text, before) == shape(new_text, function);
@@ -113,7 +117,8 @@ impl Difference {
         // Compare the other items.
         for item in &new.items {
             let is_it = |other: &super::source::Item| {
-                other.name == item.name && is_same(&old_text[other.text.clone()], &new_text[item.text.clone()])
+                other.name == item.name
+                    && is_same(&old_text[other.text.clone()], &new_text[item.text.clone()])
             };
             if old.items.iter().any(is_it) {
                 continue;
@@ -151,8 +156,12 @@ impl Difference {
         for (index, function) in new.functions.iter().enumerate() {
             let text = &new_text[function.head.start..function.body.end];
             let is_inside = function.owner == Owner::File && hidden.contains(function.name.as_str());
-            if !hidden.is_empty() && !is_inside && names(text).iter().any(|name| hidden.contains(name.as_str())) {
-                let is_possible = function.owner != Owner::Trait && !function.is_const && !returns_impl(new_text, function);
+            if !hidden.is_empty()
+                && !is_inside
+                && names(text).iter().any(|name| hidden.contains(name.as_str()))
+            {
+                let is_possible =
+                    function.owner != Owner::Trait && !function.is_const && !returns_impl(new_text, function);
                 if is_possible {
                     changed.insert(index);
                 } else {
@@ -161,9 +170,10 @@ impl Difference {
             }
         }
         // A copy of a module has types of its own, which other files must not see.
-        let has_public_type = old.items.iter().any(|item| {
-            item.is_public && (item.name.starts_with("struct") || item.name.starts_with("enum"))
-        });
+        let has_public_type = old
+            .items
+            .iter()
+            .any(|item| item.is_public && (item.name.starts_with("struct") || item.name.starts_with("enum")));
         if changed.is_empty() {
             form = form.max(Form::Module);
         }
@@ -190,7 +200,8 @@ fn is_same(one: &str, other: &str) -> bool {
 
 /// The types of a function: what its callers depend on.
 fn shape(text: &str, function: &Function) -> String {
-    let of_arguments: Vec<String> = function.arguments.iter().map(|range| tokens(&text[range.clone()])).collect();
+    let of_arguments: Vec<String> =
+        function.arguments.iter().map(|range| tokens(&text[range.clone()])).collect();
     let receiver = function.receiver.clone().map_or(String::new(), |range| tokens(&text[range]));
     format!(
         "{} {receiver} {} {}",
@@ -210,7 +221,8 @@ fn returns_impl(text: &str, function: &Function) -> bool {
 pub fn schema(original: &Original, entries: Vec<(&Entry, String)>) -> Result<Schema> {
     let mut differences = Vec::new();
     for (entry, text) in entries {
-        let difference = Difference::of(original, text).with_context(|| format!("{entry} is not valid Rust"))?;
+        let difference =
+            Difference::of(original, text).with_context(|| format!("{entry} is not valid Rust"))?;
         differences.push((entry, difference));
     }
     let numbers: BTreeSet<u32> = differences.iter().map(|(entry, _)| number(entry)).collect();
@@ -230,7 +242,12 @@ pub fn schema(original: &Original, entries: Vec<(&Entry, String)>) -> Result<Sch
                     let variant = &difference.source.functions[new];
                     let name = format!("{}__{}", last(&variant.name), suffix(entry));
                     use_switch(&functions[old]);
-                    let _ = writeln!(arms, "        {} => {},", number(entry), call(&functions[old], &own(&functions[old], &name)));
+                    let _ = writeln!(
+                        arms,
+                        "        {} => {},",
+                        number(entry),
+                        call(&functions[old], &own(&functions[old], &name))
+                    );
                     let inside = format!("\n{}\n", difference.inside);
                     *beside += &renamed(&difference.text, variant, &name, &inside);
                 }
@@ -341,12 +358,18 @@ mod tests {
         let head = "/// About one.\npub fn one(a0: &(u32, u32)) -> u32 {\n    match crate::chosen(\"stage1_a one\") {\n";
         assert!(schema.text.contains(head), "{}", schema.text);
         assert!(schema.text.contains(" => one__right_r(a0),\n        _ => one__unchanged(a0),\n"));
-        assert!(schema.text.contains("pub fn one__right_r(&(x, y): &(u32, u32)) -> u32 {\n\n\n    y + x + A\n}\n"));
+        assert!(
+            schema
+                .text
+                .contains("pub fn one__right_r(&(x, y): &(u32, u32)) -> u32 {\n\n\n    y + x + A\n}\n")
+        );
     }
 
     #[test]
     fn methods_and_generic_functions_are_called_with_what_they_need() {
-        let schema = put("=== two ===\n\nright r: r\n-    x[0]\n+    x[0] + 0\n@ S::three\n-        x\n+        x + 0\n");
+        let schema = put(
+            "=== two ===\n\nright r: r\n-    x[0]\n+    x[0] + 0\n@ S::three\n-        x\n+        x + 0\n",
+        );
         assert_eq!(schema.forms, [Form::Functions]);
         assert!(schema.text.contains("=> two__right_r::<N>(a0),"), "{}", schema.text);
         assert!(schema.text.contains("=> Self::three__right_r(self, a0),"), "{}", schema.text);
@@ -356,7 +379,11 @@ mod tests {
     fn a_changed_constant_stands_inside_of_the_functions_that_use_it() {
         let schema = put("=== * ===\n\nright r: r\n-const A: u32 = 1;\n+const A: u32 = 2;\n");
         assert_eq!(schema.forms, [Form::Functions]);
-        assert!(schema.text.contains("one__right_r(&(x, y): &(u32, u32)) -> u32 {\nconst A: u32 = 2;\n"), "{}", schema.text);
+        assert!(
+            schema.text.contains("one__right_r(&(x, y): &(u32, u32)) -> u32 {\nconst A: u32 = 2;\n"),
+            "{}",
+            schema.text
+        );
         assert!(!schema.text.contains("two__right_r"));
     }
 

@@ -127,7 +127,7 @@ impl Source {
         self.items.push(Item {
             name,
             text: item.span().byte_range(),
-             is_public: visibility.is_some_and(is_public),
+            is_public: visibility.is_some_and(is_public),
             kind,
         });
     }
@@ -214,7 +214,9 @@ pub fn tokens(text: &str) -> String {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let is_hash = |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == '#');
     let is_doc = |token: &TokenTree| match token {
-        TokenTree::Group(group) => group.stream().into_iter().next().is_some_and(|word| word.to_string() == "doc"),
+        TokenTree::Group(group) => {
+            group.stream().into_iter().next().is_some_and(|word| word.to_string() == "doc")
+        }
         _ => false,
     };
     let mut words = String::new();

@@ -160,11 +160,7 @@ mod tests {
 
     #[test]
     fn fates_follow_from_claims_and_failures() {
-        let claim = Claim::Wrong {
-            caught_by: "b".into(),
-            says: vec!["far root".into()],
-            is_unknown: false,
-        };
+        let claim = Claim::Wrong { caught_by: "b".into(), says: vec!["far root".into()], is_unknown: false };
         let entry = |claim: &Claim| Entry {
             stage: 1,
             name: "n".into(),

@@ -123,7 +123,9 @@ fn roles(root: &Path, options: &Options) -> Result<Vec<Role>> {
     let calls_later = |entry: &Entry| {
         ["stage5_", "stage6_", "stage7_", "stage8_", "stage9_", "stage10_", "stage11_", "stage12_"]
             .iter()
-            .any(|later| entry.changes.iter().flat_map(|change| &change.lines).any(|(_, line)| line.contains(later)))
+            .any(|later| {
+                entry.changes.iter().flat_map(|change| &change.lines).any(|(_, line)| line.contains(later))
+            })
     };
     let of_class = |entry: &Entry| STAGES_OF_CLASS.contains(&entry.stage) && !calls_later(entry);
     let (right, wrong): (Vec<Entry>, Vec<Entry>) =

@@ -10,8 +10,8 @@ mod journal;
 mod list;
 pub mod reviewed;
 
-use crate::corpus::workshop::{Built, Workshop};
 use crate::corpus::FOLDER;
+use crate::corpus::workshop::{Built, Workshop};
 use crate::gaps::{self, Gap};
 use crate::kits::{Need, Source, Which};
 use crate::pictures::{Scenes, Shown};

@@ -9,10 +9,10 @@
 mod judges;
 mod numbers;
 
+use crate::corpus::FOLDER;
 use crate::corpus::entry::{Claim, Entry, read_all};
 use crate::corpus::program::{Program, Reached};
 use crate::corpus::records::{Messages, without_rubric};
-use crate::corpus::FOLDER;
 use crate::mutants::reviewed::Reviewed;
 use crate::queue;
 use crate::report::bar_of_steps;
@@ -64,6 +64,9 @@ impl Options {
         })
     }
 }
+
+/// How many trials a judge gets before it is started again.
+const TRIALS_OF_A_JUDGE: usize = 30;
 
 /// The list of reviewed changes.
 const REVIEWED: &str = "tests/corpus/harmless.toml";
@@ -137,7 +140,9 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
             match &fate {
                 Fate::DoesNotCompile => println!("  does not compile, so another one is drawn\n"),
                 Fate::Caught(why) => println!("  caught: {why}\n"),
-                Fate::Survived if reviewed.has(&change.file, &change.was, &change.becomes) => println!("  reviewed as harmless\n"),
+                Fate::Survived if reviewed.has(&change.file, &change.was, &change.becomes) => {
+                    println!("  reviewed as harmless\n")
+                }
                 Fate::Survived => println!("  SURVIVED\n"),
             }
         });
@@ -178,9 +183,12 @@ fn report(tried: &[(&Change, Fate)], reviewed: &Reviewed) -> bool {
     for change in &caught {
         println!("\ncaught, but {REVIEWED} says that nothing can notice it: {change}");
     }
-    let survivors = tried.iter().filter(|(change, fate)| *fate == Fate::Survived && !is_reviewed(change)).count();
+    let survivors =
+        tried.iter().filter(|(change, fate)| *fate == Fate::Survived && !is_reviewed(change)).count();
     if survivors > 0 {
-        println!("\nfor each survivor add an entry to the corpus that notices it, or its reason to {REVIEWED}");
+        println!(
+            "\nfor each survivor add an entry to the corpus that notices it, or its reason to {REVIEWED}"
+        );
     }
     survivors == 0 && caught.is_empty()
 }
@@ -195,7 +203,9 @@ fn drawn(root: &Path, options: &Options) -> Result<Vec<Change>> {
         }
         let text = fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
         for number in numbers(&text).with_context(|| file.clone())? {
-            let draw = |words: &str| fingerprint([&options.seed.to_le_bytes()[..], file.as_bytes(), words.as_bytes()]);
+            let draw = |words: &str| {
+                fingerprint([&options.seed.to_le_bytes()[..], file.as_bytes(), words.as_bytes()])
+            };
             let line = text[..number.place.start].matches('\n').count();
             let words = format!("{} {}", text.lines().nth(line).unwrap_or_default(), number.place.start);
             let order = draw(&words);
@@ -232,7 +242,9 @@ fn files(root: &Path) -> Result<Vec<(u8, String)>> {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             match path.is_dir() {
                 true => folders.push((stage, format!("{folder}/{name}"))),
-                false if name.ends_with(".rs") && name != "tests.rs" => files.push((stage, format!("{folder}/{name}"))),
+                false if name.ends_with(".rs") && name != "tests.rs" => {
+                    files.push((stage, format!("{folder}/{name}")))
+                }
                 false => {}
             }
         }
@@ -271,14 +283,22 @@ impl Guard {
         }
         // A check is in the changed file, most likely, if the file contains its name: ask it first.
         trials.sort_by_key(|(check, _)| !change.text.contains(check.name));
-        let judges = (0..queue::cores()).map(|_| Ok(Mutex::new(Judge::start(&judge)?)));
-        let judges = judges.collect::<Result<Vec<_>>>()?;
+        // A judge has a limit of processor time, because a changed loop may not end. So each judge gets a few trials.
+        let parts: Vec<&[(&Check, &Entry)]> = trials.chunks(TRIALS_OF_A_JUDGE).collect();
         let caught: Mutex<Option<String>> = Mutex::default();
-        queue::run(&judges, &trials, |judge, (check, entry)| {
-            if lock(&caught).is_none()
-                && let Some(why) = self.difference(&mut *lock(judge), check, entry)?
-            {
-                *lock(&caught) = Some(why);
+        queue::run(&queue::one_a_core(), &parts, |(), part| {
+            let mut running = None;
+            for (check, entry) in *part {
+                if lock(&caught).is_some() {
+                    break;
+                }
+                if running.is_none() {
+                    running = Some(Judge::start(&judge)?);
+                }
+                let judge = running.as_mut().context("a judge")?;
+                if let Some(why) = self.difference(judge, check, entry)? {
+                    *lock(&caught) = Some(why);
+                }
             }
             Ok(())
         })?;

@@ -97,7 +97,12 @@ struct Finder {
 }
 
 impl Finder {
-    fn within<T>(&mut self, is_compared: bool, comparison: Option<Range<usize>>, visit: impl FnOnce(&mut Self) -> T) -> T {
+    fn within<T>(
+        &mut self,
+        is_compared: bool,
+        comparison: Option<Range<usize>>,
+        visit: impl FnOnce(&mut Self) -> T,
+    ) -> T {
         let before = (self.is_compared, self.comparison.clone());
         (self.is_compared, self.comparison) = (is_compared, comparison);
         let done = visit(self);

@@ -37,7 +37,17 @@ const COMMANDS: [(&str, &[&str]); 21] = [
     ("new-check", &["NAME", "--stage", "--function", "--module", "--after"]),
     (
         "corpus",
-        &["[NAME]...", "--stage", "--function", "--check", "--saying", "--run", "--bless", "--reword", "--seed"],
+        &[
+            "[NAME]...",
+            "--stage",
+            "--function",
+            "--check",
+            "--saying",
+            "--run",
+            "--bless",
+            "--reword",
+            "--seed",
+        ],
     ),
     ("corpus import", &["FOLDER", "--renames", "--check"]),
     ("weaken", &["--sample", "--seed", "--file", "--resume"]),

@@ -27,7 +27,10 @@ fn every_entry_fits_the_solutions_as_they_are() {
         let mut sorted = corpus.clone();
         sorted.sort(&original);
         let text = std::fs::read_to_string(root().join(format!("tests/corpus/{name}.corpus"))).unwrap();
-        assert!(text == sorted.text(), "tests/corpus/{name}.corpus is not sorted: `grader corpus --sort` sorts it");
+        assert!(
+            text == sorted.text(),
+            "tests/corpus/{name}.corpus is not sorted: `cargo run -p grader -- corpus NAME --reword` sorts it"
+        );
     }
 }
 
@@ -129,7 +132,10 @@ fn questions_about_the_corpus_are_answered_without_a_build() {
     let says = answer(&["--saying", "you take a box for a hit"]);
     assert!(says.contains("wrong any_box_is_enough: ") && !says.contains("right "), "{says}");
     let changes = answer(&["--function", "slab"]);
-    assert!(changes.starts_with("tests/corpus/stage3_boxes.corpus\n") && changes.contains("  right "), "{changes}");
+    assert!(
+        changes.starts_with("tests/corpus/stage3_boxes.corpus\n") && changes.contains("  right "),
+        "{changes}"
+    );
     let caught = answer(&["--check", "any_hit_stops_at_the_first"]);
     assert!(caught.contains(" =wrong any_does_not_stop: "), "{caught}");
 }
