@@ -2,12 +2,13 @@
 //! named check must catch and diagnose, or another right solution, which every check must accept.
 //!
 //! `entry` (reads `tests/corpus`) · `source` (the functions of a file) · `schemata` (many entries in one file) · `program` (the
-//! program of all entries) · `verdict` (the result of an entry) · `records` (the
+//! program of all entries) · `plan` (which checks are tried with which entries) · `verdict` (the result of an entry) · `records` (the
 //! stored results) · `workshop` (the folder in which solutions are built) · `patch`, `import` (patches of a course)
 
 pub mod entry;
 pub mod import;
 pub mod patch;
+pub mod plan;
 pub mod program;
 pub mod records;
 pub mod schemata;
@@ -19,14 +20,14 @@ use crate::kits::{Need, Source, Which};
 use crate::queue;
 use crate::report::bar_of_steps;
 use anyhow::{Result, bail};
-use checks::{Check, Inputs};
+use checks::Inputs;
 use entry::{Claim, Entry};
+use plan::{Plan, Trial};
 use program::Program;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use raykata_cli::lock::Lock;
 use records::{Matrix, Messages};
 use schemata::Form;
-use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 use verdict::{Fate, Tried};
@@ -124,7 +125,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let _lock = Lock::on(&root.join(FOLDER))?;
     // Build all entries, so that the next run with other ones needs no build.
     let program = Program::build(root, &all)?;
-    let tried = try_all(root, &program, &chosen, options)?;
+    let tried = try_all(root, &program, &matrix, &chosen, options)?;
     if options.bless || options.reword {
         records::bless(root, &tried, options.bless, complete)?;
         for (name, mut corpus) in entry::read_files(root)? {
@@ -189,14 +190,18 @@ fn list(chosen: &[Entry], options: &Options, matrix: &Matrix) -> bool {
     true
 }
 
-/// Tests entries.
-fn try_all(root: &Path, program: &Program, entries: &[Entry], options: &Options) -> Result<Vec<Tried>> {
-    // Find out which checks reach the functions that right solutions change. With `--bless` every check is tried.
-    let with_right: BTreeSet<u8> =
-        entries.iter().filter(|entry| entry.claim == Claim::Right).map(|entry| entry.stage).collect();
-    let checks = with_right.iter().flat_map(|stage| all_checks::of_stage(*stage)).filter(|_| !options.bless);
-    let reached = program.reached(&checks.collect::<Vec<_>>(), options.jobs)?;
-    let is_tried = |entry: &Entry, check: &Check| options.bless || program.is_tried(entry, check, &reached);
+/// Tests entries: with the planned checks, or with `--bless` with all checks of their stages.
+fn try_all(
+    root: &Path,
+    program: &Program,
+    matrix: &Matrix,
+    entries: &[Entry],
+    options: &Options,
+) -> Result<Vec<Tried>> {
+    let plan = match options.bless {
+        true => None,
+        false => Some(Plan::of(program, matrix, entries, options.jobs)?),
+    };
     // With a seed, texts and pictures are drawn, and the expected ones come from the reference.
     let reference = match options.seed {
         Some(_) => Some(Source::prepare(root, Which::Solutions, Need::Checks)?.fresh()),
@@ -206,15 +211,25 @@ fn try_all(root: &Path, program: &Program, entries: &[Entry], options: &Options)
     let bar = bar_of_steps(entries.len());
     let tried = queue::run(&vec![(); options.jobs], entries, |(), entry| {
         bar.set_message(entry.to_string());
-        let checks = all_checks::of_stage(entry.stage).iter().filter(|check| is_tried(entry, check));
-        let failures: verdict::Failures = checks
-            .filter_map(|check| {
-                let kit = program.kit(entry).fresh();
-                let examined = checks::examine_with(check, &kit, options.seed.unwrap_or(0), inputs.clone());
-                Some((check.name, verdict::failure(checks::verdict(check, examined))?))
-            })
-            .collect();
-        let fate = match Fate::of(entry, &failures) {
+        let (mut failures, mut missed) = (verdict::Failures::new(), Vec::new());
+        for check in all_checks::of_stage(entry.stage) {
+            let kit = || program.kit(entry).fresh();
+            match plan.as_ref().map(|plan| plan.trial(program, entry, check)) {
+                Some(None) => {}
+                Some(Some(Trial::Rejects)) => {
+                    if checks::passes(check, &kit(), options.seed.unwrap_or(0)) {
+                        missed.push(check.name);
+                    }
+                }
+                _ => {
+                    let examined =
+                        checks::examine_with(check, &kit(), options.seed.unwrap_or(0), inputs.clone());
+                    let failure = verdict::failure(checks::verdict(check, examined));
+                    failures.extend(failure.map(|message| (check.name, message)));
+                }
+            }
+        }
+        let fate = match Fate::of(entry, &failures, missed) {
             Fate::Unnamed(_) | Fate::Misnamed if options.seed.is_some() => Fate::Killed,
             fate => fate,
         };
@@ -241,8 +256,9 @@ fn report(program: &Program, tried: &[Tried], differences: &[String]) {
             of_stage.filter(|one| which(one)).count()
         };
         let fated = |fate: Fate| count(&|one| one.fate == fate);
-        let otherwise =
-            |one: &Tried| matches!(one.fate, Fate::Unnamed(_) | Fate::Misnamed | Fate::KilledByAnother);
+        let otherwise = |one: &Tried| {
+            matches!(one.fate, Fate::Unnamed(_) | Fate::Misnamed | Fate::KilledByAnother | Fate::Missed(_))
+        };
         let right = |one: &Tried| one.entry.claim == Claim::Right;
         println!(
             "{:<5}  {:>8}  {:>7}  {:>9}  {:>8}  {:>9}  {:>6}  {:>8}",

@@ -188,15 +188,13 @@ impl Program {
         Ok(Reached(reached.into_iter().collect()))
     }
 
-    /// Returns whether a check is tried with an entry: a mistake with the check that must catch it, a right solution with each
-    /// check that reaches a function that it changes.
-    pub fn is_tried(&self, entry: &Entry, check: &Check, reached: &Reached) -> bool {
-        match (entry.caught_by(), self.built.get(&entry.to_string())) {
-            (Some(caught_by), _) => check.name == caught_by,
-            (None, Some((Form::Functions | Form::Module, changed))) => {
+    /// Returns whether a check reaches a function that an entry changes.
+    pub fn is_reached(&self, entry: &Entry, check: &Check, reached: &Reached) -> bool {
+        match self.built.get(&entry.to_string()) {
+            Some((Form::Functions | Form::Module, changed)) => {
                 reached.0.get(check.name).is_none_or(|reached| !reached.is_disjoint(changed))
             }
-            (None, _) => true,
+            _ => true,
         }
     }
 }

@@ -44,6 +44,11 @@ impl Matrix {
         self.0.values().flat_map(|checks| checks.split(' ')).map(|check| check.trim_start_matches('='))
     }
 
+    /// Returns how many checks an entry fails.
+    pub fn n_failing(&self, entry: &Entry) -> usize {
+        self.0.get(&entry.to_string()).map_or(0, |row| row.split(' ').filter(|check| *check != "-").count())
+    }
+
     /// Returns whether an entry fails a check.
     pub fn fails(&self, entry: &Entry, check: &str) -> bool {
         let row = self.0.get(&entry.to_string());

@@ -1,6 +1,7 @@
 //! The result of an entry, and whether it is the required one.
 
 use super::entry::{Claim, Entry};
+use super::records::MATRIX;
 use all_checks::STAGES;
 use checks::{Check, Verdict};
 use std::collections::BTreeMap;
@@ -21,6 +22,8 @@ pub enum Fate {
     Unnamed(Vec<String>),
     /// A mistake that the checks do not know: the named check caught it, and its message names some other mistake.
     Misnamed,
+    /// A mistake: the named check caught it, but these checks, which the matrix says reject it, accept it.
+    Missed(Vec<&'static str>),
     /// A mistake: other checks caught it.
     KilledByAnother,
     /// A mistake that no check caught, of those that were tried.
@@ -32,8 +35,8 @@ pub enum Fate {
 }
 
 impl Fate {
-    /// Returns the fate of an entry that failed these checks.
-    pub fn of(entry: &Entry, failures: &Failures) -> Fate {
+    /// Returns the fate of an entry that failed these checks, and that passed those of `missed`, which must reject it.
+    pub fn of(entry: &Entry, failures: &Failures, missed: Vec<&'static str>) -> Fate {
         match &entry.claim {
             Claim::Right if failures.is_empty() => Fate::Accepted,
             Claim::Right => Fate::Rejected,
@@ -45,7 +48,11 @@ impl Fate {
                     let message = one_line(message);
                     let missing: Vec<String> =
                         says.iter().filter(|words| !message.contains(&one_line(words))).cloned().collect();
-                    if missing.is_empty() { Fate::Killed } else { Fate::Unnamed(missing) }
+                    match missing.is_empty() {
+                        false => Fate::Unnamed(missing),
+                        true if !missed.is_empty() => Fate::Missed(missed),
+                        true => Fate::Killed,
+                    }
                 }
             },
         }
@@ -101,6 +108,13 @@ impl fmt::Display for Tried {
             Fate::Misnamed => {
                 write!(f, "killed by {named}, whose message must name no mistake")?;
                 write!(f, ":\n{}", failures.get(named).map_or("", String::as_str))
+            }
+            Fate::Missed(checks) => {
+                write!(
+                    f,
+                    "killed by {named}, but {} accepts it, and {MATRIX} says that it rejects it",
+                    checks.join(", ")
+                )
             }
             Fate::KilledByAnother => write!(f, "killed, but not by {named}: by {}", checks()),
             Fate::Survived => write!(f, "SURVIVED: {named} accepts it"),
@@ -171,7 +185,7 @@ mod tests {
         };
         let fate = |claim: &Claim, failed: &[(&'static str, &str)]| {
             let failures = failed.iter().map(|(name, message)| (*name, (*message).to_owned())).collect();
-            Fate::of(&entry(claim), &failures)
+            Fate::of(&entry(claim), &failures, Vec::new())
         };
         assert_eq!(fate(&claim, &[]), Fate::Survived);
         assert_eq!(fate(&claim, &[("a", "")]), Fate::KilledByAnother);
@@ -180,6 +194,8 @@ mod tests {
         let unknown = Claim::Wrong { caught_by: "b".into(), says: vec![], is_unknown: true };
         assert_eq!(fate(&unknown, &[("b", "  yours 3\n")]), Fate::Killed);
         assert_eq!(fate(&unknown, &[("b", "  yours 3\n  looks like: the far root\n")]), Fate::Misnamed);
+        let killed = Failures::from([("b", "the far root".to_owned())]);
+        assert_eq!(Fate::of(&entry(&claim), &killed, vec!["c"]), Fate::Missed(vec!["c"]));
         assert_eq!(fate(&Claim::Right, &[]), Fate::Accepted);
         assert_eq!(fate(&Claim::Right, &[("a", "")]), Fate::Rejected);
     }

@@ -10,9 +10,10 @@ mod judges;
 mod numbers;
 
 use crate::corpus::FOLDER;
-use crate::corpus::entry::{Claim, Entry, read_all};
-use crate::corpus::program::{Program, Reached};
-use crate::corpus::records::{Messages, without_rubric};
+use crate::corpus::entry::{Entry, read_all};
+use crate::corpus::plan::{Plan, Trial};
+use crate::corpus::program::Program;
+use crate::corpus::records::{Matrix, Messages, without_rubric};
 use crate::mutants::reviewed::Reviewed;
 use crate::queue;
 use crate::report::bar_of_steps;
@@ -64,6 +65,9 @@ impl Options {
         })
     }
 }
+
+/// How many entries try each check after a change of what all checks share. Entries of a check begin with its mistakes.
+const MISTAKES_OF_SHARED: usize = 2;
 
 /// How many trials a judge gets before it is started again.
 const TRIALS_OF_A_JUDGE: usize = 30;
@@ -206,9 +210,10 @@ fn drawn(root: &Path, options: &Options) -> Result<Vec<Change>> {
             let draw = |words: &str| {
                 fingerprint([&options.seed.to_le_bytes()[..], file.as_bytes(), words.as_bytes()])
             };
-            let line = text[..number.place.start].matches('\n').count();
-            let words = format!("{} {}", text.lines().nth(line).unwrap_or_default(), number.place.start);
-            let order = draw(&words);
+            // Draw by the text of the line, so that changes elsewhere in the file draw no other numbers.
+            let start = text[..number.place.start].rfind('\n').map_or(0, |end| end + 1);
+            let line = text[start..].lines().next().unwrap_or_default();
+            let order = draw(&format!("{} {line}", number.place.start - start));
             let turns = order.as_bytes().last().is_some_and(|digit| digit % 4 == 0);
             let turned = number.turned(&text).filter(|_| turns);
             let changed = turned.unwrap_or_else(|| number.times_ten(&text));
@@ -259,36 +264,40 @@ struct Guard {
     program: Program,
     entries: Vec<Entry>,
     messages: Messages,
-    reached: Reached,
+    plan: Plan,
 }
 
 impl Guard {
     fn open(root: &Path) -> Result<Guard> {
         let entries = read_all(root)?;
         let program = Program::build(root, &entries)?;
-        let checks: Vec<&Check> = STAGES.iter().flat_map(|(_, checks)| *checks).collect();
-        let reached = program.reached(&checks, queue::cores())?;
-        Ok(Guard { judges: Judges::open(root)?, program, entries, messages: Messages::read(root), reached })
+        let plan = Plan::of(&program, &Matrix::read(root), &entries, queue::cores())?;
+        Ok(Guard { judges: Judges::open(root)?, program, entries, messages: Messages::read(root), plan })
     }
 
     fn judge(&self, change: &Change) -> Result<Fate> {
         let Some(judge) = self.judges.changed(&change.file, &change.text)? else {
             return Ok(Fate::DoesNotCompile);
         };
-        let mut trials: Vec<(&Check, &Entry)> = Vec::new();
-        for entry in self.entries.iter().filter(|entry| change.stage == 0 || entry.stage == change.stage) {
-            let checks = all_checks::of_stage(entry.stage).iter();
-            let checks = checks.filter(|check| self.program.is_tried(entry, check, &self.reached));
-            trials.extend(checks.map(|check| (check, entry)));
+        let mut trials: Vec<(Trial, &Check, &Entry)> = Vec::new();
+        for (stage, checks) in STAGES.iter().filter(|(stage, _)| [0, *stage].contains(&change.stage)) {
+            for check in *checks {
+                let of_stage = self.entries.iter().filter(|entry| entry.stage == *stage);
+                let tried = of_stage
+                    .filter_map(|entry| Some((self.plan.trial(&self.program, entry, check)?, check, entry)));
+                // Each check shows what all checks share, so a few of its mistakes are enough.
+                let most = if change.stage == 0 { MISTAKES_OF_SHARED } else { usize::MAX };
+                trials.extend(tried.take(most));
+            }
         }
         // A check is in the changed file, most likely, if the file contains its name: ask it first.
-        trials.sort_by_key(|(check, _)| !change.text.contains(check.name));
+        trials.sort_by_key(|(_, check, _)| !change.text.contains(check.name));
         // A judge has a limit of processor time, because a changed loop may not end. So each judge gets a few trials.
-        let parts: Vec<&[(&Check, &Entry)]> = trials.chunks(TRIALS_OF_A_JUDGE).collect();
+        let parts: Vec<&[(Trial, &Check, &Entry)]> = trials.chunks(TRIALS_OF_A_JUDGE).collect();
         let caught: Mutex<Option<String>> = Mutex::default();
         queue::run(&queue::one_a_core(), &parts, |(), part| {
             let mut running = None;
-            for (check, entry) in *part {
+            for (trial, check, entry) in *part {
                 if lock(&caught).is_some() {
                     break;
                 }
@@ -296,7 +305,7 @@ impl Guard {
                     running = Some(Judge::start(&judge)?);
                 }
                 let judge = running.as_mut().context("a judge")?;
-                if let Some(why) = self.difference(judge, check, entry)? {
+                if let Some(why) = self.difference(judge, *trial, check, entry)? {
                     *lock(&caught) = Some(why);
                 }
             }
@@ -307,14 +316,20 @@ impl Guard {
     }
 
     /// How a check differs from what the corpus keeps of it, if it does.
-    fn difference(&self, judge: &mut Judge, check: &Check, entry: &Entry) -> Result<Option<String>> {
+    fn difference(
+        &self,
+        judge: &mut Judge,
+        trial: Trial,
+        check: &Check,
+        entry: &Entry,
+    ) -> Result<Option<String>> {
         let message = judge.message(check, &self.program.kit(entry))?;
         let named = check.name;
-        Ok(match (&entry.claim, message) {
-            (Claim::Right, None) => None,
-            (Claim::Right, Some(_)) => Some(format!("`{named}` rejects {entry}")),
-            (Claim::Wrong { .. }, None) => Some(format!("`{named}` accepts {entry}")),
-            (Claim::Wrong { .. }, Some(message)) => {
+        Ok(match (trial, message) {
+            (Trial::Accepts, None) | (Trial::Rejects, Some(_)) => None,
+            (Trial::Accepts, Some(_)) => Some(format!("`{named}` rejects {entry}")),
+            (Trial::Rejects | Trial::Message, None) => Some(format!("`{named}` accepts {entry}")),
+            (Trial::Message, Some(message)) => {
                 let is_kept = self.messages.of(entry) == Some(&without_rubric(&message));
                 (!is_kept).then(|| format!("the message of `{named}` about {entry} differs"))
             }

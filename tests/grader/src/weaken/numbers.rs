@@ -1,4 +1,5 @@
-//! Finds the numbers by which checks judge: those in comparisons, and in values that are compared.
+//! Finds the numbers by which checks judge: those that are compared, and the factors of values that are compared. A number that is
+//! added or given to a function is a part of a formula and no bound.
 
 use anyhow::{Result, anyhow};
 use std::collections::BTreeSet;
@@ -46,9 +47,8 @@ pub fn numbers(text: &str) -> Result<Vec<Number>> {
     let file = syn::parse_file(text).map_err(|error| anyhow!("{error}"))?;
     let mut compared = Compared::default();
     compared.visit_file(&file);
-    let mut finder = Finder { compared: compared.0, comparison: None, is_compared: false, found: Vec::new() };
+    let mut finder = Finder { compared: compared.0, found: Vec::new() };
     finder.visit_file(&file);
-    finder.found.dedup();
     Ok(finder.found)
 }
 
@@ -89,25 +89,34 @@ impl<'ast> Visit<'ast> for Names<'_> {
 
 struct Finder {
     compared: BTreeSet<String>,
-    /// The comparison that is being visited.
-    comparison: Option<Range<usize>>,
-    /// Whether the value that is being visited is compared.
-    is_compared: bool,
     found: Vec<Number>,
 }
 
 impl Finder {
-    fn within<T>(
-        &mut self,
-        is_compared: bool,
-        comparison: Option<Range<usize>>,
-        visit: impl FnOnce(&mut Self) -> T,
-    ) -> T {
-        let before = (self.is_compared, self.comparison.clone());
-        (self.is_compared, self.comparison) = (is_compared, comparison);
-        let done = visit(self);
-        (self.is_compared, self.comparison) = before;
-        done
+    /// Adds the numbers that are factors of a value.
+    fn factors(&mut self, value: &syn::Expr, comparison: &Option<Range<usize>>) {
+        match value {
+            syn::Expr::Lit(literal) => self.number(literal, comparison),
+            syn::Expr::Binary(binary) if matches!(binary.op, syn::BinOp::Mul(_) | syn::BinOp::Div(_)) => {
+                self.factors(&binary.left, comparison);
+                self.factors(&binary.right, comparison);
+            }
+            syn::Expr::Paren(inner) => self.factors(&inner.expr, comparison),
+            syn::Expr::Unary(inner) => self.factors(&inner.expr, comparison),
+            syn::Expr::Cast(inner) => self.factors(&inner.expr, comparison),
+            _ => {}
+        }
+    }
+
+    fn number(&mut self, literal: &syn::ExprLit, comparison: &Option<Range<usize>>) {
+        let is_zero = |digits: &str| digits.parse::<f64>().is_ok_and(|value| value == 0.0);
+        let is_whole = match &literal.lit {
+            syn::Lit::Int(number) if !is_zero(number.base10_digits()) => true,
+            syn::Lit::Float(number) if !is_zero(number.base10_digits()) => false,
+            _ => return,
+        };
+        let place = literal.span().byte_range();
+        self.found.push(Number { place, is_whole, comparison: comparison.clone() });
     }
 }
 
@@ -119,45 +128,27 @@ impl<'ast> Visit<'ast> for Finder {
     }
 
     fn visit_item_const(&mut self, item: &'ast syn::ItemConst) {
-        let is_compared = self.compared.contains(&item.ident.to_string());
-        self.within(is_compared, None, |finder| finder.visit_expr(&item.expr));
+        if self.compared.contains(&item.ident.to_string()) {
+            self.factors(&item.expr, &None);
+        }
+        visit::visit_item_const(self, item);
     }
 
     fn visit_local(&mut self, local: &'ast syn::Local) {
-        let is_compared = match &local.pat {
-            syn::Pat::Ident(name) => self.compared.contains(&name.ident.to_string()),
-            _ => false,
-        };
-        self.within(is_compared, None, |finder| visit::visit_local(finder, local));
+        if let (syn::Pat::Ident(name), Some(init)) = (&local.pat, &local.init)
+            && self.compared.contains(&name.ident.to_string())
+        {
+            self.factors(&init.expr, &None);
+        }
+        visit::visit_local(self, local);
     }
 
     fn visit_expr_binary(&mut self, binary: &'ast syn::ExprBinary) {
-        match sign(&binary.op) {
-            Some(sign) => self.within(true, Some(sign), |finder| visit::visit_expr_binary(finder, binary)),
-            None => visit::visit_expr_binary(self, binary),
+        if let Some(sign) = sign(&binary.op) {
+            self.factors(&binary.left, &Some(sign.clone()));
+            self.factors(&binary.right, &Some(sign));
         }
-    }
-
-    fn visit_expr_closure(&mut self, closure: &'ast syn::ExprClosure) {
-        // What a closure does is judged only by comparisons of its own.
-        self.within(false, None, |finder| visit::visit_expr_closure(finder, closure));
-    }
-
-    fn visit_expr_index(&mut self, index: &'ast syn::ExprIndex) {
-        self.visit_expr(&index.expr);
-    }
-
-    fn visit_expr_lit(&mut self, literal: &'ast syn::ExprLit) {
-        let is_zero = |digits: &str| digits.parse::<f64>().is_ok_and(|value| value == 0.0);
-        let is_whole = match &literal.lit {
-            syn::Lit::Int(number) if !is_zero(number.base10_digits()) => true,
-            syn::Lit::Float(number) if !is_zero(number.base10_digits()) => false,
-            _ => return,
-        };
-        if self.is_compared {
-            let place = literal.span().byte_range();
-            self.found.push(Number { place, is_whole, comparison: self.comparison.clone() });
-        }
+        visit::visit_expr_binary(self, binary);
     }
 }
 
@@ -172,11 +163,11 @@ mod tests {
                     #[cfg(test)]\nmod tests { const N: f64 = 9.0; fn g() -> bool { N > 8.0 } }\n";
         let found = numbers(text).unwrap();
         let words: Vec<&str> = found.iter().map(|number| &text[number.place.clone()]).collect();
-        assert_eq!(words, ["1e-3", "4", "5.0", "2.5", "3"]);
+        assert_eq!(words, ["1e-3", "4", "2.5", "3"]);
         assert!(found[0].times_ten(text).starts_with("const BOUND: f64 = (10.0 * 1e-3);"));
         assert!(found[1].times_ten(text).contains("let most = (10 * 4) * x"));
         assert_eq!(found[0].turned(text), None);
-        assert!(found[3].turned(text).unwrap().contains("x >= 2.5 *"));
-        assert!(found[4].turned(text).unwrap().contains("most < 3"));
+        assert!(found[2].turned(text).unwrap().contains("x >= 2.5 *"));
+        assert!(found[3].turned(text).unwrap().contains("most < 3"));
     }
 }
