@@ -163,11 +163,11 @@ mod tests {
                     #[cfg(test)]\nmod tests { const N: f64 = 9.0; fn g() -> bool { N > 8.0 } }\n";
         let found = numbers(text).unwrap();
         let words: Vec<&str> = found.iter().map(|number| &text[number.place.clone()]).collect();
-        assert_eq!(words, ["1e-3", "4", "2.5", "3"]);
+        assert_eq!(words, ["1e-3", "4", "5.0", "2.5", "3"]);
         assert!(found[0].times_ten(text).starts_with("const BOUND: f64 = (10.0 * 1e-3);"));
         assert!(found[1].times_ten(text).contains("let most = (10 * 4) * x"));
         assert_eq!(found[0].turned(text), None);
-        assert!(found[2].turned(text).unwrap().contains("x >= 2.5 *"));
-        assert!(found[3].turned(text).unwrap().contains("most < 3"));
+        assert!(found[3].turned(text).unwrap().contains("x >= 2.5 *"));
+        assert!(found[4].turned(text).unwrap().contains("most < 3"));
     }
 }

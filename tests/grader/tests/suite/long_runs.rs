@@ -2,8 +2,6 @@
 
 use super::grade::graded;
 use super::program_runs::{grader, leaves_out_what_takes_long, printed, root};
-use std::fs;
-use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
@@ -28,10 +26,6 @@ fn kill_when(mut run: Child, is_time: impl Fn() -> bool) {
     }
     run.kill().expect("killed");
     run.wait().expect("ended");
-}
-
-fn lines(file: &Path) -> usize {
-    fs::read_to_string(file).map_or(0, |text| text.lines().count())
 }
 
 /// A rehearsal takes minutes, so it is killed only with `CI_LONG=1`.
