@@ -66,9 +66,6 @@ impl Options {
     }
 }
 
-/// How many entries try each check after a change of what all checks share. Entries of a check begin with its mistakes.
-const MISTAKES_OF_SHARED: usize = 2;
-
 /// How many trials a judge gets before it is started again.
 const TRIALS_OF_A_JUDGE: usize = 30;
 
@@ -285,9 +282,7 @@ impl Guard {
                 let of_stage = self.entries.iter().filter(|entry| entry.stage == *stage);
                 let tried = of_stage
                     .filter_map(|entry| Some((self.plan.trial(&self.program, entry, check)?, check, entry)));
-                // Each check shows what all checks share, so a few of its mistakes are enough.
-                let most = if change.stage == 0 { MISTAKES_OF_SHARED } else { usize::MAX };
-                trials.extend(tried.take(most));
+                trials.extend(tried);
             }
         }
         // A check is in the changed file, most likely, if the file contains its name: ask it first.
