@@ -433,7 +433,7 @@ fn next_steps(options: &Options) -> String {
         ("constants earn nothing", "cargo test -p all-checks".to_owned()),
         ("hidden inputs are not the public ones", "cargo test -p grader --lib every_check".to_owned()),
         ("the mistake is caught and named", format!("cargo run -p grader -- corpus {name}")),
-        ("its message is stored", format!("cargo run -p grader -- corpus {name} --bless")),
+        ("its results are stored", format!("cargo run -p grader -- corpus --stage {stage} --bless")),
         ("numbers in documents are right", "cargo run -p grader -- sync".to_owned()),
     ];
     steps.iter().map(|(why, command)| format!("  {why:<38} {command}\n")).collect()
