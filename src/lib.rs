@@ -23,30 +23,37 @@
 //! ends; a box is closed. Coordinates are right-handed, and the anticlockwise side of a triangle is its
 //! front.
 
-pub mod aabb;
-pub mod building;
-pub mod bvh;
 pub mod camera;
 pub mod count;
 pub mod course;
-pub mod effects;
-pub mod emitter;
-pub mod film;
-pub mod frame;
-pub mod graph;
+mod files;
+mod geometry;
 pub mod kit;
-pub mod light_path;
-pub mod material;
-pub mod mesh;
-pub mod partition;
-pub mod random;
-pub mod ray;
-pub mod rounding;
-pub mod rows;
-pub mod rubric;
-pub mod scene;
-pub mod shape;
+mod light;
+mod progress;
 pub mod tracer;
-pub mod wide;
-pub mod worker;
+mod trees;
 pub mod world;
+
+pub use camera::{film, rows, samples as random};
+pub use course::rubric;
+pub use geometry::{aabb, mesh, ray, rounding, shape};
+pub use kit::worker;
+pub use light::{emitter, material, path_step as light_path};
+pub use scene::effects;
+pub use trees::{bvh, graph, partition, wide};
+
+/// A scene as data, and the readers of its files.
+pub mod scene {
+    #[path = "mod.rs"]
+    mod data;
+
+    pub use crate::files::{error, obj, ply, scene as load};
+    pub use data::*;
+}
+
+/// The frame driver, and the progress that it reports.
+pub mod frame {
+    pub use crate::progress::{Tile, Unwatched, Watch};
+    pub use crate::tracer::driver::{CameraSample, FrameSettings, render};
+}

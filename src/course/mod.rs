@@ -5,14 +5,16 @@
 mod moment;
 mod points;
 mod read;
+pub mod rubric;
+mod stage;
 #[cfg(test)]
 mod tests;
 
 pub use moment::Moment;
 pub use read::{parse, parse_language, stages_of};
 
-use crate::rubric::Stage;
 use serde::Serialize;
+use stage::Stage;
 use std::collections::BTreeMap;
 
 /// What a course changes in the kit. The default changes nothing.

@@ -1,10 +1,10 @@
 //! Reads course files and language files. Every error says where in the file it is, and what to do.
 
+use super::stage::{PLAIN, Stage};
 use super::{CheckChange, Course, Moment, StageChange, TEXTS};
-use crate::rubric::{PLAIN, Stage};
-use crate::scene::error::LoadError;
-use crate::scene::load::Limits;
-use crate::scene::load::reader::{Source, Table, Value};
+use crate::files::error::LoadError;
+use crate::files::scene::Limits;
+use crate::files::scene::reader::{Source, Table, Value};
 use std::path::Path;
 use toml::de::DeValue;
 

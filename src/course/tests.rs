@@ -1,5 +1,5 @@
 use super::*;
-use crate::rubric::PLAIN;
+use crate::course::stage::PLAIN;
 use std::path::Path;
 
 fn course(text: &str) -> Course {

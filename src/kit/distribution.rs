@@ -9,15 +9,6 @@ use serde::{Deserialize, Serialize};
 /// The radius of the Gaussian pixel filter along x and along y, in pixels.
 pub const FILTER_RADIUS: f32 = 1.5;
 
-/// The colour of a sample and its weight in the pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WeightedColor {
-    /// The colour of the sample, in linear radiance.
-    pub color: Vec3,
-    /// The weight of the sample among those of its pixel, at least 0.
-    pub weight: f32,
-}
-
 /// Asks which ray leaves a point of the lens.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LensQuery {

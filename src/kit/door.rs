@@ -6,17 +6,18 @@ use crate::aabb::Aabb;
 use crate::bvh::{Bvh, PrimitiveHit, PrimitiveRef};
 use crate::effects::{Effects, LightEffects, MaterialEffects};
 use crate::emitter::EmitterSample;
-use crate::frame::Watch;
 use crate::graph::Placement;
 use crate::light_path::{BsdfSample, PathEffects, PathStep};
 use crate::mesh::Mesh;
 use crate::partition::{Bsp, Grid, KdTree, Octree, PolygonBsp};
+use crate::progress::Watch;
 use crate::random::Stratum;
 use crate::ray::Ray;
 use crate::scene::{Sampler, Scene, Split};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 use crate::wide::{BinSplit, Bins, Entered, FlatTree, ForkedTree, WideTree};
 use glam::{Affine3A, UVec3, Vec2, Vec3};
+use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::sync::Arc;
 use std::time::Duration;
@@ -234,7 +235,7 @@ macro_rules! door {
 
         $(impl<T: Transport> $Trait for Door<T> {
             $(fn $name(&self, queries: &[$Query]) -> Vec<$Answer> {
-                match self.0.call(Request::$Message(queries.to_vec()), &crate::frame::Unwatched) {
+                match self.0.call(Request::$Message(queries.to_vec()), &crate::progress::Unwatched) {
                     Answer::$Message(answers) if answers.len() == queries.len() => answers,
                     answer => kit_error::wrong_answer(&answer),
                 }
@@ -284,21 +285,21 @@ impl<T: Transport> Frames for Door<T> {
     }
 
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
-        match self.0.call(Request::Trace(Box::new(job.clone()), x, y), &crate::frame::Unwatched) {
+        match self.0.call(Request::Trace(Box::new(job.clone()), x, y), &crate::progress::Unwatched) {
             Answer::Trace(rays) => rays,
             answer => kit_error::wrong_answer(&answer),
         }
     }
 
     fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<(TracedRay, RayVisits)> {
-        match self.0.call(Request::Visits(Box::new(job.clone()), x, y), &crate::frame::Unwatched) {
+        match self.0.call(Request::Visits(Box::new(job.clone()), x, y), &crate::progress::Unwatched) {
             Answer::Visits(visits) => visits,
             answer => kit_error::wrong_answer(&answer),
         }
     }
 
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
-        match self.0.call(Request::Outlines(Box::new(job.clone()), depth), &crate::frame::Unwatched) {
+        match self.0.call(Request::Outlines(Box::new(job.clone()), depth), &crate::progress::Unwatched) {
             Answer::Outlines(edges) => edges,
             answer => kit_error::wrong_answer(&answer),
         }
@@ -306,7 +307,7 @@ impl<T: Transport> Frames for Door<T> {
 
     fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>> {
         let request = Request::FirstHits(Box::new(job.clone()), rays.to_vec());
-        match self.0.call(request, &crate::frame::Unwatched) {
+        match self.0.call(request, &crate::progress::Unwatched) {
             Answer::FirstHits(hits) if hits.len() == rays.len() => hits,
             answer => kit_error::wrong_answer(&answer),
         }

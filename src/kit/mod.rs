@@ -4,13 +4,13 @@
 //! whether that code is linked into the same process or runs in a worker at the other end of a pipe. Every
 //! call takes a batch of queries, so that a check with thousands of cases needs one message to the worker.
 
-mod adapters;
 mod costs;
 mod distribution;
 pub mod door;
 mod effects_analysis;
 mod example;
 mod functions;
+mod job;
 pub mod kit_error;
 mod light_transport;
 mod list;
@@ -28,11 +28,14 @@ mod traced;
 mod triangles;
 #[doc(hidden)]
 pub mod types;
+pub mod worker;
 
-pub use adapters::{Linked, StudentKit};
+pub use crate::film::WeightedColor;
+pub use crate::geometry::hit::{GramScalars, SolidHit, TriangleHit};
+pub use crate::light::surface::{Bounce, LightSample, Limits, SecondaryRay, Surface};
 pub use costs::Costs;
 pub use distribution::{
-    FILTER_RADIUS, LensQuery, PhongLobeQuery, RectangleQuery, SphereSampleQuery, TimeQuery, WeightedColor,
+    FILTER_RADIUS, LensQuery, PhongLobeQuery, RectangleQuery, SphereSampleQuery, TimeQuery,
 };
 pub use door::{
     Answer, Distribution, Door, EffectsAnalysis, Frames, Hierarchies, Hosted, Kit, LightTransport,
@@ -44,7 +47,8 @@ pub use effects_analysis::{
 #[doc(hidden)]
 pub use functions::Running;
 pub(crate) use functions::note_unwound;
-pub use functions::{Function, StudentFunctions, is_written, take_unwound};
+pub use functions::{Function, Linked, StudentFunctions, StudentKit, is_written, take_unwound};
+pub use job::{RenderJob, Rendering, StructureSize, View};
 pub use kit_error::KitError;
 pub use light_transport::{
     BsdfPdfQuery, BsdfQuery, EmissionQuery, EmitterPdfQuery, EmitterQuery, LightContributionQuery,
@@ -54,12 +58,12 @@ pub use partitions::{
     BspQuery, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, GridQuery, KdQuery, OctreeQuery,
     PacketAnswer, PacketProbe, PacketQuery, ResolutionQuery,
 };
-pub use recursion::{Bounce, FresnelQuery, Limits, RefractQuery, ScatterQuery, SecondaryRay};
+pub use recursion::{FresnelQuery, RefractQuery, ScatterQuery};
 pub use scene_graph::{
     BasisQuery, BoundingSphereQuery, BoundsQuery, CachedGraphAnswer, CachedGraphQuery, GraphAnswer,
-    GraphQuery, NormalQuery, NurbsQuery, ObjectRayQuery, PatchQuery, SolidHit, SolidQuery,
+    GraphQuery, NormalQuery, NurbsQuery, ObjectRayQuery, PatchQuery, SolidQuery,
 };
-pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowProbe, ShadowQuery, Surface, TermQuery};
+pub use shading::{ShadeAnswer, ShadeQuery, ShadowProbe, ShadowQuery, TermQuery};
 pub use shapes::{PlaneEquationQuery, PlaneQuery, RootQuery, SphereQuery};
 pub use speed::{
     BinSplitQuery, BinsQuery, BlockQuery, PartitionQuery, WideAnswer, WideBoxesQuery, WideQuery,
@@ -73,88 +77,4 @@ pub use table::{
     BuildQuery, SearchAnswer, SearchQuery, SlabQuery, SplitAnswer, SplitQuery, Table, TableProbe,
 };
 pub use traced::{RayKind, RayVisits, TestedBox, TracedRay};
-pub use triangles::{GramScalars, InsideQuery, InterpolateQuery, TriangleHit, TriangleQuery};
-
-use crate::count::Counts;
-use crate::film::Film;
-use crate::scene::{Accelerator, Scene};
-use serde::{Deserialize, Serialize};
-
-/// What the pixels of a picture show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum View {
-    /// The light that arrives at the camera, in linear radiance.
-    #[default]
-    Shaded,
-    /// The shading normals of the surfaces as colours, `0.5 * normal + 0.5`; the background where there is no
-    /// surface.
-    Normals,
-    /// The cost of a pixel: node visits, box tests and primitive tests of all its rays, per sample, in place
-    /// of red, green and blue.
-    Work,
-}
-
-/// A request to render a whole frame in the process that contains the student's code.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RenderJob {
-    /// The scene, with the size of the film and the quality of the picture.
-    pub scene: Scene,
-    /// What the pixels show.
-    pub view: View,
-    /// The seed of the random numbers: equal seeds give equal pictures.
-    pub seed: u64,
-    /// The number of threads; 0 takes one per core.
-    pub threads: usize,
-    /// Whether work is counted. Rays and pixels are the same either way.
-    pub count: bool,
-    /// Whether the acceleration structures of an earlier job in the same process may be used again, if it had the same
-    /// scene and kept them. Pixels, counts and the reported build time are the same either way.
-    pub reuse: bool,
-}
-
-impl RenderJob {
-    /// Whether a picture has the width of the job's film, and the rows that the job asks for.
-    fn fits(&self, film: &Film) -> bool {
-        let (width, height) = (self.scene.film.width, self.scene.film.rendered_rows().n_rows());
-        let pixels = u64::from(width) * u64::from(height);
-        (film.width, film.height) == (width, height) && film.pixels.len() as u64 == pixels
-    }
-}
-
-/// The size of an acceleration structure.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct StructureSize {
-    /// The number of nodes, or of cells of a grid.
-    pub nodes: u64,
-    /// The number of nodes on the longest path from the root to a leaf, both counted; 1 for a grid.
-    pub levels: u64,
-    /// The number of references to primitives in all leaves together.
-    pub references: u64,
-    /// The memory of nodes and lists, in bytes.
-    pub bytes: u64,
-}
-
-/// A rendered frame and its cost.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Rendering {
-    /// The picture in linear light; only the rows that the job asked for.
-    pub film: Film,
-    /// Work by kind; zero if the job did not ask for counts.
-    pub counts: Counts,
-    /// The number of primitives in the frame, infinite planes included.
-    pub primitives: u64,
-    /// The acceleration structure that was used, never [`Accelerator::Auto`]; `None` if no search is written.
-    pub accelerator: Option<Accelerator>,
-    /// The size of the structure over the scene; `None` if there is none, because every primitive is tested.
-    /// Shared meshes have structures of their own, which are not included.
-    pub structure: Option<StructureSize>,
-    /// The memory of the structures of all shared meshes together, in bytes.
-    pub bytes_of_parts: u64,
-    /// The time to prepare the frame and build its structures, in seconds.
-    pub build_seconds: f64,
-    /// The time to render the pixels, in seconds.
-    pub render_seconds: f64,
-    /// What is missing in the picture and why, and which structure is coarser than the scene asks for, one
-    /// sentence each.
-    pub notes: Vec<String>,
-}
+pub use triangles::{InsideQuery, InterpolateQuery, TriangleQuery};

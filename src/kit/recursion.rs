@@ -1,5 +1,6 @@
 //! Stage 5, reflection and refraction: queries and answers.
 
+use crate::light::surface::Limits;
 use crate::material::Material;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -27,35 +28,6 @@ pub struct FresnelQuery {
     pub n1: f32,
     /// The index of refraction of the medium behind the surface, above 0.
     pub n2: f32,
-}
-
-/// The limits at which a path ends.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Limits {
-    /// The greatest number of reflections and refractions on a path from the camera.
-    pub max_depth: u32,
-    /// The smallest weight: a ray whose weight is below it in every channel is not traced.
-    pub min_contribution: f32,
-}
-
-/// How a secondary ray leaves a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Bounce {
-    /// The ray is reflected.
-    Reflection,
-    /// The ray is refracted through the surface.
-    Transmission,
-}
-
-/// A secondary ray that leaves a surface: its kind, direction and weight.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SecondaryRay {
-    /// Whether the ray is reflected or refracted.
-    pub bounce: Bounce,
-    /// The direction of the ray, of unit length.
-    pub direction: Vec3,
-    /// The factor, per channel, with which the light along the ray contributes to the pixel.
-    pub weight: Vec3,
 }
 
 /// Asks which secondary rays leave a surface; the answer is a list of [`SecondaryRay`].

@@ -44,17 +44,6 @@ pub struct SolidQuery<S> {
     pub solid: S,
 }
 
-/// A hit of a ray with the surface of a solid.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SolidHit {
-    /// The ray parameter of the hit: the distance along the ray, in lengths of its direction.
-    pub t: f32,
-    /// The unit normal of the surface at the hit, which points out of the solid. For a disk it has the
-    /// direction of the disk's normal; for a polygon it points to the side from which the corners run
-    /// anticlockwise.
-    pub normal: Vec3,
-}
-
 /// Asks where `ray` enters a bounding sphere; the answer is a `t` if it does.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BoundingSphereQuery {

@@ -1,35 +1,11 @@
 //! Stage 4, shading and shadows: queries and answers.
 
 use crate::kit::questions::Asker;
+use crate::light::surface::{LightSample, Surface};
 use crate::material::Material;
 use crate::ray::Ray;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
-
-/// A point of a surface that is to be shaded, with its normals and its rounding error.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Surface {
-    /// The point in world units, rounded to single precision.
-    pub point: Vec3,
-    /// A bound on the rounding error of `point` along each axis, in world units, at least 0.
-    pub error: Vec3,
-    /// The unit normal of the shape itself, on the viewer's side.
-    pub geometric_normal: Vec3,
-    /// The unit normal for shading, on the viewer's side. It differs from the geometric one on smooth meshes.
-    pub shading_normal: Vec3,
-}
-
-/// The light that would arrive at a point from one point of a light, without occlusion.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LightSample {
-    /// The direction from the point to the light, of unit length.
-    pub direction: Vec3,
-    /// The distance from the point to the light in world units; infinite for a directional light.
-    pub distance: f32,
-    /// The light that arrives, in linear light: the light's colour times its intensity and its falloff with
-    /// distance.
-    pub radiance: Vec3,
-}
 
 /// Asks how large the diffuse or the specular term of the Phong model is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -3,32 +3,28 @@
 //! [`load`] reads a scene from a TOML file and checks it. A scene that [`load`] returns holds everything that
 //! a frame needs: all its indices are in range, and its graph has no cycle.
 
-mod background;
-pub mod error;
+pub mod effects;
 mod gamma2;
-pub mod load;
-pub mod obj;
-pub mod ply;
 mod quality;
 mod shown;
-mod triangulate;
 
-pub use background::{Background, EnvironmentMap, Gradient};
+pub use crate::light::background::{Background, EnvironmentMap, Gradient};
+pub use crate::mesh::SceneMesh;
+pub use crate::random::Sampler;
 pub use gamma2::{ColorPlace, Gamma2, GradientColor, MaterialColor};
+pub(crate) use quality::MOST_PRIMITIVES;
 pub use quality::{
-    Accelerator, NextEvent, Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
+    Accelerator, NextEvent, Precision, Quality, SphereMethod, Split, TextureFilter, TriangleMethod,
 };
 pub use shown::Shown;
 
 use crate::camera::Camera;
 use crate::film::Tone;
 use crate::material::{Light, Material, Texture};
-use crate::mesh::Mesh;
 use crate::rows::Rows;
 use crate::shape::Shape;
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// How linear light becomes the numbers of an 8-bit image file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -69,26 +65,6 @@ impl Default for FilmSettings {
     fn default() -> Self {
         FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb, tone: Tone::default(), rows: None }
     }
-}
-
-/// A mesh of the scene, with the settings that the scene file gives for it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SceneMesh {
-    /// Positions, triangles and optional normals, texture coordinates and face materials, in the space of the
-    /// mesh.
-    pub mesh: Arc<Mesh>,
-    /// Whether shading normals are interpolated over each triangle; otherwise the normal of the triangle is
-    /// used.
-    pub smooth: bool,
-    /// Whether only the front of each triangle is hit, the side from which its corners run anticlockwise. Rays
-    /// pass through its back, shadow rays as well.
-    pub one_sided: bool,
-    /// Number of Loop subdivision steps before anything is traced (stage 8), 0 to 12 in a scene file. Each
-    /// step divides every triangle into four.
-    pub subdivisions: u32,
-    /// For each of the mesh's own material names, an index into [`Scene::materials`]. Empty if all triangles
-    /// take the material of the node that shows the mesh.
-    pub materials: Vec<usize>,
 }
 
 /// A visible area light, with the material of the node that shows it.
@@ -140,7 +116,7 @@ impl Scene {
             roots: Vec::new(),
             gamma2: Gamma2::default(),
             quality: Quality::default(),
-            max_primitives: load::Limits::default().triangles(),
+            max_primitives: MOST_PRIMITIVES,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::graph::Savings;
 use crate::partition::KdHeuristics;
+use crate::random::Sampler;
 use serde::{Deserialize, Serialize};
 
 /// The acceleration structure that finds the closest hit of a ray. All of them must find the same hit.
@@ -212,37 +213,6 @@ impl SphereMethod {
     ];
 }
 
-/// Where the samples of a pixel lie (stage 6). Lens, shutter time, area lights and rough surfaces are sampled
-/// in the same way, and independently at random with [`Sampler::Center`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Sampler {
-    /// All samples lie in the centre of the pixel.
-    Center,
-    /// Independent samples, uniformly distributed over the pixel.
-    Random,
-    /// Stratified sampling: the pixel is divided into a grid of cells, and each sample lies anywhere in a
-    /// cell of its own.
-    Jittered,
-    /// Stratified samples over a square that reaches 1.5 pixels from the centre along x and y, weighted by a
-    /// Gaussian.
-    Gaussian,
-    /// An Owen-scrambled Sobol sequence, which spreads samples evenly; a single sample lies in the centre.
-    #[default]
-    LowDiscrepancy,
-}
-
-impl Sampler {
-    /// Whether any of `samples` samples per pixel lies elsewhere than in the centre of the pixel.
-    pub fn spreads(self, samples: u32) -> bool {
-        match self {
-            Sampler::Center => false,
-            Sampler::LowDiscrepancy => samples > 1,
-            Sampler::Random | Sampler::Jittered | Sampler::Gaussian => true,
-        }
-    }
-}
-
 /// How images are read (stage 7).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -296,6 +266,9 @@ pub enum Precision {
     /// Double precision, 53 bits, with any [`TriangleMethod`] and [`SphereMethod`].
     Double,
 }
+
+/// The most primitives of a flattened scene, unless a caller sets another limit.
+pub(crate) const MOST_PRIMITIVES: u32 = 20_000_000;
 
 /// Every setting that trades accuracy for time. A key that a scene file leaves out keeps its value of
 /// `Quality::default()`.

@@ -27,7 +27,7 @@ impl Scene {
     ///
     /// # Panics
     ///
-    /// If an index of the scene into its nodes or meshes is out of range. A scene that [`crate::scene::load`]
+    /// If an index of the scene into its nodes or meshes is out of range. A scene that [`crate::files::scene`]
     /// has read has no such index.
     pub fn shown(&self) -> Vec<Shown> {
         let mut walk = Walk { scene: self, seen: BTreeSet::new(), shown: Vec::new() };
@@ -92,7 +92,7 @@ impl Walk<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::load::parse;
+    use crate::files::scene::parse;
     use std::path::Path;
 
     #[test]

@@ -1,10 +1,10 @@
 //! From the samples of a pixel to camera rays, and from their colours to the colour of the pixel, by the
 //! functions of stage 6.
 
+use super::driver::CameraSample;
+use super::light::texture_filter::Cone;
 use super::plan::Plan;
-use super::texture_filter::Cone;
 use crate::camera::Camera;
-use crate::frame::CameraSample;
 use crate::kit::{StudentFunctions, WeightedColor};
 use crate::random::Stratum;
 use crate::ray::Ray;

@@ -1,16 +1,16 @@
 //! One frame: its plan, its acceleration structures and its camera, put together for a job.
 
 use super::camera_sampler::CameraSampler;
-use super::interaction::Looks;
-use super::intersector::Intersector;
-use super::kept::{self, Built};
-use super::path_tracer::IndirectLight;
+use super::driver::FrameSettings;
+use super::light::indirect::IndirectLight;
+use super::light::interaction::Looks;
+use super::light::texture_filter::Pyramids;
 use super::plan::Plan;
-use super::texture_filter::Pyramids;
-use super::written::Written;
-use crate::building;
-use crate::frame::{FrameSettings, Watch};
+use super::plan::written::Written;
+use super::search::Intersector;
+use super::search::kept::{self, Built};
 use crate::kit::{Limits, RenderJob, StudentFunctions};
+use crate::progress::{self, Watch};
 use crate::scene::Quality;
 use crate::world::World;
 use std::sync::Arc;
@@ -47,7 +47,7 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
         let Built { intersector, earlier_seconds } = kept::built(job, &plan, written, false, || {
             let world = World::new(scene, &plan.effects, &plan.world);
             let n_primitives = world.primitives.len() as u64;
-            building::watched(watch, n_primitives, || Intersector::new(world, &plan, quality, job.threads))
+            progress::watched(watch, n_primitives, || Intersector::new(world, &plan, quality, job.threads))
         });
         let world = &intersector.scene.world;
         let pyramids = plan.mipmaps.then(|| Pyramids::new(world, &plan.effects));

@@ -1,6 +1,6 @@
 //! Decodes the colours and images of a scene that are encoded with gamma 2.
 
-use super::written::Written;
+use super::plan::written::Written;
 use crate::film::encode_srgb;
 use crate::kit::{Function, RenderJob, StudentFunctions};
 use crate::scene::VisibleLight;

@@ -12,60 +12,40 @@
 //! `counter` counts the work, `record` stores the rays of a pixel, `outlines` draws structures,
 //! `gamma2` decodes colours, and `texture_filter` filters images.
 
-mod accelerator;
 mod camera_sampler;
 mod counter;
-mod emitters;
-mod environment;
+pub mod driver;
 mod frame;
 mod gamma2;
-mod grid_resolution;
-mod hit;
-mod interaction;
-mod intersection;
-mod intersector;
-mod kept;
-mod large_leaves;
-mod motion;
-mod outlines;
-mod packets;
-mod path;
-mod path_tracer;
+mod light;
 mod plan;
-mod probe;
-mod random_choices;
-mod record;
-mod rough_lobe;
-mod solids;
-mod stream;
-mod structure;
-mod texture_filter;
-mod wide;
-mod written;
+mod search;
 
 use crate::bvh::PrimitiveHit;
 use crate::count::{Counts, Event, Tally, Uncounted};
 use crate::film::Film;
-use crate::frame::{CameraSample, Unwatched, Watch};
 use crate::kit::{
     Frames, KitError, RayVisits, RenderJob, Rendering, StudentFunctions, TracedRay, View, WeightedColor,
     kit_error, take_unwound,
 };
+use crate::progress::{Unwatched, Watch};
 use crate::ray::Ray;
 use crate::world::World;
 use counter::Counter;
+use driver::CameraSample;
 use frame::Frame;
 use gamma2::decoded;
 use glam::Vec3;
-use hit::{Hit, Target};
-use intersector::Intersector;
-use kept::Built;
-use path::{Path, Scratch};
+use light::path::Path;
+use light::record::{NoRecord, Rays};
+use light::whitted::Scratch;
 use plan::Plan;
-use record::{NoRecord, Rays};
+use plan::written::Written;
+use search::hit::{Hit, Target};
+use search::kept::{self, Built};
+use search::{Intersector, outlines};
 use std::marker::PhantomData;
 use std::time::Instant;
-use written::Written;
 
 /// Renders frames with the student functions of `F`.
 ///
@@ -188,7 +168,7 @@ fn pixels<F: StudentFunctions, T: Tally>(frame: &Frame<'_, F>, watch: &dyn Watch
         }
         WeightedColor { color, weight: frame.camera.weight(sample) }
     };
-    crate::frame::render(&settings, watch, radiance, |samples| frame.camera.filter_pixel(samples))
+    driver::render(&settings, watch, radiance, |samples| frame.camera.filter_pixel(samples))
 }
 
 /// The work between two counts as a colour: node visits, box tests and primitive tests.

@@ -12,7 +12,7 @@ mod meshes;
 mod solids;
 mod transforms;
 
-pub use solids::{Solid, SolidShape, around_sphere};
+pub use solids::{Solid, SolidShape};
 
 use crate::camera::Camera;
 use crate::effects::Effects;
@@ -257,7 +257,7 @@ impl World {
     ///
     /// # Panics
     ///
-    /// If an index of the scene is out of range; a scene that [`crate::scene::load`] has read has no such
+    /// If an index of the scene is out of range; a scene that [`crate::files::scene`] has read has no such
     /// index. A graph with a loop overflows the stack. A panic of a student function is passed on.
     pub fn new(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> World {
         flatten::flatten(scene, effects, functions)

@@ -2,9 +2,8 @@
 
 use crate::aabb::Aabb;
 use crate::graph::Placement;
-use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Shape, Sphere};
-use glam::{DVec3, Vec2, Vec3, vec2};
-use std::f32::consts::{PI, TAU};
+use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Shape, Sphere, around_sphere};
+use glam::{Vec2, Vec3, vec2};
 
 /// A shape in a space of its own, into which rays are transformed before they are tested (stage 8).
 #[derive(Clone, Debug, PartialEq)]
@@ -107,16 +106,6 @@ impl SolidShape {
             _ => vec2(0.5, 0.5),
         }
     }
-}
-
-/// Longitude and latitude of `direction` as texture coordinates in `0..=1`: the equirectangular image around
-/// a sphere, upright along y.
-///
-/// The v coordinate is 0 at -y and 1 at +y. The u coordinate is 0.5 at +z and 0.75 at +x, and jumps from 1 to
-/// 0 at -z. The direction may be of any length; zero, infinite and NaN directions count as +y.
-pub fn around_sphere(direction: Vec3) -> Vec2 {
-    let own = direction.as_dvec3().normalize_or(DVec3::Y).as_vec3();
-    vec2(0.5 + own.x.atan2(own.z) / TAU, 0.5 + own.y.clamp(-1.0, 1.0).asin() / PI)
 }
 
 /// The images of the side faces stand upright along y; those of top and bottom as if the box were tilted

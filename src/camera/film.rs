@@ -1,0 +1,316 @@
+//! The film: one colour per pixel in linear light, and the files that it can be written to.
+
+use glam::Vec3;
+use image::codecs::hdr::HdrEncoder;
+use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+use serde::{Deserialize, Serialize};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+/// A picture in linear light, without limit above. Pixels are stored row by row from the top, each row from
+/// the left.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Film {
+    /// The number of pixels per row.
+    pub width: u32,
+    /// The number of rows.
+    pub height: u32,
+    /// The `width * height` colours, red, green and blue in linear radiance.
+    pub pixels: Vec<Vec3>,
+}
+
+/// The colour of a sample and its weight in the pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WeightedColor {
+    /// The colour of the sample, in linear radiance.
+    pub color: Vec3,
+    /// The weight of the sample among those of its pixel, at least 0.
+    pub weight: f32,
+}
+
+/// How radiance above 1 is brought into the range that a screen can show. A curve is applied to each channel by itself, so
+/// that no channel exceeds 1; very bright colours become white.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ToneCurve {
+    /// `min(x, 1)`: no curve. All graded pictures are made with it.
+    #[default]
+    Clamp,
+    /// `x / (1 + x)`, equation 3 of Reinhard, Stark, Shirley and Ferwerda, "Photographic Tone Reproduction for Digital
+    /// Images", 2002, where it is applied to the luminance.
+    Reinhard,
+    /// `x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14)`, at most 1: a fit to the curve of the Academy Color Encoding System
+    /// (ACES), which has more contrast, by Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
+    Aces,
+}
+
+impl ToneCurve {
+    /// All curves, with their names in scene files.
+    pub const ALL: [(&str, ToneCurve); 3] =
+        [("clamp", ToneCurve::Clamp), ("reinhard", ToneCurve::Reinhard), ("aces", ToneCurve::Aces)];
+
+    /// The value in `0..=1` that is shown for `x` of linear light. Negative values count as 0; NaN stays NaN.
+    pub fn apply(self, x: f32) -> f32 {
+        // At 1e6 all curves are within two millionths of their end, and the square of a much larger number overflows.
+        let x = x.clamp(0.0, 1e6);
+        let shown = match self {
+            ToneCurve::Clamp => x,
+            ToneCurve::Reinhard => x / (1.0 + x),
+            ToneCurve::Aces => x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14),
+        };
+        shown.clamp(0.0, 1.0)
+    }
+}
+
+/// Exposure and tone curve of a picture: `curve(2^exposure · x)` for each channel x of linear light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tone {
+    /// Exposure in stops: each stop doubles the light; 0 by default.
+    pub exposure: f32,
+    /// The curve, clamp by default.
+    pub curve: ToneCurve,
+}
+
+impl Tone {
+    /// The value in `0..=1` that is shown for `x` of linear light. Negative values count as 0; NaN stays NaN.
+    pub fn apply(self, x: f32) -> f32 {
+        self.curve.apply(self.exposure.exp2() * x)
+    }
+}
+
+/// A picture of 8 bits per component and three components per pixel, as in a PNG file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bytes {
+    /// Red, green and blue of each pixel, row by row from the top.
+    pub rgb: Vec<u8>,
+    /// The number of pixels that had a NaN component; they are magenta in `rgb`.
+    pub not_a_number: usize,
+}
+
+impl Film {
+    /// A black film of `width` by `height` pixels.
+    pub fn new(width: u32, height: u32) -> Self {
+        Film { width, height, pixels: vec![Vec3::ZERO; width as usize * height as usize] }
+    }
+
+    /// The colour at column `x` and row `y`, `0 <= x < width` from the left and `0 <= y < height` from the
+    /// top.
+    ///
+    /// # Panics
+    ///
+    /// If `y * width + x` is not an index of `pixels`. An `x` of `width` or more reads from a later row if
+    /// there is one.
+    pub fn at(&self, x: u32, y: u32) -> Vec3 {
+        self.pixels[y as usize * self.width as usize + x as usize]
+    }
+
+    /// The number of pixels that have a NaN component.
+    pub fn not_a_number(&self) -> usize {
+        self.pixels.iter().filter(|pixel| pixel.is_nan()).count()
+    }
+
+    /// The number of pixels that have an infinite component and no NaN.
+    pub fn infinite(&self) -> usize {
+        self.pixels.iter().filter(|pixel| !pixel.is_finite() && !pixel.is_nan()).count()
+    }
+
+    /// The same picture as a screen shows it: each component is passed through `tone`, and lies in `0..=1` afterwards. Pixels
+    /// with NaN components stay as they are.
+    pub fn toned(&self, tone: Tone) -> Film {
+        let shown = |pixel: &Vec3| if pixel.is_nan() { *pixel } else { pixel.map(|x| tone.apply(x)) };
+        Film { pixels: self.pixels.iter().map(shown).collect(), ..*self }
+    }
+
+    /// The picture in bytes, each component of linear light passed through `encode`, for example
+    /// [`encode_srgb`].
+    ///
+    /// NaN would turn black and would not be noticed. So pixels with NaN turn magenta and are counted;
+    /// `encode` is not called for them.
+    pub fn to_bytes(&self, encode: impl Fn(f32) -> u8) -> Bytes {
+        let magenta = [255, 0, 255];
+        let byte = |pixel: &Vec3| if pixel.is_nan() { magenta } else { pixel.to_array().map(&encode) };
+        Bytes { rgb: self.pixels.iter().flat_map(byte).collect(), not_a_number: self.not_a_number() }
+    }
+
+    /// Writes the picture as a PNG file of 8 bits per component; see [`Film::to_bytes`] for `encode`.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written, or the picture has no pixels.
+    ///
+    /// # Panics
+    ///
+    /// If `pixels` does not have `width * height` colours.
+    pub fn write_png(&self, file: &Path, encode: impl Fn(f32) -> u8) -> io::Result<()> {
+        self.write_rgb(file, &self.to_bytes(encode).rgb)
+    }
+
+    /// Writes a PNG file of components that were encoded by the caller: `components` has red, green and blue
+    /// of each pixel of this film, in the same order. Pixels that are NaN in the film turn magenta, as in
+    /// [`Film::to_bytes`].
+    ///
+    /// # Errors
+    ///
+    /// If `components` does not have three bytes per pixel, if the file cannot be written, or if the picture
+    /// has no pixels.
+    ///
+    /// # Panics
+    ///
+    /// If `pixels` does not have `width * height` colours.
+    pub fn write_png_bytes(&self, file: &Path, components: &[u8]) -> io::Result<()> {
+        if components.len() != 3 * self.pixels.len() {
+            return Err(io::Error::other(format!(
+                "{} bytes for {} pixels",
+                components.len(),
+                self.pixels.len()
+            )));
+        }
+        let seen = self.to_bytes(|_| 0).rgb;
+        let magenta = |(pixel, ours): (&[u8], &[u8])| {
+            if pixel[0] > 0 { [255, 0, 255] } else { [ours[0], ours[1], ours[2]] }
+        };
+        let rgb: Vec<u8> = seen.chunks(3).zip(components.chunks(3)).flat_map(magenta).collect();
+        self.write_rgb(file, &rgb)
+    }
+
+    fn write_rgb(&self, file: &Path, rgb: &[u8]) -> io::Result<()> {
+        write_atomically(file, |out| {
+            PngEncoder::new(out)
+                .write_image(rgb, self.width, self.height, ExtendedColorType::Rgb8)
+                .map_err(io::Error::other)
+        })
+    }
+
+    /// Writes the picture as a Radiance HDR file: linear, with eight bits per component and a common
+    /// exponent, so that the largest component of a pixel is exact to about one percent. Negative and NaN
+    /// components become 0. The format has no infinity: components above 1e38 become 1e38.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    ///
+    /// # Panics
+    ///
+    /// If `pixels` has fewer than `width * height` colours.
+    pub fn write_hdr(&self, file: &Path) -> io::Result<()> {
+        // The largest exponent of the format is that of 1.7e38.
+        let component = |value: f32| if value > 1e38 { 1e38 } else { value };
+        let pixels: Vec<image::Rgb<f32>> =
+            self.pixels.iter().map(|p| image::Rgb(p.to_array().map(component))).collect();
+        write_atomically(file, |out| {
+            HdrEncoder::new(out)
+                .encode(&pixels, self.width as usize, self.height as usize)
+                .map_err(io::Error::other)
+        })
+    }
+}
+
+/// The sRGB byte for a component of linear light, by the curve of IEC 61966-2-1, rounded to nearest. Input
+/// below 0 gives 0, input above 1 gives 255, and NaN gives 0.
+pub fn encode_srgb(linear: f32) -> u8 {
+    let linear = linear.clamp(0.0, 1.0);
+    let curve = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    (255.0 * curve + 0.5) as u8
+}
+
+/// Writes a file so that it is complete or absent: `write` fills a temporary file in the same folder, which
+/// is then renamed to `file`. A failure removes the temporary file and leaves an existing `file` as it was.
+///
+/// # Errors
+///
+/// If `file` has no file name, if the temporary file cannot be created, if `write` fails, or if the file
+/// cannot be renamed.
+pub fn write_atomically(
+    file: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> io::Result<()> {
+    let name = file.file_name().ok_or_else(|| io::Error::other("the path names no file"))?;
+    let beside = file.with_file_name(format!(".{}.{}.part", name.to_string_lossy(), std::process::id()));
+    let written = File::create(&beside).and_then(|out| {
+        let mut out = BufWriter::new(out);
+        write(&mut out)?;
+        out.flush()
+    });
+    let placed = written.and_then(|()| fs::rename(&beside, file));
+    if placed.is_err() {
+        // Remove the incomplete file. If that fails as well, return the first error.
+        let _ = fs::remove_file(&beside);
+    }
+    placed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_srgb_curve_meets_its_published_points() {
+        assert_eq!(encode_srgb(0.0), 0);
+        assert_eq!(encode_srgb(1.0), 255);
+        assert_eq!(encode_srgb(0.5), 188); // 0.7354 of the way up
+        assert_eq!(encode_srgb(-1.0), 0);
+        assert_eq!(encode_srgb(7.0), 255);
+        assert_eq!(encode_srgb(0.002), 7); // on the straight part: 12.92 · 0.002 · 255 = 6.6
+    }
+
+    #[test]
+    fn tone_curves_meet_the_points_of_their_formulas() {
+        let [clamp, reinhard, aces] = ToneCurve::ALL.map(|(_, curve)| move |x: f32| curve.apply(x));
+        assert_eq!([0.0, 0.25, 1.0, 7.0].map(clamp), [0.0, 0.25, 1.0, 1.0]);
+        assert_eq!([0.0, 1.0, 3.0].map(reinhard), [0.0, 0.5, 0.75]);
+        assert!((reinhard(f32::INFINITY) - 1.0).abs() < 2e-6);
+        // 2.54 / 3.16 at 1; middle grey, 0.18, at 0.086724 / 0.324932; the curve reaches 1 a little above 7.
+        for (x, shown) in [(0.0, 0.0), (0.18, 0.266_899), (1.0, 0.803_797), (8.0, 1.0), (f32::INFINITY, 1.0)]
+        {
+            assert!((aces(x) - shown).abs() < 1e-6, "{} at {x}", aces(x));
+        }
+        for (_, curve) in ToneCurve::ALL {
+            assert_eq!(curve.apply(-1.0), 0.0);
+            assert!(curve.apply(f32::NAN).is_nan());
+            let values: Vec<f32> = (-40..=40).map(|stop| curve.apply((stop as f32 / 2.0).exp2())).collect();
+            assert!(values.is_sorted() && values.iter().all(|shown| (0.0..=1.0).contains(shown)));
+        }
+    }
+
+    #[test]
+    fn a_stop_of_exposure_doubles_the_light() {
+        let mut film = Film::new(3, 1);
+        film.pixels[0] = Vec3::new(0.1, 0.2, 0.7);
+        film.pixels[1] = Vec3::new(f32::NAN, 2.0, 0.5);
+        film.pixels[2] = Vec3::splat(f32::INFINITY);
+        let toned = film.toned(Tone { exposure: 1.0, curve: ToneCurve::Clamp });
+        assert_eq!(toned.pixels[0], Vec3::new(0.2, 0.4, 1.0));
+        assert_eq!((toned.not_a_number(), toned.pixels[2]), (1, Vec3::ONE));
+        let darker = film.toned(Tone { exposure: -1.0, curve: ToneCurve::Reinhard });
+        assert!((darker.pixels[0].z - 0.35 / 1.35).abs() < 1e-7);
+        // Without exposure and curve the bytes are those of the film.
+        assert_eq!(film.toned(Tone::default()).to_bytes(encode_srgb), film.to_bytes(encode_srgb));
+    }
+
+    #[test]
+    fn a_pixel_that_is_not_a_number_is_seen_and_counted() {
+        let mut film = Film::new(2, 1);
+        film.pixels[1] = Vec3::new(0.5, f32::NAN, 0.5);
+        let bytes = film.to_bytes(encode_srgb);
+        assert_eq!(bytes.rgb, [0, 0, 0, 255, 0, 255]);
+        assert_eq!(bytes.not_a_number, 1);
+    }
+
+    #[test]
+    fn a_failed_write_leaves_nothing_behind() {
+        let folder = std::env::temp_dir().join(format!("raykata-film-{}", std::process::id()));
+        fs::create_dir(&folder).expect("a new folder");
+        let file = folder.join("picture.png");
+        let result = write_atomically(&file, |_| Err(io::Error::other("no more light")));
+        assert_eq!(result.unwrap_err().to_string(), "no more light");
+        assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 0);
+        let mut bright = Film::new(3, 2);
+        bright.pixels[1] = Vec3::new(f32::INFINITY, f32::NAN, -1.0);
+        bright.write_hdr(&folder.join("picture.hdr")).expect("a picture");
+        fs::remove_file(folder.join("picture.hdr")).expect("the file");
+        Film::new(3, 2).write_png(&file, encode_srgb).expect("a picture");
+        assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 1);
+        fs::remove_dir_all(&folder).expect("the folder goes");
+    }
+}

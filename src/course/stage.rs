@@ -1,0 +1,140 @@
+//! A stage of the rubric and its checks as data, and the reader of the rubric's files.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+/// The rubric's entry for a check: its points and its texts.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CheckEntry {
+    /// The number of the check's stage. It is filled in from the file.
+    #[serde(skip)]
+    pub stage: u8,
+    /// The byte offset of the entry in the rubric of its stage, which gives the order of the checks.
+    #[serde(skip)]
+    pub place: usize,
+    /// The number of points for a passed check.
+    pub points: u32,
+    /// Whether the points are a bonus: they are shown apart, and a stage has all of its points without them.
+    #[serde(default)]
+    pub bonus: bool,
+    /// The law that the check tests, in one sentence.
+    pub title: String,
+    /// The lecture and the slide that teach it.
+    pub slide: String,
+    /// Three hints, from a first thought to nearly the answer.
+    pub hints: [String; 3],
+    /// Whether students see the inputs of the check; the default is [`Visibility::Visible`].
+    #[serde(default)]
+    pub visibility: Visibility,
+}
+
+/// How much of a check students see.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Visibility {
+    /// Its inputs and its full report.
+    #[default]
+    Visible,
+    /// Only that the check exists and whether it passes.
+    Hidden,
+}
+
+/// The rubric's entry for a stage: its title, its file and its checks.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stage {
+    /// The name of the stage, such as `shapes`.
+    pub title: String,
+    /// The path of the file that students write, from the root of the repository.
+    pub file: String,
+    /// The checks of the stage by name, in alphabetical order; [`Stage::in_order`] has them in the order of
+    /// the lecture.
+    pub checks: BTreeMap<String, CheckEntry>,
+    /// The counts of the reference, by name, by which the counts of students are judged. `grader bars` writes them.
+    #[serde(default)]
+    pub bars: BTreeMap<String, f64>,
+}
+
+/// The rubric before a course changes it.
+pub(crate) static PLAIN: LazyLock<BTreeMap<String, Stage>> =
+    LazyLock::new(|| read(&RUBRIC_FILES).unwrap_or_else(|error| panic!("{error}")));
+
+/// Reads the rubric from the paths and texts of its files. File number N holds the table `stageN` and no other.
+fn read(files: &[(&str, &str)]) -> Result<BTreeMap<String, Stage>, String> {
+    let mut stages = BTreeMap::new();
+    for (number, (path, text)) in (1..).zip(files) {
+        let mut file: BTreeMap<String, Stage> =
+            toml::from_str(text).map_err(|error| format!("{path}: {error}"))?;
+        let name = format!("stage{number}");
+        let Some(mut stage) = file.remove(&name).filter(|_| file.is_empty()) else {
+            return Err(format!("{path} must hold the table [{name}] and its subtables, and no other"));
+        };
+        for (check, entry) in &mut stage.checks {
+            entry.stage = number;
+            entry.place = text.find(&format!("[{name}.checks.{check}]")).unwrap_or(usize::MAX);
+        }
+        stages.insert(name, stage);
+    }
+    Ok(stages)
+}
+
+macro_rules! rubric_files {
+    ($($number:literal)*) => {
+        [$((
+            concat!("tests/checks/stage", $number, "/rubric.toml"),
+            include_str!(concat!("../../tests/checks/stage", $number, "/rubric.toml")),
+        )),*]
+    };
+}
+
+/// The path and the text of the rubric of each stage, in ascending order.
+pub(super) const RUBRIC_FILES: [(&str, &str); 12] = rubric_files!(1 2 3 4 5 6 7 8 9 10 11 12);
+
+impl Stage {
+    /// The points of all checks, without bonus points.
+    pub fn points(&self) -> u32 {
+        self.checks.values().filter(|check| !check.bonus).map(|check| check.points).sum()
+    }
+
+    /// The checks of the stage with their names, in the order of the rubric, which is that of the lecture.
+    pub fn in_order(&self) -> Vec<(&str, &CheckEntry)> {
+        let mut checks: Vec<(&str, &CheckEntry)> =
+            self.checks.iter().map(|(name, entry)| (name.as_str(), entry)).collect();
+        checks.sort_by_key(|(_, entry)| entry.place);
+        checks
+    }
+}
+
+impl CheckEntry {
+    /// The points in words: `1 point`, `4 points`, `4 bonus points`.
+    pub fn worth(&self) -> String {
+        let bonus = if self.bonus { "bonus " } else { "" };
+        let s = if self.points == 1 { "" } else { "s" };
+        format!("{} {bonus}point{s}", self.points)
+    }
+
+    /// The two lines with which every report about the check begins: stage and title, then the slide.
+    pub fn header(&self) -> String {
+        let bonus = if self.bonus { " (bonus)" } else { "" };
+        format!("stage {}{bonus} · {}\n  slides: {}\n", self.stage, self.title, self.slide)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_holds_its_own_stage() {
+        let stage2 = "[stage2]\ntitle = \"triangles\"\nfile = \"a.rs\"\n[stage2.checks]\n";
+        assert_eq!(
+            read(&[("1.toml", stage2)]).unwrap_err(),
+            "1.toml must hold the table [stage1] and its subtables, and no other"
+        );
+        let both = stage2.replace("stage2", "stage1") + stage2;
+        assert!(read(&[("1.toml", &both)]).is_err());
+        assert!(read(&[("1.toml", "points = ")]).unwrap_err().starts_with("1.toml: "));
+    }
+}

@@ -1,0 +1,292 @@
+//! The tables that occur at most once in a scene: `film`, `camera`, `environment` and `quality`.
+
+use super::reader::{Table, Value};
+use super::{files, textures};
+use crate::camera::{Camera, Lens, Shutter};
+use crate::files::error::LoadError;
+use crate::film::ToneCurve;
+use crate::graph::Savings;
+use crate::material::{Texture, Wrap};
+use crate::partition::KdHeuristics;
+use crate::scene::{
+    Accelerator, Background, ColorPlace, Encoding, EnvironmentMap, FilmSettings, Gradient, GradientColor,
+    NextEvent, Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
+};
+use glam::Vec3;
+
+/// How bytes encode linear light: those of 8-bit pictures, of colours as text, and of images.
+pub(super) const ENCODINGS: [(&str, Encoding); 2] = [("srgb", Encoding::Srgb), ("gamma2", Encoding::Gamma2)];
+
+/// The largest width or height of a picture, in pixels.
+const MAX_SIDE: u32 = 65_536;
+/// The largest number of samples: beyond a million, the rounding error of their sum in `f32` exceeds the
+/// contribution of one more.
+const MAX_SAMPLES: u32 = 1 << 20;
+/// The largest number of reflections and refractions on a path: after that many, a mirror that reflects 99.3 % has left a
+/// thousandth of the light, which is the default of `min_contribution`.
+const MAX_DEPTH: u32 = 1000;
+/// The largest number of cells along a side of a grid: 1024^3 cells of 4 bytes fill 4 GiB.
+const MAX_GRID: u32 = 1024;
+
+/// The film of `[film]`, 640 by 360 pixels in sRGB where nothing else is given; fails if a value is out of
+/// range or the picture needs more memory than the limit.
+pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
+    let mut film = FilmSettings::default();
+    let Some(value) = value else { return Ok(film) };
+    let table = value.table(&["width", "height", "encoding", "exposure", "tone"])?;
+    if let Some(width) = table.get("width") {
+        film.width = width.whole(1..=MAX_SIDE)?;
+    }
+    if let Some(height) = table.get("height") {
+        film.height = height.whole(1..=MAX_SIDE)?;
+    }
+    if let Some(encoding) = table.get("encoding") {
+        film.encoding = encoding.choice(&ENCODINGS)?;
+    }
+    if let Some(exposure) = table.get("exposure") {
+        film.tone.exposure =
+            exposure.number_that("from -100 to 100", |stops| (-100.0..=100.0).contains(&stops))?;
+    }
+    if let Some(curve) = table.get("tone") {
+        film.tone.curve = curve.choice(&ToneCurve::ALL)?;
+    }
+    value.source.budget.film(value, film.width, film.height)?;
+    Ok(film)
+}
+
+/// The camera of `[camera]`; `aspect` is width over height of the film. Fails if a value is missing or out of
+/// range, if the view direction is zero, or if `up` is parallel to it.
+pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
+    let table = value.table(&[
+        "position",
+        "look_at",
+        "direction",
+        "up",
+        "vertical_fov",
+        "horizontal_fov",
+        "lens",
+        "shutter",
+    ])?;
+    let position = table.need("position", "[0, 1, 5]")?.vector()?;
+    let aim = table.one_of(&["look_at", "direction"])?;
+    let direction = match aim.key {
+        "direction" => aim.direction()?,
+        // Subtract in double precision, where the difference overflows never and is 0 only for equal points.
+        _ => {
+            (aim.vector()?.as_dvec3() - position.as_dvec3()).try_normalize().map(|d| d.as_vec3()).ok_or_else(
+                || aim.error("`look_at` and `position` are the same point, so the camera has no direction"),
+            )?
+        }
+    };
+    let up_value = table.get("up");
+    let up = up_value.map_or(Ok(Vec3::Y), |up| up.direction())?;
+    let vertical_fov = field_of_view(&table, aspect)?;
+
+    let camera = Camera::new(position, direction, up, vertical_fov, aspect).map_err(|error| {
+        // The only remaining error is that `up` is parallel to the view direction. Suggest an axis along
+        // which the camera does not look.
+        let other = if direction.y.abs() > 0.5 { "[0, 0, -1]" } else { "[0, 1, 0]" };
+        up_value.unwrap_or(aim).error(error.to_string()).help(format!("write, for example, `up = {other}`"))
+    })?;
+    Ok(Camera {
+        lens: table.get("lens").map(lens).transpose()?,
+        shutter: table.get("shutter").map(shutter).transpose()?,
+        ..camera
+    })
+}
+
+/// The vertical field of view in degrees: `vertical_fov`, or the one that follows from `horizontal_fov` and the
+/// aspect ratio; 40 if neither is given, and an error if both are.
+fn field_of_view(table: &Table, aspect: f32) -> Result<f32, LoadError> {
+    let angle = |value: Value| {
+        value.number_that("above 0 and below 180 degrees", |angle| 0.0 < angle && angle < 180.0)
+    };
+    match (table.get("vertical_fov"), table.get("horizontal_fov")) {
+        (None, None) => Ok(40.0),
+        (Some(vertical), None) => angle(vertical),
+        (None, Some(horizontal)) => {
+            // The film at distance 1 is `aspect` times as wide as high.
+            let half_width = (f64::from(angle(horizontal)?).to_radians() / 2.0).tan();
+            let vertical = 2.0 * (half_width / f64::from(aspect)).atan().to_degrees();
+            // On a very wide or high film the angle can round to 180 or, in principle, to 0.
+            Some(vertical as f32).filter(|angle| 0.0 < *angle && *angle < 180.0).ok_or_else(|| {
+                horizontal.error("this `horizontal_fov` makes the vertical one 180 degrees on so high a film")
+            })
+        }
+        (Some(_), Some(horizontal)) => {
+            let message = "`camera` has both `vertical_fov` and `horizontal_fov`";
+            Err(horizontal
+                .error(message)
+                .help("delete one of the two: it follows from the other and the film's size"))
+        }
+    }
+}
+
+fn lens(value: Value) -> Result<Lens, LoadError> {
+    let table = value.table(&["aperture", "focal_distance"])?;
+    Ok(Lens {
+        aperture: table.need("aperture", "0.1")?.not_negative()?,
+        focal_distance: table.need("focal_distance", "5.0")?.positive()?,
+    })
+}
+
+fn shutter(value: Value) -> Result<Shutter, LoadError> {
+    let table = value.table(&["open", "close"])?;
+    let open = table.get("open").map_or(Ok(0.0), |open| open.share())?;
+    let close = table.get("close").map_or(Ok(1.0), |close| {
+        close.number_that(&format!("from {open}, where `open` is, to 1"), |time| (open..=1.0).contains(&time))
+    })?;
+    Ok(Shutter { open, close })
+}
+
+/// Light that comes from no light source, from the table `[environment]`.
+pub(super) struct Environment {
+    /// The radiance of rays that hit nothing.
+    pub background: Background,
+    /// Ambient light of the Phong model in linear RGB, at least 0.
+    pub ambient: Vec3,
+    /// Whether light that bounces between surfaces is wanted.
+    pub indirect_light: bool,
+}
+
+/// The values of `[environment]`, black and `false` where nothing else is given; fails if one is of the wrong
+/// type or below 0, or if the file of a background is missing or is not an image. The image of an environment map is
+/// added to `textures`.
+pub(super) fn environment(
+    value: Option<Value>,
+    textures: &mut Vec<Texture>,
+) -> Result<Environment, LoadError> {
+    let mut environment =
+        Environment { background: Background::Color(Vec3::ZERO), ambient: Vec3::ZERO, indirect_light: false };
+    let Some(value) = value else { return Ok(environment) };
+    for value in value.table(&["background", "ambient", "indirect_light"])?.values() {
+        match value.key {
+            "background" => environment.background = background(value, textures)?,
+            "ambient" => environment.ambient = value.color(ColorPlace::AmbientLight)?,
+            _ => environment.indirect_light = value.truth()?,
+        }
+    }
+    Ok(environment)
+}
+
+/// A background: a colour, or a table with the colours of a gradient or with the file of an environment map.
+fn background(value: Value, textures: &mut Vec<Texture>) -> Result<Background, LoadError> {
+    let Ok(table) = value.any_table() else {
+        return Ok(Background::Color(value.color(ColorPlace::Background)?));
+    };
+    if table.one_of(&["horizon", "file"])?.key == "horizon" {
+        let table = table.knowing(&["zenith", "horizon", "nadir"])?;
+        let color = |key: &str, place| {
+            table.get(key).map(|value| value.color(ColorPlace::Gradient(place))).transpose()
+        };
+        let horizon = color("horizon", GradientColor::Horizon)?.unwrap_or_default();
+        let zenith = table.need("zenith", "[0.2, 0.4, 0.8]")?;
+        let zenith = zenith.color(ColorPlace::Gradient(GradientColor::Zenith))?;
+        // Without a colour of its own the ground is that of the horizon, whose encoded bytes are kept for it as well.
+        let nadir = table.get("nadir").or(table.get("horizon"));
+        let nadir = nadir.map(|value| value.color(ColorPlace::Gradient(GradientColor::Nadir))).transpose()?;
+        return Ok(Background::Gradient(Gradient { zenith, horizon, nadir: nadir.unwrap_or(horizon) }));
+    }
+    let table = table.knowing(&["file", "rotation", "scale"])?;
+    let file = table.need("file", "\"sky.hdr\"")?;
+    let rotation = table.get("rotation").map_or(Ok(0.0), |degrees| degrees.number())?.to_radians();
+    let scale = table.get("scale").map_or(Ok(1.0), |scale| scale.not_negative())?;
+    let (image, _) = textures::read(&files::find(file)?, Wrap::Repeat, file)?;
+    textures.push(image);
+    Ok(Background::Map(EnvironmentMap { texture: textures.len() - 1, rotation, scale }))
+}
+
+const QUALITY_KEYS: [&str; 20] = [
+    "samples_per_pixel",
+    "sampler",
+    "light_samples",
+    "glossy_samples",
+    "texture_filter",
+    "max_depth",
+    "min_contribution",
+    "next_event",
+    "roulette_from",
+    "clamp",
+    "accelerator",
+    "savings",
+    "copies",
+    "split",
+    "leaf_size",
+    "triangle_method",
+    "sphere_method",
+    "precision",
+    "grid_resolution",
+    "kd_heuristics",
+];
+
+/// The settings of `[quality]`, with `Quality::default()` for keys that are missing; fails if a value is out
+/// of range.
+pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
+    let mut quality = Quality::default();
+    let Some(value) = value else { return Ok(quality) };
+    for value in value.table(&QUALITY_KEYS)?.values() {
+        match value.key {
+            "samples_per_pixel" => quality.samples_per_pixel = value.whole(1..=MAX_SAMPLES)?,
+            "light_samples" => quality.light_samples = value.whole(0..=MAX_SAMPLES)?,
+            "glossy_samples" => quality.glossy_samples = value.whole(1..=MAX_SAMPLES)?,
+            "texture_filter" => {
+                quality.texture_filter = value.choice(&TextureFilter::ALL)?;
+            }
+            "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
+            "min_contribution" => quality.min_contribution = value.share()?,
+            "next_event" => quality.next_event = value.choice(&NextEvent::ALL)?,
+            "roulette_from" => quality.roulette_from = value.whole(2..=MAX_DEPTH)?,
+            "clamp" => quality.clamp = value.not_negative()?,
+            "accelerator" => {
+                quality.accelerator = value.choice(&Accelerator::names())?;
+            }
+            "copies" => quality.copies = value.truth()?,
+            "savings" => quality.savings = savings(value)?,
+            "kd_heuristics" => quality.kd_heuristics = kd_heuristics(value)?,
+            "sampler" => quality.sampler = value.choice(&SAMPLERS)?,
+            "precision" => quality.precision = value.choice(&PRECISIONS)?,
+            "split" => quality.split = value.choice(&SPLITS)?,
+            "leaf_size" => quality.leaf_size = value.whole(1..=u32::MAX)?,
+            "triangle_method" => quality.triangle_method = value.choice(&TriangleMethod::ALL)?,
+            "sphere_method" => quality.sphere_method = value.choice(&SphereMethod::ALL)?,
+            _ => quality.grid_resolution = value.whole(0..=MAX_GRID)?,
+        }
+    }
+    Ok(quality)
+}
+
+fn savings(value: Value) -> Result<Savings, LoadError> {
+    let table = value.table(&["volumes", "skip", "sort"])?;
+    let wanted = |key: &str| table.get(key).map_or(Ok(true), |wanted| wanted.truth());
+    Ok(Savings { volumes: wanted("volumes")?, skip: wanted("skip")?, sort: wanted("sort")? })
+}
+
+fn kd_heuristics(value: Value) -> Result<KdHeuristics, LoadError> {
+    const KEYS: [&str; 5] =
+        ["longest_axis", "balanced_counts", "few_straddlers", "cut_off_empty_space", "stop_at_overlap"];
+    let table = value.table(&KEYS)?;
+    let wanted = |key: &str| table.get(key).map_or(Ok(true), |wanted| wanted.truth());
+    Ok(KdHeuristics {
+        longest_axis: wanted("longest_axis")?,
+        balanced_counts: wanted("balanced_counts")?,
+        few_straddlers: wanted("few_straddlers")?,
+        cut_off_empty_space: wanted("cut_off_empty_space")?,
+        stop_at_overlap: wanted("stop_at_overlap")?,
+    })
+}
+
+const SAMPLERS: [(&str, Sampler); 5] = [
+    ("center", Sampler::Center),
+    ("random", Sampler::Random),
+    ("jittered", Sampler::Jittered),
+    ("gaussian", Sampler::Gaussian),
+    ("low_discrepancy", Sampler::LowDiscrepancy),
+];
+
+const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
+
+const SPLITS: [(&str, Split); 3] = [
+    ("object_median", Split::ObjectMedian),
+    ("spatial_median", Split::SpatialMedian),
+    ("surface_area", Split::SurfaceArea),
+];

@@ -1,0 +1,301 @@
+//! Textures and meshes, which need a second file.
+
+use super::CAMERA;
+use crate::files::error::LoadError;
+use crate::files::scene::{Limits, Loaded, parse, parse_within};
+use crate::material::{Material, Wrap};
+use crate::scene::{Background, EnvironmentMap, Scene};
+use glam::Vec3;
+use std::path::PathBuf;
+
+/// A folder that is removed when the value is dropped.
+pub(super) struct Folder(PathBuf);
+
+impl Folder {
+    pub(super) fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("raykata-{}-{name}", std::process::id()));
+        std::fs::create_dir_all(&path).expect("a folder for the test");
+        Folder(path)
+    }
+
+    pub(super) fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    pub(super) fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), bytes).expect("a file for the test");
+    }
+
+    /// Reads `text` behind a camera as if it lay in this folder.
+    fn parse(&self, text: &str) -> Result<Scene, LoadError> {
+        parse(&self.path("s.toml"), &format!("{CAMERA}{text}"))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The message, without the path of the file in front, and its help.
+fn trouble(result: Result<Scene, LoadError>) -> (Option<(usize, usize)>, String, String) {
+    let error = result.expect_err("the scene should be refused");
+    (error.place, error.message, error.help.unwrap_or_default())
+}
+
+#[test]
+fn an_image_is_decoded_to_linear_light() {
+    let folder = Folder::new("textures");
+    let pixels = image::RgbImage::from_raw(2, 1, vec![0, 255, 188, 10, 0, 0]).expect("six bytes");
+    pixels.save(folder.path("wood.png")).expect("a texture");
+    let scene = folder
+        .parse("[textures.wood]\nfile = 'wood.png'\nwrap = 'mirror'\n[materials.m]\ntexture = 'wood'")
+        .expect("a scene");
+    let texture = &scene.textures[0];
+    assert_eq!((texture.width, texture.height, texture.wrap), (2, 1, Wrap::Mirror));
+    // Code 188 is middle grey: ((188/255 + 0.055) / 1.055)^2.4 = 0.5029; code 10 lies on the linear part:
+    // 10/255/12.92.
+    assert!((texture.pixels[0] - Vec3::new(0.0, 1.0, 0.502_886)).abs().max_element() < 1e-6);
+    assert!((texture.pixels[1].x - 0.003_035_27).abs() < 1e-8);
+    assert_eq!(scene.materials[1].texture, Some(0));
+}
+
+#[test]
+fn finer_images_keep_their_fineness() {
+    let folder = Folder::new("fine");
+    let code = |code: u16| image::ImageBuffer::from_pixel(1, 1, image::Luma([code]));
+    code(32_768).save(folder.path("grey.png")).expect("a texture");
+    let bright = image::Rgb32FImage::from_pixel(1, 1, image::Rgb([4.0, 0.5, 0.0]));
+    bright.save(folder.path("sky.hdr")).expect("a texture");
+    let scene = folder
+        .parse("[textures]\ngrey.file = 'grey.png'\nsky = { file = 'sky.hdr', wrap = 'clamp' }")
+        .expect("a scene");
+    // ((32768/65535 + 0.055) / 1.055)^2.4; 8 bits would give 0.2159 for code 128.
+    assert!((scene.textures[0].pixels[0] - Vec3::splat(0.214_053)).abs().max_element() < 1e-5);
+    assert_eq!(scene.textures[1].pixels[0], Vec3::new(4.0, 0.5, 0.0)); // powers of two are exact in RGBE
+    assert_eq!(scene.textures[1].wrap, Wrap::Clamp);
+}
+
+#[test]
+fn an_environment_map_is_an_image_around_the_scene() {
+    let folder = Folder::new("environment");
+    let bright = image::Rgb32FImage::from_pixel(2, 1, image::Rgb([4.0, 0.5, 0.0]));
+    bright.save(folder.path("sky.hdr")).expect("an image");
+    let scene = folder
+        .parse("[environment]\nbackground = { file = 'sky.hdr', rotation = 180, scale = 2 }")
+        .expect("a scene");
+    let map = EnvironmentMap { texture: 0, rotation: std::f32::consts::PI, scale: 2.0 };
+    assert_eq!(scene.background, Background::Map(map));
+    assert_eq!(scene.textures[0].pixels[..], [Vec3::new(4.0, 0.5, 0.0); 2]);
+
+    let (place, message, help) = trouble(folder.parse("environment.background.file = 'skyy.hdr'"));
+    assert_eq!((place, message.as_str()), (Some((2, 31)), "there is no file `skyy.hdr`"));
+    assert!(help.ends_with("did you mean `sky.hdr`?"), "{help}");
+    folder.write("broken.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 9 +X 9\n");
+    let (_, message, _) = trouble(folder.parse("environment.background.file = 'broken.hdr'"));
+    assert!(message.starts_with("cannot use `broken.hdr` as a texture: "), "{message}");
+    // The size of the image is known from its header; 4 GB are enough for 100 million pixels.
+    folder.write("large.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20000 +X 40000\n");
+    let (_, message, _) = trouble(folder.parse("environment.background.file = 'large.hdr'"));
+    assert!(message.starts_with("an image of 40000 by 20000 pixels takes about 32.0 GB"), "{message}");
+    let (_, message, _) = trouble(folder.parse("environment.background = { file = 'sky.hdr', scale = -1 }"));
+    assert_eq!(message, "`scale` must be at least 0, but is -1");
+}
+
+#[test]
+fn files_that_cannot_be_used_say_why() {
+    let folder = Folder::new("missing");
+    folder.write("wood.png", "not a picture");
+    folder.write("bunny.stl", "solid");
+    let (place, message, help) = trouble(folder.parse("textures.wood.file = 'wod.png'"));
+    assert_eq!((place, message.as_str()), (Some((2, 22)), "there is no file `wod.png`"));
+    assert_eq!(help, format!("looked for {}; did you mean `wood.png`?", folder.path("wod.png").display()));
+
+    let (place, message, help) = trouble(folder.parse("meshes.bunny.file = 'no/bunny.ply'"));
+    assert_eq!((place, message.as_str()), (Some((2, 21)), "there is no file `no/bunny.ply`"));
+    let (path, parent) = (folder.path("no/bunny.ply"), folder.path("no"));
+    assert_eq!(help, format!("looked for {}, and there is no folder {}", path.display(), parent.display()));
+
+    let (place, message, help) = trouble(folder.parse("textures.wood.file = 'wood.png'"));
+    assert_eq!(place, Some((2, 22)));
+    assert!(message.starts_with("cannot use `wood.png` as a texture: "), "{message}");
+    assert_eq!(help, "textures are PNG or Radiance HDR files");
+
+    let (_, message, help) = trouble(folder.parse("meshes.bunny.file = 'bunny.stl'"));
+    assert_eq!(
+        (message.as_str(), help.as_str()),
+        ("'bunny.stl' is not a mesh that can be read", "meshes are `.ply` or `.obj` files")
+    );
+    let (_, message, _) = trouble(folder.parse("meshes.bunny.file = \"\\u0000\""));
+    assert!(message.starts_with("cannot read `\\u{0}`: "), "{message}");
+    let (_, message, _) = trouble(folder.parse("meshes.bunny.file = ''"));
+    assert_eq!(message, "`` is a folder, not a file");
+    let (_, message, help) = trouble(folder.parse("[meshes.bunny]"));
+    assert_eq!(
+        (message.as_str(), help.as_str()),
+        ("`bunny` lacks `file`", "add it, for example `file = \"bunny.ply\"`")
+    );
+}
+
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+    element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+const OBJ: &str = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
+const MTL: &str = "newmtl red\nKd 1 0 0\nd 0.25\n";
+
+#[test]
+fn a_mesh_comes_with_its_materials_unless_the_scene_knows_better() {
+    let folder = Folder::new("meshes");
+    folder.write("m.ply", PLY);
+    folder.write("m.obj", OBJ);
+    folder.write("m.mtl", MTL);
+    let scene = folder
+        .parse("[meshes.p]\nfile = 'm.ply'\nsmooth = false\n[meshes.o]\nfile = 'm.obj'\n")
+        .expect("a scene");
+    assert_eq!(scene.meshes[0].mesh.triangles, [[0, 1, 2]]);
+    assert_eq!(scene.meshes[0].mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!(scene.meshes.iter().map(|mesh| mesh.smooth).collect::<Vec<_>>(), [false, true]);
+    assert_eq!((&scene.meshes[0].materials, &scene.meshes[1].materials), (&vec![], &vec![1]));
+    assert_eq!(scene.material_names, ["default", "o/red"]);
+    let red = Material {
+        ambient: Vec3::X,
+        diffuse: Vec3::X,
+        transmission: Vec3::splat(0.75),
+        ..Material::default()
+    };
+    assert_eq!(scene.materials[1], red);
+
+    let scene = folder.parse("[materials.red]\n[meshes.o]\nfile = 'm.obj'\n").expect("a scene");
+    assert_eq!((scene.materials.len(), &scene.meshes[0].materials), (2, &vec![1]));
+    let scene = folder.parse("[meshes.o]\nfile = 'm.obj'\nmaterials = false").expect("a scene");
+    assert_eq!((scene.materials.len(), scene.meshes[0].materials.len()), (1, 0));
+}
+
+/// The scene in `text` behind a camera, and the warnings with their help, without the folder in front.
+#[track_caller]
+fn loaded(folder: &Folder, text: &str) -> (Scene, Vec<String>) {
+    let result = parse_within(&folder.path("s.toml"), &format!("{CAMERA}{text}"), Limits::default());
+    let Loaded { scene, warnings } = result.unwrap_or_else(|error| panic!("{error}"));
+    let start = format!("{}{}", folder.0.display(), std::path::MAIN_SEPARATOR);
+    (scene, warnings.iter().map(|warning| warning.to_string().replace(&start, "")).collect())
+}
+
+#[test]
+fn an_obj_material_brings_its_image() {
+    let folder = Folder::new("images");
+    folder.write("m.obj", OBJ);
+    folder.write("m.mtl", format!("{MTL}map_Kd wood.png\n"));
+    let text = "[meshes.o]\nfile = 'm.obj'\n";
+    let (scene, warnings) = loaded(&folder, text);
+    assert_eq!(scene.materials[1].texture, None);
+    assert_eq!(
+        warnings,
+        [
+            "s.toml:2:1: there is no texture `wood.png` for mesh `o`; it is left out\nhelp: looked for wood.png"
+        ]
+    );
+    image::RgbImage::new(3, 2).save(folder.path("wood.png")).expect("a texture");
+    let (scene, warnings) = loaded(&folder, text);
+    assert_eq!((scene.materials[1].texture, scene.textures[0].width, warnings.len()), (Some(0), 3, 0));
+}
+
+#[test]
+fn a_missing_library_does_not_refuse_the_mesh() {
+    let folder = Folder::new("mtl");
+    folder.write("m.obj", OBJ);
+    let text = "[meshes.o]\nfile = 'm.obj'\n";
+    let missing = "m.obj:1:8: there is no material library `m.mtl`\n\
+                   help: looked for m.mtl: put the library there, or remove the `mtllib` line";
+    let undefined = "m.obj:5:8: material `red` is not defined; the mesh has the material of its node\n\
+                     help: define it in the scene under `[materials]`, or write `materials = false` for the mesh";
+    let (scene, warnings) = loaded(&folder, text);
+    assert_eq!(
+        (scene.meshes[0].materials.len(), warnings),
+        (0, vec![missing.to_owned(), undefined.to_owned()])
+    );
+    let (scene, warnings) = loaded(&folder, &format!("[materials.red]\n{text}"));
+    assert_eq!((&scene.meshes[0].materials, warnings), (&vec![1], vec![missing.to_owned()]));
+    let (scene, warnings) = loaded(&folder, &format!("{text}materials = false"));
+    assert_eq!((scene.meshes[0].materials.len(), warnings), (0, vec![]));
+
+    // If another name is defined, faces with this one get the default.
+    folder.write("m.obj", format!("{OBJ}usemtl blue\nf 1 3 2\n"));
+    folder.write("m.mtl", MTL);
+    let (scene, warnings) = loaded(&folder, text);
+    assert_eq!((&scene.meshes[0].materials, warnings.len()), (&vec![1, 0], 1));
+    assert!(
+        warnings[0].starts_with("m.obj:7:8: material `blue` is not defined; these faces"),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn a_warning_about_a_library_names_its_line() {
+    let folder = Folder::new("library");
+    folder.write("m.obj", OBJ);
+    folder.write("m.mtl", "newmtl red\nd 1.5\n");
+    let (scene, warnings) = loaded(&folder, "[meshes.o]\nfile = 'm.obj'\n");
+    assert_eq!(scene.materials[1].transmission, Vec3::ZERO);
+    assert_eq!(warnings, ["m.mtl:2:3: `d` is 1.5; 1 is used\nhelp: write a number from 0 to 1"]);
+}
+
+#[test]
+fn a_jpeg_texture_says_how_to_convert_it() {
+    let folder = Folder::new("jpeg");
+    folder.write("wood.jpg", b"\xff\xd8\xff\xe0\0\x10JFIF\0\x01");
+    let (place, message, help) = trouble(folder.parse("textures.wood.file = 'wood.jpg'"));
+    assert_eq!(place, Some((2, 22)));
+    assert_eq!(message, "`wood.jpg` is a JPEG image, and textures are PNG or Radiance HDR files");
+    let (from, to) = (folder.path("wood.jpg"), folder.path("wood.png"));
+    assert_eq!(
+        help,
+        format!(
+            "convert it, for example with `magick \"{}\" \"{}\"`, and name the new file",
+            from.display(),
+            to.display()
+        )
+    );
+}
+
+#[test]
+fn memory_is_bounded_before_it_is_allocated() {
+    let folder = Folder::new("memory");
+    image::GrayImage::new(1000, 1000).save(folder.path("large.png")).expect("a texture");
+    let limits = Limits { memory: 30_000_000 };
+    let refused = |text: &str| {
+        let text = format!("{CAMERA}film = {{ width = 10, height = 10 }}\n{text}");
+        let error = parse_within(&folder.path("s.toml"), &text, limits).expect_err("a limit");
+        (error.place, error.message, error.help.unwrap_or_default())
+    };
+    let (place, message, help) = refused("textures.wood.file = 'large.png'");
+    assert_eq!(place, Some((3, 22)));
+    assert!(
+        message.starts_with("an image of 1000 by 1000 pixels takes about 40.0 MB, and with"),
+        "{message}"
+    );
+    assert_eq!(help, "make it smaller, or allow more memory: at least `--memory 1`");
+    // Each of 100 patches fits, but not all.
+    let net = "rows = [[[0,0,0],[1,0,0],[2,0,0],[3,0,0]],[[0,1,0],[1,1,0],[2,1,0],[3,1,0]],\
+               [[0,2,0],[1,2,0],[2,2,0],[3,2,0]],[[0,3,0],[1,3,0],[2,3,0],[3,3,0]]]";
+    let patch = format!("[[nodes]]\nshape = {{ bezier = {{ {net}, steps = 50 }} }}\n");
+    let (place, message, _) = refused(&patch.repeat(100));
+    assert_eq!(place.map(|(line, _)| line), Some(62), "{message}");
+    assert!(message.starts_with("a surface of 5000 triangles takes about"), "{message}");
+    // Two spans of 200 squares along u, one along v.
+    let net = "rows = [[[0,0,0],[1,0,0],[2,0,0]],[[0,1,0],[1,1,0],[2,1,0]]], degree = 1";
+    let (place, message, _) =
+        refused(&format!("[[nodes]]\nshape = {{ bspline = {{ {net}, steps = 200 }} }}\n"));
+    assert_eq!(place.map(|(line, _)| line), Some(4), "{message}");
+    assert!(message.starts_with("a surface of 160000 triangles takes about"), "{message}");
+    folder.write("m.ply", PLY);
+    let (place, ..) = refused("[meshes.m]\nfile = 'm.ply'\nsubdivide = 9\n");
+    assert_eq!(place.map(|(line, _)| line), Some(5));
+}
+
+#[test]
+fn a_mesh_has_triangles() {
+    let folder = Folder::new("empty");
+    folder.write("m.ply", PLY.replace("element face 1", "element face 0").replace("3 0 1 2\n", ""));
+    let error = folder.parse("[meshes.p]\nfile = 'm.ply'\n").expect_err("an empty mesh");
+    assert!(error.message.contains("no triangles"), "{error}");
+}

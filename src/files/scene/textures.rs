@@ -1,0 +1,114 @@
+//! Reads `[textures.NAME]`: images, decoded to linear light.
+
+use super::files;
+use super::names::Names;
+use super::reader::Value;
+use super::settings::ENCODINGS;
+use super::words::{one_line, quoted};
+use crate::files::error::LoadError;
+use crate::material::{Texture, Wrap};
+use crate::scene::Encoding;
+use glam::Vec3;
+use image::{DynamicImage, ImageReader};
+use std::path::Path;
+use std::sync::Arc;
+
+const WRAPS: [(&str, Wrap); 3] = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
+
+/// All `[textures.NAME]` in the order of the file, with their names. Fails if a file is missing or is not an
+/// image.
+pub(super) fn textures<'a>(value: Option<Value<'a>>) -> Result<(Vec<Texture>, Names<'a>), LoadError> {
+    let (mut textures, mut names) = (Vec::new(), Names::new("texture"));
+    let Some(value) = value else { return Ok((textures, names)) };
+    for entry in value.any_table()?.values() {
+        let table = entry.table(&["file", "wrap", "encoding"])?;
+        let wrap = table.get("wrap").map_or(Ok(Wrap::Repeat), |wrap| wrap.choice(&WRAPS))?;
+        let file = table.need("file", "\"wood.png\"")?;
+        let path = files::find(file)?;
+        names.insert(entry.key, textures.len());
+        let encoding = table.get("encoding");
+        let gamma2 =
+            encoding.map_or(Ok(false), |one| one.choice(&ENCODINGS).map(|e| e == Encoding::Gamma2))?;
+        let (texture, has_bytes) = read(&path, wrap, file)?;
+        if let Some(encoding) = encoding.filter(|_| gamma2) {
+            if !has_bytes {
+                let message = "only images with 8 bits per component are encoded with gamma 2";
+                return Err(encoding.error(message).help("delete the key, or convert the image to 8 bits"));
+            }
+            value.source.gamma2.borrow_mut().textures.push(textures.len());
+        }
+        textures.push(texture);
+    }
+    Ok((textures, names))
+}
+
+/// Reads an image file and decodes it from sRGB to linear light; formats with floating-point pixels are
+/// linear already. Also says whether its components have 8 bits. Fails at `value`, which names the image, if the file cannot be read, has no pixels, or needs more memory
+/// than the limit; this is known from its header.
+pub(super) fn read(path: &Path, wrap: Wrap, value: Value) -> Result<(Texture, bool), LoadError> {
+    let name = quoted(&path.file_name().unwrap_or_default().to_string_lossy());
+    let trouble = |message: String| {
+        value
+            .error(format!("cannot use {name} as a texture: {}", one_line(&message)))
+            .help("textures are PNG or Radiance HDR files")
+    };
+    let open = || ImageReader::open(path).and_then(ImageReader::with_guessed_format);
+    let reader = open().map_err(|error| trouble(error.to_string()))?;
+    if let Some(format) = reader.format().filter(|format| !format.reading_enabled()) {
+        let format = format!("{format:?}").to_uppercase();
+        let png = path.with_extension("png");
+        return Err(value
+            .error(format!("{name} is a {format} image, and textures are PNG or Radiance HDR files"))
+            .help(format!(
+                "convert it, for example with `magick \"{}\" \"{}\"`, and name the new file",
+                path.display(),
+                png.display()
+            )));
+    }
+    let (width, height) = reader.into_dimensions().map_err(|error| trouble(error.to_string()))?;
+    if width == 0 || height == 0 {
+        return Err(trouble("the image has no pixels".into()));
+    }
+    value.source.budget.texture(value, width, height)?;
+
+    let mut reader = open().map_err(|error| trouble(error.to_string()))?;
+    // The budget bounds the memory. The limits of the decoder are lower than what a user can allow.
+    reader.no_limits();
+    let image = reader.decode().map_err(|error| trouble(error.to_string()))?;
+    let has_bytes = matches!(
+        image,
+        DynamicImage::ImageLuma8(_)
+            | DynamicImage::ImageLumaA8(_)
+            | DynamicImage::ImageRgb8(_)
+            | DynamicImage::ImageRgba8(_)
+    );
+    Ok((Texture { width, height, pixels: Arc::new(linear_pixels(image)), wrap }, has_bytes))
+}
+
+/// The pixels row by row from the top, in linear light; transparency is ignored.
+fn linear_pixels(image: DynamicImage) -> Vec<Vec3> {
+    match image {
+        // High dynamic range files already store linear light.
+        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
+            image.to_rgb32f().pixels().map(|pixel| Vec3::from_array(pixel.0)).collect()
+        }
+        DynamicImage::ImageLuma16(_)
+        | DynamicImage::ImageLumaA16(_)
+        | DynamicImage::ImageRgb16(_)
+        | DynamicImage::ImageRgba16(_) => {
+            let decode = |code: u16| srgb_to_linear(f32::from(code) / 65_535.0);
+            image.to_rgb16().pixels().map(|pixel| Vec3::from_array(pixel.0.map(decode))).collect()
+        }
+        // Compute the power once for each of the 256 codes, instead of three times per pixel.
+        _ => {
+            let table: [f32; 256] = std::array::from_fn(|code| srgb_to_linear(code as f32 / 255.0));
+            let decode = |code: u8| table[usize::from(code)];
+            image.to_rgb8().pixels().map(|pixel| Vec3::from_array(pixel.0.map(decode))).collect()
+        }
+    }
+}
+
+/// The inverse of the sRGB curve (IEC 61966-2-1): linear near black, a power above; both values in `0..=1`.
+pub(super) fn srgb_to_linear(encoded: f32) -> f32 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}

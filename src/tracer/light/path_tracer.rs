@@ -1,0 +1,404 @@
+//! The light along one random path (path tracing): at each surface the path collects light and continues in one direction,
+//! as the student's `step` says. It takes the place of the tree of rays where a scene asks for indirect light.
+
+use super::indirect::IndirectLight;
+use super::interaction::SurfaceInteraction;
+use super::path::Path;
+use super::random_choices::{before_emitter, sample_rough_surface};
+use super::record::Record;
+use super::rough_lobe::RoughLobe;
+use super::whitted::Scratch;
+use crate::count::{Event, Tally};
+use crate::emitter::{AreaEmitter, EmitterSample};
+use crate::kit::{Bounce, LightSample, Limits, RayKind, SecondaryRay, StudentFunctions};
+use crate::light_path::{
+    ChosenEmitter, LightCandidate, Lobe, NextRay, PathState, PathVertex, Scattering, ShadowQuestion,
+    StepNumbers,
+};
+use crate::material::Material;
+use crate::random::{Points, Purpose};
+use crate::ray::Ray;
+use crate::tracer::frame::Frame;
+use crate::tracer::search::hit::Hit;
+use glam::{Vec2, Vec3};
+
+/// The limits of `scatter` for a path, whose length `step` limits.
+const UNLIMITED: Limits = Limits { max_depth: u32::MAX, min_contribution: 0.0 };
+
+/// The factor by which light that is only sampled is scaled, with its density, a power of two. So one sample adds what it adds
+/// otherwise, and its weight in multiple importance sampling is 1, as if the density of diffuse rays were 0.
+const DENSE: f32 = 4_294_967_296.0;
+
+/// The number of bounces at which the student's `survives` begins to end paths.
+const ROULETTE_BEGINS: u32 = 3;
+
+/// The same light with a density and a radiance that are [`DENSE`] times as large.
+fn alone(light: LightCandidate) -> LightCandidate {
+    match light {
+        LightCandidate::Environment(sample) => LightCandidate::Environment(EmitterSample {
+            radiance: DENSE * sample.radiance,
+            pdf: DENSE * sample.pdf,
+            ..sample
+        }),
+        LightCandidate::Emitter(ChosenEmitter { emitter, probability }) => {
+            let emitter = AreaEmitter { radiance: DENSE * emitter.radiance, ..emitter };
+            LightCandidate::Emitter(ChosenEmitter { emitter, probability: DENSE * probability })
+        }
+    }
+}
+
+/// The shadow rays of both lobes. They sample the same light with the same random numbers, so that one ray serves both.
+fn shared(diffuse: Option<ShadowQuestion>, rough: Option<ShadowQuestion>) -> [Option<ShadowQuestion>; 2] {
+    match (diffuse, rough) {
+        (Some(diffuse), Some(rough)) if diffuse.direction == rough.direction => {
+            [Some(ShadowQuestion { light: diffuse.light + rough.light, ..diffuse }), None]
+        }
+        both => [both.0, both.1],
+    }
+}
+
+impl<F: StudentFunctions> Frame<'_, F> {
+    /// The linear radiance that arrives along `path`, whose closest hit is `hit`: an unbiased random estimate of all light,
+    /// direct and indirect, up to the largest depth. With a limit on the light of a sample it is darkened to that limit.
+    ///
+    /// Source: Kajiya, "The Rendering Equation", 1986.
+    #[inline(never)]
+    pub fn radiance_of_path<T: Tally>(
+        &self,
+        indirect: &IndirectLight,
+        path: Path,
+        hit: Option<Hit>,
+        scratch: &mut Scratch<T>,
+        record: &mut impl Record,
+    ) -> Vec3 {
+        let color = self.follow(indirect, path, hit, scratch, record);
+        let (limit, largest) = (self.quality().clamp, color.max_element());
+        if limit > 0.0 && largest > limit { limit / largest * color } else { color }
+    }
+
+    /// Follows `path` from hit to hit, and adds up the light that it collects.
+    fn follow<T: Tally>(
+        &self,
+        indirect: &IndirectLight,
+        mut path: Path,
+        mut hit: Option<Hit>,
+        scratch: &mut Scratch<T>,
+        record: &mut impl Record,
+    ) -> Vec3 {
+        let mut color = Vec3::ZERO;
+        // The direction of a camera ray is certain.
+        let (mut origin, mut pdf) = (path.ray.origin, f32::INFINITY);
+        // Whether the last surface sent the ray on in its diffuse lobe.
+        let mut is_diffuse = false;
+        // The emitter on which the ray starts.
+        let mut left: Option<ChosenEmitter> = None;
+        loop {
+            let direction = self.unit(path.ray.direction);
+            let Some(found) = hit else {
+                record.miss(&path);
+                return color + path.weight * self.background_of_path(indirect, direction, pdf, scratch);
+            };
+            // Compute the surface interaction and its material.
+            let (at, number) = self.surface_at(&path, &found, scratch, record);
+            let material = self.material(&path, &found, &at, &mut scratch.tally);
+            // Add the light of `[[lights]]`, which no ray finds by chance, without ambient light.
+            if !self.plan.effects.materials[at.material].lights.is_empty() {
+                color += path.weight * self.direct_light(&path, number, &at, &material, scratch, record);
+            }
+            // Let the student's `step` collect other light and choose how the path continues.
+            let (bounces, max_depth) = self.depth_of_step(path.depth);
+            let state = PathState { origin, direction, weight: path.weight, bounces, pdf };
+            let may_bounce = path.depth < self.limits.max_depth;
+            let scattering = self.scattering(indirect, direction, &at, &material, may_bounce);
+            let rough = self.rough_lobe(indirect, &at, &material, &scattering);
+            let asks = rough.is_some() || scattering.diffuse != Vec3::ZERO;
+            let (mut light, numbers) =
+                self.numbers_of_step(indirect, &scattering, asks, &path.points, &state, scratch);
+            let is_seen = !(indirect.is_light[at.material] && is_diffuse);
+            let emission = if is_seen { material.emission } else { Vec3::ZERO };
+            let emitter = match emission == Vec3::ZERO {
+                true => None,
+                false => indirect.emitter_at(&found, at.surface.point),
+            };
+            // A point of an emitter does not sample this emitter: it sees none of it, or the inside of a sphere, and whether it
+            // lies inside or outside is a matter of rounding. So a ray from there finds the emitter by chance only.
+            if matches!((light, emitter), (Some(LightCandidate::Emitter(other)), Some(own)) if other == own) {
+                light = None;
+            }
+            let by_chance = emitter.is_some() && emitter == left;
+            left = emitter;
+            let emitter = if by_chance { None } else { emitter };
+            // A ray that grazes the rim of an emitter may hit it although its density is rounded to 0. Its light, which samples of
+            // the emitter count, would count in full: a bright speck.
+            let grazes = |ChosenEmitter { emitter, .. }: &ChosenEmitter| {
+                pdf < f32::INFINITY && F::light_pdf(emitter, origin, direction) == 0.0
+            };
+            let emission = if emitter.as_ref().is_some_and(grazes) { Vec3::ZERO } else { emission };
+            // Where light is only sampled, a diffuse or rough ray adds none of it, and its samples have the weight 1.
+            let is_sampled = indirect.samples_only && emitter.is_some() && pdf < f32::INFINITY;
+            let emission = if is_sampled { Vec3::ZERO } else { emission };
+            if indirect.samples_only {
+                light = light.map(alone);
+            }
+            let vertex = PathVertex { surface: at.surface, scattering, emission, emitter, light };
+            let step = F::step(&state, &vertex, max_depth, &numbers);
+            color += step.light;
+            // Trace the shadow ray to the light that was sampled, which the diffuse and the rough lobe share.
+            let in_lobe = match (&rough, &light) {
+                (Some(rough), Some(light)) => {
+                    self.light_in_lobe(indirect, rough, light, &vertex, &state, numbers.light)
+                }
+                _ => None,
+            };
+            for question in shared(step.shadow, in_lobe).into_iter().flatten() {
+                color += self.unoccluded(&question, &path, &at, light, scratch, |ray, blocked| {
+                    record.shadow(&path, number, ray, blocked);
+                });
+            }
+            // Continue with the next ray.
+            let Some(next) = step.next else {
+                let reflects =
+                    vertex.scattering.diffuse != Vec3::ZERO || !vertex.scattering.secondary.is_empty();
+                if may_bounce && reflects {
+                    scratch.note(Event::Absorbed);
+                }
+                return color;
+            };
+            path = self.next_path(&next, &path, &found, number, &at, &material, scratch);
+            (origin, is_diffuse) = (at.surface.point, next.lobe == Lobe::Diffuse);
+            pdf = match &rough {
+                Some(rough) if next.lobe == Lobe::Reflection => {
+                    rough.pdf(path.ray.direction).unwrap_or(next.pdf)
+                }
+                _ => next.pdf,
+            };
+            hit = self.closest_hit(&path.ray, scratch);
+        }
+    }
+
+    /// The bounces so far and the largest depth, as `step` gets them: both are moved by the same number, so that `survives`,
+    /// which begins at a fixed number of bounces, begins where the quality setting says. A camera ray has no bounces.
+    fn depth_of_step(&self, depth: u32) -> (u32, u32) {
+        let from = self.quality().roulette_from;
+        let bounces = match depth {
+            0 => 0,
+            _ => (depth + ROULETTE_BEGINS).saturating_sub(from).max(1),
+        };
+        (bounces, bounces + (self.limits.max_depth - depth))
+    }
+
+    /// How the surface scatters light that arrives in `direction`; it scatters none at the end of the longest path.
+    fn scattering(
+        &self,
+        indirect: &IndirectLight,
+        direction: Vec3,
+        at: &SurfaceInteraction,
+        material: &Material,
+        may_bounce: bool,
+    ) -> Scattering {
+        let takes = &self.plan.effects.materials[at.material];
+        let normal = at.surface.shading_normal;
+        let secondary = match may_bounce && (takes.mirror || takes.transmission) {
+            true => F::scatter(direction, normal, at.entering, material, Vec3::ONE, 0, &UNLIMITED),
+            false => Vec::new(),
+        };
+        let is_diffuse = may_bounce && indirect.diffuse.get(at.material) == Some(&true);
+        let diffuse = if is_diffuse { material.diffuse } else { Vec3::ZERO };
+        Scattering { diffuse, normal, secondary }
+    }
+
+    /// The lobe of a rough mirror, if any light is sampled; `None` for other surfaces. A refracted ray finds light by chance
+    /// only, because the shape that it enters is in the way of shadow rays.
+    fn rough_lobe(
+        &self,
+        indirect: &IndirectLight,
+        at: &SurfaceInteraction,
+        material: &Material,
+        scattering: &Scattering,
+    ) -> Option<RoughLobe> {
+        let is_rough = self.plan.effects.materials[at.material].glossy && material.roughness > 0.0;
+        if !(is_rough && indirect.samples()) {
+            return None;
+        }
+        let reflected = scattering.secondary.iter().find(|ray| ray.bounce == Bounce::Reflection)?;
+        Some(RoughLobe::new(&at.surface, reflected.direction, reflected.weight, material.roughness))
+    }
+
+    /// The light that a rough mirror reflects from one sample of `light`, with the random numbers `u` with which `step` samples
+    /// it; the weight is that of multiple importance sampling against the reflected ray.
+    fn light_in_lobe(
+        &self,
+        indirect: &IndirectLight,
+        lobe: &RoughLobe,
+        light: &LightCandidate,
+        vertex: &PathVertex,
+        state: &PathState,
+        u: Vec2,
+    ) -> Option<ShadowQuestion> {
+        let sample = match light {
+            LightCandidate::Environment(sample) => *sample,
+            LightCandidate::Emitter(ChosenEmitter { emitter, probability }) => {
+                let sample = F::sample_light(emitter, vertex.surface.point, u)?;
+                EmitterSample { pdf: probability * sample.pdf, ..sample }
+            }
+        };
+        let EmitterSample { direction, distance, radiance, pdf } = sample;
+        let of_lobe = lobe.pdf(direction)?;
+        let weight = if indirect.samples_only { 1.0 } else { F::mis_weight(pdf, of_lobe) };
+        let light = state.weight * lobe.reflectance * radiance * (of_lobe / pdf * weight);
+        (light != Vec3::ZERO).then_some(ShadowQuestion { direction, distance, light })
+    }
+
+    /// The light that may be sampled at a vertex that `asks` for it, and the random numbers of its step. Numbers that cannot
+    /// matter are 0 and are not looked up.
+    fn numbers_of_step<T: Tally>(
+        &self,
+        indirect: &IndirectLight,
+        scattering: &Scattering,
+        asks: bool,
+        points: &Points,
+        state: &PathState,
+        scratch: &mut Scratch<T>,
+    ) -> (Option<LightCandidate>, StepNumbers) {
+        let mut numbers = StepNumbers { light: Vec2::ZERO, bsdf: Vec3::ZERO, roulette: 0.0 };
+        let is_diffuse = scattering.diffuse != Vec3::ZERO;
+        // Choose a light, and sample the environment map; `step` samples any other light.
+        let mut light = None;
+        if asks && indirect.samples() {
+            let choice = match indirect.has_choice() {
+                true => self.numbers(points, Purpose::EmitterChoice, 1, scratch).x,
+                false => 0.0,
+            };
+            numbers.light = self.numbers(points, Purpose::EmitterPoint, 2, scratch);
+            light = self.choose_light(indirect, choice, numbers.light, scratch);
+        }
+        // Look up the numbers of the direction, of the lobe if there are several, and of Russian roulette.
+        let lobes = usize::from(is_diffuse) + scattering.secondary.len();
+        let roulette = lobes > 0 && state.bounces + 1 >= ROULETTE_BEGINS;
+        let used = u64::from(lobes > 1) + u64::from(roulette);
+        if used > 0 {
+            let pair = self.numbers(points, Purpose::Lobe, used, scratch);
+            (numbers.bsdf.x, numbers.roulette) = (pair.x, pair.y);
+        }
+        if is_diffuse {
+            let pair = self.numbers(points, Purpose::Direction, 2, scratch);
+            (numbers.bsdf.y, numbers.bsdf.z) = (pair.x, pair.y);
+        }
+        (light, numbers)
+    }
+
+    /// Two random numbers for `purpose`, `0 <= u < 1` each, of which `used` are used and counted.
+    fn numbers<T: Tally>(
+        &self,
+        points: &Points,
+        purpose: Purpose,
+        used: u64,
+        scratch: &mut Scratch<T>,
+    ) -> Vec2 {
+        (0..used).for_each(|_| scratch.note(Event::RandomNumber));
+        let stratum = points.stratum(purpose, 0, 1);
+        if self.plan.jittered { F::jittered(&stratum) } else { stratum.u }
+    }
+
+    /// The light that the random number `choice` chooses; `u` samples the environment map.
+    fn choose_light<T: Tally>(
+        &self,
+        indirect: &IndirectLight,
+        choice: f32,
+        u: Vec2,
+        scratch: &mut Scratch<T>,
+    ) -> Option<LightCandidate> {
+        let share = indirect.share_of_environment();
+        if let Some((map, table, _)) = indirect.environment.as_ref().filter(|_| choice < share) {
+            let mut sample = table.sample(u)?;
+            sample.radiance = self.environment_color(map, sample.direction, scratch);
+            sample.pdf *= share;
+            return Some(LightCandidate::Environment(sample));
+        }
+        let mut chosen = indirect.emitters.choose((choice - share) / (1.0 - share))?;
+        chosen.probability *= 1.0 - share;
+        Some(LightCandidate::Emitter(chosen))
+    }
+
+    /// The part of the background that counts for a path which leaves the scene in `direction`, sampled with density `pdf`:
+    /// a sampled environment map has been counted in part.
+    fn background_of_path<T: Tally>(
+        &self,
+        indirect: &IndirectLight,
+        direction: Vec3,
+        pdf: f32,
+        scratch: &mut Scratch<T>,
+    ) -> Vec3 {
+        let background = self.background(direction, scratch);
+        match &indirect.environment {
+            None => background,
+            Some(_) if indirect.samples_only && pdf < f32::INFINITY => Vec3::ZERO,
+            Some((_, table, share)) => F::emitted_contribution(background, pdf, share * table.pdf(direction)),
+        }
+    }
+
+    /// The light of a shadow ray, or none if an object is in the way; `record` receives a ray that is traced.
+    fn unoccluded<T: Tally>(
+        &self,
+        question: &ShadowQuestion,
+        path: &Path,
+        at: &SurfaceInteraction,
+        light: Option<LightCandidate>,
+        scratch: &mut Scratch<T>,
+        mut record: impl FnMut(&Ray, bool),
+    ) -> Vec3 {
+        // End the ray before the surface of its own emitter.
+        let ShadowQuestion { direction, distance, light: radiance } = *question;
+        let distance = match &light {
+            Some(LightCandidate::Emitter(chosen)) => {
+                before_emitter(&chosen.emitter.shape, direction, distance, at.surface.point)
+            }
+            _ => distance,
+        };
+        let sample = LightSample { direction, distance, radiance };
+        let Some(ray) = F::shadow_ray(&at.surface, &sample) else { return Vec3::ZERO };
+        match self.is_blocked(&ray, path, at, &mut scratch.tally, &mut record) {
+            true => Vec3::ZERO,
+            false => radiance,
+        }
+    }
+
+    /// The path along the ray `next`, which the student's `step` has chosen.
+    #[allow(clippy::too_many_arguments)]
+    fn next_path<T: Tally>(
+        &self,
+        next: &NextRay,
+        path: &Path,
+        hit: &Hit,
+        number: usize,
+        at: &SurfaceInteraction,
+        material: &Material,
+        scratch: &mut Scratch<T>,
+    ) -> Path {
+        let takes = &self.plan.effects.materials[at.material];
+        let NextRay { lobe, direction, weight, .. } = *next;
+        let bounce = lobe.bounce();
+        let mut secondary = SecondaryRay { bounce, direction, weight };
+        let (event, kind) = match lobe {
+            Lobe::Diffuse => (Event::Indirect, RayKind::Indirect),
+            Lobe::Reflection => (Event::Reflection, RayKind::Reflection),
+            Lobe::Transmission => (Event::Transmission, RayKind::Transmission),
+        };
+        // Spread the ideal reflected or refracted ray of a rough surface.
+        if lobe != Lobe::Diffuse && takes.glossy {
+            scratch.note(Event::RandomNumber);
+            scratch.note(Event::RandomNumber);
+            let (surface, points) = (&at.surface, &path.points);
+            secondary = sample_rough_surface::<F>(&secondary, surface, material.roughness, points, (0, 1));
+        }
+        scratch.note(event);
+        let ray = match self.plan.offsets {
+            true => Ray::new(at.surface.point, secondary.direction),
+            false => F::spawn_ray(&at.surface, &secondary),
+        };
+        let ray = self.off_surface(at, Ray { time: path.ray.time, ..ray });
+        let cone = self.cone_beyond(path, hit, at, material, bounce);
+        let (points, depth) = (path.points.beyond_vertex(), path.depth + 1);
+        Path { ray, points, weight: secondary.weight, depth, kind, parent: Some(number), cone }
+    }
+}

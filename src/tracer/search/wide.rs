@@ -1,0 +1,344 @@
+//! The wide tree of stage 12 over a set of primitives: eight boxes and four triangles are tested at once.
+
+use super::hit::Detail;
+use super::intersection::TriangleTest;
+use super::primitives::Primitives;
+use super::probe::SceneProbe;
+use crate::aabb::Aabb;
+use crate::bvh::PrimitiveHit;
+use crate::count::{Event, Tally};
+use crate::kit::{StructureSize, StudentFunctions};
+use crate::ray::Ray;
+use crate::scene::{Quality, Split};
+use crate::shape::Triangle;
+use crate::tracer::plan::WidePlan;
+use crate::wide::simd::{Instructions, Level, Vectorized};
+use crate::wide::{
+    Child, ChildContents, Entered, FlatTree, Forks, LastFetch, MAX_LEAF, StreamProbe, TriangleBlock,
+    WideNode, WideProbe, WideRay,
+};
+use rayon::prelude::*;
+
+/// A wide tree with the triangles of its leaves.
+#[derive(Debug)]
+pub struct Wide {
+    /// The nodes; empty if there are no primitives.
+    pub nodes: Vec<WideNode>,
+    /// The blocks of all leaves.
+    blocks: Vec<TriangleBlock>,
+    /// The instructions of this processor.
+    instructions: Instructions,
+}
+
+impl Wide {
+    /// Builds a wide tree over primitives with the bounding boxes `bounds`, by the functions of `plan`.
+    ///
+    /// `triangle` returns a primitive that is a triangle, can be hit from both sides and does not move. The threads are those
+    /// of the pool that calls this function.
+    pub fn build<F: StudentFunctions>(
+        bounds: &[Aabb],
+        triangle: impl Fn(u32) -> Option<Triangle> + Sync,
+        plan: WidePlan,
+        quality: &Quality,
+    ) -> Wide {
+        // Build a binary tree. Only the surface area heuristic has a builder of stage 12.
+        let by_area = quality.split == Split::SurfaceArea;
+        let tree: FlatTree = if by_area && plan.parallel {
+            F::build_parallel(bounds, &mut Forks::new(rayon::current_num_threads() > 1))
+        } else if by_area && plan.binned {
+            F::build_binned(bounds)
+        } else {
+            F::flatten(&F::build(bounds, quality.split, (quality.leaf_size as usize).min(MAX_LEAF)))
+        };
+        let most_moves = u32::try_from(tree.nodes.len()).unwrap_or(u32::MAX);
+        let tree = if plan.reinserts { F::reinsert(&tree, most_moves) } else { tree };
+        // Collapse it, and copy the triangles into the blocks.
+        let wide = F::collapse(&tree);
+        drop(tree);
+        let block = |&ids: &_| TriangleBlock::new(ids, &triangle);
+        let blocks = if rayon::current_num_threads() > 1 {
+            wide.blocks.par_iter().map(block).collect()
+        } else {
+            wide.blocks.iter().map(block).collect()
+        };
+        Wide { nodes: wide.nodes, blocks, instructions: Instructions::detect() }
+    }
+
+    /// The closest hit of `ray` with the primitives of `probe` within its range, or `None`.
+    #[inline(always)]
+    pub fn closest_hit<F: StudentFunctions, T: Tally>(
+        &self,
+        probe: &mut SceneProbe<'_, F, T>,
+        ray: &Ray,
+    ) -> Option<PrimitiveHit> {
+        if self.nodes.is_empty() {
+            return None;
+        }
+        self.instructions.run(Closest { wide: self, probe, ray })
+    }
+
+    /// The closest hit of each of `rays`, at most [`STREAM`](crate::wide::STREAM), within its range.
+    pub fn closest_hits<F: StudentFunctions, T: Tally>(
+        &self,
+        probe: &mut SceneProbe<'_, F, T>,
+        rays: &[Ray],
+    ) -> Vec<Option<PrimitiveHit>> {
+        if self.nodes.is_empty() {
+            return vec![None; rays.len()];
+        }
+        self.instructions.run(ClosestOfStream { wide: self, probe, rays })
+    }
+
+    /// Whether `ray` hits any primitive of `probe` within its range.
+    #[inline(always)]
+    pub fn any_hit<F: StudentFunctions, T: Tally>(
+        &self,
+        probe: &mut SceneProbe<'_, F, T>,
+        ray: &Ray,
+    ) -> bool {
+        !self.nodes.is_empty() && self.instructions.run(Any { wide: self, probe, ray })
+    }
+
+    /// The boxes at depth `depth`, and those of leaves above it. The root has depth 0.
+    pub fn boxes_at(&self, depth: usize) -> Vec<Aabb> {
+        let Some(root) = self.nodes.first() else { return Vec::new() };
+        let children = |node: &WideNode| {
+            (0..node.n_children() as usize)
+                .map(|i| (node.child_bounds(i), node.children[i]))
+                .collect::<Vec<_>>()
+        };
+        let around = children(root)
+            .iter()
+            .fold(Aabb::EMPTY, |all, (one, _)| Aabb::new(all.min.min(one.min), all.max.max(one.max)));
+        let mut level = vec![(around, Child::ROOT)];
+        for _ in 0..depth {
+            let below = level.into_iter().flat_map(|(bounds, child)| match child.contents() {
+                ChildContents::Inner(node) => children(&self.nodes[node as usize]),
+                ChildContents::Leaf { .. } => vec![(bounds, child)],
+            });
+            level = below.collect();
+        }
+        level.into_iter().map(|(bounds, _)| bounds).collect()
+    }
+
+    /// The number of nodes and leaves, of levels, of references to primitives, and of bytes.
+    pub fn size(&self) -> StructureSize {
+        let (mut nodes, mut levels, mut references) = (0, 0, 0);
+        let mut waiting: Vec<(Child, u64)> =
+            self.nodes.first().map(|_| (Child::ROOT, 1)).into_iter().collect();
+        while let Some((child, level)) = waiting.pop() {
+            nodes += 1;
+            levels = level.max(levels);
+            match child.contents() {
+                ChildContents::Leaf { count, .. } => references += u64::from(count),
+                ChildContents::Inner(node) => {
+                    let node = &self.nodes[node as usize];
+                    let children = &node.children[..node.n_children() as usize];
+                    waiting.extend(children.iter().map(|&child| (child, level + 1)));
+                }
+            }
+        }
+        let bytes = size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice());
+        StructureSize { nodes, levels, references, bytes: bytes as u64 }
+    }
+}
+
+/// The search of a closest hit, for each level of instructions.
+struct Closest<'s, 'p, 'w, F, T> {
+    wide: &'s Wide,
+    probe: &'s mut SceneProbe<'p, F, T>,
+    ray: &'w Ray,
+}
+
+impl<F: StudentFunctions, T: Tally> Vectorized for Closest<'_, '_, '_, F, T> {
+    type Output = Option<PrimitiveHit>;
+
+    #[inline(always)]
+    fn run<L: Level>(self, level: L) -> Self::Output {
+        F::wide_closest_hit(&mut WideSceneProbe::new(self.wide, self.probe, self.ray, level), self.ray)
+    }
+}
+
+/// The search of any hit, for each level of instructions.
+struct Any<'s, 'p, 'w, F, T> {
+    wide: &'s Wide,
+    probe: &'s mut SceneProbe<'p, F, T>,
+    ray: &'w Ray,
+}
+
+impl<F: StudentFunctions, T: Tally> Vectorized for Any<'_, '_, '_, F, T> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Level>(self, level: L) -> bool {
+        F::wide_any_hit(&mut WideSceneProbe::new(self.wide, self.probe, self.ray, level), self.ray)
+    }
+}
+
+/// Answers the questions of a search in a wide tree, and counts them.
+pub(super) struct WideSceneProbe<'s, 'p, F, T, L> {
+    wide: &'s Wide,
+    pub(super) probe: &'s mut SceneProbe<'p, F, T>,
+    ray: WideRay,
+    /// Whether `may_hit` sorts out triangles. It does not for methods whose rounding errors are larger than its own: they
+    /// may report a hit that is none, and every accelerator has to report the same.
+    sorts_out: bool,
+    level: L,
+}
+
+impl<'s, 'p, F: StudentFunctions, T: Tally, L: Level> WideSceneProbe<'s, 'p, F, T, L> {
+    #[inline(always)]
+    pub(super) fn new(wide: &'s Wide, probe: &'s mut SceneProbe<'p, F, T>, ray: &Ray, level: L) -> Self {
+        let ray = WideRay::new(ray);
+        let sorts_out = sorts_out(probe, &ray);
+        WideSceneProbe { wide, probe, ray, sorts_out, level }
+    }
+
+    /// Asks about another ray from now on.
+    #[inline(always)]
+    pub(super) fn select(&mut self, ray: &WideRay) {
+        self.ray = *ray;
+        self.sorts_out = sorts_out(self.probe, ray);
+    }
+
+    /// [`WideProbe::enter`] without a node visit.
+    #[inline(always)]
+    pub(super) fn enter_uncounted(&mut self, node: u32, t_max: f32) -> Entered {
+        let node = &self.wide.nodes[node as usize];
+        let entered = F::enter_boxes(self.level, node, &self.ray, t_max);
+        if T::COUNTS {
+            // The children come first, then the empty places.
+            for child in 0..node.n_children() {
+                self.probe.note(Event::BoxTest);
+                self.probe.tested(&node.child_bounds(child as usize), entered.mask & 1 << child != 0);
+            }
+        }
+        entered
+    }
+
+    /// [`WideProbe::candidates`] without a node visit.
+    #[inline(always)]
+    pub(super) fn candidates_uncounted(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
+        if T::COUNTS {
+            for _ in 0..n {
+                self.probe.note(Event::PrimitiveTest);
+            }
+        }
+        let lanes = (1 << n) - 1;
+        if self.sorts_out {
+            lanes & F::may_hit(self.level, &self.wide.blocks[block as usize], &self.ray, t_max)
+        } else {
+            lanes
+        }
+    }
+}
+
+/// Whether `may_hit` sorts out triangles for this ray.
+#[inline(always)]
+fn sorts_out<F: StudentFunctions, T: Tally>(probe: &SceneProbe<'_, F, T>, ray: &WideRay) -> bool {
+    let is_exact = matches!(probe.tests.triangles, TriangleTest::Watertight | TriangleTest::InDouble);
+    is_exact && ray.in_range && probe.may_hit
+}
+
+impl<F: StudentFunctions, T: Tally, L: Level> WideProbe for WideSceneProbe<'_, '_, F, T, L> {
+    #[inline(always)]
+    fn enter(&mut self, node: u32, t_max: f32) -> Entered {
+        self.probe.note(Event::NodeVisit);
+        self.enter_uncounted(node, t_max)
+    }
+
+    #[inline(always)]
+    fn children(&self, node: u32) -> &[Child; 8] {
+        &self.wide.nodes[node as usize].children
+    }
+
+    #[inline(always)]
+    fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
+        self.probe.note(Event::NodeVisit);
+        self.candidates_uncounted(block, n, t_max)
+    }
+
+    #[inline(always)]
+    fn hit(&mut self, block: u32, lane: u32, ray: &Ray) -> Option<PrimitiveHit> {
+        let block = &self.wide.blocks[block as usize];
+        let lane = lane as usize & 3;
+        let primitive = block.ids[lane];
+        // Take the corners from the block, which is in the cache. Other shapes are looked up.
+        let triangle = block.triangle(lane);
+        let t = if self.sorts_out && !triangle.a.x.is_nan() {
+            let hit = self.probe.tests.triangle::<F>(ray, &triangle, None)?;
+            self.probe.notes.last = (primitive, Detail::Triangle(hit.beta, hit.gamma));
+            hit.t
+        } else {
+            self.probe.test_uncounted(primitive, ray)?
+        };
+        Some(PrimitiveHit { t, primitive })
+    }
+}
+
+/// The search of the closest hits of several rays, for each level of instructions.
+struct ClosestOfStream<'s, 'p, 'w, F, T> {
+    wide: &'s Wide,
+    probe: &'s mut SceneProbe<'p, F, T>,
+    rays: &'w [Ray],
+}
+
+impl<F: StudentFunctions, T: Tally> Vectorized for ClosestOfStream<'_, '_, '_, F, T> {
+    type Output = Vec<Option<PrimitiveHit>>;
+
+    #[inline(always)]
+    fn run<L: Level>(self, level: L) -> Self::Output {
+        let ClosestOfStream { wide, probe, rays } = self;
+        let Some(first) = rays.first() else { return Vec::new() };
+        let prepared: Vec<WideRay> = rays.iter().map(WideRay::new).collect();
+        let one = WideSceneProbe::new(wide, probe, first, level);
+        F::stream_closest_hits(
+            &mut StreamSceneProbe { one, rays: &prepared, last: LastFetch::default() },
+            rays,
+        )
+    }
+}
+
+/// Answers the questions of a search with several rays. A visit of a node or a block is counted once for all calls about it that
+/// follow each other.
+struct StreamSceneProbe<'s, 'p, 'w, F, T, L> {
+    one: WideSceneProbe<'s, 'p, F, T, L>,
+    rays: &'w [WideRay],
+    last: LastFetch,
+}
+
+impl<F: StudentFunctions, T: Tally, L: Level> StreamSceneProbe<'_, '_, '_, F, T, L> {
+    /// Makes `ray` the ray of the next call, and counts a visit unless the last call was about the same node or block.
+    #[inline(always)]
+    fn select(&mut self, ray: u32, is_block: bool, index: u32) {
+        self.one.select(&self.rays[ray as usize]);
+        if self.last.fetches(is_block, index) {
+            self.one.probe.note(Event::NodeVisit);
+        }
+    }
+}
+
+impl<F: StudentFunctions, T: Tally, L: Level> StreamProbe for StreamSceneProbe<'_, '_, '_, F, T, L> {
+    #[inline(always)]
+    fn enter(&mut self, ray: u32, node: u32, t_max: f32) -> Entered {
+        self.select(ray, false, node);
+        self.one.enter_uncounted(node, t_max)
+    }
+
+    #[inline(always)]
+    fn children(&self, node: u32) -> &[Child; 8] {
+        self.one.children(node)
+    }
+
+    #[inline(always)]
+    fn candidates(&mut self, ray: u32, block: u32, n: u32, t_max: f32) -> u32 {
+        self.select(ray, true, block);
+        self.one.candidates_uncounted(block, n, t_max)
+    }
+
+    #[inline(always)]
+    fn hit(&mut self, ray: u32, block: u32, lane: u32, shortened: &Ray) -> Option<PrimitiveHit> {
+        self.select(ray, true, block);
+        self.one.hit(block, lane, shortened)
+    }
+}
