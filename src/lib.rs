@@ -57,3 +57,8 @@ pub mod frame {
     pub use crate::progress::{Tile, Unwatched, Watch};
     pub use crate::tracer::driver::{CameraSample, FrameSettings, render};
 }
+
+#[cfg(test)]
+mod tests {
+    mod floors;
+}

@@ -1,17 +1,14 @@
-//! The student's functions as code that can be called: the static trait, the names of the functions, and
-//! whether each is written. All three are generated from the list (`list.rs`).
+//! The student's functions as code that can be called: the static trait, whether each function is written, and the adapters to
+//! the traits of the [door](super::door). All are generated from the list (`list.rs`).
 
 use super::example::Example;
 use super::types::*;
 use crate::bvh::PrimitiveHit;
 use crate::partition::limit::limited;
 use crate::progress::Watch;
-use std::cell::Cell as Local;
-use std::fmt;
 use std::sync::Arc;
 
-/// A guard around a call of a student function; if the call unwinds, the name of the function is kept for
-/// [`take_unwound`].
+/// A guard around a call of a student function; if the call unwinds, [`KitError::NotWritten`] gets the name of the function.
 ///
 /// The guard costs nothing where nothing panics: it is forgotten before it is dropped.
 #[doc(hidden)]
@@ -28,24 +25,8 @@ impl Running {
 impl Drop for Running {
     #[cold]
     fn drop(&mut self) {
-        // Guards are dropped from the inside out, so the first one belongs to the function that panicked.
-        UNWOUND.with(|unwound| unwound.set(unwound.get().or(Some(self.0))));
+        kit_error::note_function(self.0);
     }
-}
-
-thread_local! {
-    static UNWOUND: Local<Option<Function>> = const { Local::new(None) };
-}
-
-/// The student function that unwound on this thread since the last call of `take_unwound`; `None` if there
-/// was none. Of nested functions it is the innermost one.
-pub fn take_unwound() -> Option<Function> {
-    UNWOUND.take()
-}
-
-/// Sets on this thread what [`take_unwound`] returned on another thread.
-pub(crate) fn note_unwound(function: Option<Function>) {
-    UNWOUND.set(function);
 }
 
 macro_rules! functions {
@@ -62,39 +43,6 @@ macro_rules! functions {
             fn $name $(<$($generics)*>)? ($($argument: $Type),*) -> $Return;)*)*
         }
 
-        /// The name of a student function, as in the list.
-        #[allow(non_camel_case_types)]
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        pub enum Function {
-            $($($(#[$doc])* $name,)*)*
-        }
-
-        impl Function {
-            /// All student functions, in the order of the stages.
-            pub const ALL: &'static [Function] = &[$($(Function::$name),*),*];
-
-            /// The number of the stage to which the function belongs, `1..=12`.
-            pub fn stage(self) -> u8 {
-                match self {
-                    $($(Function::$name)|* => $stage,)*
-                }
-            }
-
-            /// The name of the function in the student's file.
-            pub fn name(self) -> &'static str {
-                match self {
-                    $($(Function::$name => stringify!($function),)*)*
-                }
-            }
-
-            /// The name of the student's file that contains the function, without `.rs`.
-            pub fn file(self) -> &'static str {
-                match self {
-                    $($(Function::$name => stringify!($file),)*)*
-                }
-            }
-        }
-
         /// Whether `function` is written: calls it with the simplest input of its kind, and returns `false`
         /// if it reaches a `todo!`. Any other panic counts as written. A `todo!` that only other inputs reach
         /// is found when a frame reaches it.
@@ -106,20 +54,12 @@ macro_rules! functions {
                     let _ = $adapter;
                 },)*)*
             };
-            let written = !matches!(kit_error::catch(call), Err(KitError::NotWritten { .. }));
-            take_unwound();
-            written
+            !matches!(kit_error::catch(call), Err(KitError::NotWritten { .. }))
         }
     };
 }
 
 crate::student_functions! { functions }
-
-impl fmt::Display for Function {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "`{}` of stage {}", self.name(), self.stage())
-    }
-}
 
 #[doc(hidden)]
 #[macro_export]

@@ -1,5 +1,6 @@
 //! The reasons why student code does not return an answer.
 
+use super::Function;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::fmt;
@@ -15,6 +16,9 @@ pub enum KitError {
         task: String,
         /// The place of the `todo!` as `file:line`.
         place: String,
+        /// The innermost student function that was running; `None` if that was in another process.
+        #[serde(skip)]
+        function: Option<Function>,
     },
     /// The code panicked.
     Panicked {
@@ -43,7 +47,7 @@ pub enum KitError {
 impl fmt::Display for KitError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            KitError::NotWritten { task, place } => write!(f, "not written yet: {place}\n  {task}"),
+            KitError::NotWritten { task, place, .. } => write!(f, "not written yet: {place}\n  {task}"),
             KitError::Panicked { message, place } => write!(f, "your code panicked at {place}\n  {message}"),
             KitError::Crashed { how } => write!(f, "your code ended its process: {how}"),
             KitError::TimedOut { seconds } => {
@@ -89,9 +93,27 @@ impl fmt::Write for Beginning {
     }
 }
 
+/// What is known of a panic before it is caught.
+#[derive(Default)]
+struct LastPanic {
+    /// The message and the place; `None` if it began on another thread.
+    words: Option<(String, String)>,
+    /// The first student function that it left, which is the innermost one.
+    function: Option<Function>,
+}
+
 thread_local! {
     /// `None` if panics of this thread are not caught; otherwise the last panic, for [`catch`].
-    static CAUGHT: RefCell<Option<Option<(String, String)>>> = const { RefCell::new(None) };
+    static CAUGHT: RefCell<Option<LastPanic>> = const { RefCell::new(None) };
+}
+
+/// Notes that a panic on this thread leaves `function`.
+pub(super) fn note_function(function: Function) {
+    CAUGHT.with_borrow_mut(|caught| {
+        if let Some(last) = caught {
+            last.function.get_or_insert(function);
+        }
+    });
 }
 
 /// Runs `work` and returns its result. A panic of `work` on this thread prints nothing.
@@ -102,15 +124,18 @@ thread_local! {
 /// [`KitError::Panicked`] otherwise.
 pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, KitError> {
     install_hook();
-    let outer = CAUGHT.replace(Some(None));
+    let outer = CAUGHT.replace(Some(LastPanic::default()));
     let result = panic::catch_unwind(AssertUnwindSafe(work));
-    let caught = CAUGHT.replace(outer).flatten();
+    let LastPanic { words, function } = CAUGHT.replace(outer).unwrap_or_default();
     result.map_err(|payload| match payload.downcast::<KitError>() {
         Ok(error) => *error,
         Err(payload) => {
-            let (message, place) = caught.unwrap_or_else(|| (words_of(&*payload), "another thread".into()));
+            let (message, place) = words.unwrap_or_else(|| (words_of(&*payload), "another thread".into()));
             match message.strip_prefix("not yet implemented") {
-                Some(task) => KitError::NotWritten { task: task.trim_start_matches(": ").to_owned(), place },
+                Some(task) => {
+                    let task = task.trim_start_matches(": ").to_owned();
+                    KitError::NotWritten { task, place, function }
+                }
                 None => KitError::Panicked { message, place },
             }
         }
@@ -124,7 +149,8 @@ fn install_hook() {
         panic::set_hook(Box::new(move |info| {
             let ours = CAUGHT.with_borrow_mut(|caught| match caught {
                 Some(last) => {
-                    *last = Some((words_of(info.payload()), place_of(info)));
+                    let words = Some((words_of(info.payload()), place_of(info)));
+                    *last = LastPanic { words, function: None };
                     true
                 }
                 None => false,
@@ -159,7 +185,7 @@ mod tests {
     #[allow(clippy::todo, reason = "a gap is what this is about")]
     fn a_gap_reads_as_not_written_yet() {
         let gap = catch(|| -> i32 { todo!("add the numbers") });
-        let Err(KitError::NotWritten { task, place }) = gap else { panic!("{gap:?}") };
+        let Err(KitError::NotWritten { task, place, .. }) = gap else { panic!("{gap:?}") };
         assert_eq!(task, "add the numbers");
         assert!(place.starts_with("src/kit/kit_error.rs:"), "{place}");
     }

@@ -9,6 +9,7 @@ mod distribution;
 pub mod door;
 mod effects_analysis;
 mod example;
+mod function_names;
 mod functions;
 mod job;
 pub mod kit_error;
@@ -44,10 +45,10 @@ pub use door::{
 pub use effects_analysis::{
     BoundQuery, HitsQuery, LightQuery, MaterialHits, MaterialQuery, RayCounts, TexelQuery, TextureQuery,
 };
+pub use function_names::Function;
 #[doc(hidden)]
 pub use functions::Running;
-pub(crate) use functions::note_unwound;
-pub use functions::{Function, Linked, StudentFunctions, StudentKit, is_written, take_unwound};
+pub use functions::{Linked, StudentFunctions, StudentKit, is_written};
 pub use job::{RenderJob, Rendering, StructureSize, View};
 pub use kit_error::KitError;
 pub use light_transport::{

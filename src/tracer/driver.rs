@@ -3,8 +3,8 @@
 
 use crate::count::{Counts, Event, Tally};
 use crate::effects::{Effect, Effects};
-use crate::film::Film;
-use crate::kit::{Function, KitError, WeightedColor, kit_error, note_unwound, take_unwound};
+use crate::film::{Film, WeightedColor};
+use crate::kit::{KitError, kit_error};
 use crate::progress::{Tile, Watch};
 use crate::random::{Points, Purpose, Sampler, Stratum};
 use crate::rows::{Rows, TILE};
@@ -122,13 +122,12 @@ pub fn render<T: Tally>(
     let done = AtomicU64::new(0);
     let broken = AtomicBool::new(false);
     let wants_tiles = watch.wants_tiles();
-    let tile = |corner: (u32, u32)| -> Result<Option<(Tile, Counts)>, Broken> {
+    let tile = |corner: (u32, u32)| -> Result<Option<(Tile, Counts)>, KitError> {
         if watch.cancelled() || broken.load(Ordering::Relaxed) {
             return Ok(None);
         }
         // Catch the panic in its own thread, because a panic that crosses threads loses its file and line.
         let tile = kit_error::catch(|| render_tile::<T>(settings, corner, &radiance, &filter))
-            .map_err(|error| (error, take_unwound()))
             .inspect_err(|_| broken.store(true, Ordering::Relaxed))?;
         let pixels = tile.0.pixels.len() as u64;
         if wants_tiles {
@@ -142,7 +141,7 @@ pub fn render<T: Tally>(
         .step_by(TILE as usize)
         .flat_map(|y| (0..width).step_by(TILE as usize).map(move |x| (x, y)))
         .collect();
-    let tiles: Vec<Result<Option<(Tile, Counts)>, Broken>> = if settings.threads == 1 {
+    let tiles: Vec<Result<Option<(Tile, Counts)>, KitError>> = if settings.threads == 1 {
         corners.into_iter().map(tile).collect()
     } else {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
@@ -153,12 +152,9 @@ pub fn render<T: Tally>(
         }
     };
 
-    // Pass a panic of a tile on, with the student function that was running.
+    // Pass a panic of a tile on.
     let tiles: Vec<Option<(Tile, Counts)>> =
-        tiles.into_iter().collect::<Result<_, _>>().unwrap_or_else(|(error, function)| {
-            note_unwound(function);
-            kit_error::unwind(error)
-        });
+        tiles.into_iter().collect::<Result<_, _>>().unwrap_or_else(|error| kit_error::unwind(error));
     // Copy the tiles into the film, and add up their counts.
     let mut film = Film::new(width, rows.n_rows());
     let mut counts = Counts::default();
@@ -170,9 +166,6 @@ pub fn render<T: Tally>(
     }
     Some((film, counts))
 }
-
-/// The reason why a tile has no pixels, and the student function that was running.
-type Broken = (KitError, Option<Function>);
 
 fn render_tile<T: Tally>(
     settings: &FrameSettings,

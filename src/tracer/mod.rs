@@ -26,7 +26,7 @@ use crate::count::{Counts, Event, Tally, Uncounted};
 use crate::film::Film;
 use crate::kit::{
     Frames, KitError, RayVisits, RenderJob, Rendering, StudentFunctions, TracedRay, View, WeightedColor,
-    kit_error, take_unwound,
+    kit_error,
 };
 use crate::progress::{Unwatched, Watch};
 use crate::ray::Ray;
@@ -98,14 +98,15 @@ fn with_what_is_written<F: StudentFunctions, R>(work: impl Fn(&Written<F>) -> R)
     let mut notes = Vec::new();
     loop {
         // Run the work, and return if no student function panics.
-        take_unwound();
         let error = match kit_error::catch(|| work(&written)) {
             Ok(result) => return (result, notes),
             Err(error) => error,
         };
         // Leave out an unfinished function, and pass any other panic on.
-        match (&error, take_unwound()) {
-            (KitError::NotWritten { task, place }, Some(function)) if written.leave_out(function) => {
+        match &error {
+            KitError::NotWritten { task, place, function: Some(function) }
+                if written.leave_out(*function) =>
+            {
                 notes.push(format!("{function} is left out, because it is not finished: {place}: {task}"));
             }
             _ => kit_error::unwind(error),

@@ -1,7 +1,6 @@
 //! The memory that a scene may use. It is estimated before anything is allocated: a few words in a scene, or an image
 //! file of some hundred kilobytes, can ask for more than a computer has.
 
-use super::reader::Value;
 use crate::files::error::LoadError;
 use crate::scene::MOST_PRIMITIVES;
 use std::cell::Cell;
@@ -64,23 +63,37 @@ impl Budget {
         Budget { limits, used: Cell::new(0) }
     }
 
-    /// Sets memory aside for the film; fails at `value` if there is not enough.
-    pub fn film(&self, value: Value, width: u32, height: u32) -> Result<(), LoadError> {
-        self.take(value, film_bytes(width, height), &film_name(width, height))
+    /// Sets memory aside for the film; `error` makes the error if there is not enough.
+    pub fn film(
+        &self,
+        error: impl FnOnce(String) -> LoadError,
+        width: u32,
+        height: u32,
+    ) -> Result<(), LoadError> {
+        self.take(error, film_bytes(width, height), &film_name(width, height))
     }
 
-    /// Sets memory aside for a texture; fails at `value` if there is not enough.
-    pub fn texture(&self, value: Value, width: u32, height: u32) -> Result<(), LoadError> {
+    /// Sets memory aside for a texture; `error` makes the error if there is not enough.
+    pub fn texture(
+        &self,
+        error: impl FnOnce(String) -> LoadError,
+        width: u32,
+        height: u32,
+    ) -> Result<(), LoadError> {
         let bytes = pixels(width, height).saturating_mul(TEXTURE_PIXEL);
-        self.take(value, bytes, &format!("an image of {width} by {height} pixels"))
+        self.take(error, bytes, &format!("an image of {width} by {height} pixels"))
     }
 
-    /// Sets memory aside for triangles; fails at `value` if there is not enough.
-    pub fn triangles(&self, value: Value, triangles: u64) -> Result<(), LoadError> {
-        self.take(value, triangles.saturating_mul(TRIANGLE), &format!("a surface of {triangles} triangles"))
+    /// Sets memory aside for triangles; `error` makes the error if there is not enough.
+    pub fn triangles(
+        &self,
+        error: impl FnOnce(String) -> LoadError,
+        triangles: u64,
+    ) -> Result<(), LoadError> {
+        self.take(error, triangles.saturating_mul(TRIANGLE), &format!("a surface of {triangles} triangles"))
     }
 
-    fn take(&self, value: Value, bytes: u64, what: &str) -> Result<(), LoadError> {
+    fn take(&self, error: impl FnOnce(String) -> LoadError, bytes: u64, what: &str) -> Result<(), LoadError> {
         let used = self.used.get().saturating_add(bytes);
         if used <= self.limits.memory {
             self.used.set(used);
@@ -95,7 +108,7 @@ impl Budget {
                 size(self.limits.memory)
             ),
         };
-        Err(value.error(message).help(advice(used)))
+        Err(error(message).help(advice(used)))
     }
 }
 

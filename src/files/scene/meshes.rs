@@ -40,7 +40,8 @@ pub(super) fn meshes<'a>(
         names.insert(entry.key, meshes.len());
         let subdivisions = table.get("subdivide").map_or(Ok(0), |steps| steps.whole(0..=12))?;
         let triangles = (mesh.triangles.len() as u64) << (2 * subdivisions);
-        value.source.budget.triangles(table.get("subdivide").unwrap_or(entry), triangles)?;
+        let place = table.get("subdivide").unwrap_or(entry);
+        value.source.budget.triangles(|why| place.error(why), triangles)?;
         meshes.push(SceneMesh { mesh: Arc::new(mesh), smooth, one_sided, subdivisions, materials: indices });
     }
     Ok((meshes, names))

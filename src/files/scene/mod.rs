@@ -106,7 +106,7 @@ pub fn parse_within(file: &Path, text: &str, limits: Limits) -> Result<Loaded, L
     let root = Table::root(&source, "the scene", &document, &TABLES)?;
 
     if let Some(encoding) = root.get("color_encoding") {
-        source.encoding.set(encoding.choice(&settings::ENCODINGS)?);
+        source.encoding.set(encoding.choice(&words::ENCODINGS)?);
     }
     let film = settings::film(root.get("film"))?;
     let camera = match root.get("camera") {

@@ -46,7 +46,8 @@ pub(super) fn nurbs(value: Value) -> Result<Shape, LoadError> {
     // Set the memory for the triangles aside before any is made.
     let steps = table.get("steps").map_or(Ok(8), |steps| steps.whole(1..=1024))?;
     let squares: u64 = [0, 1].map(|axis| patch.spans(axis).len() as u64 * u64::from(steps)).iter().product();
-    value.source.budget.triangles(table.get("steps").unwrap_or(value), 2 * squares)?;
+    let place = table.get("steps").unwrap_or(value);
+    value.source.budget.triangles(|why| place.error(why), 2 * squares)?;
     Ok(Shape::Nurbs { patch: Box::new(patch), steps })
 }
 

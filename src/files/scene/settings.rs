@@ -1,6 +1,7 @@
 //! The tables that occur at most once in a scene: `film`, `camera`, `environment` and `quality`.
 
 use super::reader::{Table, Value};
+use super::words::ENCODINGS;
 use super::{files, textures};
 use crate::camera::{Camera, Lens, Shutter};
 use crate::files::error::LoadError;
@@ -9,13 +10,10 @@ use crate::graph::Savings;
 use crate::material::{Texture, Wrap};
 use crate::partition::KdHeuristics;
 use crate::scene::{
-    Accelerator, Background, ColorPlace, Encoding, EnvironmentMap, FilmSettings, Gradient, GradientColor,
-    NextEvent, Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
+    Accelerator, Background, ColorPlace, EnvironmentMap, FilmSettings, Gradient, GradientColor, NextEvent,
+    Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
 };
 use glam::Vec3;
-
-/// How bytes encode linear light: those of 8-bit pictures, of colours as text, and of images.
-pub(super) const ENCODINGS: [(&str, Encoding); 2] = [("srgb", Encoding::Srgb), ("gamma2", Encoding::Gamma2)];
 
 /// The largest width or height of a picture, in pixels.
 const MAX_SIDE: u32 = 65_536;
@@ -50,7 +48,7 @@ pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
     if let Some(curve) = table.get("tone") {
         film.tone.curve = curve.choice(&ToneCurve::ALL)?;
     }
-    value.source.budget.film(value, film.width, film.height)?;
+    value.source.budget.film(|why| value.error(why), film.width, film.height)?;
     Ok(film)
 }
 

@@ -148,7 +148,8 @@ fn bezier(value: Value) -> Result<Shape, LoadError> {
         return Err(list.error("all points of the net are the same, so no ray can hit the surface"));
     }
     let steps = table.get("steps").map_or(Ok(16), |steps| steps.whole(1..=1024))?;
-    value.source.budget.triangles(table.get("steps").unwrap_or(value), 2 * u64::from(steps).pow(2))?;
+    let place = table.get("steps").unwrap_or(value);
+    value.source.budget.triangles(|why| place.error(why), 2 * u64::from(steps).pow(2))?;
     Ok(Shape::Bezier { patch: Box::new(patch), steps })
 }
 
@@ -167,7 +168,7 @@ fn polygon(value: Value, meshes: &mut Vec<SceneMesh>) -> Result<Shape, LoadError
             triangulate::fan(corners.len()).collect()
         }
     };
-    value.source.budget.triangles(value, triangles.len() as u64)?;
+    value.source.budget.triangles(|why| value.error(why), triangles.len() as u64)?;
     let triangles = triangles.into_iter().map(|triangle| triangle.map(|corner| corner as u32)).collect();
     let mesh = Mesh { positions: corners, triangles, ..Mesh::default() };
     meshes.push(SceneMesh {

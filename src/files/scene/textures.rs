@@ -3,8 +3,7 @@
 use super::files;
 use super::names::Names;
 use super::reader::Value;
-use super::settings::ENCODINGS;
-use super::words::{one_line, quoted};
+use super::words::{ENCODINGS, one_line, quoted};
 use crate::files::error::LoadError;
 use crate::material::{Texture, Wrap};
 use crate::scene::Encoding;
@@ -69,7 +68,7 @@ pub(super) fn read(path: &Path, wrap: Wrap, value: Value) -> Result<(Texture, bo
     if width == 0 || height == 0 {
         return Err(trouble("the image has no pixels".into()));
     }
-    value.source.budget.texture(value, width, height)?;
+    value.source.budget.texture(|why| value.error(why), width, height)?;
 
     let mut reader = open().map_err(|error| trouble(error.to_string()))?;
     // The budget bounds the memory. The limits of the decoder are lower than what a user can allow.

@@ -1,5 +1,10 @@
 //! Names in messages: how they are shown, and which known name was probably meant.
 
+use crate::scene::Encoding;
+
+/// How bytes encode linear light: those of 8-bit pictures, of colours as text, and of images.
+pub(super) const ENCODINGS: [(&str, Encoding); 2] = [("srgb", Encoding::Srgb), ("gamma2", Encoding::Gamma2)];
+
 /// The known name with the smallest Damerau-Levenshtein distance to `word`, without regard to case, if at
 /// most a third of the letters differ (or one). A name of more than 100 characters is never the answer.
 pub(super) fn nearest<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {

@@ -291,7 +291,7 @@ pub fn verdict(check: &Check, examined: Result<CheckResult, KitError>) -> Verdic
     match examined {
         Ok(Ok(())) => Verdict::Passed,
         Ok(Err(broken)) => Verdict::Failed(broken.message(check.name, &entry)),
-        Err(KitError::NotWritten { task, place }) => Verdict::NotWritten { task, place },
+        Err(KitError::NotWritten { task, place, .. }) => Verdict::NotWritten { task, place },
         Err(error) => Verdict::Failed(format!(
             "{}  {error}\n{}",
             entry.header(),

@@ -76,7 +76,11 @@ impl Hostile {
         }
         match self.name.as_str() {
             "public-then-tells" => {
-                self.say(&Reply::KitError(KitError::NotWritten { task: words(), place: words() }));
+                self.say(&Reply::KitError(KitError::NotWritten {
+                    task: words(),
+                    place: words(),
+                    function: None,
+                }));
             }
             "public-then-panics" => {
                 self.say(&Reply::KitError(KitError::Panicked { message: words(), place: words() }));

@@ -60,8 +60,8 @@ pub(super) fn shortened(error: KitError) -> KitError {
         None => words,
     };
     match error {
-        KitError::NotWritten { task, place } => {
-            KitError::NotWritten { task: short(task), place: short(place) }
+        KitError::NotWritten { task, place, function } => {
+            KitError::NotWritten { task: short(task), place: short(place), function }
         }
         KitError::Panicked { message, place } => {
             KitError::Panicked { message: short(message), place: short(place) }
