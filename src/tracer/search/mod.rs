@@ -231,7 +231,7 @@ fn in_streams<F: StudentFunctions, T: Tally>(
         order.into_iter().map(|ray| ray as usize).filter(|&ray| ray < rays.len()).collect();
     for numbers in order.chunks(STREAM) {
         let stream: Vec<Ray> = numbers.iter().map(|&number| rays[number]).collect();
-        for (&number, hit) in numbers.iter().zip(wide.closest_hits(probe, &stream)) {
+        for (&number, hit) in numbers.iter().zip(wide.closest_hits::<F, _>(probe, &stream)) {
             hits[number] = hit;
         }
     }

@@ -1,15 +1,18 @@
 //! The questions of searches about the primitives below a structure.
 
-use super::wide::Wide;
 use crate::aabb::Aabb;
-use crate::bvh::{PrimitiveHit, Probe};
+use crate::bvh::Probe;
 use crate::count::Event;
 use crate::partition::Cells;
 use crate::ray::Ray;
+use crate::shape::Triangle;
 use glam::Vec3;
 
 /// The primitives below a structure, with the questions that searches ask about them.
 pub trait Primitives: Probe + Cells {
+    /// Whether events are counted.
+    const COUNTS: bool;
+
     /// The number of primitives; their indices are `0..n_primitives`.
     fn n_primitives(&self) -> u32;
 
@@ -25,9 +28,13 @@ pub trait Primitives: Probe + Cells {
     /// The reciprocal of each component of the direction of the ray; infinite where a component is 0.
     fn inverse_direction(&self) -> Vec3;
 
-    /// The closest hit of `ray` in a wide tree over these primitives, or `None`.
-    fn closest_in_wide(&mut self, wide: &Wide, ray: &Ray) -> Option<PrimitiveHit>;
+    /// Whether `may_hit` of stage 12 may sort out triangles: it is written, and the test of triangles has no larger rounding
+    /// errors than it. Other tests may report a hit that is none, and every accelerator has to report the same.
+    fn may_sort_out(&self) -> bool;
 
-    /// Whether `ray` hits anything in a wide tree over these primitives.
-    fn any_in_wide(&mut self, wide: &Wide, ray: &Ray) -> bool;
+    /// The `t` of the hit with a primitive in the range of the ray, without a count.
+    fn hit_uncounted(&mut self, primitive: u32, ray: &Ray) -> Option<f32>;
+
+    /// The same for a primitive that is `triangle`, can be hit from both sides and does not move.
+    fn hit_triangle(&mut self, primitive: u32, triangle: &Triangle, ray: &Ray) -> Option<f32>;
 }

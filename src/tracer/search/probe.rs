@@ -6,7 +6,6 @@ use super::motion::geometry_at;
 use super::primitives::Primitives;
 use super::solids::intersect_solid;
 use super::structure::Structure;
-use super::wide::Wide;
 use crate::aabb::Aabb;
 use crate::bvh::{Contents, Node, PrimitiveHit, Probe};
 use crate::count::{Event, Tally};
@@ -69,15 +68,15 @@ pub struct SceneProbe<'a, F, T> {
     world: &'a World,
     gram: &'a [GramScalars],
     /// Which student functions test rays against triangles and spheres.
-    pub(super) tests: ShapeTests,
+    tests: ShapeTests,
     /// Whether `may_hit` of stage 12 is written.
-    pub(super) may_hit: bool,
+    may_hit: bool,
     conservative: bool,
     inverse_direction: Vec3,
     tally: &'a mut T,
     scene: &'a Structured,
     /// What is remembered of the hits that were reported.
-    pub(super) notes: &'a mut Notes,
+    notes: &'a mut Notes,
     functions: PhantomData<F>,
 }
 
@@ -87,7 +86,7 @@ pub struct Notes {
     /// Whether any hit is enough; otherwise the closest is needed.
     any_will_do: bool,
     /// The last hit that was reported: the primitive, and what its test found.
-    pub(super) last: (u32, Detail),
+    last: (u32, Detail),
     /// The closest hit with an instance: the hit, the primitive of the shared mesh, and what its test found.
     instance: Option<(PrimitiveHit, u32, Detail)>,
 }
@@ -219,26 +218,10 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
         Some(hit.t)
     }
 
-    /// Counts one event.
-    #[inline(always)]
-    pub(super) fn note(&mut self, event: Event) {
-        self.tally.note(event);
-    }
-
     #[inline(always)]
     fn test(&mut self, index: u32, ray: &Ray) -> Option<f32> {
         self.tally.note(Event::PrimitiveTest);
-        self.test_uncounted(index, ray)
-    }
-
-    /// The `t` of the hit with a primitive in the range of the ray.
-    #[inline(always)]
-    pub(super) fn test_uncounted(&mut self, index: u32, ray: &Ray) -> Option<f32> {
-        let primitive = &self.primitives[index as usize];
-        match primitive.end.get() {
-            None => self.intersect(index, ray, &primitive.geometry, self.gram.get(index as usize)),
-            Some(_) => self.intersect(index, ray, &geometry_at::<F>(self.world, primitive, ray.time), None),
-        }
+        self.hit_uncounted(index, ray)
     }
 
     /// The complete hit for `found`, the result of a search with `ray`: with its surface, and with what the
@@ -299,12 +282,14 @@ impl<F: StudentFunctions, T: Tally> Cells for SceneProbe<'_, F, T> {
 }
 
 impl<F: StudentFunctions, T: Tally> Primitives for SceneProbe<'_, F, T> {
-    #[inline]
+    const COUNTS: bool = T::COUNTS;
+
+    #[inline(always)]
     fn n_primitives(&self) -> u32 {
         self.primitives.len() as u32
     }
 
-    #[inline]
+    #[inline(always)]
     fn count(&mut self, event: Event) {
         self.tally.note(event);
     }
@@ -316,24 +301,35 @@ impl<F: StudentFunctions, T: Tally> Primitives for SceneProbe<'_, F, T> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn conservative(&self) -> bool {
         self.conservative
     }
 
-    #[inline]
+    #[inline(always)]
     fn inverse_direction(&self) -> Vec3 {
         self.inverse_direction
     }
 
     #[inline(always)]
-    fn closest_in_wide(&mut self, wide: &Wide, ray: &Ray) -> Option<PrimitiveHit> {
-        wide.closest_hit(self, ray)
+    fn may_sort_out(&self) -> bool {
+        matches!(self.tests.triangles, TriangleTest::Watertight | TriangleTest::InDouble) && self.may_hit
     }
 
     #[inline(always)]
-    fn any_in_wide(&mut self, wide: &Wide, ray: &Ray) -> bool {
-        wide.any_hit(self, ray)
+    fn hit_uncounted(&mut self, index: u32, ray: &Ray) -> Option<f32> {
+        let primitive = &self.primitives[index as usize];
+        match primitive.end.get() {
+            None => self.intersect(index, ray, &primitive.geometry, self.gram.get(index as usize)),
+            Some(_) => self.intersect(index, ray, &geometry_at::<F>(self.world, primitive, ray.time), None),
+        }
+    }
+
+    #[inline(always)]
+    fn hit_triangle(&mut self, primitive: u32, triangle: &Triangle, ray: &Ray) -> Option<f32> {
+        let hit = self.tests.triangle::<F>(ray, triangle, None)?;
+        self.notes.last = (primitive, Detail::Triangle(hit.beta, hit.gamma));
+        Some(hit.t)
     }
 }
 

@@ -180,7 +180,7 @@ impl Structure {
         savings: Savings,
     ) -> Option<PrimitiveHit> {
         match self {
-            Structure::Wide(wide) => probe.closest_in_wide(wide, ray),
+            Structure::Wide(wide) => wide.closest_hit::<F, P>(probe, ray),
             Structure::Hierarchy(bvh) => F::closest_hit(bvh, probe, ray),
             Structure::BothChildren(bvh) => F::closest_hit_both(bvh, probe, ray),
             Structure::Graph { graph, volumes } => {
@@ -229,7 +229,7 @@ impl Structure {
         savings: Savings,
     ) -> bool {
         match self {
-            Structure::Wide(wide) => probe.any_in_wide(wide, ray),
+            Structure::Wide(wide) => wide.any_hit::<F, P>(probe, ray),
             Structure::Hierarchy(bvh) | Structure::BothChildren(bvh) => F::any_hit(bvh, probe, ray),
             Structure::List | Structure::Painter => last_hit(probe, ray).is_some(),
             other => other.closest_hit::<F, P>(probe, ray, savings).is_some(),

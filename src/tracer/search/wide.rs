@@ -1,12 +1,9 @@
 //! The wide tree of stage 12 over a set of primitives: eight boxes and four triangles are tested at once.
 
-use super::hit::Detail;
-use super::intersection::TriangleTest;
 use super::primitives::Primitives;
-use super::probe::SceneProbe;
 use crate::aabb::Aabb;
 use crate::bvh::PrimitiveHit;
-use crate::count::{Event, Tally};
+use crate::count::Event;
 use crate::kit::{StructureSize, StudentFunctions};
 use crate::ray::Ray;
 use crate::scene::{Quality, Split};
@@ -18,6 +15,7 @@ use crate::wide::{
     WideNode, WideProbe, WideRay,
 };
 use rayon::prelude::*;
+use std::marker::PhantomData;
 
 /// A wide tree with the triangles of its leaves.
 #[derive(Debug)]
@@ -66,37 +64,34 @@ impl Wide {
 
     /// The closest hit of `ray` with the primitives of `probe` within its range, or `None`.
     #[inline(always)]
-    pub fn closest_hit<F: StudentFunctions, T: Tally>(
+    pub fn closest_hit<F: StudentFunctions, P: Primitives>(
         &self,
-        probe: &mut SceneProbe<'_, F, T>,
+        probe: &mut P,
         ray: &Ray,
     ) -> Option<PrimitiveHit> {
         if self.nodes.is_empty() {
             return None;
         }
-        self.instructions.run(Closest { wide: self, probe, ray })
+        self.instructions.run(Closest::<F, P> { wide: self, functions: PhantomData, probe, ray })
     }
 
     /// The closest hit of each of `rays`, at most [`STREAM`](crate::wide::STREAM), within its range.
-    pub fn closest_hits<F: StudentFunctions, T: Tally>(
+    pub fn closest_hits<F: StudentFunctions, P: Primitives>(
         &self,
-        probe: &mut SceneProbe<'_, F, T>,
+        probe: &mut P,
         rays: &[Ray],
     ) -> Vec<Option<PrimitiveHit>> {
         if self.nodes.is_empty() {
             return vec![None; rays.len()];
         }
-        self.instructions.run(ClosestOfStream { wide: self, probe, rays })
+        self.instructions.run(ClosestOfStream::<F, P> { wide: self, functions: PhantomData, probe, rays })
     }
 
     /// Whether `ray` hits any primitive of `probe` within its range.
     #[inline(always)]
-    pub fn any_hit<F: StudentFunctions, T: Tally>(
-        &self,
-        probe: &mut SceneProbe<'_, F, T>,
-        ray: &Ray,
-    ) -> bool {
-        !self.nodes.is_empty() && self.instructions.run(Any { wide: self, probe, ray })
+    pub fn any_hit<F: StudentFunctions, P: Primitives>(&self, probe: &mut P, ray: &Ray) -> bool {
+        !self.nodes.is_empty()
+            && self.instructions.run(Any::<F, P> { wide: self, functions: PhantomData, probe, ray })
     }
 
     /// The boxes at depth `depth`, and those of leaves above it. The root has depth 0.
@@ -144,72 +139,74 @@ impl Wide {
 }
 
 /// The search of a closest hit, for each level of instructions.
-struct Closest<'s, 'p, 'w, F, T> {
+struct Closest<'s, F, P> {
     wide: &'s Wide,
-    probe: &'s mut SceneProbe<'p, F, T>,
-    ray: &'w Ray,
+    functions: PhantomData<F>,
+    probe: &'s mut P,
+    ray: &'s Ray,
 }
 
-impl<F: StudentFunctions, T: Tally> Vectorized for Closest<'_, '_, '_, F, T> {
+impl<F: StudentFunctions, P: Primitives> Vectorized for Closest<'_, F, P> {
     type Output = Option<PrimitiveHit>;
 
     #[inline(always)]
     fn run<L: Level>(self, level: L) -> Self::Output {
-        F::wide_closest_hit(&mut WideSceneProbe::new(self.wide, self.probe, self.ray, level), self.ray)
+        F::wide_closest_hit(&mut TreeProbe::<F, P, L>::new(self.wide, self.probe, self.ray, level), self.ray)
     }
 }
 
 /// The search of any hit, for each level of instructions.
-struct Any<'s, 'p, 'w, F, T> {
+struct Any<'s, F, P> {
     wide: &'s Wide,
-    probe: &'s mut SceneProbe<'p, F, T>,
-    ray: &'w Ray,
+    functions: PhantomData<F>,
+    probe: &'s mut P,
+    ray: &'s Ray,
 }
 
-impl<F: StudentFunctions, T: Tally> Vectorized for Any<'_, '_, '_, F, T> {
+impl<F: StudentFunctions, P: Primitives> Vectorized for Any<'_, F, P> {
     type Output = bool;
 
     #[inline(always)]
     fn run<L: Level>(self, level: L) -> bool {
-        F::wide_any_hit(&mut WideSceneProbe::new(self.wide, self.probe, self.ray, level), self.ray)
+        F::wide_any_hit(&mut TreeProbe::<F, P, L>::new(self.wide, self.probe, self.ray, level), self.ray)
     }
 }
 
-/// Answers the questions of a search in a wide tree, and counts them.
-pub(super) struct WideSceneProbe<'s, 'p, F, T, L> {
+/// Answers the questions of a search in a wide tree over the primitives of `probe`, and counts them.
+struct TreeProbe<'s, F, P, L> {
     wide: &'s Wide,
-    pub(super) probe: &'s mut SceneProbe<'p, F, T>,
+    probe: &'s mut P,
     ray: WideRay,
-    /// Whether `may_hit` sorts out triangles. It does not for methods whose rounding errors are larger than its own: they
-    /// may report a hit that is none, and every accelerator has to report the same.
+    /// Whether `may_hit` sorts out triangles for this ray.
     sorts_out: bool,
     level: L,
+    functions: PhantomData<F>,
 }
 
-impl<'s, 'p, F: StudentFunctions, T: Tally, L: Level> WideSceneProbe<'s, 'p, F, T, L> {
+impl<'s, F: StudentFunctions, P: Primitives, L: Level> TreeProbe<'s, F, P, L> {
     #[inline(always)]
-    pub(super) fn new(wide: &'s Wide, probe: &'s mut SceneProbe<'p, F, T>, ray: &Ray, level: L) -> Self {
+    fn new(wide: &'s Wide, probe: &'s mut P, ray: &Ray, level: L) -> Self {
         let ray = WideRay::new(ray);
-        let sorts_out = sorts_out(probe, &ray);
-        WideSceneProbe { wide, probe, ray, sorts_out, level }
+        let sorts_out = ray.in_range && probe.may_sort_out();
+        TreeProbe { wide, probe, ray, sorts_out, level, functions: PhantomData }
     }
 
     /// Asks about another ray from now on.
     #[inline(always)]
-    pub(super) fn select(&mut self, ray: &WideRay) {
+    fn select(&mut self, ray: &WideRay) {
         self.ray = *ray;
-        self.sorts_out = sorts_out(self.probe, ray);
+        self.sorts_out = ray.in_range && self.probe.may_sort_out();
     }
 
     /// [`WideProbe::enter`] without a node visit.
     #[inline(always)]
-    pub(super) fn enter_uncounted(&mut self, node: u32, t_max: f32) -> Entered {
+    fn enter_uncounted(&mut self, node: u32, t_max: f32) -> Entered {
         let node = &self.wide.nodes[node as usize];
         let entered = F::enter_boxes(self.level, node, &self.ray, t_max);
-        if T::COUNTS {
+        if P::COUNTS {
             // The children come first, then the empty places.
             for child in 0..node.n_children() {
-                self.probe.note(Event::BoxTest);
+                self.probe.count(Event::BoxTest);
                 self.probe.tested(&node.child_bounds(child as usize), entered.mask & 1 << child != 0);
             }
         }
@@ -218,10 +215,10 @@ impl<'s, 'p, F: StudentFunctions, T: Tally, L: Level> WideSceneProbe<'s, 'p, F, 
 
     /// [`WideProbe::candidates`] without a node visit.
     #[inline(always)]
-    pub(super) fn candidates_uncounted(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
-        if T::COUNTS {
+    fn candidates_uncounted(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
+        if P::COUNTS {
             for _ in 0..n {
-                self.probe.note(Event::PrimitiveTest);
+                self.probe.count(Event::PrimitiveTest);
             }
         }
         let lanes = (1 << n) - 1;
@@ -233,17 +230,10 @@ impl<'s, 'p, F: StudentFunctions, T: Tally, L: Level> WideSceneProbe<'s, 'p, F, 
     }
 }
 
-/// Whether `may_hit` sorts out triangles for this ray.
-#[inline(always)]
-fn sorts_out<F: StudentFunctions, T: Tally>(probe: &SceneProbe<'_, F, T>, ray: &WideRay) -> bool {
-    let is_exact = matches!(probe.tests.triangles, TriangleTest::Watertight | TriangleTest::InDouble);
-    is_exact && ray.in_range && probe.may_hit
-}
-
-impl<F: StudentFunctions, T: Tally, L: Level> WideProbe for WideSceneProbe<'_, '_, F, T, L> {
+impl<F: StudentFunctions, P: Primitives, L: Level> WideProbe for TreeProbe<'_, F, P, L> {
     #[inline(always)]
     fn enter(&mut self, node: u32, t_max: f32) -> Entered {
-        self.probe.note(Event::NodeVisit);
+        self.probe.count(Event::NodeVisit);
         self.enter_uncounted(node, t_max)
     }
 
@@ -254,7 +244,7 @@ impl<F: StudentFunctions, T: Tally, L: Level> WideProbe for WideSceneProbe<'_, '
 
     #[inline(always)]
     fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
-        self.probe.note(Event::NodeVisit);
+        self.probe.count(Event::NodeVisit);
         self.candidates_uncounted(block, n, t_max)
     }
 
@@ -266,34 +256,33 @@ impl<F: StudentFunctions, T: Tally, L: Level> WideProbe for WideSceneProbe<'_, '
         // Take the corners from the block, which is in the cache. Other shapes are looked up.
         let triangle = block.triangle(lane);
         let t = if self.sorts_out && !triangle.a.x.is_nan() {
-            let hit = self.probe.tests.triangle::<F>(ray, &triangle, None)?;
-            self.probe.notes.last = (primitive, Detail::Triangle(hit.beta, hit.gamma));
-            hit.t
+            self.probe.hit_triangle(primitive, &triangle, ray)?
         } else {
-            self.probe.test_uncounted(primitive, ray)?
+            self.probe.hit_uncounted(primitive, ray)?
         };
         Some(PrimitiveHit { t, primitive })
     }
 }
 
 /// The search of the closest hits of several rays, for each level of instructions.
-struct ClosestOfStream<'s, 'p, 'w, F, T> {
+struct ClosestOfStream<'s, F, P> {
     wide: &'s Wide,
-    probe: &'s mut SceneProbe<'p, F, T>,
-    rays: &'w [Ray],
+    functions: PhantomData<F>,
+    probe: &'s mut P,
+    rays: &'s [Ray],
 }
 
-impl<F: StudentFunctions, T: Tally> Vectorized for ClosestOfStream<'_, '_, '_, F, T> {
+impl<F: StudentFunctions, P: Primitives> Vectorized for ClosestOfStream<'_, F, P> {
     type Output = Vec<Option<PrimitiveHit>>;
 
     #[inline(always)]
     fn run<L: Level>(self, level: L) -> Self::Output {
-        let ClosestOfStream { wide, probe, rays } = self;
+        let ClosestOfStream { wide, probe, rays, .. } = self;
         let Some(first) = rays.first() else { return Vec::new() };
         let prepared: Vec<WideRay> = rays.iter().map(WideRay::new).collect();
-        let one = WideSceneProbe::new(wide, probe, first, level);
+        let one = TreeProbe::<F, P, L>::new(wide, probe, first, level);
         F::stream_closest_hits(
-            &mut StreamSceneProbe { one, rays: &prepared, last: LastFetch::default() },
+            &mut StreamTreeProbe { one, rays: &prepared, last: LastFetch::default() },
             rays,
         )
     }
@@ -301,24 +290,24 @@ impl<F: StudentFunctions, T: Tally> Vectorized for ClosestOfStream<'_, '_, '_, F
 
 /// Answers the questions of a search with several rays. A visit of a node or a block is counted once for all calls about it that
 /// follow each other.
-struct StreamSceneProbe<'s, 'p, 'w, F, T, L> {
-    one: WideSceneProbe<'s, 'p, F, T, L>,
-    rays: &'w [WideRay],
+struct StreamTreeProbe<'s, F, P, L> {
+    one: TreeProbe<'s, F, P, L>,
+    rays: &'s [WideRay],
     last: LastFetch,
 }
 
-impl<F: StudentFunctions, T: Tally, L: Level> StreamSceneProbe<'_, '_, '_, F, T, L> {
+impl<F: StudentFunctions, P: Primitives, L: Level> StreamTreeProbe<'_, F, P, L> {
     /// Makes `ray` the ray of the next call, and counts a visit unless the last call was about the same node or block.
     #[inline(always)]
     fn select(&mut self, ray: u32, is_block: bool, index: u32) {
         self.one.select(&self.rays[ray as usize]);
         if self.last.fetches(is_block, index) {
-            self.one.probe.note(Event::NodeVisit);
+            self.one.probe.count(Event::NodeVisit);
         }
     }
 }
 
-impl<F: StudentFunctions, T: Tally, L: Level> StreamProbe for StreamSceneProbe<'_, '_, '_, F, T, L> {
+impl<F: StudentFunctions, P: Primitives, L: Level> StreamProbe for StreamTreeProbe<'_, F, P, L> {
     #[inline(always)]
     fn enter(&mut self, ray: u32, node: u32, t_max: f32) -> Entered {
         self.select(ray, false, node);
