@@ -5,15 +5,18 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`ray`], [`aabb`], [`shape`], [`mesh`] | geometry as data: rays with an open range of `t`, boxes, shapes, indexed meshes |
-//! | [`bvh`], [`graph`], [`partition`] | acceleration structures as data, and what a search may ask ([`bvh::Probe`], [`partition::Cells`]) |
-//! | [`material`], [`emitter`], [`light_path`], [`camera`], [`film`] | what surfaces and lights are made of, the steps of a path, where rays start, where colours end |
-//! | [`scene`], [`world`] | scene files (TOML, PLY, OBJ), and the scene flattened into primitives |
-//! | [`effects`], [`count`], [`random`] | what a scene needs, what it cost, and random numbers that are looked up by address |
-//! | [`rounding`] | bounds on rounding errors |
-//! | [`kit`] | the list of student functions, the door through which they are called, and the messages to a worker |
-//! | [`tracer`], [`frame`], [`rows`], [`building`] | the renderer, its tiles, threads and pieces, and the progress of a build |
-//! | [`rubric`], [`course`], [`worker`] | points, titles and hints of the checks, and what a course changes in them; the process that answers for a kit |
+//! | [`ray`], [`aabb`], [`shape`], [`mesh`], [`rounding`] | geometry as data: rays with an open range of `t`, boxes, shapes, indexed meshes; bounds on rounding errors |
+//! | [`material`], [`emitter`], [`light_path`] | what surfaces and lights are made of, the steps of a path |
+//! | [`camera`], [`film`], [`rows`], [`random`] | where rays start, where colours end, and random numbers that are looked up by address |
+//! | [`count`] | what a frame costs |
+//! | [`bvh`], [`graph`], [`partition`], [`wide`] | acceleration structures as data, and what a search may ask ([`bvh::Probe`], [`partition::Cells`]) |
+//! | [`scene`], [`effects`] | a scene as data, the readers of its files (TOML, PLY, OBJ), and the effects that it needs |
+//! | [`kit`], [`worker`] | the list of student functions, the door through which they are called, and the process that answers for a kit |
+//! | [`world`] | the scene flattened into primitives |
+//! | [`course`], [`rubric`] | points, titles and hints of the checks, and what a course changes in them |
+//! | [`tracer`], [`frame`] | the renderer, its tiles and threads, and the progress of a frame |
+//!
+//! The files stand in folders by floor, and use files of their own floor and of lower ones; `tests/floors.rs` lists the floors.
 //!
 //! # Conventions
 //!

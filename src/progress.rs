@@ -83,7 +83,7 @@ thread_local! {
 }
 
 /// Structures over fewer primitives are built without reports.
-const WORTH_TELLING: u64 = 100_000;
+const FEWEST_REPORTED: u64 = 100_000;
 
 /// The time between two reports.
 const PAUSE: Duration = Duration::from_millis(200);
@@ -106,37 +106,38 @@ pub(crate) fn placed(count: usize) {
 ///
 /// A panic of `build` is passed on; the reports end all the same.
 pub fn watched<T>(watch: &dyn Watch, total: u64, build: impl FnOnce() -> T) -> T {
-    if total < WORTH_TELLING {
+    if total < FEWEST_REPORTED {
         return build();
     }
     let counter = Arc::new(AtomicU64::new(0));
     let built = AtomicBool::new(false);
     thread::scope(|scope| {
-        let teller = thread::Builder::new().name("teller".into()).spawn_scoped(scope, || {
+        let reporter = thread::Builder::new().name("reporter".into()).spawn_scoped(scope, || {
             while !built.load(Ordering::Relaxed) {
                 watch.building(counter.load(Ordering::Relaxed).min(total), total);
                 thread::park_timeout(PAUSE);
             }
         });
-        // Without a thread there are no reports. If the build panics, `Ended` still ends the reporting thread.
-        let _ended = Ended { built: &built, teller: teller.ok().map(|teller| teller.thread().clone()) };
+        // Without a thread there are no reports. If the build panics, `EndOfReports` still ends the reporting thread.
+        let _ended =
+            EndOfReports { built: &built, reporter: reporter.ok().map(|reporter| reporter.thread().clone()) };
         PLACED.set(Some(counter.clone()));
         build()
     })
 }
 
 /// Ends the reports when it is dropped.
-struct Ended<'a> {
+struct EndOfReports<'a> {
     built: &'a AtomicBool,
-    teller: Option<thread::Thread>,
+    reporter: Option<thread::Thread>,
 }
 
-impl Drop for Ended<'_> {
+impl Drop for EndOfReports<'_> {
     fn drop(&mut self) {
         PLACED.set(None);
         self.built.store(true, Ordering::Relaxed);
-        if let Some(teller) = &self.teller {
-            teller.unpark();
+        if let Some(reporter) = &self.reporter {
+            reporter.unpark();
         }
     }
 }
@@ -179,7 +180,7 @@ mod tests {
     #[test]
     fn leaves_are_reported_while_the_rest_is_built() {
         let heard = Heard::default();
-        let total = 2 * WORTH_TELLING;
+        let total = 2 * FEWEST_REPORTED;
         watched(&heard, total, || {
             heard.wait_for(0);
             leaf_of(150_000);
@@ -193,10 +194,10 @@ mod tests {
     #[test]
     fn what_is_small_is_not_worth_a_word_and_a_panic_passes() {
         let heard = Heard::default();
-        watched(&heard, WORTH_TELLING - 1, || leaf_of(5));
+        watched(&heard, FEWEST_REPORTED - 1, || leaf_of(5));
         assert!(heard.0.lock().unwrap().is_empty());
         let panicked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-            watched(&heard, WORTH_TELLING, || panic!("a builder that gives up"));
+            watched(&heard, FEWEST_REPORTED, || panic!("a builder that gives up"));
         }));
         assert!(panicked.is_err() && PLACED.with_borrow(Option::is_none));
     }

@@ -12,9 +12,9 @@ use std::sync::Arc;
 ///
 /// The guard costs nothing where nothing panics: it is forgotten before it is dropped.
 #[doc(hidden)]
-pub struct Running(pub Function);
+pub struct CallGuard(pub Function);
 
-impl Running {
+impl CallGuard {
     /// Ends the guard after the function has returned.
     #[inline(always)]
     pub fn finished(self) {
@@ -22,7 +22,7 @@ impl Running {
     }
 }
 
-impl Drop for Running {
+impl Drop for CallGuard {
     #[cold]
     fn drop(&mut self) {
         kit_error::note_function(self.0);
@@ -73,7 +73,7 @@ macro_rules! implement_student_functions {
             $($(
             #[inline(always)]
             fn $name $(<$($generics)*>)? ($($argument: $Type),*) -> $Return {
-                let running = $crate::kit::Running($crate::kit::Function::$name);
+                let running = $crate::kit::CallGuard($crate::kit::Function::$name);
                 let answer = crate::$file::$function($($argument),*);
                 running.finished();
                 answer

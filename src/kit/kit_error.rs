@@ -72,18 +72,18 @@ pub fn unwind(error: KitError) -> ! {
 /// Unwinds with [`KitError::Malformed`] and the first 200 characters of the answer; a hostile answer may be very
 /// long.
 pub(super) fn wrong_answer(answer: &dyn fmt::Debug) -> ! {
-    let mut beginning = Beginning { words: String::new(), room: 200 };
-    // Formatting fails when `Beginning` is full, so ignore its result.
+    let mut beginning = LimitedText { words: String::new(), room: 200 };
+    // Formatting fails when `LimitedText` is full, so ignore its result.
     let _ = fmt::write(&mut beginning, format_args!("{answer:?}"));
     unwind(KitError::Malformed { what: beginning.words })
 }
 
-struct Beginning {
+struct LimitedText {
     words: String,
     room: usize,
 }
 
-impl fmt::Write for Beginning {
+impl fmt::Write for LimitedText {
     fn write_str(&mut self, more: &str) -> fmt::Result {
         for letter in more.chars() {
             self.room = self.room.checked_sub(1).ok_or(fmt::Error)?;

@@ -47,7 +47,7 @@ pub use effects_analysis::{
 };
 pub use function_names::Function;
 #[doc(hidden)]
-pub use functions::Running;
+pub use functions::CallGuard;
 pub use functions::{Linked, StudentFunctions, StudentKit, is_written};
 pub use job::{RenderJob, Rendering, StructureSize, View};
 pub use kit_error::KitError;

@@ -158,7 +158,7 @@ pub fn serve(functions: impl StudentKit) {
 
 /// Answers requests with any function in place of a kit, until the pipe closes. A panic of `answer` is caught
 /// and sent as [`Reply::KitError`].
-pub fn serve_with(answer: &Answering<'_>) {
+pub fn serve_with(answer: &AnswerFunction<'_>) {
     let work = || {
         let (reader, writer) = pipes()?;
         answer_all(answer, reader, writer)
@@ -182,10 +182,10 @@ pub fn serve_with(answer: &Answering<'_>) {
 }
 
 /// A function that answers a request and reports its progress.
-pub type Answering<'a> = dyn Fn(&Request, &dyn Watch) -> Answer + Sync + 'a;
+pub type AnswerFunction<'a> = dyn Fn(&Request, &dyn Watch) -> Answer + Sync + 'a;
 
 fn answer_all(
-    answer: &Answering<'_>,
+    answer: &AnswerFunction<'_>,
     reader: impl Read + 'static,
     writer: impl Write + Send + 'static,
 ) -> io::Result<()> {
@@ -206,10 +206,10 @@ fn answer_all(
     };
     loop {
         let request: Request = receive(&mut *reader.borrow_mut())?;
-        let relay = Relay { say: &say, tiles: matches!(request, Request::RenderInTiles(_)) };
+        let progress = ProgressSender { say: &say, tiles: matches!(request, Request::RenderInTiles(_)) };
         let reply = match kit_error::catch(|| match &request {
-            Request::Withheld(request) => questions::asking(ask.clone(), || answer(request, &relay)),
-            request => answer(request, &relay),
+            Request::Withheld(request) => questions::asking(ask.clone(), || answer(request, &progress)),
+            request => answer(request, &progress),
         }) {
             Ok(answer) => Reply::Answer(Box::new(answer)),
             Err(error) => Reply::KitError(error),
@@ -219,13 +219,13 @@ fn answer_all(
 }
 
 /// Passes progress on to the other side. To cancel, that side ends this process.
-struct Relay<'a> {
+struct ProgressSender<'a> {
     say: &'a (dyn Fn(&Reply) -> io::Result<()> + Sync),
     /// Whether the other side wants the pixels of tiles.
     tiles: bool,
 }
 
-impl Watch for Relay<'_> {
+impl Watch for ProgressSender<'_> {
     fn progress(&self, done: u64, total: u64) {
         // Ignore a closed pipe here, because sending the answer will report it.
         let _ = (self.say)(&Reply::Progress { done, total });

@@ -39,7 +39,7 @@ pub struct FrameSettings {
 
 impl FrameSettings {
     /// The same settings, with random numbers for those effects that `effects` lists and for no other.
-    pub fn obey(self, effects: &Effects) -> Self {
+    pub fn for_effects(self, effects: &Effects) -> Self {
         let on_the_way = effects.calls_for(Effect::AreaLights) || effects.calls_for(Effect::Glossy);
         FrameSettings { lens: effects.lens, motion: effects.motion, on_the_way, ..self }
     }
@@ -67,7 +67,7 @@ pub struct CameraSample {
 }
 
 impl CameraSample {
-    /// Looks up the random numbers for sample `sample` of the pixel in this column and row. The result
+    /// SurfaceOptions up the random numbers for sample `sample` of the pixel in this column and row. The result
     /// depends on the arguments alone, so all threads agree.
     #[inline(always)]
     pub fn draw(settings: &FrameSettings, column: u32, row: u32, sample: u32) -> CameraSample {
@@ -281,7 +281,7 @@ mod tests {
             (false, false, false, 0)
         );
         let effects = Effects { lens: true, motion: true, ..Effects::default() };
-        assert_eq!(drawn(&plain.obey(&effects)), (false, true, true, 3));
+        assert_eq!(drawn(&plain.for_effects(&effects)), (false, true, true, 3));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::camera_sampler::CameraSampler;
 use super::driver::FrameSettings;
 use super::light::indirect::IndirectLight;
-use super::light::interaction::Looks;
+use super::light::interaction::SurfaceOptions;
 use super::light::texture_filter::Pyramids;
 use super::plan::Plan;
 use super::plan::written::Written;
@@ -28,7 +28,7 @@ pub struct Frame<'a, F> {
     /// The seconds that an earlier frame took to build the structures that this one uses again; 0 if they were built now.
     pub earlier_seconds: f64,
     /// By which functions and with which normals hits become surface interactions.
-    pub looks: Looks,
+    pub surface_options: SurfaceOptions,
     /// The smaller copies of all images, if images are filtered.
     pub pyramids: Option<Pyramids>,
     /// What paths of indirect light sample; `None` if no indirect light is computed.
@@ -53,9 +53,9 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
         let pyramids = plan.mipmaps.then(|| Pyramids::new(world, &plan.effects));
         let indirect = plan.paths.as_ref().map(|paths| IndirectLight::new(scene, world, paths));
         let camera = CameraSampler::new(scene, &plan);
-        let looks = Looks { tests: plan.tests, smooth: plan.smooth, facing: plan.facing };
+        let surface_options = SurfaceOptions { tests: plan.tests, smooth: plan.smooth, facing: plan.facing };
         let limits = Limits { max_depth: quality.max_depth, min_contribution: quality.min_contribution };
-        Frame { job, plan, camera, intersector, earlier_seconds, looks, pyramids, indirect, limits }
+        Frame { job, plan, camera, intersector, earlier_seconds, surface_options, pyramids, indirect, limits }
     }
 
     /// The quality settings of the scene that is rendered.
@@ -79,7 +79,7 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
             threads: self.job.threads,
             seed: self.job.seed,
         };
-        let settings = settings.obey(&self.plan.effects);
+        let settings = settings.for_effects(&self.plan.effects);
         FrameSettings { on_the_way: settings.on_the_way || self.indirect.is_some(), ..settings }
     }
 }

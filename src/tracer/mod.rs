@@ -1,16 +1,12 @@
 //! Renders frames with student functions: every function that is written is used, and notes say what a
 //! picture lacks.
 //!
-//! [`Renderer`] renders the frames of a kit. `plan` decides what is computed, and what replaces functions
-//! that are not written; `accelerator` chooses the structure. `frame` puts together `camera_sampler`, which makes camera rays, and `intersector`,
-//! which finds their hits; measurements use the intersectors again that `kept` keeps. The intersector searches
-//! a `structure` through a `probe`, which tests triangles and spheres by `intersection` and shapes in spaces of
-//! their own by `solids`. `grid_resolution` chooses the cells of a grid, `large_leaves` notes where a tree could
-//! not be divided as asked, and `wide` holds and searches trees with eight children per node. `path` follows a ray
-//! through the tree of its secondary rays, from `interaction` to interaction. With indirect light `path_tracer`
-//! follows one random path in place of the tree; `emitters` and `environment` choose the lights that it samples.
-//! `counter` counts the work, `record` stores the rays of a pixel, `outlines` draws structures,
-//! `gamma2` decodes colours, and `texture_filter` filters images.
+//! [`Renderer`] renders the frames of a kit. `plan` decides what is computed, what replaces functions that are not
+//! written, and which structure is used. `search` finds hits: it builds and searches a structure through a probe, which tests
+//! rays against primitives; measurements use the structures again that `kept` keeps. `light` computes the light along a ray,
+//! through the tree of its secondary rays (`whitted`) or along one random path (`path_tracer`). `camera_sampler` makes camera
+//! rays, `frame` puts everything together, and [`driver`] renders the tiles. `counter` counts the work, and `gamma2` decodes
+//! colours.
 
 mod camera_sampler;
 mod counter;
@@ -62,7 +58,7 @@ impl<F> Renderer<F> {
 impl<F: StudentFunctions> Frames for Renderer<F> {
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         let (rendering, notes) =
-            with_what_is_written::<F, _>(|written| render(&decoded(job, written), written, watch));
+            with_written_functions::<F, _>(|written| render(&decoded(job, written), written, watch));
         rendering.map(|mut rendering| {
             rendering.notes.extend(notes);
             rendering
@@ -70,11 +66,11 @@ impl<F: StudentFunctions> Frames for Renderer<F> {
     }
 
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
-        with_what_is_written::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0.0
+        with_written_functions::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0.0
     }
 
     fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<(TracedRay, RayVisits)> {
-        let traced = with_what_is_written::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0;
+        let traced = with_written_functions::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0;
         traced.0.into_iter().zip(traced.1).collect()
     }
 
@@ -83,17 +79,17 @@ impl<F: StudentFunctions> Frames for Renderer<F> {
             let frame = Frame::new(job, written, &Unwatched);
             outlines::outlines(&frame.intersector.scene.structure, depth as usize)
         };
-        with_what_is_written::<F, _>(outlines).0
+        with_written_functions::<F, _>(outlines).0
     }
 
     fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>> {
-        with_what_is_written::<F, _>(|written| first_hits(job, written, rays)).0
+        with_written_functions::<F, _>(|written| first_hits(job, written, rays)).0
     }
 }
 
 /// Calls `work` with the functions that are written. If `work` reaches a `todo!` anyway, calls it again without
 /// that function. Returns the result and a note for each such function.
-fn with_what_is_written<F: StudentFunctions, R>(work: impl Fn(&Written<F>) -> R) -> (R, Vec<String>) {
+fn with_written_functions<F: StudentFunctions, R>(work: impl Fn(&Written<F>) -> R) -> (R, Vec<String>) {
     let mut written = Written::all();
     let mut notes = Vec::new();
     loop {

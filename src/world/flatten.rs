@@ -2,10 +2,11 @@
 //! at shutter times 0 and 1.
 
 use super::facets::{self, Facet};
-use super::meshes::{Meshes, Ready};
+use super::meshes::{Meshes, PreparedMesh};
 use super::transforms::{normal_matrix, plane_axes, uniform_scale, unit};
 use super::{
-    Geometry, InfinitePlane, Instance, Primitive, SharedMesh, Slot, Solid, SolidShape, World, WorldFunctions,
+    Geometry, InfinitePlane, Instance, OptionalIndex, Primitive, SharedMesh, Solid, SolidShape, World,
+    WorldFunctions,
 };
 use crate::effects::Effects;
 use crate::graph::{Graph, GraphNode, Placement};
@@ -38,28 +39,28 @@ pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctio
         },
     };
     for &root in &scene.roots {
-        flattener.node(root, &Way::still(Affine3A::IDENTITY), 0, 0, &mut meshes);
+        flattener.node(root, &MovingTransform::still(Affine3A::IDENTITY), 0, 0, &mut meshes);
     }
     flattener.world
 }
 
 /// The transform of a node to the world at time 0, and at time 1 if it moves.
-struct Way {
+struct MovingTransform {
     start: Affine3A,
     end: Option<Affine3A>,
     /// Whether `start` is a blend between two times, and not the product of the transforms of the nodes.
     blended: bool,
 }
 
-impl Way {
-    fn still(start: Affine3A) -> Way {
-        Way { start, end: None, blended: false }
+impl MovingTransform {
+    fn still(start: Affine3A) -> MovingTransform {
+        MovingTransform { start, end: None, blended: false }
     }
 
-    fn then(&self, node: &Node) -> Way {
+    fn then(&self, node: &Node) -> MovingTransform {
         let moves = self.end.is_some() || node.transform_end.is_some();
         let end = || self.end.unwrap_or(self.start) * node.transform_end.unwrap_or(node.transform);
-        Way { start: self.start * node.transform, end: moves.then(end), blended: false }
+        MovingTransform { start: self.start * node.transform, end: moves.then(end), blended: false }
     }
 }
 
@@ -74,29 +75,42 @@ struct Flattener<'a> {
 }
 
 impl Flattener<'_> {
-    /// Adds the node `index` and all nodes below it. `way` is the transform of its parent, `above` the index
+    /// Adds the node `index` and all nodes below it. `transform` is the transform of its parent, `above` the index
     /// of the parent in the graph, and `material` is inherited from it.
-    fn node(&mut self, index: usize, way: &Way, material: usize, above: u32, meshes: &mut Meshes) {
+    fn node(
+        &mut self,
+        index: usize,
+        transform: &MovingTransform,
+        material: usize,
+        above: u32,
+        meshes: &mut Meshes,
+    ) {
         let node = &self.scene.nodes[index];
-        let way = way.then(node);
+        let transform = transform.then(node);
         let material = node.material.unwrap_or(material);
         let first = self.world.primitives.len() as u32;
         self.path.push(node.transform);
         if let Some(shape) = &node.shape {
-            let way = match way.end {
-                Some(end) if self.effects.motion && end != way.start => Way { end: Some(end), ..way },
-                Some(end) => Way { start: blend(&way.start, &end, self.still_at), end: None, blended: true },
-                None => Way::still(way.start),
+            let transform = match transform.end {
+                Some(end) if self.effects.motion && end != transform.start => {
+                    MovingTransform { end: Some(end), ..transform }
+                }
+                Some(end) => MovingTransform {
+                    start: blend(&transform.start, &end, self.still_at),
+                    end: None,
+                    blended: true,
+                },
+                None => MovingTransform::still(transform.start),
             };
             let ready = match shape {
                 Shape::Mesh(mesh) => meshes.of_scene.get_mut(*mesh),
                 _ => meshes.of_nodes.get_mut(&index),
             };
-            self.shape(shape, ready, &way, material as u32);
+            self.shape(shape, ready, &transform, material as u32);
         }
         let here = self.in_graph(first..self.world.primitives.len() as u32, above);
         for &child in &node.children {
-            self.node(child, &way, material, here, meshes);
+            self.node(child, &transform, material, here, meshes);
         }
         self.path.pop();
     }
@@ -111,54 +125,60 @@ impl Flattener<'_> {
         here
     }
 
-    fn shape(&mut self, shape: &Shape, ready: Option<&mut Ready>, way: &Way, material: u32) {
+    fn shape(
+        &mut self,
+        shape: &Shape,
+        ready: Option<&mut PreparedMesh>,
+        transform: &MovingTransform,
+        material: u32,
+    ) {
         match shape {
             Shape::Sphere(_) if !self.functions.spheres => {}
-            Shape::Sphere(sphere) => self.sphere(sphere, way, material),
+            Shape::Sphere(sphere) => self.sphere(sphere, transform, material),
             Shape::Plane(_) if !self.functions.planes => {}
-            Shape::Plane(plane) => self.plane(plane, None, way, material),
+            Shape::Plane(plane) => self.plane(plane, None, transform, material),
             // A plane that moves is tested by a point and a normal.
-            Shape::PlaneEquation(equation) => match (self.functions.equations, way.end) {
-                (true, None) => self.plane(&equation.to_plane(), Some(*equation), way, material),
-                _ if self.functions.planes => self.plane(&equation.to_plane(), None, way, material),
+            Shape::PlaneEquation(equation) => match (self.functions.equations, transform.end) {
+                (true, None) => self.plane(&equation.to_plane(), Some(*equation), transform, material),
+                _ if self.functions.planes => self.plane(&equation.to_plane(), None, transform, material),
                 _ => {}
             },
             Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. }
                 if !self.functions.triangles => {}
             Shape::Triangle(t) => {
                 let uvs = Some([Vec2::ZERO, Vec2::X, Vec2::Y]);
-                self.facets(&[Facet { corners: [t.a, t.b, t.c], normals: None, uvs }], way, material);
+                self.facets(&[Facet { corners: [t.a, t.b, t.c], normals: None, uvs }], transform, material);
             }
             Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. } => {
                 // `None` for a curved surface whose function is not written.
                 if let Some(ready) = ready {
-                    self.mesh(ready, way, material);
+                    self.mesh(ready, transform, material);
                 }
             }
-            _ if self.solid(shape, way, material) => {}
+            _ if self.solid(shape, transform, material) => {}
             _ if !self.functions.triangles => {}
-            Shape::Polygon(polygon) => self.facets(&facets::polygon(&polygon.corners), way, material),
-            Shape::Cuboid(cuboid) => self.facets(&facets::cuboid(cuboid), way, material),
-            Shape::Cylinder(cylinder) => self.facets(&facets::cylinder(cylinder), way, material),
-            Shape::Cone(cone) => self.facets(&facets::cone(cone), way, material),
-            Shape::Disk(disk) => self.facets(&facets::disk(disk), way, material),
+            Shape::Polygon(polygon) => self.facets(&facets::polygon(&polygon.corners), transform, material),
+            Shape::Cuboid(cuboid) => self.facets(&facets::cuboid(cuboid), transform, material),
+            Shape::Cylinder(cylinder) => self.facets(&facets::cylinder(cylinder), transform, material),
+            Shape::Cone(cone) => self.facets(&facets::cone(cone), transform, material),
+            Shape::Disk(disk) => self.facets(&facets::disk(disk), transform, material),
         }
     }
 
     /// The placement of the shape of the current node, if the kit has the function for it. A shape that moves
     /// has none, because its transform changes with time.
-    fn placement(&self, way: &Way) -> Option<Placement> {
+    fn placement(&self, transform: &MovingTransform) -> Option<Placement> {
         let place = self.functions.placement?;
-        match (way.end, way.blended) {
+        match (transform.end, transform.blended) {
             (Some(_), _) => None,
-            (None, true) => place(&[way.start]),
+            (None, true) => place(&[transform.start]),
             (None, false) => place(&self.path),
         }
     }
 
     /// Adds the shape as a solid, if it can be placed; returns whether it could.
-    fn solid(&mut self, shape: &Shape, way: &Way, material: u32) -> bool {
-        let (Some(shape), Some(placement)) = (SolidShape::of(shape), self.placement(way)) else {
+    fn solid(&mut self, shape: &Shape, transform: &MovingTransform, material: u32) -> bool {
+        let (Some(shape), Some(placement)) = (SolidShape::of(shape), self.placement(transform)) else {
             return false;
         };
         self.world.solids.push(Solid { shape, placement });
@@ -169,18 +189,18 @@ impl Flattener<'_> {
 
     /// Adds a primitive without normals, image and motion.
     fn push(&mut self, geometry: Geometry, material: u32) {
-        let (normals, image, end) = (Slot::NONE, Slot::NONE, Slot::NONE);
+        let (normals, image, end) = (OptionalIndex::NONE, OptionalIndex::NONE, OptionalIndex::NONE);
         self.world.primitives.push(Primitive { geometry, material, normals, image, end });
     }
 
     /// Adds a sphere. It stays a sphere unless its transform stretches it at time 0, 1 or in the middle.
-    fn sphere(&mut self, sphere: &Sphere, way: &Way, material: u32) {
+    fn sphere(&mut self, sphere: &Sphere, transform: &MovingTransform, material: u32) {
         let at = |to_world: &Affine3A| {
             let radius = uniform_scale(to_world)? * sphere.radius;
             Some(Sphere { center: to_world.transform_point3(sphere.center), radius })
         };
-        let start = at(&way.start);
-        let ends = way.end.map(|end| (at(&end), at(&blend(&way.start, &end, 0.5))));
+        let start = at(&transform.start);
+        let ends = transform.end.map(|end| (at(&end), at(&blend(&transform.start, &end, 0.5))));
         let (start, end) = match (start, ends) {
             (Some(start), None) => (start, None),
             // Keep a moving sphere only if its radius changes linearly: rotations shrink it, because matrices
@@ -190,23 +210,35 @@ impl Flattener<'_> {
             {
                 (start, Some(Geometry::Sphere(end)))
             }
-            _ if self.solid(&Shape::Sphere(*sphere), way, material) => return,
+            _ if self.solid(&Shape::Sphere(*sphere), transform, material) => return,
             _ if !self.functions.triangles => return,
-            _ => return self.facets(&facets::sphere(sphere), way, material),
+            _ => return self.facets(&facets::sphere(sphere), transform, material),
         };
         let image = match self.reads_image(material) {
             true => {
-                let own = Mat3::from(way.start.matrix3).transpose();
-                Slot::push(&mut self.world.sphere_axes, own)
+                let own = Mat3::from(transform.start.matrix3).transpose();
+                OptionalIndex::push(&mut self.world.sphere_axes, own)
             }
-            false => Slot::NONE,
+            false => OptionalIndex::NONE,
         };
-        let end = end.map_or(Slot::NONE, |end| Slot::push(&mut self.world.ends, end));
+        let end = end.map_or(OptionalIndex::NONE, |end| OptionalIndex::push(&mut self.world.ends, end));
         let geometry = Geometry::Sphere(start);
-        self.world.primitives.push(Primitive { geometry, material, normals: Slot::NONE, image, end });
+        self.world.primitives.push(Primitive {
+            geometry,
+            material,
+            normals: OptionalIndex::NONE,
+            image,
+            end,
+        });
     }
 
-    fn plane(&mut self, plane: &Plane, equation: Option<PlaneEquation>, way: &Way, material: u32) {
+    fn plane(
+        &mut self,
+        plane: &Plane,
+        equation: Option<PlaneEquation>,
+        transform: &MovingTransform,
+        material: u32,
+    ) {
         let (u, v) = plane_axes(plane.normal);
         let corners = |to_world: &Affine3A| {
             let a = to_world.transform_point3(plane.point);
@@ -215,10 +247,10 @@ impl Flattener<'_> {
             let mirrored = to_world.matrix3.determinant() < 0.0;
             if mirrored { Triangle { a, b: c, c: b } } else { Triangle { a, b, c } }
         };
-        let normal = unit(normal_matrix(&way.start) * unit(plane.normal));
-        let point = way.start.transform_point3(plane.point);
+        let normal = unit(normal_matrix(&transform.start) * unit(plane.normal));
+        let point = transform.start.transform_point3(plane.point);
         // A transform changes the coefficients: D follows from the new normal and a point of the plane.
-        let equation = equation.map(|equation| match way.start == Affine3A::IDENTITY {
+        let equation = equation.map(|equation| match transform.start == Affine3A::IDENTITY {
             true => equation,
             false => PlaneEquation { normal, d: -normal.as_dvec3().dot(point.as_dvec3()) as f32 },
         });
@@ -226,22 +258,22 @@ impl Flattener<'_> {
             plane: Plane { point, normal },
             equation,
             material,
-            axes: [u, v].map(|axis| way.start.transform_vector3(axis)),
-            motion: way.end.map(|end| [corners(&way.start), corners(&end)]),
+            axes: [u, v].map(|axis| transform.start.transform_vector3(axis)),
+            motion: transform.end.map(|end| [corners(&transform.start), corners(&end)]),
         });
     }
 
-    fn facets(&mut self, facets: &[Facet], way: &Way, material: u32) {
+    fn facets(&mut self, facets: &[Facet], transform: &MovingTransform, material: u32) {
         for facet in facets {
-            let triangle = self.triangle(facet, false, way, material);
+            let triangle = self.triangle(facet, false, transform, material);
             self.world.primitives.push(triangle);
         }
     }
 
     /// Adds an instance of a mesh. A mesh with several instances is shared, if it can be placed; otherwise its
     /// triangles are copied.
-    fn mesh(&mut self, ready: &mut Ready, way: &Way, material: u32) {
-        if let Some(placement) = self.placement(way).filter(|_| ready.shared) {
+    fn mesh(&mut self, ready: &mut PreparedMesh, transform: &MovingTransform, material: u32) {
+        if let Some(placement) = self.placement(transform).filter(|_| ready.shared) {
             let shared_mesh = ready.shared_mesh.unwrap_or_else(|| self.shared_mesh(ready));
             ready.shared_mesh = Some(shared_mesh);
             self.world.instances.push(Instance { shared_mesh, placement });
@@ -253,7 +285,7 @@ impl Flattener<'_> {
         }
         for face in 0..ready.mesh.triangles.len() {
             let material = ready.material_of(face).unwrap_or(material);
-            let triangle = self.triangle(&ready.facet(face), ready.one_sided, way, material);
+            let triangle = self.triangle(&ready.facet(face), ready.one_sided, transform, material);
             self.world.primitives.push(triangle);
         }
     }
@@ -270,8 +302,8 @@ impl Flattener<'_> {
     }
 
     /// Adds a shared mesh with the triangles of a mesh in its own space, and returns its index.
-    fn shared_mesh(&mut self, ready: &Ready) -> u32 {
-        let here = Way::still(Affine3A::IDENTITY);
+    fn shared_mesh(&mut self, ready: &PreparedMesh) -> u32 {
+        let here = MovingTransform::still(Affine3A::IDENTITY);
         let primitives = (0..ready.mesh.triangles.len()).map(|face| {
             let material = ready.material_of(face).unwrap_or(Primitive::INHERITED);
             self.triangle(&ready.facet(face), ready.one_sided, &here, material)
@@ -281,10 +313,16 @@ impl Flattener<'_> {
         self.world.shared_meshes.len() as u32 - 1
     }
 
-    fn triangle(&mut self, facet: &Facet, one_sided: bool, way: &Way, material: u32) -> Primitive {
+    fn triangle(
+        &mut self,
+        facet: &Facet,
+        one_sided: bool,
+        transform: &MovingTransform,
+        material: u32,
+    ) -> Primitive {
         let reads_image = self.reads_image(material);
         // Exchange two corners if the transform is a reflection, which would turn the inside out.
-        let mirrored = way.start.matrix3.determinant() < 0.0;
+        let mirrored = transform.start.matrix3.determinant() < 0.0;
         let facet = &if mirrored { facet.turned() } else { *facet };
         let world = &mut self.world;
         let corners = |to_world: &Affine3A| {
@@ -293,21 +331,23 @@ impl Flattener<'_> {
             if one_sided { Geometry::OneSided(triangle) } else { Geometry::Triangle(triangle) }
         };
         // Transform the vertex normals, for time 1 as well if the triangle moves.
-        let mut normals = Slot::NONE;
+        let mut normals = OptionalIndex::NONE;
         if let Some(own) = facet.normals {
             let carried = |to_world: &Affine3A| {
                 let matrix = normal_matrix(to_world);
                 own.map(|normal| (matrix * normal).as_dvec3().normalize_or_zero().as_vec3())
             };
-            normals = Slot::push(&mut world.normals, carried(&way.start));
-            if let Some(end) = &way.end {
+            normals = OptionalIndex::push(&mut world.normals, carried(&transform.start));
+            if let Some(end) = &transform.end {
                 world.normals.push(carried(end));
             }
         }
-        let end = way.end.map_or(Slot::NONE, |end| Slot::push(&mut world.ends, corners(&end)));
+        let end = transform
+            .end
+            .map_or(OptionalIndex::NONE, |end| OptionalIndex::push(&mut world.ends, corners(&end)));
         let uvs = facet.uvs.filter(|_| reads_image);
-        let image = uvs.map_or(Slot::NONE, |uvs| Slot::push(&mut world.uvs, uvs));
-        Primitive { geometry: corners(&way.start), material, normals, image, end }
+        let image = uvs.map_or(OptionalIndex::NONE, |uvs| OptionalIndex::push(&mut world.uvs, uvs));
+        Primitive { geometry: corners(&transform.start), material, normals, image, end }
     }
 
     /// Whether a colour of this material comes from an image; for an inherited material, whether that of any

@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A mesh that can be placed in the world: subdivided and with its normals.
-pub(super) struct Ready {
+pub(super) struct PreparedMesh {
     /// Positions, triangles and texture coordinates, in the space of the mesh.
     pub mesh: Arc<Mesh>,
     /// One unit normal per vertex; empty for a mesh that is shaded flat.
@@ -31,21 +31,21 @@ pub(super) struct Ready {
 /// All shapes that are meshes of triangles: the meshes of the scene, and its curved surfaces.
 pub(super) struct Meshes {
     /// The meshes of the scene, with the indices that they have there.
-    pub of_scene: Vec<Ready>,
+    pub of_scene: Vec<PreparedMesh>,
     /// The curved surfaces, by the index of the node that shows the surface.
-    pub of_nodes: HashMap<usize, Ready>,
+    pub of_nodes: HashMap<usize, PreparedMesh>,
 }
 
 impl Meshes {
     /// Subdivides the meshes of `scene`, computes normals where `effects` asks for smooth meshes, and divides
     /// curved surfaces into triangles, each as far as `functions` has the function for it.
     pub fn new(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> Meshes {
-        let places = Places::count(scene);
+        let places = InstanceCounts::count(scene);
         let shared = |places: u64| places > 1 && !scene.quality.copies && functions.placement.is_some();
         let of_scene = scene.meshes.iter().enumerate().map(|(index, source)| {
             let smooth = effects.smooth_meshes.get(index) == Some(&true);
             let (mesh, is_new) = divided(source, functions);
-            Ready {
+            PreparedMesh {
                 normals: if smooth { normals_of(&mesh, is_new, functions) } else { Vec::new() },
                 mesh,
                 materials: source.materials.clone(),
@@ -68,7 +68,7 @@ impl Meshes {
                 }
                 _ => return None,
             };
-            let ready = Ready {
+            let ready = PreparedMesh {
                 normals: normals_of(&mesh, true, functions),
                 mesh: Arc::new(mesh),
                 materials: Vec::new(),
@@ -145,13 +145,13 @@ fn surface_mesh(parameters: [&[f32]; 2], point: impl Fn(Vec2) -> Vec3) -> Mesh {
 }
 
 /// The number of instances of each node and of each mesh in the scene.
-struct Places {
+struct InstanceCounts {
     of_nodes: Vec<u64>,
     of_meshes: Vec<u64>,
 }
 
-impl Places {
-    fn count(scene: &Scene) -> Places {
+impl InstanceCounts {
+    fn count(scene: &Scene) -> InstanceCounts {
         // Go down from the roots: a child has an instance for each instance of each of its parents.
         let mut of_nodes = vec![0u64; scene.nodes.len()];
         for index in parents_first(scene) {
@@ -169,7 +169,7 @@ impl Places {
                 of_meshes[mesh] += places;
             }
         }
-        Places { of_nodes, of_meshes }
+        InstanceCounts { of_nodes, of_meshes }
     }
 }
 
@@ -192,7 +192,7 @@ fn parents_first(scene: &Scene) -> Vec<usize> {
     order
 }
 
-impl Ready {
+impl PreparedMesh {
     /// The index in the scene of the material of triangle `face`; `None` if it takes the material of its
     /// node.
     pub fn material_of(&self, face: usize) -> Option<u32> {

@@ -54,22 +54,22 @@ impl Geometry {
 /// An optional index into a table, `0..u32::MAX`. It takes four bytes instead of the eight of an
 /// `Option<u32>`, because a world holds millions of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Slot(u32);
+pub struct OptionalIndex(u32);
 
-impl Slot {
+impl OptionalIndex {
     /// The value that stands for no index: `u32::MAX`, which is never an index.
-    pub const NONE: Slot = Slot(u32::MAX);
+    pub const NONE: OptionalIndex = OptionalIndex(u32::MAX);
 
-    /// The index into the table, or `None` for [`Slot::NONE`].
+    /// The index into the table, or `None` for [`OptionalIndex::NONE`].
     #[inline]
     pub fn get(self) -> Option<usize> {
-        (self != Slot::NONE).then_some(self.0 as usize)
+        (self != OptionalIndex::NONE).then_some(self.0 as usize)
     }
 
     /// Appends `entry` to `table` and returns its index.
-    fn push<T>(table: &mut Vec<T>, entry: T) -> Slot {
+    fn push<T>(table: &mut Vec<T>, entry: T) -> OptionalIndex {
         table.push(entry);
-        Slot(table.len() as u32 - 1)
+        OptionalIndex(table.len() as u32 - 1)
     }
 }
 
@@ -82,12 +82,12 @@ pub struct Primitive {
     pub material: u32,
     /// Index into [`World::normals`], for a triangle with normals at its corners. If it moves, the next entry
     /// there holds its normals at time 1.
-    pub normals: Slot,
+    pub normals: OptionalIndex,
     /// For a primitive whose colour is read from an image: index into [`World::uvs`] for a triangle, into
     /// [`World::sphere_axes`] for a sphere.
-    pub image: Slot,
+    pub image: OptionalIndex,
     /// Index into [`World::ends`] of the geometry at time 1, if the primitive moves.
-    pub end: Slot,
+    pub end: OptionalIndex,
 }
 
 impl Primitive {

@@ -33,8 +33,10 @@ pub(super) fn meshes<'a>(
         let ObjFile { mesh, materials: described, undefined, warnings } = read(&table, own_materials)?;
         value.source.warnings.borrow_mut().extend(warnings);
         let indices = match own_materials {
-            true => Adopter { mesh: entry, described, undefined, materials, textures, images: Vec::new() }
-                .indices(&mesh.material_names)?,
+            true => {
+                MaterialFinder { mesh: entry, described, undefined, materials, textures, images: Vec::new() }
+                    .indices(&mesh.material_names)?
+            }
             false => Vec::new(),
         };
         names.insert(entry.key, meshes.len());
@@ -73,7 +75,7 @@ fn check(value: Value, mesh: &Mesh) -> Result<(), LoadError> {
 }
 
 /// Finds the scene's materials for the names that one mesh uses.
-struct Adopter<'m, 's> {
+struct MaterialFinder<'m, 's> {
     /// The entry of the mesh in the scene.
     mesh: Value<'m>,
     /// The materials that came with it.
@@ -86,7 +88,7 @@ struct Adopter<'m, 's> {
     images: Vec<(PathBuf, Option<usize>)>,
 }
 
-impl Adopter<'_, '_> {
+impl MaterialFinder<'_, '_> {
     /// The index of the material for each of `names`, or none if no name is defined: the mesh then has the material of
     /// its node. A `[materials.NAME]` has precedence over a material that came with the mesh.
     fn indices(&mut self, names: &[String]) -> Result<Vec<usize>, LoadError> {

@@ -56,7 +56,7 @@ fn table(value: Value<'_>) -> Result<Table<'_>, LoadError> {
             .source
             .error(table.key_span(kind), format!("`{kind}` must stand inside `shape`"))
             .help(format!("write `shape = {{ {kind} = … }}`"))),
-        None => table.knowing(&KEYS),
+        None => table.with_keys(&KEYS),
     }
 }
 

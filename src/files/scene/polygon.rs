@@ -30,7 +30,7 @@ pub(super) fn corners(value: Value) -> Result<Vec<Vec3>, LoadError> {
     let Some(normal) = area_vector(&exact).try_normalize() else {
         return Err(list.error("the corners lie on one line, so no ray can hit the polygon"));
     };
-    if let Some(index) = strays(&exact, normal) {
+    if let Some(index) = first_corner_off_plane(&exact, normal) {
         return Err(items[index]
             .error(format!("corner {} does not lie in the plane of the polygon", index + 1))
             .help("divide the polygon into triangles"));
@@ -39,7 +39,7 @@ pub(super) fn corners(value: Value) -> Result<Vec<Vec3>, LoadError> {
 }
 
 /// The first corner that is too far from the plane through the mean of all corners.
-fn strays(corners: &[DVec3], normal: DVec3) -> Option<usize> {
+fn first_corner_off_plane(corners: &[DVec3], normal: DVec3) -> Option<usize> {
     let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
     let size = corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
     // Allow for the rounding of the coordinates to `f32` as well, which matters far from the origin.

@@ -80,11 +80,11 @@ impl<'a> Table<'a> {
         entries: &'a DeTable<'a>,
         known: &[&str],
     ) -> Result<Self, LoadError> {
-        Table { source, name: name.into(), entries, span: 0..0 }.knowing(known)
+        Table { source, name: name.into(), entries, span: 0..0 }.with_keys(known)
     }
 
     /// The same table; fails if it has a key that is not among `known`.
-    pub fn knowing(self, known: &[&str]) -> Result<Self, LoadError> {
+    pub fn with_keys(self, known: &[&str]) -> Result<Self, LoadError> {
         for value in self.values() {
             if !known.contains(&value.key) {
                 return Err(self.source.unknown(self.key_span(value.key), "key", value.key, known));
@@ -203,7 +203,7 @@ impl<'a> Value<'a> {
 
     /// The value as a table; fails if it is not a table or has a key that is not among `known`.
     pub fn table(&self, known: &[&str]) -> Result<Table<'a>, LoadError> {
-        self.any_table()?.knowing(known)
+        self.any_table()?.with_keys(known)
     }
 
     /// The value as a table with any keys, for example names that the scene gives; fails if it is not a

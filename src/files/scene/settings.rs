@@ -173,7 +173,7 @@ fn background(value: Value, textures: &mut Vec<Texture>) -> Result<Background, L
         return Ok(Background::Color(value.color(ColorPlace::Background)?));
     };
     if table.one_of(&["horizon", "file"])?.key == "horizon" {
-        let table = table.knowing(&["zenith", "horizon", "nadir"])?;
+        let table = table.with_keys(&["zenith", "horizon", "nadir"])?;
         let color = |key: &str, place| {
             table.get(key).map(|value| value.color(ColorPlace::Gradient(place))).transpose()
         };
@@ -185,7 +185,7 @@ fn background(value: Value, textures: &mut Vec<Texture>) -> Result<Background, L
         let nadir = nadir.map(|value| value.color(ColorPlace::Gradient(GradientColor::Nadir))).transpose()?;
         return Ok(Background::Gradient(Gradient { zenith, horizon, nadir: nadir.unwrap_or(horizon) }));
     }
-    let table = table.knowing(&["file", "rotation", "scale"])?;
+    let table = table.with_keys(&["file", "rotation", "scale"])?;
     let file = table.need("file", "\"sky.hdr\"")?;
     let rotation = table.get("rotation").map_or(Ok(0.0), |degrees| degrees.number())?.to_radians();
     let scale = table.get("scale").map_or(Ok(1.0), |scale| scale.not_negative())?;

@@ -25,7 +25,7 @@ pub struct SurfaceInteraction {
 
 /// How hits become surface interactions: which tests and which normals are used.
 #[derive(Clone, Copy)]
-pub struct Looks {
+pub struct SurfaceOptions {
     /// Which student functions test rays against triangles and spheres.
     pub tests: ShapeTests,
     /// Whether normals are interpolated over the triangles of smooth meshes.
@@ -53,7 +53,7 @@ impl SurfaceInteraction {
     /// projection, so that its error does not grow with the length of the ray. `Surface::error` bounds the
     /// rounding error along each axis in world units.
     #[inline(always)]
-    pub fn new<F: StudentFunctions>(world: &World, looks: Looks, ray: &Ray, hit: &Hit) -> Self {
+    pub fn new<F: StudentFunctions>(world: &World, options: SurfaceOptions, ray: &Ray, hit: &Hit) -> Self {
         let (point, material) = match hit.target {
             Target::Plane(index) => {
                 let plane = &world.planes[index as usize];
@@ -64,20 +64,20 @@ impl SurfaceInteraction {
                 let point = match geometry_at::<F>(world, primitive, ray.time) {
                     Geometry::Sphere(sphere) => on_sphere::<F>(ray, hit.t, &sphere),
                     Geometry::Triangle(triangle) | Geometry::OneSided(triangle) => {
-                        on_triangle::<F>(world, looks, ray, primitive, &triangle, hit.detail)
+                        on_triangle::<F>(world, options, ray, primitive, &triangle, hit.detail)
                     }
                     Geometry::Solid(index) => {
-                        on_solid::<F>(looks.tests, ray, hit, &world.solids[index as usize])
+                        on_solid::<F>(options.tests, ray, hit, &world.solids[index as usize])
                     }
                     // A hit of an instance names a primitive of its shared mesh, never the instance itself.
                     Geometry::Instance(_) => unreachable!("an instance is not a surface"),
                 };
                 (point, primitive.material)
             }
-            Target::Instance(outer, inner) => in_instance::<F>(world, looks, ray, outer, inner, hit.detail),
+            Target::Instance(outer, inner) => in_instance::<F>(world, options, ray, outer, inner, hit.detail),
         };
         let Point { point, error, normal, smooth } = point;
-        let geometric_normal = if looks.facing { F::face_forward(normal, ray.direction) } else { normal };
+        let geometric_normal = if options.facing { F::face_forward(normal, ray.direction) } else { normal };
         let shading_normal = match smooth {
             Some(_) => F::shading_normal(geometric_normal, smooth, ray.direction),
             None => geometric_normal,
@@ -90,7 +90,7 @@ impl SurfaceInteraction {
 #[cold]
 fn in_instance<F: StudentFunctions>(
     world: &World,
-    looks: Looks,
+    options: SurfaceOptions,
     ray: &Ray,
     outer: u32,
     inner: u32,
@@ -99,7 +99,7 @@ fn in_instance<F: StudentFunctions>(
     let (instance, primitive, material) = inside(world, outer, inner);
     let ray = F::ray_to_object(ray, &instance.placement.to_object);
     let Some(triangle) = primitive.geometry.triangle() else { unreachable!("shared meshes are triangles") };
-    let point = on_triangle::<F>(world, looks, &ray, primitive, triangle, detail);
+    let point = on_triangle::<F>(world, options, &ray, primitive, triangle, detail);
     (to_world::<F>(point, &instance.placement), material)
 }
 
@@ -125,13 +125,13 @@ fn on_sphere<F: StudentFunctions>(ray: &Ray, t: f32, sphere: &Sphere) -> Point {
 #[inline(always)]
 fn on_triangle<F: StudentFunctions>(
     world: &World,
-    looks: Looks,
+    options: SurfaceOptions,
     ray: &Ray,
     primitive: &Primitive,
     triangle: &Triangle,
     detail: Detail,
 ) -> Point {
-    let weights = barycentric::<F>(looks.tests, ray, triangle, detail);
+    let weights = barycentric::<F>(options.tests, ray, triangle, detail);
     let Triangle { a, b, c } = *triangle;
     // Compute the point from the corners: its error is seven roundings of the terms, however long the ray is.
     let at = |weights: Vec3| {
@@ -145,7 +145,7 @@ fn on_triangle<F: StudentFunctions>(
     }
     let normal = normal_of(triangle);
     // Interpolate the vertex normals, in a moving triangle between times 0 and 1 as well.
-    let smooth = primitive.normals.get().filter(|_| looks.smooth).map(|index| {
+    let smooth = primitive.normals.get().filter(|_| options.smooth).map(|index| {
         let at = |index: usize| F::interpolate(weights, world.normals[index]);
         match primitive.end.get() {
             None => at(index),

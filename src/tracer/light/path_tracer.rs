@@ -4,7 +4,7 @@
 use super::indirect::IndirectLight;
 use super::interaction::SurfaceInteraction;
 use super::path::Path;
-use super::random_choices::{before_emitter, sample_rough_surface};
+use super::random_choices::{distance_before_emitter, sample_rough_surface};
 use super::record::Record;
 use super::rough_lobe::RoughLobe;
 use super::whitted::Scratch;
@@ -27,28 +27,31 @@ const UNLIMITED: Limits = Limits { max_depth: u32::MAX, min_contribution: 0.0 };
 
 /// The factor by which light that is only sampled is scaled, with its density, a power of two. So one sample adds what it adds
 /// otherwise, and its weight in multiple importance sampling is 1, as if the density of diffuse rays were 0.
-const DENSE: f32 = 4_294_967_296.0;
+const DENSITY_SCALE: f32 = 4_294_967_296.0;
 
 /// The number of bounces at which the student's `survives` begins to end paths.
 const ROULETTE_BEGINS: u32 = 3;
 
-/// The same light with a density and a radiance that are [`DENSE`] times as large.
-fn alone(light: LightCandidate) -> LightCandidate {
+/// The same light with a density and a radiance that are [`DENSITY_SCALE`] times as large.
+fn scaled_up(light: LightCandidate) -> LightCandidate {
     match light {
         LightCandidate::Environment(sample) => LightCandidate::Environment(EmitterSample {
-            radiance: DENSE * sample.radiance,
-            pdf: DENSE * sample.pdf,
+            radiance: DENSITY_SCALE * sample.radiance,
+            pdf: DENSITY_SCALE * sample.pdf,
             ..sample
         }),
         LightCandidate::Emitter(ChosenEmitter { emitter, probability }) => {
-            let emitter = AreaEmitter { radiance: DENSE * emitter.radiance, ..emitter };
-            LightCandidate::Emitter(ChosenEmitter { emitter, probability: DENSE * probability })
+            let emitter = AreaEmitter { radiance: DENSITY_SCALE * emitter.radiance, ..emitter };
+            LightCandidate::Emitter(ChosenEmitter { emitter, probability: DENSITY_SCALE * probability })
         }
     }
 }
 
 /// The shadow rays of both lobes. They sample the same light with the same random numbers, so that one ray serves both.
-fn shared(diffuse: Option<ShadowQuestion>, rough: Option<ShadowQuestion>) -> [Option<ShadowQuestion>; 2] {
+fn merge_shadow_rays(
+    diffuse: Option<ShadowQuestion>,
+    rough: Option<ShadowQuestion>,
+) -> [Option<ShadowQuestion>; 2] {
     match (diffuse, rough) {
         (Some(diffuse), Some(rough)) if diffuse.direction == rough.direction => {
             [Some(ShadowQuestion { light: diffuse.light + rough.light, ..diffuse }), None]
@@ -138,7 +141,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
             let is_sampled = indirect.samples_only && emitter.is_some() && pdf < f32::INFINITY;
             let emission = if is_sampled { Vec3::ZERO } else { emission };
             if indirect.samples_only {
-                light = light.map(alone);
+                light = light.map(scaled_up);
             }
             let vertex = PathVertex { surface: at.surface, scattering, emission, emitter, light };
             let step = F::step(&state, &vertex, max_depth, &numbers);
@@ -150,7 +153,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 }
                 _ => None,
             };
-            for question in shared(step.shadow, in_lobe).into_iter().flatten() {
+            for question in merge_shadow_rays(step.shadow, in_lobe).into_iter().flatten() {
                 color += self.unoccluded(&question, &path, &at, light, scratch, |ray, blocked| {
                     record.shadow(&path, number, ray, blocked);
                 });
@@ -351,7 +354,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let ShadowQuestion { direction, distance, light: radiance } = *question;
         let distance = match &light {
             Some(LightCandidate::Emitter(chosen)) => {
-                before_emitter(&chosen.emitter.shape, direction, distance, at.surface.point)
+                distance_before_emitter(&chosen.emitter.shape, direction, distance, at.surface.point)
             }
             _ => distance,
         };

@@ -31,24 +31,27 @@ pub fn sample_area_light<F: StudentFunctions>(
 
 /// The sample of a visible light at `point`, ending before the surface that shows the light.
 #[cold]
-pub fn before_its_surface(sample: LightSample, shape: &AreaShape, point: Vec3) -> LightSample {
+pub fn shortened_to_surface(sample: LightSample, shape: &AreaShape, point: Vec3) -> LightSample {
     let normal = match shape {
         AreaShape::Rectangle { edges, .. } => edges.0.as_dvec3().cross(edges.1.as_dvec3()),
         AreaShape::Disk(disk) => disk.normal.as_dvec3(),
         // A ray ends at the near side of a sphere. Less than one in a million of the directions to it is so grazing.
         AreaShape::Sphere(_) => return sample,
     };
-    LightSample { distance: before_flat(normal, sample.direction, sample.distance, point), ..sample }
+    LightSample {
+        distance: distance_before_plane(normal, sample.direction, sample.distance, point),
+        ..sample
+    }
 }
 
 /// The distance from `point` in `direction` up to just before `emitter`, which is at `distance`.
-pub fn before_emitter(emitter: &EmitterShape, direction: Vec3, distance: f32, point: Vec3) -> f32 {
+pub fn distance_before_emitter(emitter: &EmitterShape, direction: Vec3, distance: f32, point: Vec3) -> f32 {
     let edges = match emitter {
         EmitterShape::Sphere(_) => return distance,
         EmitterShape::Triangle(triangle) => (triangle.b - triangle.a, triangle.c - triangle.a),
         EmitterShape::Parallelogram { edges, .. } => *edges,
     };
-    before_flat(edges.0.as_dvec3().cross(edges.1.as_dvec3()), direction, distance, point)
+    distance_before_plane(edges.0.as_dvec3().cross(edges.1.as_dvec3()), direction, distance, point)
 }
 
 /// The distance from `point` in `direction` up to just before a flat light, which is at `distance` and has a `normal` of any
@@ -57,7 +60,7 @@ pub fn before_emitter(emitter: &EmitterShape, direction: Vec3, distance: f32, po
 /// A shadow ray ends a little before its light. Where it runs almost along a flat light, that is less than the rounding error
 /// of its hit with the light, which would block its own light. The end moves by that error: some roundings of the
 /// coordinates, divided by the cosine at the light. It stays in the second half of the distance.
-fn before_flat(normal: DVec3, direction: Vec3, distance: f32, point: Vec3) -> f32 {
+fn distance_before_plane(normal: DVec3, direction: Vec3, distance: f32, point: Vec3) -> f32 {
     let cosine = normal.normalize_or_zero().as_vec3().dot(direction).abs();
     let reach = point.abs().max_element() + distance;
     let error = gamma(16) * reach / cosine;

@@ -35,11 +35,11 @@ impl RoughLobe {
         }
         // A direction is sampled as it is, or below the surface and then reflected.
         let below = direction - 2.0 * above * self.geometric_normal;
-        Some(self.unfolded(direction) + self.unfolded(below))
+        Some(self.pdf_before_reflection(direction) + self.pdf_before_reflection(below))
     }
 
     /// The density before directions below the surface are reflected: `(n + 1) / 2π · cosⁿ θ` with `n = 2 / roughness² - 2`.
-    fn unfolded(&self, direction: Vec3) -> f32 {
+    fn pdf_before_reflection(&self, direction: Vec3) -> f32 {
         // With unit vectors, 1 - cos θ is half of the squared distance of their ends, which keeps its digits for small θ.
         let one_minus_cos = 0.5 * (direction - self.ideal).length_squared();
         if one_minus_cos >= 1.0 {

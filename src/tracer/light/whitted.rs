@@ -3,7 +3,7 @@
 
 use super::interaction::{SurfaceInteraction, texture_coordinates};
 use super::path::Path;
-use super::random_choices::{area_of, before_its_surface, sample_area_light, sample_rough_surface};
+use super::random_choices::{area_of, sample_area_light, sample_rough_surface, shortened_to_surface};
 use super::record::Record;
 use super::texture_filter::{Cone, Pyramids, curvature, footprint, uv_change};
 use crate::aabb::Aabb;
@@ -155,7 +155,8 @@ impl<F: StudentFunctions> Frame<'_, F> {
         record: &mut impl Record,
     ) -> (SurfaceInteraction, usize) {
         scratch.note(Event::Hit);
-        let at = SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.looks, &path.ray, hit);
+        let at =
+            SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.surface_options, &path.ray, hit);
         let number = record.hit(path, hit.t, at.material);
         (at, number)
     }
@@ -191,7 +192,8 @@ impl<F: StudentFunctions> Frame<'_, F> {
             _ => return Cow::Borrowed(material),
         };
         // Look up the colour of the image at the hit, or around it.
-        let uv = texture_coordinates::<F>(world, self.looks.tests, &path.ray, hit, at.surface.point);
+        let uv =
+            texture_coordinates::<F>(world, self.surface_options.tests, &path.ray, hit, at.surface.point);
         let color = match &self.pyramids {
             Some(pyramids) => self.filtered_color(pyramids, (texture, uv), path, hit, at, tally),
             None => {
@@ -271,7 +273,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
             // Keep the surface that shows a visible light out of its own shadow rays.
             if let Some(shape) = area_of(light).filter(|_| self.plan.visible_lights[index]) {
                 for sample in &mut scratch.lights[first..] {
-                    *sample = before_its_surface(*sample, shape, at.surface.point);
+                    *sample = shortened_to_surface(*sample, shape, at.surface.point);
                 }
             }
         }

@@ -16,9 +16,9 @@ pub(super) fn choose_accelerator<F: StudentFunctions>(
     if wanted != Accelerator::BruteForce {
         let boxes = written.has(Function::slab) || written.has(Function::conservative_slab);
         if boxes && written.has_all(HIERARCHY) {
-            let (stage, functions) = own_functions(wanted);
+            let (stage, functions) = extra_functions(wanted);
             let name = wanted.name();
-            if wanted.is_wide() && !written.has_all(own_functions(Accelerator::WideBvh).1) {
+            if wanted.is_wide() && !written.has_all(extra_functions(Accelerator::WideBvh).1) {
                 notes.push(format!("a hierarchy replaces `{name}`: stage {stage} is not written yet"));
                 return Some(Accelerator::Bvh);
             }
@@ -52,7 +52,7 @@ fn fastest_hierarchy<F: StudentFunctions>(quality: &Quality, written: &Written<F
     let default = Quality::default();
     let is_default = (quality.split, quality.leaf_size) == (default.split, default.leaf_size);
     let builds = written.has(Function::build_parallel) || written.has(Function::build_binned);
-    let (_, needed) = own_functions(Accelerator::WideBvh);
+    let (_, needed) = extra_functions(Accelerator::WideBvh);
     if is_default && builds && written.has(Function::may_hit) && written.has_all(needed) {
         Accelerator::WideBvh
     } else {
@@ -72,7 +72,7 @@ const HIERARCHY: &[Function] = &[
 ];
 
 /// The functions that a structure needs beside those of a hierarchy, and their stage.
-fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
+fn extra_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
     match accelerator {
         Accelerator::Auto | Accelerator::BruteForce | Accelerator::Bvh => (3, &[]),
         Accelerator::BvhBothChildren => (3, &[Function::closest_hit_both]),

@@ -1,5 +1,9 @@
 //! Finds hits of rays: the closest of infinite planes and primitives, by the structure that the plan has
 //! chosen.
+//!
+//! A `structure` is built over the boxes of primitives, and searched through a `probe`, which tests triangles and spheres by
+//! `intersection` and shapes in spaces of their own by `solids`. What a structure may ask is in `primitives`; `wide` holds and
+//! searches trees with eight children per node. `grid_resolution` chooses the cells of a grid, and `outlines` draws structures.
 
 mod grid_resolution;
 pub mod hit;
@@ -28,7 +32,7 @@ use crate::world::{Geometry, InfinitePlane, Primitive, World};
 use glam::Vec3;
 use hit::{Detail, Hit, Target};
 use motion::plane_at;
-use probe::{GramTable, Notes, PacketProbe, SceneProbe, Structured};
+use probe::{GramTable, PacketProbe, ReportedHits, SceneProbe, StructuredWorld};
 use solids::{bounds_of_solid, placed_bounds};
 use std::marker::PhantomData;
 use structure::Structure;
@@ -47,7 +51,7 @@ pub struct Cache {
 /// Finds the closest hit or any hit of rays with a world.
 pub struct Intersector<F> {
     /// The world with an acceleration structure over its primitives and one over each shared mesh.
-    pub scene: Structured,
+    pub scene: StructuredWorld,
     /// What the user should know about the structures, at most one sentence.
     pub notes: Vec<String>,
     accelerator: Option<Accelerator>,
@@ -88,7 +92,7 @@ impl<F: StudentFunctions> Intersector<F> {
         // One note is enough, because all structures are of the same kind.
         notes.truncate(1);
         let gram = |primitives: &[Primitive]| GramTable::new::<F>(primitives, plan.tests);
-        let scene = Structured {
+        let scene = StructuredWorld {
             structure,
             mesh_structures,
             gram: gram(&world.primitives),
@@ -127,8 +131,8 @@ impl<F: StudentFunctions> Intersector<F> {
         let ray = shorter.as_ref().unwrap_or(ray);
         // Search the primitives in front of the closest plane, with the cache if there is one.
         let (structure, savings) = (&self.scene.structure, self.scene.savings);
-        let mut notes = Notes::for_closest_hit();
-        let mut probe = SceneProbe::<F, T>::new(&self.scene, ray, tally, &mut notes);
+        let mut reported = ReportedHits::for_closest_hit();
+        let mut probe = SceneProbe::<F, T>::new(&self.scene, ray, tally, &mut reported);
         let hit = if self.accelerator == Some(Accelerator::CachedBvh) {
             let search = |probe: &mut SceneProbe<'_, F, T>, ray: &Ray| {
                 structure.closest_hit::<F, _>(probe, ray, savings)
@@ -159,8 +163,8 @@ impl<F: StudentFunctions> Intersector<F> {
         let rays: Vec<Ray> =
             rays.iter().zip(&shortened).map(|(ray, (shorter, _))| shorter.unwrap_or(*ray)).collect();
         // Search the structure with all rays at once.
-        let mut notes = Notes::for_closest_hit();
-        let mut probe = PacketProbe(SceneProbe::<F, T>::new(&self.scene, first, tally, &mut notes));
+        let mut reported = ReportedHits::for_closest_hit();
+        let mut probe = PacketProbe(SceneProbe::<F, T>::new(&self.scene, first, tally, &mut reported));
         let found = match structure {
             Structure::Hierarchy(bvh) => F::packet_search(bvh, &mut probe, &rays),
             Structure::Wide(wide) => in_streams(wide, &mut probe.0, &rays),
@@ -194,8 +198,8 @@ impl<F: StudentFunctions> Intersector<F> {
             tally.note(Event::PrimitiveTest);
             intersect_plane::<F>(plane, ray).is_some()
         });
-        let mut notes = Notes::for_any_hit();
-        let mut probe = SceneProbe::<F, T>::new(&self.scene, ray, tally, &mut notes);
+        let mut reported = ReportedHits::for_any_hit();
+        let mut probe = SceneProbe::<F, T>::new(&self.scene, ray, tally, &mut reported);
         in_plane || self.scene.structure.any_hit::<F, _>(&mut probe, ray, self.scene.savings)
     }
 

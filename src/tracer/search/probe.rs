@@ -19,7 +19,7 @@ use glam::Vec3;
 use std::marker::PhantomData;
 
 /// A world with its acceleration structures, which all probes of a frame read.
-pub struct Structured {
+pub struct StructuredWorld {
     /// The flat scene: all primitives, infinite planes, materials and lights.
     pub world: World,
     /// The acceleration structure over the primitives of the world.
@@ -59,9 +59,9 @@ impl GramTable {
 
 /// Answers the questions of a search about one set of primitives, and counts them.
 ///
-/// It holds what the inner loop reads, and is inlined there: with indirect access through [`Structured`], a
+/// It holds what the inner loop reads, and is inlined there: with indirect access through [`StructuredWorld`], a
 /// frame took a tenth longer. Everything that it changes is behind references, so that the compiler can keep
-/// the rest in registers: with `notes` stored inside, hierarchies took 5 % more instructions.
+/// the rest in registers: with `reported` stored inside, hierarchies took 5 % more instructions.
 pub struct SceneProbe<'a, F, T> {
     nodes: &'a [Node],
     primitives: &'a [Primitive],
@@ -74,15 +74,15 @@ pub struct SceneProbe<'a, F, T> {
     conservative: bool,
     inverse_direction: Vec3,
     tally: &'a mut T,
-    scene: &'a Structured,
+    scene: &'a StructuredWorld,
     /// What is remembered of the hits that were reported.
-    notes: &'a mut Notes,
+    reported: &'a mut ReportedHits,
     functions: PhantomData<F>,
 }
 
 /// What a probe remembers of the hits that it reported: the index of the primitive, and what its test found
 /// beside `t`.
-pub struct Notes {
+pub struct ReportedHits {
     /// Whether any hit is enough; otherwise the closest is needed.
     any_will_do: bool,
     /// The last hit that was reported: the primitive, and what its test found.
@@ -91,15 +91,15 @@ pub struct Notes {
     instance: Option<(PrimitiveHit, u32, Detail)>,
 }
 
-impl Notes {
-    /// Empty notes for a ray whose closest hit is searched.
-    pub fn for_closest_hit() -> Notes {
-        Notes { any_will_do: false, last: (u32::MAX, Detail::None), instance: None }
+impl ReportedHits {
+    /// No reported hits, for a ray whose closest hit is searched.
+    pub fn for_closest_hit() -> ReportedHits {
+        ReportedHits { any_will_do: false, last: (u32::MAX, Detail::None), instance: None }
     }
 
-    /// Empty notes for a ray for which any hit is enough, such as a shadow ray.
-    pub fn for_any_hit() -> Notes {
-        Notes { any_will_do: true, ..Notes::for_closest_hit() }
+    /// No reported hits, for a ray for which any hit is enough, such as a shadow ray.
+    pub fn for_any_hit() -> ReportedHits {
+        ReportedHits { any_will_do: true, ..ReportedHits::for_closest_hit() }
     }
 
     /// What the test of `primitive` found, if that was the last hit.
@@ -111,20 +111,25 @@ impl Notes {
 impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
     /// A probe for `ray` against the primitives of the world; `tally` counts its answers.
     #[inline(always)]
-    pub fn new(scene: &'a Structured, ray: &Ray, tally: &'a mut T, notes: &'a mut Notes) -> Self {
+    pub fn new(
+        scene: &'a StructuredWorld,
+        ray: &Ray,
+        tally: &'a mut T,
+        reported: &'a mut ReportedHits,
+    ) -> Self {
         let world = (&scene.structure, scene.world.primitives.as_slice(), &scene.gram);
-        SceneProbe::over(scene, world, ray, tally, notes)
+        SceneProbe::over(scene, world, ray, tally, reported)
     }
 
     /// A probe for `ray` against primitives with the structure that is built over them and their scalars of the
     /// Gram method.
     #[inline(always)]
     fn over(
-        scene: &'a Structured,
+        scene: &'a StructuredWorld,
         (structure, primitives, gram): (&'a Structure, &'a [Primitive], &'a GramTable),
         ray: &Ray,
         tally: &'a mut T,
-        notes: &'a mut Notes,
+        reported: &'a mut ReportedHits,
     ) -> Self {
         SceneProbe {
             nodes: structure.nodes(),
@@ -137,7 +142,7 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
             inverse_direction: ray.direction.recip(),
             tally,
             scene,
-            notes,
+            reported,
             functions: PhantomData,
         }
     }
@@ -154,7 +159,7 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
             Geometry::Sphere(sphere) => self.tests.sphere::<F>(ray, sphere),
             Geometry::Triangle(triangle) => {
                 let hit = self.tests.triangle::<F>(ray, triangle, scalars)?;
-                self.notes.last = (index, Detail::Triangle(hit.beta, hit.gamma));
+                self.reported.last = (index, Detail::Triangle(hit.beta, hit.gamma));
                 Some(hit.t)
             }
             Geometry::OneSided(triangle) => self.intersect_front(index, ray, triangle, scalars),
@@ -177,14 +182,14 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
             return None;
         }
         let hit = self.tests.triangle::<F>(ray, triangle, scalars)?;
-        self.notes.last = (index, Detail::Triangle(hit.beta, hit.gamma));
+        self.reported.last = (index, Detail::Triangle(hit.beta, hit.gamma));
         Some(hit.t)
     }
 
     #[cold]
     fn intersect_solid(&mut self, index: u32, ray: &Ray, solid: u32) -> Option<f32> {
         let hit = intersect_solid::<F>(self.tests, ray, &self.world.solids[solid as usize])?;
-        self.notes.last = (index, Detail::Solid(hit.normal));
+        self.reported.last = (index, Detail::Solid(hit.normal));
         Some(hit.t)
     }
 
@@ -198,11 +203,12 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
         let structure = &self.scene.mesh_structures[mesh];
         let primitives = self.world.shared_meshes[mesh].primitives.as_slice();
         let searched = (structure, primitives, &self.scene.mesh_gram[mesh]);
-        // Search the shared mesh with a probe and notes of its own.
-        let mut notes = Notes { any_will_do: self.notes.any_will_do, ..Notes::for_closest_hit() };
+        // Search the shared mesh with a probe and reported hits of its own.
+        let mut reported =
+            ReportedHits { any_will_do: self.reported.any_will_do, ..ReportedHits::for_closest_hit() };
         self.tally.within_mesh(true);
-        let mut probe = SceneProbe::<F, T>::over(self.scene, searched, &ray, self.tally, &mut notes);
-        if self.notes.any_will_do {
+        let mut probe = SceneProbe::<F, T>::over(self.scene, searched, &ray, self.tally, &mut reported);
+        if self.reported.any_will_do {
             let hit = structure.any_hit::<F, _>(&mut probe, &ray, self.scene.savings);
             self.tally.within_mesh(false);
             return hit.then_some(ray.t_min.next_up());
@@ -211,9 +217,9 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
         self.tally.within_mesh(false);
         let hit = hit?;
         // Keep the inner hit if it is the closest so far; of two at the same `t` the smaller index wins.
-        if self.notes.instance.is_none_or(|(best, ..)| (hit.t, index) < (best.t, best.primitive)) {
+        if self.reported.instance.is_none_or(|(best, ..)| (hit.t, index) < (best.t, best.primitive)) {
             let at = PrimitiveHit { t: hit.t, primitive: index };
-            self.notes.instance = Some((at, hit.primitive, notes.detail(hit.primitive)));
+            self.reported.instance = Some((at, hit.primitive, reported.detail(hit.primitive)));
         }
         Some(hit.t)
     }
@@ -229,16 +235,16 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
     pub fn hit_of(&mut self, found: PrimitiveHit, ray: &Ray) -> Hit {
         let PrimitiveHit { t, primitive } = found;
         let Geometry::Instance(_) = self.primitives[primitive as usize].geometry else {
-            return Hit { t, target: Target::Primitive(primitive), detail: self.notes.detail(primitive) };
+            return Hit { t, target: Target::Primitive(primitive), detail: self.reported.detail(primitive) };
         };
-        if self.notes.instance.is_none_or(|(best, ..)| best.primitive != primitive) {
-            // Test this instance again if the notes are about another one: a search may return a hit that is not the
+        if self.reported.instance.is_none_or(|(best, ..)| best.primitive != primitive) {
+            // Test this instance again if the reported hits are about another one: a search may return a hit that is not the
             // closest.
-            self.notes.instance = None;
+            self.reported.instance = None;
             let _ = self.test(primitive, ray);
         }
         let (inner, detail) =
-            self.notes.instance.map_or((0, Detail::None), |(_, inner, detail)| (inner, detail));
+            self.reported.instance.map_or((0, Detail::None), |(_, inner, detail)| (inner, detail));
         Hit { t, target: Target::Instance(primitive, inner), detail }
     }
 }
@@ -328,7 +334,7 @@ impl<F: StudentFunctions, T: Tally> Primitives for SceneProbe<'_, F, T> {
     #[inline(always)]
     fn hit_triangle(&mut self, primitive: u32, triangle: &Triangle, ray: &Ray) -> Option<f32> {
         let hit = self.tests.triangle::<F>(ray, triangle, None)?;
-        self.notes.last = (primitive, Detail::Triangle(hit.beta, hit.gamma));
+        self.reported.last = (primitive, Detail::Triangle(hit.beta, hit.gamma));
         Some(hit.t)
     }
 }
@@ -339,8 +345,8 @@ pub struct PacketProbe<'a, F, T>(pub SceneProbe<'a, F, T>);
 impl<F: StudentFunctions, T: Tally> PacketProbe<'_, F, T> {
     /// The complete hit for `found`, the result of the search for `ray`, one ray of the packet.
     pub fn hit_of(&mut self, found: PrimitiveHit, ray: &Ray) -> Hit {
-        // Test the primitive again, because the notes are about the last ray of the packet.
-        *self.0.notes = Notes::for_closest_hit();
+        // Test the primitive again, because the reported hits are those of the last ray of the packet.
+        *self.0.reported = ReportedHits::for_closest_hit();
         self.0.hit_of(found, ray)
     }
 }

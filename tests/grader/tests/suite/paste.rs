@@ -29,9 +29,13 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
         "stage10_stability::offset_origin",
         "the wrong way, with which the checks compare",
     ),
-    ("raykata::frame::tests::mean", "stage6_distribution::filter_pixel", "a mean, in a test of the scaffold"),
     (
-        "raykata::tracer::emitters::tests::place",
+        "raykata::tracer::driver::tests::mean",
+        "stage6_distribution::filter_pixel",
+        "a mean, in a test of the scaffold",
+    ),
+    (
+        "raykata::tracer::light::emitters::tests::place",
         "stage8_scene_graph::placement",
         "a product of transforms in a test of the scaffold, in single precision and without a refusal",
     ),

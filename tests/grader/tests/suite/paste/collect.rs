@@ -36,7 +36,7 @@ pub type Bundles = BTreeMap<String, (&'static str, Vec<(String, Type)>)>;
 pub fn bundles(root: &Path) -> Bundles {
     let mut files = Vec::new();
     rust_files(&root.join("src/kit"), &mut files);
-    files.push(root.join("src/shape.rs"));
+    files.push(root.join("src/geometry/shape.rs"));
     let mut bundles = Bundles::new();
     for file in files {
         let text = fs::read_to_string(&file).expect("a readable file");
