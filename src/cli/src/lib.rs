@@ -21,6 +21,7 @@ pub mod kits;
 pub mod list;
 pub mod lock;
 pub mod merge_picture;
+mod picture_file;
 pub mod piece;
 pub mod progress;
 pub mod quality_options;

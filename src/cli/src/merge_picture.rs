@@ -3,8 +3,8 @@
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec};
 use crate::kits::{Need, Source, root};
+use crate::picture_file::{Format, Summary, write_picture};
 use crate::piece::{Piece, Settings};
-use crate::render::{Format, Summary, write_picture};
 use crate::report::make_folder_of;
 use anyhow::{Context, Result, bail};
 use raykata::kit::Rendering;

@@ -4,20 +4,23 @@
 //! process.
 
 mod autopsy;
+mod launcher;
 mod waiting;
 mod watchdog;
 mod withheld;
 
 pub use autopsy::last_words;
 use autopsy::{cause_of_death, keep_start, shortened, wait_briefly};
+use launcher::lock;
+pub use launcher::{Death, Launcher};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, KitError, Request, Transport, kit_error};
 use raykata::worker::{self, LONGEST_MESSAGE, Reply};
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use watchdog::Watchdog;
 use withheld::Withheld;
@@ -46,31 +49,6 @@ fn longest_reply(request: &Request) -> usize {
         }
         None => LONGEST_UNTRUSTED,
     }
-}
-
-/// Starts the process of a worker and interprets its end. The grader implements it with a sandbox for untrusted code.
-pub trait Launcher: Send + Sync {
-    /// The command that starts `program`.
-    fn command(&self, program: &Path) -> Command;
-
-    /// Starts the command.
-    fn spawn(&self, command: Command) -> io::Result<Child>;
-
-    /// The reason why the process ended with `status`, if the sandbox knows it; `stderr` is what the process
-    /// wrote there.
-    fn death(&self, status: ExitStatus, stderr: &str) -> Option<Death>;
-
-    /// The processor time that the process has used so far.
-    fn cpu_time(&self, process: u32) -> Duration;
-}
-
-/// The reason why the process of a worker ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Death {
-    /// It used up its processor time.
-    TimedOut,
-    /// Another reason, in words.
-    Crashed(String),
 }
 
 /// A kit in a separate process.
@@ -349,10 +327,6 @@ impl Drop for Process {
         drop(child);
         self.watchdog.retire();
     }
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 type Pipes = (Child, Box<dyn Write + Send>, Box<dyn Read + Send>);

@@ -1,46 +1,16 @@
 //! The best settings for a time or an error, by greedy search: from the cheapest setting, always the step
 //! that lowers the error most for its time.
 
+use super::goal::{AS_GOOD, Goal, Left, Step, seconds_in_full};
 use super::greedy::{GreedySearch, Tried};
-use super::ladder::Parameter;
-use super::measure::{Bench, Measured, Point, Series};
-use super::reference::Reference;
+use super::measure::Bench;
+use super::measured::{Measured, Point, Reference, Series};
+use super::parameter::Parameter;
 use super::setting::Setting;
 use crate::report::FrameBar;
 use anyhow::Result;
 use raykata::scene::Scene;
 use serde::Serialize;
-
-/// The goal of the search.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Goal {
-    /// The smallest error within this many seconds.
-    Seconds(f64),
-    /// The shortest time with at most this error.
-    Error(f64),
-}
-
-/// One step of the search: a parameter is set to a higher level.
-#[derive(Clone, Debug, Serialize)]
-pub struct Step {
-    pub parameter: Parameter,
-    pub to: String,
-    pub error: f64,
-    /// The time of a picture of the full size, in seconds.
-    pub seconds: f64,
-}
-
-/// A parameter that the search leaves at its level, and the effect of one more level.
-#[derive(Clone, Debug, Serialize)]
-pub struct Left {
-    pub parameter: Parameter,
-    /// Its value.
-    pub at: String,
-    /// The factors by which one more level changes time and error, for example 1.5.
-    pub time_factor: f64,
-    pub error_factor: f64,
-}
 
 /// The proposed settings for a goal, and the steps of the search.
 #[derive(Clone, Debug, Serialize)]
@@ -65,9 +35,6 @@ pub struct Advice {
     #[serde(skip)]
     pub setting: Setting,
 }
-
-/// The factor up to which a larger error counts as the same.
-pub const AS_GOOD: f64 = 1.02;
 
 /// Parameters with a best value that does not depend on the others: the fastest of the equally accurate values.
 const CHOSEN_ONCE: [Parameter; 7] = [
@@ -127,11 +94,6 @@ pub fn advise(
         command: String::new(),
         setting: now.setting,
     }))
-}
-
-/// Seconds for a picture with `full` times as many pixels; the build time stays the same.
-pub fn seconds_in_full(point: &Point, full: f64) -> f64 {
-    point.seconds * full + point.build_seconds
 }
 
 fn is_chosen_once(parameter: Parameter) -> bool {

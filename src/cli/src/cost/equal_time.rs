@@ -3,8 +3,8 @@
 
 use super::ladder::Ladder;
 use super::measure::Bench;
+use super::measured::Reference;
 use super::plot::{Line, Plot, svg};
-use super::reference::Reference;
 use super::setting::Setting;
 use crate::html::csv_line;
 use crate::report::make_folder;

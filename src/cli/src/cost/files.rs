@@ -1,8 +1,7 @@
 //! The report as files for programs and slides: JSON, CSV and plots.
 
-use super::hits::Verdicts;
-use super::ladder::Parameter;
-use super::measure::Series;
+use super::measured::{Series, Verdicts};
+use super::parameter::Parameter;
 use super::plot::{Line, Plot, svg};
 use super::slope::theory;
 use super::{Report, Summary};

@@ -1,10 +1,10 @@
 //! The greedy search: from the cheapest value of every parameter, always the step that lowers the error most
 //! for its time.
 
-use super::advice::{AS_GOOD, Goal, Left, Step, seconds_in_full};
-use super::ladder::Parameter;
-use super::measure::{Bench, Measured, Point, Series};
-use super::reference::Reference;
+use super::goal::{AS_GOOD, Goal, Left, Step, seconds_in_full};
+use super::measure::Bench;
+use super::measured::{Measured, Point, Reference, Series};
+use super::parameter::Parameter;
 use super::setting::Setting;
 use crate::progress::ProgressBar;
 use crate::report::bar_of_steps;

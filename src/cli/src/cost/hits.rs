@@ -1,27 +1,15 @@
 //! Compares the first hits of rays with exact ones. The judge, a separate program that is built when it is
 //! needed, computes the exact hits; this module asks the kit for its hits.
 
-use super::measure::{Bench, Measured};
+use super::measure::Bench;
+use super::measured::Measured;
 use crate::judge::Judge;
 use crate::report::bar_of_steps;
 use anyhow::{Context, Result};
 use raykata::kit::{RenderJob, View, kit_error};
 use raykata::ray::Ray;
 use raykata::scene::Scene;
-use serde::{Deserialize, Serialize};
 use std::path::Path;
-
-/// The oracle's counts for one setting.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Verdicts {
-    /// The number of rays that were tested.
-    pub rays: u64,
-    /// The number of these rays that report a wrong first hit: another primitive, no hit, or a hit where
-    /// there is none.
-    pub wrong: u64,
-    /// The number of wrong rays that passed through a closed surface.
-    pub leaks: u64,
-}
 
 /// Judges all settings of parameters that decide only how hits are found. A scene that is too large or empty
 /// is not judged.

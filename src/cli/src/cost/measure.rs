@@ -1,19 +1,15 @@
 //! Measures errors and counts, which are exact, and times, which vary and are therefore measured in turn.
 
-use super::error::{Errors, errors};
-use super::hits::Verdicts;
+use super::error::errors;
 use super::kept::Kept;
-use super::ladder::{Ladder, Parameter};
-use super::reference::Reference;
+use super::ladder::Ladder;
+use super::measured::{Measured, Point, Reference, Series};
 use super::setting::Setting;
 use crate::report::{FrameBar, bar_of_steps, quartiles};
 use anyhow::Result;
-use raykata::count::Counts;
-use raykata::film::Film;
 use raykata::frame::Watch;
 use raykata::kit::{Kit, RenderJob, Rendering, View, kit_error};
 use raykata::scene::Scene;
-use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -33,92 +29,6 @@ pub struct Bench<'a> {
     pub stop: &'a AtomicBool,
     /// The pictures that a stopped run has measured, and where this run keeps its own.
     pub kept: Option<&'a Kept>,
-}
-
-/// The measurements of one setting.
-#[derive(Clone, Debug, Serialize)]
-pub struct Point {
-    #[serde(skip)]
-    pub setting: Setting,
-    /// The errors of the first round.
-    pub errors: Errors,
-    /// The root mean square error of each round.
-    pub rmse: Vec<f64>,
-    /// The bias of each round, with its standard error.
-    pub biases: Vec<(f64, f64)>,
-    pub counts: Counts,
-    /// The oracle's verdicts on the hits, for parameters that decide only how they are found.
-    pub hits: Option<Verdicts>,
-    /// Seconds to render the pixels, the median over all rounds.
-    pub seconds: f64,
-    /// Seconds to build the acceleration structure.
-    pub build_seconds: f64,
-    /// Half the distance between the quartiles of the seconds for the pixels.
-    pub spread: f64,
-    /// The picture of the first round.
-    #[serde(skip)]
-    pub film: Film,
-    #[serde(skip)]
-    times: Vec<f64>,
-    #[serde(skip)]
-    notes: Vec<String>,
-}
-
-impl Point {
-    /// The mean error over all rounds.
-    pub fn error(&self) -> f64 {
-        self.rmse.iter().sum::<f64>() / self.rmse.len().max(1) as f64
-    }
-
-    /// The mean bias over all rounds, and its standard error. `of_reference` is the error of the reference per channel of a
-    /// pixel, of which there are `pixels`: the error of its mean is the same for all points, and adds to each.
-    pub fn bias(&self, of_reference: f64, pixels: f64) -> (f64, f64) {
-        let rounds = self.biases.len().max(1) as f64;
-        let mean = self.biases.iter().map(|(bias, _)| bias).sum::<f64>() / rounds;
-        let variance = self.biases.iter().map(|(_, error)| error.powi(2)).sum::<f64>() / rounds.powi(2);
-        (mean, (variance + of_reference.powi(2) / pixels.max(1.0)).sqrt())
-    }
-
-    /// A point for tests, with these values.
-    #[cfg(test)]
-    pub fn made_up(setting: Setting, error: f64, seconds: f64, leaks: u64) -> Point {
-        Point {
-            setting,
-            errors: Errors { rmse: error, similarity: 1.0, ..Errors::default() },
-            rmse: vec![error],
-            biases: vec![(0.0, 0.0)],
-            counts: Counts::default(),
-            hits: Some(Verdicts { rays: 1000, wrong: leaks, leaks }),
-            seconds,
-            build_seconds: 0.0,
-            spread: 0.0,
-            film: Film { width: 0, height: 0, pixels: Vec::new() },
-            times: Vec::new(),
-            notes: Vec::new(),
-        }
-    }
-}
-
-/// A measured ladder: those of its levels that could be measured.
-#[derive(Clone, Debug, Serialize)]
-pub struct Series {
-    pub parameter: Parameter,
-    pub name: String,
-    /// The name of each value, and the index of its point.
-    pub levels: Vec<(String, usize)>,
-}
-
-/// All measurements.
-#[derive(Default, Serialize)]
-pub struct Measured {
-    pub points: Vec<Point>,
-    pub series: Vec<Series>,
-    /// Sentences about values that were left out.
-    pub left_out: Vec<String>,
-    /// What the pictures lack because functions are not written yet, one sentence each.
-    pub lacking: Vec<String>,
-    /// The number of complete rounds.
-    pub rounds: u32,
 }
 
 /// Cancels a frame that takes too long or is no longer wanted, and shows its progress.

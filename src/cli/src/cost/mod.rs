@@ -11,6 +11,7 @@ mod called;
 mod equal_time;
 mod error;
 mod files;
+mod goal;
 mod greedy;
 mod headline;
 mod hits;
@@ -18,8 +19,10 @@ mod kept;
 mod ladder;
 mod landscape;
 mod measure;
+mod measured;
 mod options;
 mod page;
+mod parameter;
 mod plot;
 mod reference;
 mod setting;
@@ -31,18 +34,20 @@ use crate::kits::{Need, Source, root};
 use crate::lock::Lock;
 use crate::quality_options::arguments;
 use crate::report::{FrameBar, load_scene, make_folder, with_at_most};
-use advice::{Advice, Goal};
+use advice::Advice;
 use anyhow::{Context, Result, bail};
 use called::Called;
-pub use hits::Verdicts;
+use goal::Goal;
 use kept::Kept;
-use ladder::{Ladder, Parameter};
-use measure::{Bench, Measured, pareto_front};
+use ladder::Ladder;
+use measure::{Bench, pareto_front};
+pub use measured::Verdicts;
+use measured::{Measured, Reference};
 pub use options::{Options, SPEC};
+use parameter::Parameter;
 use raykata::effects::Effects;
 use raykata::kit::{Kit, KitError, kit_error};
 use raykata::scene::{Quality, Scene};
-use reference::Reference;
 use serde::Serialize;
 use setting::Setting;
 use slope::Slope;
@@ -303,7 +308,7 @@ fn command_for(file: &Path, as_written: &Quality, advice: &Advice, size: Option<
 
 /// The slopes of all ladders of samples.
 fn slopes(measured: &Measured) -> Vec<(String, Slope)> {
-    let of_series = |series: &measure::Series| {
+    let of_series = |series: &measured::Series| {
         let samples: Vec<f64> = series.levels.iter().filter_map(|(name, _)| name.parse().ok()).collect();
         let round = |round: usize| {
             let error = |(_, index): &(String, usize)| measured.points[*index].rmse.get(round).copied();
@@ -313,7 +318,7 @@ fn slopes(measured: &Measured) -> Vec<(String, Slope)> {
         Some((series.name.clone(), slope::slope(&samples, &rounds)?))
     };
     let of_samples =
-        |series: &&measure::Series| matches!(series.parameter, Parameter::Samples | Parameter::Sampler);
+        |series: &&measured::Series| matches!(series.parameter, Parameter::Samples | Parameter::Sampler);
     measured.series.iter().filter(of_samples).filter_map(of_series).collect()
 }
 

@@ -1,6 +1,6 @@
 //! The command line of `raykata cost`.
 
-use super::ladder::Parameter;
+use super::parameter::Parameter;
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
 use crate::kits::Choice;
 use crate::quality_options::{QualityOptions, Threads};

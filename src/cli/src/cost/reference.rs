@@ -6,6 +6,7 @@
 
 use super::ladder::least_depth;
 use super::measure::Bench;
+use super::measured::Reference;
 use crate::fingerprint::fingerprint;
 use crate::report::bar_of_steps;
 use anyhow::{Context, Result};
@@ -20,15 +21,6 @@ const BATCH: u32 = 64;
 
 /// The seed of the first batch, which differs from the seeds of all measurements.
 const FIRST_SEED: u64 = 1 << 40;
-
-/// The reference of a scene.
-pub struct Reference {
-    pub film: Film,
-    /// The number of samples per pixel.
-    pub samples: u32,
-    /// The estimated error of the reference itself: root mean square over all channels, in linear light.
-    pub own_error: f64,
-}
 
 /// Sums over batches.
 struct Sums {

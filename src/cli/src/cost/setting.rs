@@ -1,6 +1,6 @@
 //! A setting: the values of all parameters.
 
-use super::ladder::Parameter;
+use super::parameter::Parameter;
 use raykata::effects::Effect;
 use raykata::scene::{Quality, Scene};
 

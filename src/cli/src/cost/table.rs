@@ -1,10 +1,11 @@
 //! The report as a table in the terminal.
 
 use super::Report;
-use super::advice::{Advice, Goal};
+use super::advice::Advice;
 use super::files::expected_slope;
-use super::ladder::Parameter;
-use super::measure::Series;
+use super::goal::Goal;
+use super::measured::Series;
+use super::parameter::Parameter;
 use crate::args::wrapped;
 use crate::report::Thousands;
 

@@ -1,6 +1,6 @@
 //! Finds out why a worker does not answer any more.
 
-use super::{Death, Launcher, lock};
+use super::launcher::{Death, Launcher, lock};
 use raykata::kit::KitError;
 use std::io::{self, Read};
 use std::process::{Child, ExitStatus};

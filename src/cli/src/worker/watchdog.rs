@@ -1,6 +1,7 @@
 //! Ends a process that does not answer in time.
 
-use super::{Launcher, lock, waiting};
+use super::launcher::{Launcher, lock};
+use super::waiting;
 use raykata::worker::Thread;
 use std::process::Child;
 use std::sync::atomic::{AtomicBool, Ordering};
