@@ -73,8 +73,7 @@ impl Crate {
             let code = code.join("\n");
             let starts =
                 ["use ", "crate::", "super::"].into_iter().flat_map(|start| code.match_indices(start));
-            for (at, start) in starts.filter(|(at, _)| !code[..*at].ends_with(|c: char| c == ':' || c == '$'))
-            {
+            for (at, start) in starts.filter(|(at, _)| !code[..*at].ends_with([':', '$'])) {
                 let is_public = start == "use " && code[..at].trim_end_matches(' ').ends_with(['b', ')']);
                 let mut found = Vec::new();
                 paths(code[at..].trim_start_matches("use "), "", &mut found);

@@ -39,28 +39,28 @@ pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctio
         },
     };
     for &root in &scene.roots {
-        flattener.node(root, &MovingTransform::still(Affine3A::IDENTITY), 0, 0, &mut meshes);
+        flattener.node(root, &Motion::still(Affine3A::IDENTITY), 0, 0, &mut meshes);
     }
     flattener.world
 }
 
 /// The transform of a node to the world at time 0, and at time 1 if it moves.
-struct MovingTransform {
+struct Motion {
     start: Affine3A,
     end: Option<Affine3A>,
     /// Whether `start` is a blend between two times, and not the product of the transforms of the nodes.
     blended: bool,
 }
 
-impl MovingTransform {
-    fn still(start: Affine3A) -> MovingTransform {
-        MovingTransform { start, end: None, blended: false }
+impl Motion {
+    fn still(start: Affine3A) -> Motion {
+        Motion { start, end: None, blended: false }
     }
 
-    fn then(&self, node: &Node) -> MovingTransform {
+    fn then(&self, node: &Node) -> Motion {
         let moves = self.end.is_some() || node.transform_end.is_some();
         let end = || self.end.unwrap_or(self.start) * node.transform_end.unwrap_or(node.transform);
-        MovingTransform { start: self.start * node.transform, end: moves.then(end), blended: false }
+        Motion { start: self.start * node.transform, end: moves.then(end), blended: false }
     }
 }
 
@@ -75,42 +75,33 @@ struct Flattener<'a> {
 }
 
 impl Flattener<'_> {
-    /// Adds the node `index` and all nodes below it. `transform` is the transform of its parent, `above` the index
+    /// Adds the node `index` and all nodes below it. `motion` is the transform of its parent, `above` the index
     /// of the parent in the graph, and `material` is inherited from it.
-    fn node(
-        &mut self,
-        index: usize,
-        transform: &MovingTransform,
-        material: usize,
-        above: u32,
-        meshes: &mut Meshes,
-    ) {
+    fn node(&mut self, index: usize, motion: &Motion, material: usize, above: u32, meshes: &mut Meshes) {
         let node = &self.scene.nodes[index];
-        let transform = transform.then(node);
+        let motion = motion.then(node);
         let material = node.material.unwrap_or(material);
         let first = self.world.primitives.len() as u32;
         self.path.push(node.transform);
         if let Some(shape) = &node.shape {
-            let transform = match transform.end {
-                Some(end) if self.effects.motion && end != transform.start => {
-                    MovingTransform { end: Some(end), ..transform }
+            let motion = match motion.end {
+                Some(end) if self.effects.motion && end != motion.start => {
+                    Motion { end: Some(end), ..motion }
                 }
-                Some(end) => MovingTransform {
-                    start: blend(&transform.start, &end, self.still_at),
-                    end: None,
-                    blended: true,
-                },
-                None => MovingTransform::still(transform.start),
+                Some(end) => {
+                    Motion { start: blend(&motion.start, &end, self.still_at), end: None, blended: true }
+                }
+                None => Motion::still(motion.start),
             };
             let ready = match shape {
                 Shape::Mesh(mesh) => meshes.of_scene.get_mut(*mesh),
                 _ => meshes.of_nodes.get_mut(&index),
             };
-            self.shape(shape, ready, &transform, material as u32);
+            self.shape(shape, ready, &motion, material as u32);
         }
         let here = self.in_graph(first..self.world.primitives.len() as u32, above);
         for &child in &node.children {
-            self.node(child, &transform, material, here, meshes);
+            self.node(child, &motion, material, here, meshes);
         }
         self.path.pop();
     }
@@ -125,60 +116,54 @@ impl Flattener<'_> {
         here
     }
 
-    fn shape(
-        &mut self,
-        shape: &Shape,
-        ready: Option<&mut PreparedMesh>,
-        transform: &MovingTransform,
-        material: u32,
-    ) {
+    fn shape(&mut self, shape: &Shape, ready: Option<&mut PreparedMesh>, motion: &Motion, material: u32) {
         match shape {
             Shape::Sphere(_) if !self.functions.spheres => {}
-            Shape::Sphere(sphere) => self.sphere(sphere, transform, material),
+            Shape::Sphere(sphere) => self.sphere(sphere, motion, material),
             Shape::Plane(_) if !self.functions.planes => {}
-            Shape::Plane(plane) => self.plane(plane, None, transform, material),
+            Shape::Plane(plane) => self.plane(plane, None, motion, material),
             // A plane that moves is tested by a point and a normal.
-            Shape::PlaneEquation(equation) => match (self.functions.equations, transform.end) {
-                (true, None) => self.plane(&equation.to_plane(), Some(*equation), transform, material),
-                _ if self.functions.planes => self.plane(&equation.to_plane(), None, transform, material),
+            Shape::PlaneEquation(equation) => match (self.functions.equations, motion.end) {
+                (true, None) => self.plane(&equation.to_plane(), Some(*equation), motion, material),
+                _ if self.functions.planes => self.plane(&equation.to_plane(), None, motion, material),
                 _ => {}
             },
             Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. }
                 if !self.functions.triangles => {}
             Shape::Triangle(t) => {
                 let uvs = Some([Vec2::ZERO, Vec2::X, Vec2::Y]);
-                self.facets(&[Facet { corners: [t.a, t.b, t.c], normals: None, uvs }], transform, material);
+                self.facets(&[Facet { corners: [t.a, t.b, t.c], normals: None, uvs }], motion, material);
             }
             Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. } => {
                 // `None` for a curved surface whose function is not written.
                 if let Some(ready) = ready {
-                    self.mesh(ready, transform, material);
+                    self.mesh(ready, motion, material);
                 }
             }
-            _ if self.solid(shape, transform, material) => {}
+            _ if self.solid(shape, motion, material) => {}
             _ if !self.functions.triangles => {}
-            Shape::Polygon(polygon) => self.facets(&facets::polygon(&polygon.corners), transform, material),
-            Shape::Cuboid(cuboid) => self.facets(&facets::cuboid(cuboid), transform, material),
-            Shape::Cylinder(cylinder) => self.facets(&facets::cylinder(cylinder), transform, material),
-            Shape::Cone(cone) => self.facets(&facets::cone(cone), transform, material),
-            Shape::Disk(disk) => self.facets(&facets::disk(disk), transform, material),
+            Shape::Polygon(polygon) => self.facets(&facets::polygon(&polygon.corners), motion, material),
+            Shape::Cuboid(cuboid) => self.facets(&facets::cuboid(cuboid), motion, material),
+            Shape::Cylinder(cylinder) => self.facets(&facets::cylinder(cylinder), motion, material),
+            Shape::Cone(cone) => self.facets(&facets::cone(cone), motion, material),
+            Shape::Disk(disk) => self.facets(&facets::disk(disk), motion, material),
         }
     }
 
     /// The placement of the shape of the current node, if the kit has the function for it. A shape that moves
     /// has none, because its transform changes with time.
-    fn placement(&self, transform: &MovingTransform) -> Option<Placement> {
+    fn placement(&self, motion: &Motion) -> Option<Placement> {
         let place = self.functions.placement?;
-        match (transform.end, transform.blended) {
+        match (motion.end, motion.blended) {
             (Some(_), _) => None,
-            (None, true) => place(&[transform.start]),
+            (None, true) => place(&[motion.start]),
             (None, false) => place(&self.path),
         }
     }
 
     /// Adds the shape as a solid, if it can be placed; returns whether it could.
-    fn solid(&mut self, shape: &Shape, transform: &MovingTransform, material: u32) -> bool {
-        let (Some(shape), Some(placement)) = (SolidShape::of(shape), self.placement(transform)) else {
+    fn solid(&mut self, shape: &Shape, motion: &Motion, material: u32) -> bool {
+        let (Some(shape), Some(placement)) = (SolidShape::of(shape), self.placement(motion)) else {
             return false;
         };
         self.world.solids.push(Solid { shape, placement });
@@ -194,13 +179,13 @@ impl Flattener<'_> {
     }
 
     /// Adds a sphere. It stays a sphere unless its transform stretches it at time 0, 1 or in the middle.
-    fn sphere(&mut self, sphere: &Sphere, transform: &MovingTransform, material: u32) {
+    fn sphere(&mut self, sphere: &Sphere, motion: &Motion, material: u32) {
         let at = |to_world: &Affine3A| {
             let radius = uniform_scale(to_world)? * sphere.radius;
             Some(Sphere { center: to_world.transform_point3(sphere.center), radius })
         };
-        let start = at(&transform.start);
-        let ends = transform.end.map(|end| (at(&end), at(&blend(&transform.start, &end, 0.5))));
+        let start = at(&motion.start);
+        let ends = motion.end.map(|end| (at(&end), at(&blend(&motion.start, &end, 0.5))));
         let (start, end) = match (start, ends) {
             (Some(start), None) => (start, None),
             // Keep a moving sphere only if its radius changes linearly: rotations shrink it, because matrices
@@ -210,13 +195,13 @@ impl Flattener<'_> {
             {
                 (start, Some(Geometry::Sphere(end)))
             }
-            _ if self.solid(&Shape::Sphere(*sphere), transform, material) => return,
+            _ if self.solid(&Shape::Sphere(*sphere), motion, material) => return,
             _ if !self.functions.triangles => return,
-            _ => return self.facets(&facets::sphere(sphere), transform, material),
+            _ => return self.facets(&facets::sphere(sphere), motion, material),
         };
         let image = match self.reads_image(material) {
             true => {
-                let own = Mat3::from(transform.start.matrix3).transpose();
+                let own = Mat3::from(motion.start.matrix3).transpose();
                 OptionalIndex::push(&mut self.world.sphere_axes, own)
             }
             false => OptionalIndex::NONE,
@@ -232,13 +217,7 @@ impl Flattener<'_> {
         });
     }
 
-    fn plane(
-        &mut self,
-        plane: &Plane,
-        equation: Option<PlaneEquation>,
-        transform: &MovingTransform,
-        material: u32,
-    ) {
+    fn plane(&mut self, plane: &Plane, equation: Option<PlaneEquation>, motion: &Motion, material: u32) {
         let (u, v) = plane_axes(plane.normal);
         let corners = |to_world: &Affine3A| {
             let a = to_world.transform_point3(plane.point);
@@ -247,10 +226,10 @@ impl Flattener<'_> {
             let mirrored = to_world.matrix3.determinant() < 0.0;
             if mirrored { Triangle { a, b: c, c: b } } else { Triangle { a, b, c } }
         };
-        let normal = unit(normal_matrix(&transform.start) * unit(plane.normal));
-        let point = transform.start.transform_point3(plane.point);
+        let normal = unit(normal_matrix(&motion.start) * unit(plane.normal));
+        let point = motion.start.transform_point3(plane.point);
         // A transform changes the coefficients: D follows from the new normal and a point of the plane.
-        let equation = equation.map(|equation| match transform.start == Affine3A::IDENTITY {
+        let equation = equation.map(|equation| match motion.start == Affine3A::IDENTITY {
             true => equation,
             false => PlaneEquation { normal, d: -normal.as_dvec3().dot(point.as_dvec3()) as f32 },
         });
@@ -258,22 +237,22 @@ impl Flattener<'_> {
             plane: Plane { point, normal },
             equation,
             material,
-            axes: [u, v].map(|axis| transform.start.transform_vector3(axis)),
-            motion: transform.end.map(|end| [corners(&transform.start), corners(&end)]),
+            axes: [u, v].map(|axis| motion.start.transform_vector3(axis)),
+            motion: motion.end.map(|end| [corners(&motion.start), corners(&end)]),
         });
     }
 
-    fn facets(&mut self, facets: &[Facet], transform: &MovingTransform, material: u32) {
+    fn facets(&mut self, facets: &[Facet], motion: &Motion, material: u32) {
         for facet in facets {
-            let triangle = self.triangle(facet, false, transform, material);
+            let triangle = self.triangle(facet, false, motion, material);
             self.world.primitives.push(triangle);
         }
     }
 
     /// Adds an instance of a mesh. A mesh with several instances is shared, if it can be placed; otherwise its
     /// triangles are copied.
-    fn mesh(&mut self, ready: &mut PreparedMesh, transform: &MovingTransform, material: u32) {
-        if let Some(placement) = self.placement(transform).filter(|_| ready.shared) {
+    fn mesh(&mut self, ready: &mut PreparedMesh, motion: &Motion, material: u32) {
+        if let Some(placement) = self.placement(motion).filter(|_| ready.shared) {
             let shared_mesh = ready.shared_mesh.unwrap_or_else(|| self.shared_mesh(ready));
             ready.shared_mesh = Some(shared_mesh);
             self.world.instances.push(Instance { shared_mesh, placement });
@@ -285,7 +264,7 @@ impl Flattener<'_> {
         }
         for face in 0..ready.mesh.triangles.len() {
             let material = ready.material_of(face).unwrap_or(material);
-            let triangle = self.triangle(&ready.facet(face), ready.one_sided, transform, material);
+            let triangle = self.triangle(&ready.facet(face), ready.one_sided, motion, material);
             self.world.primitives.push(triangle);
         }
     }
@@ -303,7 +282,7 @@ impl Flattener<'_> {
 
     /// Adds a shared mesh with the triangles of a mesh in its own space, and returns its index.
     fn shared_mesh(&mut self, ready: &PreparedMesh) -> u32 {
-        let here = MovingTransform::still(Affine3A::IDENTITY);
+        let here = Motion::still(Affine3A::IDENTITY);
         let primitives = (0..ready.mesh.triangles.len()).map(|face| {
             let material = ready.material_of(face).unwrap_or(Primitive::INHERITED);
             self.triangle(&ready.facet(face), ready.one_sided, &here, material)
@@ -313,16 +292,10 @@ impl Flattener<'_> {
         self.world.shared_meshes.len() as u32 - 1
     }
 
-    fn triangle(
-        &mut self,
-        facet: &Facet,
-        one_sided: bool,
-        transform: &MovingTransform,
-        material: u32,
-    ) -> Primitive {
+    fn triangle(&mut self, facet: &Facet, one_sided: bool, motion: &Motion, material: u32) -> Primitive {
         let reads_image = self.reads_image(material);
         // Exchange two corners if the transform is a reflection, which would turn the inside out.
-        let mirrored = transform.start.matrix3.determinant() < 0.0;
+        let mirrored = motion.start.matrix3.determinant() < 0.0;
         let facet = &if mirrored { facet.turned() } else { *facet };
         let world = &mut self.world;
         let corners = |to_world: &Affine3A| {
@@ -337,17 +310,16 @@ impl Flattener<'_> {
                 let matrix = normal_matrix(to_world);
                 own.map(|normal| (matrix * normal).as_dvec3().normalize_or_zero().as_vec3())
             };
-            normals = OptionalIndex::push(&mut world.normals, carried(&transform.start));
-            if let Some(end) = &transform.end {
+            normals = OptionalIndex::push(&mut world.normals, carried(&motion.start));
+            if let Some(end) = &motion.end {
                 world.normals.push(carried(end));
             }
         }
-        let end = transform
-            .end
-            .map_or(OptionalIndex::NONE, |end| OptionalIndex::push(&mut world.ends, corners(&end)));
+        let end =
+            motion.end.map_or(OptionalIndex::NONE, |end| OptionalIndex::push(&mut world.ends, corners(&end)));
         let uvs = facet.uvs.filter(|_| reads_image);
         let image = uvs.map_or(OptionalIndex::NONE, |uvs| OptionalIndex::push(&mut world.uvs, uvs));
-        Primitive { geometry: corners(&transform.start), material, normals, image, end }
+        Primitive { geometry: corners(&motion.start), material, normals, image, end }
     }
 
     /// Whether a colour of this material comes from an image; for an inherited material, whether that of any
