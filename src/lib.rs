@@ -46,7 +46,10 @@ pub use light::{emitter, material, path_step as light_path};
 pub use scene::effects;
 pub use trees::{bvh, graph, partition, wide};
 
-/// A scene as data, and the readers of its files.
+/// A scene as data: film, camera, lights, materials, meshes and the scene graph; and the readers of its files.
+///
+/// [`load`](scene::load) reads a scene from a TOML file and checks it. A scene that [`load::load`](scene::load::load) returns holds
+/// everything that a frame needs: all its indices are in range, and its graph has no cycle.
 pub mod scene {
     #[path = "mod.rs"]
     mod data;

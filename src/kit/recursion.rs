@@ -30,7 +30,8 @@ pub struct FresnelQuery {
     pub n2: f32,
 }
 
-/// Asks which secondary rays leave a surface; the answer is a list of [`SecondaryRay`].
+/// Asks which secondary rays leave a surface; the answer is a list of
+/// [`SecondaryRay`](super::SecondaryRay).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScatterQuery {
     /// The direction of the incoming ray, of unit length.

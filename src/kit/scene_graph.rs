@@ -35,7 +35,7 @@ pub struct BoundsQuery {
     pub bounds: Aabb,
 }
 
-/// Asks where `ray` hits `solid`; the answer is a [`SolidHit`] if there is a hit.
+/// Asks where `ray` hits `solid`; the answer is a [`SolidHit`](super::SolidHit) if there is a hit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolidQuery<S> {
     /// The ray, in the space of the solid; its range says which hits count.

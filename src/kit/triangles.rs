@@ -5,7 +5,8 @@ use crate::shape::Triangle;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Asks where `ray` hits `triangle`; the answer is a [`TriangleHit`] if there is a hit that counts.
+/// Asks where `ray` hits `triangle`; the answer is a [`TriangleHit`](super::TriangleHit) if there is a hit that
+/// counts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TriangleQuery {
     /// The ray; its range says which hits count.

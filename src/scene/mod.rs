@@ -1,7 +1,4 @@
 //! A scene as data: film, camera, lights, materials, meshes and the scene graph.
-//!
-//! [`load`] reads a scene from a TOML file and checks it. A scene that [`load`] returns holds everything that
-//! a frame needs: all its indices are in range, and its graph has no cycle.
 
 pub mod effects;
 mod gamma2;
@@ -43,7 +40,7 @@ pub struct FilmSettings {
     /// Pixels per row, at least 1; a scene file may ask for up to 65 536.
     pub width: u32,
     /// Rows of pixels, at least 1; a scene file may ask for up to 65 536 rows, and the memory of
-    /// [`load::Limits`] bounds the pixels.
+    /// [`load::Limits`](crate::scene::load::Limits) bounds the pixels.
     pub height: u32,
     /// Encoding of 8-bit image files; the film itself holds linear radiance.
     pub encoding: Encoding,
