@@ -63,7 +63,7 @@ fn try_one(
         let begin = Instant::now();
         let graded = grade(&submission, attack, &expected.allow);
         let mut found = match &graded {
-            Ok(graded) => complaints(&attack.stages, expected, graded),
+            Ok(graded) => complaints(attack, expected, graded),
             Err(error) => vec![format!("the grader failed: {error:#}")],
         };
         let seconds = begin.elapsed().as_secs();
