@@ -132,12 +132,20 @@ pub(super) fn plane_by_coefficients_agrees_with_double_precision(trial: &Trial<'
         ..query
     });
     let ceiling = PlaneEquation { normal: Vec3::Y, d: -2.0 };
+    // From both sides, with products of n·v that cancel to 0.00003 of their size.
+    let diagonal = PlaneEquation { normal: vec3(1.0, 1.0, 0.0), d: -2.0 };
+    let cancels = |x: f32, length: f32| PlaneEquationQuery {
+        ray: Ray::new(x * Vec3::X, length * vec3(1.0, -1.0 + 2f32.powi(-14), 0.0)),
+        plane: diagonal,
+    };
     let drawn = [
         PlaneEquationQuery { ray: Ray::new(Vec3::ZERO, Vec3::Y), plane: ceiling },
         PlaneEquationQuery { ray: Ray::new(Vec3::Y, 0.5 * Vec3::Y), plane: ceiling },
         PlaneEquationQuery { ray: Ray::new(4.0 * Vec3::Y, vec3(1.0, -1.0, 0.0)), plane: ceiling },
         PlaneEquationQuery { ray: Ray::new(4.0 * Vec3::Y, Vec3::Y), plane: ceiling },
         PlaneEquationQuery { ray: Ray::new(Vec3::ZERO, Vec3::Y).with_range(0.0, 2.0), plane: ceiling },
+        cancels(0.0, 1024.0),
+        cancels(4.0, -1024.0),
     ];
     trial.forall_and(&drawn, 3000, inputs, |queries| judge_equations(trial, queries, Sum::Single))
 }

@@ -133,12 +133,20 @@ pub(super) fn plane_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResu
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let down = |x: f32, y: f32| Ray::new(2.0 * Vec3::Y, vec3(x, y, 0.0));
     let on_floor = |ray| PlaneQuery { ray, plane: floor };
+    // From both sides, with products of n·d that cancel to 0.00003 of their size.
+    let diagonal = Plane { point: Vec3::ONE, normal: vec3(1.0, 1.0, 0.0) };
+    let cancels = |x: f32, length: f32| PlaneQuery {
+        ray: Ray::new(x * Vec3::X, length * vec3(1.0, -1.0 + 2f32.powi(-14), 0.0)),
+        plane: diagonal,
+    };
     let drawn = [
         on_floor(down(1.0, -2f32.powi(-14))),
         on_floor(down(0.0, -1.0).with_range(0.0, 1.0)),
         on_floor(down(0.0, -1.0).with_range(3.0, 5.0)),
         on_floor(Ray::new(-2.0 * Vec3::Y, 0.5 * Vec3::Y)),
         on_floor(Ray::new(2.0 * Vec3::Y, Vec3::Y)),
+        cancels(0.0, 1024.0),
+        cancels(4.0, -1024.0),
     ];
     trial.forall_and(&drawn, 4000, prop_oneof![plain, sized], |queries| judge_planes(trial, queries))?;
     trial.forall(500, (point(8), direction(), direction()), |inputs| judge_ends(trial, inputs))

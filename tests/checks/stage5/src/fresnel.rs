@@ -177,7 +177,10 @@ pub(super) fn fresnel_schlick_agrees_with_double_precision(trial: &Trial<'_>) ->
 }
 
 pub(super) fn fresnel_exact_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&drawn(), 3000, queries(), |queries| {
+    let [first, second, third] = drawn();
+    // Closer to the critical angle than any of the other queries: cos² θ2 is 0.00004.
+    let near_critical = FresnelQuery { cos_theta: 0.745_368, n1: 1.5, n2: 1.0 };
+    trial.forall_and(&[first, second, third, near_critical], 3000, queries(), |queries| {
         judge("fresnel_exact", queries, trial.kit.fresnel_exact(queries), exact, exact_mistakes)
     })
 }

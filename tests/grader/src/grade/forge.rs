@@ -271,7 +271,7 @@ impl Forge {
         let mut command = sandbox.command(&self.rustc);
         command.current_dir(scratch).args(arguments).args(["--edition=2024", "-Cdebuginfo=0"]);
         // Do not optimise: the checks ask so little that optimisation would take longer than the answers.
-        command.args(["-Copt-level=0", "-Ccodegen-units=2", "-Cembed-bitcode=no"]);
+        command.args(["-Copt-level=0", "-Ccodegen-units=1", "-Cembed-bitcode=no"]);
         command.arg(option("-Ldependency=", &self.libraries));
         for name in externs {
             command

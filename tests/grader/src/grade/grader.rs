@@ -15,7 +15,7 @@ use crate::room::has_room;
 use crate::sandbox::{self, Confinement, How, Purpose, Sandbox};
 use crate::sync::stage_of;
 use anyhow::{Context, Result};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -44,8 +44,8 @@ pub struct Grader {
     pub shared: Option<Arc<SharedResults>>,
 }
 
-/// The results of submissions, by the judge's stages, the rules that are switched off, and the files.
-pub type SharedResults = Once<(BTreeSet<u8>, Vec<String>, BTreeMap<String, String>), Judged>;
+/// The results of submissions, by the judge's checks, the rules that are switched off, and the files.
+pub type SharedResults = Once<(Vec<&'static str>, Vec<String>, BTreeMap<String, String>), Judged>;
 
 /// What compiling and judging the files of a submission gives.
 #[derive(Clone)]
@@ -126,7 +126,7 @@ impl Grader {
         let judged = match &self.shared {
             None => self.judged(files)?,
             Some(shared) => {
-                let key = (self.judge.stages(), self.allowed.clone(), files.clone());
+                let key = (self.judge.checks(), self.allowed.clone(), files.clone());
                 shared.get(key, || self.judged(files))?
             }
         };

@@ -58,6 +58,7 @@ pub struct Judge {
 }
 
 /// A check, and the facts that were learned by running it against the reference.
+#[derive(Clone)]
 struct Put {
     check: &'static Check,
     /// Whether the hidden inputs differ from the public ones.
@@ -117,6 +118,13 @@ impl Judge {
         let checks = queue::run(&workers, &checks, put)?;
         let reference: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker()));
         Ok(Judge { checks, seed, confinement, drawn, reference })
+    }
+
+    /// The same judge with these checks only.
+    pub fn only(&self, is_chosen: impl Fn(u8, &str) -> bool) -> Judge {
+        let mut checks = self.checks.clone();
+        checks.retain(|put| is_chosen(put.check.stage, put.check.name));
+        Judge { checks, drawn: self.drawn.clone(), reference: self.reference.clone(), ..*self }
     }
 
     /// Runs all checks against the program `worker`, and returns their results and the processor time of the program. Checks
@@ -191,6 +199,11 @@ impl Judge {
     /// Returns the graded stages.
     pub fn stages(&self) -> BTreeSet<u8> {
         self.checks.iter().map(|put| put.check.stage).collect()
+    }
+
+    /// Returns the names of the checks.
+    pub fn checks(&self) -> Vec<&'static str> {
+        self.checks.iter().map(|put| put.check.name).collect()
     }
 
     /// Gives every check the same outcome.

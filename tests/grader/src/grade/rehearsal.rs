@@ -233,8 +233,8 @@ fn faults(role: &Role, matrix: &Matrix, graded: &Graded) -> Vec<String> {
     match role {
         Role::Attack(attack) => {
             let mut of_attack = graded.clone();
-            of_attack.checks.retain(|check| attack.stages.contains(&check.stage));
-            attacks::complaints(&attack.stages, &attack.expect, &of_attack)
+            of_attack.checks.retain(|check| attack.is_judged(check.stage, &check.name));
+            attacks::complaints(attack, &attack.expect, &of_attack)
         }
         Role::Begun(stages) => {
             let right = |check: &&super::result::CheckResult| {

@@ -115,6 +115,8 @@ pub struct Attack {
     /// The graded stages.
     #[serde(default = "stage_one")]
     pub stages: Vec<u8>,
+    /// The checks of these stages that are judged, if not all. One `*` in a name matches any text.
+    pub checks: Option<Vec<String>>,
     /// The time limit for grading it on an idle machine, in seconds.
     #[serde(default = "a_minute")]
     pub most_seconds: u64,
@@ -127,6 +129,14 @@ pub struct Attack {
     pub expect: Expectation,
     /// The result that it must get with rules of the syntax check switched off. This tests the sandbox itself.
     pub without_lint: Option<Expectation>,
+}
+
+impl Attack {
+    /// Returns whether the judge tries this check.
+    pub fn is_judged(&self, stage: u8, check: &str) -> bool {
+        let named = |names: &Vec<String>| names.iter().any(|name| verdict::is_like(check, name));
+        self.stages.contains(&stage) && self.checks.as_ref().is_none_or(named)
+    }
 }
 
 fn stage_one() -> Vec<u8> {

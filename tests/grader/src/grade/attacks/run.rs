@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 /// How many attacks are tried at the same time per core: some wait and do not compute. Time limits of calls count processor
 /// time.
-const ATTACKS_PER_CORE: u64 = 2;
+const ATTACKS_PER_CORE: u64 = 3;
 
 /// An attack and its result.
 pub struct Tried {
@@ -63,7 +63,7 @@ fn try_one(
         let begin = Instant::now();
         let graded = grade(&submission, attack, &expected.allow);
         let mut found = match &graded {
-            Ok(graded) => complaints(&attack.stages, expected, graded),
+            Ok(graded) => complaints(attack, expected, graded),
             Err(error) => vec![format!("the grader failed: {error:#}")],
         };
         let seconds = begin.elapsed().as_secs();

@@ -52,7 +52,7 @@ fn graded(outcome: impl Fn(&str) -> Outcome) -> Graded {
 }
 
 fn message(expected: &str, graded: &Graded) -> Vec<String> {
-    complaints(&[1], &toml::from_str(expected).unwrap(), graded)
+    complaints(&attack(""), &toml::from_str(expected).unwrap(), graded)
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Compares the result of an attack with the expected one.
 
+use super::Attack;
 use super::make::CANARY;
 use crate::grade::result::{Graded, Outcome};
 use all_checks::STAGES;
@@ -49,18 +50,19 @@ pub struct Expectation {
 }
 
 /// Returns the differences from the expected result, one sentence each.
-pub fn complaints(stages: &[u8], expected: &Expectation, graded: &Graded) -> Vec<String> {
+pub fn complaints(attack: &Attack, expected: &Expectation, graded: &Graded) -> Vec<String> {
     let mut complaints = Vec::new();
-    completeness(stages, graded, &mut complaints);
+    completeness(attack, graded, &mut complaints);
     points(expected, graded, &mut complaints);
     words(expected, graded, &mut complaints);
     complaints
 }
 
-/// Requires that every check is present once and is worth the points of the rubric.
-fn completeness(stages: &[u8], graded: &Graded, complaints: &mut Vec<String>) {
-    let all = STAGES.iter().filter(|(stage, _)| stages.contains(stage)).flat_map(|(_, checks)| *checks);
-    let wanted: Vec<(u8, &str)> = all.map(|check| (check.stage, check.name)).collect();
+/// Requires that every check that is judged is present once and is worth the points of the rubric.
+fn completeness(attack: &Attack, graded: &Graded, complaints: &mut Vec<String>) {
+    let all = STAGES.iter().flat_map(|(_, checks)| *checks);
+    let judged = all.filter(|check| attack.is_judged(check.stage, check.name));
+    let wanted: Vec<(u8, &str)> = judged.map(|check| (check.stage, check.name)).collect();
     let present: Vec<(u8, &str)> =
         graded.checks.iter().map(|check| (check.stage, check.name.as_str())).collect();
     if wanted != present {
