@@ -21,6 +21,7 @@ use crate::ray::Ray;
 use crate::tracer::frame::Frame;
 use crate::tracer::search::hit::Hit;
 use glam::{Vec2, Vec3};
+use std::borrow::Cow;
 
 /// The limits of `scatter` for a path, whose length `step` limits.
 const UNLIMITED: Limits = Limits { max_depth: u32::MAX, min_contribution: 0.0 };
@@ -60,6 +61,90 @@ fn merge_shadow_rays(
     }
 }
 
+/// Where a ray of a path starts.
+struct Start {
+    /// The point.
+    origin: Vec3,
+    /// The density with which the ray was sampled; infinite for a ray whose direction is certain.
+    pdf: f32,
+    /// Whether a surface sent the ray on in its diffuse lobe.
+    is_diffuse: bool,
+    /// The emitter on which the point lies.
+    emitter: Option<ChosenEmitter>,
+}
+
+/// A hit of a path, as the student's `step` sees it.
+struct Vertex<'m> {
+    at: SurfaceInteraction,
+    /// The number of the ray in the record.
+    number: usize,
+    material: Cow<'m, Material>,
+    may_bounce: bool,
+    state: PathState,
+    vertex: PathVertex,
+    max_depth: u32,
+    numbers: StepNumbers,
+    /// The lobe of a rough mirror that samples light.
+    rough: Option<RoughLobe>,
+    /// The emitter on which the hit lies.
+    own: Option<ChosenEmitter>,
+}
+
+/// Which light of a hit counts.
+struct CountedLight {
+    /// The emission of the hit.
+    emission: Vec3,
+    /// The emitter on which the hit lies.
+    own: Option<ChosenEmitter>,
+    /// The same emitter, if `step` weighs the emission against samples of it.
+    weighed: Option<ChosenEmitter>,
+    /// The light that `step` samples.
+    sampled: Option<LightCandidate>,
+}
+
+/// Decides which light of a hit counts. A path meets an emitter in two ways, by chance and by a sample from the surface before,
+/// and both together count its light once:
+///
+/// | a ray that hits an emitter | the emission | because |
+/// |---|---|---|
+/// | is diffuse, and the emitter shows one of `[[lights]]` | does not count | the surface before has sampled this light |
+/// | starts on the same emitter | counts in full | a point of an emitter does not sample it |
+/// | grazes its rim, where its density is rounded to 0 | does not count | samples count it; in full it would be a bright speck |
+/// | has no certain direction, and light is only sampled | does not count | samples count in full |
+/// | is another one | is weighed by `step` | |
+///
+/// A point of an emitter does not sample this emitter, because it sees none of it, or the inside of a sphere, and whether it
+/// lies inside or outside is a matter of rounding.
+fn counted_light<F: StudentFunctions>(
+    indirect: &IndirectLight,
+    (start, direction): (&Start, Vec3),
+    (hit, at, material): (&Hit, &SurfaceInteraction, &Material),
+    sampled: Option<LightCandidate>,
+) -> CountedLight {
+    let is_seen = !(indirect.is_light[at.material] && start.is_diffuse);
+    let emission = if is_seen { material.emission } else { Vec3::ZERO };
+    let own = match emission == Vec3::ZERO {
+        true => None,
+        false => indirect.emitter_at(hit, at.surface.point),
+    };
+    let weighed = own.filter(|own| start.emitter != Some(*own));
+    let is_certain = start.pdf == f32::INFINITY;
+    let is_left_to_samples = |chosen: ChosenEmitter| {
+        indirect.samples_only || F::light_pdf(&chosen.emitter, start.origin, direction) == 0.0
+    };
+    let emission = match weighed {
+        Some(chosen) if !is_certain && is_left_to_samples(chosen) => Vec3::ZERO,
+        _ => emission,
+    };
+    let sampled = match sampled {
+        Some(LightCandidate::Emitter(chosen)) if Some(chosen) == own => None,
+        // Where light is only sampled, its samples have the weight 1.
+        light if indirect.samples_only => light.map(scaled_up),
+        light => light,
+    };
+    CountedLight { emission, own, weighed, sampled }
+}
+
 impl<F: StudentFunctions> Frame<'_, F> {
     /// The linear radiance that arrives along `path`, whose closest hit is `hit`: an unbiased random estimate of all light,
     /// direct and indirect, up to the largest depth. With a limit on the light of a sample it is darkened to that limit.
@@ -89,94 +174,71 @@ impl<F: StudentFunctions> Frame<'_, F> {
         record: &mut impl Record,
     ) -> Vec3 {
         let mut color = Vec3::ZERO;
-        // The direction of a camera ray is certain.
-        let (mut origin, mut pdf) = (path.ray.origin, f32::INFINITY);
-        // Whether the last surface sent the ray on in its diffuse lobe.
-        let mut is_diffuse = false;
-        // The emitter on which the ray starts.
-        let mut left: Option<ChosenEmitter> = None;
+        let mut start =
+            Start { origin: path.ray.origin, pdf: f32::INFINITY, is_diffuse: false, emitter: None };
         loop {
-            let direction = self.unit(path.ray.direction);
             let Some(found) = hit else {
                 record.miss(&path);
-                return color + path.weight * self.background_of_path(indirect, direction, pdf, scratch);
+                return color + path.weight * self.background_of_path(indirect, &path, start.pdf, scratch);
             };
-            // Compute the surface interaction and its material.
-            let (at, number) = self.surface_at(&path, &found, scratch, record);
-            let material = self.material(&path, &found, &at, &mut scratch.tally);
+            // What is here, and which of its light counts?
+            let here = self.vertex(indirect, &path, &start, &found, scratch, record);
             // Add the light of `[[lights]]`, which no ray finds by chance, without ambient light.
-            if !self.plan.effects.materials[at.material].lights.is_empty() {
-                color += path.weight * self.direct_light(&path, number, &at, &material, scratch, record);
+            if !self.plan.effects.materials[here.at.material].lights.is_empty() {
+                let Vertex { at, number, material, .. } = &here;
+                color += path.weight * self.direct_light(&path, *number, at, material, scratch, record);
             }
             // Let the student's `step` collect other light and choose how the path continues.
-            let (bounces, max_depth) = self.depth_of_step(path.depth);
-            let state = PathState { origin, direction, weight: path.weight, bounces, pdf };
-            let may_bounce = path.depth < self.limits.max_depth;
-            let scattering = self.scattering(indirect, direction, &at, &material, may_bounce);
-            let rough = self.rough_lobe(indirect, &at, &material, &scattering);
-            let asks = rough.is_some() || scattering.diffuse != Vec3::ZERO;
-            let (mut light, numbers) =
-                self.numbers_of_step(indirect, &scattering, asks, &path.points, &state, scratch);
-            let is_seen = !(indirect.is_light[at.material] && is_diffuse);
-            let emission = if is_seen { material.emission } else { Vec3::ZERO };
-            let emitter = match emission == Vec3::ZERO {
-                true => None,
-                false => indirect.emitter_at(&found, at.surface.point),
-            };
-            // A point of an emitter does not sample this emitter: it sees none of it, or the inside of a sphere, and whether it
-            // lies inside or outside is a matter of rounding. So a ray from there finds the emitter by chance only.
-            if matches!((light, emitter), (Some(LightCandidate::Emitter(other)), Some(own)) if other == own) {
-                light = None;
-            }
-            let by_chance = emitter.is_some() && emitter == left;
-            left = emitter;
-            let emitter = if by_chance { None } else { emitter };
-            // A ray that grazes the rim of an emitter may hit it although its density is rounded to 0. Its light, which samples of
-            // the emitter count, would count in full: a bright speck.
-            let grazes = |ChosenEmitter { emitter, .. }: &ChosenEmitter| {
-                pdf < f32::INFINITY && F::light_pdf(emitter, origin, direction) == 0.0
-            };
-            let emission = if emitter.as_ref().is_some_and(grazes) { Vec3::ZERO } else { emission };
-            // Where light is only sampled, a diffuse or rough ray adds none of it, and its samples have the weight 1.
-            let is_sampled = indirect.samples_only && emitter.is_some() && pdf < f32::INFINITY;
-            let emission = if is_sampled { Vec3::ZERO } else { emission };
-            if indirect.samples_only {
-                light = light.map(scaled_up);
-            }
-            let vertex = PathVertex { surface: at.surface, scattering, emission, emitter, light };
-            let step = F::step(&state, &vertex, max_depth, &numbers);
+            let step = F::step(&here.state, &here.vertex, here.max_depth, &here.numbers);
             color += step.light;
             // Trace the shadow ray to the light that was sampled, which the diffuse and the rough lobe share.
-            let in_lobe = match (&rough, &light) {
-                (Some(rough), Some(light)) => {
-                    self.light_in_lobe(indirect, rough, light, &vertex, &state, numbers.light)
-                }
-                _ => None,
-            };
+            let in_lobe = self.light_in_lobe(indirect, &here);
             for question in merge_shadow_rays(step.shadow, in_lobe).into_iter().flatten() {
-                color += self.unoccluded(&question, &path, &at, light, scratch, |ray, blocked| {
-                    record.shadow(&path, number, ray, blocked);
+                color += self.unoccluded(&question, &path, &here, scratch, |ray, blocked| {
+                    record.shadow(&path, here.number, ray, blocked);
                 });
             }
             // Continue with the next ray.
             let Some(next) = step.next else {
-                let reflects =
-                    vertex.scattering.diffuse != Vec3::ZERO || !vertex.scattering.secondary.is_empty();
-                if may_bounce && reflects {
+                let Scattering { diffuse, secondary, .. } = &here.vertex.scattering;
+                if here.may_bounce && (*diffuse != Vec3::ZERO || !secondary.is_empty()) {
                     scratch.note(Event::Absorbed);
                 }
                 return color;
             };
-            path = self.next_path(&next, &path, &found, number, &at, &material, scratch);
-            (origin, is_diffuse) = (at.surface.point, next.lobe == Lobe::Diffuse);
-            pdf = match &rough {
-                Some(rough) if next.lobe == Lobe::Reflection => {
-                    rough.pdf(path.ray.direction).unwrap_or(next.pdf)
-                }
-                _ => next.pdf,
-            };
+            (path, start) = self.next_path(&next, &path, &found, &here, scratch);
             hit = self.closest_hit(&path.ray, scratch);
         }
+    }
+
+    /// The surface that `path` hits, how it scatters light, and which of its light counts.
+    #[inline(always)]
+    fn vertex<T: Tally>(
+        &self,
+        indirect: &IndirectLight,
+        path: &Path,
+        start: &Start,
+        hit: &Hit,
+        scratch: &mut Scratch<T>,
+        record: &mut impl Record,
+    ) -> Vertex<'_> {
+        let direction = self.unit(path.ray.direction);
+        let (at, number) = self.surface_at(path, hit, scratch, record);
+        let material = self.material(path, hit, &at, &mut scratch.tally);
+        let (bounces, max_depth) = self.depth_of_step(path.depth);
+        let state =
+            PathState { origin: start.origin, direction, weight: path.weight, bounces, pdf: start.pdf };
+        let may_bounce = path.depth < self.limits.max_depth;
+        let scattering = self.scattering(indirect, direction, &at, &material, may_bounce);
+        let rough = self.rough_lobe(indirect, &at, &material, &scattering);
+        let asks = rough.is_some() || scattering.diffuse != Vec3::ZERO;
+        let (light, numbers) =
+            self.numbers_of_step(indirect, &scattering, asks, &path.points, &state, scratch);
+        let CountedLight { emission, own, weighed, sampled } =
+            counted_light::<F>(indirect, (start, direction), (hit, &at, &material), light);
+        let vertex =
+            PathVertex { surface: at.surface, scattering, emission, emitter: weighed, light: sampled };
+        Vertex { at, number, material, may_bounce, state, vertex, max_depth, numbers, rough, own }
     }
 
     /// The bounces so far and the largest depth, as `step` gets them: both are moved by the same number, so that `survives`,
@@ -227,28 +289,21 @@ impl<F: StudentFunctions> Frame<'_, F> {
         Some(RoughLobe::new(&at.surface, reflected.direction, reflected.weight, material.roughness))
     }
 
-    /// The light that a rough mirror reflects from one sample of `light`, with the random numbers `u` with which `step` samples
-    /// it; the weight is that of multiple importance sampling against the reflected ray.
-    fn light_in_lobe(
-        &self,
-        indirect: &IndirectLight,
-        lobe: &RoughLobe,
-        light: &LightCandidate,
-        vertex: &PathVertex,
-        state: &PathState,
-        u: Vec2,
-    ) -> Option<ShadowQuestion> {
-        let sample = match light {
+    /// The light that a rough mirror reflects from one sample, with the random numbers with which `step` samples the light; the
+    /// weight is that of multiple importance sampling against the reflected ray.
+    fn light_in_lobe(&self, indirect: &IndirectLight, here: &Vertex<'_>) -> Option<ShadowQuestion> {
+        let lobe = here.rough.as_ref()?;
+        let sample = match here.vertex.light.as_ref()? {
             LightCandidate::Environment(sample) => *sample,
             LightCandidate::Emitter(ChosenEmitter { emitter, probability }) => {
-                let sample = F::sample_light(emitter, vertex.surface.point, u)?;
+                let sample = F::sample_light(emitter, here.at.surface.point, here.numbers.light)?;
                 EmitterSample { pdf: probability * sample.pdf, ..sample }
             }
         };
         let EmitterSample { direction, distance, radiance, pdf } = sample;
         let of_lobe = lobe.pdf(direction)?;
         let weight = if indirect.samples_only { 1.0 } else { F::mis_weight(pdf, of_lobe) };
-        let light = state.weight * lobe.reflectance * radiance * (of_lobe / pdf * weight);
+        let light = here.state.weight * lobe.reflectance * radiance * (of_lobe / pdf * weight);
         (light != Vec3::ZERO).then_some(ShadowQuestion { direction, distance, light })
     }
 
@@ -323,15 +378,16 @@ impl<F: StudentFunctions> Frame<'_, F> {
         Some(LightCandidate::Emitter(chosen))
     }
 
-    /// The part of the background that counts for a path which leaves the scene in `direction`, sampled with density `pdf`:
-    /// a sampled environment map has been counted in part.
+    /// The part of the background that counts for a path which leaves the scene in a direction sampled with density `pdf`: a
+    /// sampled environment map has been counted in part.
     fn background_of_path<T: Tally>(
         &self,
         indirect: &IndirectLight,
-        direction: Vec3,
+        path: &Path,
         pdf: f32,
         scratch: &mut Scratch<T>,
     ) -> Vec3 {
+        let direction = self.unit(path.ray.direction);
         let background = self.background(direction, scratch);
         match &indirect.environment {
             None => background,
@@ -345,14 +401,14 @@ impl<F: StudentFunctions> Frame<'_, F> {
         &self,
         question: &ShadowQuestion,
         path: &Path,
-        at: &SurfaceInteraction,
-        light: Option<LightCandidate>,
+        here: &Vertex<'_>,
         scratch: &mut Scratch<T>,
         mut record: impl FnMut(&Ray, bool),
     ) -> Vec3 {
+        let at = &here.at;
         // End the ray before the surface of its own emitter.
         let ShadowQuestion { direction, distance, light: radiance } = *question;
-        let distance = match &light {
+        let distance = match &here.vertex.light {
             Some(LightCandidate::Emitter(chosen)) => {
                 distance_before_emitter(&chosen.emitter.shape, direction, distance, at.surface.point)
             }
@@ -366,20 +422,18 @@ impl<F: StudentFunctions> Frame<'_, F> {
         }
     }
 
-    /// The path along the ray `next`, which the student's `step` has chosen.
-    #[allow(clippy::too_many_arguments)]
+    /// The path along the ray `next`, which the student's `step` has chosen, and where this ray starts.
     fn next_path<T: Tally>(
         &self,
         next: &NextRay,
         path: &Path,
         hit: &Hit,
-        number: usize,
-        at: &SurfaceInteraction,
-        material: &Material,
+        here: &Vertex<'_>,
         scratch: &mut Scratch<T>,
-    ) -> Path {
+    ) -> (Path, Start) {
+        let Vertex { at, material, .. } = here;
         let takes = &self.plan.effects.materials[at.material];
-        let NextRay { lobe, direction, weight, .. } = *next;
+        let NextRay { lobe, direction, weight, mut pdf } = *next;
         let bounce = lobe.bounce();
         let mut secondary = SecondaryRay { bounce, direction, weight };
         let (event, kind) = match lobe {
@@ -402,6 +456,13 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let ray = self.off_surface(at, Ray { time: path.ray.time, ..ray });
         let cone = self.cone_beyond(path, hit, at, material, bounce);
         let (points, depth) = (path.points.beyond_vertex(), path.depth + 1);
-        Path { ray, points, weight: secondary.weight, depth, kind, parent: Some(number), cone }
+        if let Some(rough) = here.rough.as_ref().filter(|_| lobe == Lobe::Reflection) {
+            pdf = rough.pdf(ray.direction).unwrap_or(pdf);
+        }
+        let is_diffuse = lobe == Lobe::Diffuse;
+        (
+            Path { ray, points, weight: secondary.weight, depth, kind, parent: Some(here.number), cone },
+            Start { origin: at.surface.point, pdf, is_diffuse, emitter: here.own },
+        )
     }
 }
