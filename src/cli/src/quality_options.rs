@@ -182,7 +182,7 @@ impl QualityOptions {
         Opt::value("--sampler", "NAME", "Positions of the samples in a pixel.").choices(&names(&SAMPLERS)),
         Opt::value("--light-samples", "N", "Samples per area light and hit."),
         Opt::value("--glossy-samples", "N", "Rays per glossy reflection or refraction."),
-        Opt::value("--texture-filter", "NAME", "How images are read.").choices(&names(&TextureFilter::ALL)),
+        Opt::value("--texture-filter", "NAME", "How images are read.").choices(&names(&TextureFilter::NAMES)),
         Opt::value("--depth", "N", "The most reflections and refractions on a path."),
         Opt::value("--split", "NAME", "Split strategy of the hierarchy.").choices(&names(&SPLITS)),
         Opt::value("--leaf-size", "N", "The most primitives in a leaf."),
@@ -201,7 +201,7 @@ impl QualityOptions {
             "NAME",
             "Whether paths of indirect light find emitters by chance, by samples only, or by both with weights.",
         )
-        .choices(&names(&NextEvent::ALL)),
+        .choices(&names(&NextEvent::NAMES)),
         Opt::value("--roulette-from", "N", "Bounces from which on Russian roulette ends paths."),
         Opt::value("--clamp", "X", "The largest channel of a sample of indirect light; 0 sets no limit."),
         Memory::OPTION,
@@ -215,7 +215,7 @@ impl QualityOptions {
             sampler: given.choice("--sampler", &SAMPLERS)?,
             light_samples: given.number("--light-samples", 0..=65_536)?,
             glossy_samples: given.number("--glossy-samples", 1..=65_536)?,
-            texture_filter: given.choice("--texture-filter", &TextureFilter::ALL)?,
+            texture_filter: given.choice("--texture-filter", &TextureFilter::NAMES)?,
             depth: given.number("--depth", 0..=1000)?,
             split: given.choice("--split", &SPLITS)?,
             leaf_size: given.number("--leaf-size", 1..=u32::MAX)?,
@@ -225,7 +225,7 @@ impl QualityOptions {
             spheres: given.choice("--spheres", &SPHERES)?,
             precision: given.choice("--precision", &PRECISIONS)?,
             min_contribution: given.parsed("--min-contribution", parse_share)?,
-            next_event: given.choice("--next-event", &NextEvent::ALL)?,
+            next_event: given.choice("--next-event", &NextEvent::NAMES)?,
             roulette_from: given.number("--roulette-from", 2..=1000)?,
             clamp: given.parsed("--clamp", parse_clamp)?,
             memory: Memory::read(given)?,
@@ -349,16 +349,19 @@ mod tests {
     #[test]
     fn every_accelerator_has_the_name_of_scene_files() {
         let named = ACCELERATORS.map(|(name, accelerator)| (name.replace('-', "_"), accelerator));
-        assert_eq!(named, Accelerator::names().map(|(name, accelerator)| (name.to_owned(), accelerator)));
+        assert_eq!(named, Accelerator::NAMES.map(|(name, accelerator)| (name.to_owned(), accelerator)));
     }
 
     #[test]
     fn every_method_has_the_name_of_scene_files() {
         assert_eq!(
             TRIANGLES.map(|(name, method)| (name.replace('-', "_"), method)),
-            owned(TriangleMethod::ALL)
+            owned(TriangleMethod::NAMES)
         );
-        assert_eq!(SPHERES.map(|(name, method)| (name.replace('-', "_"), method)), owned(SphereMethod::ALL));
+        assert_eq!(
+            SPHERES.map(|(name, method)| (name.replace('-', "_"), method)),
+            owned(SphereMethod::NAMES)
+        );
     }
 
     fn owned<T: Copy, const N: usize>(all: [(&str, T); N]) -> [(String, T); N] {

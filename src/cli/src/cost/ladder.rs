@@ -152,7 +152,7 @@ impl Parameter {
                 let with = |(name, texture_filter): (&str, _)| {
                     (name.to_owned(), Quality { texture_filter, ..quality })
                 };
-                vec![ladder(TextureFilter::ALL.into_iter().map(with).collect())]
+                vec![ladder(TextureFilter::NAMES.into_iter().map(with).collect())]
             }
             Parameter::SmoothNormals => {
                 needs(effects.calls_for(Effect::SmoothNormals), "no mesh has smooth normals")?;
@@ -166,7 +166,7 @@ impl Parameter {
                 let with = |(name, triangle_method): (&str, _)| {
                     (name.replace('_', " "), Quality { triangle_method, ..quality })
                 };
-                vec![ladder(TriangleMethod::ALL.into_iter().map(with).collect())]
+                vec![ladder(TriangleMethod::NAMES.into_iter().map(with).collect())]
             }
             Parameter::SphereTest => {
                 needs(called.shows_spheres(), "there are no spheres")?;
@@ -177,7 +177,7 @@ impl Parameter {
                 let with = |(name, sphere_method): (&str, _)| {
                     (name.replace('_', " "), Quality { sphere_method, ..quality })
                 };
-                vec![ladder(SphereMethod::ALL.into_iter().map(with).collect())]
+                vec![ladder(SphereMethod::NAMES.into_iter().map(with).collect())]
             }
             Parameter::Precision => {
                 needs(
