@@ -389,7 +389,6 @@ settings! {
     max_depth: u32 = 5, Whole(0..=MAX_DEPTH), "The most reflections and refractions on a path";
     min_contribution: f32 = 0.001, Number(0.0..=1.0), "A ray whose weight is below this in every channel is not traced";
     next_event: NextEvent = NextEvent::On, Name, "With indirect light: how paths find emitters and an environment map";
-    roulette_from: u32 = 3, Whole(2..=MAX_DEPTH), "With indirect light: the number of bounces from which on Russian roulette ends paths";
     clamp: f32 = 0.0, Number(0.0..=f32::MAX), "With indirect light: the largest channel of the light of a sample; 0 sets no limit";
     accelerator: Accelerator = Accelerator::Auto, Name, "The acceleration structure";
     split: Split = Split::SurfaceArea, Name, "Where a bounding volume hierarchy divides its primitives";

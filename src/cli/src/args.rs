@@ -4,6 +4,7 @@
 
 mod given;
 
+use crate::quality_options::renamed;
 pub use given::{Given, chosen, names, whole_number};
 use std::ffi::OsString;
 use std::fmt::{self, Display, Write};
@@ -186,6 +187,10 @@ impl Spec {
     }
 
     fn unknown(&self, name: &str) -> Misuse {
+        let sets = self.all_options().any(|option| option.long == "--set");
+        if let Some(key) = name.strip_prefix("--").filter(|_| sets).and_then(renamed) {
+            return Misuse(format!("`{name}` is now written `--set {key}=VALUE`"));
+        }
         let known: Vec<&str> = self.all_options().map(|option| option.long).collect();
         self.misuse(format!("unexpected option `{name}`{}", did_you_mean(name, &known)))
     }

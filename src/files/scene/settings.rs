@@ -199,8 +199,9 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
 }
 
 fn read(quality: &mut Quality, value: Value) -> Result<(), LoadError> {
-    let unknown = || value.source.unknown(value.span(), "key", value.key, &Quality::KEYS);
-    match quality.field(value.key).ok_or_else(unknown)? {
+    // The caller has refused unknown keys.
+    let Some(field) = quality.field(value.key) else { return Ok(()) };
+    match field {
         Field::Whole(number, range) => *number = value.whole(range)?,
         Field::Number(number, range) => {
             let wanted = match (*range.start(), *range.end()) {
@@ -226,14 +227,18 @@ fn read(quality: &mut Quality, value: Value) -> Result<(), LoadError> {
     Ok(())
 }
 
-/// Sets one setting of `[quality]`, as a command line names it: a name needs no quotes, and `-` stands for `_`.
+/// Sets one setting of `[quality]`, as a command line names it, and returns its key: a name needs no quotes, and `-`
+/// stands for `_`.
 ///
 /// # Errors
 ///
 /// The errors of the reader of scenes: the key is unknown, or the value is of the wrong type or out of range.
-pub fn set(quality: &mut Quality, key: &str, text: &str) -> Result<(), LoadError> {
+pub fn set(quality: &mut Quality, key: &str, text: &str) -> Result<&'static str, LoadError> {
     let source = Source::new(Path::new("--set"), text, Limits::default());
+    let key = key.replace('-', "_");
+    let unknown = || source.unknown(0..0, "key", &key, &Quality::KEYS);
+    let known = Quality::KEYS.into_iter().find(|known| *known == key).ok_or_else(unknown)?;
     let name = || Spanned::new(0..text.len(), DeValue::String(text.replace('-', "_").into()));
     let item = DeValue::parse(text).unwrap_or_else(|_| name());
-    read(quality, Value::alone(&source, &key.replace('-', "_"), &item))
+    read(quality, Value::alone(&source, known, &item)).map(|()| known)
 }

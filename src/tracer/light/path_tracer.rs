@@ -109,9 +109,9 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 color += path.weight * self.direct_light(&path, number, &at, &material, scratch, record);
             }
             // Let the student's `step` collect other light and choose how the path continues.
-            let (bounces, max_depth) = self.depth_of_step(path.depth);
-            let state = PathState { origin, direction, weight: path.weight, bounces, pdf };
-            let may_bounce = path.depth < self.limits.max_depth;
+            let max_depth = self.limits.max_depth;
+            let state = PathState { origin, direction, weight: path.weight, bounces: path.depth, pdf };
+            let may_bounce = path.depth < max_depth;
             let scattering = self.scattering(indirect, direction, &at, &material, may_bounce);
             let rough = self.rough_lobe(indirect, &at, &material, &scattering);
             let asks = rough.is_some() || scattering.diffuse != Vec3::ZERO;
@@ -177,17 +177,6 @@ impl<F: StudentFunctions> Frame<'_, F> {
             };
             hit = self.closest_hit(&path.ray, scratch);
         }
-    }
-
-    /// The bounces so far and the largest depth, as `step` gets them: both are moved by the same number, so that `survives`,
-    /// which begins at a fixed number of bounces, begins where the quality setting says. A camera ray has no bounces.
-    fn depth_of_step(&self, depth: u32) -> (u32, u32) {
-        let from = self.quality().roulette_from;
-        let bounces = match depth {
-            0 => 0,
-            _ => (depth + ROULETTE_BEGINS).saturating_sub(from).max(1),
-        };
-        (bounces, bounces + (self.limits.max_depth - depth))
     }
 
     /// How the surface scatters light that arrives in `direction`; it scatters none at the end of the longest path.

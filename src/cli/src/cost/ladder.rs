@@ -104,24 +104,6 @@ impl Parameter {
                     |(name, next_event): (&str, _)| (name.to_owned(), Quality { next_event, ..quality });
                 vec![ladder(all.into_iter().map(with).collect())]
             }
-            Parameter::RouletteFrom => {
-                needs(indirect, "the scene has no indirect light")?;
-                // From the largest depth on, Russian roulette never ends a path.
-                let mut starts = vec![2, 3, 5, 8, quality.max_depth.max(2), quality.roulette_from];
-                starts.sort_unstable();
-                starts.dedup();
-                let with = |roulette_from: u32| {
-                    let name = match roulette_from >= quality.max_depth {
-                        true => "never".to_owned(),
-                        false => roulette_from.to_string(),
-                    };
-                    (name, Quality { roulette_from, ..quality })
-                };
-                let mut levels: Vec<_> = starts.into_iter().map(with).collect();
-                // All starts from the largest depth on are the same.
-                levels.dedup_by(|one, other| one.0 == other.0);
-                vec![ladder(levels)]
-            }
             Parameter::Clamp => {
                 needs(indirect, "the scene has no indirect light")?;
                 let mut limits = vec![1.0, 10.0, 100.0, quality.clamp];
@@ -301,7 +283,6 @@ mod tests {
             Parameter::Intersection,
             Parameter::GridResolution,
             Parameter::NextEvent,
-            Parameter::RouletteFrom,
             Parameter::Clamp,
         ] {
             assert!(!offered(parameter), "{parameter:?}");

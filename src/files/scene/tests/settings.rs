@@ -39,7 +39,7 @@ fn every_setting_arrives() {
          lens = { aperture = 0.1, focal_distance = 5 }\nshutter = { open = 0.25 }\n\
          [environment]\nbackground = [0, 0.5, 2]\nambient = 0.25\nindirect_light = true\n\
          [quality]\nsamples_per_pixel = 9\nlight_samples = 8\nglossy_samples = 7\ntexture_filter = 'mipmap'\nmax_depth = 0\n\
-         min_contribution = 0\nnext_event = 'only'\nroulette_from = 6\nclamp = 10\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\ncopies = true\nsavings = { skip = false }\nkd_heuristics = { stop_at_overlap = false }\n\
+         min_contribution = 0\nnext_event = 'only'\nclamp = 10\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\ncopies = true\nsavings = { skip = false }\nkd_heuristics = { stop_at_overlap = false }\n\
          triangle_method = 'inside_by_areas'\nsphere_method = 'geometric'\ngrid_resolution = 3\n\
          sampler = 'jittered'\nprecision = 'double'\n",
     );
@@ -64,7 +64,6 @@ fn every_setting_arrives() {
         max_depth: 0,
         min_contribution: 0.0,
         next_event: NextEvent::Only,
-        roulette_from: 6,
         clamp: 10.0,
         accelerator: Accelerator::KdTree,
         split: Split::ObjectMedian,
