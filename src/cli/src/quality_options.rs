@@ -107,8 +107,8 @@ impl QualityOptions {
         Opt::value(
             "--set",
             "KEY=VALUE",
-            "A setting of `[quality]`, with a value as in scene files, such as max_depth=3 or sampler=random; for \
-             several settings write it several times.",
+            "A setting of `[quality]` and its value, as in scene files, such as max_depth=3 or sampler=random; it can \
+             be repeated. The keys:",
         )
         .choices(&Quality::KEYS)
         .many(),
@@ -123,8 +123,7 @@ impl QualityOptions {
             ..QualityOptions::default()
         };
         let mut changes = given.repeated("--set", |text| match text.split_once('=') {
-            Some(("spp", value)) => change("samples_per_pixel", value),
-            Some((key, value)) => change(key.trim(), value.trim()),
+            Some((key, value)) => change(key_of(key.trim()).unwrap_or(key.trim()), value.trim()),
             None => Err("a setting is KEY=VALUE, such as max_depth=3".into()),
         })?;
         changes.extend(given.parsed("--spp", |text| change("samples_per_pixel", text))?);
@@ -197,11 +196,11 @@ pub fn arguments(own: &Quality, wanted: &Quality) -> String {
     own.differences(wanted).into_iter().map(&mut argument).collect()
 }
 
-/// The key of `[quality]` that an earlier name of an option or of a parameter of `cost` stands for.
-pub fn renamed(name: &str) -> Option<&'static str> {
+/// The key of `[quality]` that the short form or the earlier name of an option or of a parameter of `cost` stands for.
+pub fn key_of(name: &str) -> Option<&'static str> {
     let name = name.replace('-', "_");
     let renamed = match name.as_str() {
-        "samples" => "samples_per_pixel",
+        "spp" | "samples" => "samples_per_pixel",
         "depth" => "max_depth",
         "triangles" | "intersection" => "triangle_method",
         "spheres" | "sphere_test" => "sphere_method",
@@ -279,11 +278,13 @@ mod tests {
         ] {
             assert!(why(line).starts_with(message), "{}", why(line));
         }
-        for (old, new) in
-            [("--depth 3", "max_depth"), ("--spheres=geometric", "sphere_method"), ("--clamp", "clamp")]
-        {
-            let name = old.split([' ', '=']).next().unwrap();
-            assert_eq!(why(old), format!("`{name}` is now written `--set {new}=VALUE`"));
+        for (old, new) in [
+            ("--depth 3", "`--depth` is now written `--set max_depth=3`"),
+            ("--spheres=geometric", "`--spheres` is now written `--set sphere_method=geometric`"),
+            ("--clamp", "`--clamp` is now written `--set clamp=VALUE`"),
+            ("--roulette-from 3", "`--roulette-from` is gone: Russian roulette begins at the third bounce"),
+        ] {
+            assert_eq!(why(old), new);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::parameter::Parameter;
 use crate::args::{Argument, Given, Misuse, Opt, Spec, chosen, names};
 use crate::kits::Choice;
-use crate::quality_options::{QualityOptions, Threads, renamed};
+use crate::quality_options::{QualityOptions, Threads, key_of};
 use raykata::scene::Accelerator;
 use std::path::PathBuf;
 
@@ -136,7 +136,7 @@ impl Options {
         Ok(Options {
             scene,
             most: given.number("--most", 2..=16_000_000)?.unwrap_or(12_000_000),
-            turned: given.list("--parameter", |text| match renamed(text) {
+            turned: given.list("--parameter", |text| match key_of(text) {
                 Some(key) if chosen(text, &Parameter::NAMES).is_err() => {
                     Err(format!("it is now called `{key}`"))
                 }
