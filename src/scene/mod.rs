@@ -11,7 +11,8 @@ pub use crate::random::Sampler;
 pub use gamma2::{ColorPlace, Gamma2, GradientColor, MaterialColor};
 pub(crate) use quality::MOST_PRIMITIVES;
 pub use quality::{
-    Accelerator, NextEvent, Precision, Quality, SphereMethod, Split, TextureFilter, TriangleMethod,
+    Accelerator, Field, Named, NextEvent, Precision, Quality, SphereMethod, Split, Switches, TextureFilter,
+    TriangleMethod,
 };
 pub use shown::Shown;
 

@@ -4,6 +4,7 @@ use crate::graph::Savings;
 use crate::partition::KdHeuristics;
 use crate::random::Sampler;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// The acceleration structure that finds the closest hit of a ray. All of them must find the same hit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -58,35 +59,15 @@ pub enum Accelerator {
 impl Accelerator {
     /// Every structure once, so without [`Accelerator::Auto`]: brute force, the volumes of the scene graph, the hierarchies, then the
     /// structures that divide space.
-    pub const ALL: [Accelerator; 18] = [
-        Accelerator::BruteForce,
-        Accelerator::BoundingBoxes,
-        Accelerator::BoundingSpheres,
-        Accelerator::CachedBoundingBoxes,
-        Accelerator::Bvh,
-        Accelerator::BvhBothChildren,
-        Accelerator::CachedBvh,
-        Accelerator::PacketBvh,
-        Accelerator::WideBvh,
-        Accelerator::ReinsertedBvh,
-        Accelerator::StreamBvh,
-        Accelerator::Grid,
-        Accelerator::Octree,
-        Accelerator::OctreeByCells,
-        Accelerator::OctreeByNeighbours,
-        Accelerator::KdTree,
-        Accelerator::Bsp,
-        Accelerator::PolygonBsp,
-    ];
-
-    /// The names of all values in scene files.
-    pub fn names() -> [(&'static str, Accelerator); 19] {
-        let mut names = [(Accelerator::Auto.name(), Accelerator::Auto); 19];
-        for (place, one) in names[1..].iter_mut().zip(Accelerator::ALL) {
-            *place = (one.name(), one);
+    pub const ALL: [Accelerator; Accelerator::NAMES.len() - 1] = {
+        let mut all = [Accelerator::Auto; Accelerator::NAMES.len() - 1];
+        let mut i = 0;
+        while i < all.len() {
+            all[i] = Accelerator::NAMES[i + 1].1;
+            i += 1;
         }
-        names
-    }
+        all
+    };
 
     /// Whether the structure is a bounding volume hierarchy of stage 3, however it is searched, or may be one: then the split and
     /// the leaf size change it.
@@ -104,31 +85,6 @@ impl Accelerator {
     /// Whether the structure is a tree of stage 12 with eight children per node.
     pub fn is_wide(self) -> bool {
         matches!(self, Accelerator::WideBvh | Accelerator::ReinsertedBvh | Accelerator::StreamBvh)
-    }
-
-    /// The name in scene files, in snake case, for example `bounding_boxes`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Accelerator::Auto => "auto",
-            Accelerator::BruteForce => "brute_force",
-            Accelerator::BoundingBoxes => "bounding_boxes",
-            Accelerator::BoundingSpheres => "bounding_spheres",
-            Accelerator::CachedBoundingBoxes => "cached_bounding_boxes",
-            Accelerator::Bvh => "bvh",
-            Accelerator::BvhBothChildren => "bvh_both_children",
-            Accelerator::CachedBvh => "cached_bvh",
-            Accelerator::PacketBvh => "packet_bvh",
-            Accelerator::WideBvh => "wide_bvh",
-            Accelerator::ReinsertedBvh => "reinserted_bvh",
-            Accelerator::StreamBvh => "stream_bvh",
-            Accelerator::Grid => "grid",
-            Accelerator::Octree => "octree",
-            Accelerator::OctreeByCells => "octree_by_cells",
-            Accelerator::OctreeByNeighbours => "octree_by_neighbours",
-            Accelerator::KdTree => "kd_tree",
-            Accelerator::Bsp => "bsp",
-            Accelerator::PolygonBsp => "polygon_bsp",
-        }
     }
 }
 
@@ -176,19 +132,6 @@ pub enum TriangleMethod {
     Watertight,
 }
 
-impl TriangleMethod {
-    /// All methods, with their names in scene files.
-    pub const ALL: [(&str, TriangleMethod); 7] = [
-        ("cramer", TriangleMethod::Cramer),
-        ("gram", TriangleMethod::Gram),
-        ("inside_by_planes", TriangleMethod::InsideByPlanes),
-        ("inside_by_direction", TriangleMethod::InsideByDirection),
-        ("inside_by_areas", TriangleMethod::InsideByAreas),
-        ("choice", TriangleMethod::Choice),
-        ("watertight", TriangleMethod::Watertight),
-    ];
-}
-
 /// Which ray/sphere test is used with [`Precision::Single`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -204,15 +147,6 @@ pub enum SphereMethod {
     StableRoots,
 }
 
-impl SphereMethod {
-    /// All methods, with their names in scene files.
-    pub const ALL: [(&str, SphereMethod); 3] = [
-        ("algebraic", SphereMethod::Algebraic),
-        ("geometric", SphereMethod::Geometric),
-        ("stable_roots", SphereMethod::StableRoots),
-    ];
-}
-
 /// How images are read (stage 7).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -223,12 +157,6 @@ pub enum TextureFilter {
     /// By cone tracing: from smaller copies of the image (mip levels), over the part of the surface that the ray's cone
     /// covers, with 1 to 32 reads per hit. A distant image does not sparkle.
     Mipmap,
-}
-
-impl TextureFilter {
-    /// All filters, with their names in scene files.
-    pub const ALL: [(&str, TextureFilter); 2] =
-        [("bilinear", TextureFilter::Bilinear), ("mipmap", TextureFilter::Mipmap)];
 }
 
 /// With indirect light: how paths find the light of emitters and of an environment map (stage 11). All three give the same
@@ -244,12 +172,6 @@ pub enum NextEvent {
     /// Both, with the weights of multiple importance sampling.
     #[default]
     On,
-}
-
-impl NextEvent {
-    /// All three, with their names in scene files.
-    pub const ALL: [(&str, NextEvent); 3] =
-        [("off", NextEvent::Off), ("only", NextEvent::Only), ("on", NextEvent::On)];
 }
 
 /// Floating-point precision of the ray tests against triangles and spheres (stage 10).
@@ -270,82 +192,212 @@ pub enum Precision {
 /// The most primitives of a flattened scene, unless a caller sets another limit.
 pub(crate) const MOST_PRIMITIVES: u32 = 20_000_000;
 
-/// Every setting that trades accuracy for time. A key that a scene file leaves out keeps its value of
-/// `Quality::default()`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Quality {
-    /// Number of samples per pixel, at least 1; 1 by default.
-    pub samples_per_pixel: u32,
-    /// Where the samples of a pixel lie (stage 6); low discrepancy by default.
-    pub sampler: Sampler,
-    /// Samples per area light and hit (stage 6); 1 by default. With 0 an area light shines from its centre.
-    pub light_samples: u32,
-    /// Rays for each glossy reflection or transmission at a hit on a rough surface, at least 1 (stage 6); 1
-    /// by default.
-    pub glossy_samples: u32,
-    /// How images are read (stage 7); bilinear by default.
-    pub texture_filter: TextureFilter,
-    /// Largest number of reflections and refractions on a path from the camera (stage 5); 5 by default.
-    pub max_depth: u32,
-    /// A secondary ray is not traced if its weight in the pixel is below this in every channel, `0..=1`
-    /// (stage 5); 0.001 by default.
-    pub min_contribution: f32,
-    /// With indirect light: how paths find emitters and an environment map (stage 11); by samples and by chance by default.
-    pub next_event: NextEvent,
-    /// With indirect light: the number of bounces from which on Russian roulette ends paths, at least 2 (stage 11); 3 by
-    /// default. From `max_depth` on it never does.
-    pub roulette_from: u32,
-    /// With indirect light: the largest channel of the light of a sample; a brighter sample is darkened to it, which
-    /// removes bright specks and makes the picture too dark. 0, the default, sets no limit.
-    pub clamp: f32,
-    /// The acceleration structure that finds the closest hit; a bounding volume hierarchy by default.
-    pub accelerator: Accelerator,
-    /// Where a bounding volume hierarchy divides its primitives; by surface area by default.
-    pub split: Split,
-    /// The most primitives in a leaf of a bounding volume hierarchy, at least 1; 4 by default. Trees that
-    /// divide space aim at the same number, and stop earlier where a division does not help.
-    pub leaf_size: u32,
-    /// The ray/triangle test with [`Precision::Single`]; watertight by default.
-    pub triangle_method: TriangleMethod,
-    /// The ray/sphere test with [`Precision::Single`]; algebraic by default.
-    pub sphere_method: SphereMethod,
-    /// Whether the triangles of a mesh are copied for each of its instances, as without stage 8; `false`
-    /// shares one mesh.
-    pub copies: bool,
-    /// Which shortcuts a search of the scene graph takes (stage 8); all by default.
-    pub savings: Savings,
-    /// Floating-point precision of the tests against triangles and spheres (stage 10); single by default.
-    pub precision: Precision,
-    /// Cells of a uniform grid along its longest side (stage 9); 0, the default, takes the number of the
-    /// formula.
-    pub grid_resolution: u32,
-    /// Which heuristics the builder of a kd-tree follows (stage 9); all by default.
-    pub kd_heuristics: KdHeuristics,
+/// A value that is one of a list of names.
+pub trait Named {
+    /// The names of all values, as in scene files.
+    fn names(&self) -> Vec<&'static str>;
+    /// The name of this value.
+    fn name(&self) -> &'static str;
+    /// Replaces this value by the one of this name; an unknown name changes nothing.
+    fn choose(&mut self, name: &str);
 }
 
-impl Default for Quality {
-    fn default() -> Self {
-        Quality {
-            samples_per_pixel: 1,
-            sampler: Sampler::default(),
-            light_samples: 1,
-            glossy_samples: 1,
-            texture_filter: TextureFilter::default(),
-            max_depth: 5,
-            min_contribution: 0.001,
-            next_event: NextEvent::default(),
-            roulette_from: 3,
-            clamp: 0.0,
-            accelerator: Accelerator::default(),
-            split: Split::default(),
-            leaf_size: 4,
-            triangle_method: TriangleMethod::default(),
-            sphere_method: SphereMethod::default(),
-            copies: false,
-            savings: Savings::default(),
-            precision: Precision::default(),
-            grid_resolution: 0,
-            kd_heuristics: KdHeuristics::default(),
+/// Optimisations that are switched on and off one by one; all are on by default.
+pub trait Switches {
+    /// The name of each of them, as in scene files, and whether it is on.
+    fn switches(&mut self) -> Vec<(&'static str, &mut bool)>;
+}
+
+macro_rules! names {
+    ($($type:ident { $($name:literal $value:ident)+ })+) => {$(
+        impl $type {
+            /// Every value with its name in scene files.
+            pub const NAMES: [(&'static str, $type); [$($name),+].len()] = [$(($name, $type::$value)),+];
+
+            /// The name in scene files.
+            pub fn name(self) -> &'static str {
+                match self { $($type::$value => $name),+ }
+            }
+        }
+
+        impl Named for $type {
+            fn names(&self) -> Vec<&'static str> {
+                vec![$($name),+]
+            }
+            fn name(&self) -> &'static str {
+                $type::name(*self)
+            }
+            fn choose(&mut self, name: &str) {
+                match name { $($name => *self = $type::$value,)+ _ => {} }
+            }
+        }
+    )+};
+}
+
+macro_rules! switches {
+    ($($type:ident { $($name:ident)+ })+) => {$(
+        impl Switches for $type {
+            fn switches(&mut self) -> Vec<(&'static str, &mut bool)> {
+                vec![$((stringify!($name), &mut self.$name)),+]
+            }
+        }
+    )+};
+}
+
+names! {
+    Sampler {
+        "center" Center "random" Random "jittered" Jittered "gaussian" Gaussian "low_discrepancy" LowDiscrepancy
+    }
+    TextureFilter { "bilinear" Bilinear "mipmap" Mipmap }
+    NextEvent { "off" Off "only" Only "on" On }
+    Accelerator {
+        "auto" Auto
+        "brute_force" BruteForce
+        "bounding_boxes" BoundingBoxes
+        "bounding_spheres" BoundingSpheres
+        "cached_bounding_boxes" CachedBoundingBoxes
+        "bvh" Bvh
+        "bvh_both_children" BvhBothChildren
+        "cached_bvh" CachedBvh
+        "packet_bvh" PacketBvh
+        "wide_bvh" WideBvh
+        "reinserted_bvh" ReinsertedBvh
+        "stream_bvh" StreamBvh
+        "grid" Grid
+        "octree" Octree
+        "octree_by_cells" OctreeByCells
+        "octree_by_neighbours" OctreeByNeighbours
+        "kd_tree" KdTree
+        "bsp" Bsp
+        "polygon_bsp" PolygonBsp
+    }
+    Split { "object_median" ObjectMedian "spatial_median" SpatialMedian "surface_area" SurfaceArea }
+    TriangleMethod {
+        "cramer" Cramer
+        "gram" Gram
+        "inside_by_planes" InsideByPlanes
+        "inside_by_direction" InsideByDirection
+        "inside_by_areas" InsideByAreas
+        "choice" Choice
+        "watertight" Watertight
+    }
+    SphereMethod { "algebraic" Algebraic "geometric" Geometric "stable_roots" StableRoots }
+    Precision { "single" Single "double" Double }
+}
+
+switches! {
+    Savings { volumes skip sort }
+    KdHeuristics { longest_axis balanced_counts few_straddlers cut_off_empty_space stop_at_overlap }
+}
+
+/// A setting of a [`Quality`] with the values that it may have.
+pub enum Field<'a> {
+    /// A whole number in a closed range.
+    Whole(&'a mut u32, RangeInclusive<u32>),
+    /// A finite number in a closed range.
+    Number(&'a mut f32, RangeInclusive<f32>),
+    /// `true` or `false`.
+    Truth(&'a mut bool),
+    /// One of a list of names.
+    Name(&'a mut dyn Named),
+    /// Several switches.
+    Switches(&'a mut dyn Switches),
+}
+
+impl Field<'_> {
+    /// The value as in scene files, without the quotes of a name.
+    pub fn text(self) -> String {
+        match self {
+            Field::Whole(number, _) => number.to_string(),
+            Field::Number(number, _) => number.to_string(),
+            Field::Truth(truth) => truth.to_string(),
+            Field::Name(name) => name.name().to_owned(),
+            Field::Switches(switches) => {
+                let one = |(name, is_on): (&str, &mut bool)| format!("{name} = {is_on}");
+                let all: Vec<_> = switches.switches().into_iter().map(one).collect();
+                format!("{{ {} }}", all.join(", "))
+            }
         }
     }
+}
+
+/// Makes of the rows of settings, each `key: type = default, values, sentence`, the struct [`Quality`], its default, and the access
+/// to a setting by its key. `values` is a variant of [`Field`] with its range.
+macro_rules! settings {
+    ($($key:ident: $type:ty = $default:expr, $values:ident$(($range:expr))?, $words:literal;)+) => {
+        /// Every setting that trades accuracy for time. A key that a scene file leaves out keeps its value of
+        /// `Quality::default()`.
+        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+        pub struct Quality {$(
+            #[doc = concat!($words, $(" (`", stringify!($range), "`)",)? "; `", stringify!($default), "` by default.")]
+            pub $key: $type,
+        )+}
+
+        impl Default for Quality {
+            fn default() -> Self {
+                Quality { $($key: $default),+ }
+            }
+        }
+
+        impl Quality {
+            /// The keys of all settings, as in scene files.
+            pub const KEYS: [&'static str; [$($words),+].len()] = [$(stringify!($key)),+];
+
+            /// What each setting is, in the order of [`Quality::KEYS`].
+            pub const WORDS: [&'static str; Quality::KEYS.len()] = [$($words),+];
+
+            /// The setting of this key, to be read or changed.
+            pub fn field(&mut self, key: &str) -> Option<Field<'_>> {
+                Some(match key {
+                    $(stringify!($key) => Field::$values(&mut self.$key $(, $range)?),)+
+                    _ => return None,
+                })
+            }
+
+            /// Takes the value of the setting of this key from `other`; an unknown key changes nothing.
+            pub fn take(&mut self, key: &str, other: &Quality) {
+                match key {
+                    $(stringify!($key) => self.$key = other.$key,)+
+                    _ => {}
+                }
+            }
+
+            /// The keys of the settings that differ from those of `other`.
+            pub fn differences(&self, other: &Quality) -> Vec<&'static str> {
+                let differs = [$(self.$key != other.$key),+];
+                Quality::KEYS.into_iter().zip(differs).filter(|(_, differs)| *differs).map(|(key, _)| key).collect()
+            }
+        }
+    };
+}
+
+/// The largest number of samples: beyond a million, the rounding error of their sum in `f32` exceeds the
+/// contribution of one more.
+const MAX_SAMPLES: u32 = 1 << 20;
+/// The largest number of reflections and refractions on a path: after that many, a mirror that reflects 99.3 % has left a
+/// thousandth of the light, which is the default of `min_contribution`.
+const MAX_DEPTH: u32 = 1000;
+/// The largest number of cells along a side of a grid: 1024^3 cells of 4 bytes fill 4 GiB.
+const MAX_GRID: u32 = 1024;
+
+settings! {
+    samples_per_pixel: u32 = 1, Whole(1..=MAX_SAMPLES), "Samples per pixel";
+    sampler: Sampler = Sampler::LowDiscrepancy, Name, "Positions of the samples in a pixel";
+    light_samples: u32 = 1, Whole(0..=MAX_SAMPLES), "Samples per area light and hit; with 0 an area light shines from its centre";
+    glossy_samples: u32 = 1, Whole(1..=MAX_SAMPLES), "Rays per glossy reflection or refraction at a hit";
+    texture_filter: TextureFilter = TextureFilter::Bilinear, Name, "How images are read";
+    max_depth: u32 = 5, Whole(0..=MAX_DEPTH), "The most reflections and refractions on a path";
+    min_contribution: f32 = 0.001, Number(0.0..=1.0), "A ray whose weight is below this in every channel is not traced";
+    next_event: NextEvent = NextEvent::On, Name, "With indirect light: how paths find emitters and an environment map";
+    clamp: f32 = 0.0, Number(0.0..=f32::MAX), "With indirect light: the largest channel of the light of a sample; 0 sets no limit";
+    accelerator: Accelerator = Accelerator::Auto, Name, "The acceleration structure";
+    split: Split = Split::SurfaceArea, Name, "Where a bounding volume hierarchy divides its primitives";
+    leaf_size: u32 = 4, Whole(1..=u32::MAX), "The most primitives of a leaf";
+    triangle_method: TriangleMethod = TriangleMethod::Watertight, Name, "The ray/triangle test in single precision";
+    sphere_method: SphereMethod = SphereMethod::Algebraic, Name, "The ray/sphere test in single precision";
+    copies: bool = false, Truth, "Whether a mesh with several instances is copied for each of them";
+    savings: Savings = Savings::default(), Switches, "Optimisations of the search of the scene graph";
+    precision: Precision = Precision::Single, Name, "Precision of tests against triangles and spheres";
+    grid_resolution: u32 = 0, Whole(0..=MAX_GRID), "Cells of a grid along its longest side; 0 takes the number of the formula";
+    kd_heuristics: KdHeuristics = KdHeuristics::default(), Switches, "Heuristics that the builder of a kd-tree follows";
 }

@@ -4,6 +4,7 @@
 
 mod given;
 
+use crate::quality_options::key_of;
 pub use given::{Given, chosen, names, whole_number};
 use std::ffi::OsString;
 use std::fmt::{self, Display, Write};
@@ -165,7 +166,9 @@ impl Spec {
                 None => (text.as_str(), None),
             };
             let Some(option) = self.all_options().find(|option| option.is(name)) else {
-                return Err(self.unknown(name));
+                let value = joined.or_else(|| words.next()).map(|value| value.to_string_lossy().into_owned());
+                let value = value.filter(|value| !value.starts_with("--")).unwrap_or("VALUE".into());
+                return Err(self.unknown(name, &value));
             };
             let name = option.long;
             if !option.many && given.options.iter().any(|(known, _)| known.long == name) {
@@ -185,7 +188,15 @@ impl Spec {
         Ok(Read::Given(given))
     }
 
-    fn unknown(&self, name: &str) -> Misuse {
+    fn unknown(&self, name: &str, value: &str) -> Misuse {
+        if self.all_options().any(|option| option.long == "--set") {
+            if name == "--roulette-from" {
+                return Misuse(format!("`{name}` is gone: Russian roulette begins at the third bounce"));
+            }
+            if let Some(key) = name.strip_prefix("--").and_then(key_of) {
+                return Misuse(format!("`{name}` is now written `--set {key}={value}`"));
+            }
+        }
         let known: Vec<&str> = self.all_options().map(|option| option.long).collect();
         self.misuse(format!("unexpected option `{name}`{}", did_you_mean(name, &known)))
     }

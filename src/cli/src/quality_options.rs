@@ -3,11 +3,9 @@
 use crate::args::{Given, Misuse, Opt, names};
 use anyhow::{Result, anyhow};
 use raykata::film::ToneCurve;
-use raykata::scene::load::Limits;
-use raykata::scene::{
-    Accelerator, NextEvent, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter,
-    TriangleMethod,
-};
+use raykata::scene::error::LoadError;
+use raykata::scene::load::{Limits, set};
+use raykata::scene::{Accelerator, Field, Quality, Scene};
 
 /// The number of threads that render, the same for all commands.
 pub struct Threads(u16);
@@ -86,91 +84,17 @@ impl ToneOptions {
     }
 }
 
-/// Parameters that trade accuracy for time. Those that are not given keep the value of the scene.
+/// The size of the picture and the settings of `[quality]`. Those that are not given keep the value of the scene.
 #[derive(Default)]
 pub struct QualityOptions {
     size: Option<(u32, u32)>,
-    spp: Option<u32>,
-    sampler: Option<Sampler>,
-    light_samples: Option<u32>,
-    glossy_samples: Option<u32>,
-    texture_filter: Option<TextureFilter>,
-    depth: Option<u32>,
-    split: Option<Split>,
-    leaf_size: Option<u32>,
-    accelerator: Option<Accelerator>,
-    grid_resolution: Option<u32>,
-    triangles: Option<TriangleMethod>,
-    spheres: Option<SphereMethod>,
-    precision: Option<Precision>,
-    min_contribution: Option<f32>,
-    next_event: Option<NextEvent>,
-    roulette_from: Option<u32>,
-    clamp: Option<f32>,
+    /// The settings that are given, and their keys.
+    wanted: Quality,
+    keys: Vec<&'static str>,
     memory: Memory,
 }
 
-/// The samplers by the names of scene files, with `-` in place of `_`. The other lists use the same names.
-pub(crate) const SAMPLERS: [(&str, Sampler); 5] = [
-    ("center", Sampler::Center),
-    ("random", Sampler::Random),
-    ("jittered", Sampler::Jittered),
-    ("gaussian", Sampler::Gaussian),
-    ("low-discrepancy", Sampler::LowDiscrepancy),
-];
-
-const SPLITS: [(&str, Split); 3] = [
-    ("object-median", Split::ObjectMedian),
-    ("spatial-median", Split::SpatialMedian),
-    ("surface-area", Split::SurfaceArea),
-];
-
-pub(crate) const ACCELERATORS: [(&str, Accelerator); 19] = [
-    ("auto", Accelerator::Auto),
-    ("brute-force", Accelerator::BruteForce),
-    ("bounding-boxes", Accelerator::BoundingBoxes),
-    ("bounding-spheres", Accelerator::BoundingSpheres),
-    ("cached-bounding-boxes", Accelerator::CachedBoundingBoxes),
-    ("bvh", Accelerator::Bvh),
-    ("bvh-both-children", Accelerator::BvhBothChildren),
-    ("cached-bvh", Accelerator::CachedBvh),
-    ("packet-bvh", Accelerator::PacketBvh),
-    ("wide-bvh", Accelerator::WideBvh),
-    ("reinserted-bvh", Accelerator::ReinsertedBvh),
-    ("stream-bvh", Accelerator::StreamBvh),
-    ("grid", Accelerator::Grid),
-    ("octree", Accelerator::Octree),
-    ("octree-by-cells", Accelerator::OctreeByCells),
-    ("octree-by-neighbours", Accelerator::OctreeByNeighbours),
-    ("kd-tree", Accelerator::KdTree),
-    ("bsp", Accelerator::Bsp),
-    ("polygon-bsp", Accelerator::PolygonBsp),
-];
-
-const TRIANGLES: [(&str, TriangleMethod); 7] = [
-    ("cramer", TriangleMethod::Cramer),
-    ("gram", TriangleMethod::Gram),
-    ("inside-by-planes", TriangleMethod::InsideByPlanes),
-    ("inside-by-direction", TriangleMethod::InsideByDirection),
-    ("inside-by-areas", TriangleMethod::InsideByAreas),
-    ("choice", TriangleMethod::Choice),
-    ("watertight", TriangleMethod::Watertight),
-];
-
-const SPHERES: [(&str, SphereMethod); 3] = [
-    ("algebraic", SphereMethod::Algebraic),
-    ("geometric", SphereMethod::Geometric),
-    ("stable-roots", SphereMethod::StableRoots),
-];
-
-const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
-
 impl QualityOptions {
-    /// The accelerator, if one is given.
-    pub fn accelerator(&self) -> Option<Accelerator> {
-        self.accelerator
-    }
-
     /// The options.
     pub const OPTIONS: &[Opt] = &[
         Opt::value(
@@ -179,57 +103,44 @@ impl QualityOptions {
             "Size in pixels, such as 640x360 [default: the scene's, as for all below].",
         ),
         Opt::value("--spp", "N", "Samples per pixel."),
-        Opt::value("--sampler", "NAME", "Positions of the samples in a pixel.").choices(&names(&SAMPLERS)),
-        Opt::value("--light-samples", "N", "Samples per area light and hit."),
-        Opt::value("--glossy-samples", "N", "Rays per glossy reflection or refraction."),
-        Opt::value("--texture-filter", "NAME", "How images are read.").choices(&names(&TextureFilter::ALL)),
-        Opt::value("--depth", "N", "The most reflections and refractions on a path."),
-        Opt::value("--split", "NAME", "Split strategy of the hierarchy.").choices(&names(&SPLITS)),
-        Opt::value("--leaf-size", "N", "The most primitives in a leaf."),
-        Opt::value("--accelerator", "NAME", "Acceleration structure.").choices(&names(&ACCELERATORS)),
+        Opt::value("--accelerator", "NAME", "Acceleration structure.").choices(&names(&Accelerator::NAMES)),
         Opt::value(
-            "--grid-resolution",
-            "N",
-            "Cells of a grid along its longest side; 0 takes the number of the formula.",
-        ),
-        Opt::value("--triangles", "NAME", "Ray/triangle test.").choices(&names(&TRIANGLES)),
-        Opt::value("--spheres", "NAME", "Ray/sphere test.").choices(&names(&SPHERES)),
-        Opt::value("--precision", "NAME", "Precision of ray/shape tests.").choices(&names(&PRECISIONS)),
-        Opt::value("--min-contribution", "X", "Weight below which rays are not traced, 0 to 1."),
-        Opt::value(
-            "--next-event",
-            "NAME",
-            "Whether paths of indirect light find emitters by chance, by samples only, or by both with weights.",
+            "--set",
+            "KEY=VALUE",
+            "A setting of `[quality]` and its value, as in scene files, such as max_depth=3 or sampler=random; it can \
+             be repeated. The keys:",
         )
-        .choices(&names(&NextEvent::ALL)),
-        Opt::value("--roulette-from", "N", "Bounces from which on Russian roulette ends paths."),
-        Opt::value("--clamp", "X", "The largest channel of a sample of indirect light; 0 sets no limit."),
+        .choices(&Quality::KEYS)
+        .many(),
         Memory::OPTION,
     ];
 
     /// Reads the options.
     pub fn read(given: &Given) -> Result<QualityOptions, Misuse> {
-        Ok(QualityOptions {
+        let mut options = QualityOptions {
             size: given.parsed("--size", parse_size)?,
-            spp: given.number("--spp", 1..=65_536)?,
-            sampler: given.choice("--sampler", &SAMPLERS)?,
-            light_samples: given.number("--light-samples", 0..=65_536)?,
-            glossy_samples: given.number("--glossy-samples", 1..=65_536)?,
-            texture_filter: given.choice("--texture-filter", &TextureFilter::ALL)?,
-            depth: given.number("--depth", 0..=1000)?,
-            split: given.choice("--split", &SPLITS)?,
-            leaf_size: given.number("--leaf-size", 1..=u32::MAX)?,
-            accelerator: given.choice("--accelerator", &ACCELERATORS)?,
-            grid_resolution: given.number("--grid-resolution", 0..=1024)?,
-            triangles: given.choice("--triangles", &TRIANGLES)?,
-            spheres: given.choice("--spheres", &SPHERES)?,
-            precision: given.choice("--precision", &PRECISIONS)?,
-            min_contribution: given.parsed("--min-contribution", parse_share)?,
-            next_event: given.choice("--next-event", &NextEvent::ALL)?,
-            roulette_from: given.number("--roulette-from", 2..=1000)?,
-            clamp: given.parsed("--clamp", parse_clamp)?,
             memory: Memory::read(given)?,
-        })
+            ..QualityOptions::default()
+        };
+        let mut changes = given.repeated("--set", |text| match text.split_once('=') {
+            Some((key, value)) => change(key_of(key.trim()).unwrap_or(key.trim()), value.trim()),
+            None => Err("a setting is KEY=VALUE, such as max_depth=3".into()),
+        })?;
+        changes.extend(given.parsed("--spp", |text| change("samples_per_pixel", text))?);
+        changes.extend(given.parsed("--accelerator", |text| change("accelerator", text))?);
+        for (key, quality) in changes {
+            if options.keys.contains(&key) {
+                return Err(given.misuse(format!("`{key}` is given twice")));
+            }
+            options.wanted.take(key, &quality);
+            options.keys.push(key);
+        }
+        Ok(options)
+    }
+
+    /// The accelerator, if one is given.
+    pub fn accelerator(&self) -> Option<Accelerator> {
+        self.keys.contains(&"accelerator").then_some(self.wanted.accelerator)
     }
 
     /// The limits for a scene.
@@ -244,7 +155,7 @@ impl QualityOptions {
 
     /// Whether a number of samples per pixel was given.
     pub fn names_samples(&self) -> bool {
-        self.spp.is_some()
+        self.keys.contains(&"samples_per_pixel")
     }
 
     /// Sets the given parameters in the scene. Fails if a picture of the given size needs more memory than the limit.
@@ -253,72 +164,54 @@ impl QualityOptions {
             self.limits().check_film(width, height).map_err(|message| anyhow!(message))?;
             (scene.film.width, scene.film.height) = (width, height);
         }
-        let quality = &mut scene.quality;
-        quality.samples_per_pixel = self.spp.unwrap_or(quality.samples_per_pixel);
-        quality.sampler = self.sampler.unwrap_or(quality.sampler);
-        quality.light_samples = self.light_samples.unwrap_or(quality.light_samples);
-        quality.glossy_samples = self.glossy_samples.unwrap_or(quality.glossy_samples);
-        quality.texture_filter = self.texture_filter.unwrap_or(quality.texture_filter);
-        quality.max_depth = self.depth.unwrap_or(quality.max_depth);
-        quality.leaf_size = self.leaf_size.unwrap_or(quality.leaf_size);
-        quality.split = self.split.unwrap_or(quality.split);
-        quality.accelerator = self.accelerator.unwrap_or(quality.accelerator);
-        quality.grid_resolution = self.grid_resolution.unwrap_or(quality.grid_resolution);
-        quality.triangle_method = self.triangles.unwrap_or(quality.triangle_method);
-        quality.sphere_method = self.spheres.unwrap_or(quality.sphere_method);
-        quality.precision = self.precision.unwrap_or(quality.precision);
-        quality.min_contribution = self.min_contribution.unwrap_or(quality.min_contribution);
-        quality.next_event = self.next_event.unwrap_or(quality.next_event);
-        quality.roulette_from = self.roulette_from.unwrap_or(quality.roulette_from);
-        quality.clamp = self.clamp.unwrap_or(quality.clamp);
+        for key in &self.keys {
+            scene.quality.take(key, &self.wanted);
+        }
         Ok(())
     }
 }
 
-/// The options that change `own` to `wanted`, for the parameters that differ.
+/// The key of a setting and settings with its value; fails with the message of the reader of scenes.
+fn change(key: &str, text: &str) -> Result<(&'static str, Quality), String> {
+    let mut quality = Quality::default();
+    match set(&mut quality, key, text) {
+        Ok(key) => Ok((key, quality)),
+        Err(LoadError { message, help: Some(help), .. }) => Err(format!("{message}\nhelp: {help}")),
+        Err(LoadError { message, .. }) => Err(message),
+    }
+}
+
+/// The options that change `own` to `wanted`, for the settings that differ.
 pub fn arguments(own: &Quality, wanted: &Quality) -> String {
-    let values = |quality: &Quality| {
-        let named = |value: serde_json::Result<serde_json::Value>| {
-            let value = value.unwrap_or_default();
-            value.as_str().map_or_else(|| value.to_string(), |name| name.replace('_', "-"))
-        };
-        [
-            ("--spp", quality.samples_per_pixel.to_string()),
-            ("--sampler", named(serde_json::to_value(quality.sampler))),
-            ("--light-samples", quality.light_samples.to_string()),
-            ("--glossy-samples", quality.glossy_samples.to_string()),
-            ("--texture-filter", named(serde_json::to_value(quality.texture_filter))),
-            ("--depth", quality.max_depth.to_string()),
-            ("--min-contribution", quality.min_contribution.to_string()),
-            ("--next-event", named(serde_json::to_value(quality.next_event))),
-            ("--roulette-from", quality.roulette_from.to_string()),
-            ("--clamp", quality.clamp.to_string()),
-            ("--triangles", named(serde_json::to_value(quality.triangle_method))),
-            ("--spheres", named(serde_json::to_value(quality.sphere_method))),
-            ("--precision", named(serde_json::to_value(quality.precision))),
-            ("--accelerator", named(serde_json::to_value(quality.accelerator))),
-            ("--split", named(serde_json::to_value(quality.split))),
-            ("--leaf-size", quality.leaf_size.to_string()),
-            ("--grid-resolution", quality.grid_resolution.to_string()),
-        ]
+    let mut texts = *wanted;
+    let mut argument = |key| {
+        let text = texts.field(key).map_or(String::new(), Field::text);
+        match key {
+            "samples_per_pixel" => format!(" --spp {text}"),
+            "accelerator" => format!(" --accelerator {text}"),
+            _ if text.contains(' ') => format!(" --set '{key}={text}'"),
+            _ => format!(" --set {key}={text}"),
+        }
     };
-    let differ = values(own).into_iter().zip(values(wanted)).filter(|(own, wanted)| own != wanted);
-    differ.map(|(_, (name, value))| format!(" {name} {value}")).collect()
+    own.differences(wanted).into_iter().map(&mut argument).collect()
+}
+
+/// The key of `[quality]` that the short form or the earlier name of an option or of a parameter of `cost` stands for.
+pub fn key_of(name: &str) -> Option<&'static str> {
+    let name = name.replace('-', "_");
+    let renamed = match name.as_str() {
+        "spp" | "samples" => "samples_per_pixel",
+        "depth" => "max_depth",
+        "triangles" | "intersection" => "triangle_method",
+        "spheres" | "sphere_test" => "sphere_method",
+        other => other,
+    };
+    Quality::KEYS.into_iter().find(|key| *key == renamed)
 }
 
 fn parse_exposure(text: &str) -> Result<f32, String> {
     let stops = text.parse().ok().filter(|stops| (-100.0..=100.0).contains(stops));
     stops.ok_or_else(|| "an exposure is a number of stops from -100 to 100, such as -0.5".into())
-}
-
-fn parse_clamp(text: &str) -> Result<f32, String> {
-    let limit = text.parse().ok().filter(|limit: &f32| limit.is_finite() && *limit >= 0.0);
-    limit.ok_or_else(|| "a limit of light is a number of at least 0, such as 10".into())
-}
-
-fn parse_share(text: &str) -> Result<f32, String> {
-    let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
-    share.ok_or_else(|| "a weight is a number from 0 to 1, such as 0.001".into())
 }
 
 /// The longest side of a picture, as in scene files.
@@ -341,29 +234,11 @@ pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), String> {
 mod tests {
     use super::*;
     use crate::args::{Read, Spec};
+    use raykata::scene::{NextEvent, Sampler};
     use std::ffi::OsString;
 
     static LINE: Spec =
         Spec { name: "render", about: "", arguments: &[], options: &[QualityOptions::OPTIONS] };
-
-    #[test]
-    fn every_accelerator_has_the_name_of_scene_files() {
-        let named = ACCELERATORS.map(|(name, accelerator)| (name.replace('-', "_"), accelerator));
-        assert_eq!(named, Accelerator::names().map(|(name, accelerator)| (name.to_owned(), accelerator)));
-    }
-
-    #[test]
-    fn every_method_has_the_name_of_scene_files() {
-        assert_eq!(
-            TRIANGLES.map(|(name, method)| (name.replace('-', "_"), method)),
-            owned(TriangleMethod::ALL)
-        );
-        assert_eq!(SPHERES.map(|(name, method)| (name.replace('-', "_"), method)), owned(SphereMethod::ALL));
-    }
-
-    fn owned<T: Copy, const N: usize>(all: [(&str, T); N]) -> [(String, T); N] {
-        all.map(|(name, one)| (name.to_owned(), one))
-    }
 
     #[test]
     fn arguments_turn_every_parameter() {
@@ -374,31 +249,42 @@ mod tests {
         let wanted = Quality {
             samples_per_pixel: 343,
             sampler: Sampler::Jittered,
-            light_samples: 7,
-            glossy_samples: 3,
-            texture_filter: TextureFilter::Mipmap,
-            max_depth: 9,
             min_contribution: 0.03,
             next_event: NextEvent::Only,
-            roulette_from: 8,
             clamp: 10.0,
-            triangle_method: TriangleMethod::InsideByDirection,
-            sphere_method: SphereMethod::StableRoots,
-            precision: Precision::Double,
             accelerator: Accelerator::OctreeByCells,
-            split: Split::SpatialMedian,
             leaf_size: 8,
-            grid_resolution: 64,
             ..own
         };
         let line = arguments(&own, &wanted);
-        assert!(line.starts_with(" --spp 343 --sampler jittered --light-samples 7"), "{line}");
-        let Read::Given(given) = LINE.read(line.split_whitespace().map(OsString::from)).unwrap() else {
-            panic!("help was requested");
+        assert!(line.starts_with(" --spp 343 --set sampler=jittered --set min_contribution=0.03"), "{line}");
+        let read = |line: &str| match LINE.read(line.split_whitespace().map(OsString::from)) {
+            Ok(Read::Given(given)) => QualityOptions::read(&given),
+            Ok(Read::Help(help)) => panic!("{help}"),
+            Err(why) => Err(why),
         };
-        QualityOptions::read(&given).unwrap().apply(&mut scene).unwrap();
+        read(&line).unwrap().apply(&mut scene).unwrap();
         assert_eq!(scene.quality, wanted);
         assert_eq!(arguments(&own, &own), "");
-        assert!(parse_share("1.5").is_err() && parse_share("NaN").is_err() && parse_share("some").is_err());
+        let why = |line: &str| read(line).map(|_| ()).unwrap_err().to_string();
+        for (line, message) in [
+            (
+                "--set spp=0",
+                "`--set spp=0`: `samples_per_pixel` must be a whole number from 1 to 1048576, but is 0\n",
+            ),
+            ("--set max-depth", "`--set max-depth`: a setting is KEY=VALUE, such as max_depth=3\n"),
+            ("--set sampler=center --set sampler=random", "`sampler` is given twice\n"),
+            ("--spp 4 --set samples-per-pixel=8", "`samples_per_pixel` is given twice\n"),
+        ] {
+            assert!(why(line).starts_with(message), "{}", why(line));
+        }
+        for (old, new) in [
+            ("--depth 3", "`--depth` is now written `--set max_depth=3`"),
+            ("--spheres=geometric", "`--spheres` is now written `--set sphere_method=geometric`"),
+            ("--clamp", "`--clamp` is now written `--set clamp=VALUE`"),
+            ("--roulette-from 3", "`--roulette-from` is gone: Russian roulette begins at the third bounce"),
+        ] {
+            assert_eq!(why(old), new);
+        }
     }
 }

@@ -6,7 +6,7 @@ use crate::caption;
 use crate::compare::with_edges;
 use crate::kits::{Choice, Need, Source, root};
 use crate::picture_file::write_png;
-use crate::quality_options::{QualityOptions, SAMPLERS, ToneOptions};
+use crate::quality_options::{QualityOptions, ToneOptions};
 use crate::report::{Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result};
 use raykata::film::Film;
@@ -34,7 +34,7 @@ pub static SPEC: Spec = Spec {
             )
             .many(),
             Opt::value("--samplers", "LIST", "Instead of depths: the samplers, one picture each.")
-                .choices(&names(&SAMPLERS))
+                .choices(&names(&Sampler::NAMES))
                 .many(),
             Opt::value(
                 "--levels",
@@ -76,7 +76,7 @@ impl Options {
         Ok(Options {
             scene: given.required(0)?.into(),
             depths,
-            samplers: given.choices("--samplers", &SAMPLERS)?,
+            samplers: given.choices("--samplers", &Sampler::NAMES)?,
             levels: given.list("--levels", |text| whole_number(text, &(0..=1000)))?,
             quality: QualityOptions::read(given)?,
             tone: ToneOptions::read(given)?,
@@ -166,8 +166,7 @@ fn pictures(options: &Options, scene: &Scene) -> Vec<Picture> {
         return options.depths.iter().map(of).collect();
     }
     let named = |sampler: &Sampler| {
-        let name = SAMPLERS.iter().find(|(_, one)| one == sampler).map_or("", |(name, _)| name);
-        picture(name.to_owned(), with(&|quality| quality.sampler = *sampler))
+        picture(sampler.name().replace('_', "-"), with(&|quality| quality.sampler = *sampler))
     };
     options.samplers.iter().map(named).collect()
 }

@@ -24,6 +24,7 @@ use super::error::LoadError;
 use crate::scene::Scene;
 pub use limits::Limits;
 use reader::{Source, Table};
+pub use settings::set;
 use std::io::ErrorKind;
 use std::path::Path;
 

@@ -155,6 +155,11 @@ pub(crate) struct Value<'a> {
 }
 
 impl<'a> Value<'a> {
+    /// The value of a source that holds nothing else.
+    pub fn alone(source: &'a Source<'a>, key: &'a str, item: &'a Spanned<DeValue<'a>>) -> Value<'a> {
+        Value { source, key, place: None, item }
+    }
+
     /// The TOML value without its place in the file.
     pub fn item(&self) -> &'a DeValue<'a> {
         self.item.get_ref()

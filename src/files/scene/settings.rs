@@ -1,31 +1,23 @@
 //! The tables that occur at most once in a scene: `film`, `camera`, `environment` and `quality`.
 
-use super::reader::{Table, Value};
+use super::limits::Limits;
+use super::reader::{Source, Table, Value};
 use super::words::ENCODINGS;
 use super::{files, textures};
 use crate::camera::{Camera, Lens, Shutter};
 use crate::files::error::LoadError;
 use crate::film::ToneCurve;
-use crate::graph::Savings;
 use crate::material::{Texture, Wrap};
-use crate::partition::KdHeuristics;
 use crate::scene::{
-    Accelerator, Background, ColorPlace, EnvironmentMap, FilmSettings, Gradient, GradientColor, NextEvent,
-    Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
+    Background, ColorPlace, EnvironmentMap, Field, FilmSettings, Gradient, GradientColor, Quality,
 };
 use glam::Vec3;
+use std::path::Path;
+use toml::Spanned;
+use toml::de::DeValue;
 
 /// The largest width or height of a picture, in pixels.
 const MAX_SIDE: u32 = 65_536;
-/// The largest number of samples: beyond a million, the rounding error of their sum in `f32` exceeds the
-/// contribution of one more.
-const MAX_SAMPLES: u32 = 1 << 20;
-/// The largest number of reflections and refractions on a path: after that many, a mirror that reflects 99.3 % has left a
-/// thousandth of the light, which is the default of `min_contribution`.
-const MAX_DEPTH: u32 = 1000;
-/// The largest number of cells along a side of a grid: 1024^3 cells of 4 bytes fill 4 GiB.
-const MAX_GRID: u32 = 1024;
-
 /// The film of `[film]`, 640 by 360 pixels in sRGB where nothing else is given; fails if a value is out of
 /// range or the picture needs more memory than the limit.
 pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
@@ -194,97 +186,59 @@ fn background(value: Value, textures: &mut Vec<Texture>) -> Result<Background, L
     Ok(Background::Map(EnvironmentMap { texture: textures.len() - 1, rotation, scale }))
 }
 
-const QUALITY_KEYS: [&str; 20] = [
-    "samples_per_pixel",
-    "sampler",
-    "light_samples",
-    "glossy_samples",
-    "texture_filter",
-    "max_depth",
-    "min_contribution",
-    "next_event",
-    "roulette_from",
-    "clamp",
-    "accelerator",
-    "savings",
-    "copies",
-    "split",
-    "leaf_size",
-    "triangle_method",
-    "sphere_method",
-    "precision",
-    "grid_resolution",
-    "kd_heuristics",
-];
-
 /// The settings of `[quality]`, with `Quality::default()` for keys that are missing; fails if a value is out
 /// of range.
 pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
     let mut quality = Quality::default();
-    let Some(value) = value else { return Ok(quality) };
-    for value in value.table(&QUALITY_KEYS)?.values() {
-        match value.key {
-            "samples_per_pixel" => quality.samples_per_pixel = value.whole(1..=MAX_SAMPLES)?,
-            "light_samples" => quality.light_samples = value.whole(0..=MAX_SAMPLES)?,
-            "glossy_samples" => quality.glossy_samples = value.whole(1..=MAX_SAMPLES)?,
-            "texture_filter" => {
-                quality.texture_filter = value.choice(&TextureFilter::ALL)?;
-            }
-            "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
-            "min_contribution" => quality.min_contribution = value.share()?,
-            "next_event" => quality.next_event = value.choice(&NextEvent::ALL)?,
-            "roulette_from" => quality.roulette_from = value.whole(2..=MAX_DEPTH)?,
-            "clamp" => quality.clamp = value.not_negative()?,
-            "accelerator" => {
-                quality.accelerator = value.choice(&Accelerator::names())?;
-            }
-            "copies" => quality.copies = value.truth()?,
-            "savings" => quality.savings = savings(value)?,
-            "kd_heuristics" => quality.kd_heuristics = kd_heuristics(value)?,
-            "sampler" => quality.sampler = value.choice(&SAMPLERS)?,
-            "precision" => quality.precision = value.choice(&PRECISIONS)?,
-            "split" => quality.split = value.choice(&SPLITS)?,
-            "leaf_size" => quality.leaf_size = value.whole(1..=u32::MAX)?,
-            "triangle_method" => quality.triangle_method = value.choice(&TriangleMethod::ALL)?,
-            "sphere_method" => quality.sphere_method = value.choice(&SphereMethod::ALL)?,
-            _ => quality.grid_resolution = value.whole(0..=MAX_GRID)?,
+    if let Some(value) = value {
+        for value in value.table(&Quality::KEYS)?.values() {
+            read(&mut quality, value)?;
         }
     }
     Ok(quality)
 }
 
-fn savings(value: Value) -> Result<Savings, LoadError> {
-    let table = value.table(&["volumes", "skip", "sort"])?;
-    let wanted = |key: &str| table.get(key).map_or(Ok(true), |wanted| wanted.truth());
-    Ok(Savings { volumes: wanted("volumes")?, skip: wanted("skip")?, sort: wanted("sort")? })
+fn read(quality: &mut Quality, value: Value) -> Result<(), LoadError> {
+    // The caller has refused unknown keys.
+    let Some(field) = quality.field(value.key) else { return Ok(()) };
+    match field {
+        Field::Whole(number, range) => *number = value.whole(range)?,
+        Field::Number(number, range) => {
+            let wanted = match (*range.start(), *range.end()) {
+                (least, f32::MAX) => format!("at least {least}"),
+                (least, most) => format!("from {least} to {most}"),
+            };
+            *number = value.number_that(&wanted, |number| range.contains(&number))?;
+        }
+        Field::Truth(truth) => *truth = value.truth()?,
+        Field::Name(name) => {
+            let names: Vec<_> = name.names().into_iter().map(|name| (name, name)).collect();
+            name.choose(value.choice(&names)?);
+        }
+        Field::Switches(switches) => {
+            let switches = switches.switches();
+            let names: Vec<_> = switches.iter().map(|(name, _)| *name).collect();
+            let table = value.table(&names)?;
+            for (name, is_on) in switches {
+                *is_on = table.get(name).map_or(Ok(true), |wanted| wanted.truth())?;
+            }
+        }
+    }
+    Ok(())
 }
 
-fn kd_heuristics(value: Value) -> Result<KdHeuristics, LoadError> {
-    const KEYS: [&str; 5] =
-        ["longest_axis", "balanced_counts", "few_straddlers", "cut_off_empty_space", "stop_at_overlap"];
-    let table = value.table(&KEYS)?;
-    let wanted = |key: &str| table.get(key).map_or(Ok(true), |wanted| wanted.truth());
-    Ok(KdHeuristics {
-        longest_axis: wanted("longest_axis")?,
-        balanced_counts: wanted("balanced_counts")?,
-        few_straddlers: wanted("few_straddlers")?,
-        cut_off_empty_space: wanted("cut_off_empty_space")?,
-        stop_at_overlap: wanted("stop_at_overlap")?,
-    })
+/// Sets one setting of `[quality]`, as a command line names it, and returns its key: a name needs no quotes, and `-`
+/// stands for `_`.
+///
+/// # Errors
+///
+/// The errors of the reader of scenes: the key is unknown, or the value is of the wrong type or out of range.
+pub fn set(quality: &mut Quality, key: &str, text: &str) -> Result<&'static str, LoadError> {
+    let source = Source::new(Path::new("--set"), text, Limits::default());
+    let key = key.replace('-', "_");
+    let unknown = || source.unknown(0..0, "key", &key, &Quality::KEYS);
+    let known = Quality::KEYS.into_iter().find(|known| *known == key).ok_or_else(unknown)?;
+    let name = || Spanned::new(0..text.len(), DeValue::String(text.replace('-', "_").into()));
+    let item = DeValue::parse(text).unwrap_or_else(|_| name());
+    read(quality, Value::alone(&source, known, &item)).map(|()| known)
 }
-
-const SAMPLERS: [(&str, Sampler); 5] = [
-    ("center", Sampler::Center),
-    ("random", Sampler::Random),
-    ("jittered", Sampler::Jittered),
-    ("gaussian", Sampler::Gaussian),
-    ("low_discrepancy", Sampler::LowDiscrepancy),
-];
-
-const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
-
-const SPLITS: [(&str, Split); 3] = [
-    ("object_median", Split::ObjectMedian),
-    ("spatial_median", Split::SpatialMedian),
-    ("surface_area", Split::SurfaceArea),
-];

@@ -82,7 +82,6 @@ struct Vertex<'m> {
     may_bounce: bool,
     state: PathState,
     vertex: PathVertex,
-    max_depth: u32,
     numbers: StepNumbers,
     /// The lobe of a rough mirror that samples light.
     rough: Option<RoughLobe>,
@@ -189,7 +188,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 color += path.weight * self.direct_light(&path, *number, at, material, scratch, record);
             }
             // Let the student's `step` collect other light and choose how the path continues.
-            let step = F::step(&here.state, &here.vertex, here.max_depth, &here.numbers);
+            let step = F::step(&here.state, &here.vertex, self.limits.max_depth, &here.numbers);
             color += step.light;
             // Trace the shadow ray to the light that was sampled, which the diffuse and the rough lobe share.
             let in_lobe = self.light_in_lobe(indirect, &here);
@@ -225,7 +224,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let direction = self.unit(path.ray.direction);
         let (at, number) = self.surface_at(path, hit, scratch, record);
         let material = self.material(path, hit, &at, &mut scratch.tally);
-        let (bounces, max_depth) = self.depth_of_step(path.depth);
+        let bounces = path.depth;
         let state =
             PathState { origin: start.origin, direction, weight: path.weight, bounces, pdf: start.pdf };
         let may_bounce = path.depth < self.limits.max_depth;
@@ -238,18 +237,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
             counted_light::<F>(indirect, (start, direction), (hit, &at, &material), light);
         let vertex =
             PathVertex { surface: at.surface, scattering, emission, emitter: weighed, light: sampled };
-        Vertex { at, number, material, may_bounce, state, vertex, max_depth, numbers, rough, own }
-    }
-
-    /// The bounces so far and the largest depth, as `step` gets them: both are moved by the same number, so that `survives`,
-    /// which begins at a fixed number of bounces, begins where the quality setting says. A camera ray has no bounces.
-    fn depth_of_step(&self, depth: u32) -> (u32, u32) {
-        let from = self.quality().roulette_from;
-        let bounces = match depth {
-            0 => 0,
-            _ => (depth + ROULETTE_BEGINS).saturating_sub(from).max(1),
-        };
-        (bounces, bounces + (self.limits.max_depth - depth))
+        Vertex { at, number, material, may_bounce, state, vertex, numbers, rough, own }
     }
 
     /// How the surface scatters light that arrives in `direction`; it scatters none at the end of the longest path.

@@ -109,7 +109,6 @@ fn without_sampling(scene: &Scene) -> Scene {
             max_depth: default.max_depth,
             min_contribution: default.min_contribution,
             next_event: default.next_event,
-            roulette_from: default.roulette_from,
             clamp: default.clamp,
             ..scene.quality
         },

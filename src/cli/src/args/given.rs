@@ -165,9 +165,9 @@ pub fn whole_number<T: FromStr + PartialOrd + Display>(
     number.ok_or_else(|| format!("a whole number from {} to {} is wanted", range.start(), range.end()))
 }
 
-/// The value of this name.
+/// The value of this name, in which `-` and `_` are the same.
 pub fn chosen<T: Copy>(text: &str, named: &[(&str, T)]) -> Result<T, String> {
-    let found = named.iter().find(|(name, _)| *name == text);
+    let found = named.iter().find(|(name, _)| name.replace('-', "_") == text.replace('-', "_"));
     found.map(|(_, meaning)| *meaning).ok_or_else(|| {
         let names: Vec<&str> = named.iter().map(|(name, _)| *name).collect();
         format!("known are {}{}", names.join(", "), did_you_mean(text, &names))

@@ -11,7 +11,7 @@ mod table;
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
 use crate::kits::{Choice, Need, Source, root};
-use crate::quality_options::{ACCELERATORS, QualityOptions, Threads};
+use crate::quality_options::{QualityOptions, Threads};
 use crate::report::{load_scene, make_folder, with_at_most};
 use anyhow::{Context, Result};
 pub use drawing::{heat_color, projected, with_edges};
@@ -37,7 +37,7 @@ pub static SPEC: Spec = Spec {
             )
             .choices(&names(&Of::NAMES)),
             Opt::value("--only", "LIST", "Only these accelerators, instead of all.")
-                .choices(&names(&ACCELERATORS))
+                .choices(&names(&Accelerator::NAMES))
                 .many(),
             Opt::value(
                 "--rounds",
@@ -90,7 +90,7 @@ impl Options {
         Ok(Options {
             scene: given.required(0)?.into(),
             of: given.choice("--of", &Of::NAMES)?.unwrap_or(Of::Structures),
-            only: given.choices("--only", &ACCELERATORS)?,
+            only: given.choices("--only", &Accelerator::NAMES)?,
             kit: Choice::read(given)?,
             rounds: given.number("--rounds", 1..=1000)?.unwrap_or(3),
             threads: Threads::read(given)?,

@@ -133,10 +133,10 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
                     change(quality);
                 })
             };
-            let triangles = TriangleMethod::ALL.map(|(name, method)| {
+            let triangles = TriangleMethod::NAMES.map(|(name, method)| {
                 single(format!("triangles, {name}"), &|quality| quality.triangle_method = method)
             });
-            let spheres = SphereMethod::ALL.map(|(name, method)| {
+            let spheres = SphereMethod::NAMES.map(|(name, method)| {
                 single(format!("spheres, {name}"), &|quality| quality.sphere_method = method)
             });
             let double = with("both, double precision", &|quality| quality.precision = Precision::Double);

@@ -166,5 +166,5 @@ fn numerics(all: &[Summary]) -> String {
 
 /// The theoretical slope for a series of sample counts.
 pub fn expected_slope(report: &Report<'_>, name: &str) -> Option<f64> {
-    theory(if name == Parameter::Samples.name() { report.own_sampler } else { name })
+    theory(if name == Parameter::Samples.name() { &report.own_sampler } else { name })
 }

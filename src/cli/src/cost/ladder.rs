@@ -5,10 +5,7 @@ use super::parameter::Parameter;
 use super::setting::Setting;
 use crate::report::Thousands;
 use raykata::effects::Effect;
-use raykata::scene::{
-    Accelerator, NextEvent, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter,
-    TriangleMethod,
-};
+use raykata::scene::{Accelerator, Field, NextEvent, Precision, Quality, Sampler, Scene};
 
 /// A series of values of a parameter, from cheap to expensive.
 pub struct Ladder {
@@ -53,36 +50,53 @@ impl Parameter {
                 left_out: Vec::new(),
             }
         };
-        let numbers = |values: Vec<u32>, set: fn(&mut Quality, u32)| {
+        let key = self.key();
+        let numbers = |values: Vec<u32>| {
             let with = |value: u32| {
                 let mut quality = quality;
-                set(&mut quality, value);
+                if let Some(Field::Whole(number, _)) = quality.field(key) {
+                    *number = value;
+                }
                 (value.to_string(), quality)
             };
             vec![ladder(values.into_iter().map(with).collect())]
         };
+        let names = || {
+            let with = |name: &str| {
+                let mut quality = quality;
+                if let Some(Field::Name(value)) = quality.field(key) {
+                    value.choose(name);
+                }
+                (name.replace('_', " "), quality)
+            };
+            let mut own = quality;
+            let all = match own.field(key) {
+                Some(Field::Name(value)) => value.names(),
+                _ => Vec::new(),
+            };
+            vec![ladder(all.into_iter().map(with).collect())]
+        };
         let ladders = match self {
-            Parameter::Samples => {
-                numbers(doubling(quality.samples_per_pixel, *most_samples), |q, n| q.samples_per_pixel = n)
-            }
+            Parameter::Samples => numbers(doubling(quality.samples_per_pixel, *most_samples)),
             Parameter::Sampler => {
-                let of = |(sampler, name): (Sampler, &str)| {
+                let of = |(name, sampler): (&str, Sampler)| {
                     let with = |samples_per_pixel: u32| {
                         (samples_per_pixel.to_string(), Quality { sampler, samples_per_pixel, ..quality })
                     };
                     let counts = doubling(quality.samples_per_pixel, *most_samples);
-                    Ladder { name: name.into(), ..ladder(counts.into_iter().map(with).collect()) }
+                    Ladder { name: name.replace('_', " "), ..ladder(counts.into_iter().map(with).collect()) }
                 };
-                SAMPLERS.into_iter().map(of).collect()
+                // Without samples in the centre, which never spread.
+                Sampler::NAMES.into_iter().filter(|(_, one)| *one != Sampler::Center).map(of).collect()
             }
             Parameter::LightSamples => {
                 needs(effects.lights.iter().any(|light| light.area), "no light has an area")?;
-                numbers(doubling(quality.light_samples, 16), |q, n| q.light_samples = n)
+                numbers(doubling(quality.light_samples, 16))
             }
             Parameter::GlossySamples => {
                 needs(effects.calls_for(Effect::Glossy), "no rough surface reflects or transmits light")?;
                 needs(!indirect, "a path of indirect light continues with one ray per hit")?;
-                numbers(doubling(quality.glossy_samples, 16), |q, n| q.glossy_samples = n)
+                numbers(doubling(quality.glossy_samples, 16))
             }
             Parameter::Depth => {
                 needs(mirrors || indirect, "no surface reflects or transmits light")?;
@@ -91,7 +105,7 @@ impl Parameter {
                 depths.push(quality.max_depth);
                 depths.sort_unstable();
                 depths.dedup();
-                numbers(depths, |q, n| q.max_depth = n)
+                numbers(depths)
             }
             Parameter::NextEvent => {
                 needs(indirect, "the scene has no indirect light")?;
@@ -103,24 +117,6 @@ impl Parameter {
                 let with =
                     |(name, next_event): (&str, _)| (name.to_owned(), Quality { next_event, ..quality });
                 vec![ladder(all.into_iter().map(with).collect())]
-            }
-            Parameter::RouletteFrom => {
-                needs(indirect, "the scene has no indirect light")?;
-                // From the largest depth on, Russian roulette never ends a path.
-                let mut starts = vec![2, 3, 5, 8, quality.max_depth.max(2), quality.roulette_from];
-                starts.sort_unstable();
-                starts.dedup();
-                let with = |roulette_from: u32| {
-                    let name = match roulette_from >= quality.max_depth {
-                        true => "never".to_owned(),
-                        false => roulette_from.to_string(),
-                    };
-                    (name, Quality { roulette_from, ..quality })
-                };
-                let mut levels: Vec<_> = starts.into_iter().map(with).collect();
-                // All starts from the largest depth on are the same.
-                levels.dedup_by(|one, other| one.0 == other.0);
-                vec![ladder(levels)]
             }
             Parameter::Clamp => {
                 needs(indirect, "the scene has no indirect light")?;
@@ -149,10 +145,7 @@ impl Parameter {
             }
             Parameter::TextureFilter => {
                 needs(effects.calls_for(Effect::Textures), "no surface shows an image")?;
-                let with = |(name, texture_filter): (&str, _)| {
-                    (name.to_owned(), Quality { texture_filter, ..quality })
-                };
-                vec![ladder(TextureFilter::ALL.into_iter().map(with).collect())]
+                names()
             }
             Parameter::SmoothNormals => {
                 needs(effects.calls_for(Effect::SmoothNormals), "no mesh has smooth normals")?;
@@ -163,10 +156,7 @@ impl Parameter {
             Parameter::Intersection => {
                 needs(called.shows_triangles(), "there are no triangles")?;
                 // With the watertight test last: it is the default, and it takes longest.
-                let with = |(name, triangle_method): (&str, _)| {
-                    (name.replace('_', " "), Quality { triangle_method, ..quality })
-                };
-                vec![ladder(TriangleMethod::ALL.into_iter().map(with).collect())]
+                names()
             }
             Parameter::SphereTest => {
                 needs(called.shows_spheres(), "there are no spheres")?;
@@ -174,19 +164,14 @@ impl Parameter {
                     quality.precision == Precision::Single,
                     "the precision is double, which has one sphere test",
                 )?;
-                let with = |(name, sphere_method): (&str, _)| {
-                    (name.replace('_', " "), Quality { sphere_method, ..quality })
-                };
-                vec![ladder(SphereMethod::ALL.into_iter().map(with).collect())]
+                names()
             }
             Parameter::Precision => {
                 needs(
                     called.shows_triangles() || called.shows_spheres(),
                     "there are no triangles and no spheres, and other shapes have one test each",
                 )?;
-                let all = [("single", Precision::Single), ("double", Precision::Double)];
-                let with = |(name, precision): (&str, _)| (name.to_owned(), Quality { precision, ..quality });
-                vec![ladder(all.into_iter().map(with).collect())]
+                names()
             }
             Parameter::Accelerator => {
                 let most = |one: Accelerator| match one {
@@ -216,42 +201,22 @@ impl Parameter {
             }
             Parameter::Split => {
                 needs(hierarchy, "the accelerator is not a hierarchy")?;
-                let all = [
-                    ("object median", Split::ObjectMedian),
-                    ("spatial median", Split::SpatialMedian),
-                    ("surface area", Split::SurfaceArea),
-                ];
-                let with = |(name, split): (&str, _)| (name.to_owned(), Quality { split, ..quality });
-                vec![ladder(all.into_iter().map(with).collect())]
+                names()
             }
             Parameter::LeafSize => {
                 needs(hierarchy, "the accelerator is not a hierarchy")?;
-                numbers(doubling(quality.leaf_size, 16), |q, n| q.leaf_size = n)
+                numbers(doubling(quality.leaf_size, 16))
             }
             Parameter::GridResolution => {
                 needs(
                     quality.accelerator == Accelerator::Grid,
                     "the accelerator is not a grid (`--accelerator grid` selects one)",
                 )?;
-                numbers(vec![8, 16, 32, 64, 128], |q, n| q.grid_resolution = n)
+                numbers(vec![8, 16, 32, 64, 128])
             }
         };
         Ok(ladders)
     }
-}
-
-/// The samplers that spread their samples. Gaussian samples reach into neighbouring pixels, so they converge
-/// to a softer picture.
-const SAMPLERS: [(Sampler, &str); 4] = [
-    (Sampler::Random, "random"),
-    (Sampler::Jittered, "jittered"),
-    (Sampler::Gaussian, "gaussian"),
-    (Sampler::LowDiscrepancy, "low discrepancy"),
-];
-
-/// The name of the sampler in reports.
-pub fn sampler_name(sampler: Sampler) -> &'static str {
-    SAMPLERS.iter().find(|(one, _)| *one == sampler).map_or("center", |(_, name)| name)
 }
 
 /// The numbers 1, 2, 4 … up to `most`, or up to the scene's own value if that is larger, with the scene's own value.
@@ -301,7 +266,6 @@ mod tests {
             Parameter::Intersection,
             Parameter::GridResolution,
             Parameter::NextEvent,
-            Parameter::RouletteFrom,
             Parameter::Clamp,
         ] {
             assert!(!offered(parameter), "{parameter:?}");

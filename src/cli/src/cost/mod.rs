@@ -67,7 +67,7 @@ pub struct Report<'a> {
     height: u32,
     full_width: u32,
     full_height: u32,
-    own_sampler: &'static str,
+    own_sampler: String,
     reference_samples: u32,
     reference_error: f64,
     /// Whether the report shows the bias, which matters where paths are cut off.
@@ -216,7 +216,7 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         height: small.film.height,
         full_width: full.film.width,
         full_height: full.film.height,
-        own_sampler: ladder::sampler_name(full.quality.sampler),
+        own_sampler: full.quality.sampler.name().replace('_', " "),
         reference_samples: right.samples,
         reference_error: right.own_error,
         has_bias: full.indirect_light,

@@ -1,9 +1,9 @@
 //! The command line of `raykata cost`.
 
 use super::parameter::Parameter;
-use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
+use crate::args::{Argument, Given, Misuse, Opt, Spec, chosen, names};
 use crate::kits::Choice;
-use crate::quality_options::{QualityOptions, Threads};
+use crate::quality_options::{QualityOptions, Threads, key_of};
 use raykata::scene::Accelerator;
 use std::path::PathBuf;
 
@@ -136,7 +136,12 @@ impl Options {
         Ok(Options {
             scene,
             most: given.number("--most", 2..=16_000_000)?.unwrap_or(12_000_000),
-            turned: given.choices("--parameter", &Parameter::NAMES)?,
+            turned: given.list("--parameter", |text| match key_of(text) {
+                Some(key) if chosen(text, &Parameter::NAMES).is_err() => {
+                    Err(format!("it is now called `{key}`"))
+                }
+                _ => chosen(text, &Parameter::NAMES),
+            })?,
             kit: Choice::read(given)?,
             budget: given.parsed("--budget", parse_seconds)?,
             error: given.parsed("--error", parse_error)?,

@@ -20,8 +20,6 @@ pub enum Parameter {
     MinContribution,
     /// How paths find emitters.
     NextEvent,
-    /// The number of bounces from which on Russian roulette ends paths.
-    RouletteFrom,
     /// The largest channel of the light of a sample.
     Clamp,
     /// How images are read.
@@ -45,49 +43,42 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// All parameters by their names on the command line.
-    pub const NAMES: [(&str, Parameter); 18] = [
-        ("samples", Parameter::Samples),
+    /// All parameters by their names on the command line: the keys of their settings.
+    pub const NAMES: [(&str, Parameter); 17] = [
+        ("samples_per_pixel", Parameter::Samples),
         ("sampler", Parameter::Sampler),
-        ("light-samples", Parameter::LightSamples),
-        ("glossy-samples", Parameter::GlossySamples),
-        ("depth", Parameter::Depth),
-        ("min-contribution", Parameter::MinContribution),
-        ("next-event", Parameter::NextEvent),
-        ("roulette-from", Parameter::RouletteFrom),
+        ("light_samples", Parameter::LightSamples),
+        ("glossy_samples", Parameter::GlossySamples),
+        ("max_depth", Parameter::Depth),
+        ("min_contribution", Parameter::MinContribution),
+        ("next_event", Parameter::NextEvent),
         ("clamp", Parameter::Clamp),
-        ("texture-filter", Parameter::TextureFilter),
-        ("smooth-normals", Parameter::SmoothNormals),
-        ("intersection", Parameter::Intersection),
-        ("sphere-test", Parameter::SphereTest),
+        ("texture_filter", Parameter::TextureFilter),
+        ("smooth_normals", Parameter::SmoothNormals),
+        ("triangle_method", Parameter::Intersection),
+        ("sphere_method", Parameter::SphereTest),
         ("precision", Parameter::Precision),
         ("accelerator", Parameter::Accelerator),
         ("split", Parameter::Split),
-        ("leaf-size", Parameter::LeafSize),
-        ("grid-resolution", Parameter::GridResolution),
+        ("leaf_size", Parameter::LeafSize),
+        ("grid_resolution", Parameter::GridResolution),
     ];
 
+    /// The key of the setting; `smooth_normals`, which the meshes of a scene have, is none.
+    pub fn key(self) -> &'static str {
+        Parameter::NAMES.iter().find(|(_, one)| *one == self).map_or("", |(key, _)| key)
+    }
+
     /// The name in reports.
-    pub fn name(self) -> &'static str {
+    pub fn name(self) -> String {
         match self {
-            Parameter::Samples => "samples per pixel",
-            Parameter::Sampler => "sampler",
-            Parameter::LightSamples => "light samples",
-            Parameter::GlossySamples => "glossy samples",
-            Parameter::Depth => "depth",
-            Parameter::MinContribution => "minimum contribution",
-            Parameter::NextEvent => "next-event estimation",
-            Parameter::RouletteFrom => "roulette from bounce",
-            Parameter::Clamp => "clamp of samples",
-            Parameter::TextureFilter => "texture filter",
-            Parameter::SmoothNormals => "smooth normals",
-            Parameter::Intersection => "intersection",
-            Parameter::SphereTest => "sphere test",
-            Parameter::Precision => "precision",
-            Parameter::Accelerator => "accelerator",
-            Parameter::Split => "split",
-            Parameter::LeafSize => "leaf size",
-            Parameter::GridResolution => "grid resolution",
+            Parameter::Depth => "depth".into(),
+            Parameter::MinContribution => "minimum contribution".into(),
+            Parameter::NextEvent => "next-event estimation".into(),
+            Parameter::Clamp => "clamp of samples".into(),
+            Parameter::Intersection => "intersection".into(),
+            Parameter::SphereTest => "sphere test".into(),
+            other => other.key().replace('_', " "),
         }
     }
 
@@ -103,7 +94,6 @@ impl Parameter {
                 | Parameter::Depth
                 | Parameter::MinContribution
                 | Parameter::NextEvent
-                | Parameter::RouletteFrom
                 | Parameter::Clamp
                 | Parameter::TextureFilter
                 | Parameter::SmoothNormals

@@ -233,7 +233,7 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
         }
         _ => {}
     }
-    let spent: Vec<&str> =
+    let spent: Vec<String> =
         advice.steps.iter().map(|step| step.parameter.name()).fold(Vec::new(), |mut names, name| {
             if !names.contains(&name) {
                 names.push(name);

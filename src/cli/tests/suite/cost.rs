@@ -49,7 +49,7 @@ fn two_runs_have_the_same_errors_and_counts() {
         assert!(output.status.success(), "{}", said(&output));
         (said(&output), without_times(&folder.path().join(out)))
     };
-    let parameters = ["--parameter", "samples,sampler,light-samples", "--reference", "128"];
+    let parameters = ["--parameter", "samples_per_pixel,sampler,light_samples", "--reference", "128"];
     let (text, one) = run("one", &parameters);
     let (_, other) = run("other", &[&parameters[..], &["--threads", "1"]].concat());
     assert_eq!(one, other);
@@ -74,7 +74,7 @@ fn two_runs_have_the_same_errors_and_counts() {
     // The reference was kept, and a longer one continues it.
     let kept: Vec<_> = fs::read_dir(folder.path().join("out/references")).unwrap().collect();
     assert_eq!(kept.len(), 1);
-    let (_, longer) = run("longer", &["--parameter", "samples", "--reference", "192"]);
+    let (_, longer) = run("longer", &["--parameter", "samples_per_pixel", "--reference", "192"]);
     assert_eq!(longer.0["reference_samples"], 192);
     assert_eq!(fs::read_dir(folder.path().join("out/references")).unwrap().count(), 1);
 
@@ -101,7 +101,8 @@ fn kill_when(run: &mut std::process::Child, file: &Path, n_lines: usize) {
 fn a_measurement_that_is_killed_continues_and_gives_the_same_report() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = |out: &'static str| {
-        let parameters = ["scenes/stage5.toml", "--parameter", "samples,depth", "--reference", "128"];
+        let parameters =
+            ["scenes/stage5.toml", "--parameter", "samples_per_pixel,max_depth", "--reference", "128"];
         [&parameters[..], &["--out", out], &QUICK].concat()
     };
     let output = cost(folder.path(), &arguments("whole"));
@@ -127,7 +128,15 @@ fn a_measurement_that_is_killed_continues_and_gives_the_same_report() {
 fn a_proposal_is_tried_out() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = [
-        &["scenes/stage5.toml", "--parameter", "samples,depth", "--error", "0.03", "--reference", "128"][..],
+        &[
+            "scenes/stage5.toml",
+            "--parameter",
+            "samples_per_pixel,max_depth",
+            "--error",
+            "0.03",
+            "--reference",
+            "128",
+        ][..],
         &QUICK,
     ];
     let output = cost(folder.path(), &arguments.concat());
@@ -147,8 +156,8 @@ fn a_proposal_is_tried_out() {
 fn hits_are_judged_exactly() {
     let folder = tempfile::tempdir().unwrap();
     let judged = |method: &str| {
-        let arguments =
-            ["scenes/stage2.toml", "--parameter", "split", "--triangles", method, "--out", method];
+        let set = format!("triangle_method={method}");
+        let arguments = ["scenes/stage2.toml", "--parameter", "split", "--set", &set, "--out", method];
         let output = cost(folder.path(), &[&arguments[..], &["--reference", "128"], &QUICK].concat());
         assert!(output.status.success(), "{}", said(&output));
         let json = fs::read(folder.path().join(method).join("cost.json")).unwrap();
@@ -172,7 +181,7 @@ fn hits_are_judged_exactly() {
 #[test]
 fn what_buys_nothing_is_said() {
     let folder = tempfile::tempdir().unwrap();
-    let output = cost(folder.path(), &["scenes/stage1.toml", "--parameter", "depth"]);
+    let output = cost(folder.path(), &["scenes/stage1.toml", "--parameter", "max_depth"]);
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(said(&output), "error: depth changes nothing here: no surface reflects or transmits light\n");
     for (arguments, says) in [
@@ -203,7 +212,7 @@ fn what_is_stopped_leaves_a_report() {
         "--reference",
         "128",
         "--parameter",
-        "samples,sampler",
+        "samples_per_pixel,sampler",
     ]);
     let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);

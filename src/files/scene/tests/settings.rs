@@ -2,12 +2,14 @@
 
 use super::{CAMERA, check_refused, check_refused_with, scene, scene as scene_from, scene_with};
 use crate::camera::{Lens, Shutter};
+use crate::files::scene::set;
 use crate::film::{Tone, ToneCurve};
 use crate::graph::Savings;
 use crate::partition::KdHeuristics;
 use crate::scene::{
-    Accelerator, Background, ColorPlace, Encoding, FilmSettings, Gradient, GradientColor, MaterialColor,
-    NextEvent, Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
+    Accelerator, Background, ColorPlace, Encoding, Field, FilmSettings, Gradient, GradientColor,
+    MaterialColor, NextEvent, Precision, Quality, Sampler, SphereMethod, Split, TextureFilter,
+    TriangleMethod,
 };
 use glam::Vec3;
 
@@ -37,7 +39,7 @@ fn every_setting_arrives() {
          lens = { aperture = 0.1, focal_distance = 5 }\nshutter = { open = 0.25 }\n\
          [environment]\nbackground = [0, 0.5, 2]\nambient = 0.25\nindirect_light = true\n\
          [quality]\nsamples_per_pixel = 9\nlight_samples = 8\nglossy_samples = 7\ntexture_filter = 'mipmap'\nmax_depth = 0\n\
-         min_contribution = 0\nnext_event = 'only'\nroulette_from = 6\nclamp = 10\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\ncopies = true\nsavings = { skip = false }\nkd_heuristics = { stop_at_overlap = false }\n\
+         min_contribution = 0\nnext_event = 'only'\nclamp = 10\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\ncopies = true\nsavings = { skip = false }\nkd_heuristics = { stop_at_overlap = false }\n\
          triangle_method = 'inside_by_areas'\nsphere_method = 'geometric'\ngrid_resolution = 3\n\
          sampler = 'jittered'\nprecision = 'double'\n",
     );
@@ -62,7 +64,6 @@ fn every_setting_arrives() {
         max_depth: 0,
         min_contribution: 0.0,
         next_event: NextEvent::Only,
-        roulette_from: 6,
         clamp: 10.0,
         accelerator: Accelerator::KdTree,
         split: Split::ObjectMedian,
@@ -199,6 +200,88 @@ fn qualities_have_limits() {
         "[quality]\nmax_deph = 3",
         "s.toml:3:1: unknown key `max_deph`; did you mean `max_depth`?",
     );
+}
+
+#[test]
+fn every_setting_stands_in_the_description_of_the_format() {
+    let (_, table) = include_str!("../format.md").split_once("# `[quality]`").expect("the table of settings");
+    let mut default = Quality::default();
+    for (key, words) in Quality::KEYS.into_iter().zip(Quality::WORDS) {
+        let row = table.lines().find(|row| row.starts_with(&format!("| `{key}` | "))).expect(key);
+        let (first, more) = words.split_once(';').unwrap_or((words, ""));
+        let (names, range) = match default.field(key).expect(key) {
+            Field::Whole(_, range) if *range.end() == u32::MAX => {
+                (vec![], format!(", at least {}", range.start()))
+            }
+            Field::Whole(_, range) => (vec![], format!(", {} to {}", range.start(), range.end())),
+            Field::Number(_, range) if *range.end() == f32::MAX => {
+                (vec![], format!(", at least {}", range.start()))
+            }
+            Field::Number(_, range) => (vec![], format!(", {} to {}", range.start(), range.end())),
+            Field::Truth(_) => (vec![], String::new()),
+            Field::Name(name) => {
+                (name.names().iter().map(|name| format!("`\"{name}\"`")).collect(), String::new())
+            }
+            Field::Switches(all) => {
+                (all.switches().iter().map(|(name, _)| format!("{name} = true")).collect(), String::new())
+            }
+        };
+        let more = if more.is_empty() { String::new() } else { format!(";{more}") };
+        let (initial, rest) = first.split_at(1);
+        let start = format!("| `{key}` | {}{rest}{range}{more}", initial.to_lowercase());
+        assert!(row.starts_with(&start), "{row}\nbegins otherwise than\n{start}");
+        for name in names {
+            assert!(row.contains(&name), "{row}\nlacks {name}");
+        }
+        let text = default.field(key).expect(key).text();
+        let value = match default.field(key).expect(key) {
+            Field::Truth(_) => format!("`{text}`"),
+            Field::Name(_) => format!("`\"{text}\"`"),
+            Field::Switches(_) => "all".into(),
+            _ => text,
+        };
+        assert!(row.ends_with(&format!(" | {value} |")), "{row}\nends without {value}");
+    }
+}
+
+#[test]
+fn a_command_line_sets_what_a_scene_sets() {
+    let mut quality = Quality::default();
+    for (key, text) in
+        [("samples-per-pixel", "343"), ("sampler", "jittered"), ("clamp", "1.5"), ("copies", "true")]
+    {
+        set(&mut quality, key, text).expect(key);
+    }
+    set(&mut quality, "accelerator", "octree-by-cells").expect("a name with `-`");
+    set(&mut quality, "savings", "{ skip = false }").expect("switches");
+    let wanted = Quality {
+        samples_per_pixel: 343,
+        sampler: Sampler::Jittered,
+        clamp: 1.5,
+        accelerator: Accelerator::OctreeByCells,
+        copies: true,
+        savings: Savings { skip: false, ..Savings::default() },
+        ..Quality::default()
+    };
+    assert_eq!(quality, wanted);
+    // The text of a setting can be read again.
+    let mut same = Quality::default();
+    for key in Quality::KEYS {
+        set(&mut same, key, &quality.field(key).expect(key).text()).expect(key);
+    }
+    assert_eq!(same, quality);
+    assert_eq!(same.differences(&wanted), Vec::<&str>::new());
+    let mut refused = |key, text| set(&mut quality, key, text).map_err(|error| error.message);
+    assert_eq!(
+        refused("glossy_samples", "0"),
+        Err("`glossy_samples` must be a whole number from 1 to 1048576, but is 0".into())
+    );
+    assert_eq!(refused("clamp", "-1"), Err("`clamp` must be at least 0, but is -1".into()));
+    assert_eq!(
+        refused("sampler", "jitered"),
+        Err("unknown value of `sampler`: `jitered`; did you mean `jittered`?".into())
+    );
+    assert_eq!(refused("max_deph", "3"), Err("unknown key `max_deph`; did you mean `max_depth`?".into()));
 }
 
 #[test]

@@ -29,7 +29,7 @@ const COMMANDS: [(&str, &[&str]); 21] = [
     ("export slurm-picture", &["SCENE", "--out", "--pieces", "--seed", "--size", "--tone"]),
     ("export classroom", &["--out", "--stages", "--seed", "--parts"]),
     ("gauntlet", &["--kit", "--inputs", "--seed", "--out", "20000"]),
-    ("cost", &["[SCENE]", "--headline", "--rounds", "--sampler"]),
+    ("cost", &["[SCENE]", "--headline", "--rounds", "--set"]),
     ("attacks", &["[NAME]...", "--shard"]),
     ("rehearse", &["--students", "--out", "--jobs", "--honest", "200"]),
     ("cases", &[]),

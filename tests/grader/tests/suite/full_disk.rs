@@ -208,7 +208,7 @@ fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
     let grader = PathBuf::from(env!("CARGO_BIN_EXE_grader"));
     let shadows = root().join("scenes/soft_shadows.toml");
     let cost = format!(
-        "cost {} --full --size 16x12 --rounds 1 --reference 128 --parameter samples --out DISK/cost",
+        "cost {} --full --size 16x12 --rounds 1 --reference 128 --parameter samples_per_pixel --out DISK/cost",
         shadows.display()
     );
     let cases = [
