@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// Where the samples of a pixel lie (stage 6). Lens, shutter time, area lights and rough surfaces are sampled
 /// in the same way, and independently at random with [`Sampler::Center`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sampler {
     /// All samples lie in the centre of the pixel.
@@ -24,7 +24,6 @@ pub enum Sampler {
     /// Gaussian.
     Gaussian,
     /// An Owen-scrambled Sobol sequence, which spreads samples evenly; a single sample lies in the centre.
-    #[default]
     LowDiscrepancy,
 }
 

@@ -7,12 +7,11 @@ use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 /// The acceleration structure that finds the closest hit of a ray. All of them must find the same hit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Accelerator {
     /// The fastest hierarchy that is written: [`Accelerator::WideBvh`], or else [`Accelerator::Bvh`]. A split or a leaf size other
     /// than the default selects [`Accelerator::Bvh`], because only the builder of stage 3 has them.
-    #[default]
     Auto,
     /// No structure: every ray is tested against every primitive (stage 2).
     BruteForce,
@@ -89,7 +88,7 @@ impl Accelerator {
 }
 
 /// Where the builder of a bounding volume hierarchy divides the primitives of a node.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Split {
     /// At the object median: half of the primitives on either side.
@@ -97,7 +96,6 @@ pub enum Split {
     /// At the spatial median: half of the box on either side.
     SpatialMedian,
     /// Where the expected cost is least by the surface area heuristic (SAH).
-    #[default]
     SurfaceArea,
 }
 
@@ -107,7 +105,7 @@ impl Split {
 }
 
 /// Which ray/triangle test is used with [`Precision::Single`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TriangleMethod {
     /// Solve for `t` and the barycentric coordinates by Cramer's rule (stage 2).
@@ -128,16 +126,14 @@ pub enum TriangleMethod {
     Choice,
     /// The watertight test (stage 10): no ray passes between two triangles that share an edge. Until it is
     /// written, frames use [`TriangleMethod::Choice`].
-    #[default]
     Watertight,
 }
 
 /// Which ray/sphere test is used with [`Precision::Single`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SphereMethod {
     /// Solve the quadratic equation of the ray and the sphere (stage 1).
-    #[default]
     Algebraic,
     /// By right triangles: the point nearest to the centre and half of the chord (stage 1).
     Geometric,
@@ -148,11 +144,10 @@ pub enum SphereMethod {
 }
 
 /// How images are read (stage 7).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TextureFilter {
     /// One read per hit, between the four nearest pixels of the image.
-    #[default]
     Bilinear,
     /// By cone tracing: from smaller copies of the image (mip levels), over the part of the surface that the ray's cone
     /// covers, with 1 to 32 reads per hit. A distant image does not sparkle.
@@ -161,7 +156,7 @@ pub enum TextureFilter {
 
 /// With indirect light: how paths find the light of emitters and of an environment map (stage 11). All three give the same
 /// picture with enough samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NextEvent {
     /// Diffuse rays find them by chance.
@@ -170,7 +165,6 @@ pub enum NextEvent {
     /// chance adds nothing.
     Only,
     /// Both, with the weights of multiple importance sampling.
-    #[default]
     On,
 }
 
@@ -178,12 +172,11 @@ pub enum NextEvent {
 ///
 /// Rays and shapes themselves are stored in single precision. Infinite planes, boxes, cylinders, cones, disks
 /// and polygons have one test each, for both settings; their `t` is right to a few roundings.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Precision {
     /// Single precision, 24 bits, by the [`TriangleMethod`] and the [`SphereMethod`] of the scene. The watertight test of the
     /// reference computes in double precision all the same.
-    #[default]
     Single,
     /// Double precision, 53 bits, with any [`TriangleMethod`] and [`SphereMethod`].
     Double,

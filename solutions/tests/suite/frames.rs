@@ -75,7 +75,7 @@ fn a_scene_that_names_no_accelerator_gets_the_fastest_hierarchy_that_fits_it() {
     // Only the builder of stage 3 has other splits and leaf sizes.
     scene.quality.split = Split::ObjectMedian;
     assert_eq!(render(&scene).accelerator, Some(Accelerator::Bvh));
-    (scene.quality.split, scene.quality.leaf_size) = (Split::default(), 2);
+    (scene.quality.split, scene.quality.leaf_size) = (Split::SurfaceArea, 2);
     assert_eq!(render(&scene).accelerator, Some(Accelerator::Bvh));
     // A structure that the scene names is used, and gives the same picture.
     scene = Scene { quality: Quality { accelerator: Accelerator::Bvh, ..Quality::default() }, ..scene };

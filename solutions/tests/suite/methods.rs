@@ -49,7 +49,7 @@ fn every_method_makes_the_same_picture() {
         assert!(differ <= 0.0005, "{name}: {differ}");
         assert_eq!(found.notes, Vec::<String>::new(), "{name}");
     }
-    scene.quality.triangle_method = TriangleMethod::default();
+    scene.quality.triangle_method = TriangleMethod::Watertight;
     for (name, method) in SphereMethod::NAMES {
         scene.quality.sphere_method = method;
         let differ = difference(&render(&scene).film, &expected.film);

@@ -165,11 +165,12 @@ fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
         (quality.accelerator, quality.grid_resolution) = (Accelerator::Grid, 9);
     }));
     turned.extend(Split::ALL.map(|split| with(&format!("{split:?}"), &|quality| quality.split = split)));
-    let methods = TriangleMethod::NAMES.into_iter().filter(|(_, one)| *one != TriangleMethod::default());
+    let methods =
+        TriangleMethod::NAMES.into_iter().filter(|(_, one)| *one != Quality::default().triangle_method);
     turned.extend(
         methods.map(|(_, method)| with(&format!("{method:?}"), &|quality| quality.triangle_method = method)),
     );
-    let methods = SphereMethod::NAMES.into_iter().filter(|(_, one)| *one != SphereMethod::default());
+    let methods = SphereMethod::NAMES.into_iter().filter(|(_, one)| *one != Quality::default().sphere_method);
     turned.extend(
         methods.map(|(_, method)| with(&format!("{method:?}"), &|quality| quality.sphere_method = method)),
     );

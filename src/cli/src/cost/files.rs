@@ -52,7 +52,7 @@ fn table(report: &Report<'_>) -> String {
                 point.hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
             };
             table += &csv_line(&[
-                series.parameter.name().into(),
+                series.parameter.name(),
                 series.name.clone(),
                 value.clone(),
                 point.error().to_string(),

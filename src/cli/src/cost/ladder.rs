@@ -43,12 +43,7 @@ impl Parameter {
         let needs = |called_for: bool, why: &str| if called_for { Ok(()) } else { Err(why.to_owned()) };
         let ladder = |levels: Vec<(String, Quality)>| {
             let levels = levels.into_iter().map(|(name, quality)| (name, Setting { quality, smooth: true }));
-            Ladder {
-                parameter: self,
-                name: self.name().into(),
-                levels: levels.collect(),
-                left_out: Vec::new(),
-            }
+            Ladder { parameter: self, name: self.name(), levels: levels.collect(), left_out: Vec::new() }
         };
         let key = self.key();
         let numbers = |values: Vec<u32>| {

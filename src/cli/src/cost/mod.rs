@@ -47,7 +47,7 @@ pub use options::{Options, SPEC};
 use parameter::Parameter;
 use raykata::effects::Effects;
 use raykata::kit::{Kit, KitError, kit_error};
-use raykata::scene::{Quality, Scene};
+use raykata::scene::{Accelerator, Quality, Scene};
 use serde::Serialize;
 use setting::Setting;
 use slope::Slope;
@@ -133,7 +133,7 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     // Without a scene, measure the headline example.
     let Some(file) = &options.scene else {
         let out = options.out.clone().unwrap_or_else(|| Path::new("out").join("headline"));
-        let hierarchy = options.quality.accelerator().unwrap_or_default();
+        let hierarchy = options.quality.accelerator().unwrap_or(Accelerator::Auto);
         let _lock = Lock::on(&out)?;
         return headline::run(&bench, hierarchy, options.most, &out, &fingerprint(&source)?);
     };

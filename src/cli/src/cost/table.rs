@@ -125,7 +125,7 @@ pub fn named(report: &Report<'_>, name: &str, index: usize) -> String {
 fn heading(series: &Series) -> String {
     match series.parameter {
         Parameter::Sampler => format!("sampler: {}, samples per pixel", series.name),
-        parameter => parameter.name().into(),
+        parameter => parameter.name(),
     }
 }
 
