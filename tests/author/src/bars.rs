@@ -12,7 +12,7 @@ use std::path::Path;
 /// `author bars`.
 pub static SPEC: Spec = Spec {
     name: "author bars",
-    about: "Write what the reference needs into the rubric of stage 12, by which counts are judged (for authors).",
+    about: "Write what the reference needs into the rubric of stage 12, by which counts are judged.",
     arguments: &[],
     options: &[&[Opt::flag("--check", "Only report differences, and write nothing.")]],
 };

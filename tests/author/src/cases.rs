@@ -8,7 +8,7 @@ use std::path::Path;
 /// `author cases`.
 pub static SPEC: Spec = Spec {
     name: "author cases",
-    about: "List the hard cases, and the checks that cover them (for authors).",
+    about: "List the hard cases, and the checks that cover them.",
     arguments: &[],
     options: &[],
 };

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// `author generate`.
 pub static SPEC: Spec = Spec {
     name: "author generate",
-    about: "Generate the meshes and images of the scenes (for authors).",
+    about: "Generate the meshes and images of the scenes.",
     arguments: &[Argument::optional("SCENES", "The folder for meshes/ and images/ [default: scenes].")],
     options: &[],
 };

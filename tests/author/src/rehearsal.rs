@@ -18,7 +18,7 @@ use std::time::Instant;
 /// `author rehearse`.
 pub static SPEC: Spec = Spec {
     name: "author rehearse",
-    about: "Grade a generated class with known grades, and compare (for authors).",
+    about: "Grade a generated class with known grades, and compare.",
     arguments: &[],
     options: &[&[
         Opt::value("--students", "N", "The number of students [default: 200]."),

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// `author attacks`.
 pub static SPEC: Spec = Spec {
     name: "author attacks",
-    about: "Test the grader with submissions that try to get points without earning them (for authors).",
+    about: "Test the grader with submissions that try to get points without earning them.",
     arguments: &[Argument::optional("NAME", "The names of attacks [default: all].").many()],
     options: &[&[Opt::value("--shard", "I/N", "Try only part I of N, such as 2/5.")]],
 };

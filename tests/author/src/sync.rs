@@ -13,7 +13,7 @@ use std::path::Path;
 /// `author sync`.
 pub static SPEC: Spec = Spec {
     name: "author sync",
-    about: "Make exercises/ from solutions/, and write the numbers in documents (for authors). Keeps exercises that you have begun.",
+    about: "Make exercises/ from solutions/, and write the numbers in documents. Keeps exercises that you have begun.",
     arguments: &[],
     options: &[&[
         Opt::flag("--check", "Only report differences, and write nothing."),

@@ -13,10 +13,7 @@ const PROGRAM: Program = Program {
     commands: COMMANDS,
     groups: &[
         #[cfg(target_os = "linux")]
-        (
-            "export",
-            "Write the files with which Gradescope, GitHub Classroom or Slurm grade (for instructors).",
-        ),
+        ("export", "Write the files with which Gradescope, GitHub Classroom or Slurm grade."),
     ],
     moved: (MOVED, "author"),
 };

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 /// `author corpus import`.
 pub static SPEC: Spec = Spec {
     name: "author corpus import",
-    about: "Add the patches of a course to tests/corpus (for authors).",
+    about: "Add the patches of a course to tests/corpus.",
     arguments: &[Argument::required(
         "FOLDER",
         "The folder of the patches: wrong/stageN/NAME.patch and right/stageN/NAME.patch.",

@@ -38,7 +38,7 @@ pub(crate) const FOLDER: &str = "target/corpus";
 /// `author corpus`.
 pub static SPEC: Spec = Spec {
     name: "author corpus",
-    about: "Test the checks with known mistakes and other right solutions (for authors).",
+    about: "Test the checks with known mistakes and other right solutions.",
     arguments: &[Argument::optional("NAME", "The names of entries [default: all].").many()],
     options: &[
         &[

@@ -26,7 +26,7 @@ use switch::Switchable;
 /// `author gaps`.
 pub static SPEC: Spec = Spec {
     name: "author gaps",
-    about: "Show for each function what pictures lack while it is not written (for authors).",
+    about: "Show for each function what pictures lack while it is not written.",
     arguments: &[],
     options: &[&[
         Opt::flag("--check", "Compare with tests/corpus/gaps.txt."),

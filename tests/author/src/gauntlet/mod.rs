@@ -70,7 +70,7 @@ impl Options {
 
 /// Measures the same as `raykata cost`, and the intersection methods. Returns whether it succeeded.
 pub fn cost(options: &cost::Options) -> Result<bool> {
-    cost::run(options, "cargo run --release -p grader --", Some(&summary))
+    cost::run(options, "cargo run --release -p author --", Some(&summary))
 }
 
 /// Runs the gauntlet.

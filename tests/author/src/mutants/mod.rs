@@ -34,7 +34,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// `author mutants`.
 pub static SPEC: Spec = Spec {
     name: "author mutants",
-    about: "Test the checks with changes that cargo-mutants makes to the solutions (for authors).",
+    about: "Test the checks with changes that cargo-mutants makes to the solutions.",
     arguments: &[Argument::optional("FILE", "Only files whose names contain this.")],
     options: &[&[
         Opt::flag("--resume", "Continue the last run: skip the changes that it has tested."),

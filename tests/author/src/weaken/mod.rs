@@ -36,7 +36,7 @@ use std::sync::{Mutex, PoisonError};
 /// `author weaken`.
 pub static SPEC: Spec = Spec {
     name: "author weaken",
-    about: "Weaken numbers by which checks judge, and demand that the corpus notices (for authors).",
+    about: "Weaken numbers by which checks judge, and demand that the corpus notices.",
     arguments: &[],
     options: &[&[
         Opt::value("--sample", "N", "How many numbers to weaken [default: 40]."),

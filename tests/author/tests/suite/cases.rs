@@ -26,7 +26,7 @@ fn sources(folder: &Path) -> String {
 fn every_case_is_seen_to() {
     let cases = read(&root()).unwrap_or_else(|error| panic!("{error:#}"));
     assert_eq!(cases.len(), 107);
-    let sources: String = ["src", "solutions/tests", "tests/grader/tests"]
+    let sources: String = ["src", "solutions/tests", "tests/author/tests"]
         .iter()
         .map(|folder| sources(&root().join(folder)))
         .collect();

@@ -1,6 +1,5 @@
 //! Every command has a help text, and a wrong command line ends the program with code 2.
-use super::author;
-use super::program_runs::printed;
+use super::program_runs::{does_not_understand, explains};
 use std::process::Command;
 
 /// The commands with their arguments and options.
@@ -33,33 +32,16 @@ const COMMANDS: [(&str, &[&str]); 13] = [
     ("generate", &["[SCENES]"]),
 ];
 
-fn said(line: &str) -> (Option<i32>, String, String) {
-    let output = author(&line.split_whitespace().collect::<Vec<_>>());
-    let (out, err) = printed(&output);
-    (output.status.code(), out, err)
-}
+const PROGRAM: &str = env!("CARGO_BIN_EXE_author");
 
 #[test]
 fn every_command_is_explained() {
-    let (code, all, _) = said("--help");
-    assert_eq!(code, Some(0));
-    for (command, parts) in COMMANDS {
-        assert!(all.lines().any(|line| line.starts_with(&format!("  {command} "))), "no {command} in\n{all}");
-        let (code, help, complaint) = said(&format!("{command} --help"));
-        assert!(code == Some(0) && complaint.is_empty(), "{command}: {complaint}");
-        assert!(help.contains(&format!("\nUsage: author {command}")), "{help}");
-        assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
-        for part in parts {
-            assert!(help.contains(part), "no {part} in\n{help}");
-        }
-        assert_eq!(said(&format!("help {command}")).1, help);
-    }
-    assert_eq!(said("--version").1, format!("author {}\n", env!("CARGO_PKG_VERSION")));
+    explains(PROGRAM, "author", &COMMANDS);
 }
 
 #[test]
 fn what_is_not_understood_ends_with_2() {
-    for (line, complaint) in [
+    let lines = [
         ("corpsu", "there is no command `corpsu`; did you mean `corpus`?"),
         ("corpus --chekc", "unexpected option `--chekc`; did you mean `--check`?"),
         ("corpus --bless --reword", "`--bless` cannot be used with `--reword`"),
@@ -74,17 +56,15 @@ fn what_is_not_understood_ends_with_2() {
         ("gauntlet --kit solution", "did you mean `solutions`?"),
         ("cases all", "unexpected argument `all`"),
         ("rehearse --jobs 0", "a whole number from 1 to 65535"),
-    ] {
-        let (code, out, err) = said(line);
-        assert!(code == Some(2) && out.is_empty() && err.contains(complaint), "{line}: {code:?} {out} {err}");
-    }
+    ];
+    does_not_understand(PROGRAM, &lines);
 }
 
 /// The command line is checked first, so its errors are the same in every working folder.
 #[test]
 fn outside_of_a_kit_the_same_is_wrong() {
     let folder = tempfile::tempdir().expect("a folder");
-    let output = Command::new(env!("CARGO_BIN_EXE_author"))
+    let output = Command::new(PROGRAM)
         .current_dir(folder.path())
         .args(["sync", "--check", "--force"])
         .output()

@@ -45,7 +45,7 @@ use submission::Submission;
 /// `grader grade`.
 pub static SPEC: Spec = Spec {
     name: "grader grade",
-    about: "Grade a folder of submissions, each in a sandbox, and write tables and reports (for instructors).",
+    about: "Grade a folder of submissions, each in a sandbox, and write tables and reports.",
     arguments: &[Argument::required(
         "SUBMISSIONS",
         "The folder of the class. Each folder, .zip, .tar or .tar.gz in it is a submission, named after its student.",

@@ -18,7 +18,7 @@ use std::process::{Command, Stdio};
 /// `grader handout`.
 pub static SPEC: Spec = Spec {
     name: "grader handout",
-    about: "Make the student's repository, without answers and instructors' files (for instructors).",
+    about: "Make the student's repository, without answers and instructors' files.",
     arguments: &[Argument::required("FOLDER", "An empty or new folder.")],
     options: &[&[
         course::OPTION,

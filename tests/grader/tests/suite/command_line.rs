@@ -1,6 +1,5 @@
 //! Every command has a help text, and a wrong command line ends the program with code 2.
-use super::grader;
-use super::program_runs::printed;
+use super::program_runs::{does_not_understand, explains, said};
 
 /// The commands with their arguments and options.
 const COMMANDS: [(&str, &[&str]); 8] = [
@@ -30,39 +29,22 @@ const COMMANDS: [(&str, &[&str]); 8] = [
     ("export classroom", &["--out", "--stages", "--seed", "--parts"]),
 ];
 
-fn said(line: &str) -> (Option<i32>, String, String) {
-    let output = grader(&line.split_whitespace().collect::<Vec<_>>());
-    let (out, err) = printed(&output);
-    (output.status.code(), out, err)
-}
+const PROGRAM: &str = env!("CARGO_BIN_EXE_grader");
 
 #[test]
 fn every_command_is_explained() {
-    let (code, all, _) = said("--help");
-    assert_eq!(code, Some(0));
-    for (command, parts) in COMMANDS {
-        assert!(all.lines().any(|line| line.starts_with(&format!("  {command} "))), "no {command} in\n{all}");
-        let (code, help, complaint) = said(&format!("{command} --help"));
-        assert!(code == Some(0) && complaint.is_empty(), "{command}: {complaint}");
-        assert!(help.contains(&format!("\nUsage: grader {command}")), "{help}");
-        assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
-        for part in parts {
-            assert!(help.contains(part), "no {part} in\n{help}");
-        }
-        assert_eq!(said(&format!("help {command}")).1, help);
-    }
-    let (code, export, _) = said("export --help");
+    explains(PROGRAM, "grader", &COMMANDS);
+    let (code, export, _) = said(PROGRAM, "export --help");
     assert!(
         code == Some(0) && export.contains("\n  gradescope ") && export.contains("\n  classroom "),
         "{export}"
     );
-    assert_eq!(said("export help classroom").1, said("export classroom --help").1);
-    assert_eq!(said("--version").1, format!("grader {}\n", env!("CARGO_PKG_VERSION")));
+    assert_eq!(said(PROGRAM, "export help classroom").1, said(PROGRAM, "export classroom --help").1);
 }
 
 #[test]
 fn what_is_not_understood_ends_with_2() {
-    for (line, complaint) in [
+    let lines = [
         ("", "a command is missing"),
         ("exprot", "there is no command `exprot`; did you mean `export`?"),
         ("export", "the commands are gradescope, slurm, slurm-picture, classroom"),
@@ -81,10 +63,8 @@ fn what_is_not_understood_ends_with_2() {
         ("merge --out grades", "PART is missing"),
         ("merge part", "`--out` is missing"),
         ("handout", "FOLDER is missing"),
-    ] {
-        let (code, out, err) = said(line);
-        assert!(code == Some(2) && out.is_empty() && err.contains(complaint), "{line}: {code:?} {out} {err}");
-    }
+    ];
+    does_not_understand(PROGRAM, &lines);
 }
 
 #[test]
@@ -92,6 +72,6 @@ fn a_command_of_authors_says_the_new_command() {
     for line in ["sync --check", "corpus import a", "help gaps"] {
         let command = line.trim_start_matches("help ").split(' ').next().unwrap_or_default();
         let error = format!("error: this command moved: cargo run -p author -- {command}\n");
-        assert_eq!(said(line), (Some(2), String::new(), error));
+        assert_eq!(said(PROGRAM, line), (Some(2), String::new(), error));
     }
 }

@@ -35,3 +35,36 @@ pub fn small_disk(script: &str) -> Option<Command> {
     shell.args(["--mount", "sh", "-eu", "-c", script]).current_dir(root()).stdin(Stdio::null());
     Some(shell)
 }
+
+/// Runs the program with the words of a line. Returns its exit code and what it prints.
+pub fn said(program: &str, line: &str) -> (Option<i32>, String, String) {
+    let output = run(program, &line.split_whitespace().collect::<Vec<_>>());
+    let (out, err) = printed(&output);
+    (output.status.code(), out, err)
+}
+
+/// Demands that the help of the program lists each command, and that the command's own help has these words.
+pub fn explains(program: &str, name: &str, commands: &[(&str, &[&str])]) {
+    let (code, all, _) = said(program, "--help");
+    assert_eq!(code, Some(0));
+    for (command, parts) in commands {
+        assert!(all.lines().any(|line| line.starts_with(&format!("  {command} "))), "no {command} in\n{all}");
+        let (code, help, complaint) = said(program, &format!("{command} --help"));
+        assert!(code == Some(0) && complaint.is_empty(), "{command}: {complaint}");
+        assert!(help.contains(&format!("\nUsage: {name} {command}")), "{help}");
+        assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
+        for part in *parts {
+            assert!(help.contains(part), "no {part} in\n{help}");
+        }
+        assert_eq!(said(program, &format!("help {command}")).1, help);
+    }
+    assert_eq!(said(program, "--version").1, format!("{name} {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+/// Demands that each line ends the program with code 2 and this complaint.
+pub fn does_not_understand(program: &str, lines: &[(&str, &str)]) {
+    for (line, complaint) in lines {
+        let (code, out, err) = said(program, line);
+        assert!(code == Some(2) && out.is_empty() && err.contains(complaint), "{line}: {code:?} {out} {err}");
+    }
+}
