@@ -108,7 +108,7 @@ fn grade_options(class: &Path, out: &Path, options: &Options) -> Result<GradeOpt
     if options.resume {
         words.extend(["--resume", "--forget-missing"].map(OsString::from));
     }
-    match grade::SPEC.read(words.into_iter())? {
+    match grade::SPEC.read(words)? {
         Read::Given(given) => Ok(GradeOptions::read(&given)?),
         Read::Help(help) => bail!("{help}"),
     }
