@@ -18,8 +18,8 @@ use std::path::Path;
 /// `author new-check`.
 pub static SPEC: Spec = Spec {
     name: "author new-check",
-    about: "Write a new check with blanks, its entry in the rubric and two in the corpus, and say which blanks are left (for \
-            authors). Run it again to see what is still missing.",
+    about: "Write a new check with blanks, its entry in the rubric and two in the corpus, and say which blanks are left. Run it \
+            again to see what is still missing.",
     arguments: &[Argument::required("NAME", "The law in snake case, such as slab_respects_the_range.")],
     options: &[&[
         Opt::value("--stage", "N", "The stage of the check.").required(),
