@@ -96,7 +96,7 @@ pub fn bar(stage: u8, name: &str) -> f64 {
     let bar = RUBRIC.get(&format!("stage{stage}")).and_then(|stage| stage.bars.get(name));
     *bar.unwrap_or_else(|| {
         panic!(
-            "tests/checks/stage{stage}/rubric.toml has no bar {name:?} in [stage{stage}.bars]; `grader bars` writes it"
+            "tests/checks/stage{stage}/rubric.toml has no bar {name:?} in [stage{stage}.bars]; `author bars` writes it"
         )
     })
 }

@@ -52,7 +52,7 @@ pub struct Stage {
     /// The checks of the stage by name, in alphabetical order; [`Stage::in_order`] has them in the order of
     /// the lecture.
     pub checks: BTreeMap<String, CheckEntry>,
-    /// The counts of the reference, by name, by which the counts of students are judged. `grader bars` writes them.
+    /// The counts of the reference, by name, by which the counts of students are judged. `author bars` writes them.
     #[serde(default)]
     pub bars: BTreeMap<String, f64>,
 }

@@ -10,13 +10,14 @@ const FLOORS: [&str; 8] =
     ["geometry", "light camera count", "progress", "trees", "scene", "files kit", "world course", "tracer"];
 
 /// The packages of the workspace in the same order. None uses another one of its own floor.
-const PACKAGES: [&str; 8] = [
+const PACKAGES: [&str; 9] = [
     "raykata browser",
     "raykata-cli oracle checks",
-    "stage1 stage2 stage3 stage4 stage5 stage6 stage7 stage8 stage9 stage10 stage11 stage12 watch figures",
+    "stage1 stage2 stage3 stage4 stage5 stage6 stage7 stage8 stage9 stage10 stage11 stage12 live figures",
     "all-checks",
     "judge",
     "grader",
+    "author",
     "exercises solutions",
     "misbehaving peers",
 ];

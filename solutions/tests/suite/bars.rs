@@ -12,7 +12,7 @@ use stage12_checks::wide_tables::n_calls;
 #[test]
 fn the_bars_are_those_of_the_reference() {
     for (name, found) in measured(&*solutions::kit()) {
-        assert_eq!(rubric::bar(12, &name), found, "{name}: run `cargo run -p grader -- bars`");
+        assert_eq!(rubric::bar(12, &name), found, "{name}: run `cargo run -p author -- bars`");
     }
 }
 

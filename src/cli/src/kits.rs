@@ -138,13 +138,13 @@ impl Program {
     pub const JUDGE: Program = Program { package: "judge", name: "judge", feature: None };
 
     /// The program that follows a student's edits.
-    pub const WATCH: Program = Program { package: "watch", name: "watch", feature: None };
+    pub const WATCH: Program = Program { package: "live", name: "watch", feature: None };
 
     /// The program that shows pictures in a browser.
-    pub const VIEW: Program = Program { package: "watch", name: "view", feature: None };
+    pub const VIEW: Program = Program { package: "live", name: "view", feature: None };
 
     /// The program that updates a student's kit.
-    pub const UPDATE: Program = Program { package: "watch", name: "update", feature: None };
+    pub const UPDATE: Program = Program { package: "live", name: "update", feature: None };
 
     /// The program that makes the figures of the slides.
     pub const FIGURES: Program = Program { package: "figures", name: "figures", feature: None };

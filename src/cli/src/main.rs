@@ -82,15 +82,19 @@ fn word(spec: &Spec) -> &'static str {
 fn find(name: &str) -> Result<&'static Command, Misuse> {
     const { &COMMANDS }.iter().find(|(spec, _)| word(spec) == name).ok_or_else(|| {
         let known: Vec<&str> = COMMANDS.iter().map(|(spec, _)| word(spec)).collect();
-        let author = ["sync", "corpus", "gaps", "mutants", "generate", "handout", "export", "merge", "grade"];
-        // Mention the grader only where there is one: a student's repository has none.
-        let has_grader = || root().is_ok_and(|root| root.join("tests/grader").is_dir());
-        let grader = match author.contains(&name) && has_grader() {
-            true => "; that is `cargo run -p grader -- …`",
-            false => "",
+        let other = match name {
+            "handout" | "export" | "merge" | "grade" => "grader",
+            "sync" | "corpus" | "gaps" | "mutants" | "generate" => "author",
+            _ => "",
         };
+        // Mention these programs only where they are: a student's repository has none of them.
+        let other =
+            match !other.is_empty() && root().is_ok_and(|root| root.join("tests").join(other).is_dir()) {
+                true => format!("; that is `cargo run -p {other} -- {name}`"),
+                false => String::new(),
+            };
         Misuse::new(format!(
-            "there is no command `{name}`{}{grader}\n\nUsage: raykata [COMMAND]\n\nFor more information, try \
+            "there is no command `{name}`{}{other}\n\nUsage: raykata [COMMAND]\n\nFor more information, try \
              `raykata --help`.",
             did_you_mean(name, &known)
         ))

@@ -80,8 +80,8 @@ fn code(root: &Path, which: Which) -> Result<String> {
             std::fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?;
         for entry in entries {
             let path = entry?.path();
-            // The program around the renderer changes no pixel.
-            if path.is_dir() && path != root.join("src/cli") {
+            // The programs around the renderer change no pixel.
+            if path.is_dir() && !path.join("Cargo.toml").exists() {
                 folders.push(path);
             } else if path.extension().is_some_and(|ending| ending == "rs") {
                 files.push(path);

@@ -108,7 +108,7 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A deck without the comments that name its numbers for `grader sync`, which Marp would take for speaker notes.
+/// A deck without the comments that name its numbers for `author sync`, which Marp would take for speaker notes.
 fn without_names(deck: &str) -> String {
     let mut parts = deck.split("<!--=");
     let first = parts.next().unwrap_or_default().to_owned();

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// `grader course`.
 pub static SPEC: Spec = Spec {
     name: "grader course",
-    about: "Check a course file, and print its stages, points and dates (for instructors).",
+    about: "Check a course file, and print its stages, points and dates.",
     arguments: &[Argument::required("FILE", "The course file; tests/course.toml explains it.")],
     options: &[],
 };

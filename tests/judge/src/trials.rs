@@ -1,4 +1,4 @@
-//! `judge trials`: single checks of many workers. The grader's mutation testing changes a check, builds this program, and asks
+//! `judge trials`: single checks of many workers. The mutation testing of `author` changes a check, builds this program, and asks
 //! whether a verdict differs.
 
 use crate::scorecard::to_message;

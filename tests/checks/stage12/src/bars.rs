@@ -1,5 +1,5 @@
 //! The bars: what the reference needs, by which the counts of students are judged. They stand in `[stage12.bars]` of
-//! `rubric.toml`. `grader bars` measures them and writes them there; run it after a change of the reference, of a scene or of a
+//! `rubric.toml`. `author bars` measures them and writes them there; run it after a change of the reference, of a scene or of a
 //! count.
 
 use super::places::places_in_scenes;

@@ -4,8 +4,8 @@
 use super::once::Once;
 use super::result::Outcome;
 use super::submission::helpers;
+use crate::exercises::stage_of;
 use crate::sandbox::{self, Confinement, Ended, How, Purpose, Sandbox};
-use crate::sync::stage_of;
 use anyhow::{Context, Result, ensure};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -70,7 +70,7 @@ impl Forge {
         let toolchain = PathBuf::from(said_by(Command::new("rustc").args(["--print", "sysroot"]))?);
         let rustc = toolchain.join("bin/rustc");
         ensure!(rustc.is_file(), "no compiler at {}", rustc.display());
-        let pristine = crate::sync::pristine(root)?;
+        let pristine = crate::exercises::pristine(root)?;
         Ok(Forge {
             libraries: libraries::build(root)?,
             rustc,

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// `grader merge`.
 pub static SPEC: Spec = Spec {
     name: "grader merge",
-    about: "Combine the grades that `grade --shard` made of the parts of a class (for instructors). If a part is \
+    about: "Combine the grades that `grade --shard` made of the parts of a class. If a part is \
             missing or not finished, nothing is written, and an error names it.",
     arguments: &[Argument::required("PART", "The folders of the parts.").many()],
     options: &[&[Opt::value("--out", "FOLDER", "The folder for the grades of the whole class.").required()]],

@@ -4,7 +4,6 @@
 //! exercise needs, `forge` compiles the rest in a sandbox, `judge` runs the checks against the resulting worker, `store`
 //! saves the grade, `report` writes the reports.
 
-pub mod attacks;
 mod counted;
 mod forge;
 mod grader;
@@ -14,22 +13,23 @@ mod merge;
 mod once;
 mod one;
 mod options;
-mod rehearsal;
 pub mod report;
 pub mod result;
-mod run_attacks;
 mod sanity;
 mod scratch;
 mod shard;
 mod store;
 mod submission;
 
-pub use grader::{Grader, lint_if_asked};
+pub use forge::{COMPILER_PATIENCE, Forge};
+pub use grader::{Grader, SharedResults, lint_if_asked};
+pub use judge::{CALL_PATIENCE, Judge};
 pub use merge::{Options as MergeOptions, SPEC as MERGE, run as merge};
+pub use once::Once;
 pub use one::{Options as OneOptions, SPEC as ONE, run as one};
 pub(crate) use options::{draw_seed, stages};
-pub use rehearsal::{Options as RehearsalOptions, SPEC as REHEARSE, run as rehearse};
-pub use run_attacks::{Options as AttackOptions, SPEC as ATTACKS, run as attack};
+pub use shard::{Shard, shard};
+pub use store::Store;
 
 use crate::course::CourseFiles;
 use crate::queue;
@@ -38,15 +38,14 @@ use options::GradingOptions;
 use raykata::rubric;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use report::clean::clean_line;
-use shard::{Part, Shard, shard};
+use shard::Part;
 use std::path::{Path, PathBuf};
-use store::Store;
 use submission::Submission;
 
 /// `grader grade`.
 pub static SPEC: Spec = Spec {
     name: "grader grade",
-    about: "Grade a folder of submissions, each in a sandbox, and write tables and reports (for instructors).",
+    about: "Grade a folder of submissions, each in a sandbox, and write tables and reports.",
     arguments: &[Argument::required(
         "SUBMISSIONS",
         "The folder of the class. Each folder, .zip, .tar or .tar.gz in it is a submission, named after its student.",

@@ -16,7 +16,7 @@ pub struct Shard {
 }
 
 /// Reads a part such as `2/8`.
-pub(super) fn shard(text: &str) -> Result<Shard> {
+pub fn shard(text: &str) -> Result<Shard> {
     let (index, of) = text.split_once('/').with_context(|| format!("`{text}` is not like 2/8"))?;
     let shard = Shard { index: index.parse()?, of: of.parse()? };
     ensure!((1..=shard.of).contains(&shard.index), "parts are counted from 1: 1/{of} to {of}/{of}");

@@ -1,7 +1,7 @@
 //! Searches the hand-out for lines of answers.
 
 use super::FOLDERS;
-use crate::sync::{self, Block};
+use crate::exercises::{self, Block};
 use aho_corasick::AhoCorasick;
 use anyhow::{Context, Result};
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,7 +18,7 @@ const SHORTEST: usize = 30;
 /// in the scaffold, the checks or the hints.
 pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
     // Collect all text that students may read.
-    let exercises = sync::exercises(root)?;
+    let exercises = exercises::exercises(root)?;
     let mut public: String = exercises.iter().map(|exercise| exercise.stub.as_str()).collect();
     let of_code = FOLDERS.iter().filter(|(_, endings)| endings.contains(&"rs"));
     for (known, _) in of_code.filter(|(folder, _)| root.join(folder).exists()) {
@@ -31,7 +31,7 @@ pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
         let path = root.join("solutions/src").join(&name);
         let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
         let mut known = BTreeSet::new();
-        for block in sync::blocks(&text, &path)? {
+        for block in exercises::blocks(&text, &path)? {
             if let Block::Answer(answer, _) = block {
                 let answer = answer.into_iter().filter(|line| !line.trim_start().starts_with("// <"));
                 known.extend(answer.flat_map(lines).filter(|line| !line.contains(CANARY)));

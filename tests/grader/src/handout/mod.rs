@@ -18,7 +18,7 @@ use std::process::{Command, Stdio};
 /// `grader handout`.
 pub static SPEC: Spec = Spec {
     name: "grader handout",
-    about: "Make the student's repository, without answers and instructors' files (for instructors).",
+    about: "Make the student's repository, without answers and instructors' files.",
     arguments: &[Argument::required("FOLDER", "An empty or new folder.")],
     options: &[&[
         course::OPTION,
@@ -72,13 +72,12 @@ fn title(text: &str) -> Result<String> {
 
 /// Folders that are handed out with their subfolders, and the extensions of the files in them. A missing folder is left
 /// out.
-const FOLDERS: [(&str, &[&str]); 11] = [
-    ("src", &["css", "md", "rs", "snap", "toml"]),
+const FOLDERS: [(&str, &[&str]); 10] = [
+    ("src", &["css", "html", "md", "rs", "snap", "toml"]),
     ("tests/checks", &["rs", "toml"]),
     ("tests/oracle", &["rs", "toml"]),
     ("tests/judge", &["rs", "toml"]),
     ("tests/browser", &["rs", "toml"]),
-    ("tests/watch", &["html", "rs", "snap", "toml"]),
     ("scenes", &["md", "toml"]),
     ("scenes/meshes", &["ply", "obj", "mtl"]),
     ("scenes/images", &["png", "hdr"]),
@@ -170,7 +169,7 @@ pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     {
         files.insert(path, bytes);
     }
-    for (name, text) in crate::sync::pristine(root)? {
+    for (name, text) in crate::exercises::pristine(root)? {
         files.insert(format!("exercises/src/{name}"), text.into_bytes());
     }
     let manifest = manifests::of_workspace(&text(root, "Cargo.toml")?, &files)?;

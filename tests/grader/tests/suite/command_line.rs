@@ -1,9 +1,8 @@
 //! Every command has a help text, and a wrong command line ends the program with code 2.
-use super::program_runs::{grader, printed};
-use std::process::Command;
+use super::program_runs::{does_not_understand, explains, said};
 
 /// The commands with their arguments and options.
-const COMMANDS: [(&str, &[&str]); 21] = [
+const COMMANDS: [(&str, &[&str]); 8] = [
     (
         "grade",
         &[
@@ -28,67 +27,24 @@ const COMMANDS: [(&str, &[&str]); 21] = [
     ("export slurm", &["SUBMISSIONS", "--out", "--chunk", "--stages", "--seed"]),
     ("export slurm-picture", &["SCENE", "--out", "--pieces", "--seed", "--size", "--tone"]),
     ("export classroom", &["--out", "--stages", "--seed", "--parts"]),
-    ("gauntlet", &["--kit", "--inputs", "--seed", "--out", "20000"]),
-    ("cost", &["[SCENE]", "--headline", "--rounds", "--set"]),
-    ("attacks", &["[NAME]...", "--shard"]),
-    ("rehearse", &["--students", "--out", "--jobs", "--honest", "200"]),
-    ("cases", &[]),
-    ("sync", &["--check", "--force"]),
-    ("new-check", &["NAME", "--stage", "--function", "--module", "--after"]),
-    (
-        "corpus",
-        &[
-            "[NAME]...",
-            "--stage",
-            "--function",
-            "--check",
-            "--saying",
-            "--run",
-            "--bless",
-            "--reword",
-            "--seed",
-        ],
-    ),
-    ("corpus import", &["FOLDER", "--renames", "--check"]),
-    ("weaken", &["--sample", "--seed", "--file", "--resume"]),
-    ("gaps", &["--check", "--bless"]),
-    ("mutants", &["[FILE]", "--resume", "--again", "--jobs"]),
-    ("generate", &["[SCENES]"]),
 ];
 
-fn said(line: &str) -> (Option<i32>, String, String) {
-    let output = grader(&line.split_whitespace().collect::<Vec<_>>());
-    let (out, err) = printed(&output);
-    (output.status.code(), out, err)
-}
+const PROGRAM: &str = env!("CARGO_BIN_EXE_grader");
 
 #[test]
 fn every_command_is_explained() {
-    let (code, all, _) = said("--help");
-    assert_eq!(code, Some(0));
-    for (command, parts) in COMMANDS {
-        assert!(all.lines().any(|line| line.starts_with(&format!("  {command} "))), "no {command} in\n{all}");
-        let (code, help, complaint) = said(&format!("{command} --help"));
-        assert!(code == Some(0) && complaint.is_empty(), "{command}: {complaint}");
-        assert!(help.contains(&format!("\nUsage: grader {command}")), "{help}");
-        assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
-        for part in parts {
-            assert!(help.contains(part), "no {part} in\n{help}");
-        }
-        assert_eq!(said(&format!("help {command}")).1, help);
-    }
-    let (code, export, _) = said("export --help");
+    explains(PROGRAM, "grader", &COMMANDS);
+    let (code, export, _) = said(PROGRAM, "export --help");
     assert!(
         code == Some(0) && export.contains("\n  gradescope ") && export.contains("\n  classroom "),
         "{export}"
     );
-    assert_eq!(said("export help classroom").1, said("export classroom --help").1);
-    assert_eq!(said("--version").1, format!("grader {}\n", env!("CARGO_PKG_VERSION")));
+    assert_eq!(said(PROGRAM, "export help classroom").1, said(PROGRAM, "export classroom --help").1);
 }
 
 #[test]
 fn what_is_not_understood_ends_with_2() {
-    for (line, complaint) in [
+    let lines = [
         ("", "a command is missing"),
         ("exprot", "there is no command `exprot`; did you mean `export`?"),
         ("export", "the commands are gradescope, slurm, slurm-picture, classroom"),
@@ -98,15 +54,6 @@ fn what_is_not_understood_ends_with_2() {
         ("export gradescop", "did you mean `gradescope`?"),
         ("export classroom", "`--out` is missing"),
         ("export gradescope --stages 13", "there is no stage 13"),
-        ("corpus --chekc", "unexpected option `--chekc`; did you mean `--check`?"),
-        ("corpus --bless --reword", "`--bless` cannot be used with `--reword`"),
-        ("corpus --seed 1 --bless", "`--seed` cannot be used with `--bless`"),
-        ("corpus --stage 256", "a whole number from 0 to 255"),
-        ("corpus import", "FOLDER is missing"),
-        ("corpus import a --renames b", "b: No such file"),
-        ("gaps --check --bless", "cannot be used with"),
-        ("sync --check --force", "cannot be used with"),
-        ("mutants --again --resume", "cannot be used with"),
         ("grade class", "`--out` is missing"),
         ("grade --out grades", "SUBMISSIONS is missing"),
         ("grade class --out grades --shard 1/2", "`--shard` needs `--seed`"),
@@ -115,25 +62,16 @@ fn what_is_not_understood_ends_with_2() {
         ("grade-one submission", "at least one of `--gradescope FILE` and `--classroom FILE`"),
         ("merge --out grades", "PART is missing"),
         ("merge part", "`--out` is missing"),
-        ("gauntlet --inputs 99", "from 100 to"),
-        ("gauntlet --kit solution", "did you mean `solutions`?"),
         ("handout", "FOLDER is missing"),
-        ("cases all", "unexpected argument `all`"),
-        ("rehearse --jobs 0", "a whole number from 1 to 65535"),
-    ] {
-        let (code, out, err) = said(line);
-        assert!(code == Some(2) && out.is_empty() && err.contains(complaint), "{line}: {code:?} {out} {err}");
-    }
+    ];
+    does_not_understand(PROGRAM, &lines);
 }
 
-/// The command line is checked first, so its errors are the same in every working folder.
 #[test]
-fn outside_of_a_kit_the_same_is_wrong() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let output = Command::new(env!("CARGO_BIN_EXE_grader"))
-        .current_dir(folder.path())
-        .args(["sync", "--check", "--force"])
-        .output()
-        .expect("the program starts");
-    assert_eq!(output.status.code(), Some(2));
+fn a_command_of_authors_says_the_new_command() {
+    for line in ["sync --check", "corpus import a", "help gaps"] {
+        let command = line.trim_start_matches("help ").split(' ').next().unwrap_or_default();
+        let error = format!("error: this command moved: cargo run -p author -- {command}\n");
+        assert_eq!(said(PROGRAM, line), (Some(2), String::new(), error));
+    }
 }

@@ -1,7 +1,8 @@
 //! Tests the course file as instructors use it: in grades, in reports, in exports and in a hand-out.
 
 use super::grade::{graded, hand_in, right};
-use super::program_runs::{grader, printed, root};
+use super::grader;
+use super::program_runs::{printed, root};
 use std::fs;
 use std::path::Path;
 use std::process::Output;

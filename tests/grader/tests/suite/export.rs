@@ -1,6 +1,7 @@
 //! Tests the files for Gradescope and GitHub Classroom, and that grading one submission always writes a result.
 
-use super::program_runs::{grader, printed, root};
+use super::grader;
+use super::program_runs::{printed, root};
 use serde_json::Value;
 use std::fs;
 use std::io::Read;
@@ -150,7 +151,7 @@ fn one_submission_is_graded_for_both() {
     let solution = root().join("solutions/src/stage1_shapes.rs");
     let text = fs::read_to_string(&solution).expect("an answer");
     let file = folder.path().join("right/exercises/src/stage1_shapes.rs");
-    fs::write(file, grader::sync::answer(&text, &solution).expect("marks that match")).expect("written");
+    fs::write(file, grader::exercises::answer(&text, &solution).expect("marks that match")).expect("written");
     let exercises = root().join("exercises").to_string_lossy().into_owned();
     for (submission, share) in [(at("right"), 1.0), (exercises, 0.0)] {
         let output = grader(&[

@@ -1,26 +1,15 @@
 //! A full disk is an error that names the file and loses nothing that was finished.
 
 use super::grade::{hand_in, right};
-use super::program_runs::{grader, leaves_out_what_takes_long, printed, root};
+use super::grader;
+use super::program_runs::{leaves_out_what_takes_long, printed, root, small_disk};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
 fn said(output: &Output) -> String {
     let (said, complained) = printed(output);
     format!("{said}{complained}")
-}
-
-/// A shell that may mount a small file system, which no other process sees; `None` without the rights for it.
-fn small_disk(script: &str) -> Option<Command> {
-    let mut try_it = Command::new("unshare");
-    try_it.args(["--mount", "sh", "-c", "mount -t tmpfs -o size=4k tmpfs /mnt"]);
-    if !try_it.output().is_ok_and(|output| output.status.success()) {
-        return None;
-    }
-    let mut shell = Command::new("unshare");
-    shell.args(["--mount", "sh", "-eu", "-c", script]).current_dir(root()).stdin(Stdio::null());
-    Some(shell)
 }
 
 /// Grading takes a quarter of a minute, so this runs only with `CI_LONG=1`.
@@ -199,72 +188,24 @@ fn every_command_names_the_file_on_a_full_disk_and_continues_with_room() {
     ]);
 }
 
-/// These take minutes, so they run only with `CI_LONG=1`.
+/// It takes minutes, so it runs only with `CI_LONG=1`.
 #[test]
-fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
+fn a_measurement_continues_after_a_full_disk() {
     if leaves_out_what_takes_long() {
         return;
     }
-    let grader = PathBuf::from(env!("CARGO_BIN_EXE_grader"));
     let shadows = root().join("scenes/soft_shadows.toml");
     let cost = format!(
         "cost {} --full --size 16x12 --rounds 1 --reference 128 --parameter samples_per_pixel --out DISK/cost",
         shadows.display()
     );
-    let cases = [
-        Case {
-            program: grader.with_file_name("raykata"),
-            command: cost,
-            resume: "",
-            size: "16k",
-            keeps: Some("cost/unfinished.jsonl"),
-            // All files contain measured times.
-            result: "",
-        },
-        Case {
-            program: grader,
-            command: "rehearse --honest --students 4 --jobs 1 --out DISK/grades".into(),
-            resume: "--resume",
-            size: "200k",
-            keeps: Some("grades/grades.sqlite"),
-            result: "grades/grades.csv",
-        },
-    ];
-    try_all(&cases);
-}
-
-/// A compiler without room fails for any entry, which then must not count as one that does not compile. What the programs write
-/// goes to the small disk, over the folder of earlier builds.
-#[test]
-fn a_full_disk_is_no_result_of_an_entry_or_of_a_change() {
-    if leaves_out_what_takes_long() {
-        return;
-    }
-    let grader = env!("CARGO_BIN_EXE_grader");
-    let entry = "right/stage4/specular_double";
-    let before = super::program_runs::grader(&["corpus", entry, "--jobs", "1"]);
-    assert!(before.status.success(), "{}", said(&before));
-    for command in [format!("corpus {entry}"), "mutants stage1_shapes --quick".into()] {
-        let folder = tempfile::tempdir().unwrap();
-        let (disk, corpus) = (folder.path().display(), root().join("target/corpus"));
-        let corpus = corpus.display();
-        let script = format!(
-            "mount -t tmpfs -o size=6m tmpfs {disk}\n\
-             mkdir {disk}/upper {disk}/work\n\
-             mount -t overlay -o lowerdir={corpus},upperdir={disk}/upper,workdir={disk}/work overlay {corpus}\n\
-             {grader} {command} --jobs 1 && echo 'ended well' || echo 'ended badly'\n\
-             cat {corpus}/*.jsonl\n"
-        );
-        let Some(mut shell) = small_disk(&script) else {
-            return println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
-        };
-        let output = shell.output().unwrap();
-        let text = said(&output);
-        if text.contains("cargo-mutants, which lists the changes, does not run") {
-            println!("SKIPPED: cargo-mutants is not installed");
-            continue;
-        }
-        assert!(text.contains("ended badly") && text.contains("target/corpus"), "{text}");
-        assert!(!text.contains("DoesNotCompile"), "{text}");
-    }
+    try_all(&[Case {
+        program: Path::new(env!("CARGO_BIN_EXE_grader")).with_file_name("raykata"),
+        command: cost,
+        resume: "",
+        size: "16k",
+        keeps: Some("cost/unfinished.jsonl"),
+        // All files contain measured times.
+        result: "",
+    }]);
 }

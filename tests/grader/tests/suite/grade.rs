@@ -1,7 +1,7 @@
 //! Tests `grader grade` and `merge` as instructors run them, with a small class on stage 1.
 
+use grader::exercises;
 use grader::kits::root;
-use grader::sync;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -35,7 +35,7 @@ fn done(mut command: Command) -> String {
 /// Returns the reference's stage 1 without the marks.
 pub fn right() -> String {
     let file = root().unwrap().join("solutions/src/stage1_shapes.rs");
-    sync::answer(&fs::read_to_string(&file).unwrap(), &file).unwrap()
+    exercises::answer(&fs::read_to_string(&file).unwrap(), &file).unwrap()
 }
 
 pub fn hand_in(class: &Path, student: &str, text: &str) {

@@ -1,6 +1,7 @@
 //! Tests the content of the student's repository.
 
-use super::program_runs::{grader, leaves_out_what_takes_long, printed, root};
+use super::grader;
+use super::program_runs::{leaves_out_what_takes_long, printed, root};
 use grader::handout::{answers, leaks};
 use std::collections::BTreeSet;
 use std::fs;
@@ -298,7 +299,7 @@ fn a_half_written_kit_is_updated(new: &Path, target: &Path) {
 
 /// The page shows a picture of the untouched exercises beside the recorded reference.
 fn view_shows_a_picture_beside_its_record(folder: &Path, target: &Path, cargo: &dyn Fn(&[&str]) -> Output) {
-    let built = cargo(&["build", "--package", "watch"]);
+    let built = cargo(&["build", "--package", "live"]);
     assert!(built.status.success(), "{}", printed(&built).1);
     let mut view = Command::new(target.join("debug/view"));
     view.arg(folder)

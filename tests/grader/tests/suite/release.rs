@@ -1,6 +1,7 @@
 //! Tests the archives of a release, and that they build where there is no network.
 
-use super::program_runs::{grader, leaves_out_what_takes_long, printed, root};
+use super::grader;
+use super::program_runs::{leaves_out_what_takes_long, printed, root};
 use checks::rubric::entry;
 use flate2::read::GzDecoder;
 use std::collections::BTreeSet;

@@ -3,7 +3,8 @@
 mod cluster;
 
 use super::grade::{graded, hand_in, right};
-use super::program_runs::{grader, leaves_out_what_takes_long, printed, root};
+use super::grader;
+use super::program_runs::{leaves_out_what_takes_long, printed, root};
 use cluster::Cluster;
 use std::fs;
 use std::path::{Path, PathBuf};

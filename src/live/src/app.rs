@@ -1,0 +1,584 @@
+//! What is shown, and what keys, saves and events do to it.
+
+use crate::course::{Check, Course, Stage};
+use crate::pixels::Pixels;
+use crate::reset::{function_at, reset};
+use crate::run::{Event, Task};
+use live::compiler::CompilerError;
+use raykata_cli::verdicts::Verdict;
+use std::path::Path;
+use std::time::Duration;
+
+/// A key of the student.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Key {
+    /// A letter or another sign.
+    Sign(char),
+    /// Enter.
+    Enter,
+    /// Escape.
+    Escape,
+    /// Backspace.
+    Back,
+    /// The arrow up.
+    Up,
+    /// The arrow down.
+    Down,
+}
+
+/// What must be done next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Action {
+    /// Nothing.
+    Nothing,
+    /// Ends the program.
+    Quit,
+    /// Starts a run in place of the one before.
+    Start(Task),
+    /// Opens the shown function in the student's editor.
+    Edit,
+    /// Asks whether the shown function is to be reset.
+    AskReset,
+    /// Resets the function of the page.
+    Reset,
+}
+
+/// How far the last run has come.
+#[derive(Debug, PartialEq)]
+pub enum Phase {
+    /// The exercises are being compiled.
+    Compiling,
+    /// The checks run, or the picture is rendered.
+    Working,
+    /// The run has ended.
+    Ended {
+        /// The time of the compiler.
+        compiled: Duration,
+        /// The time of the checks.
+        checked: Duration,
+    },
+    /// The exercises do not compile.
+    Errors(Vec<CompilerError>),
+    /// The run could not go on, for this reason.
+    Broken(String),
+}
+
+/// What the middle of the screen shows.
+#[derive(Debug, PartialEq)]
+pub enum Page {
+    /// A check, with this many of its hints, and with its long lines in full or not.
+    Check {
+        /// The number of hints.
+        hints: usize,
+        /// Whether long lines are shown in full.
+        unfolded: bool,
+    },
+    /// All checks whose name or title contains a word.
+    List {
+        /// The word.
+        word: String,
+        /// Whether keys change the word.
+        is_typing: bool,
+        /// The chosen one of these checks.
+        at: usize,
+    },
+    /// The picture of the stage, when it is finished.
+    Picture(Option<Pixels>),
+    /// A question: shall this function, in this file, be reset?
+    Reset {
+        /// The file, from the root of the kit.
+        file: String,
+        /// The function.
+        name: String,
+    },
+}
+
+impl Page {
+    const CHECK: Page = Page::Check { hints: 0, unfolded: false };
+}
+
+/// The state of the program.
+pub struct App {
+    /// The course, with the last verdicts.
+    pub course: Course,
+    /// The index of the stage.
+    pub stage: usize,
+    /// The index of the check that is shown, in its stage.
+    pub check: usize,
+    /// Whether the student has chosen this check. Otherwise it is the first one that does not pass.
+    is_chosen: bool,
+    /// Whether stages that are done are passed over. That is so at the beginning.
+    is_searching: bool,
+    /// The time of the compiler in this run.
+    compiled: Duration,
+    /// How far the last run has come.
+    pub phase: Phase,
+    /// What is shown.
+    pub page: Page,
+    /// What the last key or event did, in words.
+    pub note: String,
+    /// The columns and rows of the terminal.
+    pub size: (usize, usize),
+}
+
+impl App {
+    /// Begins with this stage, or with the first one that is not done, and returns the first action.
+    pub fn new(stage: Option<u8>, size: (usize, usize)) -> (App, Action) {
+        let course = Course::new();
+        let index = stage.and_then(|stage| course.stages.iter().position(|one| one.number == stage));
+        let app = App {
+            course,
+            stage: index.unwrap_or(0),
+            check: 0,
+            is_chosen: false,
+            is_searching: index.is_none(),
+            compiled: Duration::ZERO,
+            phase: Phase::Compiling,
+            page: Page::CHECK,
+            note: String::new(),
+            size,
+        };
+        let task = Action::Start(Task::Check(app.stage().number));
+        (app, task)
+    }
+
+    /// The stage that is shown.
+    pub fn stage(&self) -> &Stage {
+        &self.course.stages[self.stage]
+    }
+
+    /// The check that is shown.
+    pub fn check(&self) -> &Check {
+        &self.stage().checks[self.check]
+    }
+
+    /// The checks of the list, as the indices of their stage and of the check in it.
+    pub fn listed(&self, word: &str) -> Vec<(usize, usize)> {
+        let word = word.to_lowercase();
+        let fits = |check: &Check| check.name.contains(&word) || check.title.to_lowercase().contains(&word);
+        let of_stage = |(index, stage): (usize, &Stage)| -> Vec<(usize, usize)> {
+            let checks = stage.checks.iter().enumerate();
+            checks.filter(|(_, check)| fits(check)).map(|(check, _)| (index, check)).collect()
+        };
+        self.course.stages.iter().enumerate().flat_map(of_stage).collect()
+    }
+
+    /// A file of the student has changed.
+    pub fn saved(&mut self) -> Action {
+        self.note.clear();
+        self.run()
+    }
+
+    /// Starts a run for what is shown.
+    fn run(&mut self) -> Action {
+        self.phase = Phase::Compiling;
+        let stage = self.stage().number;
+        let (columns, rows) = self.size;
+        Action::Start(match self.page {
+            // A character is two pixels high.
+            Page::Picture(_) => {
+                let rows = 2 * rows.saturating_sub(6).max(4);
+                let width = (rows * 16 / 9).min(columns).max(16);
+                Task::Render(stage, width as u32, (width * 9 / 16) as u32)
+            }
+            _ => Task::Check(stage),
+        })
+    }
+
+    /// Goes to a check.
+    fn go(&mut self, stage: usize, check: usize) -> Action {
+        let is_other = stage != self.stage;
+        (self.stage, self.check, self.is_chosen, self.is_searching) = (stage, check, true, false);
+        self.page = Page::CHECK;
+        if is_other { self.run() } else { Action::Nothing }
+    }
+
+    /// A run reports.
+    pub fn event(&mut self, event: Event) -> Action {
+        match event {
+            Event::Compiled(time) => (self.compiled, self.phase) = (time, Phase::Working),
+            Event::Errors(errors) => self.phase = Phase::Errors(errors),
+            Event::Broken(why) => self.phase = Phase::Broken(why),
+            Event::Verdict(verdict) => self.course.keep(verdict),
+            Event::Picture(pixels) => {
+                self.phase = Phase::Ended { compiled: self.compiled, checked: Duration::ZERO };
+                if let Page::Picture(shown) = &mut self.page {
+                    *shown = Some(pixels);
+                }
+            }
+            Event::Checked(number, checked) if number == self.stage().number => {
+                self.phase = Phase::Ended { compiled: self.compiled, checked };
+                return self.checked();
+            }
+            Event::Checked(..) => {}
+        }
+        Action::Nothing
+    }
+
+    /// All checks of the stage have a verdict: shows what comes next.
+    fn checked(&mut self) -> Action {
+        let is_last = self.stage + 1 == self.course.stages.len();
+        if self.is_searching && self.stage().is_done() && !is_last {
+            self.stage += 1;
+            self.check = 0;
+            return self.run();
+        }
+        self.is_searching = false;
+        if self.is_chosen && self.check().passes() {
+            self.note = format!("passes now: {}", self.check().title);
+            self.is_chosen = false;
+        }
+        if !self.is_chosen {
+            let next = self.stage().next_open(0, true).unwrap_or(self.check);
+            if next != self.check {
+                self.check = next;
+                self.page = match std::mem::replace(&mut self.page, Page::CHECK) {
+                    Page::Check { .. } => Page::CHECK,
+                    other => other,
+                };
+            }
+        }
+        Action::Nothing
+    }
+
+    /// A key was pressed.
+    pub fn key(&mut self, key: Key) -> Action {
+        self.note.clear();
+        match self.page {
+            Page::List { .. } => return self.key_in_list(key),
+            Page::Reset { .. } if key == Key::Sign('y') => return Action::Reset,
+            Page::Reset { .. } => {
+                self.page = Page::CHECK;
+                return Action::Nothing;
+            }
+            _ => {}
+        }
+        match key {
+            Key::Sign('q') => return Action::Quit,
+            Key::Sign('n') | Key::Down => return self.next(),
+            Key::Sign('p') | Key::Up => {
+                if let Some(previous) = self.stage().previous_open(self.check) {
+                    return self.go(self.stage, previous);
+                }
+            }
+            Key::Sign('l') => {
+                let all = self.listed("");
+                let at = all.iter().position(|place| *place == (self.stage, self.check)).unwrap_or(0);
+                self.page = Page::List { word: String::new(), is_typing: false, at };
+            }
+            Key::Sign('o') => return Action::Edit,
+            Key::Sign('r') => return Action::AskReset,
+            Key::Sign('v') => {
+                if matches!(self.page, Page::Picture(_)) {
+                    self.page = Page::CHECK;
+                } else {
+                    self.page = Page::Picture(None);
+                }
+                return self.run();
+            }
+            Key::Sign('h') => {
+                let hints = match self.page {
+                    Page::Check { hints, .. } => hints % 3 + 1,
+                    _ => 1,
+                };
+                self.page = Page::Check { hints, unfolded: false };
+            }
+            Key::Sign('e') => {
+                let unfolded = !matches!(self.page, Page::Check { unfolded: true, .. });
+                self.page = Page::Check { hints: 0, unfolded };
+            }
+            Key::Escape => self.page = Page::CHECK,
+            _ => {}
+        }
+        Action::Nothing
+    }
+
+    /// The next check that does not pass, or the next stage if this one is done.
+    fn next(&mut self) -> Action {
+        match self.stage().next_open(self.check, false) {
+            Some(next) => self.go(self.stage, next),
+            None if self.stage + 1 < self.course.stages.len() => {
+                let action = self.go(self.stage + 1, 0);
+                self.is_chosen = false;
+                action
+            }
+            None => Action::Nothing,
+        }
+    }
+
+    fn key_in_list(&mut self, key: Key) -> Action {
+        let Page::List { word, is_typing, at } = &self.page else { return Action::Nothing };
+        let (mut word, mut is_typing, mut at) = (word.clone(), *is_typing, *at);
+        let listed = self.listed(&word);
+        match key {
+            Key::Enter => {
+                if let Some(&(stage, check)) = listed.get(at) {
+                    return self.go(stage, check);
+                }
+            }
+            Key::Escape if is_typing => (word, is_typing) = (String::new(), false),
+            Key::Escape => {
+                self.page = Page::CHECK;
+                return Action::Nothing;
+            }
+            Key::Up => at = at.saturating_sub(1),
+            Key::Down => at = (at + 1).min(listed.len().saturating_sub(1)),
+            Key::Sign(sign) if is_typing => {
+                word.push(sign);
+                at = 0;
+            }
+            Key::Back if is_typing => {
+                word.pop();
+                at = 0;
+            }
+            Key::Sign('/') => is_typing = true,
+            Key::Sign('p') => at = at.saturating_sub(1),
+            Key::Sign('n') => at = (at + 1).min(listed.len().saturating_sub(1)),
+            Key::Sign('l') => {
+                self.page = Page::CHECK;
+                return Action::Nothing;
+            }
+            Key::Sign('q') => return Action::Quit,
+            _ => {}
+        }
+        self.page = Page::List { word, is_typing, at };
+        Action::Nothing
+    }
+
+    /// Asks whether the function of the shown check, or of the first error, is to be reset.
+    pub fn ask_reset(&mut self, root: &Path) {
+        let (file, line) = self.place(root);
+        let text = std::fs::read_to_string(root.join(&file)).unwrap_or_default();
+        match function_at(&text, line) {
+            Some(name) => self.page = Page::Reset { file, name },
+            None => "there is no function to reset here".clone_into(&mut self.note),
+        }
+    }
+
+    /// Resets the function of the question.
+    pub fn reset(&mut self, root: &Path) {
+        if let Page::Reset { file, name } = std::mem::replace(&mut self.page, Page::CHECK) {
+            self.note = match reset(root, &file, &name) {
+                Ok(kept) => format!("the old text: {}", kept.strip_prefix(root).unwrap_or(&kept).display()),
+                Err(error) => format!("{error:#}"),
+            };
+        }
+    }
+
+    /// The file and the line of what the shown check waits for: an error of the compiler, the gap, or the function that the
+    /// message names.
+    pub fn place(&self, root: &Path) -> (String, u32) {
+        let split = |place: &str| -> Option<(String, u32)> {
+            let mut parts = place.split(':');
+            Some((parts.next().filter(|file| !file.is_empty())?.to_owned(), parts.next()?.parse().ok()?))
+        };
+        let in_error = match &self.phase {
+            Phase::Errors(errors) => errors.iter().find_map(|error| split(&error.place)),
+            _ => None,
+        };
+        let in_verdict = || match self.check().verdict.as_ref()? {
+            Verdict::NotWritten { place, .. } => split(place),
+            Verdict::Failed(message) => function_in(message, root, self.stage().number),
+            Verdict::Passed => None,
+        };
+        let in_error = in_error.map(|(file, line)| {
+            // The compiler names files from the folder of their package.
+            let file = if file.starts_with("src/") { format!("exercises/{file}") } else { file };
+            (file, line)
+        });
+        in_error.or_else(in_verdict).unwrap_or_else(|| {
+            let first = files_of(root, self.stage().number).into_iter().next().unwrap_or_default();
+            (first, 1)
+        })
+    }
+}
+
+/// The files of a stage, from the root of the kit.
+fn files_of(root: &Path, stage: u8) -> Vec<String> {
+    let entries = std::fs::read_dir(live::exercises(root)).into_iter().flatten().flatten();
+    let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let mut names: Vec<String> = names.filter(|name| name.starts_with(&format!("stage{stage}_"))).collect();
+    names.sort();
+    names.into_iter().map(|name| format!("exercises/src/{name}")).collect()
+}
+
+/// The function that the input of a message calls, with its file and line.
+fn function_in(message: &str, root: &Path, stage: u8) -> Option<(String, u32)> {
+    let input = message.lines().find_map(|line| line.trim_start().strip_prefix("input "))?;
+    let name: String =
+        input.trim().chars().take_while(|sign| sign.is_alphanumeric() || *sign == '_').collect();
+    let head = format!("pub fn {name}");
+    files_of(root, stage).into_iter().find_map(|file| {
+        let text = std::fs::read_to_string(root.join(&file)).ok()?;
+        let is_head = |line: &str| line.strip_prefix(&head).is_some_and(|rest| rest.starts_with(['(', '<']));
+        let line = text.lines().position(is_head)?;
+        Some((file, line as u32 + 1))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raykata_cli::verdicts::CheckVerdict;
+
+    fn tell(app: &mut App, check: usize, verdict: Verdict) {
+        let name = app.stage().checks[check].name.clone();
+        app.event(Event::Verdict(CheckVerdict { check: name, verdict }));
+    }
+
+    fn end(app: &mut App) -> Action {
+        app.event(Event::Checked(app.stage().number, Duration::from_millis(300)))
+    }
+
+    fn failed() -> Verdict {
+        Verdict::Failed("a message".into())
+    }
+
+    fn all(app: &mut App, verdict: &Verdict) {
+        (0..app.stage().checks.len()).for_each(|check| tell(app, check, verdict.clone()));
+    }
+
+    #[test]
+    fn it_begins_at_the_first_check_that_does_not_pass() {
+        let (mut app, action) = App::new(None, (80, 24));
+        assert_eq!(action, Action::Start(Task::Check(1)));
+        all(&mut app, &Verdict::Passed);
+        assert_eq!(end(&mut app), Action::Start(Task::Check(2)), "stage 1 is done");
+        all(&mut app, &Verdict::Passed);
+        tell(&mut app, 3, failed());
+        assert_eq!(end(&mut app), Action::Nothing);
+        assert_eq!((app.stage().number, app.check), (2, 3));
+    }
+
+    #[test]
+    fn next_and_previous_visit_only_what_does_not_pass() {
+        let (mut app, _) = App::new(Some(1), (80, 24));
+        all(&mut app, &Verdict::Passed);
+        for check in [1, 4, 6] {
+            tell(&mut app, check, failed());
+        }
+        end(&mut app);
+        let mut visited = vec![app.check];
+        for key in "nnnpp".chars() {
+            app.key(Key::Sign(key));
+            visited.push(app.check);
+        }
+        assert_eq!(visited, [1, 4, 6, 1, 6, 4]);
+    }
+
+    #[test]
+    fn a_chosen_check_stays_until_it_passes() {
+        let (mut app, _) = App::new(Some(1), (80, 24));
+        all(&mut app, &failed());
+        end(&mut app);
+        app.key(Key::Sign('n'));
+        assert_eq!(app.saved(), Action::Start(Task::Check(1)));
+        end(&mut app);
+        assert_eq!(app.check, 1, "it still fails");
+        tell(&mut app, 1, Verdict::Passed);
+        end(&mut app);
+        assert_eq!(app.check, 0, "it passes, so the first one that does not comes next");
+        assert!(app.note.starts_with("passes now: "), "{}", app.note);
+    }
+
+    #[test]
+    fn next_goes_on_to_the_next_stage_when_a_stage_is_done() {
+        let (mut app, _) = App::new(Some(1), (80, 24));
+        all(&mut app, &Verdict::Passed);
+        assert_eq!(end(&mut app), Action::Nothing, "a stage that was asked for stays");
+        assert_eq!(app.key(Key::Sign('n')), Action::Start(Task::Check(2)));
+    }
+
+    #[test]
+    fn the_list_is_searched_and_leads_to_a_check() {
+        let (mut app, _) = App::new(Some(1), (80, 24));
+        app.key(Key::Sign('l'));
+        app.key(Key::Sign('/'));
+        "refract".chars().for_each(|sign| _ = app.key(Key::Sign(sign)));
+        let found = app.listed("refract");
+        assert!(!found.is_empty() && found.len() < 40, "{}", found.len());
+        app.key(Key::Down);
+        let action = app.key(Key::Enter);
+        assert_eq!((app.stage, app.check), found[1]);
+        assert_eq!(action, Action::Start(Task::Check(app.stage().number)));
+        assert_eq!(app.page, Page::CHECK);
+    }
+
+    #[test]
+    fn hints_come_one_at_a_time() {
+        let (mut app, _) = App::new(Some(1), (80, 24));
+        let hints = |app: &App| match app.page {
+            Page::Check { hints, .. } => hints,
+            _ => 9,
+        };
+        let levels: Vec<usize> = "hhhh"
+            .chars()
+            .map(|key| {
+                app.key(Key::Sign(key));
+                hints(&app)
+            })
+            .collect();
+        assert_eq!(levels, [1, 2, 3, 1]);
+    }
+
+    #[test]
+    fn the_picture_is_rendered_again_at_each_save() {
+        let (mut app, _) = App::new(Some(4), (80, 24));
+        let Action::Start(Task::Render(4, width, height)) = app.key(Key::Sign('v')) else {
+            panic!("no picture")
+        };
+        assert!(width <= 80 && height <= 36, "{width} × {height}");
+        assert!(matches!(app.saved(), Action::Start(Task::Render(4, ..))));
+        app.event(Event::Picture(Pixels(vec![vec![([1; 3], [2; 3])]])));
+        assert!(matches!(app.page, Page::Picture(Some(_))));
+        assert_eq!(app.key(Key::Sign('v')), Action::Start(Task::Check(4)), "back to the checks");
+    }
+
+    #[test]
+    fn the_editor_opens_the_error_the_gap_or_the_function() {
+        let root = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(root.path().join("exercises/src")).unwrap();
+        let file = root.path().join("exercises/src/stage1_shapes.rs");
+        std::fs::write(file, "\n\npub fn sphere_geometric(\n").unwrap();
+        let (mut app, _) = App::new(Some(1), (80, 24));
+        assert_eq!(app.place(root.path()), ("exercises/src/stage1_shapes.rs".into(), 1));
+        let place = "exercises/src/stage1_shapes.rs:23".to_owned();
+        tell(&mut app, 0, Verdict::NotWritten { task: "write it".into(), place });
+        assert_eq!(app.place(root.path()), ("exercises/src/stage1_shapes.rs".into(), 23));
+        let message = "stage 1 · a law\n  input     sphere_geometric(&Ray::new())\n";
+        tell(&mut app, 0, Verdict::Failed(message.into()));
+        assert_eq!(app.place(root.path()), ("exercises/src/stage1_shapes.rs".into(), 3));
+        let (what, code, notes) = ("wrong".to_owned(), String::new(), Vec::new());
+        let place = "src/stage1_shapes.rs:7:9".to_owned();
+        app.event(Event::Errors(vec![CompilerError { place, what, code, notes }]));
+        assert_eq!(app.place(root.path()), ("exercises/src/stage1_shapes.rs".into(), 7));
+    }
+
+    #[test]
+    fn a_function_is_reset_only_after_a_yes() {
+        let root = tempfile::tempdir().unwrap();
+        let at = |path: &str| root.path().join(path);
+        std::fs::create_dir_all(at("exercises/src")).unwrap();
+        std::fs::create_dir_all(at("tests")).unwrap();
+        let file = at("exercises/src/stage1_shapes.rs");
+        std::fs::write(&file, "pub fn nearest_root() -> u8 {\n    1\n}\n").unwrap();
+        let stub = "pub fn nearest_root() -> u8 {\n    todo!()\n}\n";
+        std::fs::write(at("tests/stubs.toml"), format!("[stage1_shapes]\nnearest_root = '''\n{stub}'''\n"))
+            .unwrap();
+        let (mut app, _) = App::new(Some(1), (80, 24));
+        tell(&mut app, 0, Verdict::Failed("stage 1\n  input     nearest_root()\n".into()));
+        for (key, action) in [('n', Action::Nothing), ('y', Action::Reset)] {
+            assert_eq!(app.key(Key::Sign('r')), Action::AskReset);
+            app.ask_reset(root.path());
+            assert!(
+                matches!(&app.page, Page::Reset { name, .. } if name == "nearest_root"),
+                "{:?}",
+                app.page
+            );
+            assert_eq!(app.key(Key::Sign(key)), action);
+        }
+        app.reset(root.path());
+        assert_eq!(std::fs::read_to_string(file).unwrap(), stub);
+        assert_eq!(app.note, "the old text: out/stage1_shapes-before-reset-1.rs");
+    }
+}

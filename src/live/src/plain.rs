@@ -1,0 +1,66 @@
+//! The same in lines, one after the other: for screen readers, pipes and terminals without a screen. It ends when the
+//! program is interrupted.
+
+use crate::app::{Action, App, Phase};
+use crate::run::{Event, Report, Run};
+use anyhow::Result;
+use live::files::Files;
+use raykata_cli::report::say;
+use raykata_cli::verdicts::Verdict;
+use std::path::Path;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
+
+/// The time between two looks at the files.
+const PAUSE: Duration = Duration::from_millis(150);
+
+/// Follows the files until the program is interrupted.
+pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
+    let mut files = Files::new(live::exercises(root));
+    let (sender, reports) = mpsc::channel();
+    let (mut app, mut action) = App::new(stage, (80, 24));
+    let (mut run, mut number) = (None, 0);
+    say(format_args!("watching exercises/src; Ctrl-C ends it\n"));
+    loop {
+        if let Action::Start(task) = action {
+            drop(run.take());
+            number += 1;
+            run = Some(Run::start(root.to_owned(), task, number, sender.clone()));
+        }
+        action = match reports.recv_timeout(PAUSE) {
+            Ok(Report { run, event }) if run == number => {
+                let has_ended = !matches!(event, Event::Verdict(_) | Event::Compiled(_));
+                let action = app.event(event);
+                if has_ended && action == Action::Nothing {
+                    say(format_args!("{}\n", lines(&app)));
+                }
+                action
+            }
+            Ok(_) | Err(RecvTimeoutError::Disconnected) => Action::Nothing,
+            Err(RecvTimeoutError::Timeout) if files.have_changed() => app.saved(),
+            Err(RecvTimeoutError::Timeout) => Action::Nothing,
+        };
+    }
+}
+
+/// The result of a run, in lines.
+fn lines(app: &App) -> String {
+    let stage = app.stage();
+    let (checks, points) = stage.earned();
+    let head = format!("\nstage {} · {}: {checks} pass, {points}\n", stage.number, stage.title);
+    let body = match (&app.phase, &app.check().verdict) {
+        (Phase::Errors(errors), _) => {
+            let error = |error: &live::compiler::CompilerError| {
+                let notes: String = error.notes.iter().map(|note| format!("  {note}\n")).collect();
+                format!("{}\n  {}\n  {}\n{notes}", error.place, error.what, error.code)
+            };
+            return format!("\ndoes not compile\n{}", errors.iter().map(error).collect::<String>());
+        }
+        (Phase::Broken(why), _) => return format!("\n{why}\n"),
+        (_, Some(Verdict::NotWritten { task, place })) => format!("not written yet: {place}\n  {task}\n"),
+        (_, Some(Verdict::Failed(message))) => message.clone(),
+        (_, Some(Verdict::Passed)) if stage.is_done() => format!("Stage {} is done.\n", stage.number),
+        _ => String::new(),
+    };
+    head + &body
+}

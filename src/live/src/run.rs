@@ -1,0 +1,158 @@
+//! One run: compile the exercises, then run the checks of a stage, or render its picture. Everything happens in processes of
+//! its own, so that a save can end a run at any time, also if the code of the student never ends.
+
+use crate::pixels::Pixels;
+use anyhow::{Context, Result, bail};
+use live::compiler::{CompilerError, error_in};
+use live::process::Process;
+use live::scene_of;
+use raykata::worker::receive;
+use raykata_cli::kits::{Need, Program, Which, cargo_build};
+use raykata_cli::verdicts::CheckVerdict;
+use std::io::{BufRead, BufReader, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+
+/// What a run reports.
+#[derive(Debug)]
+pub enum Event {
+    /// A check has a verdict.
+    Verdict(CheckVerdict),
+    /// The compiler has finished without errors.
+    Compiled(Duration),
+    /// The exercises do not compile.
+    Errors(Vec<CompilerError>),
+    /// All checks of this stage have a verdict.
+    Checked(u8, Duration),
+    /// A picture is finished.
+    Picture(Pixels),
+    /// The run cannot go on, for this reason.
+    Broken(String),
+}
+
+/// An event, and the number of its run. Events of a run that was cancelled may still arrive.
+pub struct Report {
+    /// The number of the run.
+    pub run: u64,
+    /// What happened.
+    pub event: Event,
+}
+
+/// What a run does after it has compiled the exercises.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Task {
+    /// Runs the checks of a stage.
+    Check(u8),
+    /// Renders the scene of a stage, with this many pixels in width and height.
+    Render(u8, u32, u32),
+}
+
+/// A run. It is cancelled when it is dropped.
+pub struct Run(Arc<Process>);
+
+impl Run {
+    /// Starts a run, which reports to `reports`.
+    pub fn start(root: PathBuf, task: Task, run: u64, reports: Sender<Report>) -> Run {
+        let process = Arc::new(Process::default());
+        let own = process.clone();
+        std::thread::spawn(move || {
+            // The receiver is gone only when the program ends.
+            let report = |event| _ = reports.send(Report { run, event });
+            if let Err(error) = work(&root, task, &own, &report) {
+                report(Event::Broken(format!("{error:#}")));
+            }
+        });
+        Run(process)
+    }
+}
+
+impl Drop for Run {
+    fn drop(&mut self) {
+        self.0.end();
+    }
+}
+
+/// Does the work of a run.
+fn work(root: &Path, task: Task, process: &Process, report: &impl Fn(Event)) -> Result<()> {
+    // Compile the exercises.
+    let begin = Instant::now();
+    let need = match task {
+        Task::Check(_) => Need::Checks,
+        Task::Render(..) => Need::Frames,
+    };
+    let (mut cargo, programs) = cargo_build(root, &[Program::worker(Which::Exercises, need)])?;
+    cargo.arg("--message-format=json");
+    // Compile for checks as `cargo test` does: without optimisation and incrementally, which takes a fifth of the time.
+    let in_debug =
+        programs.first().and_then(|program| program.parent()).is_some_and(|folder| folder.ends_with("debug"));
+    if matches!(task, Task::Check(_)) && in_debug {
+        cargo.args(["--profile", "test"]);
+    }
+    let mut errors = Vec::new();
+    let lines = |out: &mut BufReader<_>| {
+        errors.extend(out.lines().map_while(Result::ok).filter_map(|line| error_in(&line)));
+        Ok(())
+    };
+    let Some((compiled, words)) = process.follow(cargo, lines)? else { return Ok(()) };
+    if !compiled {
+        if errors.is_empty() {
+            bail!("the exercises cannot be built:\n{}", words.trim());
+        }
+        report(Event::Errors(errors));
+        return Ok(());
+    }
+    report(Event::Compiled(begin.elapsed()));
+    let [worker] = &programs[..] else { bail!("the worker was not built") };
+    match task {
+        Task::Check(stage) => check(root, worker, stage, process, report),
+        Task::Render(stage, width, height) => render(root, stage, (width, height), process, report),
+    }
+}
+
+/// Lets the judge run the checks of a stage.
+fn check(root: &Path, worker: &Path, stage: u8, process: &Process, report: &impl Fn(Event)) -> Result<()> {
+    let begin = Instant::now();
+    let judge = worker.with_file_name(format!("judge{}", std::env::consts::EXE_SUFFIX));
+    let mut command = Command::new(judge);
+    command.arg("verdicts").arg(root).arg(worker).arg(stage.to_string());
+    let verdicts = |out: &mut BufReader<_>| loop {
+        match receive::<CheckVerdict>(out) {
+            Ok(verdict) => report(Event::Verdict(verdict)),
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(()),
+            Err(error) => return Err(error).context("the judge is not understood"),
+        }
+    };
+    match process.follow(command, verdicts)? {
+        None => {}
+        Some((true, _)) => report(Event::Checked(stage, begin.elapsed())),
+        Some((false, words)) => bail!("the judge has failed: {}", words.trim()),
+    }
+    Ok(())
+}
+
+/// Renders the scene of a stage in the size of the terminal.
+fn render(
+    root: &Path,
+    stage: u8,
+    (width, height): (u32, u32),
+    process: &Process,
+    report: &impl Fn(Event),
+) -> Result<()> {
+    let scene = scene_of(root, stage);
+    let out = root.join("out/watch.png");
+    let here = std::env::current_exe().context("the path of this program is unknown")?;
+    let raykata = here.with_file_name(format!("raykata{}", std::env::consts::EXE_SUFFIX));
+    let mut command = Command::new(raykata);
+    command.current_dir(root).arg("render").arg(&scene).arg("--out").arg(&out);
+    command.args(["--kit", "exercises", "--size", &format!("{width}x{height}"), "--spp", "1"]);
+    let nothing = |out: &mut BufReader<_>| Ok(_ = std::io::copy(out, &mut std::io::sink())?);
+    match process.follow(command, nothing)? {
+        None => {}
+        Some((true, _)) => report(Event::Picture(Pixels::read(&out, width)?)),
+        Some((false, words)) => bail!("{}", words.trim().trim_start_matches("error: ")),
+    }
+    Ok(())
+}

@@ -1,0 +1,303 @@
+use super::*;
+use all_checks::STAGES;
+use grader::grade::result::{CheckResult, Graded, Outcome, Remark};
+use grader::queue;
+use std::collections::BTreeSet;
+use std::os::unix::fs::FileTypeExt;
+use std::sync::Mutex;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
+}
+
+fn attack(text: &str) -> Attack {
+    let head = "name = \"ann\"\ntitle = \"a\"\nwhat = \"b\"\n";
+    let mut attack: Attack = toml::from_str(&format!("{head}{text}\n[expect]\nearned = \"none\"\n")).unwrap();
+    attack.fragments = Arc::new(BTreeMap::from([("shared".to_owned(), "// of several".to_owned())]));
+    attack
+}
+
+fn made(text: &str) -> Result<(tempfile::TempDir, PathBuf)> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = make(&attack(text), &AttackFolders { root: &root(), folder: folder.path() })?;
+    Ok((folder, path))
+}
+
+fn shapes_of(text: &str) -> String {
+    let (_folder, path) = made(text).unwrap();
+    fs::read_to_string(path.join("exercises/src/stage1_shapes.rs")).unwrap()
+}
+
+/// A graded submission with these outcomes in stage 1.
+fn graded(outcome: impl Fn(&str) -> Outcome) -> Graded {
+    let stage = STAGES.iter().find(|(stage, _)| *stage == 1).unwrap();
+    let result = |check: &checks::Check| {
+        let outcome = outcome(check.name);
+        let message = match outcome {
+            Outcome::Passed => String::new(),
+            other => format!("it is {}", other.words()),
+        };
+        CheckResult::new(1, check.name, outcome, message)
+    };
+    Graded {
+        student: "ann".into(),
+        content: String::new(),
+        checks: stage.1.iter().map(result).collect(),
+        remarks: vec![Remark { file: "build.rs".into(), what: "was ignored".into() }],
+        compiler: String::new(),
+        trouble: String::new(),
+        cpu_ms: 0,
+        handed_in: String::new(),
+    }
+}
+
+fn message(expected: &str, graded: &Graded) -> Vec<String> {
+    complaints(&attack(""), &toml::from_str(expected).unwrap(), graded)
+}
+
+#[test]
+fn every_attack_can_be_read_and_made() {
+    let attacks = load(&root()).unwrap();
+    assert!(attacks.len() >= 200, "{}", attacks.len());
+    // Most files are those of the exercises: parse each text once.
+    let parsed = Mutex::new(BTreeSet::new());
+    let made = queue::run(&queue::one_a_core(), &attacks, |(), attack| {
+        let folder = tempfile::tempdir()?;
+        let path = make(attack, &AttackFolders { root: &root(), folder: folder.path() })?;
+        ensure!(fs::symlink_metadata(&path).is_ok(), "{}: there is no submission", attack.name);
+        ensure!(!attack.title.is_empty() && attack.what.ends_with('.'), "{}: words are missing", attack.name);
+        // Files that are meant to compile must be valid Rust. Files that attack the compiler would also break this test.
+        let rust = !matches!(attack.family, Family::Compiling | Family::Packing);
+        for entry in fs::read_dir(path.join("exercises/src")).into_iter().flatten().filter(|_| rust) {
+            let file = entry?.path();
+            if file.is_dir() {
+                continue;
+            }
+            let text = fs::read_to_string(&file)?;
+            if parsed.lock().unwrap().insert(text.clone()) {
+                let parsed = syn::parse_file(&text);
+                ensure!(parsed.is_ok(), "{}: {}: {:?}", attack.name, file.display(), parsed.err());
+            }
+        }
+        Ok(())
+    });
+    made.unwrap();
+}
+
+#[test]
+fn what_is_expected_names_checks_that_there_are() {
+    for attack in load(&root()).unwrap() {
+        let stages = STAGES.iter().filter(|(stage, _)| attack.stages.contains(stage));
+        let names: Vec<&str> = stages.flat_map(|(_, checks)| *checks).map(|check| check.name).collect();
+        for expected in [Some(&attack.expect), attack.without_lint.as_ref()].into_iter().flatten() {
+            let (Earned::AllBut(patterns) | Earned::AtLeastAllBut(patterns) | Earned::AtMost(patterns)) =
+                &expected.earned
+            else {
+                continue;
+            };
+            for pattern in patterns {
+                let known = names.iter().any(|name| super::verdict::is_like(name, pattern));
+                assert!(known, "{}: no check is called {pattern}", attack.name);
+            }
+        }
+        assert!(attack.expect.allow.is_empty(), "{}: `allow` is for [without_lint]", attack.name);
+        assert!(attack.without_lint.is_none_or(|expected| !expected.allow.is_empty()), "{}", attack.name);
+    }
+}
+
+#[test]
+fn files_of_attacks_that_are_wrong_say_where_and_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = folder.path().join(FOLDER);
+    fs::create_dir_all(&files).unwrap();
+    let attack = |name: &str| {
+        format!("[[attack]]\nname = \"{name}\"\ntitle = \"a\"\nwhat = \"b\"\nexpect.earned = \"none\"\n")
+    };
+    let error = |name: &str, text: &str| {
+        let file = files.join(name);
+        fs::write(&file, text).unwrap();
+        let error = load(folder.path()).map(drop).unwrap_err();
+        fs::remove_file(file).unwrap();
+        format!("{error:#}")
+    };
+    fs::write(files.join("honest.toml"), format!("[fragments]\nf = \"\"\n{}", attack("b"))).unwrap();
+    assert_eq!(load(folder.path()).unwrap()[0].family, Family::Honest);
+    let unknown = error("cooking.toml", &attack("a"));
+    assert!(unknown.contains("cooking.toml: the file has the name of no family"), "{unknown}");
+    let unsorted = error("words.toml", &(attack("z") + &attack("a")));
+    assert!(unsorted.contains("words.toml: `z` stands before `a`: sort"), "{unsorted}");
+    let twice = error("words.toml", &attack("b"));
+    assert!(twice.contains("two attacks are called `b` (Honest, Words): rename one"), "{twice}");
+    let twice = error("words.toml", &format!("[fragments]\nf = \"\"\n{}", attack("a")));
+    assert!(twice.contains("words.toml: another file has a fragment `f`"), "{twice}");
+    let key = error("words.toml", &(attack("a") + "family = \"words\"\n"));
+    assert!(key.contains("unknown field `family`"), "{key}");
+}
+
+#[test]
+fn attacks_of_every_family_are_there() {
+    let families: BTreeSet<Family> = load(&root()).unwrap().iter().map(|attack| attack.family).collect();
+    assert_eq!(families.len(), 13, "{families:?}");
+}
+
+#[test]
+fn five_parts_hold_every_attack_once() {
+    let all = load(&root()).unwrap();
+    let parts: Vec<Vec<Attack>> = (1..=5).map(|index| part(all.clone(), Shard { index, of: 5 })).collect();
+    let sizes: Vec<usize> = parts.iter().map(Vec::len).collect();
+    assert!(sizes.iter().all(|size| size.abs_diff(all.len() / 5) < 15), "{sizes:?}");
+    let mut names: Vec<String> = parts.into_iter().flatten().map(|attack| attack.name).collect();
+    names.sort();
+    assert_eq!(names, all.into_iter().map(|attack| attack.name).collect::<Vec<_>>());
+}
+
+#[test]
+fn bodies_are_right_or_wrong_as_a_step_says() {
+    assert!(shapes_of("").contains("todo!(\"solve the quadratic"));
+    assert!(shapes_of("base = \"solutions\"").contains("let half_chord_squared ="));
+    let wrong = shapes_of("base = \"wrong\"");
+    assert!(wrong.contains("{ Some(-1.25) }") && !wrong.contains("let half_chord_squared ="));
+    let step = "base = \"wrong\"\n[[step]]\ndo = \"body\"\nfunction = \"face_forward\"\ntext = \"if true @right@ else @wrong@\"";
+    let both = shapes_of(step);
+    assert!(both.contains("if normal.dot(direction) > 0.0 { -normal } else { normal }"));
+    assert!(both.contains("else { Vec3::splat(-7.25) }"), "{both}");
+    assert!(shapes_of("[[step]]\ndo = \"append\"\nfragment = \"shared\"").ends_with("// of several"));
+}
+
+#[test]
+fn files_links_and_pipes_are_made_where_a_step_says() {
+    let steps = "[[step]]\ndo = \"many\"\npath = \"a/@n@.txt\"\ntimes = 3\ntext = \"x\"\n\
+                 [[step]]\ndo = \"write\"\npath = \"b\"\npath_hex = \"ff 2e\"\ncontent = { hex = \"00 01\", times = 2 }\n\
+                 [[step]]\ndo = \"link\"\npath = \"exercises/src/stage1_shapes.rs\"\nto = \"@secret@\"\n\
+                 [[step]]\ndo = \"pipe\"\npath = \"exercises/src/stage2_triangles.rs\"\n\
+                 [[step]]\ndo = \"append\"\npath = \"a/1.txt\"\ncontent = { text = \"@n@;\", times = 3, before = \"<\", after = \">\" }\n";
+    let (folder, path) = made(steps).unwrap();
+    assert_eq!(fs::read_to_string(path.join("a/2.txt")).unwrap(), "x");
+    assert_eq!(fs::read_to_string(path.join("a/1.txt")).unwrap(), "x<0;1;2;>");
+    let odd: Vec<_> = fs::read_dir(path.join("b")).unwrap().map(|entry| entry.unwrap()).collect();
+    assert_eq!(odd[0].file_name().as_encoded_bytes(), b"\xff.");
+    assert_eq!(fs::read(odd[0].path()).unwrap(), [0, 1, 0, 1]);
+    let target = fs::read_link(path.join("exercises/src/stage1_shapes.rs")).unwrap();
+    assert_eq!(target, folder.path().join("beside/secret.txt"));
+    assert_eq!(fs::read_to_string(target).unwrap(), CANARY);
+    let pipe = fs::symlink_metadata(path.join("exercises/src/stage2_triangles.rs")).unwrap();
+    assert!(pipe.file_type().is_fifo());
+}
+
+#[test]
+fn a_step_that_lacks_something_or_has_too_much_is_an_error() {
+    let error = |text: &str| format!("{:#}", made(text).unwrap_err());
+    let without = error("[[step]]\ndo = \"link\"\npath = \"a\"");
+    assert!(without.contains("ann: step 1: `to` is missing"), "{without}");
+    assert!(error("[[step]]\ndo = \"link\"\npath = \"a\"\nto = \"b\"\ntimes = 3").contains("does not need"));
+    assert!(error("[[step]]\ndo = \"write\"\npath = \"a\"").contains("`content` is missing"));
+    assert!(error("[[step]]\ndo = \"top\"\nfragment = \"nobody's\"").contains("a fragment `nobody's`"));
+    assert!(error("[[step]]\ndo = \"write\"\npath = \"/a\"\ntext = \"\"").contains("`path` is missing"));
+    assert!(error("[[step]]\ndo = \"body\"\nfunction = \"spher\"\ntext = \"\"").contains("`pub fn spher`"));
+    assert!(
+        error("[[step]]\ndo = \"write\"\npath = \"a\"\ncontent = { hex = \"0x\" }").contains("not a byte")
+    );
+}
+
+#[test]
+fn archives_take_the_place_of_the_folder() {
+    let steps = "base = \"stubs\"\nstudent = \"bob\"\n[[step]]\ndo = \"pack\"\nformat = \"tar.gz\"\nprefix = \"main/\"\n\
+                 entries = [{ name = \"../@n@\", times = 2 }]\n";
+    let (_folder, path) = made(steps).unwrap();
+    assert!(path.ends_with("submissions/bob.tar.gz"), "{}", path.display());
+    let gzip = flate2::read::GzDecoder::new(fs::File::open(path).unwrap());
+    let mut archive = tar::Archive::new(gzip);
+    let names: Vec<String> = archive
+        .entries()
+        .unwrap()
+        .map(|entry| String::from_utf8(entry.unwrap().path_bytes().into_owned()).unwrap())
+        .collect();
+    assert!(names.contains(&"main/exercises/src/stage1_shapes.rs".into()), "{names:?}");
+    assert_eq!(names[names.len() - 2..], ["../0", "../1"]);
+}
+
+#[test]
+fn points_that_are_not_earned_are_complained_about_and_points_that_are_not_given() {
+    let fine = graded(|_| Outcome::Passed);
+    assert_eq!(message("earned = \"all\"", &fine), [""; 0]);
+    assert_eq!(message("earned = \"none\"", &fine).len(), 29);
+    let normal =
+        graded(|name| if name.starts_with("sphere_normal") { Outcome::TooLong } else { Outcome::Passed });
+    assert_eq!(message("earned = { all_but = [\"sphere_normal_*\"] }", &normal), [""; 0]);
+    assert_eq!(
+        message("earned = { at_least_all_but = [\"sphere_normal_*\", \"plane_*\"] }", &normal),
+        [""; 0]
+    );
+    let both = message("earned = { all_but = [\"sphere_normal_*\", \"face_*\"] }", &normal);
+    assert!(both.len() == 1 && both[0].contains("face_forward_turns") && both[0].contains("not earned"));
+    let none = message("earned = { at_least_all_but = [\"plane_*\"] }", &normal);
+    assert!(none.len() == 1 && none[0].contains("should pass and is: too long"), "{none:?}");
+    assert_eq!(message("earned = { at_most = [\"plane_*\"] }", &normal).len(), 21);
+    let outcome = message("earned = { all_but = [\"sphere_normal_*\"] }\noutcomes = [\"crashed\"]", &normal);
+    assert!(outcome[0].ends_with("is: too long, not: crashed"), "{outcome:?}");
+}
+
+#[test]
+fn words_are_looked_for_in_every_message() {
+    let wrong = graded(|_| Outcome::Wrong);
+    assert_eq!(message("earned = \"none\"\nsays = [\"it is wrong\", \"was   ignored\"]", &wrong), [""; 0]);
+    let missing =
+        message("earned = \"none\"\nsays = [\"sorry\"]\nnever_says = [\"build.rs\"]\ntrouble = true", &wrong);
+    assert!(missing.iter().any(|one| one == "no message says `sorry`"), "{missing:?}");
+    assert!(missing.iter().any(|one| one == "a message says `build.rs`"), "{missing:?}");
+    assert!(missing.iter().any(|one| one.contains("there is no reason")), "{missing:?}");
+}
+
+#[test]
+fn reports_that_leak_obey_or_are_endless_are_complained_about() {
+    let with = |change: fn(&mut Graded)| {
+        let mut graded = graded(|_| Outcome::Wrong);
+        change(&mut graded);
+        message("earned = \"none\"", &graded)
+    };
+    assert_eq!(with(|_| ()), [""; 0]);
+    type Spoil = fn(&mut Graded);
+    let cases: [(Spoil, &str); 7] = [
+        (|graded| graded.checks[3].message = format!("found {CANARY}"), "a message says"),
+        (|graded| graded.remarks[0].file = "\u{1b}[2J".into(), "control characters"),
+        (|graded| graded.compiler = "\u{202e}".into(), "control characters"),
+        (|graded| graded.compiler = "x".repeat(2 << 20), "the report has"),
+        (|graded| graded.checks[3].message.clear(), "without a message"),
+        (|graded| graded.checks[3].earned = 1, "earned 1 of"),
+        (|graded| drop(graded.checks.pop()), "checks were graded"),
+    ];
+    for (change, says) in cases {
+        let text = with(change);
+        assert!(text.iter().any(|one| one.contains(says)), "{says}: {text:?}");
+    }
+}
+
+#[test]
+fn a_run_names_what_went_wrong_and_what_was_changed() {
+    let names = ["exit_before_the_tests".to_owned(), "honest_solution".to_owned()];
+    let run = |grade: &(dyn Fn(&Path, &[String]) -> Result<Graded> + Sync)| {
+        let chosen = choose(load(&root()).unwrap(), &names).unwrap();
+        run_all(&root(), chosen, |path, _, allowed| grade(path, allowed), |_| ()).unwrap()
+    };
+    let fine = run(&|path, _| {
+        let honest = path.ends_with("honest_solution");
+        Ok(graded(|_| if honest { Outcome::Passed } else { Outcome::Wrong }))
+    });
+    assert_eq!(fine[1].complaints, [""; 0]);
+    let text = &fine[0].complaints;
+    assert!(text.iter().any(|one| one.starts_with("without the syntax check: ")), "{text:?}");
+    let broken = run(&|_, allowed| bail_out(allowed));
+    let text = &broken[0].complaints;
+    assert!(text.iter().any(|one| one.contains("failed: out of paper with 1 rule")), "{text:?}");
+    let harmful = run(&|path, _| {
+        fs::write(path.join("../../beside/secret.txt"), "gone")?;
+        Ok(graded(|_| Outcome::Passed))
+    });
+    let text = &harmful[1].complaints;
+    assert!(text.iter().any(|one| one.starts_with("the attack changed ") && one.ends_with("secret.txt")));
+    assert!(choose(load(&root()).unwrap(), &["nobody".into()]).is_err());
+}
+
+fn bail_out(allowed: &[String]) -> Result<Graded> {
+    anyhow::bail!("out of paper with {} rule", allowed.len())
+}

@@ -1,0 +1,72 @@
+//! `author bars`: measures what the reference needs, and writes it into the rubric.
+
+use anyhow::{Context, Result, bail};
+use grader::exercises;
+use grader::kits::{Need, Source, Which};
+use raykata::rubric::RUBRIC;
+use raykata_cli::args::{Given, Misuse, Opt, Spec};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+/// `author bars`.
+pub static SPEC: Spec = Spec {
+    name: "author bars",
+    about: "Write what the reference needs into the rubric of stage 12, by which counts are judged.",
+    arguments: &[],
+    options: &[&[Opt::flag("--check", "Only report differences, and write nothing.")]],
+};
+
+/// The options of `author bars`.
+pub struct Options {
+    check: bool,
+}
+
+impl Options {
+    /// Reads the options from the command line.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options { check: given.has("--check") })
+    }
+}
+
+const FILE: &str = "tests/checks/stage12/rubric.toml";
+const TABLE: &str = "[stage12.bars]\n";
+
+/// Measures the bars and writes them.
+pub fn run(root: &Path, options: &Options) -> Result<()> {
+    let reference = Source::prepare(root, Which::Solutions, Need::Checks)?.fresh();
+    let measured = stage12_checks::bars::measured(&*reference);
+    // Name what changed.
+    let known = RUBRIC.get("stage12").map(|stage| stage.bars.clone()).unwrap_or_default();
+    let mut lines = String::new();
+    for (name, bar) in &measured {
+        match known.get(name) {
+            Some(old) if old == bar => {}
+            Some(old) => println!("{name}: {old} becomes {bar}"),
+            None => println!("{name}: {bar} is new"),
+        }
+        writeln!(lines, "{name:?} = {bar:?}")?;
+    }
+    let path = root.join(FILE);
+    let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let new = with_bars(&text, &lines)?;
+    match (new == text, options.check) {
+        (true, _) => println!("the bars in {FILE} are those of the reference"),
+        (false, true) => {
+            bail!("the bars in {FILE} are not those of the reference; `author bars` writes them")
+        }
+        (false, false) => {
+            exercises::write(&path, &new)?;
+            println!("wrote {FILE}");
+        }
+    }
+    Ok(())
+}
+
+/// The text of the rubric with other lines in its table of bars.
+fn with_bars(text: &str, lines: &str) -> Result<String> {
+    let (before, rest) =
+        text.split_once(TABLE).with_context(|| format!("{FILE} has no table {}", TABLE.trim_end()))?;
+    let after = rest.find("\n[").map_or("", |end| &rest[end..]);
+    Ok(format!("{before}{TABLE}{lines}{after}"))
+}

@@ -1,0 +1,106 @@
+//! `author gauntlet`: shows what accuracy costs. It runs intersection methods on distributions of hard inputs and judges
+//! them by exact arithmetic.
+//!
+//! `methods` and `printed` (triangle tests) · `files` (the tables as a page)
+
+mod files;
+mod methods;
+mod printed;
+
+use anyhow::Result;
+use grader::kits::{Need, Source, Which};
+use judge::boxes_and_offsets;
+use judge::gauntlet::{Input, Row, rows_of_kit, tables};
+use methods::METHODS;
+use raykata::kit::Kit;
+use raykata_cli::args::{Given, Misuse, Opt, Spec, names};
+use raykata_cli::cost::{self, Summary};
+use std::path::{Path, PathBuf};
+
+/// `author gauntlet`.
+pub static SPEC: Spec = Spec {
+    name: "author gauntlet",
+    about: "Show what accuracy costs: compare triangle tests on hard inputs with exact arithmetic.",
+    arguments: &[],
+    options: &[&[
+        Opt::value(
+            "--kit",
+            "NAME",
+            "The kit whose triangle tests are compared as well [default: solutions].",
+        )
+        .choices(&names(&Which::NAMES)),
+        Opt::value(
+            "--inputs",
+            "N",
+            "The number of inputs per distribution, and of rays per closed mesh [default: 20000].",
+        ),
+        Opt::value("--seed", "N", "Picks the inputs [default: 1]."),
+        Opt::value("--out", "FOLDER", "Also write the tables to this folder: index.html and gauntlet.csv.")
+            .short("-o"),
+    ]],
+};
+
+/// `author cost`, with the same options as `raykata cost`.
+pub static COST: Spec = Spec {
+    name: "author cost",
+    about: "The same as `raykata cost`, with a chapter about triangle tests.",
+    arguments: cost::SPEC.arguments,
+    options: cost::SPEC.options,
+};
+
+/// The options of `author gauntlet`.
+pub struct Options {
+    kit: Which,
+    inputs: u64,
+    seed: u64,
+    out: Option<PathBuf>,
+}
+
+impl Options {
+    /// Reads the options from the command line.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options {
+            kit: given.choice("--kit", &Which::NAMES)?.unwrap_or(Which::Solutions),
+            inputs: given.number("--inputs", 100..=u64::MAX)?.unwrap_or(20_000),
+            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(1),
+            out: given.path("--out"),
+        })
+    }
+}
+
+/// Measures the same as `raykata cost`, and the intersection methods. Returns whether it succeeded.
+pub fn cost(options: &cost::Options) -> Result<bool> {
+    cost::run(options, "cargo run --release -p author --", Some(&summary))
+}
+
+/// Runs the gauntlet.
+pub fn run(root: &Path, options: &Options) -> Result<()> {
+    let source = Source::prepare(root, options.kit, Need::Checks)?;
+    let kit = source.fresh();
+    let mut tables = tables(rows(&*kit), options.inputs, options.seed)?;
+    tables.extend(boxes_and_offsets::tables(&*kit, options.inputs, options.seed));
+    for table in &tables {
+        println!("{}", table.text());
+    }
+    if let Some(out) = &options.out {
+        files::write(out, "gauntlet", &tables)?;
+        println!("the tables: {}", out.join("index.html").display());
+    }
+    Ok(())
+}
+
+/// Returns the rows of all methods and of the kit's functions.
+fn rows(kit: &dyn Kit) -> Vec<Row<'_>> {
+    let methods = METHODS.iter().map(|method| {
+        let hit = method.hit;
+        let answer =
+            move |inputs: &[Input]| inputs.iter().map(|(ray, triangle)| hit(ray, triangle)).collect();
+        Row { name: method.name.into(), answer: Box::new(answer), method: Some(hit) }
+    });
+    methods.chain(rows_of_kit(kit)).collect()
+}
+
+/// Returns the short results of all methods and of the kit's functions.
+pub fn summary(kit: &dyn Kit) -> Vec<Summary> {
+    judge::gauntlet::summary(rows(kit))
+}

@@ -1,0 +1,40 @@
+//! `author`: generates the exercises, and tests the checks and the grader. It is the program of the kit's authors.
+
+use author::{bars, cases, corpus, gaps, gauntlet, generate, mutants, new_check, sync, weaken};
+#[cfg(target_os = "linux")]
+use author::{rehearsal, run_attacks};
+use grader::kits::root;
+use grader::program::{Command, Program, done, in_kit};
+use raykata_cli::cost;
+use std::process::ExitCode;
+
+const PROGRAM: Program = Program {
+    name: "author",
+    about: "Generate the exercises, and test the checks and the grader. Instructors run\n`grader`, students `raykata`.",
+    commands: COMMANDS,
+    groups: &[],
+    moved: (&[], ""),
+};
+
+const COMMANDS: &[Command] = &[
+    (&sync::SPEC, |given| done(in_kit(sync::Options::read(given), sync::run))),
+    (&new_check::SPEC, |given| in_kit(new_check::Options::read(given), new_check::run)),
+    (&corpus::SPEC, |given| in_kit(corpus::Options::read(given), corpus::run)),
+    (&corpus::import::SPEC, |given| in_kit(corpus::import::Options::read(given), corpus::import::run)),
+    (&gaps::SPEC, |given| gaps::run(&gaps::Options::read(given)?)),
+    (&mutants::SPEC, |given| in_kit(mutants::Options::read(given), mutants::run)),
+    (&weaken::SPEC, |given| in_kit(weaken::Options::read(given), weaken::run)),
+    #[cfg(target_os = "linux")]
+    (&run_attacks::SPEC, |given| run_attacks::run(&root()?, &run_attacks::Options::read(given)?)),
+    #[cfg(target_os = "linux")]
+    (&rehearsal::SPEC, |given| in_kit(rehearsal::Options::read(given), rehearsal::run)),
+    (&gauntlet::SPEC, |given| done(in_kit(gauntlet::Options::read(given), gauntlet::run))),
+    (&gauntlet::COST, |given| gauntlet::cost(&cost::Options::read(given)?)),
+    (&bars::SPEC, |given| done(in_kit(bars::Options::read(given), bars::run))),
+    (&cases::SPEC, |_| done(cases::list(&root()?))),
+    (&generate::SPEC, |given| done(generate::write(&generate::folder(given)))),
+];
+
+fn main() -> ExitCode {
+    PROGRAM.main()
+}

@@ -1,0 +1,319 @@
+//! `author mutants`: mutation testing. Small automatic changes of the solutions, each of which the checks must notice.
+//!
+//! The tool cargo-mutants lists the changes. A workshop of the corpus builds each change, runs all checks against it and
+//! renders all scenes. A change that survives is either a gap in the checks or equivalent to the original. Equivalent
+//! changes are listed in tests/corpus/equivalent.toml, each with a reason.
+//!
+//! `list` (the changes) · `journal` (the tested changes) · `reviewed` (the equivalent changes)
+
+mod journal;
+mod list;
+pub mod reviewed;
+
+use crate::corpus::FOLDER;
+use crate::corpus::workshop::{Built, Workshop};
+use crate::gaps::{self, Gap};
+use crate::pictures::{Scenes, Shown};
+use ::checks::Check;
+use all_checks::STAGES;
+use anyhow::{Result, bail};
+use grader::kits::{Need, Source, Which};
+use grader::queue;
+use grader::report::bar_of_steps;
+use grader::worker::{CALL_PATIENCE, Worker};
+use journal::Journal;
+use list::Mutant;
+use raykata::kit::{Door, Kit};
+use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use raykata_cli::lock::Lock;
+use reviewed::Reviewed;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// `author mutants`.
+pub static SPEC: Spec = Spec {
+    name: "author mutants",
+    about: "Test the checks with changes that cargo-mutants makes to the solutions.",
+    arguments: &[Argument::optional("FILE", "Only files whose names contain this.")],
+    options: &[&[
+        Opt::flag("--resume", "Continue the last run: skip the changes that it has tested."),
+        Opt::flag(
+            "--quick",
+            "Only the checks of the change's own stage, without pictures and other stages; --resume tests the survivors once more.",
+        ),
+        Opt::flag("--again", "Only the changes that survived the last run."),
+        Opt::value("--jobs", "N", "How many to test at the same time [default: one per core]."),
+    ]],
+};
+
+/// The options of `author mutants`.
+pub struct Options {
+    file: Option<String>,
+    resume: bool,
+    again: bool,
+    quick: bool,
+    jobs: usize,
+}
+
+/// The list of reviewed changes of the solutions.
+const REVIEWED: &str = "tests/corpus/equivalent.toml";
+
+impl Options {
+    /// Reads the options from the command line.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        given.exclude("--again", "--resume")?;
+        given.exclude("--again", "--quick")?;
+        Ok(Options {
+            file: given.argument(0).map(|file| file.to_string_lossy().into_owned()),
+            resume: given.has("--resume"),
+            again: given.has("--again"),
+            quick: given.has("--quick"),
+            jobs: given.number("--jobs", 0..=usize::MAX)?.unwrap_or_else(queue::cores),
+        })
+    }
+}
+
+/// The result of testing a change.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Fate {
+    /// It does not compile.
+    DoesNotCompile,
+    /// A check of its own stage failed.
+    ByItsStage(String),
+    /// A check of another stage failed.
+    ByAnotherStage(String),
+    /// Every check passed, but the picture of this scene or its cost differs.
+    ByPicture(String),
+    /// Pictures are the same, but they differ while this function is not written yet.
+    ByGap(String),
+    /// No check or picture noticed it, and a review found that none can.
+    Equivalent,
+    /// No check or picture noticed it.
+    Survived,
+}
+
+/// Tests the changes and prints a report. Returns whether every survivor is a reviewed one and no reviewed one was noticed.
+pub fn run(root: &Path, options: &Options) -> Result<bool> {
+    let reviewed = Reviewed::read(root, REVIEWED)?;
+    let mut mutants = list::all(root, &["solutions".to_owned()])?;
+    if let Some(file) = &options.file {
+        mutants.retain(|mutant| mutant.file.contains(file.as_str()));
+    }
+    let _lock = Lock::on(&root.join(FOLDER))?;
+    let mut journal = Journal::open(root, options.resume || options.again)?;
+    choose(&mut mutants, options, &mut journal)?;
+    // Test them, and report what the reviews do not say.
+    try_all(root, &mutants, &mut journal, options)?;
+    let tried: Vec<(&Mutant, Fate)> = mutants
+        .iter()
+        .map(|mutant| match journal.of(mutant) {
+            // A quick run keeps no fate of a survivor, which other checks or pictures may notice.
+            None | Some(Fate::Survived) if is_equivalent(&reviewed, mutant) => (mutant, Fate::Equivalent),
+            None => (mutant, Fate::Survived),
+            Some(fate) => (mutant, fate.clone()),
+        })
+        .collect();
+    let is_noticed = |fate: &Fate| !matches!(fate, Fate::Survived | Fate::Equivalent | Fate::DoesNotCompile);
+    let is_reviewed = tell_unreviewed(&tried, &reviewed, is_noticed);
+    report(&tried);
+    Ok(is_reviewed)
+}
+
+/// Whether a change was reviewed.
+fn is_equivalent(reviewed: &Reviewed, mutant: &Mutant) -> bool {
+    reviewed.has(&mutant.file, &mutant.was(), &mutant.becomes())
+}
+
+/// Keeps the changes that are to be tested. `--again` keeps those that survived the last run, and forgets their fates.
+fn choose(mutants: &mut Vec<Mutant>, options: &Options, journal: &mut Journal) -> Result<()> {
+    if options.again {
+        mutants.retain(|mutant| journal.of(mutant) == Some(&Fate::Survived));
+        journal.forget(mutants);
+    }
+    if mutants.is_empty() {
+        bail!("there is no change to test");
+    }
+    Ok(())
+}
+
+/// Prints the changes that survived, and those that were noticed although they are reviewed as changes that nothing can notice.
+/// Returns whether there are none.
+fn tell_unreviewed(
+    tried: &[(&Mutant, Fate)],
+    reviewed: &Reviewed,
+    is_noticed: impl Fn(&Fate) -> bool,
+) -> bool {
+    let survivors: Vec<&Mutant> =
+        tried.iter().filter(|(_, fate)| *fate == Fate::Survived).map(|(mutant, _)| *mutant).collect();
+    for mutant in &survivors {
+        println!("SURVIVED  {mutant}\n");
+    }
+    let noticed = tried.iter().filter(|(mutant, fate)| is_noticed(fate) && is_equivalent(reviewed, mutant));
+    let noticed: Vec<&Mutant> = noticed.map(|(mutant, _)| *mutant).collect();
+    for mutant in &noticed {
+        println!("NOTICED, but reviewed as equivalent: {mutant}\n");
+    }
+    survivors.is_empty() && noticed.is_empty()
+}
+
+fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, options: &Options) -> Result<()> {
+    let jobs = options.jobs.clamp(1, mutants.len());
+    let workshops = Workshop::open_all(root, jobs, if options.quick { Need::Checks } else { Need::Frames })?;
+    let journal = Mutex::new(journal);
+    // Test all changes by the checks of their stage first, which is quick and notices most of them.
+    let bar = bar_of_steps(mutants.len());
+    let latest = Latest::default();
+    queue::run(&workshops, mutants, |workshop, mutant| {
+        bar.set_message(mutant.file.clone());
+        if lock(&journal).of(mutant).is_none()
+            && let Some(fate) = first_failure(workshop, mutant, &latest)?
+        {
+            lock(&journal).write(mutant, fate)?;
+        }
+        bar.inc(1);
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    let others: Vec<&Mutant> = mutants.iter().filter(|mutant| lock(&journal).of(mutant).is_none()).collect();
+    if options.quick || others.is_empty() { Ok(()) } else { try_others(root, &others, &journal, &workshops) }
+}
+
+/// Tests the changes that the checks of their stage do not notice by everything else.
+fn try_others(
+    root: &Path,
+    others: &[&Mutant],
+    journal: &Mutex<&mut Journal>,
+    workshops: &[Workshop],
+) -> Result<()> {
+    let reference = Source::prepare(root, Which::Solutions, Need::Frames)?.fresh();
+    let scenes = Scenes::read(root, &*reference)?;
+    let expected = scenes.shown_by(&*reference);
+    let of_gaps = scenes.of_gaps();
+    let of_gaps = (of_gaps.shown_by(&*reference), of_gaps);
+    let bar = bar_of_steps(others.len());
+    bar.set_message("pictures of gaps");
+    let gaps = if others.iter().any(|mutant| mutant.stage().is_none()) {
+        gaps::that_show(root, workshops, &of_gaps.1, &of_gaps.0)?
+    } else {
+        Vec::new()
+    };
+    queue::run(workshops, others, |workshop, &mutant| {
+        bar.set_message(mutant.file.clone());
+        let fate = match workshop.build_with(&[(&mutant.file, &mutant.apply(workshop)?)])? {
+            Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
+                Fate::Survived if mutant.stage().is_none() => {
+                    judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
+                }
+                fate => fate,
+            },
+            Built::DoesNotCompile(_) => Fate::DoesNotCompile,
+        };
+        lock(journal).write(mutant, fate)?;
+        bar.inc(1);
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    Ok(())
+}
+
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Tests a change of an exercise by the checks of its stage. They need no frames, without which the build is much quicker.
+fn first_failure(workshop: &Workshop, mutant: &Mutant, latest: &Latest) -> Result<Option<Fate>> {
+    let Some(own) = mutant.stage() else { return Ok(None) };
+    Ok(match workshop.with(Need::Checks).build_with(&[(&mutant.file, &mutant.apply(workshop)?)])? {
+        Built::Worker(worker) => failed_check(&worker, |stage| stage == own, latest).map(Fate::ByItsStage),
+        Built::DoesNotCompile(_) => Some(Fate::DoesNotCompile),
+    })
+}
+
+/// Tests a change that passes the checks of its stage by pictures, then by the other stages.
+fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) -> Fate {
+    let shown = Door(Worker::hasty(worker.to_owned(), CALL_PATIENCE));
+    if let Some(scene) = scenes.first_difference(&shown, expected) {
+        return Fate::ByPicture(scene);
+    }
+    let elsewhere =
+        mutant.stage().and_then(|own| failed_check(worker, |stage| stage != own, &Latest::default()));
+    elsewhere.map_or(Fate::Survived, Fate::ByAnotherStage)
+}
+
+/// The checks that failed, the latest one first. The next change is often one of the same function, which they notice as well,
+/// so they are tried first.
+#[derive(Default)]
+struct Latest(Mutex<Vec<&'static str>>);
+
+impl Latest {
+    fn add(&self, check: &'static str) {
+        let mut latest = lock(&self.0);
+        latest.retain(|other| *other != check);
+        latest.insert(0, check);
+    }
+
+    fn sort(&self, checks: &mut [&Check]) {
+        let latest = lock(&self.0);
+        checks.sort_by_key(|check| latest.iter().position(|name| *name == check.name).unwrap_or(usize::MAX));
+    }
+}
+
+/// Returns the first check of the `wanted` stages that the worker fails.
+fn failed_check(worker: &Path, wanted: impl Fn(u8) -> bool, latest: &Latest) -> Option<String> {
+    let kit =
+        || -> Arc<dyn Kit + Send + Sync> { Arc::new(Door(Worker::new(worker.to_owned(), CALL_PATIENCE))) };
+    let wanted = STAGES.iter().filter(|(stage, _)| wanted(*stage));
+    let mut checks: Vec<&'static Check> = wanted.flat_map(|(_, checks)| checks.iter()).collect();
+    latest.sort(&mut checks);
+    // Ask twice: on a busy machine, a call can exceed its time limit.
+    let fails = |check: &&Check| (0..2).all(|_| !::checks::passes(check, &kit(), 0));
+    let failed = checks.into_iter().find(fails)?;
+    latest.add(failed.name);
+    Some(failed.name.into())
+}
+
+/// Tests a change with each gap that changes a picture. The code that leaves out parts of a picture runs only while a
+/// function is not written.
+fn judge_by_gaps(
+    mutant: &Mutant,
+    workshop: &Workshop,
+    gaps: &[(Gap, String)],
+    (whole, scenes): &(Vec<Shown>, Scenes),
+) -> Result<Fate> {
+    let changed = mutant.apply(workshop)?;
+    for (gap, unchanged) in gaps {
+        let changes = [(mutant.file.as_str(), changed.as_str()), (gap.file.as_str(), gap.text.as_str())];
+        if gaps::lacks(workshop, &changes, scenes, whole)? != *unchanged {
+            return Ok(Fate::ByGap(gap.function.clone()));
+        }
+    }
+    Ok(Fate::Survived)
+}
+
+fn report(tried: &[(&Mutant, Fate)]) {
+    let mut files: Vec<&str> = tried.iter().map(|(mutant, _)| mutant.file.as_str()).collect();
+    files.dedup();
+    println!(
+        "file                     changes  no program  own stage  others  pictures  equivalent  survived  score"
+    );
+    for file in files.into_iter().map(Some).chain([None]) {
+        let count = |which: fn(&Fate) -> bool| {
+            tried.iter().filter(|(m, fate)| file.is_none_or(|file| file == m.file) && which(fate)).count()
+        };
+        let own = count(|fate| matches!(fate, Fate::ByItsStage(_)));
+        let others = count(|fate| matches!(fate, Fate::ByAnotherStage(_)));
+        let pictures = count(|fate| matches!(fate, Fate::ByPicture(_) | Fate::ByGap(_)));
+        let survived = count(|fate| *fate == Fate::Survived);
+        let noticed = own + others + pictures;
+        println!(
+            "{:<23}  {:>7}  {:>10}  {own:>9}  {others:>6}  {pictures:>8}  {:>10}  {survived:>8}  {:>5.1}",
+            file.map_or("all", |file| file.trim_start_matches("solutions/src/")),
+            count(|_| true),
+            count(|fate| *fate == Fate::DoesNotCompile),
+            count(|fate| *fate == Fate::Equivalent),
+            100.0 * noticed as f64 / ((noticed + survived).max(1)) as f64,
+        );
+    }
+    println!("\nscore: percent noticed, of the changes that compile and are not equivalent");
+}

@@ -1,0 +1,320 @@
+//! Numbers in documents. `author sync` writes them, so that no document has a stale one.
+//!
+//! A comment directly after a number gives it a name, and no reader of the page sees it: `417<!--=checks-->`. With numbers of
+//! stages, `105<!--=points 1-->` or `605<!--=points 1-6-->`, only these stages count. A comment on a line of its own names the
+//! table below it, up to the next blank line.
+
+use crate::corpus::entry::{self, Claim, Entry};
+use all_checks::STAGES;
+use anyhow::{Context, Result, bail, ensure};
+use checks::Check;
+use checks::rubric;
+use checks::symmetry::Symmetries;
+use grader::exercises;
+use std::cell::OnceCell;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The beginning of a comment that names a number or a table.
+const MARK: &str = "<!--=";
+
+/// Folders without documents that name numbers.
+const SKIPPED: [&str; 4] = ["corpus", "node_modules", "out", "target"];
+
+/// A document that names numbers.
+pub struct Document {
+    /// Its path below the root of the kit.
+    pub path: PathBuf,
+    /// Its current text.
+    pub present: String,
+    /// The text with the numbers as they are now.
+    pub synced: String,
+}
+
+/// Returns all documents of the kit at `root` that name numbers: Markdown files in folders that are not hidden.
+///
+/// # Errors
+///
+/// If a name is unknown, or if its comment follows no number. The error says file and line.
+pub fn documents(root: &Path) -> Result<Vec<Document>> {
+    let mut paths = Vec::new();
+    gather(root, &mut paths)?;
+    paths.sort();
+    let values = Values { root, corpus: OnceCell::new() };
+    let mut documents = Vec::new();
+    for path in paths {
+        let present = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        let path = path.strip_prefix(root).unwrap_or(&path).to_owned();
+        if present.contains(MARK) {
+            let synced = rewrite(&path.display().to_string(), &present, |name| values.get(name))?;
+            documents.push(Document { path, present, synced });
+        }
+    }
+    Ok(documents)
+}
+
+/// Adds the Markdown files of a folder.
+fn gather(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<()> {
+    for entry in fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))? {
+        let path = entry?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if path.is_dir() && !name.starts_with('.') && !SKIPPED.contains(&&*name) {
+            gather(&path, paths)?;
+        } else if name.ends_with(".md") {
+            paths.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// Returns the text with each named number or table replaced by its value.
+fn rewrite(path: &str, text: &str, value: impl Fn(&str) -> Result<String>) -> Result<String> {
+    let (mut synced, mut rest) = (String::new(), text);
+    while let Some(start) = rest.find(MARK) {
+        let (before, marked) = rest.split_at(start);
+        let line = text[..text.len() - marked.len()].matches('\n').count() + 1;
+        let place = || format!("{path}:{line}");
+        // Find the value of the name.
+        let end = marked.find("-->").with_context(|| format!("{}: `{MARK}` is never closed", place()))?;
+        let value = value(marked[MARK.len()..end].trim()).with_context(place)?;
+        let (mark, after) = marked.split_at(end + "-->".len());
+        let is_alone = (before.is_empty() || before.ends_with('\n')) && after.starts_with('\n');
+        if is_alone {
+            // Replace the lines below, up to the first blank line.
+            let old = after.find("\n\n").unwrap_or(after.trim_end().len());
+            write!(synced, "{before}{mark}\n{}", value.trim_end())?;
+            rest = &after[old..];
+        } else {
+            // Replace the digits before the comment.
+            let words = before.trim_end_matches(|letter: char| letter.is_ascii_digit() || letter == ',');
+            ensure!(words.len() < before.len(), "{}: {mark} must directly follow a number", place());
+            write!(synced, "{words}{value}{mark}")?;
+            rest = after;
+        }
+    }
+    Ok(synced + rest)
+}
+
+/// The values of all names.
+struct Values<'a> {
+    root: &'a Path,
+    corpus: OnceCell<Vec<Entry>>,
+}
+
+impl Values<'_> {
+    /// The value of a name, such as `checks` or `points 1-6`.
+    fn get(&self, name: &str) -> Result<String> {
+        if name == "decks" {
+            return self.decks();
+        }
+        // Divide `points 1-6` into its words and its stages.
+        let numbered =
+            name.rsplit_once(' ').filter(|(_, last)| last.starts_with(|one: char| one.is_ascii_digit()));
+        let (words, stages) = match numbered {
+            Some((words, stages)) => {
+                (words, raykata::course::stages_of(stages).map_err(|why| anyhow::anyhow!("{name:?}: {why}"))?)
+            }
+            None => (name, STAGES.iter().map(|(stage, _)| *stage).collect()),
+        };
+        let asked = |stage: u8| stages.contains(&stage);
+        let checks = || STAGES.iter().filter(|(stage, _)| asked(*stage)).flat_map(|(_, checks)| *checks);
+        let is_bonus = |check: &&Check| entry_of(check).bonus;
+        let points = |check: &Check| entry_of(check).points as usize;
+        let entries = |keep: fn(&Claim) -> bool| -> Result<usize> {
+            Ok(self.corpus()?.iter().filter(|entry| asked(entry.stage) && keep(&entry.claim)).count())
+        };
+        let value = match words {
+            "stages" => stages.len(),
+            "functions" => self.functions(asked)?,
+            // What a course counts, and what it counts apart.
+            "checks" => checks().filter(|check| !is_bonus(check)).count(),
+            "points" => checks().filter(|check| !is_bonus(check)).map(points).sum(),
+            "bonus checks" => checks().filter(is_bonus).count(),
+            "bonus points" => checks().filter(is_bonus).map(points).sum(),
+            "all checks" => checks().count(),
+            // The checks whose hidden inputs are the public ones in another frame.
+            "turned checks" => checks().filter(is_turned).count(),
+            "turned points" => checks().filter(is_turned).filter(|check| !is_bonus(check)).map(points).sum(),
+            "turned bonus points" => checks().filter(is_turned).filter(is_bonus).map(points).sum(),
+            // The corpus.
+            "mistakes" => entries(|claim| matches!(claim, Claim::Wrong { .. }))?,
+            "unnamed mistakes" => entries(|claim| matches!(claim, Claim::Wrong { is_unknown: true, .. }))?,
+            "correct solutions" => entries(|claim| *claim == Claim::Right)?,
+            #[cfg(target_os = "linux")]
+            "attacks" => crate::attacks::load(self.root)?.len(),
+            _ => bail!("no number has the name {words:?}; the names are in tests/author/src/numbers.rs"),
+        };
+        Ok(thousands(value))
+    }
+
+    /// The number of functions that students write in these stages: those whose stub is a `todo!`.
+    fn functions(&self, asked: impl Fn(u8) -> bool) -> Result<usize> {
+        let mut exercises = exercises::exercises(self.root)?;
+        exercises.retain(|exercise| {
+            let file = exercise.path.file_stem().unwrap_or_default().to_string_lossy();
+            exercises::stage_of(&file).is_some_and(&asked)
+        });
+        let stubs = exercises.iter().flat_map(|exercise| exercise.stub.lines());
+        Ok(stubs.filter(|line| line.trim_start().starts_with("todo!(")).count())
+    }
+
+    fn corpus(&self) -> Result<&[Entry]> {
+        if self.corpus.get().is_none() {
+            let _ = self.corpus.set(entry::read_all(self.root)?);
+        }
+        Ok(self.corpus.get().map_or(&[], Vec::as_slice))
+    }
+
+    /// The table of all decks, with their sums: minutes and hours from the first lines of each deck, the rest from the stage.
+    fn decks(&self) -> Result<String> {
+        let mut table =
+            "| deck | minutes | students write | checks, and bonus | points, and bonus | hours (est.) |\n\
+                         |---|---|---|---|---|---|\n"
+                .to_owned();
+        let (mut minutes, mut hours) = (0, 0);
+        for deck in decks(&self.root.join("slides"))? {
+            minutes += deck.minutes;
+            hours += deck.hours.unwrap_or(0);
+            let [functions, checks, points] = match deck.stage.filter(|stage| *stage > 0) {
+                Some(stage) => self.of_stages(&format!(" {stage}"))?,
+                None => Default::default(),
+            };
+            let title = format!("[{}]({})", deck.title, deck.file);
+            let hours = deck.hours.map_or(String::new(), |hours| hours.to_string());
+            table += &row([title, deck.minutes.to_string(), functions, checks, points, hours]);
+        }
+        let [functions, checks, points] = self.of_stages("")?;
+        Ok(table
+            + &row(["**all**".to_owned(), thousands(minutes), functions, checks, points, hours.to_string()]))
+    }
+
+    /// The cells of the table of decks for some stages: functions, checks and points.
+    fn of_stages(&self, stages: &str) -> Result<[String; 3]> {
+        let with_bonus = |what: &str| -> Result<String> {
+            let bonus = self.get(&format!("bonus {what}{stages}"))?;
+            let bonus = if bonus == "0" { String::new() } else { format!(", and {bonus}") };
+            Ok(self.get(&format!("{what}{stages}"))? + &bonus)
+        };
+        let functions = self.get(&format!("functions{stages}"))?;
+        Ok([format!("{functions} functions"), with_bonus("checks")?, with_bonus("points")?])
+    }
+}
+
+fn entry_of(check: &Check) -> rubric::CheckEntry {
+    rubric::entry(check.stage, check.name)
+}
+
+fn is_turned(check: &&Check) -> bool {
+    matches!(check.symmetries, Symmetries::Turned | Symmetries::Mirrored)
+}
+
+/// A row of a table.
+fn row(cells: [String; 6]) -> String {
+    let cells = cells.map(|cell| if cell.is_empty() { "| ".to_owned() } else { format!("| {cell} ") });
+    cells.concat() + "|\n"
+}
+
+/// A number with commas between its thousands: `1,569`.
+fn thousands(number: usize) -> String {
+    match number {
+        0..1000 => number.to_string(),
+        _ => format!("{},{:03}", thousands(number / 1000), number % 1000),
+    }
+}
+
+/// What the first lines of a deck say.
+struct Deck {
+    file: String,
+    title: String,
+    stage: Option<u8>,
+    minutes: usize,
+    hours: Option<usize>,
+}
+
+/// The decks in the folder of the slides: those of the stages in order, then the others.
+fn decks(folder: &Path) -> Result<Vec<Deck>> {
+    let mut paths = Vec::new();
+    gather(folder, &mut paths)?;
+    let mut decks = Vec::new();
+    for path in paths {
+        let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        let Some(head) = text.strip_prefix("---\nmarp: true\n").and_then(|rest| rest.split("\n---\n").next())
+        else {
+            continue;
+        };
+        let value = |key: &str| head.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(": "));
+        let number = |key: &str| -> Result<Option<usize>> {
+            let parse =
+                |text: &str| text.parse().with_context(|| format!("{}: {key}: {text}", path.display()));
+            value(key).map(parse).transpose()
+        };
+        let needed = |key: &str| format!("{} has no `{key}` in its first lines", path.display());
+        decks.push(Deck {
+            file: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            title: value("title").with_context(|| needed("title"))?.trim_matches('"').to_owned(),
+            stage: number("stage")?.map(u8::try_from).transpose()?,
+            minutes: number("minutes")?.with_context(|| needed("minutes"))?,
+            hours: number("hours")?,
+        });
+    }
+    decks.sort_by_key(|deck| (deck.stage.unwrap_or(u8::MAX), deck.file.clone()));
+    Ok(decks)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn synced(text: &str) -> Result<String> {
+        rewrite("a.md", text, |name| match name {
+            "all" => Ok("1,234".to_owned()),
+            "table" => Ok("| a |\n|---|\n".to_owned()),
+            _ => bail!("no number has the name {name:?}"),
+        })
+    }
+
+    #[test]
+    fn a_named_number_is_written_and_other_text_stays() {
+        assert_eq!(
+            synced("of 7<!--=all--> and 1,111<!--=all-->, 8\n").unwrap(),
+            "of 1,234<!--=all--> and 1,234<!--=all-->, 8\n"
+        );
+        let current = "**1,234<!--=all--> a**\n\n<!--=table-->\n| a |\n|---|\n\nend 5 <!-- a note -->\n";
+        assert_eq!(synced(current).unwrap(), current);
+        assert_eq!(synced(&current.replace("| a |\n", "| b |\n| c |\n")).unwrap(), current);
+        assert_eq!(synced("<!--=table-->\n\nend\n").unwrap(), "<!--=table-->\n| a |\n|---|\n\nend\n");
+        assert_eq!(synced("<!--=table-->\n| b |\n").unwrap(), "<!--=table-->\n| a |\n|---|\n");
+    }
+
+    #[test]
+    fn errors_say_file_and_line() {
+        let error = |text: &str| format!("{:#}", synced(text).unwrap_err());
+        assert_eq!(error("\n\n7<!--=al-->"), "a.md:3: no number has the name \"al\"");
+        assert_eq!(error("\nseven <!--=all-->"), "a.md:2: <!--=all--> must directly follow a number");
+        assert_eq!(error("7<!--=all"), "a.md:1: `<!--=` is never closed");
+    }
+
+    #[test]
+    fn numbers_of_stages_add_up() {
+        let root = grader::kits::root().unwrap();
+        let values = Values { root: &root, corpus: OnceCell::new() };
+        let get = |name: &str| -> usize { values.get(name).unwrap().replace(',', "").parse().unwrap() };
+        for name in [
+            "checks",
+            "points",
+            "functions",
+            "bonus points",
+            "mistakes",
+            "correct solutions",
+            "turned points",
+        ] {
+            assert_eq!(get(&format!("{name} 1-5")) + get(&format!("{name} 6-12")), get(name), "{name}");
+        }
+        assert_eq!(get("checks") + get("bonus checks"), get("all checks"));
+        assert!(get("turned checks") < get("all checks"));
+        let error = |name: &str| format!("{:#}", values.get(name).unwrap_err());
+        assert!(error("points 13").contains("there is no stage 13"), "{}", error("points 13"));
+        assert!(error("pints").contains("no number has the name \"pints\""));
+    }
+}

@@ -1,0 +1,337 @@
+//! `author weaken`: shows that the corpus guards the checks. It weakens numbers by which checks judge, one at a time, and demands
+//! that an entry of the corpus notices: a mistake is accepted, a right solution is rejected, or a message differs.
+//!
+//! A number that survives is a gap in the corpus, or decides nothing that an entry should notice. Those that were reviewed are
+//! listed in tests/corpus/harmless.toml, each with its reason.
+//!
+//! `numbers` (finds them) · `judges` (builds a judge with a change, and asks it)
+
+mod judges;
+mod numbers;
+
+use crate::corpus::FOLDER;
+use crate::corpus::entry::{Entry, read_all};
+use crate::corpus::plan::{Plan, Trial};
+use crate::corpus::program::Program;
+use crate::corpus::records::{Matrix, Messages, without_rubric};
+use crate::mutants::reviewed::Reviewed;
+use all_checks::STAGES;
+use anyhow::{Context, Result};
+use checks::Check;
+use grader::queue;
+use grader::report::bar_of_steps;
+use judges::{Judge, Judges};
+use numbers::numbers;
+use raykata_cli::args::{Given, Misuse, Opt, Spec};
+use raykata_cli::fingerprint::fingerprint;
+use raykata_cli::journal::Journal;
+use raykata_cli::lock::Lock;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// `author weaken`.
+pub static SPEC: Spec = Spec {
+    name: "author weaken",
+    about: "Weaken numbers by which checks judge, and demand that the corpus notices.",
+    arguments: &[],
+    options: &[&[
+        Opt::value("--sample", "N", "How many numbers to weaken [default: 40]."),
+        Opt::value("--seed", "N", "Draws another sample [default: 1]."),
+        Opt::value("--file", "NAME", "Only numbers of files whose paths contain this."),
+        Opt::flag("--resume", "Continue the last run: skip the numbers that it has weakened."),
+    ]],
+};
+
+/// The options of `author weaken`.
+pub struct Options {
+    sample: usize,
+    seed: u64,
+    file: Option<String>,
+    resume: bool,
+}
+
+impl Options {
+    /// Reads the options from the command line.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options {
+            sample: given.number("--sample", 1..=usize::MAX)?.unwrap_or(40),
+            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(1),
+            file: given.path("--file").map(|file| file.to_string_lossy().into_owned()),
+            resume: given.has("--resume"),
+        })
+    }
+}
+
+/// How many trials a judge gets before it is started again.
+const TRIALS_OF_A_JUDGE: usize = 30;
+
+/// The list of reviewed changes.
+const REVIEWED: &str = "tests/corpus/harmless.toml";
+
+/// A changed number.
+struct Change {
+    /// The stage of the check; 0 for code that all stages share.
+    stage: u8,
+    file: String,
+    line: usize,
+    was: String,
+    becomes: String,
+    /// The whole text of the file with the change.
+    text: String,
+}
+
+impl Change {
+    fn key(&self) -> String {
+        format!("{}\n- {}\n+ {}", self.file, self.was, self.becomes)
+    }
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}\n    - {}\n    + {}", self.file, self.line, self.was, self.becomes)
+    }
+}
+
+/// What happened to a change.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Fate {
+    /// It does not compile.
+    DoesNotCompile,
+    /// The corpus turns red, for this reason.
+    Caught(String),
+    /// Nothing differs.
+    Survived,
+}
+
+/// Weakens numbers and prints a report. Returns whether each survivor was reviewed and no reviewed one was caught.
+pub fn run(root: &Path, options: &Options) -> Result<bool> {
+    let reviewed = Reviewed::read(root, REVIEWED)?;
+    let _lock = Lock::on(&root.join(FOLDER))?;
+    let drawn = drawn(root, options)?;
+    let journal_file = root.join(FOLDER).join("weaken.jsonl");
+    let about = format!("numbers of checks, seed {}", options.seed);
+    let mut journal: Journal<Fate> = match options.resume {
+        true => Journal::resume(&journal_file, &about)?,
+        false => Journal::create(&journal_file, &about)?,
+    };
+    let guard = Guard::open(root)?;
+    let bar = bar_of_steps(options.sample);
+    // Take the numbers of the stages in turn, until there are enough that compile.
+    let mut tried: Vec<(&Change, Fate)> = Vec::new();
+    for change in &drawn {
+        if tried.iter().filter(|(_, fate)| *fate != Fate::DoesNotCompile).count() == options.sample {
+            break;
+        }
+        bar.set_message(format!("{}:{}", change.file, change.line));
+        let known = journal.kept().find(|(key, _)| **key == change.key()).map(|(_, fate)| fate.clone());
+        let fate = match known {
+            Some(fate) => fate,
+            None => {
+                let fate = guard.judge(change)?;
+                journal.add(&change.key(), &fate)?;
+                fate
+            }
+        };
+        bar.suspend(|| {
+            println!("{change}");
+            match &fate {
+                Fate::DoesNotCompile => println!("  does not compile, so another one is drawn\n"),
+                Fate::Caught(why) => println!("  caught: {why}\n"),
+                Fate::Survived if reviewed.has(&change.file, &change.was, &change.becomes) => {
+                    println!("  reviewed as harmless\n")
+                }
+                Fate::Survived => println!("  SURVIVED\n"),
+            }
+        });
+        bar.inc(u64::from(fate != Fate::DoesNotCompile));
+        tried.push((change, fate));
+    }
+    bar.finish_and_clear();
+    Ok(report(&tried, &reviewed))
+}
+
+fn report(tried: &[(&Change, Fate)], reviewed: &Reviewed) -> bool {
+    let is_reviewed = |change: &Change| reviewed.has(&change.file, &change.was, &change.becomes);
+    println!("stage   weakened  caught  reviewed  survived");
+    let stages: Vec<u8> = (0..=STAGES.len() as u8).collect();
+    for stage in stages.into_iter().map(Some).chain([None]) {
+        let count = |which: &dyn Fn(&Change, &Fate) -> bool| {
+            let of_stage = tried.iter().filter(|(change, _)| stage.is_none_or(|stage| stage == change.stage));
+            of_stage.filter(|(change, fate)| which(change, fate)).count()
+        };
+        println!(
+            "{:<6}  {:>8}  {:>6}  {:>8}  {:>8}",
+            match stage {
+                None => "all".to_owned(),
+                Some(0) => "shared".to_owned(),
+                Some(stage) => stage.to_string(),
+            },
+            count(&|_, fate| *fate != Fate::DoesNotCompile),
+            count(&|_, fate| matches!(fate, Fate::Caught(_))),
+            count(&|change, fate| *fate == Fate::Survived && is_reviewed(change)),
+            count(&|change, fate| *fate == Fate::Survived && !is_reviewed(change)),
+        );
+    }
+    let caught: Vec<&Change> = tried
+        .iter()
+        .filter(|(change, fate)| matches!(fate, Fate::Caught(_)) && is_reviewed(change))
+        .map(|(change, _)| *change)
+        .collect();
+    for change in &caught {
+        println!("\ncaught, but {REVIEWED} says that nothing can notice it: {change}");
+    }
+    let survivors =
+        tried.iter().filter(|(change, fate)| *fate == Fate::Survived && !is_reviewed(change)).count();
+    if survivors > 0 {
+        println!(
+            "\nfor each survivor add an entry to the corpus that notices it, or its reason to {REVIEWED}"
+        );
+    }
+    survivors == 0 && caught.is_empty()
+}
+
+/// All numbers in the order in which they are drawn: one of each stage in turn. Every fourth turns its comparison, if it stands
+/// in one; the others are multiplied by 10.
+fn drawn(root: &Path, options: &Options) -> Result<Vec<Change>> {
+    let mut stages: BTreeMap<u8, Vec<(String, Change)>> = BTreeMap::new();
+    for (stage, file) in files(root)? {
+        if options.file.as_ref().is_some_and(|name| !file.contains(name.as_str())) {
+            continue;
+        }
+        let text = fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
+        for number in numbers(&text).with_context(|| file.clone())? {
+            let draw = |words: &str| {
+                fingerprint([&options.seed.to_le_bytes()[..], file.as_bytes(), words.as_bytes()])
+            };
+            // Draw by the text of the line, so that changes elsewhere in the file draw no other numbers.
+            let start = text[..number.place.start].rfind('\n').map_or(0, |end| end + 1);
+            let line = text[start..].lines().next().unwrap_or_default();
+            let order = draw(&format!("{} {line}", number.place.start - start));
+            let turns = order.as_bytes().last().is_some_and(|digit| digit % 4 == 0);
+            let turned = number.turned(&text).filter(|_| turns);
+            let changed = turned.unwrap_or_else(|| number.times_ten(&text));
+            // The sign of a comparison may stand on another line than the number.
+            let differs = text.lines().zip(changed.lines()).position(|(was, becomes)| was != becomes);
+            let line = differs.context("a change of a line")?;
+            let of_line = |text: &str| text.lines().nth(line).unwrap_or_default().trim().to_owned();
+            let (was, becomes) = (of_line(&text), of_line(&changed));
+            let change = Change { stage, file: file.clone(), line: line + 1, was, becomes, text: changed };
+            stages.entry(stage).or_default().push((order, change));
+        }
+    }
+    for of_stage in stages.values_mut() {
+        of_stage.sort_by(|(one, _), (other, _)| other.cmp(one));
+    }
+    let mut drawn = Vec::new();
+    while stages.values().any(|of_stage| !of_stage.is_empty()) {
+        drawn.extend(stages.values_mut().filter_map(Vec::pop).map(|(_, change)| change));
+    }
+    Ok(drawn)
+}
+
+/// The files of the checks, with their stages; 0 for those that all stages share.
+fn files(root: &Path) -> Result<Vec<(u8, String)>> {
+    let mut folders = vec![(0, "tests/checks/src".to_owned())];
+    folders.extend(STAGES.iter().map(|(stage, _)| (*stage, format!("tests/checks/stage{stage}/src"))));
+    let mut files = Vec::new();
+    while let Some((stage, folder)) = folders.pop() {
+        for entry in fs::read_dir(root.join(&folder)).with_context(|| folder.clone())? {
+            let path: PathBuf = entry?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            match path.is_dir() {
+                true => folders.push((stage, format!("{folder}/{name}"))),
+                false if name.ends_with(".rs") && name != "tests.rs" => {
+                    files.push((stage, format!("{folder}/{name}")))
+                }
+                false => {}
+            }
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// The corpus as it is kept, and the judges.
+struct Guard {
+    judges: Judges,
+    program: Program,
+    entries: Vec<Entry>,
+    messages: Messages,
+    plan: Plan,
+}
+
+impl Guard {
+    fn open(root: &Path) -> Result<Guard> {
+        let entries = read_all(root)?;
+        let program = Program::build(root, &entries)?;
+        let plan = Plan::of(&program, &Matrix::read(root), &entries, queue::cores())?;
+        Ok(Guard { judges: Judges::open(root)?, program, entries, messages: Messages::read(root), plan })
+    }
+
+    fn judge(&self, change: &Change) -> Result<Fate> {
+        let Some(judge) = self.judges.changed(&change.file, &change.text)? else {
+            return Ok(Fate::DoesNotCompile);
+        };
+        let mut trials: Vec<(Trial, &Check, &Entry)> = Vec::new();
+        for (stage, checks) in STAGES.iter().filter(|(stage, _)| [0, *stage].contains(&change.stage)) {
+            for check in *checks {
+                let of_stage = self.entries.iter().filter(|entry| entry.stage == *stage);
+                let tried = of_stage
+                    .filter_map(|entry| Some((self.plan.trial(&self.program, entry, check)?, check, entry)));
+                trials.extend(tried);
+            }
+        }
+        // A check is in the changed file, most likely, if the file contains its name: ask it first.
+        trials.sort_by_key(|(_, check, _)| !change.text.contains(check.name));
+        // A judge has a limit of processor time, because a changed loop may not end. So each judge gets a few trials.
+        let parts: Vec<&[(Trial, &Check, &Entry)]> = trials.chunks(TRIALS_OF_A_JUDGE).collect();
+        let caught: Mutex<Option<String>> = Mutex::default();
+        queue::run(&queue::one_a_core(), &parts, |(), part| {
+            let mut running = None;
+            for (trial, check, entry) in *part {
+                if lock(&caught).is_some() {
+                    break;
+                }
+                if running.is_none() {
+                    running = Some(Judge::start(&judge)?);
+                }
+                let judge = running.as_mut().context("a judge")?;
+                if let Some(why) = self.difference(judge, *trial, check, entry)? {
+                    *lock(&caught) = Some(why);
+                }
+            }
+            Ok(())
+        })?;
+        let caught = lock(&caught).take();
+        Ok(caught.map_or(Fate::Survived, Fate::Caught))
+    }
+
+    /// How a check differs from what the corpus keeps of it, if it does.
+    fn difference(
+        &self,
+        judge: &mut Judge,
+        trial: Trial,
+        check: &Check,
+        entry: &Entry,
+    ) -> Result<Option<String>> {
+        let message = judge.message(check, &self.program.kit(entry))?;
+        let named = check.name;
+        Ok(match (trial, message) {
+            (Trial::Accepts, None) | (Trial::Rejects, Some(_)) => None,
+            (Trial::Accepts, Some(_)) => Some(format!("`{named}` rejects {entry}")),
+            (Trial::Rejects | Trial::Message, None) => Some(format!("`{named}` accepts {entry}")),
+            (Trial::Message, Some(message)) => {
+                let is_kept = self.messages.of(entry) == Some(&without_rubric(&message));
+                (!is_kept).then(|| format!("the message of `{named}` about {entry} differs"))
+            }
+        })
+    }
+}
+
+fn lock<T>(shared: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}

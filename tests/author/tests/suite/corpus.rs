@@ -1,0 +1,141 @@
+//! Tests the files of the corpus: every entry fits, every named check exists, and the stored results are of exactly these
+//! entries. `cargo run -p author -- corpus` builds and tests the entries, which takes minutes.
+
+use author::corpus::entry::{Claim, Entry, Original, read_all, read_files};
+use author::corpus::records::{Matrix, Messages};
+use author::corpus::verdict::check_named;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn entries() -> Vec<Entry> {
+    read_all(&root()).unwrap_or_else(|error| panic!("{error:#}"))
+}
+
+#[test]
+fn every_entry_fits_the_solutions_as_they_are() {
+    for (name, corpus) in read_files(&root()).unwrap() {
+        let original = Original::read(&root(), &format!("solutions/src/{name}.rs")).unwrap();
+        for entry in &corpus.entries {
+            entry.apply(&original).unwrap_or_else(|error| panic!("{error:#}"));
+        }
+        // The file is as the tools write it: sorted by function, mistakes first, then by name.
+        let mut sorted = corpus.clone();
+        sorted.sort(&original);
+        let text = std::fs::read_to_string(root().join(format!("tests/corpus/{name}.corpus"))).unwrap();
+        assert!(
+            text == sorted.text(),
+            "tests/corpus/{name}.corpus is not sorted: `cargo run -p author -- corpus NAME --reword` sorts it"
+        );
+    }
+}
+
+#[test]
+fn every_check_that_is_to_catch_a_mistake_exists() {
+    for entry in entries() {
+        if let Claim::Wrong { caught_by, .. } = &entry.claim {
+            let stage = entry.stage;
+            assert!(check_named(stage, caught_by).is_some(), "{entry}: stage {stage} has no `{caught_by}`");
+        }
+    }
+}
+
+#[test]
+fn there_are_enough_of_each_stage() {
+    let mut counts: BTreeMap<u8, (usize, usize)> = BTreeMap::new();
+    for entry in entries() {
+        let (wrong, right) = counts.entry(entry.stage).or_default();
+        *if entry.claim == Claim::Right { right } else { wrong } += 1;
+    }
+    assert!((1..=7).chain([10, 11, 12]).all(|stage| counts.contains_key(&stage)), "{counts:?}");
+    assert!(counts.values().all(|(wrong, right)| *wrong >= 6 && *right >= 3), "{counts:?}");
+    assert!(counts.values().map(|(wrong, _)| wrong).sum::<usize>() >= 120, "{counts:?}");
+}
+
+#[test]
+fn the_matrix_is_about_these_entries_and_all_is_as_it_must_be() {
+    let matrix = Matrix::read(&root());
+    let entries = entries();
+    let names: BTreeSet<String> = entries.iter().map(ToString::to_string).collect();
+    let known: BTreeSet<String> = matrix.0.keys().cloned().collect();
+    let different: Vec<&String> = names.symmetric_difference(&known).collect();
+    assert!(different.is_empty(), "run `cargo run -p author -- corpus --bless`: {different:?}");
+    for entry in &entries {
+        let failed = &matrix.0[&entry.to_string()];
+        match &entry.claim {
+            Claim::Right => assert_eq!(failed, "-", "{entry} is right but rejected"),
+            Claim::Wrong { caught_by, .. } => {
+                assert!(
+                    failed.split(' ').any(|check| check == format!("={caught_by}")),
+                    "{entry} is not caught"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn every_check_can_fail() {
+    let matrix = Matrix::read(&root());
+    let killers: BTreeSet<&str> = matrix.killers().collect();
+    let stages: BTreeSet<u8> = entries().iter().map(|entry| entry.stage).collect();
+    for (_, checks) in all_checks::STAGES.iter().filter(|(stage, _)| stages.contains(stage)) {
+        for check in *checks {
+            assert!(killers.contains(check.name), "no mistake of the corpus fails `{}`", check.name);
+        }
+    }
+}
+
+#[test]
+fn nine_of_ten_messages_say_what_the_mistake_looks_like() {
+    let messages = Messages::read(&root());
+    let entries = entries();
+    let wrong = || entries.iter().filter(|entry| entry.claim != Claim::Right);
+    let names: BTreeSet<String> = wrong().map(ToString::to_string).collect();
+    let known: BTreeSet<String> = messages.0.keys().cloned().collect();
+    let different: Vec<&String> = names.symmetric_difference(&known).collect();
+    assert!(different.is_empty(), "run `cargo run -p author -- corpus --bless`: {different:?}");
+    let named: Vec<&str> =
+        wrong().filter(|entry| entry.has_a_known_mistake()).filter_map(|entry| messages.of(entry)).collect();
+    let diagnosed = named.iter().filter(|message| message.contains("looks like:")).count();
+    assert!(diagnosed * 10 >= named.len() * 9, "{diagnosed} of {}", named.len());
+}
+
+#[test]
+fn an_entry_that_does_not_exist_is_reported() {
+    let output = Command::new(env!("CARGO_BIN_EXE_author"))
+        .current_dir(root())
+        .args(["corpus", "no_such_entry"])
+        .output()
+        .expect("the program starts");
+    assert_eq!(output.status.code(), Some(1));
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    assert!(complaint.contains("has no entry `no_such_entry`"), "{complaint}");
+}
+
+#[test]
+fn questions_about_the_corpus_are_answered_without_a_build() {
+    let answer = |question: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_author"))
+            .current_dir(root())
+            .arg("corpus")
+            .args(question)
+            .output()
+            .expect("the program starts");
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let says = answer(&["--saying", "you take a box for a hit"]);
+    assert!(says.contains("wrong any_box_is_enough: ") && !says.contains("right "), "{says}");
+    let changes = answer(&["--function", "slab"]);
+    assert!(
+        changes.starts_with("tests/corpus/stage3_boxes.corpus\n") && changes.contains("  right "),
+        "{changes}"
+    );
+    let caught = answer(&["--check", "any_hit_stops_at_the_first"]);
+    assert!(caught.contains(" =wrong any_does_not_stop: "), "{caught}");
+}
