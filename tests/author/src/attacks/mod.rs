@@ -192,18 +192,25 @@ pub fn choose(attacks: Vec<Attack>, names: &[String]) -> Result<Vec<Attack>> {
     Ok(attacks.into_iter().filter(|attack| names.is_empty() || names.contains(&attack.name)).collect())
 }
 
-/// Returns a part of the attacks. Those of stage 1 are divided evenly. All others of a stage are in one part, because preparing
-/// a judge for it takes some seconds.
+/// Returns a part of the attacks. All attacks of a later stage are in one part, because preparing a judge for it takes some
+/// seconds. Those of stage 1 fill up the parts, so that the time limits of each part have about the same sum.
 pub fn part(attacks: Vec<Attack>, shard: Shard) -> Vec<Attack> {
-    let (mut of_stage_1, mut others): (Vec<_>, Vec<_>) =
+    let (mut of_stage_1, others): (Vec<_>, Vec<_>) =
         attacks.into_iter().partition(|attack| attack.stages == stage_one());
-    let last = |attack: &Attack| attack.stages.iter().max().copied().unwrap_or_default();
-    others.retain(|attack| u64::from(last(attack)) % shard.of == shard.index - 1);
-    // Sort by the time limit, so that each part gets a share of the attacks that take long.
+    let mut parts: Vec<Vec<Attack>> = vec![Vec::new(); shard.of as usize];
+    for attack in others {
+        let last = attack.stages.iter().max().copied().unwrap_or_default();
+        parts[usize::from(last) % shard.of as usize].push(attack);
+    }
+    // Begin with the attacks that take longest.
     of_stage_1.sort_by_key(|attack| Reverse(attack.most_seconds));
-    let mine = (1..=shard.of).cycle().zip(of_stage_1).filter(|(index, _)| *index == shard.index);
-    others.extend(mine.map(|(_, attack)| attack));
-    others
+    let sum = |part: &Vec<Attack>| part.iter().map(|attack| attack.most_seconds).sum::<u64>();
+    for attack in of_stage_1 {
+        if let Some(least) = parts.iter_mut().min_by_key(|part| sum(part)) {
+            least.push(attack);
+        }
+    }
+    parts.swap_remove(shard.index as usize - 1)
 }
 
 fn read(file: &Path) -> Result<FamilyFile> {
