@@ -4,7 +4,6 @@
 
 mod given;
 
-use crate::quality_options::key_of;
 pub use given::{Given, chosen, names, whole_number};
 use std::ffi::OsString;
 use std::fmt::{self, Display, Write};
@@ -50,6 +49,7 @@ pub struct Opt {
     choices: &'static [&'static str],
     many: bool,
     required: bool,
+    earlier: Option<fn(&str, &str) -> Option<String>>,
     help: &'static str,
 }
 
@@ -73,7 +73,16 @@ impl Argument {
 impl Opt {
     /// An option without a value; `long` begins with two dashes.
     pub const fn flag(long: &'static str, help: &'static str) -> Opt {
-        Opt { long, short: None, value: None, choices: &[], many: false, required: false, help }
+        Opt {
+            long,
+            short: None,
+            value: None,
+            choices: &[],
+            many: false,
+            required: false,
+            earlier: None,
+            help,
+        }
     }
 
     /// An option with a value, which the help calls `value`.
@@ -99,6 +108,11 @@ impl Opt {
     /// The same, but the command needs it: see [`Given::required_path`].
     pub const fn required(self) -> Opt {
         Opt { required: true, ..self }
+    }
+
+    /// The same with the answer to an unknown option and its value: `None`, or what replaces an option of an earlier version.
+    pub const fn earlier(self, answer: fn(&str, &str) -> Option<String>) -> Opt {
+        Opt { earlier: Some(answer), ..self }
     }
 
     fn is(&self, name: &str) -> bool {
@@ -189,13 +203,8 @@ impl Spec {
     }
 
     fn unknown(&self, name: &str, value: &str) -> Misuse {
-        if self.all_options().any(|option| option.long == "--set") {
-            if name == "--roulette-from" {
-                return Misuse(format!("`{name}` is gone: Russian roulette begins at the third bounce"));
-            }
-            if let Some(key) = name.strip_prefix("--").and_then(key_of) {
-                return Misuse(format!("`{name}` is now written `--set {key}={value}`"));
-            }
+        if let Some(answer) = self.all_options().find_map(|option| option.earlier?(name, value)) {
+            return Misuse(answer);
         }
         let known: Vec<&str> = self.all_options().map(|option| option.long).collect();
         self.misuse(format!("unexpected option `{name}`{}", did_you_mean(name, &known)))

@@ -111,7 +111,8 @@ impl QualityOptions {
              be repeated. The keys:",
         )
         .choices(&Quality::KEYS)
-        .many(),
+        .many()
+        .earlier(earlier),
         Memory::OPTION,
     ];
 
@@ -194,6 +195,15 @@ pub fn arguments(own: &Quality, wanted: &Quality) -> String {
         }
     };
     own.differences(wanted).into_iter().map(&mut argument).collect()
+}
+
+/// What replaces an option of an earlier version; `None` if there was no such option.
+fn earlier(name: &str, value: &str) -> Option<String> {
+    if name == "--roulette-from" {
+        return Some(format!("`{name}` is gone: Russian roulette begins at the third bounce"));
+    }
+    let key = key_of(name.strip_prefix("--")?)?;
+    Some(format!("`{name}` is now written `--set {key}={value}`"))
 }
 
 /// The key of `[quality]` that the short form or the earlier name of an option or of a parameter of `cost` stands for.

@@ -18,6 +18,7 @@ use toml::de::DeValue;
 
 /// The largest width or height of a picture, in pixels.
 const MAX_SIDE: u32 = 65_536;
+
 /// The film of `[film]`, 640 by 360 pixels in sRGB where nothing else is given; fails if a value is out of
 /// range or the picture needs more memory than the limit.
 pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {

@@ -3,9 +3,14 @@
 use super::called::Called;
 use super::parameter::Parameter;
 use super::setting::Setting;
+use crate::args::names;
 use crate::report::Thousands;
 use raykata::effects::Effect;
-use raykata::scene::{Accelerator, Field, NextEvent, Precision, Quality, Sampler, Scene};
+use raykata::scene::load::set;
+use raykata::scene::{
+    Accelerator, NextEvent, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter,
+    TriangleMethod,
+};
 
 /// A series of values of a parameter, from cheap to expensive.
 pub struct Ladder {
@@ -45,34 +50,21 @@ impl Parameter {
             let levels = levels.into_iter().map(|(name, quality)| (name, Setting { quality, smooth: true }));
             Ladder { parameter: self, name: self.name(), levels: levels.collect(), left_out: Vec::new() }
         };
-        let key = self.key();
-        let numbers = |values: Vec<u32>| {
-            let with = |value: u32| {
+        // A level per value of the setting, read as the command line reads it.
+        let levels = |values: &[&str]| {
+            let level = |value: &&str| {
                 let mut quality = quality;
-                if let Some(Field::Whole(number, _)) = quality.field(key) {
-                    *number = value;
-                }
-                (value.to_string(), quality)
+                set(&mut quality, self.key(), value).map_err(|error| error.message)?;
+                Ok((value.replace('_', " "), quality))
             };
-            vec![ladder(values.into_iter().map(with).collect())]
+            Ok::<_, String>(vec![ladder(values.iter().map(level).collect::<Result<_, String>>()?)])
         };
-        let names = || {
-            let with = |name: &str| {
-                let mut quality = quality;
-                if let Some(Field::Name(value)) = quality.field(key) {
-                    value.choose(name);
-                }
-                (name.replace('_', " "), quality)
-            };
-            let mut own = quality;
-            let all = match own.field(key) {
-                Some(Field::Name(value)) => value.names(),
-                _ => Vec::new(),
-            };
-            vec![ladder(all.into_iter().map(with).collect())]
+        let numbers = |values: Vec<u32>| {
+            let texts: Vec<String> = values.iter().map(u32::to_string).collect();
+            levels(&texts.iter().map(String::as_str).collect::<Vec<_>>())
         };
         let ladders = match self {
-            Parameter::Samples => numbers(doubling(quality.samples_per_pixel, *most_samples)),
+            Parameter::Samples => numbers(doubling(quality.samples_per_pixel, *most_samples))?,
             Parameter::Sampler => {
                 let of = |(name, sampler): (&str, Sampler)| {
                     let with = |samples_per_pixel: u32| {
@@ -86,12 +78,12 @@ impl Parameter {
             }
             Parameter::LightSamples => {
                 needs(effects.lights.iter().any(|light| light.area), "no light has an area")?;
-                numbers(doubling(quality.light_samples, 16))
+                numbers(doubling(quality.light_samples, 16))?
             }
             Parameter::GlossySamples => {
                 needs(effects.calls_for(Effect::Glossy), "no rough surface reflects or transmits light")?;
                 needs(!indirect, "a path of indirect light continues with one ray per hit")?;
-                numbers(doubling(quality.glossy_samples, 16))
+                numbers(doubling(quality.glossy_samples, 16))?
             }
             Parameter::Depth => {
                 needs(mirrors || indirect, "no surface reflects or transmits light")?;
@@ -100,7 +92,7 @@ impl Parameter {
                 depths.push(quality.max_depth);
                 depths.sort_unstable();
                 depths.dedup();
-                numbers(depths)
+                numbers(depths)?
             }
             Parameter::NextEvent => {
                 needs(indirect, "the scene has no indirect light")?;
@@ -140,7 +132,7 @@ impl Parameter {
             }
             Parameter::TextureFilter => {
                 needs(effects.calls_for(Effect::Textures), "no surface shows an image")?;
-                names()
+                levels(&names(&TextureFilter::NAMES))?
             }
             Parameter::SmoothNormals => {
                 needs(effects.calls_for(Effect::SmoothNormals), "no mesh has smooth normals")?;
@@ -151,7 +143,7 @@ impl Parameter {
             Parameter::Intersection => {
                 needs(called.shows_triangles(), "there are no triangles")?;
                 // With the watertight test last: it is the default, and it takes longest.
-                names()
+                levels(&names(&TriangleMethod::NAMES))?
             }
             Parameter::SphereTest => {
                 needs(called.shows_spheres(), "there are no spheres")?;
@@ -159,14 +151,14 @@ impl Parameter {
                     quality.precision == Precision::Single,
                     "the precision is double, which has one sphere test",
                 )?;
-                names()
+                levels(&names(&SphereMethod::NAMES))?
             }
             Parameter::Precision => {
                 needs(
                     called.shows_triangles() || called.shows_spheres(),
                     "there are no triangles and no spheres, and other shapes have one test each",
                 )?;
-                names()
+                levels(&names(&Precision::NAMES))?
             }
             Parameter::Accelerator => {
                 let most = |one: Accelerator| match one {
@@ -196,18 +188,18 @@ impl Parameter {
             }
             Parameter::Split => {
                 needs(hierarchy, "the accelerator is not a hierarchy")?;
-                names()
+                levels(&names(&Split::NAMES))?
             }
             Parameter::LeafSize => {
                 needs(hierarchy, "the accelerator is not a hierarchy")?;
-                numbers(doubling(quality.leaf_size, 16))
+                numbers(doubling(quality.leaf_size, 16))?
             }
             Parameter::GridResolution => {
                 needs(
                     quality.accelerator == Accelerator::Grid,
                     "the accelerator is not a grid (`--accelerator grid` selects one)",
                 )?;
-                numbers(vec![8, 16, 32, 64, 128])
+                numbers(vec![8, 16, 32, 64, 128])?
             }
         };
         Ok(ladders)
