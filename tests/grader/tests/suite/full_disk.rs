@@ -188,9 +188,9 @@ fn every_command_names_the_file_on_a_full_disk_and_continues_with_room() {
     ]);
 }
 
-/// It takes minutes, so it runs only with `CI_LONG=1`.
+/// These take minutes, so they run only with `CI_LONG=1`.
 #[test]
-fn a_measurement_continues_after_a_full_disk() {
+fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
     if leaves_out_what_takes_long() {
         return;
     }
@@ -199,13 +199,24 @@ fn a_measurement_continues_after_a_full_disk() {
         "cost {} --full --size 16x12 --rounds 1 --reference 128 --parameter samples_per_pixel --out DISK/cost",
         shadows.display()
     );
-    try_all(&[Case {
-        program: Path::new(env!("CARGO_BIN_EXE_grader")).with_file_name("raykata"),
-        command: cost,
-        resume: "",
-        size: "16k",
-        keeps: Some("cost/unfinished.jsonl"),
-        // All files contain measured times.
-        result: "",
-    }]);
+    let program = |name: &str| Path::new(env!("CARGO_BIN_EXE_grader")).with_file_name(name);
+    try_all(&[
+        Case {
+            program: program("raykata"),
+            command: cost,
+            resume: "",
+            size: "16k",
+            keeps: Some("cost/unfinished.jsonl"),
+            // All files contain measured times.
+            result: "",
+        },
+        Case {
+            program: program("author"),
+            command: "rehearse --honest --students 4 --jobs 1 --out DISK/grades".into(),
+            resume: "--resume",
+            size: "200k",
+            keeps: Some("grades/grades.sqlite"),
+            result: "grades/grades.csv",
+        },
+    ]);
 }
