@@ -211,7 +211,6 @@ impl<F: StudentFunctions> Frame<'_, F> {
     }
 
     /// The surface that `path` hits, how it scatters light, and which of its light counts.
-    #[inline(always)]
     fn vertex<T: Tally>(
         &self,
         indirect: &IndirectLight,
@@ -224,9 +223,13 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let direction = self.unit(path.ray.direction);
         let (at, number) = self.surface_at(path, hit, scratch, record);
         let material = self.material(path, hit, &at, &mut scratch.tally);
-        let bounces = path.depth;
-        let state =
-            PathState { origin: start.origin, direction, weight: path.weight, bounces, pdf: start.pdf };
+        let state = PathState {
+            origin: start.origin,
+            direction,
+            weight: path.weight,
+            bounces: path.depth,
+            pdf: start.pdf,
+        };
         let may_bounce = path.depth < self.limits.max_depth;
         let scattering = self.scattering(indirect, direction, &at, &material, may_bounce);
         let rough = self.rough_lobe(indirect, &at, &material, &scattering);
