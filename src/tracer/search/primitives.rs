@@ -28,8 +28,9 @@ pub trait Primitives: Probe + Cells {
     /// The reciprocal of each component of the direction of the ray; infinite where a component is 0.
     fn inverse_direction(&self) -> Vec3;
 
-    /// Whether `may_hit` of stage 12 may sort out triangles: it is written, and the test of triangles has no larger rounding
-    /// errors than it. Other tests may report a hit that is none, and every accelerator has to report the same.
+    /// Whether `may_hit` of stage 12 may reject triangles before they are tested: it is written, and the triangle test of the
+    /// plan rounds no more than `may_hit`. A test that rounds more could report a hit of a triangle that `may_hit` rejects,
+    /// and then a wide tree would find other hits than the other accelerators.
     fn may_sort_out(&self) -> bool;
 
     /// The `t` of the hit with a primitive in the range of the ray, without a count.

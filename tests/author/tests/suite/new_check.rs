@@ -1,4 +1,4 @@
-//! A check that `author new-check` has just written compiles, whatever function it asks.
+//! A check that `author new-check` has written compiles, for each function.
 
 use super::program_runs::{leaves_out_what_takes_long, printed, root};
 use raykata::kit::Function;
