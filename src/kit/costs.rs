@@ -1,9 +1,6 @@
 //! The answers of searches with their costs, for a judge that does not trust them.
 
-use super::{
-    Answer, CellsAnswer, GraphAnswer, PacketAnswer, PlaceAnswer, SearchAnswer, ShadeAnswer, StreamAnswer,
-    WideAnswer,
-};
+use super::{Answer, CellsAnswer, GraphAnswer, PacketAnswer, SearchAnswer, ShadeAnswer, WideAnswer};
 
 /// The answer to one query whose cost is counted.
 pub enum Costs<'a> {
@@ -19,10 +16,6 @@ pub enum Costs<'a> {
     Shade(&'a mut ShadeAnswer),
     /// Of a search in a wide tree.
     Wide(&'a mut WideAnswer),
-    /// Of a search in a wide tree with several rays.
-    Stream(&'a mut StreamAnswer),
-    /// Of a search for the place of a subtree.
-    Place(&'a mut PlaceAnswer),
 }
 
 impl Answer {
@@ -49,8 +42,6 @@ impl Answer {
             Answer::WideClosestHit(answers) | Answer::WideAnyHit(answers) => {
                 answers.iter_mut().map(Costs::Wide).collect()
             }
-            Answer::StreamClosestHits(answers) => answers.iter_mut().map(Costs::Stream).collect(),
-            Answer::CheapestPlace(answers) => answers.iter_mut().map(Costs::Place).collect(),
             Answer::Shade(answers) => answers.iter_mut().map(Costs::Shade).collect(),
             _ => Vec::new(),
         }

@@ -2,7 +2,6 @@
 
 use super::types::*;
 use crate::material::{Emitter, Falloff};
-use crate::wide::OpenedNode;
 use glam::UVec2;
 use std::sync::Arc;
 
@@ -248,19 +247,6 @@ examples! {
         ray: example(),
         entries: vec![[f32::INFINITY; 8]],
         hits: Vec::new(),
-    };
-    PlaceQuery => PlaceQuery {
-        nodes: vec![OpenedNode { area: 1.0, united: 2.0, children: None }],
-        root: 0,
-        area: 1.0,
-    };
-    ReinsertQuery => ReinsertQuery { tree: FlatTree::default(), most_moves: 1 };
-    Vec<Ray> => Vec::new();
-    StreamQuery => StreamQuery {
-        tree: WideTree { nodes: vec![WideNode::EMPTY], blocks: Vec::new() },
-        rays: vec![example()],
-        entries: vec![vec![[f32::INFINITY; 8]]],
-        hits: vec![Vec::new()],
     };
     RouletteQuery => RouletteQuery { weight: Vec3::ONE, bounce: 0, u: 0.5 };
 }

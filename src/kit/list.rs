@@ -838,31 +838,6 @@ macro_rules! student_functions {
                     let found = F::wide_any_hit(&mut probe, &q.ray);
                     probe.answer(None, found)
                 }
-                /// The place of a subtree at which the areas of all inner nodes grow least.
-                CheapestPlace fn cheapest_place[P: PlaceProbe](probe: &mut P, root: u32, area: f64) -> SubtreePlace
-                    = stage12_reinsertion::cheapest_place;
-                |q: PlaceQuery| -> PlaceAnswer {
-                    let mut probe = PlaceTableProbe::new(q);
-                    let place = F::cheapest_place(&mut probe, q.root, q.area);
-                    probe.answer(place)
-                }
-                /// A tree of lower cost with the same leaves, which at most `most_moves` moves of subtrees make of
-                /// `tree`.
-                Reinsert fn reinsert(tree: &FlatTree, most_moves: u32) -> FlatTree
-                    = stage12_reinsertion::reinsert;
-                |q: ReinsertQuery| -> FlatTree { F::reinsert(&q.tree, q.most_moves) }
-                /// The numbers of all rays, sorted by the octant of the direction and the Morton code of the origin.
-                StreamOrder fn stream_order(rays: &[Ray]) -> Vec<u32>
-                    = stage12_streams::stream_order;
-                |rays: Vec<Ray>| -> Vec<u32> { F::stream_order(rays) }
-                /// The closest hit of each ray in a wide tree, by a search that takes all rays through a node together.
-                StreamClosestHits fn stream_closest_hits[P: StreamProbe](probe: &mut P, rays: &[Ray]) -> Vec<Option<PrimitiveHit>>
-                    = stage12_streams::stream_closest_hits;
-                |q: StreamQuery| -> StreamAnswer {
-                    let mut probe = StreamTableProbe::new(q);
-                    let hits = F::stream_closest_hits(&mut probe, &q.rays);
-                    probe.answer(hits)
-                }
             }
         }
     };

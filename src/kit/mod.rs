@@ -22,7 +22,6 @@ mod scene_graph;
 mod shading;
 mod shapes;
 mod speed;
-mod speed_bonus;
 mod stability;
 mod table;
 mod traced;
@@ -69,9 +68,6 @@ pub use shapes::{PlaneEquationQuery, PlaneQuery, RootQuery, SphereQuery};
 pub use speed::{
     BinSplitQuery, BinsQuery, BlockQuery, PartitionQuery, WideAnswer, WideBoxesQuery, WideQuery,
     WideTableProbe,
-};
-pub use speed_bonus::{
-    PlaceAnswer, PlaceQuery, PlaceTableProbe, ReinsertQuery, StreamAnswer, StreamQuery, StreamTableProbe,
 };
 pub use stability::OffsetQuery;
 pub use table::{

@@ -3,7 +3,7 @@
 
 use crate::bvh::{Contents, PrimitiveHit};
 use crate::ray::Ray;
-use crate::wide::{Entered, OpenedNode};
+use crate::wide::Entered;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::io;
@@ -39,14 +39,6 @@ pub enum Call {
     Candidates(u32, u32, f32),
     /// Asks for the hit with the primitive in a lane of a block: block, lane, ray.
     HitLane(u32, u32, Ray),
-    /// Asks which children of a wide node a ray of a stream enters: ray, node, `t_max`.
-    EnterWideOf(u32, u32, f32),
-    /// Asks which lanes of a block a ray of a stream may hit: ray, block, `n`, `t_max`.
-    CandidatesOf(u32, u32, u32, f32),
-    /// Asks for the hit of a ray of a stream: number of the ray, block, lane, ray.
-    HitLaneOf(u32, u32, u32, Ray),
-    /// Asks for a node in a search for the place of a subtree.
-    OpenPlace(u32),
     /// Asks nothing: reports the last visits.
     End,
 }
@@ -66,8 +58,6 @@ pub enum Response {
     Entered(Entered),
     /// The lanes of a block that may be hit, as bits.
     Lanes(u32),
-    /// A node in a search for the place of a subtree.
-    Place(OpenedNode),
     /// The visits were recorded.
     Recorded,
     /// The call is not allowed. The text is the message of the panic that it causes.
@@ -181,14 +171,6 @@ impl Asker {
     pub(super) fn found(&mut self, call: Call) -> Option<PrimitiveHit> {
         match self.ask(call) {
             Response::Found(hit) => hit,
-            other => out_of_step(&other),
-        }
-    }
-
-    #[track_caller]
-    pub(super) fn open_place(&mut self, node: u32) -> OpenedNode {
-        match self.ask(Call::OpenPlace(node)) {
-            Response::Place(opened) => opened,
             other => out_of_step(&other),
         }
     }

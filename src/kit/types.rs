@@ -19,7 +19,7 @@ pub use crate::scene::{Quality, Sampler, Scene, Split};
 pub use crate::shape::{BezierPatch, Cone, Cuboid, Cylinder, Disk, NurbsPatch, Polygon, Sphere, Triangle};
 pub use crate::wide::simd::{Instructions, Level, Vectorized};
 pub use crate::wide::{
-    BinGrid, BinSplit, Bins, BoxA, Child, Entered, FlatTree, ForkedTree, Forks, PlaceProbe, PrimitiveBox,
-    StreamProbe, SubtreePlace, TriangleBlock, WideNode, WideProbe, WideRay, WideTree,
+    BinGrid, BinSplit, Bins, BoxA, Child, Entered, FlatTree, ForkedTree, Forks, PrimitiveBox, TriangleBlock,
+    WideNode, WideProbe, WideRay, WideTree,
 };
 pub use glam::{Affine3A, UVec3, Vec2, Vec3};

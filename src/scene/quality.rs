@@ -26,10 +26,6 @@ pub enum Accelerator {
     Bvh,
     /// A bounding volume hierarchy with eight children per node, whose boxes are tested at once (stage 12).
     WideBvh,
-    /// The same, and its binary tree is improved by moves of subtrees before (stage 12, bonus).
-    ReinsertedBvh,
-    /// The same as [`Accelerator::WideBvh`], and camera rays go through it in streams of 64 (stage 12, bonus).
-    StreamBvh,
     /// A bounding volume hierarchy whose search visits both children of every node that the ray enters, in any order:
     /// the baseline that shows what the order and the shorter ray save (stage 3). Shadow rays stop at the first hit,
     /// as with [`Accelerator::Bvh`].
@@ -83,7 +79,7 @@ impl Accelerator {
 
     /// Whether the structure is a tree of stage 12 with eight children per node.
     pub fn is_wide(self) -> bool {
-        matches!(self, Accelerator::WideBvh | Accelerator::ReinsertedBvh | Accelerator::StreamBvh)
+        self == Accelerator::WideBvh
     }
 }
 
@@ -254,8 +250,6 @@ names! {
         "cached_bvh" CachedBvh
         "packet_bvh" PacketBvh
         "wide_bvh" WideBvh
-        "reinserted_bvh" ReinsertedBvh
-        "stream_bvh" StreamBvh
         "grid" Grid
         "octree" Octree
         "octree_by_cells" OctreeByCells

@@ -39,6 +39,7 @@ use plan::Plan;
 use plan::written::Written;
 use search::hit::{Hit, Target};
 use search::kept::{self, Built};
+use search::packets::PACKET;
 use search::{Intersector, outlines};
 use std::marker::PhantomData;
 use std::time::Instant;
@@ -139,7 +140,7 @@ fn render<F: StudentFunctions>(
 
 /// Renders all pixels of a frame; `None` if `watch` cancelled it.
 fn pixels<F: StudentFunctions, T: Tally>(frame: &Frame<'_, F>, watch: &dyn Watch) -> Option<(Film, Counts)> {
-    let (settings, packets) = (frame.settings(), frame.intersector.takes_batches());
+    let (settings, packets) = (frame.settings(), frame.intersector.takes_packets());
     let radiance = |sample: &CameraSample, scratch: &mut Scratch<T>| {
         // Find the closest hit of the camera ray.
         scratch.note(Event::Primary);
@@ -218,8 +219,7 @@ fn first_hits<F: StudentFunctions>(
         Target::Plane(index) => PrimitiveHit { t: hit.t, primitive: n_primitives + index },
         Target::Primitive(primitive) | Target::Instance(primitive, _) => PrimitiveHit { t: hit.t, primitive },
     };
-    // Search in packets or streams, as for camera rays.
-    let hits =
-        rays.chunks(intersector.batch()).flat_map(|rays| intersector.closest_hits(rays, &mut Uncounted));
+    // Search in packets, as for camera rays.
+    let hits = rays.chunks(PACKET).flat_map(|rays| intersector.closest_hits(rays, &mut Uncounted));
     hits.map(|hit| hit.map(primitive_of)).collect()
 }

@@ -47,8 +47,6 @@ fn structures() -> Vec<(String, Quality)> {
         Accelerator::CachedBvh,
         Accelerator::PacketBvh,
         Accelerator::WideBvh,
-        Accelerator::ReinsertedBvh,
-        Accelerator::StreamBvh,
     ];
     structures.extend(others.map(|accelerator| (format!("{accelerator:?}"), with(accelerator, 2))));
     structures

@@ -56,8 +56,6 @@ fn structures_over_hard_triangles_are_small_and_right() {
             Accelerator::CachedBvh,
             Accelerator::PacketBvh,
             Accelerator::WideBvh,
-            Accelerator::ReinsertedBvh,
-            Accelerator::StreamBvh,
             Accelerator::BoundingBoxes,
             Accelerator::BoundingSpheres,
             Accelerator::CachedBoundingBoxes,

@@ -94,8 +94,6 @@ fn extra_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
                 Function::wide_any_hit,
             ],
         ),
-        Accelerator::ReinsertedBvh => (12, &[Function::cheapest_place, Function::reinsert]),
-        Accelerator::StreamBvh => (12, &[Function::stream_order, Function::stream_closest_hits]),
         Accelerator::PacketBvh => (9, &[Function::packet_search]),
         Accelerator::Grid => (
             9,

@@ -75,8 +75,6 @@ pub struct WidePlan {
     pub binned: bool,
     /// Whether `may_hit` is written; otherwise each triangle of a leaf is tested.
     pub may_hit: bool,
-    /// Whether `reinsert` improves the binary tree.
-    pub reinserts: bool,
 }
 
 impl Plan {
@@ -99,7 +97,6 @@ impl Plan {
                 parallel: written.has(Function::build_parallel),
                 binned: written.has(Function::build_binned),
                 may_hit: written.has(Function::may_hit),
-                reinserts: false,
             },
             view: choose_view(job.view, written, &mut notes),
             world: WorldFunctions::of::<F>(&|function| written.has(function)),
@@ -119,7 +116,6 @@ impl Plan {
             effects,
             notes,
         };
-        plan.wide.reinserts = plan.accelerator == Some(Accelerator::ReinsertedBvh);
         // Leave out effects and shapes whose functions are not written, and note that.
         plan.leave_out_shapes(scene, written);
         plan.leave_out_normals(scene, written);

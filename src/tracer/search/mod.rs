@@ -19,7 +19,6 @@ mod structure;
 mod wide;
 
 use crate::aabb::Aabb;
-use crate::bvh::PrimitiveHit;
 use crate::count::{Event, Tally};
 use crate::graph::{ChildCache, Graph};
 use crate::kit::StudentFunctions;
@@ -27,7 +26,6 @@ use crate::ray::Ray;
 use crate::scene::{Accelerator, Quality};
 use crate::shape::Triangle;
 use crate::tracer::plan::Plan;
-use crate::wide::STREAM;
 use crate::world::{Geometry, InfinitePlane, Primitive, World};
 use glam::Vec3;
 use hit::{Detail, Hit, Target};
@@ -152,8 +150,8 @@ impl<F: StudentFunctions> Intersector<F> {
     /// them in one packet.
     pub fn closest_hits<T: Tally>(&self, rays: &[Ray], tally: &mut T) -> Vec<Option<Hit>> {
         let structure = &self.scene.structure;
-        let is_searched = matches!(structure, Structure::Hierarchy(_) | Structure::Wide(_));
-        let (true, Some(first)) = (self.takes_batches() && is_searched, rays.first()) else {
+        let (true, Structure::Hierarchy(bvh), Some(first)) = (self.takes_packets(), structure, rays.first())
+        else {
             let mut cache = Cache::default();
             return rays.iter().map(|ray| self.closest_hit(ray, tally, &mut cache)).collect();
         };
@@ -165,29 +163,13 @@ impl<F: StudentFunctions> Intersector<F> {
         // Search the structure with all rays at once.
         let mut reported = ReportedHits::for_closest_hit();
         let mut probe = PacketProbe(SceneProbe::<F, T>::new(&self.scene, first, tally, &mut reported));
-        let found = match structure {
-            Structure::Hierarchy(bvh) => F::packet_search(bvh, &mut probe, &rays),
-            Structure::Wide(wide) => in_streams(wide, &mut probe.0, &rays),
-            _ => vec![None; rays.len()],
-        };
-        let found = found.into_iter().zip(&rays).zip(shortened);
+        let found = F::packet_search(bvh, &mut probe, &rays).into_iter().zip(&rays).zip(shortened);
         found.map(|((hit, ray), (_, plane))| hit.map(|hit| probe.hit_of(hit, ray)).or(plane)).collect()
     }
 
     /// Whether the structure searches several rays at once, so that camera rays should come in packets.
-    pub fn takes_batches(&self) -> bool {
-        matches!(self.accelerator, Some(Accelerator::PacketBvh | Accelerator::StreamBvh))
-    }
-
-    /// The number of rays that the structure searches at once.
-    pub fn batch(&self) -> usize {
-        let (columns, rows) = self.batch_of_pixels();
-        (columns * rows) as usize
-    }
-
-    /// The columns and rows of neighbouring pixels whose camera rays are searched at once.
-    pub fn batch_of_pixels(&self) -> (u32, u32) {
-        if self.accelerator == Some(Accelerator::StreamBvh) { (8, 8) } else { (4, 2) }
+    pub fn takes_packets(&self) -> bool {
+        self.accelerator == Some(Accelerator::PacketBvh)
     }
 
     /// Whether `ray` hits anything for `t_min < t < t_max` (occlusion of a shadow ray).
@@ -220,26 +202,6 @@ impl<F: StudentFunctions> Intersector<F> {
         }
         (Some(ray), closest)
     }
-}
-
-/// The closest hits of rays in a wide tree, in streams of rays that visit the same nodes.
-fn in_streams<F: StudentFunctions, T: Tally>(
-    wide: &Wide,
-    probe: &mut SceneProbe<'_, F, T>,
-    rays: &[Ray],
-) -> Vec<Option<PrimitiveHit>> {
-    let mut hits = vec![None; rays.len()];
-    // A wrong order may lose rays, but names none that does not exist.
-    let order = F::stream_order(rays);
-    let order: Vec<usize> =
-        order.into_iter().map(|ray| ray as usize).filter(|&ray| ray < rays.len()).collect();
-    for numbers in order.chunks(STREAM) {
-        let stream: Vec<Ray> = numbers.iter().map(|&number| rays[number]).collect();
-        for (&number, hit) in numbers.iter().zip(wide.closest_hits::<F, _>(probe, &stream)) {
-            hits[number] = hit;
-        }
-    }
-    hits
 }
 
 /// The `t` of the hit of `ray` with an infinite plane within its range, by the form in which the plane is given.

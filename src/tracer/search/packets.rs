@@ -10,8 +10,14 @@ use crate::tracer::camera_sampler::CameraSampler;
 use crate::tracer::driver::{CameraSample, FrameSettings};
 use std::collections::HashMap;
 
-/// All columns and rows of pixels that share a packet divide a tile evenly, so that no two threads trace the same packet.
-const _: () = assert!(TILE.is_multiple_of(8));
+/// The columns and rows of neighbouring pixels whose camera rays share a packet. Both divide a tile evenly, so that no two
+/// threads trace the same packet.
+const COLUMNS: u32 = 4;
+const ROWS: u32 = 2;
+const _: () = assert!(TILE.is_multiple_of(COLUMNS) && TILE.is_multiple_of(ROWS));
+
+/// The number of rays in a packet.
+pub const PACKET: usize = (COLUMNS * ROWS) as usize;
 
 /// The hits of packets whose pixels have not all been asked for yet.
 #[derive(Default)]
@@ -37,9 +43,8 @@ impl Packets {
             return hit;
         }
         // Make the camera rays of all pixels of the block that lie on the film.
-        let (columns, rows) = intersector.batch_of_pixels();
-        let (left, top) = (sample.column - sample.column % columns, sample.row - sample.row % rows);
-        let (right, bottom) = (settings.width.min(left + columns), settings.height.min(top + rows));
+        let (left, top) = (sample.column - sample.column % COLUMNS, sample.row - sample.row % ROWS);
+        let (right, bottom) = (settings.width.min(left + COLUMNS), settings.height.min(top + ROWS));
         let pixels = (top..bottom).flat_map(|row| (left..right).map(move |column| (column, row)));
         let samples: Vec<CameraSample> =
             pixels.map(|(column, row)| CameraSample::draw(settings, column, row, sample.sample)).collect();

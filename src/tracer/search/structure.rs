@@ -154,8 +154,6 @@ impl Structure {
                     Accelerator::Auto
                     | Accelerator::Bvh
                     | Accelerator::WideBvh
-                    | Accelerator::ReinsertedBvh
-                    | Accelerator::StreamBvh
                     | Accelerator::CachedBvh
                     | Accelerator::PacketBvh
                     | Accelerator::BoundingBoxes

@@ -11,8 +11,7 @@ use crate::shape::Triangle;
 use crate::tracer::plan::WidePlan;
 use crate::wide::simd::{Instructions, Level, Vectorized};
 use crate::wide::{
-    Child, ChildContents, Entered, FlatTree, Forks, LastFetch, MAX_LEAF, StreamProbe, TriangleBlock,
-    WideNode, WideProbe, WideRay,
+    Child, ChildContents, Entered, FlatTree, Forks, MAX_LEAF, TriangleBlock, WideNode, WideProbe, WideRay,
 };
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -48,8 +47,6 @@ impl Wide {
         } else {
             F::flatten(&F::build(bounds, quality.split, (quality.leaf_size as usize).min(MAX_LEAF)))
         };
-        let most_moves = u32::try_from(tree.nodes.len()).unwrap_or(u32::MAX);
-        let tree = if plan.reinserts { F::reinsert(&tree, most_moves) } else { tree };
         // Collapse it, and copy the triangles into the blocks.
         let wide = F::collapse(&tree);
         drop(tree);
@@ -73,18 +70,6 @@ impl Wide {
             return None;
         }
         self.instructions.run(Closest::<F, P> { wide: self, functions: PhantomData, probe, ray })
-    }
-
-    /// The closest hit of each of `rays`, at most [`STREAM`](crate::wide::STREAM), within its range.
-    pub fn closest_hits<F: StudentFunctions, P: Primitives>(
-        &self,
-        probe: &mut P,
-        rays: &[Ray],
-    ) -> Vec<Option<PrimitiveHit>> {
-        if self.nodes.is_empty() {
-            return vec![None; rays.len()];
-        }
-        self.instructions.run(ClosestOfStream::<F, P> { wide: self, functions: PhantomData, probe, rays })
     }
 
     /// Whether `ray` hits any primitive of `probe` within its range.
@@ -190,17 +175,12 @@ impl<'s, F: StudentFunctions, P: Primitives, L: Level> TreeProbe<'s, F, P, L> {
         let sorts_out = ray.in_range && probe.may_sort_out();
         TreeProbe { wide, probe, ray, sorts_out, level, functions: PhantomData }
     }
+}
 
-    /// Asks about another ray from now on.
+impl<F: StudentFunctions, P: Primitives, L: Level> WideProbe for TreeProbe<'_, F, P, L> {
     #[inline(always)]
-    fn select(&mut self, ray: &WideRay) {
-        self.ray = *ray;
-        self.sorts_out = ray.in_range && self.probe.may_sort_out();
-    }
-
-    /// [`WideProbe::enter`] without a node visit.
-    #[inline(always)]
-    fn enter_uncounted(&mut self, node: u32, t_max: f32) -> Entered {
+    fn enter(&mut self, node: u32, t_max: f32) -> Entered {
+        self.probe.count(Event::NodeVisit);
         let node = &self.wide.nodes[node as usize];
         let entered = F::enter_boxes(self.level, node, &self.ray, t_max);
         if P::COUNTS {
@@ -213,9 +193,14 @@ impl<'s, F: StudentFunctions, P: Primitives, L: Level> TreeProbe<'s, F, P, L> {
         entered
     }
 
-    /// [`WideProbe::candidates`] without a node visit.
     #[inline(always)]
-    fn candidates_uncounted(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
+    fn children(&self, node: u32) -> &[Child; 8] {
+        &self.wide.nodes[node as usize].children
+    }
+
+    #[inline(always)]
+    fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
+        self.probe.count(Event::NodeVisit);
         if P::COUNTS {
             for _ in 0..n {
                 self.probe.count(Event::PrimitiveTest);
@@ -227,25 +212,6 @@ impl<'s, F: StudentFunctions, P: Primitives, L: Level> TreeProbe<'s, F, P, L> {
         } else {
             lanes
         }
-    }
-}
-
-impl<F: StudentFunctions, P: Primitives, L: Level> WideProbe for TreeProbe<'_, F, P, L> {
-    #[inline(always)]
-    fn enter(&mut self, node: u32, t_max: f32) -> Entered {
-        self.probe.count(Event::NodeVisit);
-        self.enter_uncounted(node, t_max)
-    }
-
-    #[inline(always)]
-    fn children(&self, node: u32) -> &[Child; 8] {
-        &self.wide.nodes[node as usize].children
-    }
-
-    #[inline(always)]
-    fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
-        self.probe.count(Event::NodeVisit);
-        self.candidates_uncounted(block, n, t_max)
     }
 
     #[inline(always)]
@@ -261,73 +227,5 @@ impl<F: StudentFunctions, P: Primitives, L: Level> WideProbe for TreeProbe<'_, F
             self.probe.hit_uncounted(primitive, ray)?
         };
         Some(PrimitiveHit { t, primitive })
-    }
-}
-
-/// The search of the closest hits of several rays, for each level of instructions.
-struct ClosestOfStream<'s, F, P> {
-    wide: &'s Wide,
-    functions: PhantomData<F>,
-    probe: &'s mut P,
-    rays: &'s [Ray],
-}
-
-impl<F: StudentFunctions, P: Primitives> Vectorized for ClosestOfStream<'_, F, P> {
-    type Output = Vec<Option<PrimitiveHit>>;
-
-    #[inline(always)]
-    fn run<L: Level>(self, level: L) -> Self::Output {
-        let ClosestOfStream { wide, probe, rays, .. } = self;
-        let Some(first) = rays.first() else { return Vec::new() };
-        let prepared: Vec<WideRay> = rays.iter().map(WideRay::new).collect();
-        let one = TreeProbe::<F, P, L>::new(wide, probe, first, level);
-        F::stream_closest_hits(
-            &mut StreamTreeProbe { one, rays: &prepared, last: LastFetch::default() },
-            rays,
-        )
-    }
-}
-
-/// Answers the questions of a search with several rays. A visit of a node or a block is counted once for all calls about it that
-/// follow each other.
-struct StreamTreeProbe<'s, F, P, L> {
-    one: TreeProbe<'s, F, P, L>,
-    rays: &'s [WideRay],
-    last: LastFetch,
-}
-
-impl<F: StudentFunctions, P: Primitives, L: Level> StreamTreeProbe<'_, F, P, L> {
-    /// Makes `ray` the ray of the next call, and counts a visit unless the last call was about the same node or block.
-    #[inline(always)]
-    fn select(&mut self, ray: u32, is_block: bool, index: u32) {
-        self.one.select(&self.rays[ray as usize]);
-        if self.last.fetches(is_block, index) {
-            self.one.probe.count(Event::NodeVisit);
-        }
-    }
-}
-
-impl<F: StudentFunctions, P: Primitives, L: Level> StreamProbe for StreamTreeProbe<'_, F, P, L> {
-    #[inline(always)]
-    fn enter(&mut self, ray: u32, node: u32, t_max: f32) -> Entered {
-        self.select(ray, false, node);
-        self.one.enter_uncounted(node, t_max)
-    }
-
-    #[inline(always)]
-    fn children(&self, node: u32) -> &[Child; 8] {
-        self.one.children(node)
-    }
-
-    #[inline(always)]
-    fn candidates(&mut self, ray: u32, block: u32, n: u32, t_max: f32) -> u32 {
-        self.select(ray, true, block);
-        self.one.candidates_uncounted(block, n, t_max)
-    }
-
-    #[inline(always)]
-    fn hit(&mut self, ray: u32, block: u32, lane: u32, shortened: &Ray) -> Option<PrimitiveHit> {
-        self.select(ray, true, block);
-        self.one.hit(block, lane, shortened)
     }
 }

@@ -5,15 +5,10 @@
 
 mod boxes;
 mod forks;
-mod reinsertion;
 pub mod simd;
-mod stream;
 
 pub use boxes::{Bin, BinGrid, BinSplit, Bins, BoxA, MAX_BINS, PrimitiveBox};
 pub use forks::{Fork, ForkKind, Forks};
-pub use reinsertion::{OpenedNode, PlaceProbe, SubtreePlace};
-pub(crate) use stream::LastFetch;
-pub use stream::{STREAM, StreamProbe};
 
 use crate::aabb::Aabb;
 use crate::bvh::PrimitiveHit;

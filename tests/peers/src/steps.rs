@@ -6,7 +6,7 @@ use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::shape::Triangle;
 use raykata::wide::{BLOCK, FlatNode, Forks, NO_PRIMITIVE, WideTree};
-use solutions::{stage3_build, stage12_build, stage12_reinsertion, stage12_wide};
+use solutions::{stage3_build, stage12_build, stage12_wide};
 use stage12_checks::forks::work_and_span_of_log;
 use stage12_checks::trees::cost;
 
@@ -73,7 +73,4 @@ pub fn print(triangles: &[Triangle], rays: &[Ray]) {
         "8 build_parallel",
         format!("work {work}, span {span}: {:.1}; {} forks", work as f64 / span as f64, log.len()),
     );
-
-    let better = stage12_reinsertion::reinsert(&tree, tree.nodes.len() as u32);
-    line("9 reinsert (bonus)", format!("cost {:.2} in place of {:.2}", cost(&better), cost(&tree)));
 }

@@ -148,9 +148,7 @@ impl Bench<'_> {
             | Accelerator::BvhBothChildren
             | Accelerator::CachedBvh
             | Accelerator::PacketBvh
-            | Accelerator::WideBvh
-            | Accelerator::ReinsertedBvh
-            | Accelerator::StreamBvh => return Ok(Some(1)),
+            | Accelerator::WideBvh => return Ok(Some(1)),
             // A ray may test all primitives, or all in a node or a cell.
             Accelerator::BruteForce
             | Accelerator::BoundingBoxes

@@ -4,11 +4,10 @@ use raykata::bvh::Probe;
 use raykata::kit::questions::{Call, Question, Response};
 use raykata::kit::{
     Answer, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, Costs, KitError, PacketProbe, PacketQuery,
-    PlaceQuery, PlaceTableProbe, Request, SearchQuery, ShadeQuery, ShadowProbe, StreamQuery,
-    StreamTableProbe, TableProbe, WideQuery, WideTableProbe, kit_error,
+    Request, SearchQuery, ShadeQuery, ShadowProbe, TableProbe, WideQuery, WideTableProbe, kit_error,
 };
 use raykata::partition::Cells;
-use raykata::wide::{OpenedNode, PlaceProbe, StreamProbe, WideProbe};
+use raykata::wide::WideProbe;
 
 /// The most calls of a query. A search that makes more does not end, and its calls would fill the memory of the judge.
 const MOST_CALLS: u32 = 1 << 20;
@@ -30,8 +29,6 @@ enum Kept<'a> {
     Packet(PacketProbe<'a>),
     Shadows(ShadowProbe<'a>),
     Wide(WideTableProbe<'a>),
-    Stream(StreamTableProbe<'a>),
-    Place(PlaceTableProbe<'a>),
 }
 
 /// Returns the request without its tables; `None` if it has none.
@@ -103,20 +100,6 @@ pub fn withheld(request: &Request) -> Option<Request> {
         }
         Request::WideClosestHit(queries) => Request::WideClosestHit(wide(queries)),
         Request::WideAnyHit(queries) => Request::WideAnyHit(wide(queries)),
-        Request::StreamClosestHits(queries) => {
-            let blank = |query: &StreamQuery| StreamQuery {
-                tree: query.tree.clone(),
-                rays: query.rays.clone(),
-                entries: query.entries.iter().map(|of_ray| vec![[f32::NAN; 8]; of_ray.len()]).collect(),
-                hits: query.hits.iter().map(|of_ray| blank(of_ray)).collect(),
-            };
-            Request::StreamClosestHits(queries.iter().map(blank).collect())
-        }
-        Request::CheapestPlace(queries) => {
-            let unknown = OpenedNode { area: f64::NAN, united: f64::NAN, children: None };
-            let blank = |query: &PlaceQuery| PlaceQuery { nodes: vec![unknown; query.nodes.len()], ..*query };
-            Request::CheapestPlace(queries.iter().map(blank).collect())
-        }
         _ => return None,
     };
     Some(Request::Withheld(Box::new(without_tables)))
@@ -162,12 +145,6 @@ impl<'a> Withheld<'a> {
             Request::WideClosestHit(queries) | Request::WideAnyHit(queries) => {
                 queries.iter().map(|query| Kept::Wide(WideTableProbe::new(query))).collect()
             }
-            Request::StreamClosestHits(queries) => {
-                queries.iter().map(|query| Kept::Stream(StreamTableProbe::new(query))).collect()
-            }
-            Request::CheapestPlace(queries) => {
-                queries.iter().map(|query| Kept::Place(PlaceTableProbe::new(query))).collect()
-            }
             _ => Vec::new(),
         };
         Withheld(probes.into_iter().map(|probe| Asked { n_calls: 0, probe }).collect())
@@ -207,10 +184,6 @@ impl<'a> Withheld<'a> {
                     answer.counts = probe.answer.counts;
                 }
                 (Costs::Wide(answer), Kept::Wide(probe)) => *answer = probe.answer(answer.hit, answer.found),
-                (Costs::Stream(answer), Kept::Stream(probe)) => {
-                    *answer = probe.answer(std::mem::take(&mut answer.hits));
-                }
-                (Costs::Place(answer), Kept::Place(probe)) => *answer = probe.answer(answer.place),
                 (Costs::Shade(answer), Kept::Shadows(probe)) => *answer = probe.finish(answer.color),
                 // An answer of another kind than its request is refused elsewhere.
                 _ => {}
@@ -242,16 +215,6 @@ impl Kept<'_> {
             (Kept::Wide(probe), Call::HitLane(block, lane, ray)) => {
                 Response::Found(probe.hit(block, lane, &ray))
             }
-            (Kept::Stream(probe), Call::EnterWideOf(ray, node, t_max)) => {
-                Response::Entered(probe.enter(ray, node, t_max))
-            }
-            (Kept::Stream(probe), Call::CandidatesOf(ray, block, n, t_max)) => {
-                Response::Lanes(probe.candidates(ray, block, n, t_max))
-            }
-            (Kept::Stream(probe), Call::HitLaneOf(number, block, lane, ray)) => {
-                Response::Found(probe.hit(number, block, lane, &ray))
-            }
-            (Kept::Place(probe), Call::OpenPlace(node)) => Response::Place(probe.open(node)),
             _ => other_kind(),
         }
     }

@@ -193,8 +193,8 @@ fn qualities_have_limits() {
     check_refused_with(
         "[quality]\naccelerator = 'magic'",
         "s.toml:3:15: unknown value of `accelerator`: `magic`\nhelp: known names are `auto`, `brute_force`, \
-         `bounding_boxes`, `bounding_spheres`, `cached_bounding_boxes`, `bvh`, `bvh_both_children`, `cached_bvh`, `packet_bvh`, `wide_bvh`, `reinserted_bvh`, `stream_bvh`, `grid`, `octree`, \
-         `octree_by_cells`, `octree_by_neighbours`, `kd_tree` and 2 more",
+         `bounding_boxes`, `bounding_spheres`, `cached_bounding_boxes`, `bvh`, `bvh_both_children`, `cached_bvh`, `packet_bvh`, `wide_bvh`, `grid`, `octree`, \
+         `octree_by_cells`, `octree_by_neighbours`, `kd_tree`, `bsp`, `polygon_bsp`",
     );
     check_refused_with(
         "[quality]\nmax_deph = 3",

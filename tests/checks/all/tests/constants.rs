@@ -124,7 +124,6 @@ fields! {
     PathEffects { diffuse, sampled, environment }
     BinSplit { axis, bin, cost }
     Entered { mask, t }
-    SubtreePlace { node, increase }
 }
 
 impl Constant for Bounce {

@@ -9,7 +9,7 @@ use raykata::kit::*;
 use raykata::mesh::Mesh;
 use raykata::partition::{Bsp, KdTree, Octree, PolygonBsp};
 use raykata::shape::{Cone, Cylinder, Plane, PlaneEquation, Sphere, Triangle};
-use raykata::wide::{FlatTree, OpenedNode, SubtreePlace};
+use raykata::wide::FlatTree;
 
 /// A kit that gets turned requests, and whose answers are turned back. Requests that are not listed in its `call`
 /// remain as they are.
@@ -58,7 +58,7 @@ impl Transport for TurnedKit<'_> {
             Cylinder Cone
             GridResolution OctreeBuild KdBuild BspBuild PolygonBspBuild CachedSearch PacketSearch
             SafeNormalize
-            BuildBinned WideClosestHit CheapestPlace Reinsert StreamClosestHits;
+            BuildBinned WideClosestHit;
             GridSearch OctreeByCells OctreeByNeighbours OctreeSearch KdSearch BspSearch PolygonBspSearch
         }
     }
@@ -271,30 +271,4 @@ turn! {
         hits: query.hits.turn(symmetry),
     };
     |answer: WideAnswer, symmetry| WideAnswer { hit: answer.hit.turn(symmetry), ..answer.clone() };
-    |query: PlaceQuery, symmetry| {
-        // Areas grow by the square of a length. A scale is a power of two, so nothing is rounded.
-        let factor = f64::from(symmetry.length(1.0)).powi(2);
-        let node = |one: &OpenedNode| OpenedNode { area: factor * one.area, united: factor * one.united, ..*one };
-        PlaceQuery { nodes: query.nodes.iter().map(node).collect(), root: query.root, area: factor * query.area }
-    };
-    |answer: PlaceAnswer, symmetry| {
-        let factor = f64::from(symmetry.length(1.0)).powi(2);
-        let place = SubtreePlace { increase: factor * answer.place.increase, ..answer.place };
-        PlaceAnswer { place, opened: answer.opened.clone() }
-    };
-    |query: ReinsertQuery, symmetry| ReinsertQuery {
-        tree: query.tree.turn(symmetry),
-        most_moves: query.most_moves,
-    };
-    |query: StreamQuery, symmetry| StreamQuery {
-        tree: query.tree.clone(),
-        rays: query.rays.turn(symmetry),
-        entries: query
-            .entries
-            .iter()
-            .map(|of_ray| of_ray.iter().map(|entries| entries.map(|t| symmetry.length(t))).collect())
-            .collect(),
-        hits: query.hits.turn(symmetry),
-    };
-    |answer: StreamAnswer, symmetry| StreamAnswer { hits: answer.hits.turn(symmetry), ..answer.clone() };
 }

@@ -2,16 +2,12 @@
 //! `rubric.toml`. `author bars` measures them and writes them there; run it after a change of the reference, of a scene or of a
 //! count.
 
-use super::places::places_in_scenes;
-use super::reinsertions::morton_trees;
 use super::scenes::scenes;
-use super::streams::streams_through_a_cloud;
-use super::trees::cost;
 use super::visits::rays_through_a_cloud;
 use super::wide_tables::n_calls;
 use checks::tree::{around, half_area};
 use raykata::aabb::Aabb;
-use raykata::kit::{Kit, ReinsertQuery};
+use raykata::kit::Kit;
 use raykata::rubric;
 use raykata::wide::{BLOCK, BLOCK_COST, MAX_LEAF, NODE_COST};
 
@@ -20,59 +16,26 @@ pub fn calls_of_search() -> usize {
     rubric::bar(12, SEARCH) as usize
 }
 
-/// The calls of `stream_closest_hits` for all [`streams_through_a_cloud`].
-pub fn calls_of_streams() -> u64 {
-    rubric::bar(12, STREAMS) as u64
-}
-
-/// The nodes that `cheapest_place` opens for all [`places_in_scenes`].
-pub fn nodes_opened() -> usize {
-    rubric::bar(12, PLACES) as usize
-}
-
 /// The cost of the tree over a scene that a full sweep gives: at each node it tries every split of the primitives, sorted along
 /// each axis, by the costs of this stage.
 pub fn sweep_cost(scene: &str) -> f64 {
     rubric::bar(12, &swept(scene))
 }
 
-/// The cost of the tree over a scene in Morton order after `reinsert`, with as many moves as the tree has nodes.
-pub fn reinserted_cost(scene: &str) -> f64 {
-    rubric::bar(12, &reinserted(scene))
-}
-
 const SEARCH: &str = "calls of wide_closest_hit";
-const STREAMS: &str = "calls of stream_closest_hits";
-const PLACES: &str = "nodes opened by cheapest_place";
 
 fn swept(scene: &str) -> String {
     format!("cost after a full sweep: {scene}")
-}
-
-fn reinserted(scene: &str) -> String {
-    format!("cost after reinsert: {scene}")
 }
 
 /// All bars as `kit` gives them, in the order in which the rubric lists them. Costs are rounded to thousandths.
 pub fn measured(kit: &dyn Kit) -> Vec<(String, f64)> {
     let rounded = |cost: f64| (1000.0 * cost).round() / 1000.0;
     let calls: usize = kit.wide_closest_hit(&rays_through_a_cloud()).iter().map(n_calls).sum();
-    let streams = kit.stream_closest_hits(&streams_through_a_cloud());
-    let calls_of_streams: u32 = streams.iter().map(|answer| answer.n_calls).sum();
-    let opened: usize =
-        kit.cheapest_place(&places_in_scenes()).iter().map(|answer| answer.opened.len()).sum();
-    let mut bars = vec![
-        (SEARCH.into(), calls as f64),
-        (STREAMS.into(), f64::from(calls_of_streams)),
-        (PLACES.into(), opened as f64),
-    ];
+    let mut bars = vec![(SEARCH.into(), calls as f64)];
     for (scene, mut boxes) in scenes() {
         let root = half_area(&around(&boxes));
         bars.push((swept(scene), rounded(sweep(&mut boxes) / root)));
-    }
-    let (names, trees): (Vec<_>, Vec<ReinsertQuery>) = morton_trees().into_iter().unzip();
-    for (scene, tree) in names.into_iter().zip(kit.reinsert(&trees)) {
-        bars.push((reinserted(scene), rounded(cost(&tree))));
     }
     bars
 }

@@ -2,9 +2,8 @@
 //!
 //! `flat` (flattened hierarchies) · `bins`, `splits`, `partitions` (the steps of the binned builder) · `builds`, `forks`
 //! (whole trees, and their work and span) · `wide_trees` (eight children per node) · `slabs`, `blocks` (eight boxes and four
-//! triangles at once) · `searches`, `visits` (what searches find, and what they cost) · `table` · `picture`. A bonus are
-//! `places`, `reinsertions`, `moves` (trees that are improved), `orders` and `streams` (many rays at once). `trees`,
-//! `wide_tables` and `scenes` make inputs; `bars` has the counts of the reference.
+//! triangles at once) · `searches`, `visits` (what searches find, and what they cost) · `table` · `picture`. `trees`, `wide_tables` and `scenes` make
+//! inputs; `bars` has the counts of the reference.
 //!
 //! No check reads a clock: speed is judged by the counts that decide it.
 
@@ -14,17 +13,12 @@ mod blocks;
 mod builds;
 mod flat;
 pub mod forks;
-mod moves;
-mod orders;
 mod partitions;
 mod picture;
-pub mod places;
-pub mod reinsertions;
 pub mod scenes;
 mod searches;
 mod slabs;
 mod splits;
-pub mod streams;
 mod table;
 pub mod trees;
 pub mod visits;
@@ -86,25 +80,4 @@ checks::stage! { ($ crate) 12 [
     table::table_of_bins_and_trees: composed
     picture::picture_of_a_winding_ramp: composed
     forks::build_parallel_has_an_eighth_of_the_span
-    places::cheapest_place_has_the_smallest_increase
-    places::cheapest_place_returns_its_increase
-    places::cheapest_place_opens_150_percent_of_the_nodes: turned
-    places::cheapest_place_opens_105_percent_of_the_nodes: turned
-    reinsertions::reinsert_keeps_every_leaf
-    reinsertions::reinsert_fits_the_boxes
-    reinsertions::reinsert_never_costs_more
-    moves::reinsert_makes_at_most_so_many_moves
-    reinsertions::reinsert_saves_half_as_much_as_the_reference: turned
-    reinsertions::reinsert_saves_nine_tenths_as_much_as_the_reference: turned
-    reinsertions::reinsert_ends_on_special_trees
-    reinsertions::reinsert_of_any_size
-    orders::stream_order_lists_every_ray_once
-    orders::stream_order_sorts_by_octant
-    orders::stream_order_follows_the_curve_of_morton
-    orders::stream_order_of_flat_sets
-    streams::stream_closest_hits_agree_with_brute_force
-    streams::stream_closest_hits_fetch_nothing_twice
-    streams::stream_closest_hits_test_only_rays_that_enter
-    streams::stream_closest_hits_take_130_percent_of_the_calls: turned
-    streams::stream_closest_hits_take_105_percent_of_the_calls: turned
 ] }

@@ -1,7 +1,7 @@
 //! Flat trees: trees whose shape is drawn, and the faults and the cost of a tree.
 
 use checks::tree::{around, half_area};
-use glam::{UVec3, Vec3};
+use glam::Vec3;
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::wide::{BLOCK, BLOCK_COST, FlatNode, FlatTree, MAX_LEAF, NODE_COST};
@@ -33,31 +33,12 @@ pub(super) fn shuffled(n: usize) -> Vec<u32> {
 /// Primitives are listed in an order that is not that of their numbers. Leaves have at most `leaf_size` primitives. Without
 /// cuts, nodes are divided in half down to leaves of this size.
 pub(super) fn drawn_tree(boxes: &[Aabb], leaf_size: usize, cuts: &[u16]) -> FlatTree {
-    tree_in_order(boxes, shuffled(boxes.len()), leaf_size, cuts)
-}
-
-/// A tree over boxes that lists its primitives in this order.
-pub(super) fn tree_in_order(boxes: &[Aabb], order: Vec<u32>, leaf_size: usize, cuts: &[u16]) -> FlatTree {
-    let mut tree = FlatTree { nodes: Vec::new(), order };
+    let mut tree = FlatTree { nodes: Vec::new(), order: shuffled(boxes.len()) };
     if !boxes.is_empty() {
         tree.nodes.push(GAP);
         divide(boxes, leaf_size, &mut cuts.iter().cycle(), &mut tree, 0, 0..boxes.len());
     }
     tree
-}
-
-/// A tree over boxes whose primitives are listed along a curve of Morton through the centres of the boxes, and whose nodes are
-/// divided in half.
-pub(super) fn in_morton_order(boxes: &[Aabb], leaf_size: usize) -> FlatTree {
-    let all = around(boxes);
-    let size = (all.max - all.min).max_element();
-    // Sixteen cells along each axis.
-    let cell =
-        |one: &Aabb| (16.0 * (0.5 * (one.min + one.max) - all.min) / size).as_uvec3().min(UVec3::splat(15));
-    let code = |cell: UVec3| -> u32 { (0..12).map(|bit| (cell[bit % 3] >> (bit / 3) & 1) << bit).sum() };
-    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
-    order.sort_by_key(|&id| code(cell(&boxes[id as usize])));
-    tree_in_order(boxes, order, leaf_size, &[])
 }
 
 fn divide<'a>(

@@ -67,13 +67,8 @@ pub(super) fn search(tree: &WideTree, spheres: &[Sphere], ray: &Ray) -> WideQuer
     }
 }
 
-/// A cloud of 600 spheres, and a tree over it.
-pub(super) fn cloud() -> (WideTree, Vec<Sphere>) {
-    cloud_by(&mut Random::new(12, 2))
-}
-
-/// The spheres are listed along a curve of Morton, so that neighbours are close.
-fn cloud_by(random: &mut Random) -> (WideTree, Vec<Sphere>) {
+/// A cloud of 600 spheres, and a tree over it. The spheres are listed along a curve of Morton, so that neighbours are close.
+fn cloud(random: &mut Random) -> (WideTree, Vec<Sphere>) {
     let mut spheres: Vec<Sphere> =
         (0..600).map(|_| Sphere { center: random.in_cube(), radius: 0.08 + 0.12 * random.unit() }).collect();
     let code = |sphere: &Sphere| -> u32 {
@@ -87,7 +82,7 @@ fn cloud_by(random: &mut Random) -> (WideTree, Vec<Sphere>) {
 /// Rays through a cloud of 600 spheres.
 pub fn rays_through_a_cloud() -> Vec<WideQuery> {
     let mut random = Random::new(12, 2);
-    let (tree, spheres) = cloud_by(&mut random);
+    let (tree, spheres) = cloud(&mut random);
     let ray = |_| {
         let origin = 2.0 * random.direction();
         search(&tree, &spheres, &Ray::new(origin, (0.8 * random.in_cube() - origin).normalize()))

@@ -106,52 +106,6 @@ pub(super) fn searches(most: usize) -> impl Strategy<Value = WideQuery> + Clone 
     })
 }
 
-/// Searches of up to `n_rays` rays in the same tree over up to `most` primitives, each ray with its own range and hits.
-pub(super) fn searches_of(most: usize, n_rays: usize) -> impl Strategy<Value = Vec<WideQuery>> + Clone {
-    let t =
-        prop_oneof![2 => (1..=40i32).prop_map(|quarters| quarters as f32 / 4.0), 1 => Just(f32::INFINITY)];
-    let ray = (prop::collection::vec(t, most), 0..=6i32, 0..=12i32);
-    let sizes = prop::collection::vec(1..=9usize, 1..6);
-    let choices = prop::collection::vec(any::<u16>(), 1..30);
-    (prop::collection::vec(ray, 1..=n_rays), 1..=most, sizes, choices).prop_map(
-        |(rays, n_primitives, sizes, choices)| {
-            let search = |(number, (hits, t_min, t_max)): (usize, (Vec<f32>, i32, i32))| {
-                let t_max = if t_max < 4 { f32::INFINITY } else { t_max as f32 };
-                let t_min = (t_min - 3).max(0) as f32;
-                let ray = Ray::new(Vec3::new(0.0, number as f32, 0.0), Vec3::X).with_range(t_min, t_max);
-                let mut one = query(&hits[..n_primitives], &sizes, &choices, ray);
-                if number % 3 == 2 {
-                    leave_out_misses(&mut one);
-                }
-                one
-            };
-            rays.into_iter().enumerate().map(search).collect()
-        },
-    )
-}
-
-/// Makes a ray miss the boxes of leaves and nodes below which it hits nothing.
-fn leave_out_misses(query: &mut WideQuery) {
-    // Children come after their parents.
-    let mut is_hit = vec![false; query.tree.nodes.len()];
-    for (index, node) in query.tree.nodes.iter().enumerate().rev() {
-        for (child, t) in node.children.iter().zip(&mut query.entries[index]).filter(|(_, t)| t.is_finite()) {
-            let hits = match child.contents() {
-                ChildContents::Inner(below) => is_hit[below as usize],
-                ChildContents::Leaf { block, count } => {
-                    let lanes = query.tree.blocks[block as usize..].iter().flatten().take(count as usize);
-                    lanes.into_iter().any(|&id| query.hits[id as usize].is_finite())
-                }
-            };
-            if hits {
-                is_hit[index] = true;
-            } else {
-                *t = f32::INFINITY;
-            }
-        }
-    }
-}
-
 /// Small searches in which each mistake shows: a leaf of five, two leaves with hits at the same `t`, of which the second is
 /// entered exactly there, two with a hit in one of them, and a hit before the range.
 pub(super) fn small_searches() -> Vec<WideQuery> {

@@ -54,13 +54,6 @@ fn raise_costs(answer: &mut Answer, lights: &[usize]) {
                 raise_list(&mut answer.primitives);
                 answer.calls_after_hit += 1;
             }
-            Costs::Stream(answer) => {
-                raise_list(&mut answer.nodes);
-                raise_list(&mut answer.blocks);
-                answer.entered = answer.entered.repeat(TIMES as usize);
-                answer.n_calls *= TIMES as u32;
-            }
-            Costs::Place(answer) => raise_list(&mut answer.opened),
             Costs::Shade(answer) => {
                 // Trace a shadow ray to every light, also where it cannot matter.
                 answer.traced.extend(0..lights.get(index).copied().unwrap_or(0));
