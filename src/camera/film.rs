@@ -20,6 +20,9 @@ pub struct Film {
     pub pixels: Vec<Vec3>,
 }
 
+/// The radius of the Gaussian pixel filter along x and along y, in pixels.
+pub const FILTER_RADIUS: f32 = 1.5;
+
 /// The colour of a sample and its weight in the pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WeightedColor {

@@ -1,6 +1,7 @@
 //! The traits that tests, renderer and grader call, and the same calls as messages. Both are generated from
 //! the list of student functions (`list.rs`).
 
+use super::queries::{answer_type, query_type};
 use super::*;
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, PrimitiveHit, PrimitiveRef};
@@ -141,17 +142,17 @@ fn list<'a>(n: usize, value: &dyn Fn(usize) -> &'a dyn Debug) -> Vec<&'a dyn Deb
 
 macro_rules! door {
     ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
-        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
-            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
+        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($arguments:tt)*)
+            -> $Return:ty = $file:ident::$function:ident; $how:tt)*
     })*) => {
         $($(#[$trait_doc])* pub trait $Trait {
-            $($(#[$doc])* fn $name(&self, queries: &[$Query]) -> Vec<$Answer>;)*
+            $($(#[$doc])* fn $name(&self, queries: &[query_type!($how ($($arguments)*))]) -> Vec<answer_type!($how $Return)>;)*
         })*
 
         /// A call of a student function, or for a frame, as a message to a worker.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         pub enum Request {
-            $($($(#[$doc])* $Message(Vec<$Query>),)*)*
+            $($($(#[$doc])* $Message(Vec<query_type!($how ($($arguments)*))>),)*)*
             /// Renders a whole frame.
             Render(Box<RenderJob>),
             /// The same, and the worker also sends each tile when it is finished.
@@ -172,7 +173,7 @@ macro_rules! door {
         /// The answer to a [`Request`] as a message: one answer per query, in the same order.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         pub enum Answer {
-            $($($(#[$doc])* $Message(Vec<$Answer>),)*)*
+            $($($(#[$doc])* $Message(Vec<answer_type!($how $Return)>),)*)*
             /// A whole frame; `None` if it was cancelled.
             Render(Option<Box<Rendering>>),
             /// The rays of a pixel.
@@ -234,7 +235,7 @@ macro_rules! door {
         }
 
         $(impl<T: Transport> $Trait for Door<T> {
-            $(fn $name(&self, queries: &[$Query]) -> Vec<$Answer> {
+            $(fn $name(&self, queries: &[query_type!($how ($($arguments)*))]) -> Vec<answer_type!($how $Return)> {
                 match self.0.call(Request::$Message(queries.to_vec()), &crate::progress::Unwatched) {
                     Answer::$Message(answers) if answers.len() == queries.len() => answers,
                     answer => kit_error::wrong_answer(&answer),

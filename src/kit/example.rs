@@ -22,7 +22,7 @@ macro_rules! examples {
     };
 }
 
-fn example<T: Example>() -> T {
+pub(super) fn example<T: Example>() -> T {
     T::example()
 }
 
@@ -66,6 +66,9 @@ examples! {
     f32 => 1.0;
     u8 => 1;
     u32 => 1;
+    i64 => 0;
+    usize => 1;
+    bool => true;
     Vec2 => Vec2::ZERO;
     Vec3 => Vec3::Z;
     Ray => Ray::new(Vec3::ZERO, Vec3::Z);
@@ -90,6 +93,29 @@ examples! {
     Effects => Effects::default();
     Stratum => Stratum { cell: UVec2::ZERO, grid: UVec2::ONE, u: Vec2::ZERO };
     Sampler => Sampler::Jittered;
+    Split => Split::SurfaceArea;
+    Wrap => Wrap::Repeat;
+    Limits => Limits { max_depth: 0, min_contribution: 0.0 };
+    Lens => Lens { aperture: 0.0, focal_distance: 1.0 };
+    Shutter => Shutter { open: 0.0, close: 1.0 };
+    KdHeuristics => KdHeuristics::default();
+    PathState => PathState {
+        origin: Vec3::Z,
+        direction: Vec3::NEG_Z,
+        weight: Vec3::ONE,
+        bounces: 0,
+        pdf: f32::INFINITY,
+    };
+    PathVertex => PathVertex {
+        surface: example(),
+        scattering: example(),
+        emission: Vec3::ZERO,
+        emitter: None,
+        light: None,
+    };
+    StepNumbers => StepNumbers { light: Vec2::ZERO, bsdf: Vec3::ZERO, roulette: 0.0 };
+    UVec3 => UVec3::ONE;
+    Affine3A => Affine3A::IDENTITY;
     Camera => Camera::new(Vec3::ZERO, Vec3::Z, Vec3::Y, 40.0, 1.0).expect("a camera that looks along z");
     Scene => Scene::empty(example());
     Surface => Surface {
@@ -117,8 +143,13 @@ examples! {
     Vec<WeightedColor> => Vec::new();
     Vec<Affine3A> => Vec::new();
     Vec<Vec3> => vec![Vec3::ZERO];
+    Vec<f32> => vec![0.0, 0.0, 1.0, 1.0]; // the knots of a straight line
+    Vec<Light> => Vec::new();
+    Vec<MaterialHits> => Vec::new();
+    Vec<Vec<Vec3>> => Vec::new();
+    Vec<PrimitiveBox> => Vec::new();
+    Vec<SecondaryRay> => Vec::new();
 
-    RootQuery => RootQuery { roots: [1.0, 2.0], ray: example() };
     SphereQuery => SphereQuery { ray: example(), sphere: example() };
     PlaneQuery => PlaneQuery {
         ray: example(),
@@ -128,14 +159,8 @@ examples! {
         ray: example(),
         plane: crate::shape::PlaneEquation { normal: Vec3::Z, d: -1.0 },
     };
-    TriangleQuery => TriangleQuery { ray: example(), triangle: example() };
-    InsideQuery => InsideQuery { ray: example(), point: Vec3::Z, triangle: example() };
-    InterpolateQuery => InterpolateQuery { barycentric: Vec3::X, corners: [Vec3::ZERO; 3] };
     SearchQuery => SearchQuery { bvh: Bvh::default(), ray: example(), table: Table::default() };
     SlabQuery => SlabQuery { ray: example(), bounds: example() };
-    BuildQuery => BuildQuery { bounds: Vec::new(), split: Split::SurfaceArea, leaf_size: 1 };
-    TermQuery => TermQuery { normal: Vec3::Z, to_light: Vec3::Z, to_viewer: Vec3::Z, exponent: 1.0 };
-    ShadowQuery => ShadowQuery { surface: example(), light: example() };
     ShadeQuery => ShadeQuery {
         surface: example(),
         to_viewer: Vec3::Z,
@@ -144,37 +169,6 @@ examples! {
         lights: Vec::new(),
         visible: Vec::new(),
     };
-    RefractQuery => RefractQuery { direction: Vec3::NEG_Z, normal: Vec3::Z, n1: 1.0, n2: 1.5 };
-    FresnelQuery => FresnelQuery { cos_theta: 1.0, n1: 1.0, n2: 1.5 };
-    ScatterQuery => ScatterQuery {
-        direction: Vec3::NEG_Z,
-        normal: Vec3::Z,
-        entering: true,
-        material: example(),
-        weight: Vec3::ONE,
-        depth: 0,
-        limits: Limits { max_depth: 0, min_contribution: 0.0 },
-    };
-    LensQuery => LensQuery {
-        camera: example(),
-        pinhole: example::<Camera>().ray(0.5, 0.5),
-        lens: Lens { aperture: 0.0, focal_distance: 1.0 },
-        on_lens: Vec2::ZERO,
-    };
-    RectangleQuery => RectangleQuery { corner: Vec3::ZERO, edges: (Vec3::X, Vec3::Y), u: Vec2::ZERO };
-    SphereSampleQuery => SphereSampleQuery { sphere: example(), from: Vec3::ZERO, u: Vec2::ZERO };
-    PhongLobeQuery => PhongLobeQuery { ideal: Vec3::Y, normal: Vec3::Y, roughness: 0.0, u: Vec2::ZERO };
-    TimeQuery => TimeQuery { shutter: Shutter { open: 0.0, close: 1.0 }, slot: 1, slots: 1, u: 0.0 };
-    LightQuery => LightQuery { light: example(), quality: example() };
-    MaterialQuery => MaterialQuery { material: example(), lights: Vec::new(), quality: example() };
-    BoundQuery => BoundQuery { scene: example(), effects: example() };
-    HitsQuery => HitsQuery { hits: Vec::new(), effects: example(), quality: example() };
-    TexelQuery => TexelQuery { index: 0, size: 1, wrap: Wrap::Repeat };
-    TextureQuery => TextureQuery { texture: example(), uv: Vec2::ZERO };
-    ObjectRayQuery => ObjectRayQuery { ray: example(), to_object: Affine3A::IDENTITY };
-    NormalQuery => NormalQuery { normal: Vec3::Z, to_object: Affine3A::IDENTITY };
-    BoundsQuery => BoundsQuery { to_world: Affine3A::IDENTITY, bounds: Aabb::EMPTY };
-    BoundingSphereQuery => BoundingSphereQuery { ray: example(), sphere: example() };
     GraphQuery => GraphQuery {
         graph: Graph::default(),
         ray: example(),
@@ -182,58 +176,15 @@ examples! {
         table: Table::default(),
     };
     CachedGraphQuery => CachedGraphQuery { search: example(), cache: ChildCache::default() };
-    BasisQuery => BasisQuery { knots: vec![0.0, 0.0, 1.0, 1.0], degree: 1, index: 0, u: 0.5 };
-    NurbsQuery => NurbsQuery { patch: example(), uv: Vec2::ZERO };
-    PatchQuery => PatchQuery { patch: example(), uv: Vec2::ZERO };
-    ResolutionQuery => ResolutionQuery { bounds: Aabb::EMPTY, n_primitives: 0, density: 1.0 };
-    GridQuery => GridQuery { bounds: Vec::new(), resolution: UVec3::ONE };
-    OctreeQuery => OctreeQuery { bounds: Vec::new(), leaf_size: 1, max_depth: 1 };
-    KdQuery => KdQuery { bounds: Vec::new(), heuristics: KdHeuristics::default(), leaf_size: 1 };
-    BspQuery => BspQuery { hulls: Vec::new(), leaf_size: 1, max_depth: 1 };
     CachedQuery => CachedQuery { last: None, ray: example(), hits: Vec::new(), entries: Vec::new() };
     PacketQuery => PacketQuery { bvh: Bvh::default(), rays: Vec::new(), tables: Vec::new() };
-    OffsetQuery => OffsetQuery { point: Vec3::ZERO, error: Vec3::ZERO, normal: Vec3::Z, direction: Vec3::Z };
     AreaEmitter => AreaEmitter { shape: EmitterShape::Sphere(example()), radiance: Vec3::ONE, two_sided: false };
-    EmitterQuery => EmitterQuery { emitter: example(), from: Vec3::new(0.0, 0.0, 9.0), u: Vec2::splat(0.5) };
-    EmitterPdfQuery => EmitterPdfQuery {
-        emitter: example(),
-        from: Vec3::new(0.0, 0.0, 9.0),
-        direction: Vec3::NEG_Z,
-    };
     Scattering => Scattering { diffuse: Vec3::ONE, normal: Vec3::Z, secondary: Vec::new() };
     EmitterSample => EmitterSample { direction: Vec3::Z, distance: 1.0, radiance: Vec3::ONE, pdf: 1.0 };
-    BsdfQuery => BsdfQuery { scattering: example(), u: Vec3::splat(0.5) };
-    BsdfPdfQuery => BsdfPdfQuery { scattering: example(), direction: Vec3::Z };
-    LightContributionQuery => LightContributionQuery {
-        diffuse: Vec3::ONE,
-        normal: Vec3::Z,
-        sample: example(),
-        bsdf_pdf: 1.0,
-    };
-    EmissionQuery => EmissionQuery { emission: Vec3::ONE, pdf: 1.0, light_pdf: 1.0 };
-    StepQuery => StepQuery {
-        path: PathState {
-            origin: Vec3::Z,
-            direction: Vec3::NEG_Z,
-            weight: Vec3::ONE,
-            bounces: 0,
-            pdf: f32::INFINITY,
-        },
-        vertex: PathVertex {
-            surface: example(),
-            scattering: example(),
-            emission: Vec3::ZERO,
-            emitter: None,
-            light: None,
-        },
-        max_depth: 0,
-        numbers: StepNumbers { light: Vec2::ZERO, bsdf: Vec3::ZERO, roulette: 0.0 },
-    };
     Bvh => Bvh::default();
     FlatTree => FlatTree::default();
     Vec<Aabb> => Vec::new();
     BinGrid => BinGrid { low: glam::Vec3A::ZERO, scale: glam::Vec3A::ONE, n_bins: 2 };
-    BinsQuery => BinsQuery { primitives: Vec::new(), grid: example() };
     BinSplitQuery => BinSplitQuery { bins: Box::new(Bins::EMPTY), n_bins: 2 };
     PartitionQuery => PartitionQuery {
         primitives: Vec::new(),
@@ -248,5 +199,4 @@ examples! {
         entries: vec![[f32::INFINITY; 8]],
         hits: Vec::new(),
     };
-    RouletteQuery => RouletteQuery { weight: Vec3::ONE, bounce: 0, u: 0.5 };
 }

@@ -1,11 +1,14 @@
 //! The names of the student's functions, generated from the list (`list.rs`).
 
+use super::queries::{answer_type, query_type};
+use super::types::*;
+use std::any::type_name;
 use std::fmt;
 
 macro_rules! names {
     ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
-        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
-            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
+        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($arguments:tt)*)
+            -> $Return:ty = $file:ident::$function:ident; $how:tt)*
     })*) => {
         /// The name of a student function, as in the list.
         #[allow(non_camel_case_types)]
@@ -38,11 +41,27 @@ macro_rules! names {
                     $($(Function::$name => stringify!($file),)*)*
                 }
             }
+
+            /// The types of a query and of its answer, without paths.
+            pub fn types(self) -> [String; 2] {
+                match self {
+                    $($(Function::$name => {
+                        [type_name::<query_type!($how ($($arguments)*))>(), type_name::<answer_type!($how $Return)>()]
+                    })*)*
+                }
+                .map(without_paths)
+            }
         }
     };
 }
 
 crate::student_functions! { names }
+
+/// A type such as `core::option::Option<glam::Vec3>` as `Option<Vec3>`.
+fn without_paths(name: &str) -> String {
+    let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    name.split_inclusive(|c| !is_part(c)).map(|part| part.rsplit("::").next().unwrap_or(part)).collect()
+}
 
 impl fmt::Display for Function {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

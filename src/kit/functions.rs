@@ -2,6 +2,7 @@
 //! the traits of the [door](super::door). All are generated from the list (`list.rs`).
 
 use super::example::Example;
+use super::queries::{answer, answer_type, query_type};
 use super::types::*;
 use crate::bvh::PrimitiveHit;
 use crate::partition::limit::limited;
@@ -31,8 +32,8 @@ impl Drop for CallGuard {
 
 macro_rules! functions {
     ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
-        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
-            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
+        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($arguments:tt)*)
+            -> $Return:ty = $file:ident::$function:ident; $how:tt)*
     })*) => {
         /// All student functions for direct calls: the renderer and the adapters of [`Linked`](super::Linked)
         /// are generic over it.
@@ -40,7 +41,7 @@ macro_rules! functions {
         /// [`student_kit!`](crate::student_kit) implements it for the functions of a crate.
         pub trait StudentFunctions: Sync + 'static {
             $($($(#[$doc])* #[allow(clippy::too_many_arguments, missing_docs)]
-            fn $name $(<$($generics)*>)? ($($argument: $Type),*) -> $Return;)*)*
+            fn $name $(<$($generics)*>)? ($($arguments)*) -> $Return;)*)*
         }
 
         /// Whether `function` is written: calls it with the simplest input of its kind, and returns `false`
@@ -49,9 +50,8 @@ macro_rules! functions {
         pub fn is_written<F: StudentFunctions>(function: Function) -> bool {
             let call: fn() = match function {
                 $($(Function::$name => || {
-                    let query = <$Query as Example>::example();
-                    let $query = &query;
-                    let _ = $adapter;
+                    let query = &<query_type!($how ($($arguments)*)) as Example>::example();
+                    let _ = answer!(query $name $how ($($arguments)*));
                 },)*)*
             };
             !matches!(kit_error::catch(call), Err(KitError::NotWritten { .. }))
@@ -67,7 +67,7 @@ crate::student_functions! { functions }
 macro_rules! implement_student_functions {
     ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
         $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
-            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
+            -> $Return:ty = $file:ident::$function:ident; $how:tt)*
     })*) => {
         impl $crate::kit::StudentFunctions for crate::Kit {
             $($(
@@ -177,15 +177,12 @@ fn divide(
 
 macro_rules! linked {
     ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
-        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
-            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
+        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($arguments:tt)*)
+            -> $Return:ty = $file:ident::$function:ident; $how:tt)*
     })*) => {
         $(impl<F: StudentFunctions> $Trait for Linked<F> {
-            $(fn $name(&self, queries: &[$Query]) -> Vec<$Answer> {
-                each(queries, |query| {
-                    let $query = query;
-                    $adapter
-                })
+            $(fn $name(&self, queries: &[query_type!($how ($($arguments)*))]) -> Vec<answer_type!($how $Return)> {
+                each(queries, |query| answer!(query $name $how ($($arguments)*)))
             })*
         })*
     };

@@ -24,38 +24,36 @@ macro_rules! student_functions {
                 /// The smaller of two roots that is in the range of `ray`, `t_min < t < t_max`; `None` if
                 /// neither is. The roots come in any order, and either may be NaN.
                 NearestRoot fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32>
-                    = stage1_shapes::nearest_root;
-                |q: RootQuery| -> Option<f32> { F::nearest_root(q.roots, &q.ray) }
+                    = stage1_shapes::nearest_root; [RootQuery Copy]
                 /// The `t` of the nearest hit with a sphere in the range of the ray, by the quadratic
                 /// formula; `None` if there is none. `center` and `radius` are in world units.
                 SphereAlgebraic fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32>
                     = stage1_shapes::sphere_algebraic;
-                |q: SphereQuery| -> Option<f32> { F::sphere_algebraic(&q.ray, q.sphere.center, q.sphere.radius) }
+                { |q: SphereQuery| -> Option<f32> { F::sphere_algebraic(&q.ray, q.sphere.center, q.sphere.radius) } }
                 /// The `t` of the nearest hit with a sphere in the range of the ray, by right triangles;
                 /// `None` if there is none. `center` and `radius` are in world units.
                 SphereGeometric fn sphere_geometric(ray: &Ray, center: Vec3, radius: f32) -> Option<f32>
                     = stage1_shapes::sphere_geometric;
-                |q: SphereQuery| -> Option<f32> { F::sphere_geometric(&q.ray, q.sphere.center, q.sphere.radius) }
+                { |q: SphereQuery| -> Option<f32> { F::sphere_geometric(&q.ray, q.sphere.center, q.sphere.radius) } }
                 /// The outward unit normal of a sphere at `point`, which lies on its surface.
                 SphereNormal fn sphere_normal(center: Vec3, point: Vec3) -> Vec3
                     = stage1_shapes::sphere_normal;
-                |(sphere, point): (Sphere, Vec3)| -> Vec3 { F::sphere_normal(sphere.center, *point) }
+                { |(sphere, point): (Sphere, Vec3)| -> Vec3 { F::sphere_normal(sphere.center, *point) } }
                 /// The `t` of the hit with an infinite plane in the range of the ray; `None` if there is
                 /// none, in particular for a ray that is parallel to the plane. `normal` has any length but
                 /// zero.
                 Plane fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32>
                     = stage1_shapes::plane;
-                |q: PlaneQuery| -> Option<f32> { F::plane(&q.ray, q.plane.point, q.plane.normal) }
+                { |q: PlaneQuery| -> Option<f32> { F::plane(&q.ray, q.plane.point, q.plane.normal) } }
                 /// The `t` of the hit with the infinite plane `n·p + D = 0` in the range of the ray, with `normal`
                 /// = n = (A, B, C) of any length but zero and `d` = D; `None` if there is none.
                 PlaneByCoefficients fn plane_by_coefficients(ray: &Ray, normal: Vec3, d: f32) -> Option<f32>
                     = stage1_shapes::plane_by_coefficients;
-                |q: PlaneEquationQuery| -> Option<f32> { F::plane_by_coefficients(&q.ray, q.plane.normal, q.plane.d) }
+                { |q: PlaneEquationQuery| -> Option<f32> { F::plane_by_coefficients(&q.ray, q.plane.normal, q.plane.d) } }
                 /// `normal`, negated if necessary, so that it points to the side from which a ray of
                 /// direction `direction` comes.
                 FaceForward fn face_forward(normal: Vec3, direction: Vec3) -> Vec3
-                    = stage1_shapes::face_forward;
-                |(normal, direction): (Vec3, Vec3)| -> Vec3 { F::face_forward(*normal, *direction) }
+                    = stage1_shapes::face_forward; ()
             }
 
             /// Stage 2: triangles and meshes. Each function gives one answer per query, in the same order,
@@ -64,70 +62,60 @@ macro_rules! student_functions {
                 /// The hit with a triangle in the range of the ray, by Cramer's rule; `None` if there is
                 /// none. Edges and corners belong to the triangle, and both sides can be hit.
                 TriangleCramer fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
-                    = stage2_triangles::triangle_cramer;
-                |q: TriangleQuery| -> Option<TriangleHit> { F::triangle_cramer(&q.ray, &q.triangle) }
+                    = stage2_triangles::triangle_cramer; [TriangleQuery Copy]
                 /// The four scalars of a triangle that the Gram method computes once.
                 GramScalars fn gram_scalars(triangle: &Triangle) -> GramScalars
-                    = stage2_triangles::gram_scalars;
-                |q: Triangle| -> GramScalars { F::gram_scalars(q) }
+                    = stage2_triangles::gram_scalars; ()
                 /// The hit with a triangle in the range of the ray, by the hit with its plane and the Gram
                 /// matrix; `None` if there is none. Edges and corners belong to the triangle, and both sides
                 /// can be hit.
                 TriangleGram fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> Option<TriangleHit>
                     = stage2_triangles::triangle_gram;
-                |q: TriangleQuery| -> Option<TriangleHit> {
+                { |q: TriangleQuery| -> Option<TriangleHit> {
                     let scalars = F::gram_scalars(&q.triangle);
                     F::triangle_gram(&q.ray, &q.triangle, &scalars)
-                }
+                } }
                 /// The hit with a triangle in the range of the ray, by a method of the student's choice;
                 /// `None` if there is none. The reference is the method of Möller and Trumbore, "Fast, Minimum
                 /// Storage Ray/Triangle Intersection", 1997.
                 TriangleChoice fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
-                    = stage2_triangles::triangle_choice;
-                |q: TriangleQuery| -> Option<TriangleHit> { F::triangle_choice(&q.ray, &q.triangle) }
+                    = stage2_triangles::triangle_choice; (TriangleQuery)
                 /// Inside test I: whether `point` is on the same side of the three planes through the ray's
                 /// origin and each edge. A point on a plane is inside.
                 InsideByPlanes fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool
-                    = stage2_triangles::inside_by_planes;
-                |q: InsideQuery| -> bool { F::inside_by_planes(&q.ray, q.point, &q.triangle) }
+                    = stage2_triangles::inside_by_planes; [InsideQuery Copy]
                 /// Inside test II: whether `point` is on the same side of all three edges as seen along the
                 /// ray's direction.
                 InsideByDirection fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool
-                    = stage2_triangles::inside_by_direction;
-                |q: InsideQuery| -> bool { F::inside_by_direction(&q.ray, q.point, &q.triangle) }
+                    = stage2_triangles::inside_by_direction; (InsideQuery)
                 /// Inside test III: the barycentric coordinates `(α, β, γ)` of `point` as ratios of signed
                 /// areas; `None` if it is outside.
                 InsideByAreas fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3>
-                    = stage2_triangles::inside_by_areas;
-                |q: InsideQuery| -> Option<Vec3> { F::inside_by_areas(q.point, &q.triangle) }
+                    = stage2_triangles::inside_by_areas; (InsideQuery)
                 /// Whether a triangle turns its back to the ray: the direction of the ray and the normal
                 /// `(b - a) × (c - a)` point to the same side. False for a triangle that is seen edge-on or has no
                 /// area, and for a NaN.
                 Backfacing fn backfacing(ray: &Ray, triangle: &Triangle) -> bool
-                    = stage2_triangles::backfacing;
-                |q: TriangleQuery| -> bool { F::backfacing(&q.ray, &q.triangle) }
+                    = stage2_triangles::backfacing; (TriangleQuery)
                 /// The value at the barycentric coordinates `(α, β, γ)` between the values at three corners.
                 Interpolate fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3
-                    = stage2_triangles::interpolate;
-                |q: InterpolateQuery| -> Vec3 { F::interpolate(q.barycentric, q.corners) }
+                    = stage2_triangles::interpolate; [InterpolateQuery Copy]
                 /// The unit normal of a triangle with the direction of `(b - a) × (c - a)`; `None` if the
                 /// triangle has no area.
                 FaceNormal fn face_normal(triangle: &Triangle) -> Option<Vec3>
-                    = stage2_triangles::face_normal;
-                |q: Triangle| -> Option<Vec3> { F::face_normal(q) }
+                    = stage2_triangles::face_normal; ()
                 /// One unit normal per vertex of a mesh: the normalized average of the normals of the
                 /// triangles around it.
                 VertexNormals fn vertex_normals(mesh: &Mesh) -> Vec<Vec3>
-                    = stage2_triangles::vertex_normals;
-                |q: Mesh| -> Vec<Vec3> { F::vertex_normals(q) }
+                    = stage2_triangles::vertex_normals; ()
                 /// The closest hit among primitives `0..n_primitives`, by a test of each; `None` if nothing
                 /// is hit. Of two hits at the same `t` the smaller primitive number wins.
                 BruteForce fn brute_force[P: Probe](n_primitives: u32, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage2_triangles::brute_force;
-                |q: SearchQuery| -> SearchAnswer {
+                { |q: SearchQuery| -> SearchAnswer {
                     let n_primitives = q.table.primitives.len() as u32;
                     search(q, |probe| F::brute_force(n_primitives, probe, &q.ray))
-                }
+                } }
             }
 
             /// Stage 3: bounding volume hierarchies. Each function gives one answer per query, in the same
@@ -135,80 +123,74 @@ macro_rules! student_functions {
             3 trait Hierarchies {
                 /// The smallest closed box around a triangle, in world units, without padding.
                 TriangleBounds fn triangle_bounds(triangle: &Triangle) -> Aabb
-                    = stage3_boxes::triangle_bounds;
-                |q: Triangle| -> Aabb { F::triangle_bounds(q) }
+                    = stage3_boxes::triangle_bounds; ()
                 /// A closed box around a sphere, in world units, tight except for rounding.
                 SphereBounds fn sphere_bounds(sphere: &Sphere) -> Aabb
-                    = stage3_boxes::sphere_bounds;
-                |q: Sphere| -> Aabb { F::sphere_bounds(q) }
+                    = stage3_boxes::sphere_bounds; ()
                 /// The smallest box that contains two boxes. The union with an empty box changes nothing.
                 Union fn union(first: &Aabb, second: &Aabb) -> Aabb
-                    = stage3_boxes::union;
-                |(first, second): (Aabb, Aabb)| -> Aabb { F::union(first, second) }
+                    = stage3_boxes::union; ()
                 /// The centre of a box, in world units.
                 Centroid fn centroid(bounds: &Aabb) -> Vec3
-                    = stage3_boxes::centroid;
-                |q: Aabb| -> Vec3 { F::centroid(q) }
+                    = stage3_boxes::centroid; ()
                 /// The area of the six faces of a box, in square world units; 0 for the empty box.
                 SurfaceArea fn surface_area(bounds: &Aabb) -> f32
-                    = stage3_boxes::surface_area;
-                |q: Aabb| -> f32 { F::surface_area(q) }
+                    = stage3_boxes::surface_area; ()
                 /// The `t` at which a ray enters and leaves a closed box, both in `[t_min, t_max]`; `None` if
                 /// it misses. A ray that starts inside enters at `t_min`. `inverse_direction` is `1 / ray.direction`,
                 /// infinite where the direction is 0.
                 Slab fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)>
                     = stage3_boxes::slab;
-                |q: SlabQuery| -> Option<(f32, f32)> { F::slab(&q.ray, q.ray.direction.recip(), &q.bounds) }
+                { |q: SlabQuery| -> Option<(f32, f32)> { F::slab(&q.ray, q.ray.direction.recip(), &q.bounds) } }
                 /// Object median: reorders two or more primitives along the longest axis of their box, so
                 /// that half of them come first, and returns the index at which the second half begins.
                 /// Neither side is empty.
                 SplitObjectMedian fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize
                     = stage3_build::split_object_median;
-                |primitives: Vec<PrimitiveRef>| -> SplitAnswer {
+                { |primitives: Vec<PrimitiveRef>| -> SplitAnswer {
                     divide(primitives, |primitives| Some(F::split_object_median(primitives)))
-                }
+                } }
                 /// Spatial median: cuts the box of two or more primitives in the middle of its longest axis,
                 /// reorders the primitives by the side of their centroid, and returns the index at which the
                 /// second side begins. Neither side is empty.
                 SplitSpatialMedian fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize
                     = stage3_build::split_spatial_median;
-                |primitives: Vec<PrimitiveRef>| -> SplitAnswer {
+                { |primitives: Vec<PrimitiveRef>| -> SplitAnswer {
                     divide(primitives, |primitives| Some(F::split_spatial_median(primitives)))
-                }
+                } }
                 /// Surface area heuristic: reorders two or more primitives by the cheapest division, and
                 /// returns the index at which the second side begins; `None` if a leaf is not more expensive.
                 SplitSurfaceArea fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize>
                     = stage3_build::split_surface_area;
-                |primitives: Vec<PrimitiveRef>| -> SplitAnswer { divide(primitives, F::split_surface_area) }
+                { |primitives: Vec<PrimitiveRef>| -> SplitAnswer { divide(primitives, F::split_surface_area) } }
                 /// A hierarchy over primitives with these boxes, with at most `leaf_size` primitives per
                 /// leaf, which is at least 1.
                 Build fn build(bounds: &[Aabb], split: Split, leaf_size: usize) -> Bvh
-                    = stage3_build::build;
-                |q: BuildQuery| -> Bvh { F::build(&q.bounds, q.split, q.leaf_size) }
+                    = stage3_build::build; [BuildQuery]
                 /// The closest hit in a hierarchy, by a visit of both children of every node that the ray
                 /// enters; `None` if nothing is hit. Of two hits at the same `t` the smaller primitive number
                 /// wins.
                 ClosestHitBoth fn closest_hit_both[P: Probe](bvh: &Bvh, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage3_traversal::closest_hit_both;
-                |q: SearchQuery| -> SearchAnswer { search(q, |probe| F::closest_hit_both(&q.bvh, probe, &q.ray)) }
+                { |q: SearchQuery| -> SearchAnswer { search(q, |probe| F::closest_hit_both(&q.bvh, probe, &q.ray)) } }
                 /// The closest hit in a hierarchy, nearer child first, without the nodes beyond the closest
                 /// hit so far; `None` if nothing is hit. Of two hits at the same `t` the smaller primitive
                 /// number wins.
                 ClosestHit fn closest_hit[P: Probe](bvh: &Bvh, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage3_traversal::closest_hit;
-                |q: SearchQuery| -> SearchAnswer { search(q, |probe| F::closest_hit(&q.bvh, probe, &q.ray)) }
+                { |q: SearchQuery| -> SearchAnswer { search(q, |probe| F::closest_hit(&q.bvh, probe, &q.ray)) } }
                 /// Whether the ray hits any primitive in its range. The search ends at the first hit (shadow
                 /// rays).
                 AnyHit fn any_hit[P: Probe](bvh: &Bvh, probe: &mut P, ray: &Ray) -> bool
                     = stage3_traversal::any_hit;
-                |q: SearchQuery| -> (bool, SearchAnswer) {
+                { |q: SearchQuery| -> (bool, SearchAnswer) {
                     let mut found = false;
                     let answer = search(q, |probe| {
                         found = F::any_hit(&q.bvh, probe, &q.ray);
                         None
                     });
                     (found, answer)
-                }
+                } }
             }
 
             /// Stage 4: shading and shadows. Each function gives one answer per query, in the same order, and
@@ -217,25 +199,21 @@ macro_rules! student_functions {
                 /// The cosine of the angle between the unit normal and the unit direction to the light, the
                 /// diffuse term of the Phong model; 0 for a light behind the surface.
                 DiffuseTerm fn diffuse_term(normal: Vec3, to_light: Vec3) -> f32
-                    = stage4_shading::diffuse_term;
-                |q: TermQuery| -> f32 { F::diffuse_term(q.normal, q.to_light) }
+                    = stage4_shading::diffuse_term; (TermQuery)
                 /// The specular term of the Phong model: `cosⁿ φ` between the reflected light and the viewer;
                 /// 0 if that cosine is negative or the light is behind the surface. All directions have unit
                 /// length, and `exponent >= 0`; for 0 any result in `0..=1` passes.
                 SpecularTerm fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f32) -> f32
-                    = stage4_shading::specular_term;
-                |q: TermQuery| -> f32 { F::specular_term(q.normal, q.to_light, q.to_viewer, q.exponent) }
+                    = stage4_shading::specular_term; [TermQuery Copy]
                 /// The shadow ray from a surface to a light, which starts off the surface and ends before the
                 /// light; `None` if the light is behind the surface or has no light to give.
                 ShadowRay fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray>
-                    = stage4_shading::shadow_ray;
-                |q: ShadowQuery| -> Option<Ray> { F::shadow_ray(&q.surface, &q.light) }
+                    = stage4_shading::shadow_ray; [ShadowQuery Copy]
                 /// The unit normal for shading, on the side of the surface from which a ray of direction
                 /// `direction` comes: the interpolated one if it has a direction, and the geometric one
                 /// otherwise. The geometric normal decides which side that is.
                 ShadingNormal fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3
-                    = stage4_shading::shading_normal;
-                |(geometric, smooth, direction): (Vec3, Option<Vec3>, Vec3)| -> Vec3 { F::shading_normal(*geometric, *smooth, *direction) }
+                    = stage4_shading::shading_normal; ()
                 /// The colour of a point in linear light, by the Phong model. `visible(i, ray)` says whether
                 /// shadow ray `ray` to light `i` is not occluded; it is called only where the answer can
                 /// matter.
@@ -243,22 +221,20 @@ macro_rules! student_functions {
                     surface: &Surface, to_viewer: Vec3, material: &Material, ambient: Vec3, lights: &[LightSample], visible: V
                 ) -> Vec3
                     = stage4_shading::shade;
-                |q: ShadeQuery| -> ShadeAnswer {
+                { |q: ShadeQuery| -> ShadeAnswer {
                     let mut shadows = ShadowProbe::new(q);
                     let visible = |light: usize, ray: &Ray| shadows.visible(light, ray);
                     let color =
                         F::shade(&q.surface, q.to_viewer, &q.material, q.ambient, &q.lights, visible);
                     shadows.finish(color)
-                }
+                } }
                 /// The byte `0..=255` for a component of linear light with gamma 2, rounded to nearest. Input
                 /// is clamped to `0..=1`.
                 EncodeGamma fn encode_gamma(linear: f32) -> u8
-                    = stage4_shading::encode_gamma;
-                |linear: f32| -> u8 { F::encode_gamma(*linear) }
+                    = stage4_shading::encode_gamma; ()
                 /// The component of linear light, `0..=1`, for a byte with gamma 2.
                 DecodeGamma fn decode_gamma(byte: u8) -> f32
-                    = stage4_shading::decode_gamma;
-                |byte: u8| -> f32 { F::decode_gamma(*byte) }
+                    = stage4_shading::decode_gamma; ()
             }
 
             /// Stage 5: reflection and refraction. Each function gives one answer per query, in the same
@@ -267,40 +243,32 @@ macro_rules! student_functions {
                 /// The unit direction of the reflected ray, for the unit direction of a ray and a unit
                 /// normal.
                 Reflect fn reflect(direction: Vec3, normal: Vec3) -> Vec3
-                    = stage5_recursion::reflect;
-                |(direction, normal): (Vec3, Vec3)| -> Vec3 { F::reflect(*direction, *normal) }
+                    = stage5_recursion::reflect; ()
                 /// The unit direction of the refracted ray by Snell's law; `None` in the case of total
                 /// internal reflection. The unit normal is on the side that the ray comes from, in the medium
                 /// of index `n1`.
                 Refract fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3>
-                    = stage5_recursion::refract;
-                |q: RefractQuery| -> Option<Vec3> { F::refract(q.direction, q.normal, q.n1, q.n2) }
+                    = stage5_recursion::refract; [RefractQuery Copy]
                 /// The Fresnel reflectance, `0..=1`, by Schlick's approximation; 1 in the case of total
                 /// internal reflection. `cos_theta` is the cosine of the angle of incidence, `0..=1`.
                 FresnelSchlick fn fresnel_schlick(cos_theta: f32, n1: f32, n2: f32) -> f32
-                    = stage5_recursion::fresnel_schlick;
-                |q: FresnelQuery| -> f32 { F::fresnel_schlick(q.cos_theta, q.n1, q.n2) }
+                    = stage5_recursion::fresnel_schlick; [FresnelQuery Copy]
                 /// The Fresnel reflectance of unpolarised light, `0..=1`, by Fresnel's equations; 1 in the
                 /// case of total internal reflection. `cos_theta` is the cosine of the angle of incidence,
                 /// `0..=1`.
                 FresnelExact fn fresnel_exact(cos_theta: f32, n1: f32, n2: f32) -> f32
-                    = stage5_recursion::fresnel_exact;
-                |q: FresnelQuery| -> f32 { F::fresnel_exact(q.cos_theta, q.n1, q.n2) }
+                    = stage5_recursion::fresnel_exact; (FresnelQuery)
                 /// The secondary rays that leave a surface, each with its weight. A ray is left out if its
                 /// weight is 0 or below `limits.min_contribution` in every channel, or if
                 /// `depth >= limits.max_depth`.
                 Scatter fn scatter(
                     direction: Vec3, normal: Vec3, entering: bool, material: &Material, weight: Vec3, depth: u32, limits: &Limits
                 ) -> Vec<SecondaryRay>
-                    = stage5_recursion::scatter;
-                |q: ScatterQuery| -> Vec<SecondaryRay> {
-                    F::scatter(q.direction, q.normal, q.entering, &q.material, q.weight, q.depth, &q.limits)
-                }
+                    = stage5_recursion::scatter; [ScatterQuery]
                 /// The ray along a secondary ray, without upper limit of `t`. It starts off the surface, on
                 /// the side to which it goes.
                 SpawnRay fn spawn_ray(surface: &Surface, secondary: &SecondaryRay) -> Ray
-                    = stage5_recursion::spawn_ray;
-                |(surface, secondary): (Surface, SecondaryRay)| -> Ray { F::spawn_ray(surface, secondary) }
+                    = stage5_recursion::spawn_ray; ()
             }
 
             /// Stage 6: distributed ray tracing. Each function gives one answer per query, in the same order,
@@ -309,71 +277,57 @@ macro_rules! student_functions {
                 /// The position of a stratified sample in the unit square, `0 <= x < 1` and `0 <= y < 1`:
                 /// `(cell + u) / grid`.
                 Jittered fn jittered(stratum: &Stratum) -> Vec2
-                    = stage6_distribution::jittered;
-                |q: Stratum| -> Vec2 { F::jittered(q) }
+                    = stage6_distribution::jittered; ()
                 /// The position of a sample in pixels, relative to the upper left corner of its pixel. With
                 /// the Gaussian sampler it may lie outside of the pixel, up to `FILTER_RADIUS` from its
                 /// centre along x and y.
                 PixelPosition fn pixel_position(sampler: Sampler, stratum: &Stratum) -> Vec2
-                    = stage6_distribution::pixel_position;
-                |(sampler, stratum): (Sampler, Stratum)| -> Vec2 { F::pixel_position(*sampler, stratum) }
+                    = stage6_distribution::pixel_position; ()
                 /// The weight of a sample at `offset` from the centre of its pixel, in pixels; 0 beyond
                 /// `FILTER_RADIUS` along x or y.
                 GaussianWeight fn gaussian_weight(offset: Vec2) -> f32
-                    = stage6_distribution::gaussian_weight;
-                |offset: Vec2| -> f32 { F::gaussian_weight(*offset) }
+                    = stage6_distribution::gaussian_weight; ()
                 /// The colour of a pixel in linear light: the weighted mean of its samples, black if the sum
                 /// of the weights is 0.
                 FilterPixel fn filter_pixel(samples: &[WeightedColor]) -> Vec3
-                    = stage6_distribution::filter_pixel;
-                |samples: Vec<WeightedColor>| -> Vec3 { F::filter_pixel(samples) }
+                    = stage6_distribution::filter_pixel; ()
                 /// A uniformly distributed point of the disk of radius 1 around the origin.
                 SampleDisk fn sample_disk(u: Vec2) -> Vec2
-                    = stage6_distribution::sample_disk;
-                |u: Vec2| -> Vec2 { F::sample_disk(*u) }
+                    = stage6_distribution::sample_disk; ()
                 /// The ray, of unit direction, that leaves the lens at `on_lens` (a point of the disk of
                 /// radius 1) and meets the pinhole ray on the focal plane.
                 LensRay fn lens_ray(camera: &Camera, pinhole: &Ray, lens: &Lens, on_lens: Vec2) -> Ray
-                    = stage6_distribution::lens_ray;
-                |q: LensQuery| -> Ray { F::lens_ray(&q.camera, &q.pinhole, &q.lens, q.on_lens) }
+                    = stage6_distribution::lens_ray; [LensQuery Copy]
                 /// A uniformly distributed point of a rectangle, in world units.
                 SampleRectangle fn sample_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3
-                    = stage6_distribution::sample_rectangle;
-                |q: RectangleQuery| -> Vec3 { F::sample_rectangle(q.corner, q.edges, q.u) }
+                    = stage6_distribution::sample_rectangle; [RectangleQuery Copy]
                 /// A uniformly distributed point of a disk, in world units.
                 SampleLightDisk fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3
-                    = stage6_distribution::sample_light_disk;
-                |(disk, u): (Disk, Vec2)| -> Vec3 { F::sample_light_disk(disk, *u) }
+                    = stage6_distribution::sample_light_disk; ()
                 /// A unit direction from `from` to a sphere, uniformly distributed over the solid angle of
                 /// the sphere; from inside the sphere, over all directions.
                 SampleSphere fn sample_sphere(sphere: &Sphere, from: Vec3, u: Vec2) -> Vec3
-                    = stage6_distribution::sample_sphere;
-                |q: SphereSampleQuery| -> Vec3 { F::sample_sphere(&q.sphere, q.from, q.u) }
+                    = stage6_distribution::sample_sphere; [SphereSampleQuery Copy]
                 /// A unit direction around `ideal`, distributed with `cosⁿ θ` (a Phong lobe),
                 /// `n = 2 / roughness² - 2`, on the side of `normal`; `ideal` itself if `roughness` is 0.
                 SamplePhongLobe fn sample_phong_lobe(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> Vec3
-                    = stage6_distribution::sample_phong_lobe;
-                |q: PhongLobeQuery| -> Vec3 { F::sample_phong_lobe(q.ideal, q.normal, q.roughness, q.u) }
+                    = stage6_distribution::sample_phong_lobe; [PhongLobeQuery Copy]
                 /// The time slot, `1..=16`, of the cell in column `x` and row `y`, by the table of the
                 /// lecture.
                 TemporalSlot fn temporal_slot(x: u32, y: u32) -> u32
-                    = stage6_distribution::temporal_slot;
-                |(x, y): (u32, u32)| -> u32 { F::temporal_slot(*x, *y) }
+                    = stage6_distribution::temporal_slot; ()
                 /// The time at position `u` of slot `slot` (from 1) of `slots` equal slots of the shutter's
                 /// interval; it is in `[shutter.open, shutter.close]`.
                 TimeInShutter fn time_in_shutter(shutter: &Shutter, slot: u32, slots: u32, u: f32) -> f32
-                    = stage6_distribution::time_in_shutter;
-                |q: TimeQuery| -> f32 { F::time_in_shutter(&q.shutter, q.slot, q.slots, q.u) }
+                    = stage6_distribution::time_in_shutter; [TimeQuery Copy]
                 /// Linear interpolation (`lerp`) of a point from `start` at time 0 to `end` at time 1, exact
                 /// at both ends.
                 Lerp fn lerp(start: Vec3, end: Vec3, time: f32) -> Vec3
-                    = stage6_distribution::lerp;
-                |(start, end, time): (Vec3, Vec3, f32)| -> Vec3 { F::lerp(*start, *end, *time) }
+                    = stage6_distribution::lerp; ()
                 /// The box around everything that moves linearly from box `start` to box `end` (motion
                 /// bounds).
                 MotionBounds fn motion_bounds(start: &Aabb, end: &Aabb) -> Aabb
-                    = stage6_distribution::motion_bounds;
-                |(start, end): (Aabb, Aabb)| -> Aabb { F::motion_bounds(start, end) }
+                    = stage6_distribution::motion_bounds; ()
             }
 
             /// Stage 7: the effects analysis, which computes only what a scene needs. Each function gives one
@@ -382,43 +336,35 @@ macro_rules! student_functions {
                 /// What a light needs: the number of samples, and whether it is an area light and casts
                 /// shadows. A light that emits nothing needs nothing.
                 LightEffects fn light_effects(light: &Light, quality: &Quality) -> LightEffects
-                    = stage7_effects::light_effects;
-                |q: LightQuery| -> LightEffects { F::light_effects(&q.light, &q.quality) }
+                    = stage7_effects::light_effects; [LightQuery]
                 /// What a material needs: the lights that can make it brighter, secondary rays, glossy
                 /// reflection and images.
                 MaterialEffects fn material_effects(material: &Material, lights: &[Light], quality: &Quality) -> MaterialEffects
-                    = stage7_effects::material_effects;
-                |q: MaterialQuery| -> MaterialEffects { F::material_effects(&q.material, &q.lights, &q.quality) }
+                    = stage7_effects::material_effects; [MaterialQuery]
                 /// What a scene needs. Materials and meshes that no shape of the scene has need nothing.
                 Effects fn effects(scene: &Scene) -> Effects
-                    = stage7_effects::effects;
-                |q: Scene| -> Effects { F::effects(q) }
+                    = stage7_effects::effects; ()
                 /// An upper bound of the number of rays of each kind that a scene can need; `u64::MAX` where
                 /// it does not fit.
                 MostRays fn most_rays(scene: &Scene, effects: &Effects) -> RayCounts
-                    = stage7_effects::most_rays;
-                |q: BoundQuery| -> RayCounts { F::most_rays(&q.scene, &q.effects) }
+                    = stage7_effects::most_rays; [BoundQuery]
                 /// The exact number of rays of each kind that these hits need, for the given effects and
                 /// quality.
                 RaysOfHits fn rays_of_hits(hits: &[MaterialHits], effects: &Effects, quality: &Quality) -> RayCounts
-                    = stage7_effects::rays_of_hits;
-                |q: HitsQuery| -> RayCounts { F::rays_of_hits(&q.hits, &q.effects, &q.quality) }
+                    = stage7_effects::rays_of_hits; [HitsQuery]
                 /// The smallest number of samples, at least 1, with `deviation / √n <= error`, where
                 /// `deviation` is the standard deviation of one sample; `u32::MAX` if no number is enough.
                 SamplesForError fn samples_for_error(deviation: f32, error: f32) -> u32
-                    = stage7_effects::samples_for_error;
-                |(deviation, error): (f32, f32)| -> u32 { F::samples_for_error(*deviation, *error) }
+                    = stage7_effects::samples_for_error; ()
                 /// The column or row, `0 <= texel < size`, that an image shows at `index`, which may lie
                 /// outside of the image.
                 Texel fn texel(index: i64, size: u32, wrap: Wrap) -> u32
-                    = stage7_effects::texel;
-                |q: TexelQuery| -> u32 { F::texel(q.index, q.size, q.wrap) }
+                    = stage7_effects::texel; [TexelQuery Copy]
                 /// The colour of an image at `uv` in linear light, by bilinear interpolation. `(0, 0)` is the
                 /// lower left corner of the image and `(1, 1)` the upper right one; NaN and infinity count as
                 /// 0.
                 TextureColor fn texture_color(texture: &Texture, uv: Vec2) -> Vec3
-                    = stage7_effects::texture_color;
-                |q: TextureQuery| -> Vec3 { F::texture_color(&q.texture, q.uv) }
+                    = stage7_effects::texture_color; [TextureQuery]
             }
 
             /// Stage 8: the scene graph, with every shape in a space of its own. Each function gives one
@@ -426,99 +372,89 @@ macro_rules! student_functions {
             8 trait SceneGraph {
                 /// The ray in the space of an object, with the same `t` for every point as in the world.
                 RayToObject fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray
-                    = stage8_scene_graph::ray_to_object;
-                |q: ObjectRayQuery| -> Ray { F::ray_to_object(&q.ray, &q.to_object) }
+                    = stage8_scene_graph::ray_to_object; [ObjectRayQuery Copy]
                 /// The unit normal in the world for a normal in the space of an object, by the transpose of
                 /// `to_object`.
                 NormalToWorld fn normal_to_world(normal: Vec3, to_object: &Affine3A) -> Vec3
-                    = stage8_scene_graph::normal_to_world;
-                |q: NormalQuery| -> Vec3 { F::normal_to_world(q.normal, &q.to_object) }
+                    = stage8_scene_graph::normal_to_world; [NormalQuery Copy]
                 /// The transforms of a node to the world and back, for the transforms of its ancestors and
                 /// itself from the root down; `None` if one of them has no inverse.
                 Place fn placement(path: &[Affine3A]) -> Option<Placement>
-                    = stage8_scene_graph::placement;
-                |path: Vec<Affine3A>| -> Option<Placement> { F::placement(path) }
+                    = stage8_scene_graph::placement; ()
                 /// A box in the world around the transformed box, rounded outwards. The empty box remains
                 /// empty.
                 BoundsToWorld fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb
-                    = stage8_scene_graph::bounds_to_world;
-                |q: BoundsQuery| -> Aabb { F::bounds_to_world(&q.to_world, &q.bounds) }
+                    = stage8_scene_graph::bounds_to_world; [BoundsQuery Copy]
                 /// A bounding sphere of one or more points, with at most twice the smallest possible radius.
                 BoundingSphere fn bounding_sphere(points: &[Vec3]) -> Sphere
-                    = stage8_scene_graph::bounding_sphere;
-                |points: Vec<Vec3>| -> Sphere { F::bounding_sphere(points) }
+                    = stage8_scene_graph::bounding_sphere; ()
                 /// The `t`, in `[t_min, t_max]`, at which a ray enters a bounding sphere: `t_min` if it
                 /// starts inside; `None` if it misses.
                 EnterBoundingSphere fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32>
-                    = stage8_scene_graph::enter_bounding_sphere;
-                |q: BoundingSphereQuery| -> Option<f32> { F::enter_bounding_sphere(&q.ray, &q.sphere) }
+                    = stage8_scene_graph::enter_bounding_sphere; [BoundingSphereQuery Copy]
                 /// The closest hit in a scene graph, with the given optimisations; `None` if nothing is hit.
                 /// Of two hits at the same `t` the smaller primitive number wins.
                 GraphHit fn closest_hit_in_graph[P: Probe](graph: &Graph, probe: &mut P, ray: &Ray, savings: Savings) -> Option<PrimitiveHit>
                     = stage8_scene_graph::closest_hit_in_graph;
-                |q: GraphQuery| -> GraphAnswer {
+                { |q: GraphQuery| -> GraphAnswer {
                     let mut probe = TableProbe::without_hierarchy(&q.table);
                     let hit = F::closest_hit_in_graph(&q.graph, &mut probe, &q.ray, q.savings);
                     GraphAnswer { search: probe.answer(hit), asked: probe.asked }
-                }
+                } }
                 /// The closest hit in a scene graph, as without a cache; in each node the child in which the
                 /// previous ray had its closest hit is visited first.
                 CachedGraphHit fn closest_hit_with_child_cache[P: Probe](
                     graph: &Graph, probe: &mut P, ray: &Ray, savings: Savings, cache: &mut ChildCache
                 ) -> Option<PrimitiveHit>
                     = stage8_child_cache::closest_hit_with_child_cache;
-                |q: CachedGraphQuery| -> CachedGraphAnswer {
+                { |q: CachedGraphQuery| -> CachedGraphAnswer {
                     let (query, mut cache) = (&q.search, q.cache.clone());
                     let mut probe = TableProbe::without_hierarchy(&query.table);
                     let hit = F::closest_hit_with_child_cache(
                         &query.graph, &mut probe, &query.ray, query.savings, &mut cache
                     );
                     CachedGraphAnswer { found: GraphAnswer { search: probe.answer(hit), asked: probe.asked }, cache }
-                }
+                } }
                 /// The nearest hit with the surface of a solid box in the range of the ray, with the outward
                 /// normal; `None` if there is none.
                 Cuboid fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit>
                     = stage8_solids::cuboid;
-                |q: SolidQuery<Cuboid>| -> Option<SolidHit> { F::cuboid(&q.ray, &q.solid) }
+                { |q: SolidQuery<Cuboid>| -> Option<SolidHit> { F::cuboid(&q.ray, &q.solid) } }
                 /// The nearest hit with the surface of a closed cylinder in the range of the ray, with the
                 /// outward normal; `None` if there is none.
                 Cylinder fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<SolidHit>
                     = stage8_solids::cylinder;
-                |q: SolidQuery<Cylinder>| -> Option<SolidHit> { F::cylinder(&q.ray, &q.solid) }
+                { |q: SolidQuery<Cylinder>| -> Option<SolidHit> { F::cylinder(&q.ray, &q.solid) } }
                 /// The nearest hit with the surface of a closed cone in the range of the ray, with the
                 /// outward normal; `None` if there is none.
                 Cone fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit>
                     = stage8_solids::cone;
-                |q: SolidQuery<Cone>| -> Option<SolidHit> { F::cone(&q.ray, &q.solid) }
+                { |q: SolidQuery<Cone>| -> Option<SolidHit> { F::cone(&q.ray, &q.solid) } }
                 /// The hit with a flat disk, from either side, in the range of the ray; `None` if there is
                 /// none. The rim belongs to it.
                 Disk fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit>
                     = stage8_solids::disk;
-                |q: SolidQuery<Disk>| -> Option<SolidHit> { F::disk(&q.ray, &q.solid) }
+                { |q: SolidQuery<Disk>| -> Option<SolidHit> { F::disk(&q.ray, &q.solid) } }
                 /// The hit with a flat convex polygon, from either side, in the range of the ray; `None` if
                 /// there is none. Its edges and corners belong to it.
                 Polygon fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit>
                     = stage8_solids::polygon;
-                |q: SolidQuery<Polygon>| -> Option<SolidHit> { F::polygon(&q.ray, &q.solid) }
+                { |q: SolidQuery<Polygon>| -> Option<SolidHit> { F::polygon(&q.ray, &q.solid) } }
                 /// The point of a bicubic Bézier patch at the parameters `uv`, `0..=1` each, by de
                 /// Casteljau's algorithm.
                 BezierPoint fn bezier_point(patch: &BezierPatch, uv: Vec2) -> Vec3
-                    = stage8_surfaces::bezier_point;
-                |q: PatchQuery| -> Vec3 { F::bezier_point(&q.patch, q.uv) }
+                    = stage8_surfaces::bezier_point; [PatchQuery Copy]
                 /// The value at `u` of the B-spline basis function with this index and degree, by the recursion
                 /// of Cox and de Boor.
                 BsplineBasis fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32
-                    = stage8_splines::bspline_basis;
-                |q: BasisQuery| -> f32 { F::bspline_basis(&q.knots, q.degree, q.index, q.u) }
+                    = stage8_splines::bspline_basis; [BasisQuery]
                 /// The point of a NURBS surface at the parameters `uv`, each within the domain of its knots.
                 NurbsPoint fn nurbs_point(patch: &NurbsPatch, uv: Vec2) -> Vec3
-                    = stage8_splines::nurbs_point;
-                |q: NurbsQuery| -> Vec3 { F::nurbs_point(&q.patch, q.uv) }
+                    = stage8_splines::nurbs_point; [NurbsQuery]
                 /// A mesh after one step of Loop subdivision, with four triangles for each one (Loop, "Smooth
                 /// Subdivision Surfaces Based on Triangles", 1987).
                 LoopSubdivide fn loop_subdivide(mesh: &Mesh) -> Mesh
-                    = stage8_surfaces::loop_subdivide;
-                |q: Mesh| -> Mesh { F::loop_subdivide(q) }
+                    = stage8_surfaces::loop_subdivide; ()
             }
 
             /// Stage 9: partitions of space and coherent rays. Each function gives one answer per query, in
@@ -528,102 +464,100 @@ macro_rules! student_functions {
                 /// ray's range, with room for rounding errors; `None` if it misses.
                 CellSpan fn cell_span(ray: &Ray, cell: &Cell) -> Option<(f64, f64)>
                     = stage9_cells::span;
-                |q: SlabQuery| -> Option<(f64, f64)> { F::cell_span(&q.ray, &Cell::new(&q.bounds)) }
+                { |q: SlabQuery| -> Option<(f64, f64)> { F::cell_span(&q.ray, &Cell::new(&q.bounds)) } }
                 /// The number of cells of a grid along each axis, `1..=256`, which makes about
                 /// `density · n_primitives` cells that are nearly cubes.
                 GridResolution fn grid_resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3
-                    = stage9_grid::resolution;
-                |q: ResolutionQuery| -> UVec3 { F::grid_resolution(&q.bounds, q.n_primitives, q.density) }
+                    = stage9_grid::resolution; [ResolutionQuery Copy]
                 /// A uniform grid over primitives with these boxes. Each primitive is listed in every cell
                 /// that its box touches.
                 GridBuild fn grid_build(bounds: &[Aabb], resolution: UVec3) -> Grid
-                    = stage9_grid::build;
-                |q: GridQuery| -> Grid { F::grid_build(&q.bounds, q.resolution) }
+                    = stage9_grid::build; [GridQuery]
                 /// The closest hit in a uniform grid, from cell to cell along the ray; `None` if nothing is
                 /// hit.
                 GridSearch fn grid_search[P: Cells](grid: &Grid, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_grid::closest_hit;
-                |q: CellsQuery<Grid>| -> CellsAnswer { look(q, |probe| F::grid_search(&q.cells, probe, &q.ray)) }
+                { |q: CellsQuery<Grid>| -> CellsAnswer { look(q, |probe| F::grid_search(&q.cells, probe, &q.ray)) } }
                 /// An octree over primitives with these boxes: nodes with more than `leaf_size` primitives
                 /// are divided where that helps, down to `max_depth`.
                 OctreeBuild fn octree_build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree
                     = stage9_octree::build;
-                |q: OctreeQuery| -> Octree {
+                { [OctreeQuery] |q: OctreeQuery| -> Octree {
                     limited(q.bounds.len(), || F::octree_build(&q.bounds, q.leaf_size, q.max_depth))
-                }
+                } }
                 /// The closest hit in an octree, from leaf to leaf along the ray; `None` if nothing is hit.
                 OctreeByCells fn octree_by_cells[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_octree::closest_hit_by_cells;
-                |q: CellsQuery<Octree>| -> CellsAnswer { look(q, |probe| F::octree_by_cells(&q.cells, probe, &q.ray)) }
+                { |q: CellsQuery<Octree>| -> CellsAnswer { look(q, |probe| F::octree_by_cells(&q.cells, probe, &q.ray)) } }
                 /// The closest hit in an octree, from leaf to leaf along the ray without a return to the root;
                 /// `None` if nothing is hit.
                 OctreeByNeighbours fn octree_by_neighbours[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_neighbours::closest_hit_by_neighbours;
-                |q: CellsQuery<Octree>| -> CellsAnswer {
+                { |q: CellsQuery<Octree>| -> CellsAnswer {
                     look(q, |probe| F::octree_by_neighbours(&q.cells, probe, &q.ray))
-                }
+                } }
                 /// The closest hit in an octree, from the root down and nearest octant first; `None` if
                 /// nothing is hit.
                 OctreeSearch fn octree_search[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_octree::closest_hit;
-                |q: CellsQuery<Octree>| -> CellsAnswer { look(q, |probe| F::octree_search(&q.cells, probe, &q.ray)) }
+                { |q: CellsQuery<Octree>| -> CellsAnswer { look(q, |probe| F::octree_search(&q.cells, probe, &q.ray)) } }
                 /// A kd-tree over primitives with these boxes, by the given heuristics; nodes with more than
                 /// `leaf_size` primitives are divided.
                 KdBuild fn kd_build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree
                     = stage9_kd_tree::build;
-                |q: KdQuery| -> KdTree {
+                { [KdQuery] |q: KdQuery| -> KdTree {
                     limited(q.bounds.len(), || F::kd_build(&q.bounds, &q.heuristics, q.leaf_size))
-                }
+                } }
                 /// The closest hit in a kd-tree, nearer side of each plane first; `None` if nothing is hit.
                 KdSearch fn kd_search[P: Cells](tree: &KdTree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_kd_tree::closest_hit;
-                |q: CellsQuery<KdTree>| -> CellsAnswer { look(q, |probe| F::kd_search(&q.cells, probe, &q.ray)) }
+                { |q: CellsQuery<KdTree>| -> CellsAnswer { look(q, |probe| F::kd_search(&q.cells, probe, &q.ray)) } }
                 /// A BSP tree over the hulls of primitives: nodes with more than `leaf_size` primitives are
                 /// divided where that helps, down to `max_depth`.
                 BspBuild fn bsp_build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp
                     = stage9_bsp::build;
-                |q: BspQuery| -> Bsp {
+                { [BspQuery] |q: BspQuery| -> Bsp {
                     limited(q.hulls.len(), || F::bsp_build(&q.hulls, q.leaf_size, q.max_depth))
-                }
+                } }
                 /// The closest hit in a BSP tree, nearer side of each plane first; `None` if nothing is hit.
                 BspSearch fn bsp_search[P: Cells](bsp: &Bsp, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_bsp::closest_hit;
-                |q: CellsQuery<Bsp>| -> CellsAnswer { look(q, |probe| F::bsp_search(&q.cells, probe, &q.ray)) }
+                { |q: CellsQuery<Bsp>| -> CellsAnswer { look(q, |probe| F::bsp_search(&q.cells, probe, &q.ray)) } }
                 /// A BSP tree whose nodes hold the polygons on their planes. A polygon that crosses a plane is
                 /// split; other primitives are listed in leaves.
                 PolygonBspBuild fn polygon_bsp_build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> PolygonBsp
                     = stage9_polygon_bsp::build;
-                |q: BspQuery| -> PolygonBsp {
+                { |q: BspQuery| -> PolygonBsp {
                     limited(q.hulls.len(), || F::polygon_bsp_build(&q.hulls, q.leaf_size, q.max_depth))
-                }
+                } }
                 /// The closest hit in a BSP tree with polygons in its nodes: nearer side of each plane first,
                 /// then the polygons on the plane, then the other side; `None` if nothing is hit.
                 PolygonBspSearch fn polygon_bsp_search[P: Cells](bsp: &PolygonBsp, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_polygon_bsp::closest_hit;
-                |q: CellsQuery<PolygonBsp>| -> CellsAnswer {
+                { |q: CellsQuery<PolygonBsp>| -> CellsAnswer {
                     look(q, |probe| F::polygon_bsp_search(&q.cells, probe, &q.ray))
-                }
+                } }
                 /// The closest hit by `search`, after a test of the primitive `last` that the previous ray
                 /// hit; `None` if nothing is hit. The result is the same as that of `search` alone.
                 CachedSearch fn cached_search[P: Cells, S: FnOnce(&mut P, &Ray) -> Option<PrimitiveHit>](
                     last: Option<u32>, probe: &mut P, ray: &Ray, search: S
                 ) -> Option<PrimitiveHit>
                     = stage9_coherence::closest_hit_cached;
-                |q: CachedQuery| -> CellsAnswer {
+                { |q: CachedQuery| -> CellsAnswer {
                     let mut probe = CellsProbe::new(&q.hits);
                     let search = |probe: &mut CellsProbe<'_>, ray: &Ray| q.search(probe, ray);
                     let hit = F::cached_search(q.last, &mut probe, &q.ray, search);
                     probe.finish(hit)
-                }
+                } }
                 /// The closest hit of each ray, by a traversal of the hierarchy with several rays at once;
                 /// `None` for a ray that hits nothing.
                 PacketSearch fn packet_search[P: Probe](bvh: &Bvh, probe: &mut P, rays: &[Ray]) -> Vec<Option<PrimitiveHit>>
                     = stage9_coherence::closest_hit_packet;
-                |q: PacketQuery| -> PacketAnswer {
+                { |q: PacketQuery| -> PacketAnswer {
                     let mut probe = PacketProbe::new(q);
                     let hits = F::packet_search(&q.bvh, &mut probe, &q.rays);
                     PacketAnswer { hits, ..probe.answer }
-                }
+                } }
             }
 
             /// Stage 10: numerical stability. Each function gives one answer per query, in the same order,
@@ -633,39 +567,35 @@ macro_rules! student_functions {
                 /// twice. `None` if there is none, if `a` is 0, or if a coefficient is NaN or infinite.
                 StableRoots fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]>
                     = stage10_stability::stable_roots;
-                |[a, b, c]: [f32; 3]| -> Option<[f32; 2]> { F::stable_roots(*a, *b, *c) }
+                { |[a, b, c]: [f32; 3]| -> Option<[f32; 2]> { F::stable_roots(*a, *b, *c) } }
                 /// The hit with a triangle in the range of the ray, without gaps between triangles that share
                 /// an edge or a corner; `None` if there is none. Woop, Benthin and Wald, "Watertight
                 /// Ray/Triangle Intersection", JCGT 2013.
                 Watertight fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
-                    = stage10_stability::watertight;
-                |q: TriangleQuery| -> Option<TriangleHit> { F::watertight(&q.ray, &q.triangle) }
+                    = stage10_stability::watertight; (TriangleQuery)
                 /// The `t` at which a ray enters and leaves a closed box, as in stage 3, but never `None` for
                 /// a box that the ray meets exactly.
                 ConservativeSlab fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)>
                     = stage10_stability::conservative_slab;
-                |q: SlabQuery| -> Option<(f32, f32)> { F::conservative_slab(&q.ray, q.ray.direction.recip(), &q.bounds) }
+                { |q: SlabQuery| -> Option<(f32, f32)> { F::conservative_slab(&q.ray, q.ray.direction.recip(), &q.bounds) } }
                 /// The origin of a ray that leaves a surface whose true position is within `error` of `point`
                 /// along each axis: off the surface, on the side to which `direction` goes (the ray offset
                 /// that avoids shadow acne).
                 OffsetOrigin fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3
-                    = stage10_stability::offset_origin;
-                |q: OffsetQuery| -> Vec3 { F::offset_origin(q.point, q.error, q.normal, q.direction) }
+                    = stage10_stability::offset_origin; [OffsetQuery Copy]
                 /// The unit vector in the direction of `v`, however short or long `v` is; `None` if `v` is 0,
                 /// NaN or infinite.
                 SafeNormalize fn safe_normalize(v: Vec3) -> Option<Vec3>
-                    = stage10_stability::safe_normalize;
-                |v: Vec3| -> Option<Vec3> { F::safe_normalize(*v) }
+                    = stage10_stability::safe_normalize; ()
                 /// The hit with a triangle in the range of the ray, by Cramer's rule in double precision;
                 /// only the results are rounded. `None` if there is none.
                 TriangleInDouble fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
-                    = stage10_stability::triangle_in_double;
-                |q: TriangleQuery| -> Option<TriangleHit> { F::triangle_in_double(&q.ray, &q.triangle) }
+                    = stage10_stability::triangle_in_double; (TriangleQuery)
                 /// The `t` of the nearest hit with a sphere in the range of the ray, in double precision and
                 /// rounded once; `None` if there is none. A sphere without a radius above 0 is never hit.
                 SphereInDouble fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32>
                     = stage10_stability::sphere_in_double;
-                |q: SphereQuery| -> Option<f32> { F::sphere_in_double(&q.ray, q.sphere.center, q.sphere.radius) }
+                { |q: SphereQuery| -> Option<f32> { F::sphere_in_double(&q.ray, q.sphere.center, q.sphere.radius) } }
             }
 
             /// Stage 11: light transport by path tracing. Each function gives one answer per query, in the same
@@ -674,76 +604,60 @@ macro_rules! student_functions {
                 /// A unit direction on the side of the unit normal, with the density `cos θ / π` per steradian
                 /// (cosine-weighted hemisphere sampling).
                 CosineDirection fn cosine_direction(normal: Vec3, u: Vec2) -> Vec3
-                    = stage11_light_transport::cosine_direction;
-                |(normal, u): (Vec3, Vec2)| -> Vec3 { F::cosine_direction(*normal, *u) }
+                    = stage11_light_transport::cosine_direction; ()
                 /// The density per steradian with which `cosine_direction` samples a unit direction; 0 below the
                 /// surface.
                 CosinePdf fn cosine_pdf(normal: Vec3, direction: Vec3) -> f32
-                    = stage11_light_transport::cosine_pdf;
-                |(normal, direction): (Vec3, Vec3)| -> f32 { F::cosine_pdf(*normal, *direction) }
+                    = stage11_light_transport::cosine_pdf; ()
                 /// A random point of an emitter as seen from `from`; `None` if the emitter sends no light there.
                 SampleLight fn sample_light(emitter: &AreaEmitter, from: Vec3, u: Vec2) -> Option<EmitterSample>
-                    = stage11_light_transport::sample_light;
-                |q: EmitterQuery| -> Option<EmitterSample> { F::sample_light(&q.emitter, q.from, q.u) }
+                    = stage11_light_transport::sample_light; [EmitterQuery Copy]
                 /// The density per steradian with which `sample_light` samples a unit direction; 0 for directions
                 /// that it does not sample.
                 LightPdf fn light_pdf(emitter: &AreaEmitter, from: Vec3, direction: Vec3) -> f32
-                    = stage11_light_transport::light_pdf;
-                |q: EmitterPdfQuery| -> f32 { F::light_pdf(&q.emitter, q.from, q.direction) }
+                    = stage11_light_transport::light_pdf; [EmitterPdfQuery Copy]
                 /// The weight of a sample that was taken with density `own`, where another technique takes it with
                 /// density `other` (multiple importance sampling); `0..=1`.
                 MisWeight fn mis_weight(own: f32, other: f32) -> f32
-                    = stage11_light_transport::mis_weight;
-                |(own, other): (f32, f32)| -> f32 { F::mis_weight(*own, *other) }
+                    = stage11_light_transport::mis_weight; ()
                 /// The factor by which Russian roulette multiplies the weight of a path: 0 if the path ends here.
                 Survives fn survives(weight: Vec3, bounce: u32, u: f32) -> f32
-                    = stage11_light_transport::survives;
-                |q: RouletteQuery| -> f32 { F::survives(q.weight, q.bounce, q.u) }
+                    = stage11_light_transport::survives; [RouletteQuery Copy]
                 /// The fraction of the light in a closed room of this albedo that paths with at most `bounces`
                 /// bounces miss; both are in `0..=1`.
                 CutOff fn cut_off(albedo: f32, bounces: u32) -> f32
-                    = stage11_light_transport::cut_off;
-                |(albedo, bounces): (f32, u32)| -> f32 { F::cut_off(*albedo, *bounces) }
+                    = stage11_light_transport::cut_off; ()
                 /// The smallest number of bounces for which `cut_off` is at most `error`; `u32::MAX` if no number
                 /// is enough.
                 BouncesForError fn bounces_for_error(albedo: f32, error: f32) -> u32
-                    = stage11_light_transport::bounces_for_error;
-                |(albedo, error): (f32, f32)| -> u32 { F::bounces_for_error(*albedo, *error) }
+                    = stage11_light_transport::bounces_for_error; ()
                 /// A random direction in which a path continues, from one lobe of the surface; `None` if the surface
                 /// sends no light on. `u` are three random numbers.
                 SampleBsdf fn sample_bsdf(scattering: &Scattering, u: Vec3) -> Option<BsdfSample>
-                    = stage11_paths::sample_bsdf;
-                |q: BsdfQuery| -> Option<BsdfSample> { F::sample_bsdf(&q.scattering, q.u) }
+                    = stage11_paths::sample_bsdf; [BsdfQuery]
                 /// The density per steradian with which `sample_bsdf` samples a unit direction in the diffuse
                 /// lobe, the probability of this lobe included.
                 BsdfPdf fn bsdf_pdf(scattering: &Scattering, direction: Vec3) -> f32
-                    = stage11_paths::bsdf_pdf;
-                |q: BsdfPdfQuery| -> f32 { F::bsdf_pdf(&q.scattering, q.direction) }
+                    = stage11_paths::bsdf_pdf; [BsdfPdfQuery]
                 /// The radiance that a diffuse surface sends on from a sample of a light, without occlusion. A
                 /// sample of the surface has the same direction with density `bsdf_pdf`.
                 SampleLightContribution fn sample_light_contribution(
                     diffuse: Vec3, normal: Vec3, sample: &EmitterSample, bsdf_pdf: f32
                 ) -> Vec3
-                    = stage11_paths::sample_light_contribution;
-                |q: LightContributionQuery| -> Vec3 {
-                    F::sample_light_contribution(q.diffuse, q.normal, &q.sample, q.bsdf_pdf)
-                }
+                    = stage11_paths::sample_light_contribution; [LightContributionQuery Copy]
                 /// The part of the radiance `emission` that counts for a ray which has hit its emitter. The
                 /// direction of the ray was sampled with density `pdf`, and samples of the light have it with
                 /// density `light_pdf`.
                 EmittedContribution fn emitted_contribution(emission: Vec3, pdf: f32, light_pdf: f32) -> Vec3
-                    = stage11_paths::emitted_contribution;
-                |q: EmissionQuery| -> Vec3 { F::emitted_contribution(q.emission, q.pdf, q.light_pdf) }
+                    = stage11_paths::emitted_contribution; [EmissionQuery Copy]
                 /// What a path does at a surface: the light that it collects, the shadow ray to a light, and the
                 /// ray along which it continues.
                 Step fn step(path: &PathState, vertex: &PathVertex, max_depth: u32, numbers: &StepNumbers) -> PathStep
-                    = stage11_paths::step;
-                |q: StepQuery| -> PathStep { F::step(&q.path, &q.vertex, q.max_depth, &q.numbers) }
+                    = stage11_paths::step; [StepQuery]
                 /// What the paths of a scene need: which materials diffuse rays leave, and which lights are
                 /// sampled.
                 PathsCalledFor fn paths_called_for(scene: &Scene) -> PathEffects
-                    = stage11_paths::paths_called_for;
-                |q: Scene| -> PathEffects { F::paths_called_for(q) }
+                    = stage11_paths::paths_called_for; ()
             }
 
             /// Stage 12: speed. Each function gives one answer per query, in the same order, and panics if the
@@ -752,49 +666,45 @@ macro_rules! student_functions {
                 /// A hierarchy of stage 3 in the layout of a flat tree: all nodes in one array, children side by
                 /// side, depth first.
                 Flatten fn flatten(bvh: &Bvh) -> FlatTree
-                    = stage12_wide::flatten;
-                |q: Bvh| -> FlatTree { F::flatten(q) }
+                    = stage12_wide::flatten; ()
                 /// The number of primitives in each bin, and the box around them, along all three axes.
                 FillBins fn fill_bins(primitives: &[PrimitiveBox], grid: &BinGrid) -> Bins
                     = stage12_build::fill_bins;
-                |q: BinsQuery| -> Box<Bins> { Box::new(F::fill_bins(&q.primitives, &q.grid)) }
+                { [BinsQuery] |q: BinsQuery| -> Box<Bins> { Box::new(F::fill_bins(&q.primitives, &q.grid)) } }
                 /// The cost of a leaf, which pays for whole blocks of four.
                 BlockCost fn block_cost(n_primitives: u32) -> f32
-                    = stage12_build::block_cost;
-                |n_primitives: u32| -> f32 { F::block_cost(*n_primitives) }
+                    = stage12_build::block_cost; ()
                 /// The cheapest split between two bins, by the surface area heuristic; `None` if every split
                 /// leaves one side empty.
                 CheapestSplit fn cheapest_split(bins: &Bins, n_bins: u32) -> Option<BinSplit>
                     = stage12_build::cheapest_split;
-                |q: BinSplitQuery| -> Option<BinSplit> { F::cheapest_split(&q.bins, q.n_bins) }
+                { |q: BinSplitQuery| -> Option<BinSplit> { F::cheapest_split(&q.bins, q.n_bins) } }
                 /// Reorders primitives so that those of the left side come first, and returns their number.
                 PartitionBins fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &BinSplit) -> usize
                     = stage12_build::partition_bins;
-                |q: PartitionQuery| -> SplitAnswer {
+                { |q: PartitionQuery| -> SplitAnswer {
                     let mut primitives = q.primitives.clone();
                     let middle = F::partition_bins(&mut primitives, &q.grid, &q.split);
                     SplitAnswer { order: primitives.iter().map(PrimitiveBox::id).collect(), middle: Some(middle) }
-                }
+                } }
                 /// A binary hierarchy over primitives with these boxes, built with bins.
                 BuildBinned fn build_binned(bounds: &[Aabb]) -> FlatTree
-                    = stage12_build::build_binned;
-                |bounds: Vec<Aabb>| -> FlatTree { F::build_binned(bounds) }
+                    = stage12_build::build_binned; ()
                 /// The same tree, built in parallel.
                 BuildParallel fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree
                     = stage12_build::build_parallel;
-                |bounds: Vec<Aabb>| -> ForkedTree {
+                { |bounds: Vec<Aabb>| -> ForkedTree {
                     let mut forks = Forks::new(false);
                     let tree = F::build_parallel(bounds, &mut forks);
                     ForkedTree { tree, forks: forks.into_log() }
-                }
+                } }
                 /// A tree with eight children per node, made of a binary one.
                 Collapse fn collapse(tree: &FlatTree) -> WideTree
-                    = stage12_wide::collapse;
-                |q: FlatTree| -> WideTree { F::collapse(q) }
+                    = stage12_wide::collapse; ()
                 /// Which of the eight boxes of a node a ray enters, and where.
                 EnterBoxes fn enter_boxes[L: Level](level: L, node: &WideNode, ray: &WideRay, t_max: f32) -> Entered
                     = stage12_simd::enter_boxes;
-                |q: WideBoxesQuery| -> Entered {
+                { |q: WideBoxesQuery| -> Entered {
                     struct Work<'a, F>(&'a WideBoxesQuery, std::marker::PhantomData<F>);
                     impl<F: StudentFunctions> Vectorized for Work<'_, F> {
                         type Output = Entered;
@@ -805,11 +715,11 @@ macro_rules! student_functions {
                         }
                     }
                     Instructions::detect().run(Work::<F>(q, std::marker::PhantomData))
-                }
+                } }
                 /// Which of four triangles a ray may hit, as bits.
                 MayHit fn may_hit[L: Level](level: L, block: &TriangleBlock, ray: &WideRay, t_max: f32) -> u32
                     = stage12_simd::may_hit;
-                |q: BlockQuery| -> u32 {
+                { |q: BlockQuery| -> u32 {
                     struct Work<'a, F>(&'a BlockQuery, std::marker::PhantomData<F>);
                     impl<F: StudentFunctions> Vectorized for Work<'_, F> {
                         type Output = u32;
@@ -820,24 +730,24 @@ macro_rules! student_functions {
                         }
                     }
                     Instructions::detect().run(Work::<F>(q, std::marker::PhantomData))
-                }
+                } }
                 /// The closest hit in a wide tree, nearest child first; `None` if nothing is hit. Of two hits at
                 /// the same `t` the smaller primitive number wins.
                 WideClosestHit fn wide_closest_hit[P: WideProbe](probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage12_search::wide_closest_hit;
-                |q: WideQuery| -> WideAnswer {
+                { |q: WideQuery| -> WideAnswer {
                     let mut probe = WideTableProbe::new(q);
                     let hit = F::wide_closest_hit(&mut probe, &q.ray);
                     probe.answer(hit, hit.is_some())
-                }
+                } }
                 /// Whether the ray hits any primitive of a wide tree in its range (shadow rays).
                 WideAnyHit fn wide_any_hit[P: WideProbe](probe: &mut P, ray: &Ray) -> bool
                     = stage12_search::wide_any_hit;
-                |q: WideQuery| -> WideAnswer {
+                { |q: WideQuery| -> WideAnswer {
                     let mut probe = WideTableProbe::new(q);
                     let found = F::wide_any_hit(&mut probe, &q.ray);
                     probe.answer(None, found)
-                }
+                } }
             }
         }
     };

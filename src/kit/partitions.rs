@@ -1,69 +1,14 @@
 //! Stage 9, partitions of space: queries and answers. As in stage 3 a search is graded against a table of
 //! answers; here the cells themselves are geometry, so the ray matters as well.
 
-use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use crate::count::{Counts, Event, Tally};
 use crate::kit::Table;
 use crate::kit::questions::Asker;
 use crate::kit::table::Known;
-use crate::partition::{Cells, KdHeuristics};
+use crate::partition::Cells;
 use crate::ray::Ray;
-use glam::{UVec3, Vec3};
 use serde::{Deserialize, Serialize};
-
-/// Asks how many cells a grid should have.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ResolutionQuery {
-    /// The box that the cells divide, in world units.
-    pub bounds: Aabb,
-    /// The number of primitives in the box.
-    pub n_primitives: usize,
-    /// The desired number of cells per primitive, above 0.
-    pub density: f32,
-}
-
-/// Asks which grid is built over these boxes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct GridQuery {
-    /// One box per primitive, in world units.
-    pub bounds: Vec<Aabb>,
-    /// The number of cells along each axis, at least 1 each.
-    pub resolution: UVec3,
-}
-
-/// Asks which octree is built over these boxes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct OctreeQuery {
-    /// One box per primitive, in world units.
-    pub bounds: Vec<Aabb>,
-    /// A node with at most this number of primitives is not divided.
-    pub leaf_size: usize,
-    /// The depth at which nodes are not divided any more; the root has depth 0.
-    pub max_depth: usize,
-}
-
-/// Asks which kd-tree is built over these boxes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct KdQuery {
-    /// One box per primitive, in world units.
-    pub bounds: Vec<Aabb>,
-    /// The heuristics that the builder follows.
-    pub heuristics: KdHeuristics,
-    /// A node with at most this number of primitives is not divided.
-    pub leaf_size: usize,
-}
-
-/// Asks which BSP tree is built over these hulls.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BspQuery {
-    /// For each primitive the corners of a polygon or the eight corners of a box, in world units.
-    pub hulls: Vec<Vec<Vec3>>,
-    /// A node with at most this number of primitives is not divided.
-    pub leaf_size: usize,
-    /// The depth at which nodes are not divided any more; the root has depth 0.
-    pub max_depth: usize,
-}
 
 /// Asks for the closest hit in `cells`, with a table that has the answer to every primitive test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

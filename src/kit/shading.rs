@@ -7,28 +7,6 @@ use crate::ray::Ray;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Asks how large the diffuse or the specular term of the Phong model is.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TermQuery {
-    /// The unit normal on the viewer's side.
-    pub normal: Vec3,
-    /// The direction from the surface to the light, of unit length.
-    pub to_light: Vec3,
-    /// The direction from the surface to the viewer, of unit length; the diffuse term does not use it.
-    pub to_viewer: Vec3,
-    /// The Phong exponent, at least 0; the diffuse term does not use it.
-    pub exponent: f32,
-}
-
-/// Asks which shadow ray a light needs, if any.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ShadowQuery {
-    /// The point at which the shadow ray starts.
-    pub surface: Surface,
-    /// The light at which the shadow ray ends.
-    pub light: LightSample,
-}
-
 /// Asks which colour the viewer sees at a point; the answer is a [`ShadeAnswer`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShadeQuery {

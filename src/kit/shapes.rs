@@ -31,12 +31,3 @@ pub struct PlaneEquationQuery {
     /// The infinite plane that is intersected.
     pub plane: PlaneEquation,
 }
-
-/// Asks which of two roots is the first that counts for `ray`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RootQuery {
-    /// The two roots, in any order; either may be NaN.
-    pub roots: [f32; 2],
-    /// The ray, whose open range `t_min < t < t_max` decides.
-    pub ray: Ray,
-}

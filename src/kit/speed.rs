@@ -9,15 +9,6 @@ use crate::wide::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Asks for the bins of primitives.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BinsQuery {
-    /// The primitives.
-    pub primitives: Vec<PrimitiveBox>,
-    /// Where the bins lie.
-    pub grid: BinGrid,
-}
-
 /// Asks for the cheapest split between bins.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BinSplitQuery {

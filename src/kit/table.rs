@@ -36,17 +36,6 @@ pub struct SplitAnswer {
     pub middle: Option<usize>,
 }
 
-/// Asks which hierarchy is built over `bounds`; the answer is a [`Bvh`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BuildQuery {
-    /// One box per primitive, in world units.
-    pub bounds: Vec<Aabb>,
-    /// The rule by which primitives are divided.
-    pub split: Split,
-    /// The most primitives in a leaf, at least 1.
-    pub leaf_size: usize,
-}
-
 /// The answers to all tests of one ray: the interval of `t` in each box and the nearest hit with each
 /// primitive.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

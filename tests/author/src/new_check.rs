@@ -60,33 +60,6 @@ impl Options {
     }
 }
 
-/// What a skeleton needs to know about a student's function.
-struct Asked {
-    function: Function,
-    /// Its name in the kit.
-    name: &'static str,
-    /// The type of a query.
-    query: &'static str,
-    /// The type of an answer.
-    answer: &'static str,
-}
-
-macro_rules! all_asked {
-    ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
-        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
-            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
-    })*) => {
-        const ALL: &[Asked] = &[$($(Asked {
-            function: Function::$name,
-            name: stringify!($name),
-            query: stringify!($Query),
-            answer: stringify!($Answer),
-        }),*),*];
-    };
-}
-
-raykata::student_functions! { all_asked }
-
 /// Writes what the check lacks, and says what is missing. Returns whether nothing is, or whether something was written.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let stage = StageFiles::read(root, options.stage)?;
@@ -158,7 +131,7 @@ fn write(root: &Path, stage: &StageFiles, options: &Options) -> Result<()> {
     let asked = function(options)?;
     let listed = stage.listed();
     let known: Vec<&str> = listed.iter().map(|(_, name)| *name).collect();
-    let begins = |name: &str| name.starts_with(&format!("{}_", asked.function.name()));
+    let begins = |name: &str| name.starts_with(&format!("{}_", asked.name()));
     let before = match &options.after {
         Some(after) => match known.contains(&after.as_str()) {
             true => Some(after.clone()),
@@ -182,7 +155,7 @@ fn write(root: &Path, stage: &StageFiles, options: &Options) -> Result<()> {
             let end = text.find("\n#[cfg(test)]").unwrap_or(text.len());
             format!("{}\n{skeleton}{}", &text[..end], &text[end..])
         }
-        false => format!("//! Checks of `{}`.\n\n{skeleton}", asked.function.name()),
+        false => format!("//! Checks of `{}`.\n\n{skeleton}", asked.name()),
     };
 
     // Add the module, if it is new, and the line of the list behind the check before, or at the end.
@@ -222,11 +195,11 @@ fn with_entry(rubric: &str, options: &Options, before: Option<&str>) -> Result<S
 }
 
 /// Writes a mistake and another correct solution into the corpus, among those of the same function.
-fn write_entries(root: &Path, asked: &Asked, name: &str) -> Result<()> {
-    let path = corpus_file(&format!("solutions/src/{}.rs", asked.function.file()));
+fn write_entries(root: &Path, asked: Function, name: &str) -> Result<()> {
+    let path = corpus_file(&format!("solutions/src/{}.rs", asked.file()));
     let mut text = if root.join(&path).exists() { read(root, &path)? } else { String::new() };
     // Find the entries of the function.
-    let heading = format!("\n=== {} ===\n", asked.function.name());
+    let heading = format!("\n=== {} ===\n", asked.name());
     if !text.contains(&heading) {
         text += &heading;
     }
@@ -257,18 +230,18 @@ fn write_entries(root: &Path, asked: &Asked, name: &str) -> Result<()> {
 }
 
 /// The function that the check asks.
-fn function(options: &Options) -> Result<&'static Asked> {
-    let of_stage = || ALL.iter().filter(|asked| asked.function.stage() == options.stage);
-    let is = |asked: &&Asked, name: &str| asked.function.name() == name || asked.name == name;
+fn function(options: &Options) -> Result<Function> {
+    let of_stage = || Function::ALL.iter().copied().filter(|asked| asked.stage() == options.stage);
+    let is = |asked: &Function, name: &str| asked.name() == name || format!("{asked:?}") == name;
     if let Some(name) = &options.function {
-        let known: Vec<&str> = of_stage().map(|asked| asked.function.name()).collect();
+        let known: Vec<&str> = of_stage().map(|asked| asked.name()).collect();
         return of_stage().find(|asked| is(asked, name)).with_context(|| {
             format!("stage {} has no function `{name}`{}", options.stage, did_you_mean(name, &known))
         });
     }
-    let begins = of_stage().filter(|asked| options.name.starts_with(&format!("{}_", asked.function.name())));
-    begins.max_by_key(|asked| asked.function.name().len()).with_context(|| {
-        let known: Vec<&str> = of_stage().map(|asked| asked.function.name()).collect();
+    let begins = of_stage().filter(|asked| options.name.starts_with(&format!("{}_", asked.name())));
+    begins.max_by_key(|asked| asked.name().len()).with_context(|| {
+        let known: Vec<&str> = of_stage().map(|asked| asked.name()).collect();
         format!(
             "`{}` does not begin with the name of a function of stage {}: add `--function NAME`, one of {}",
             options.name,
@@ -279,9 +252,9 @@ fn function(options: &Options) -> Result<&'static Asked> {
 }
 
 /// A check with blanks. It names all paths in full, because it must compile in any module.
-fn skeleton(name: &str, asked: &Asked) -> String {
-    let (method, function) = (asked.name, asked.function.name());
-    let [query, answer] = [asked.query, asked.answer].map(|text| text.replace(" < ", "<").replace(" >", ">"));
+fn skeleton(name: &str, asked: Function) -> String {
+    let (method, function) = (format!("{asked:?}"), asked.name());
+    let [query, answer] = asked.types();
     // Types of the language need no import.
     let types = format!("{query} {answer}");
     let mut words = types.split(|letter: char| !letter.is_alphanumeric());

@@ -211,7 +211,7 @@ struct Constants<const KIND: u8>;
 macro_rules! constants {
     ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
         $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
-            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
+            -> $Return:ty = $file:ident::$function:ident; $how:tt)*
     })*) => {
         impl<const KIND: u8> StudentFunctions for Constants<KIND> {
             $($(
