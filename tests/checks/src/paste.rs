@@ -71,39 +71,33 @@ impl Paste for Ray {
     }
 }
 
-impl Paste for Triangle {
-    fn paste(&self) -> String {
-        format!("&Triangle {{ a: {}, b: {}, c: {} }}", self.a.paste(), self.b.paste(), self.c.paste())
-    }
-}
-
 impl Paste for Aabb {
     fn paste(&self) -> String {
         format!("&Aabb::new({}, {})", self.min.paste(), self.max.paste())
     }
 }
 
-impl Paste for Surface {
-    fn paste(&self) -> String {
-        format!(
-            "&Surface {{ point: {}, error: {}, geometric_normal: {}, shading_normal: {} }}",
-            self.point.paste(),
-            self.error.paste(),
-            self.geometric_normal.paste(),
-            self.shading_normal.paste()
-        )
-    }
+/// Structs with all of their fields; `&` stands before those that functions borrow.
+macro_rules! structs {
+    ($($borrow:literal $Type:ident { $($field:ident),* })*) => {
+        $(impl Paste for $Type {
+            fn paste(&self) -> String {
+                let fields = [$(format!("{}: {}", stringify!($field), self.$field.paste())),*];
+                format!("{}{} {{ {} }}", $borrow, stringify!($Type), fields.join(", "))
+            }
+        })*
+    };
 }
 
-impl Paste for LightSample {
-    fn paste(&self) -> String {
-        format!(
-            "LightSample {{ direction: {}, distance: {}, radiance: {} }}",
-            self.direction.paste(),
-            self.distance.paste(),
-            self.radiance.paste()
-        )
-    }
+structs! {
+    "&" Triangle { a, b, c }
+    "&" Surface { point, error, geometric_normal, shading_normal }
+    "" LightSample { direction, distance, radiance }
+    "&" Sphere { center, radius }
+    "&" Cuboid { min, max }
+    "&" Cylinder { base, top, radius }
+    "&" Cone { base, apex, radius }
+    "&" Disk { center, normal, radius }
 }
 
 /// The fields of a material that stage 4 uses.
@@ -124,39 +118,6 @@ impl Paste for Affine3A {
         let columns = [self.matrix3.x_axis, self.matrix3.y_axis, self.matrix3.z_axis, self.translation]
             .map(|column| Vec3::from(column).paste().replace("vec3", "vec3a"));
         format!("&Affine3A::from_cols({})", columns.join(", "))
-    }
-}
-
-impl Paste for Sphere {
-    fn paste(&self) -> String {
-        format!("&Sphere {{ center: {}, radius: {} }}", self.center.paste(), self.radius.paste())
-    }
-}
-
-impl Paste for Cuboid {
-    fn paste(&self) -> String {
-        format!("&Cuboid {{ min: {}, max: {} }}", self.min.paste(), self.max.paste())
-    }
-}
-
-impl Paste for Cylinder {
-    fn paste(&self) -> String {
-        let (base, top, radius) = (self.base.paste(), self.top.paste(), self.radius.paste());
-        format!("&Cylinder {{ base: {base}, top: {top}, radius: {radius} }}")
-    }
-}
-
-impl Paste for Cone {
-    fn paste(&self) -> String {
-        let (base, apex, radius) = (self.base.paste(), self.apex.paste(), self.radius.paste());
-        format!("&Cone {{ base: {base}, apex: {apex}, radius: {radius} }}")
-    }
-}
-
-impl Paste for Disk {
-    fn paste(&self) -> String {
-        let (center, normal, radius) = (self.center.paste(), self.normal.paste(), self.radius.paste());
-        format!("&Disk {{ center: {center}, normal: {normal}, radius: {radius} }}")
     }
 }
 
@@ -206,34 +167,25 @@ impl Arguments for RootQuery {
     }
 }
 
-impl Arguments for SphereQuery {
-    fn call(&self, function: &str) -> String {
-        call(function, &[&self.ray, &self.sphere.center, &self.sphere.radius])
-    }
+/// Queries whose fields are the arguments, in this order.
+macro_rules! arguments {
+    ($($Query:ident($($($field:ident).+),*);)*) => {
+        $(impl Arguments for $Query {
+            fn call(&self, function: &str) -> String {
+                call(function, &[$(&self.$($field).+),*])
+            }
+        })*
+    };
 }
 
-impl Arguments for PlaneQuery {
-    fn call(&self, function: &str) -> String {
-        call(function, &[&self.ray, &self.plane.point, &self.plane.normal])
-    }
-}
-
-impl Arguments for PlaneEquationQuery {
-    fn call(&self, function: &str) -> String {
-        call(function, &[&self.ray, &self.plane.normal, &self.plane.d])
-    }
-}
-
-impl Arguments for TriangleQuery {
-    fn call(&self, function: &str) -> String {
-        call(function, &[&self.ray, &self.triangle])
-    }
-}
-
-impl Arguments for InsideQuery {
-    fn call(&self, function: &str) -> String {
-        call(function, &[&self.ray, &self.point, &self.triangle])
-    }
+arguments! {
+    SphereQuery(ray, sphere.center, sphere.radius);
+    PlaneQuery(ray, plane.point, plane.normal);
+    PlaneEquationQuery(ray, plane.normal, plane.d);
+    TriangleQuery(ray, triangle);
+    InsideQuery(ray, point, triangle);
+    EmitterQuery(emitter, from, u);
+    EmitterPdfQuery(emitter, from, direction);
 }
 
 impl Arguments for SlabQuery {
@@ -259,18 +211,6 @@ impl Arguments for ShadeQuery {
             list(&self.lights),
             self.visible
         )
-    }
-}
-
-impl Arguments for EmitterQuery {
-    fn call(&self, function: &str) -> String {
-        call(function, &[&self.emitter, &self.from, &self.u])
-    }
-}
-
-impl Arguments for EmitterPdfQuery {
-    fn call(&self, function: &str) -> String {
-        call(function, &[&self.emitter, &self.from, &self.direction])
     }
 }
 

@@ -110,6 +110,12 @@ impl<T: Turn, U: Turn> Turn for (T, U) {
     }
 }
 
+impl<T: Turn, const N: usize> Turn for [T; N] {
+    fn turn(&self, symmetry: &Symmetry) -> Self {
+        self.each_ref().map(|one| one.turn(symmetry))
+    }
+}
+
 /// Implements [`Turn`] by an expression.
 macro_rules! turn {
     ($(|$this:ident: $Type:ty, $symmetry:ident| $turned:expr;)*) => {
@@ -152,89 +158,24 @@ turn! {
         let [base, apex] = [cone.base, cone.apex].map(|end| symmetry.point(end));
         Cone { base, apex, radius: symmetry.length(cone.radius) }
     };
-
-    |query: SphereQuery, symmetry| {
-        SphereQuery { ray: query.ray.turn(symmetry), sphere: query.sphere.turn(symmetry) }
-    };
-    |query: PlaneQuery, symmetry| {
-        PlaneQuery { ray: query.ray.turn(symmetry), plane: query.plane.turn(symmetry) }
-    };
-    |query: PlaneEquationQuery, symmetry| {
-        PlaneEquationQuery { ray: query.ray.turn(symmetry), plane: query.plane.turn(symmetry) }
-    };
-    |query: TriangleQuery, symmetry| {
-        TriangleQuery { ray: query.ray.turn(symmetry), triangle: query.triangle.turn(symmetry) }
-    };
-    |hit: TriangleHit, symmetry| TriangleHit { t: symmetry.length(hit.t), ..*hit };
-    |query: SolidQuery<Cylinder>, symmetry| {
-        SolidQuery { ray: query.ray.turn(symmetry), solid: query.solid.turn(symmetry) }
-    };
-    |query: SolidQuery<Cone>, symmetry| {
-        SolidQuery { ray: query.ray.turn(symmetry), solid: query.solid.turn(symmetry) }
-    };
-    |hit: SolidHit, symmetry| {
-        SolidHit { t: symmetry.length(hit.t), normal: symmetry.direction(hit.normal) }
-    };
     |surface: Surface, symmetry| Surface {
         point: symmetry.point(surface.point),
         error: symmetry.point(surface.error).abs(),
         geometric_normal: symmetry.direction(surface.geometric_normal),
         shading_normal: symmetry.direction(surface.shading_normal),
     };
-    |light: LightSample, symmetry| LightSample {
-        direction: symmetry.direction(light.direction),
-        distance: symmetry.length(light.distance),
-        ..*light
-    };
-    |query: ShadeQuery, symmetry| ShadeQuery {
-        surface: query.surface.turn(symmetry),
-        to_viewer: symmetry.direction(query.to_viewer),
-        lights: query.lights.turn(symmetry),
-        ..query.clone()
-    };
-    |answer: ShadeAnswer, symmetry| ShadeAnswer { rays: answer.rays.turn(symmetry), ..answer.clone() };
-    |query: ScatterQuery, symmetry| {
-        let [direction, normal] = [query.direction, query.normal].map(|v| symmetry.direction(v));
-        ScatterQuery { direction, normal, ..query.clone() }
-    };
-    |ray: SecondaryRay, symmetry| {
-        SecondaryRay { direction: symmetry.direction(ray.direction), ..*ray }
-    };
-
-    |query: SlabQuery, symmetry| {
-        SlabQuery { ray: query.ray.turn(symmetry), bounds: query.bounds.turn(symmetry) }
-    };
     |primitive: PrimitiveRef, symmetry| PrimitiveRef {
         bounds: primitive.bounds.turn(symmetry),
         centroid: symmetry.point(primitive.centroid),
         ..*primitive
     };
-    |answer: SplitAnswer, _symmetry| answer.clone();
-    |query: BuildQuery, symmetry| BuildQuery { bounds: query.bounds.turn(symmetry), ..query.clone() };
     |bvh: Bvh, symmetry| {
         let mut bvh = bvh.clone();
         bvh.nodes.iter_mut().for_each(|node| node.bounds = node.bounds.turn(symmetry));
         bvh
     };
-    |table: Table, symmetry| {
-        Table { boxes: table.boxes.turn(symmetry), primitives: table.primitives.turn(symmetry) }
-    };
-    |query: SearchQuery, symmetry| SearchQuery {
-        bvh: query.bvh.turn(symmetry),
-        ray: query.ray.turn(symmetry),
-        table: query.table.turn(symmetry),
-    };
-    |hit: PrimitiveHit, symmetry| PrimitiveHit { t: symmetry.length(hit.t), ..*hit };
-    |answer: SearchAnswer, symmetry| SearchAnswer { hit: answer.hit.turn(symmetry), ..*answer };
-    |found: bool, _symmetry| *found;
-
-    |query: ResolutionQuery, symmetry| {
-        ResolutionQuery { bounds: query.bounds.turn(symmetry), ..*query }
-    };
     |resolution: UVec3, symmetry| symmetry.resolution(*resolution);
-    |query: OctreeQuery, symmetry| OctreeQuery { bounds: query.bounds.turn(symmetry), ..query.clone() };
     |octree: Octree, symmetry| octree.turned(symmetry).0;
-    |query: KdQuery, symmetry| KdQuery { bounds: query.bounds.turn(symmetry), ..query.clone() };
     |tree: KdTree, symmetry| tree.turned(symmetry).0;
     |query: BspQuery, symmetry| {
         let turn = |hull: &Vec<Vec3>| hull.iter().map(|corner| symmetry.point(*corner)).collect();
@@ -242,20 +183,6 @@ turn! {
     };
     |bsp: Bsp, symmetry| bsp.turned(symmetry).0;
     |bsp: PolygonBsp, symmetry| bsp.turned(symmetry).0;
-    |answer: CellsAnswer, symmetry| CellsAnswer { hit: answer.hit.turn(symmetry), ..answer.clone() };
-    |query: CachedQuery, symmetry| CachedQuery {
-        ray: query.ray.turn(symmetry),
-        hits: query.hits.turn(symmetry),
-        entries: query.entries.turn(symmetry),
-        ..*query
-    };
-    |query: PacketQuery, symmetry| PacketQuery {
-        bvh: query.bvh.turn(symmetry),
-        rays: query.rays.turn(symmetry),
-        tables: query.tables.turn(symmetry),
-    };
-    |answer: PacketAnswer, symmetry| PacketAnswer { hits: answer.hits.turn(symmetry), ..answer.clone() };
-
     |tree: FlatTree, symmetry| {
         let mut tree = tree.clone();
         for node in &mut tree.nodes {
@@ -264,11 +191,53 @@ turn! {
         }
         tree
     };
-    |query: WideQuery, symmetry| WideQuery {
-        tree: query.tree.clone(),
-        ray: query.ray.turn(symmetry),
-        entries: query.entries.iter().map(|entries| entries.map(|t| symmetry.length(t))).collect(),
-        hits: query.hits.turn(symmetry),
+}
+
+/// Implements [`Turn`] for structs of which these fields are turned, and the others stay.
+macro_rules! turn_fields {
+    ($($Type:ty: $($field:ident)*;)*) => {
+        $(impl Turn for $Type {
+            #[allow(unused_mut, unused_variables, reason = "nothing of some structs is turned")]
+            fn turn(&self, symmetry: &Symmetry) -> Self {
+                let mut turned = self.clone();
+                $(turned.$field = self.$field.turn(symmetry);)*
+                turned
+            }
+        })*
     };
-    |answer: WideAnswer, symmetry| WideAnswer { hit: answer.hit.turn(symmetry), ..answer.clone() };
+}
+
+turn_fields! {
+    bool:;
+    TriangleHit: t;
+    SolidHit: t normal;
+    PrimitiveHit: t;
+    LightSample: direction distance;
+    SecondaryRay: direction;
+    Table: boxes primitives;
+
+    SphereQuery: ray sphere;
+    PlaneQuery: ray plane;
+    PlaneEquationQuery: ray plane;
+    TriangleQuery: ray triangle;
+    SolidQuery<Cylinder>: ray solid;
+    SolidQuery<Cone>: ray solid;
+    ShadeQuery: surface to_viewer lights;
+    ScatterQuery: direction normal;
+    SlabQuery: ray bounds;
+    BuildQuery: bounds;
+    SearchQuery: bvh ray table;
+    ResolutionQuery: bounds;
+    OctreeQuery: bounds;
+    KdQuery: bounds;
+    CachedQuery: ray hits entries;
+    PacketQuery: bvh rays tables;
+    WideQuery: ray entries hits;
+
+    ShadeAnswer: rays;
+    SplitAnswer:;
+    SearchAnswer: hit;
+    CellsAnswer: hit;
+    PacketAnswer: hits;
+    WideAnswer: hit;
 }
