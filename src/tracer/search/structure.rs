@@ -10,9 +10,7 @@ use crate::count::Event;
 use crate::graph::{ChildCache, Graph, Savings};
 use crate::kit::{StructureSize, StudentFunctions};
 use crate::partition::limit::limited;
-use crate::partition::{
-    Bsp, BspNode, Cells, Grid, KdNode, KdTree, Octree, OctreeNode, PolygonBsp, PolygonBspNode, corners,
-};
+use crate::partition::{Bsp, Cells, Grid, KdTree, Octree, PolygonBsp, Tree, TreeNode, corners};
 use crate::ray::Ray;
 use crate::scene::{Accelerator, Quality};
 use crate::shape::Sphere;
@@ -351,35 +349,17 @@ const LARGE: usize = 16;
 /// A sentence that says that dividing stopped early; `None` unless more than half of the references of a
 /// partition of space are in large leaves. A hierarchy has no large leaves, because it lists each primitive once.
 fn large_leaves(structure: &Structure, leaf_size: usize) -> Option<String> {
-    let (name, counts): (&str, Vec<usize>) = match structure {
-        Structure::Octree { tree, .. } => {
-            let counts = tree.nodes.iter().map(|node| match node {
-                OctreeNode::Leaf { count, .. } => *count as usize,
-                OctreeNode::Inner { .. } => 0,
-            });
-            ("octree", counts.collect())
-        }
-        Structure::KdTree(tree) => {
-            let counts = tree.nodes.iter().map(|node| match node {
-                KdNode::Leaf { count, .. } => *count as usize,
-                KdNode::Inner { .. } => 0,
-            });
-            ("kd-tree", counts.collect())
-        }
-        Structure::Bsp { tree, .. } => {
-            let counts = tree.nodes.iter().map(|node| match node {
-                BspNode::Leaf { count, .. } => *count as usize,
-                BspNode::Inner { .. } => 0,
-            });
-            ("BSP tree", counts.collect())
-        }
-        Structure::PolygonBsp { tree, .. } => {
-            let counts = tree.nodes.iter().map(|node| match node {
-                PolygonBspNode::Leaf { count, .. } => *count as usize,
-                PolygonBspNode::Inner { .. } => 0,
-            });
-            ("BSP tree of polygons", counts.collect())
-        }
+    fn counts<N: TreeNode>(tree: &Tree<N>) -> Vec<usize> {
+        // A polygon that lies in an inner node is listed by no leaf.
+        let is_leaf = |node: &&N| node.children().is_empty();
+        let leaves = tree.nodes.iter().filter(is_leaf);
+        leaves.filter_map(|leaf| Some(leaf.range()?.1 as usize)).collect()
+    }
+    let (name, counts) = match structure {
+        Structure::Octree { tree, .. } => ("octree", counts(tree)),
+        Structure::KdTree(tree) => ("kd-tree", counts(tree)),
+        Structure::Bsp { tree, .. } => ("BSP tree", counts(tree)),
+        Structure::PolygonBsp { tree, .. } => ("BSP tree of polygons", counts(tree)),
         _ => return None,
     };
     let in_large: usize = counts.iter().filter(|&&count| count > LARGE * leaf_size).sum();

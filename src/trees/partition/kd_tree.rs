@@ -1,6 +1,6 @@
 //! The kd-tree as data: binary space partitioning by planes across the axes.
 
-use super::{Cell, check_depth, limit, walk};
+use super::{Cell, CellTree, Tree, TreeNode};
 use crate::aabb::Aabb;
 use serde::{Deserialize, Serialize};
 
@@ -59,30 +59,43 @@ pub enum KdNode {
     },
     /// A leaf with the primitives `items[first..first + count]`.
     Leaf {
-        /// The index in [`KdTree::items`] of the leaf's first primitive.
+        /// The index in [`Tree::items`] of the leaf's first primitive.
         first: u32,
         /// The number of primitives in the leaf, which may be 0.
         count: u32,
     },
 }
 
-/// Cells that planes across the axes divide in two. Node 0 is the root, whose cell is `bounds`. A tree over
-/// no primitives has no nodes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct KdTree {
-    /// The cell of the root, in world units; it contains all primitives that can be hit.
-    pub bounds: Aabb,
-    /// All nodes. A parent has a smaller index than its children.
-    pub nodes: Vec<KdNode>,
-    /// The numbers of primitives, those of a leaf adjacent. A primitive is listed in every leaf that it
-    /// overlaps.
-    pub items: Vec<u32>,
+impl TreeNode for KdNode {
+    type Region = Cell;
+
+    fn leaf(first: u32, count: u32) -> Self {
+        KdNode::Leaf { first, count }
+    }
+
+    fn range(&self) -> Option<(u32, u32)> {
+        if let KdNode::Leaf { first, count } = *self { Some((first, count)) } else { None }
+    }
+
+    fn children(&self) -> Vec<u32> {
+        if let KdNode::Inner { left, right, .. } = *self { vec![left, right] } else { Vec::new() }
+    }
+
+    fn divide(&self, cell: &Cell) -> Vec<Cell> {
+        match *self {
+            KdNode::Inner { axis, at, .. } => cell.cut(usize::from(axis), f64::from(at)).into(),
+            KdNode::Leaf { .. } => Vec::new(),
+        }
+    }
 }
+
+/// Cells that planes across the axes divide in two.
+pub type KdTree = CellTree<KdNode>;
 
 impl KdTree {
     /// A tree without nodes over the cell `bounds`, to which a builder adds the root first.
     pub fn new(bounds: Aabb) -> Self {
-        KdTree { bounds, nodes: Vec::new(), items: Vec::new() }
+        KdTree { bounds, tree: Tree::default() }
     }
 
     /// The greatest depth of a tree over `n_primitives` primitives, where the root has depth 0:
@@ -90,34 +103,6 @@ impl KdTree {
     /// Algorithms", 2000). No primitives count as one.
     pub fn most_depth(n_primitives: usize) -> usize {
         8 + (1.3 * (n_primitives.max(1) as f64).log2()) as usize
-    }
-
-    /// Adds a node at `depth` (the root has depth 0) and returns its index. It is a leaf without primitives
-    /// until [`KdTree::set_leaf`] or [`KdTree::set_children`] changes it.
-    ///
-    /// # Panics
-    ///
-    /// If `depth` is above `max_depth`. Then the recursion would never end.
-    #[track_caller]
-    pub fn add_node(&mut self, depth: usize, max_depth: usize) -> u32 {
-        check_depth(depth, max_depth);
-        self.nodes.push(KdNode::Leaf { first: 0, count: 0 });
-        self.nodes.len() as u32 - 1
-    }
-
-    /// Makes `node` a leaf with `primitives`: appends their numbers to [`KdTree::items`]. Call it once per
-    /// leaf.
-    ///
-    /// # Panics
-    ///
-    /// If there is no node with the index `node`. In frames and checks also if the leaves list more than
-    /// [`MOST_REFERENCES`](super::MOST_REFERENCES) references per primitive.
-    #[track_caller]
-    pub fn set_leaf(&mut self, node: u32, primitives: &[u32]) {
-        limit::count(primitives.len());
-        let first = self.items.len() as u32;
-        self.items.extend(primitives);
-        self.nodes[node as usize] = KdNode::Leaf { first, count: primitives.len() as u32 };
     }
 
     /// Makes `node` an inner node with the children `left` and `right` of the plane at `at` (world units)
@@ -128,56 +113,5 @@ impl KdTree {
     /// If there is no node with the index `node`. The axis and the two children are not checked.
     pub fn set_children(&mut self, node: u32, axis: usize, at: f32, left: u32, right: u32) {
         self.nodes[node as usize] = KdNode::Inner { axis: axis as u8, at, left, right };
-    }
-
-    /// The numbers of the primitives of a leaf, `items[first..first + count]`.
-    ///
-    /// # Panics
-    ///
-    /// If the range does not lie in [`KdTree::items`].
-    pub fn primitives(&self, first: u32, count: u32) -> &[u32] {
-        &self.items[first as usize..(first + count) as usize]
-    }
-
-    /// The number of nodes on the longest path from the root to a leaf, both counted; 0 if there are no
-    /// nodes.
-    ///
-    /// # Panics
-    ///
-    /// If a child's index is out of range, or an axis is above 2.
-    pub fn depth(&self) -> usize {
-        self.walk(usize::MAX, |_, _, _| {})
-    }
-
-    /// The cells at `depth` (the root has depth 0), and the leaves above it, as boxes for drawing.
-    ///
-    /// # Panics
-    ///
-    /// If a child's index is out of range, or an axis is above 2.
-    pub fn cells(&self, depth: usize) -> Vec<Aabb> {
-        let is_leaf = |node: u32| matches!(self.nodes[node as usize], KdNode::Leaf { .. });
-        let mut cells = Vec::new();
-        self.walk(depth, |node, cell, at| {
-            cells.extend((at == depth || is_leaf(node)).then(|| cell.to_box()));
-        });
-        cells
-    }
-
-    /// Calls `each` for all nodes down to depth `most` in depth-first order, with the index of the node, its
-    /// cell and its depth, and returns the number of levels that it reached.
-    ///
-    /// # Panics
-    ///
-    /// If a child's index is out of range, or an axis is above 2.
-    pub fn walk(&self, most: usize, mut each: impl FnMut(u32, Cell, usize)) -> usize {
-        let root = (!self.nodes.is_empty()).then(|| Cell::new(&self.bounds));
-        let below = |node: u32, cell: &Cell| match self.nodes[node as usize] {
-            KdNode::Inner { axis, at, left, right } => {
-                let [below, above] = cell.cut(usize::from(axis), f64::from(at));
-                vec![(left, below), (right, above)]
-            }
-            KdNode::Leaf { .. } => Vec::new(),
-        };
-        walk(root, most, below, |node, cell, depth| each(node, *cell, depth))
     }
 }

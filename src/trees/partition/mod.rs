@@ -1,7 +1,7 @@
 //! Partitions of space as data: cells, each with the numbers of the primitives that overlap it. Building and
 //! searching them are exercises of stage 9.
 //!
-//! `grid` · `octree` · `kd_tree` · `bsp` · `polygon_bsp` (with polygons in its nodes) · `planes` (of both BSP trees) ·
+//! `tree` (what all but the grid have in common) · `grid` · `octree` · `kd_tree` · `bsp` · `polygon_bsp` (with polygons in its nodes) · `planes` (of both BSP trees) ·
 //! `growth` (the bound on references) · `limit` (enforces it)
 
 pub mod bsp;
@@ -12,14 +12,16 @@ pub(crate) mod limit;
 pub mod octree;
 pub mod planes;
 pub mod polygon_bsp;
+pub mod tree;
 
 pub use bsp::{Bsp, BspNode};
 pub use grid::{Grid, MOST_CELLS_ALONG};
 pub use growth::{Growth, MOST_REFERENCES};
 pub use kd_tree::{KdHeuristics, KdNode, KdTree};
 pub use octree::{Octree, OctreeNode};
-pub use planes::CutPlane;
+pub use planes::{CutPlane, PlaneNode};
 pub use polygon_bsp::{PolygonBsp, PolygonBspNode};
+pub use tree::{CellTree, Tree, TreeNode};
 
 use crate::aabb::Aabb;
 use crate::ray::Ray;
@@ -116,36 +118,4 @@ pub fn corners(bounds: &Aabb) -> Vec<Vec3> {
         _ => bounds.max[axis],
     };
     (0..8).map(|corner| Vec3::new(pick(corner, 0), pick(corner, 1), pick(corner, 2))).collect()
-}
-
-/// Ends a recursion that would not end by itself: panics at a `depth` above `most`.
-#[track_caller]
-fn check_depth(depth: usize, most: usize) {
-    assert!(
-        depth <= most,
-        "a node at depth {depth} of a tree with at most depth {most}: does the recursion end?"
-    );
-}
-
-/// Visits a tree in depth-first order down to depth `most`: calls `each` with every node, its place and its
-/// depth, and returns the number of levels that it reached. `root` is the place of node 0, if there is one;
-/// `below` returns the children of a node with their places.
-fn walk<P>(
-    root: Option<P>,
-    most: usize,
-    below: impl Fn(u32, &P) -> Vec<(u32, P)>,
-    mut each: impl FnMut(u32, &P, usize),
-) -> usize {
-    let mut waiting: Vec<(u32, P, usize)> = root.into_iter().map(|place| (0, place, 0)).collect();
-    let mut levels = 0;
-    while let Some((node, place, depth)) = waiting.pop() {
-        each(node, &place, depth);
-        levels = levels.max(depth + 1);
-        if depth < most {
-            // Push the children in reverse order, because the last entry is visited first.
-            let children = below(node, &place).into_iter().rev();
-            waiting.extend(children.map(|(child, place)| (child, place, depth + 1)));
-        }
-    }
-    levels
 }

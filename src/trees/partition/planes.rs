@@ -1,6 +1,6 @@
 //! Planes that divide space, and what all trees of such planes have in common.
 
-use super::walk;
+use super::{Tree, TreeNode};
 use crate::aabb::Aabb;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -72,39 +72,43 @@ impl CutPlane {
     }
 }
 
-/// Calls `each` for all nodes of a tree of planes in depth-first order, with the index of the node, the planes above
-/// it and its depth, and returns the number of levels. Each plane comes with the side on which the node lies: 1 in
-/// front, -1 behind. `count` is the number of nodes; `inner` returns the plane of a node and its children behind and in
-/// front of the plane, or `None` for a leaf.
-pub(super) fn walk_planes(
-    count: usize,
-    inner: impl Fn(u32) -> Option<(CutPlane, [u32; 2])>,
-    mut each: impl FnMut(u32, &[(CutPlane, f64)], usize),
-) -> usize {
-    let root = (count > 0).then(Vec::new);
-    let below = |node: u32, above: &Vec<(CutPlane, f64)>| {
-        let Some((plane, children)) = inner(node) else { return Vec::new() };
-        let with = |side: f64| above.iter().copied().chain([(plane, side)]).collect();
-        children.into_iter().zip([-1.0, 1.0].map(with)).collect()
-    };
-    walk(root, usize::MAX, below, |node, above, depth| each(node, above, depth))
+/// A node that a plane divides. Its region is described by the planes above it, each with the side on which the node
+/// lies: 1 in front, -1 behind.
+pub trait PlaneNode: TreeNode<Region = Vec<(CutPlane, f64)>> {
+    /// The plane of an inner node; `None` for a leaf.
+    fn plane(&self) -> Option<CutPlane>;
 }
 
-/// The planes of the inner nodes above `depth` (the root has depth 0), each as the convex polygon to which the planes
-/// above it and the box `bounds` clip it. `count` and `inner` are those of [`walk_planes`].
-pub(super) fn polygons(
-    count: usize,
-    inner: impl Fn(u32) -> Option<(CutPlane, [u32; 2])>,
-    bounds: &Aabb,
-    depth: usize,
-) -> Vec<Vec<DVec3>> {
-    let mut polygons = Vec::new();
-    walk_planes(count, &inner, |node, above, at| {
-        if let Some((plane, _)) = inner(node)
-            && at < depth
-        {
-            polygons.extend(plane.clipped(bounds, above));
-        }
-    });
-    polygons
+/// The regions behind and in front of `plane`, below the planes `above`.
+pub(super) fn both_sides(above: &[(CutPlane, f64)], plane: CutPlane) -> Vec<Vec<(CutPlane, f64)>> {
+    [-1.0, 1.0].map(|side| above.iter().copied().chain([(plane, side)]).collect()).into()
+}
+
+impl<N: PlaneNode> Tree<N> {
+    /// Calls `each` for all nodes in depth-first order, with the index of the node, the planes above it and
+    /// its depth, and returns the number of levels. Each plane comes with the side on which the node lies: 1
+    /// in front, -1 behind.
+    ///
+    /// # Panics
+    ///
+    /// If a child's index is out of range.
+    pub fn walk(&self, mut each: impl FnMut(u32, &[(CutPlane, f64)], usize)) -> usize {
+        self.walk_from(Vec::new(), usize::MAX, |node, above, depth| each(node, above, depth))
+    }
+
+    /// The planes of the inner nodes above `depth` (the root has depth 0), each as the convex polygon to
+    /// which the planes above it and the box `bounds` clip it, in world units. Planes of which nothing is
+    /// left are not in the result.
+    ///
+    /// # Panics
+    ///
+    /// If a child's index is out of range.
+    pub fn polygons(&self, bounds: &Aabb, depth: usize) -> Vec<Vec<DVec3>> {
+        let mut polygons = Vec::new();
+        self.walk(|node, above, at| {
+            let plane = self.nodes[node as usize].plane().filter(|_| at < depth);
+            polygons.extend(plane.and_then(|plane| plane.clipped(bounds, above)));
+        });
+        polygons
+    }
 }

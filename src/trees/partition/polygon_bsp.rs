@@ -1,10 +1,9 @@
 //! The BSP tree of the lecture slide as data: its nodes hold the polygons that lie on their planes.
 
-use super::planes::{CutPlane, polygons, walk_planes};
-use super::{check_depth, limit};
-use crate::aabb::Aabb;
-use glam::DVec3;
+use super::planes::{CutPlane, PlaneNode, both_sides};
+use super::{Tree, TreeNode};
 use serde::{Deserialize, Serialize};
+use std::ops::{Deref, DerefMut};
 
 /// What a node of a [`PolygonBsp`] contains: a plane with the polygons on it and two child nodes, or a range of
 /// primitives.
@@ -14,7 +13,7 @@ pub enum PolygonBspNode {
     Inner {
         /// The plane that divides the region of the node.
         plane: CutPlane,
-        /// The index in [`PolygonBsp::items`] of the first polygon on the plane.
+        /// The index in [`Tree::items`] of the first polygon on the plane.
         first: u32,
         /// The number of polygons on the plane, which may be 0.
         count: u32,
@@ -25,119 +24,75 @@ pub enum PolygonBspNode {
     },
     /// A leaf with the primitives `items[first..first + count]`.
     Leaf {
-        /// The index in [`PolygonBsp::items`] of the leaf's first primitive.
+        /// The index in [`Tree::items`] of the leaf's first primitive.
         first: u32,
         /// The number of primitives in the leaf, which may be 0.
         count: u32,
     },
 }
 
-/// A binary space partition with polygons in its nodes. Node 0 is the root, whose region is all of space. A tree
-/// over no primitives has no nodes.
+impl TreeNode for PolygonBspNode {
+    type Region = Vec<(CutPlane, f64)>;
+
+    fn leaf(first: u32, count: u32) -> Self {
+        PolygonBspNode::Leaf { first, count }
+    }
+
+    fn range(&self) -> Option<(u32, u32)> {
+        let (PolygonBspNode::Leaf { first, count } | PolygonBspNode::Inner { first, count, .. }) = *self;
+        Some((first, count))
+    }
+
+    fn children(&self) -> Vec<u32> {
+        if let PolygonBspNode::Inner { back, front, .. } = *self { vec![back, front] } else { Vec::new() }
+    }
+
+    fn divide(&self, above: &Vec<(CutPlane, f64)>) -> Vec<Vec<(CutPlane, f64)>> {
+        self.plane().map_or(Vec::new(), |plane| both_sides(above, plane))
+    }
+}
+
+impl PlaneNode for PolygonBspNode {
+    fn plane(&self) -> Option<CutPlane> {
+        if let PolygonBspNode::Inner { plane, .. } = *self { Some(plane) } else { None }
+    }
+}
+
+/// A binary space partition with polygons in its nodes. The root's region is all of space. A polygon is listed in each
+/// node on whose plane one of its parts lies; a primitive that is no polygon is listed in every leaf that it overlaps.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PolygonBsp {
-    /// All nodes. A parent has a smaller index than its children.
-    pub nodes: Vec<PolygonBspNode>,
-    /// The numbers of primitives, those of a node adjacent. A polygon is listed in each node on whose plane one
-    /// of its parts lies; a primitive that is no polygon is listed in every leaf that it overlaps.
-    pub items: Vec<u32>,
+    /// The nodes and the primitives that they list.
+    pub tree: Tree<PolygonBspNode>,
     /// The distance from a plane, in world units and at least 0, within which points count as points of the plane.
     /// A polygon in front of a plane may extend behind it by this distance.
     pub room: f64,
 }
 
+impl Deref for PolygonBsp {
+    type Target = Tree<PolygonBspNode>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.tree
+    }
+}
+
+impl DerefMut for PolygonBsp {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.tree
+    }
+}
+
 impl PolygonBsp {
-    /// Adds a node at `depth` (the root has depth 0) and returns its index. It is a leaf without primitives
-    /// until [`PolygonBsp::set_leaf`] or [`PolygonBsp::set_children`] changes it.
-    ///
-    /// # Panics
-    ///
-    /// If `depth` is above `max_depth`. Then the recursion would never end.
-    #[track_caller]
-    pub fn add_node(&mut self, depth: usize, max_depth: usize) -> u32 {
-        check_depth(depth, max_depth);
-        self.nodes.push(PolygonBspNode::Leaf { first: 0, count: 0 });
-        self.nodes.len() as u32 - 1
-    }
-
-    /// Makes `node` a leaf with `primitives`: appends their numbers to [`PolygonBsp::items`]. Call it once per
-    /// leaf.
-    ///
-    /// # Panics
-    ///
-    /// If there is no node with the index `node`. In frames and checks also if all nodes list more than
-    /// [`MOST_REFERENCES`](super::MOST_REFERENCES) references per primitive.
-    #[track_caller]
-    pub fn set_leaf(&mut self, node: u32, primitives: &[u32]) {
-        let (first, count) = self.append(primitives);
-        self.nodes[node as usize] = PolygonBspNode::Leaf { first, count };
-    }
-
     /// Makes `node` an inner node with the polygons `on_plane` and the children `back` and `front` of `plane`:
-    /// appends the numbers of the polygons to [`PolygonBsp::items`]. Call it once per node.
+    /// appends the numbers of the polygons to [`Tree::items`]. Call it once per node.
     ///
     /// # Panics
     ///
-    /// As [`PolygonBsp::set_leaf`]. The two children are not checked.
+    /// As [`Tree::set_leaf`]. The two children are not checked.
     #[track_caller]
     pub fn set_children(&mut self, node: u32, plane: CutPlane, on_plane: &[u32], back: u32, front: u32) {
         let (first, count) = self.append(on_plane);
         self.nodes[node as usize] = PolygonBspNode::Inner { plane, first, count, back, front };
-    }
-
-    #[track_caller]
-    fn append(&mut self, primitives: &[u32]) -> (u32, u32) {
-        limit::count(primitives.len());
-        let first = self.items.len() as u32;
-        self.items.extend(primitives);
-        (first, primitives.len() as u32)
-    }
-
-    /// The numbers of the primitives of a node, `items[first..first + count]`.
-    ///
-    /// # Panics
-    ///
-    /// If the range does not lie in [`PolygonBsp::items`].
-    pub fn primitives(&self, first: u32, count: u32) -> &[u32] {
-        &self.items[first as usize..(first + count) as usize]
-    }
-
-    /// The number of nodes on the longest path from the root to a leaf, both counted; 0 if there are no
-    /// nodes.
-    ///
-    /// # Panics
-    ///
-    /// If a child's index is out of range.
-    pub fn depth(&self) -> usize {
-        self.walk(|_, _, _| {})
-    }
-
-    /// The planes of the inner nodes above `depth` (the root has depth 0), each as the convex polygon to
-    /// which the planes above it and the box `bounds` clip it, in world units. Planes of which nothing is
-    /// left are not in the result.
-    ///
-    /// # Panics
-    ///
-    /// If a child's index is out of range.
-    pub fn polygons(&self, bounds: &Aabb, depth: usize) -> Vec<Vec<DVec3>> {
-        polygons(self.nodes.len(), |node| self.inner(node), bounds, depth)
-    }
-
-    /// Calls `each` for all nodes in depth-first order, with the index of the node, the planes above it and
-    /// its depth, and returns the number of levels. Each plane comes with the side on which the node lies: 1
-    /// in front, -1 behind.
-    ///
-    /// # Panics
-    ///
-    /// If a child's index is out of range.
-    pub fn walk(&self, each: impl FnMut(u32, &[(CutPlane, f64)], usize)) -> usize {
-        walk_planes(self.nodes.len(), |node| self.inner(node), each)
-    }
-    /// The plane of an inner node and its children behind and in front of the plane; `None` for a leaf.
-    fn inner(&self, node: u32) -> Option<(CutPlane, [u32; 2])> {
-        match self.nodes[node as usize] {
-            PolygonBspNode::Inner { plane, back, front, .. } => Some((plane, [back, front])),
-            PolygonBspNode::Leaf { .. } => None,
-        }
     }
 }

@@ -4,7 +4,8 @@
 use super::Symmetry;
 use glam::{UVec3, uvec3};
 use raykata::partition::{
-    Bsp, BspNode, CutPlane, Grid, KdNode, KdTree, Octree, OctreeNode, PolygonBsp, PolygonBspNode,
+    Bsp, BspNode, CellTree, CutPlane, Grid, KdNode, KdTree, Octree, OctreeNode, PolygonBsp, PolygonBspNode,
+    Tree,
 };
 
 /// A structure that is turned, and the number of each of its cells before: `numbers[new] = old`.
@@ -53,6 +54,12 @@ impl Symmetry {
     }
 }
 
+/// A tree with turned nodes, in a turned cell.
+fn turned_tree<N>(tree: &CellTree<N>, nodes: Vec<N>, symmetry: &Symmetry) -> CellTree<N> {
+    let bounds = symmetry.bounds(&tree.bounds);
+    CellTree { bounds, tree: Tree { nodes, items: tree.items.clone() } }
+}
+
 impl Cells for Octree {
     fn turned(&self, symmetry: &Symmetry) -> (Self, Vec<u32>) {
         let mut numbers = same(self.nodes.len());
@@ -65,7 +72,7 @@ impl Cells for Octree {
         let node = |before: &u32| self.nodes.get(*before as usize).copied();
         let empty = OctreeNode::Leaf { first: 0, count: 0 };
         let nodes = numbers.iter().map(|before| node(before).unwrap_or(empty)).collect();
-        (Octree { bounds: symmetry.bounds(&self.bounds), nodes, items: self.items.clone() }, numbers)
+        (turned_tree(self, nodes, symmetry), numbers)
     }
 }
 
@@ -82,7 +89,7 @@ impl Cells for KdTree {
         };
         let nodes: Vec<KdNode> = self.nodes.iter().map(turn).collect();
         let numbers = same(nodes.len());
-        (KdTree { bounds: symmetry.bounds(&self.bounds), nodes, items: self.items.clone() }, numbers)
+        (turned_tree(self, nodes, symmetry), numbers)
     }
 }
 
@@ -103,7 +110,7 @@ impl Cells for PolygonBsp {
         let nodes: Vec<PolygonBspNode> = self.nodes.iter().map(turn).collect();
         let numbers = same(nodes.len());
         let room = f64::from(symmetry.scale) * self.room;
-        (PolygonBsp { nodes, items: self.items.clone(), room }, numbers)
+        (PolygonBsp { tree: Tree { nodes, items: self.items.clone() }, room }, numbers)
     }
 }
 

@@ -166,6 +166,6 @@ pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial
     let cells = bsp(&scene.hulls(), 8);
     let queries = queries(&cells, &scene, &rays);
     all_hold(compare(&queries, trial.kit.bsp_search(&queries), |query, yours| {
-        judge_visits("BSP tree over 64 spheres", query, &parts::of_bsp(&cells, &query.ray), &yours)
+        judge_visits("BSP tree over 64 spheres", query, &parts::of_planes(&cells, &query.ray), &yours)
     }))
 }

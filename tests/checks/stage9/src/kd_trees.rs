@@ -308,7 +308,7 @@ pub(super) fn kd_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<
     let queries = queries(&cells, &scene, &rays);
     let judge = |query: &CellsQuery<KdTree>, yours| {
         assert!(closest(&query.hits, &query.ray).is_some(), "each ray is aimed at a sphere");
-        judge_visits("kd-tree over 128 spheres", query, &parts::of_kd_tree(&cells, &query.ray), &yours)
+        judge_visits("kd-tree over 128 spheres", query, &parts::of_cells(&cells, &query.ray), &yours)
     };
     all_hold(compare(&queries, trial.kit.kd_search(&queries), judge))
 }

@@ -242,12 +242,12 @@ pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>
     let cells = octree(&scene.boxes(), 4);
     let queries = queries(&cells, &scene, &rays);
     all_hold(compare(&queries, trial.kit.octree_search(&queries), |query, yours| {
-        let parts = parts::of_octree(&cells, &query.ray);
+        let parts = parts::of_cells(&cells, &query.ray);
         judge_visits("octree over 128 spheres, from the root down", query, &parts, &yours)
     }))?;
     all_hold(compare(&queries, trial.kit.octree_by_cells(&queries), |query, yours| {
         // Judge the visits to leaves only: each way down to a leaf visits the nodes above it again.
-        let parts = parts::of_octree(&cells, &query.ray);
+        let parts = parts::of_cells(&cells, &query.ray);
         let leaves = parts::of_leaves(&cells, &parts);
         let visits = yours.visits.iter().copied().filter(|node| leaves.contains(node)).collect();
         judge_visits("octree over 128 spheres, cell by cell", query, &parts, &CellsAnswer { visits, ..yours })
@@ -260,7 +260,7 @@ pub(super) fn octree_by_neighbours_visits_no_node_again(trial: &Trial<'_>) -> Ch
     let cells = octree(&scene.boxes(), 4);
     let queries = queries(&cells, &scene, &rays);
     all_hold(compare(&queries, trial.kit.octree_by_neighbours(&queries), |query, yours| {
-        let parts = parts::of_octree(&cells, &query.ray);
+        let parts = parts::of_cells(&cells, &query.ray);
         let input = "octree over 128 spheres, by neighbours";
         // A search that returns to the root visits the root once per leaf.
         let returns = yours.visits.iter().filter(|visit| **visit == 0).count();

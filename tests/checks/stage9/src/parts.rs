@@ -6,7 +6,8 @@ use checks::double::box_interval;
 use glam::uvec3;
 use raykata::aabb::Aabb;
 use raykata::partition::{
-    Bsp, BspNode, Cell, CutPlane, Grid, KdNode, KdTree, Octree, OctreeNode, PolygonBsp, PolygonBspNode,
+    Bsp, BspNode, Cell, CellTree, CutPlane, Grid, KdTree, Octree, OctreeNode, PlaneNode, PolygonBsp,
+    PolygonBspNode, Tree, TreeNode,
 };
 use raykata::ray::Ray;
 
@@ -82,24 +83,26 @@ impl Structure for Grid {
     }
 }
 
+/// The leaves of a tree of cells that a ray enters.
+fn leaves_of_cells<N: TreeNode<Region = Cell>>(tree: &CellTree<N>, ray: &Ray) -> Vec<Leaf> {
+    let mut leaves = Vec::new();
+    tree.walk(usize::MAX, |node, cell, _| {
+        if tree.nodes[node as usize].children().is_empty()
+            && let Some((enter, exit)) = exactly(ray, &cell)
+        {
+            leaves.push(Leaf { enter, exit, ids: tree.listed(node).to_vec() });
+        }
+    });
+    in_order(leaves)
+}
+
 impl Structure for Octree {
     fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        let mut leaves = Vec::new();
-        self.walk(usize::MAX, |node, cell, _| {
-            if let OctreeNode::Leaf { first, count } = self.nodes[node as usize]
-                && let Some((enter, exit)) = exactly(ray, &cell)
-            {
-                leaves.push(Leaf { enter, exit, ids: self.primitives(first, count).to_vec() });
-            }
-        });
-        in_order(leaves)
+        leaves_of_cells(self, ray)
     }
 
     fn listed(&self, node: u32) -> &[u32] {
-        match self.nodes[node as usize] {
-            OctreeNode::Leaf { first, count } => self.primitives(first, count),
-            OctreeNode::Inner { .. } => &[],
-        }
+        Tree::listed(self, node)
     }
 
     fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
@@ -109,22 +112,11 @@ impl Structure for Octree {
 
 impl Structure for KdTree {
     fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        let mut leaves = Vec::new();
-        self.walk(usize::MAX, |node, cell, _| {
-            if let KdNode::Leaf { first, count } = self.nodes[node as usize]
-                && let Some((enter, exit)) = exactly(ray, &cell)
-            {
-                leaves.push(Leaf { enter, exit, ids: self.primitives(first, count).to_vec() });
-            }
-        });
-        in_order(leaves)
+        leaves_of_cells(self, ray)
     }
 
     fn listed(&self, node: u32) -> &[u32] {
-        match self.nodes[node as usize] {
-            KdNode::Leaf { first, count } => self.primitives(first, count),
-            KdNode::Inner { .. } => &[],
-        }
+        Tree::listed(self, node)
     }
 
     fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
@@ -148,10 +140,7 @@ impl Structure for Bsp {
     }
 
     fn listed(&self, node: u32) -> &[u32] {
-        match self.nodes[node as usize] {
-            BspNode::Leaf { first, count } => self.primitives(first, count),
-            BspNode::Inner { .. } => &[],
-        }
+        Tree::listed(self, node)
     }
 
     fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
@@ -187,11 +176,7 @@ impl Structure for PolygonBsp {
     }
 
     fn listed(&self, node: u32) -> &[u32] {
-        match self.nodes[node as usize] {
-            PolygonBspNode::Leaf { first, count } | PolygonBspNode::Inner { first, count, .. } => {
-                self.primitives(first, count)
-            }
-        }
+        Tree::listed(self, node)
     }
 
     fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
@@ -221,9 +206,9 @@ pub(super) fn inside_grid(grid: &Grid, ray: &Ray) -> Parts {
     numbered(grid).filter_map(|(i, cell)| inside(&cell).map(|(near, far)| (i, near, far))).collect()
 }
 
-pub(super) fn of_octree(octree: &Octree, ray: &Ray) -> Parts {
+pub(super) fn of_cells<N: TreeNode<Region = Cell>>(tree: &CellTree<N>, ray: &Ray) -> Parts {
     let mut parts = Vec::new();
-    octree.walk(usize::MAX, |node, cell, _| {
+    tree.walk(usize::MAX, |node, cell, _| {
         parts.extend(part(ray, &cell).map(|(near, far)| (node, near, far)))
     });
     parts
@@ -234,26 +219,7 @@ pub(super) fn of_leaves(octree: &Octree, parts: &Parts) -> Vec<u32> {
     parts.iter().map(|(node, ..)| *node).filter(|&node| is_leaf(node)).collect()
 }
 
-pub(super) fn of_kd_tree(tree: &KdTree, ray: &Ray) -> Parts {
-    let mut parts = Vec::new();
-    tree.walk(usize::MAX, |node, cell, _| {
-        parts.extend(part(ray, &cell).map(|(near, far)| (node, near, far)))
-    });
-    parts
-}
-
-pub(super) fn of_bsp(bsp: &Bsp, ray: &Ray) -> Parts {
-    let mut parts = Vec::new();
-    bsp.walk(|node, above, _| {
-        let (enter, exit) = part_in(ray, above);
-        if enter <= exit {
-            parts.push((node, enter, exit));
-        }
-    });
-    parts
-}
-
-pub(super) fn of_polygon_bsp(bsp: &PolygonBsp, ray: &Ray) -> Parts {
+pub(super) fn of_planes<N: PlaneNode>(bsp: &Tree<N>, ray: &Ray) -> Parts {
     let mut parts = Vec::new();
     bsp.walk(|node, above, _| {
         let (enter, exit) = part_in(ray, above);

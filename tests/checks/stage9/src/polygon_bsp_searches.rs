@@ -131,7 +131,7 @@ pub(super) fn polygon_bsp_visits_what_the_ray_enters_before_its_hit(trial: &Tria
     let cells = polygon_bsp(&scene.hulls(), 8);
     let queries = queries(&cells, &scene, &rays);
     all_hold(compare(&queries, trial.kit.polygon_bsp_search(&queries), |query, yours| {
-        let parts = parts::of_polygon_bsp(&cells, &query.ray);
+        let parts = parts::of_planes(&cells, &query.ray);
         judge_visits("BSP tree over 64 spheres and 32 triangles", query, &parts, &yours)?;
         judge_tests(query, &yours)
     }))

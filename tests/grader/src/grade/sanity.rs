@@ -4,69 +4,26 @@
 use raykata::bvh::Contents;
 use raykata::count::Counts;
 use raykata::kit::{Answer, SearchAnswer};
-use raykata::partition::{BspNode, Grid, KdNode, OctreeNode, PolygonBspNode};
+use raykata::partition::{Grid, Tree, TreeNode};
 
 /// Deepest allowed tree, in levels. The checks recurse over trees and print them with one indent per level. The deepest
 /// tree that a check needs has 24 levels. A builder that splits off one primitive per level makes up to 512.
 const DEEPEST: usize = 2_000;
-
-/// A node of any kind of tree.
-enum Node {
-    Inner(Vec<u32>),
-    /// The start and the length of its list.
-    Leaf(u32, u32),
-}
 
 /// Describes the first malformed structure of an answer.
 pub fn fault(answer: &Answer) -> Option<String> {
     match answer {
         Answer::Build(trees) => trees.iter().find_map(|tree| {
             let node = |index: usize| match tree.nodes[index].contents {
-                Contents::Inner { left, right } => Node::Inner(vec![left, right]),
-                Contents::Leaf { first, count } => Node::Leaf(first, count),
+                Contents::Inner { left, right } => (vec![left, right], None),
+                Contents::Leaf { first, count } => (Vec::new(), Some((first, count))),
             };
-            fault_of_tree(tree.nodes.len(), tree.order.len(), node)
+            fault_of_nodes(tree.nodes.len(), tree.order.len(), node)
         }),
-        Answer::KdBuild(trees) => trees.iter().find_map(|tree| {
-            let node = |index: usize| match tree.nodes[index] {
-                KdNode::Inner { left, right, .. } => Node::Inner(vec![left, right]),
-                KdNode::Leaf { first, count } => Node::Leaf(first, count),
-            };
-            fault_of_tree(tree.nodes.len(), tree.items.len(), node)
-        }),
-        Answer::OctreeBuild(trees) => trees.iter().find_map(|tree| {
-            let node = |index: usize| match tree.nodes[index] {
-                OctreeNode::Inner { first } => {
-                    Node::Inner((0..8).map(|octant| first.saturating_add(octant)).collect())
-                }
-                OctreeNode::Leaf { first, count } => Node::Leaf(first, count),
-            };
-            fault_of_tree(tree.nodes.len(), tree.items.len(), node)
-        }),
-        Answer::BspBuild(trees) => trees.iter().find_map(|tree| {
-            let node = |index: usize| match tree.nodes[index] {
-                BspNode::Inner { back, front, .. } => Node::Inner(vec![back, front]),
-                BspNode::Leaf { first, count } => Node::Leaf(first, count),
-            };
-            fault_of_tree(tree.nodes.len(), tree.items.len(), node)
-        }),
-        Answer::PolygonBspBuild(trees) => trees.iter().find_map(|tree| {
-            let fault = |node: &PolygonBspNode| match *node {
-                // The polygons of an inner node are in `items` like the primitives of a leaf.
-                PolygonBspNode::Inner { first, count, .. } => (first as usize + count as usize
-                    > tree.items.len())
-                .then(|| {
-                    format!("a node of {count} polygons from item {first} on, of {} items", tree.items.len())
-                }),
-                PolygonBspNode::Leaf { .. } => None,
-            };
-            let node = |index: usize| match tree.nodes[index] {
-                PolygonBspNode::Inner { back, front, .. } => Node::Inner(vec![back, front]),
-                PolygonBspNode::Leaf { first, count } => Node::Leaf(first, count),
-            };
-            let of_tree = || fault_of_tree(tree.nodes.len(), tree.items.len(), node);
-            tree.nodes.iter().find_map(fault).or_else(of_tree)
-        }),
+        Answer::KdBuild(trees) => trees.iter().find_map(|tree| fault_of_tree(tree)),
+        Answer::OctreeBuild(trees) => trees.iter().find_map(|tree| fault_of_tree(tree)),
+        Answer::BspBuild(trees) => trees.iter().find_map(fault_of_tree),
+        Answer::PolygonBspBuild(trees) => trees.iter().find_map(|tree| fault_of_tree(tree)),
         Answer::GridBuild(grids) => grids.iter().find_map(fault_of_grid),
         Answer::ClosestHit(searches) | Answer::ClosestHitBoth(searches) => {
             searches.iter().find_map(fault_of_search)
@@ -76,7 +33,17 @@ pub fn fault(answer: &Answer) -> Option<String> {
     }
 }
 
-fn fault_of_tree(n_nodes: usize, n_items: usize, node: impl Fn(usize) -> Node) -> Option<String> {
+fn fault_of_tree<N: TreeNode>(tree: &Tree<N>) -> Option<String> {
+    let node = |index: usize| (tree.nodes[index].children(), tree.nodes[index].range());
+    fault_of_nodes(tree.nodes.len(), tree.items.len(), node)
+}
+
+/// `node` returns the children of a node, and the first position and the length of the list that it has, if any.
+fn fault_of_nodes(
+    n_nodes: usize,
+    n_items: usize,
+    node: impl Fn(usize) -> (Vec<u32>, Option<(u32, u32)>),
+) -> Option<String> {
     let mut reached = vec![false; n_nodes];
     let mut waiting = if n_nodes > 0 { vec![(0, 1)] } else { Vec::new() };
     // Traverse the tree without recursion. Each node must be reached once, within the depth limit.
@@ -89,17 +56,15 @@ fn fault_of_tree(n_nodes: usize, n_items: usize, node: impl Fn(usize) -> Node) -
         if depth > DEEPEST {
             return Some(format!("the tree has more than {DEEPEST} levels"));
         }
-        match node(index) {
-            Node::Inner(children) => {
-                waiting.extend(children.into_iter().map(|child| (child as usize, depth + 1)));
-            }
-            Node::Leaf(first, count) => {
-                let end = first as usize + count as usize;
-                if end > n_items {
-                    return Some(format!("leaf {index} ends at position {end} of a list of {n_items}"));
-                }
+        let (children, range) = node(index);
+        if let Some((first, count)) = range {
+            let end = first as usize + count as usize;
+            if end > n_items {
+                let kind = if children.is_empty() { "leaf" } else { "node" };
+                return Some(format!("{kind} {index} ends at position {end} of a list of {n_items}"));
             }
         }
+        waiting.extend(children.into_iter().map(|child| (child as usize, depth + 1)));
     }
     None
 }
@@ -131,6 +96,7 @@ mod tests {
     use super::*;
     use raykata::aabb::Aabb;
     use raykata::bvh::{Bvh, Node as BvhNode};
+    use raykata::partition::KdNode;
     use raykata::partition::KdTree;
 
     fn tree(children: &[Option<(u32, u32)>]) -> Answer {
