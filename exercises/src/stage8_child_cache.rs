@@ -6,7 +6,7 @@
 //! Given: [`Graph`]; [`ChildCache`] with `get` and `set`; [`Probe`] with `enter` and `hit`.
 
 use raykata::bvh::{PrimitiveHit, Probe};
-use raykata::graph::{ChildCache, Graph, Savings};
+use raykata::graph::{ChildCache, Graph, GraphOptimisations};
 use raykata::ray::Ray;
 
 /// Finds the closest hit of `ray` in a scene graph like `closest_hit_in_graph`, but visits first, in each node, the child
@@ -30,7 +30,7 @@ pub fn closest_hit_with_child_cache(
     graph: &Graph,
     probe: &mut impl Probe,
     ray: &Ray,
-    savings: Savings,
+    savings: GraphOptimisations,
     cache: &mut ChildCache,
 ) -> Option<PrimitiveHit> {
     todo!("visit the cached child first, then the others, and store the child with the closest hit")

@@ -9,7 +9,7 @@
 use glam::{Affine3A, DAffine3, Vec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::{PrimitiveHit, Probe};
-use raykata::graph::{Graph, Placement, Savings};
+use raykata::graph::{Graph, GraphOptimisations, Placement};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -108,7 +108,7 @@ pub fn closest_hit_in_graph(
     graph: &Graph,
     probe: &mut impl Probe,
     ray: &Ray,
-    savings: Savings,
+    savings: GraphOptimisations,
 ) -> Option<PrimitiveHit> {
     todo!("test the node's primitives, then visit the children as savings says")
 }

@@ -3,12 +3,12 @@
 //! Slides: "Binary Space Partition (BSP) Tree" (recursively partition space by planes; traverse nodes front-to-back).
 //!
 //! Given: [`Bsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance` and `across`;
-//! [`Growth`].
+//! [`ListGrowth`].
 
-use crate::stage9_cells::{ROUNDING, look_into, part_above, range, settled};
+use crate::stage9_cells::{ROUNDING, may_stop_before, part_above, range, test_cell};
 use glam::{DVec3, Vec3};
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Bsp, BspNode, Cells, CutPlane, Growth};
+use raykata::partition::{Bsp, BspNode, Cells, CutPlane, ListGrowth};
 use raykata::ray::Ray;
 
 /// Builds a BSP tree over hulls. A hull is the list of corners of a polygon, or the eight corners of a box.
@@ -17,7 +17,7 @@ use raykata::ray::Ray;
 /// centre, because the planes of a convex body do not divide it. Choose a plane that leaves few primitives on its
 /// fuller side, and few on both sides. Make a leaf if a node has at most `leaf_size` primitives, if it is at
 /// `max_depth` (the root is at depth 0), or if no plane leaves fewer primitives on each side and less than 60 % of them
-/// on both. Make a leaf also if [`Growth::divide`] returns `None`: all leaves together list at most
+/// on both. Make a leaf also if [`ListGrowth::divide`] returns `None`: all leaves together list at most
 /// [`MOST_REFERENCES`] references per primitive.
 ///
 /// List a primitive once in every leaf that it overlaps; a primitive that touches a plane is on both sides. Leave out

@@ -22,11 +22,11 @@ use raykata::rounding::UNIT_ROUNDOFF;
 /// `room_for_rounding_costs_next_to_no_visits` counts (solutions/tests/suite/partitions.rs).
 pub const ROUNDING: f64 = 16.0 * UNIT_ROUNDOFF as f64;
 
-/// Boxes for builders, each widened by some room for rounding.
-pub struct Widened {
-    /// The box around all widened boxes.
+/// Boxes for builders, each padded with some room for rounding.
+pub struct PaddedBoxes {
+    /// The box around all padded boxes.
     pub around: Aabb,
-    /// The number and the widened box of each primitive that a ray can hit.
+    /// The number and the padded box of each primitive that a ray can hit.
     pub boxes: Vec<(u32, Aabb)>,
 }
 
@@ -38,7 +38,7 @@ pub struct Widened {
 /// few floats. The result stays within ±`f32::MAX`.
 ///
 /// Pitfall: the extent of huge boxes overflows in single precision, and infinite corners give cells without a middle.
-pub fn widened(bounds: &[Aabb]) -> Widened {
+pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     todo!("leave out boxes that are empty or NaN, and widen every other box a little")
 }
 
@@ -88,7 +88,7 @@ pub fn range(ray: &Ray) -> (f64, f64) {
 /// Pitfall: if the ray ends exactly at the best hit, another primitive at the same `t` is not reported, because the
 /// range of a ray is open. End it one float above `t`.
 #[inline]
-pub fn look_into(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best: &mut Option<PrimitiveHit>) {
+pub fn test_cell(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best: &mut Option<PrimitiveHit>) {
     todo!("ask probe.hit about each primitive, and keep the closest; at one t the smaller number")
 }
 
@@ -100,6 +100,6 @@ pub fn look_into(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best
 ///
 /// Slide: "kd-Tree Traversal".
 #[inline]
-pub fn settled(best: &Option<PrimitiveHit>, entry: f64) -> bool {
+pub fn may_stop_before(best: &Option<PrimitiveHit>, entry: f64) -> bool {
     todo!("compare the best hit with the entry; leave room for rounding")
 }

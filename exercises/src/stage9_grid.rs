@@ -5,7 +5,7 @@
 //!
 //! Given: [`Grid`] with `plane` (the coordinate at which a cell begins), `number` and `primitives`.
 
-use crate::stage9_cells::{look_into, settled, span, widened};
+use crate::stage9_cells::{may_stop_before, padded_boxes, span, test_cell};
 use glam::{DVec3, UVec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;

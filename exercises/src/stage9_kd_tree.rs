@@ -2,18 +2,18 @@
 //!
 //! Slides: "Kd-Trees", "Heuristics" 1 to 5, "kd-Tree Traversal" with `t` and `t'`.
 //!
-//! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`; [`Growth`].
+//! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`; [`ListGrowth`].
 
-use crate::stage9_cells::{ROUNDING, look_into, part_above, settled, span, widened};
+use crate::stage9_cells::{ROUNDING, may_stop_before, padded_boxes, part_above, span, test_cell};
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Cell, Cells, Growth, KdHeuristics, KdNode, KdTree};
+use raykata::partition::{Cell, Cells, KdHeuristics, KdNode, KdTree, ListGrowth};
 use raykata::ray::Ray;
 
 /// Builds a kd-tree from the root down.
 ///
 /// Divide a node with more than `leaf_size` primitives, unless it is at depth [`KdTree::most_depth`] (the root is at
-/// depth 0), all primitives would be on both sides, or [`Growth::divide`] returns `None`: all leaves together list at
+/// depth 0), all primitives would be on both sides, or [`ListGrowth::divide`] returns `None`: all leaves together list at
 /// most [`MOST_REFERENCES`] references per primitive. A plane lies within its cell. List a primitive once in every leaf
 /// that its box touches; a primitive that touches a plane is on both sides. Leave out empty boxes and boxes with NaN.
 /// Without a usable box the tree has no nodes.

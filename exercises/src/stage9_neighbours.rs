@@ -5,7 +5,7 @@
 //!
 //! Given: [`Octree`]; [`Cell`] with `octant` and `middle`.
 
-use crate::stage9_cells::{look_into, settled, span};
+use crate::stage9_cells::{may_stop_before, span, test_cell};
 use glam::DVec3;
 use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, Octree, OctreeNode};

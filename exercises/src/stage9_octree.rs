@@ -3,20 +3,20 @@
 //! Slides: "Octree" (recursively subdivide box-shaped cells into 8 octants; trace rays through neighbor cells; "Or,
 //! check rays versus octree boxes hierarchically": sort eight boxes front-to-back at each level).
 //!
-//! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`; [`Growth`].
+//! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`; [`ListGrowth`].
 
-use crate::stage9_cells::{look_into, settled, span, widened};
+use crate::stage9_cells::{may_stop_before, padded_boxes, span, test_cell};
 use glam::DVec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Cell, Cells, Growth, Octree, OctreeNode};
+use raykata::partition::{Cell, Cells, ListGrowth, Octree, OctreeNode};
 use raykata::ray::Ray;
 
 /// Builds an octree: makes a cube of the box around all primitives, and divides every cell that holds more than
 /// `leaf_size` primitives into octants.
 ///
 /// Make a leaf if a cell holds at most `leaf_size` primitives, if it is at `max_depth` (the root is at depth 0), or if
-/// its octants together would hold more than three times as many primitives. Make a leaf also if [`Growth::divide`]
+/// its octants together would hold more than three times as many primitives. Make a leaf also if [`ListGrowth::divide`]
 /// returns `None`: all leaves together list at most [`MOST_REFERENCES`] references per primitive. List a primitive once
 /// in every leaf that its box touches. Leave out empty boxes and boxes with NaN. Without a usable box the tree has no
 /// nodes.

@@ -4,12 +4,12 @@
 //! partition plane"; "every part of every polygon lies on a partition plane"; `ComputeBSPIntersection`).
 //!
 //! Given: [`PolygonBsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance`, `across` and
-//! `keep`, which clips a polygon; [`Growth`].
+//! `keep`, which clips a polygon; [`ListGrowth`].
 
-use crate::stage9_cells::{ROUNDING, look_into, part_above, range, settled};
+use crate::stage9_cells::{ROUNDING, may_stop_before, part_above, range, test_cell};
 use glam::{DVec3, Vec3};
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Cells, CutPlane, Growth, PolygonBsp, PolygonBspNode};
+use raykata::partition::{Cells, CutPlane, ListGrowth, PolygonBsp, PolygonBspNode};
 use raykata::ray::Ray;
 
 /// Builds a BSP tree whose nodes hold the polygons on their planes.
@@ -26,7 +26,7 @@ use raykata::ray::Ray;
 ///
 /// Go on until every part of every polygon lies on the plane of a node that lists it, and until a leaf lists at most
 /// `leaf_size` solids or no plane divides its solids. Only at `max_depth` (the root is at depth 0), and where
-/// [`Growth::divide`] returns `None`, may a leaf list polygons. All nodes together list at most [`MOST_REFERENCES`]
+/// [`ListGrowth::divide`] returns `None`, may a leaf list polygons. All nodes together list at most [`MOST_REFERENCES`]
 /// references per primitive.
 ///
 /// Pitfall: the planes of the polygons of a convex body have all other polygons on one side. If no other plane is

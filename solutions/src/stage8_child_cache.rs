@@ -6,7 +6,7 @@
 //! Given: [`Graph`]; [`ChildCache`] with `get` and `set`; [`Probe`] with `enter` and `hit`.
 
 use raykata::bvh::{PrimitiveHit, Probe};
-use raykata::graph::{ChildCache, Graph, Savings};
+use raykata::graph::{ChildCache, Graph, GraphOptimisations};
 use raykata::ray::Ray;
 
 // <solution>
@@ -34,7 +34,7 @@ pub fn closest_hit_with_child_cache(
     graph: &Graph,
     probe: &mut impl Probe,
     ray: &Ray,
-    savings: Savings,
+    savings: GraphOptimisations,
     cache: &mut ChildCache,
 ) -> Option<PrimitiveHit> {
     // <solution>
@@ -51,7 +51,7 @@ pub fn closest_hit_with_child_cache(
 /// The state of a search.
 struct CachedSearch<'a> {
     graph: &'a Graph,
-    savings: Savings,
+    savings: GraphOptimisations,
     cache: &'a mut ChildCache,
     /// The ray. With `skip`, its range ends one float beyond the closest hit.
     ray: Ray,

@@ -9,7 +9,7 @@
 use glam::{Affine3A, DAffine3, Vec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::{PrimitiveHit, Probe};
-use raykata::graph::{Graph, Placement, Savings};
+use raykata::graph::{Graph, GraphOptimisations, Placement};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -194,7 +194,7 @@ pub fn closest_hit_in_graph(
     graph: &Graph,
     probe: &mut impl Probe,
     ray: &Ray,
-    savings: Savings,
+    savings: GraphOptimisations,
 ) -> Option<PrimitiveHit> {
     // <solution>
     let mut search = GraphSearch { graph, savings, ray: *ray, closest: None };
@@ -210,7 +210,7 @@ pub fn closest_hit_in_graph(
 /// The state of a search.
 struct GraphSearch<'a> {
     graph: &'a Graph,
-    savings: Savings,
+    savings: GraphOptimisations,
     /// The ray. With `skip`, its range ends one float beyond the closest hit.
     ray: Ray,
     closest: Option<PrimitiveHit>,

@@ -3,15 +3,15 @@
 //! Slides: "Binary Space Partition (BSP) Tree" (recursively partition space by planes; traverse nodes front-to-back).
 //!
 //! Given: [`Bsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance` and `across`;
-//! [`Growth`].
+//! [`ListGrowth`].
 
 // <solution>
-use crate::stage9_cells::{look_into, near_and_far, range, settled};
-// <stub> use crate::stage9_cells::{ROUNDING, look_into, part_above, range, settled};
+use crate::stage9_cells::{may_stop_before, near_and_far, range, test_cell};
+// <stub> use crate::stage9_cells::{ROUNDING, may_stop_before, part_above, range, test_cell};
 // </solution>
 use glam::{DVec3, Vec3};
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Bsp, BspNode, Cells, CutPlane, Growth};
+use raykata::partition::{Bsp, BspNode, Cells, CutPlane, ListGrowth};
 use raykata::ray::Ray;
 
 /// Builds a BSP tree over hulls. A hull is the list of corners of a polygon, or the eight corners of a box.
@@ -20,7 +20,7 @@ use raykata::ray::Ray;
 /// centre, because the planes of a convex body do not divide it. Choose a plane that leaves few primitives on its
 /// fuller side, and few on both sides. Make a leaf if a node has at most `leaf_size` primitives, if it is at
 /// `max_depth` (the root is at depth 0), or if no plane leaves fewer primitives on each side and less than 60 % of them
-/// on both. Make a leaf also if [`Growth::divide`] returns `None`: all leaves together list at most
+/// on both. Make a leaf also if [`ListGrowth::divide`] returns `None`: all leaves together list at most
 /// [`MOST_REFERENCES`] references per primitive.
 ///
 /// List a primitive once in every leaf that it overlaps; a primitive that touches a plane is on both sides. Leave out
@@ -44,12 +44,8 @@ pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
 
     let mut bsp = Bsp::default();
     if !ids.is_empty() {
-        // Allow as much room for rounding as `widened`: 2⁻¹⁸ of the extent, and at least 2⁻²² of the largest
-        // coordinate.
-        let extent = (high - low).max_element() * (-18f64).exp2();
-        let room = extent.max(low.abs().max(high.abs()).max_element() * (-22f64).exp2());
-        let scene = Scene { hulls, room, leaf_size, max_depth };
-        divide(&mut bsp, &scene, &ids, (0, Growth::ROOT));
+        let scene = Scene { hulls, room: room(low, high), leaf_size, max_depth };
+        divide(&mut bsp, &scene, &ids, (0, ListGrowth::ROOT));
     }
     bsp
     // <stub> todo!("make a leaf if the primitives are few; else choose a plane and build both sides")
@@ -57,6 +53,30 @@ pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
 }
 
 // <solution>
+/// How far from a plane a corner still counts as on it, as much as `padded_boxes` allows for rounding: 2⁻¹⁸ of the extent from
+/// `low` to `high`, and at least 2⁻²² of the largest coordinate.
+pub(crate) fn room(low: DVec3, high: DVec3) -> f64 {
+    let extent = (high - low).max_element() * (-18f64).exp2();
+    extent.max(low.abs().max(high.abs()).max_element() * (-22f64).exp2())
+}
+
+/// The plane of the first corner of a polygon, with the polygon's normal; `None` if it has no area.
+pub(crate) fn newell_plane(corners: &[DVec3]) -> Option<CutPlane> {
+    // Compute the normal by Newell's method: the sum over the edges is twice the area times the normal, also if some
+    // corners lie in a line.
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    let doubled = edges.map(|(p, q)| (*p - corners[0]).cross(*q - corners[0])).sum::<DVec3>();
+    let normal = doubled.try_normalize()?;
+    Some(CutPlane { normal, offset: normal.dot(corners[0]) })
+}
+
+/// The plane across `axis` between the two middle ones of these centres.
+pub(crate) fn median_plane(axis: usize, mut centers: Vec<f64>) -> CutPlane {
+    centers.sort_by(f64::total_cmp);
+    let (p, q) = (centers[(centers.len() - 1) / 2], centers[centers.len() / 2]);
+    CutPlane::across(axis, 0.5 * (p + q))
+}
+
 struct Scene<'a> {
     hulls: &'a [Vec<Vec3>],
     room: f64,
@@ -76,13 +96,8 @@ impl Scene<'_> {
     /// The plane of a hull, if all its corners lie in one.
     fn plane_of(&self, id: u32) -> Option<CutPlane> {
         let hull: Vec<DVec3> = self.hulls[id as usize].iter().map(|corner| corner.as_dvec3()).collect();
-        // Compute the normal by Newell's method: the sum over the edges is twice the area times the normal, also if
-        // some corners lie in a line.
-        let next = hull.iter().cycle().skip(1);
-        let normal = hull.iter().zip(next).map(|(p, q)| (*p - hull[0]).cross(*q - hull[0])).sum::<DVec3>();
-        let normal = normal.try_normalize()?;
+        let plane = newell_plane(&hull)?;
         // Refuse a hull of which a corner lies off the plane.
-        let plane = CutPlane { normal, offset: normal.dot(hull[0]) };
         self.hulls[id as usize]
             .iter()
             .all(|corner| plane.distance(*corner).abs() <= self.room)
@@ -103,13 +118,9 @@ impl Scene<'_> {
             all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
         };
         let longest = (0..3).max_by(|&p, &q| extent(p).total_cmp(&extent(q)));
-        // Put the plane between the two middle centres.
         let across = longest.map(|axis| {
             let center = |id: u32| hull(id, axis).sum::<f64>() / self.hulls[id as usize].len() as f64;
-            let mut centers: Vec<f64> = ids.iter().map(|&id| center(id)).collect();
-            centers.sort_by(f64::total_cmp);
-            let (p, q) = (centers[(centers.len() - 1) / 2], centers[centers.len() / 2]);
-            CutPlane::across(axis, 0.5 * (p + q))
+            median_plane(axis, ids.iter().map(|&id| center(id)).collect())
         });
         of_polygons.chain(across).collect()
     }
@@ -131,7 +142,7 @@ impl Scene<'_> {
 /// --size 160x90 --spp 1 --only bsp` counts 214 visits per ray with 0, 107 with 8 and 45 with 30.
 const STRADDLER: usize = 30;
 
-fn divide(bsp: &mut Bsp, scene: &Scene<'_>, ids: &[u32], (depth, growth): (usize, Growth)) -> u32 {
+fn divide(bsp: &mut Bsp, scene: &Scene<'_>, ids: &[u32], (depth, growth): (usize, ListGrowth)) -> u32 {
     // Choose a plane, unless the node must be a leaf; then build both sides.
     let node = bsp.add_node(depth, scene.max_depth);
     let divided = ids.len() > scene.leaf_size && depth < scene.max_depth;
@@ -188,12 +199,12 @@ fn search(
     best: &mut Option<PrimitiveHit>,
 ) {
     // Stop if the best hit lies before this node.
-    if settled(best, part.0) {
+    if may_stop_before(best, part.0) {
         return;
     }
     probe.visit(node);
     match bsp.nodes[node as usize] {
-        BspNode::Leaf { first, count } => look_into(bsp.primitives(first, count), probe, ray, best),
+        BspNode::Leaf { first, count } => test_cell(bsp.primitives(first, count), probe, ray, best),
         BspNode::Inner { plane, back, front } => {
             // Find the part of the ray on each side, and search the nearer side first.
             let in_order = near_and_far(&plane, [back, front], 0.0, ray, part);

@@ -28,11 +28,11 @@ use raykata::partition::CutPlane;
 /// `room_for_rounding_costs_next_to_no_visits` counts (solutions/tests/suite/partitions.rs).
 pub const ROUNDING: f64 = 16.0 * UNIT_ROUNDOFF as f64;
 
-/// Boxes for builders, each widened by some room for rounding.
-pub struct Widened {
-    /// The box around all widened boxes.
+/// Boxes for builders, each padded with some room for rounding.
+pub struct PaddedBoxes {
+    /// The box around all padded boxes.
     pub around: Aabb,
-    /// The number and the widened box of each primitive that a ray can hit.
+    /// The number and the padded box of each primitive that a ray can hit.
     pub boxes: Vec<(u32, Aabb)>,
 }
 
@@ -44,7 +44,7 @@ pub struct Widened {
 /// few floats. The result stays within ±`f32::MAX`.
 ///
 /// Pitfall: the extent of huge boxes overflows in single precision, and infinite corners give cells without a middle.
-pub fn widened(bounds: &[Aabb]) -> Widened {
+pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     // <solution>
     // Compute the box around all boxes that are not empty.
     let usable = |(_, one): &(usize, &Aabb)| !one.is_empty();
@@ -65,7 +65,7 @@ pub fn widened(bounds: &[Aabb]) -> Widened {
     };
     let boxes: Vec<(u32, Aabb)> =
         bounds.iter().enumerate().filter(usable).map(|(id, one)| (id as u32, widen(one))).collect();
-    Widened { around: around(&mut boxes.iter().map(|(_, one)| one)), boxes }
+    PaddedBoxes { around: around(&mut boxes.iter().map(|(_, one)| one)), boxes }
     // <stub> todo!("leave out boxes that are empty or NaN, and widen every other box a little")
     // </solution>
 }
@@ -142,7 +142,7 @@ pub fn range(ray: &Ray) -> (f64, f64) {
 /// Pitfall: if the ray ends exactly at the best hit, another primitive at the same `t` is not reported, because the
 /// range of a ray is open. End it one float above `t`.
 #[inline]
-pub fn look_into(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best: &mut Option<PrimitiveHit>) {
+pub fn test_cell(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best: &mut Option<PrimitiveHit>) {
     // <solution>
     for &primitive in primitives {
         let Some(t) = probe.hit(primitive, ray) else { continue };
@@ -160,7 +160,7 @@ pub fn look_into(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best
 ///
 /// Slide: "kd-Tree Traversal".
 #[inline]
-pub fn settled(best: &Option<PrimitiveHit>, entry: f64) -> bool {
+pub fn may_stop_before(best: &Option<PrimitiveHit>, entry: f64) -> bool {
     // <solution>
     best.is_some_and(|best| {
         let t = f64::from(best.t);

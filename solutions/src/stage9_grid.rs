@@ -5,7 +5,7 @@
 //!
 //! Given: [`Grid`] with `plane` (the coordinate at which a cell begins), `number` and `primitives`.
 
-use crate::stage9_cells::{look_into, settled, span, widened};
+use crate::stage9_cells::{may_stop_before, padded_boxes, span, test_cell};
 use glam::{DVec3, UVec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
@@ -73,11 +73,11 @@ pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
 /// Slide: "Uniform Grid" (index primitives according to overlaps).
 pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
     // <solution>
-    let widened = widened(bounds);
+    let padded = padded_boxes(bounds);
     let resolution = resolution.max(UVec3::ONE);
     let n_cells: usize = resolution.to_array().into_iter().map(|n| n as usize).product();
     let mut grid =
-        Grid { bounds: widened.around, resolution, starts: vec![0; n_cells + 1], items: Vec::new() };
+        Grid { bounds: padded.around, resolution, starts: vec![0; n_cells + 1], items: Vec::new() };
 
     let each_cell = |grid: &Grid, one: &Aabb| -> Vec<u32> {
         let low = UVec3::from_array([0, 1, 2].map(|axis| index(grid, axis, f64::from(one.min[axis]))));
@@ -86,7 +86,7 @@ pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
         rows.flat_map(|(y, z)| (low.x..=high.x).map(move |x| grid.number(UVec3::new(x, y, z)))).collect()
     };
     // Count the entries of each cell.
-    for (_, one) in &widened.boxes {
+    for (_, one) in &padded.boxes {
         each_cell(&grid, one).into_iter().for_each(|cell| grid.starts[cell as usize] += 1);
     }
     // Turn the counts into the ends of the lists.
@@ -97,7 +97,7 @@ pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
     }
     // Fill the lists from their ends.
     grid.items = vec![0; sum as usize];
-    for (id, one) in widened.boxes.iter().rev() {
+    for (id, one) in padded.boxes.iter().rev() {
         for cell in each_cell(&grid, one) {
             grid.starts[cell as usize] -= 1;
             let start = grid.starts[cell as usize];
@@ -157,7 +157,7 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
         // Test the primitives of the cell.
         let number = grid.number(cell);
         probe.visit(number);
-        look_into(grid.primitives(number), probe, &mut ray, &mut best);
+        test_cell(grid.primitives(number), probe, &mut ray, &mut best);
 
         // Find the face through which the ray leaves the cell.
         let far = |axis: usize| grid.plane(axis, cell[axis] + u32::from(direction[axis] > 0.0));
@@ -165,7 +165,7 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
         // Stop at the end of the grid or of the ray, or if the best hit lies before the exit.
         let at_the_end =
             if direction[axis] > 0.0 { cell[axis] + 1 == grid.resolution[axis] } else { cell[axis] == 0 };
-        if exit.is_infinite() || exit > leave || at_the_end || settled(&best, exit) {
+        if exit.is_infinite() || exit > leave || at_the_end || may_stop_before(&best, exit) {
             return best;
         }
         // Step across the face.

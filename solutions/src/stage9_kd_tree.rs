@@ -2,18 +2,18 @@
 //!
 //! Slides: "Kd-Trees", "Heuristics" 1 to 5, "kd-Tree Traversal" with `t` and `t'`.
 //!
-//! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`; [`Growth`].
+//! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`; [`ListGrowth`].
 
-use crate::stage9_cells::{ROUNDING, look_into, part_above, settled, span, widened};
+use crate::stage9_cells::{ROUNDING, may_stop_before, padded_boxes, part_above, span, test_cell};
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Cell, Cells, Growth, KdHeuristics, KdNode, KdTree};
+use raykata::partition::{Cell, Cells, KdHeuristics, KdNode, KdTree, ListGrowth};
 use raykata::ray::Ray;
 
 /// Builds a kd-tree from the root down.
 ///
 /// Divide a node with more than `leaf_size` primitives, unless it is at depth [`KdTree::most_depth`] (the root is at
-/// depth 0), all primitives would be on both sides, or [`Growth::divide`] returns `None`: all leaves together list at
+/// depth 0), all primitives would be on both sides, or [`ListGrowth::divide`] returns `None`: all leaves together list at
 /// most [`MOST_REFERENCES`] references per primitive. A plane lies within its cell. List a primitive once in every leaf
 /// that its box touches; a primitive that touches a plane is on both sides. Leave out empty boxes and boxes with NaN.
 /// Without a usable box the tree has no nodes.
@@ -43,12 +43,12 @@ use raykata::ray::Ray;
 /// [`MOST_REFERENCES`]: raykata::partition::MOST_REFERENCES
 pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree {
     // <solution>
-    let widened = widened(bounds);
-    let mut tree = KdTree::new(widened.around);
-    if !widened.boxes.is_empty() {
-        let max_depth = KdTree::most_depth(widened.boxes.len());
+    let padded = padded_boxes(bounds);
+    let mut tree = KdTree::new(padded.around);
+    if !padded.boxes.is_empty() {
+        let max_depth = KdTree::most_depth(padded.boxes.len());
         let rules = Rules { heuristics: *heuristics, leaf_size, max_depth };
-        divide(&mut tree, &widened.boxes, widened.around, (0, Growth::ROOT), &rules);
+        divide(&mut tree, &padded.boxes, padded.around, (0, ListGrowth::ROOT), &rules);
     }
     tree
     // <stub> todo!("make a leaf if the primitives are few; else choose a plane and build both sides")
@@ -66,7 +66,7 @@ fn divide(
     tree: &mut KdTree,
     boxes: &[(u32, Aabb)],
     cell: Aabb,
-    (depth, growth): (usize, Growth),
+    (depth, growth): (usize, ListGrowth),
     rules: &Rules,
 ) -> u32 {
     // Choose a plane, unless the node must be a leaf.
@@ -234,12 +234,12 @@ fn search(
     best: &mut Option<PrimitiveHit>,
 ) {
     // Stop if the best hit lies before this node.
-    if settled(best, part.0) {
+    if may_stop_before(best, part.0) {
         return;
     }
     probe.visit(node);
     match tree.nodes[node as usize] {
-        KdNode::Leaf { first, count } => look_into(tree.primitives(first, count), probe, ray, best),
+        KdNode::Leaf { first, count } => test_cell(tree.primitives(first, count), probe, ray, best),
         KdNode::Inner { axis, at, left, right } => {
             // Compute the height of the origin above the plane, and its change per unit of t.
             let axis = usize::from(axis);

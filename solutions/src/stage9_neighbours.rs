@@ -5,7 +5,7 @@
 //!
 //! Given: [`Octree`]; [`Cell`] with `octant` and `middle`.
 
-use crate::stage9_cells::{look_into, settled, span};
+use crate::stage9_cells::{may_stop_before, span, test_cell};
 use glam::DVec3;
 use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, Octree, OctreeNode};
@@ -61,11 +61,11 @@ pub fn closest_hit_by_neighbours(octree: &Octree, probe: &mut impl Cells, ray: &
             }
         };
         // Test its primitives.
-        look_into(octree.primitives(first, count), probe, &mut ray, &mut best);
+        test_cell(octree.primitives(first, count), probe, &mut ray, &mut best);
         // Find the face through which the ray leaves the leaf. Stop at the end of the ray, or if the best hit lies before.
         let far = DVec3::select(direction.cmpgt(DVec3::ZERO), cell.max, cell.min);
         let Exit { axis, t: exit } = first_exit(origin, direction, far);
-        if exit.is_infinite() || exit > leave || settled(&best, exit) {
+        if exit.is_infinite() || exit > leave || may_stop_before(&best, exit) {
             break;
         }
         // Move the point to the exit, exactly on the face.

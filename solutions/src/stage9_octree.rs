@@ -3,13 +3,13 @@
 //! Slides: "Octree" (recursively subdivide box-shaped cells into 8 octants; trace rays through neighbor cells; "Or,
 //! check rays versus octree boxes hierarchically": sort eight boxes front-to-back at each level).
 //!
-//! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`; [`Growth`].
+//! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`; [`ListGrowth`].
 
-use crate::stage9_cells::{look_into, settled, span, widened};
+use crate::stage9_cells::{may_stop_before, padded_boxes, span, test_cell};
 use glam::DVec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Cell, Cells, Growth, Octree, OctreeNode};
+use raykata::partition::{Cell, Cells, ListGrowth, Octree, OctreeNode};
 use raykata::ray::Ray;
 
 // <solution>
@@ -20,7 +20,7 @@ use crate::stage9_cells::{Exit, first_exit};
 /// `leaf_size` primitives into octants.
 ///
 /// Make a leaf if a cell holds at most `leaf_size` primitives, if it is at `max_depth` (the root is at depth 0), or if
-/// its octants together would hold more than three times as many primitives. Make a leaf also if [`Growth::divide`]
+/// its octants together would hold more than three times as many primitives. Make a leaf also if [`ListGrowth::divide`]
 /// returns `None`: all leaves together list at most [`MOST_REFERENCES`] references per primitive. List a primitive once
 /// in every leaf that its box touches. Leave out empty boxes and boxes with NaN. Without a usable box the tree has no
 /// nodes.
@@ -33,19 +33,19 @@ use crate::stage9_cells::{Exit, first_exit};
 /// Slide: "Octree" (recursively subdivide box-shaped cells into 8 octants).
 pub fn build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree {
     // <solution>
-    let widened = widened(bounds);
-    if widened.boxes.is_empty() {
+    let padded = padded_boxes(bounds);
+    if padded.boxes.is_empty() {
         return Octree::empty();
     }
     // Extend the box to a cube from its lower corner: around its middle, a flat box would lie between the octants.
-    let around = widened.around;
+    let around = padded.around;
     let side = (around.max - around.min).max_element().min(f32::MAX);
     let mut cube = Aabb::new(around.min, (around.min + side).max(around.max));
     cube.max = cube.max.map(|x| x.min(f32::MAX));
 
     let mut octree = Octree::new(cube);
     let limits = LeafRule { leaf_size, max_depth };
-    divide(&mut octree, 0, &widened.boxes, Cell::new(&cube), (0, Growth::ROOT), &limits);
+    divide(&mut octree, 0, &padded.boxes, Cell::new(&cube), (0, ListGrowth::ROOT), &limits);
     octree
     // <stub> todo!("make a leaf if the primitives are few; else divide the cell and build all eight octants")
     // </solution>
@@ -62,7 +62,7 @@ fn divide(
     node: u32,
     boxes: &[(u32, Aabb)],
     cell: Cell,
-    (depth, growth): (usize, Growth),
+    (depth, growth): (usize, ListGrowth),
     limits: &LeafRule,
 ) {
     // List the boxes that touch each octant.
@@ -111,7 +111,7 @@ pub fn closest_hit_by_cells(octree: &Octree, probe: &mut impl Cells, ray: &Ray) 
     loop {
         // Test the primitives of the leaf that contains the point.
         let (first, count, cell) = leaf_at(octree, probe, point, direction);
-        look_into(octree.primitives(first, count), probe, &mut ray, &mut best);
+        test_cell(octree.primitives(first, count), probe, &mut ray, &mut best);
 
         // Find the face through which the ray leaves the leaf.
         let far = DVec3::select(direction.cmpgt(DVec3::ZERO), cell.max, cell.min);
@@ -119,7 +119,7 @@ pub fn closest_hit_by_cells(octree: &Octree, probe: &mut impl Cells, ray: &Ray) 
         let face = far[axis];
         // Stop at the end of the root cell or of the ray, or if the best hit lies before the exit.
         let outside = if direction[axis] > 0.0 { face == root.max[axis] } else { face == root.min[axis] };
-        if exit.is_infinite() || exit > leave || outside || settled(&best, exit) {
+        if exit.is_infinite() || exit > leave || outside || may_stop_before(&best, exit) {
             return best;
         }
         // Move the point to the exit, exactly on the face: a rounding error could put it back into the same cell.
@@ -201,7 +201,7 @@ fn search(
 ) {
     probe.visit(node);
     match octree.nodes[node as usize] {
-        OctreeNode::Leaf { first, count } => look_into(octree.primitives(first, count), probe, ray, best),
+        OctreeNode::Leaf { first, count } => test_cell(octree.primitives(first, count), probe, ray, best),
         OctreeNode::Inner { first } => {
             // Collect the octants that the ray enters.
             let mut entered = [Entered { t: 0.0, node: first, cell: *cell }; 8];
@@ -218,7 +218,7 @@ fn search(
             entered[..n_entered].sort_by(|p, q| p.t.total_cmp(&q.t));
             // Search them in this order, and stop where the best hit lies before an octant.
             for octant in &entered[..n_entered] {
-                if settled(best, octant.t) {
+                if may_stop_before(best, octant.t) {
                     break;
                 }
                 search(octree, octant.node, &octant.cell, probe, ray, best);

@@ -4,15 +4,16 @@
 //! partition plane"; "every part of every polygon lies on a partition plane"; `ComputeBSPIntersection`).
 //!
 //! Given: [`PolygonBsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance`, `across` and
-//! `keep`, which clips a polygon; [`Growth`].
+//! `keep`, which clips a polygon; [`ListGrowth`].
 
 // <solution>
-use crate::stage9_cells::{look_into, near_and_far, range, settled};
-// <stub> use crate::stage9_cells::{ROUNDING, look_into, part_above, range, settled};
+use crate::stage9_bsp::{median_plane, newell_plane, room};
+use crate::stage9_cells::{may_stop_before, near_and_far, range, test_cell};
+// <stub> use crate::stage9_cells::{ROUNDING, may_stop_before, part_above, range, test_cell};
 // </solution>
 use glam::{DVec3, Vec3};
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Cells, CutPlane, Growth, PolygonBsp, PolygonBspNode};
+use raykata::partition::{Cells, CutPlane, ListGrowth, PolygonBsp, PolygonBspNode};
 use raykata::ray::Ray;
 
 /// Builds a BSP tree whose nodes hold the polygons on their planes.
@@ -29,7 +30,7 @@ use raykata::ray::Ray;
 ///
 /// Go on until every part of every polygon lies on the plane of a node that lists it, and until a leaf lists at most
 /// `leaf_size` solids or no plane divides its solids. Only at `max_depth` (the root is at depth 0), and where
-/// [`Growth::divide`] returns `None`, may a leaf list polygons. All nodes together list at most [`MOST_REFERENCES`]
+/// [`ListGrowth::divide`] returns `None`, may a leaf list polygons. All nodes together list at most [`MOST_REFERENCES`]
 /// references per primitive.
 ///
 /// Pitfall: the planes of the polygons of a convex body have all other polygons on one side. If no other plane is
@@ -48,9 +49,7 @@ pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Polygon
     let corners = || hulls.iter().filter(|hull| usable(hull)).flatten().map(|corner| corner.as_dvec3());
     let low = corners().fold(DVec3::INFINITY, DVec3::min);
     let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
-    // Allow as much room for rounding as `widened`: 2⁻¹⁸ of the extent, and at least 2⁻²² of the largest coordinate.
-    let extent = (high - low).max_element() * (-18f64).exp2();
-    let room = extent.max(low.abs().max(high.abs()).max_element() * (-22f64).exp2());
+    let room = room(low, high);
 
     // Find the plane of each hull, and divide the hulls.
     let part = |id: u32| {
@@ -60,7 +59,7 @@ pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Polygon
     let parts: Vec<Part> = ids.map(part).collect();
     let mut bsp = PolygonBsp { room, ..PolygonBsp::default() };
     if !parts.is_empty() {
-        divide(&mut bsp, &Rules { room, leaf_size, max_depth }, parts, (0, Growth::ROOT));
+        divide(&mut bsp, &Rules { room, leaf_size, max_depth }, parts, (0, ListGrowth::ROOT));
     }
     bsp
     // <stub> todo!("choose a plane, list the polygons in it, split the polygons that cross it, and build both sides")
@@ -88,12 +87,8 @@ fn plane_of(corners: &[DVec3], room: f64) -> Option<CutPlane> {
     if !(3..8).contains(&corners.len()) {
         return None;
     }
-    // Compute the normal by Newell's method: the sum over the edges is twice the area times the normal.
-    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-    let doubled = edges.map(|(p, q)| (*p - corners[0]).cross(*q - corners[0])).sum::<DVec3>();
-    let normal = doubled.try_normalize()?;
     // Refuse corners that do not lie in one plane. Parts of the polygon are then within the whole room of it.
-    let plane = CutPlane { normal, offset: normal.dot(corners[0]) };
+    let plane = newell_plane(corners)?;
     let is_flat = corners.iter().all(|corner| 2.0 * height(&plane, *corner).abs() <= room);
     is_flat.then_some(plane)
 }
@@ -147,10 +142,8 @@ fn candidates(parts: &[Part]) -> Vec<CutPlane> {
     let high = corners().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     let axis = (high - low).max_position();
     let center = |part: &Part| part.corners.iter().map(|c| c[axis]).sum::<f64>() / part.corners.len() as f64;
-    let mut centers: Vec<f64> = parts.iter().map(center).collect();
-    centers.sort_by(f64::total_cmp);
-    let (p, q) = (centers[(centers.len() - 1) / 2], centers[centers.len() / 2]);
-    of_polygons.chain([CutPlane::across(axis, 0.5 * (p + q))]).collect()
+    let across = median_plane(axis, parts.iter().map(center).collect());
+    of_polygons.chain([across]).collect()
 }
 
 /// The plane that leaves the fewest parts on its fuller side, where each part on both sides counts as [`SPLIT`] more;
@@ -172,7 +165,12 @@ fn choose(parts: &[Part], room: f64) -> Option<(CutPlane, Counts)> {
 /// too deep.
 const SPLIT: usize = 8;
 
-fn divide(bsp: &mut PolygonBsp, rules: &Rules, parts: Vec<Part>, (depth, growth): (usize, Growth)) -> u32 {
+fn divide(
+    bsp: &mut PolygonBsp,
+    rules: &Rules,
+    parts: Vec<Part>,
+    (depth, growth): (usize, ListGrowth),
+) -> u32 {
     // Choose a plane, unless the node must be a leaf.
     let node = bsp.add_node(depth, rules.max_depth);
     let is_done = parts.len() <= rules.leaf_size && parts.iter().all(|part| part.plane.is_none());
@@ -255,12 +253,12 @@ fn search(
     best: &mut Option<PrimitiveHit>,
 ) {
     // Stop if the best hit lies before this node.
-    if settled(best, part.0) {
+    if may_stop_before(best, part.0) {
         return;
     }
     probe.visit(node);
     match bsp.nodes[node as usize] {
-        PolygonBspNode::Leaf { first, count } => look_into(bsp.primitives(first, count), probe, ray, best),
+        PolygonBspNode::Leaf { first, count } => test_cell(bsp.primitives(first, count), probe, ray, best),
         PolygonBspNode::Inner { plane, first, count, back, front } => {
             // Find the part of the ray on each side.
             let [near, far] = near_and_far(&plane, [back, front], bsp.room, ray, part);
@@ -270,9 +268,9 @@ fn search(
             }
             // 2. Test the polygons on the plane, if the ray comes to it before the best hit.
             if let (Some(_), Some((_, (reached, _)))) = (near, far)
-                && !settled(best, reached)
+                && !may_stop_before(best, reached)
             {
-                look_into(bsp.primitives(first, count), probe, ray, best);
+                test_cell(bsp.primitives(first, count), probe, ray, best);
             }
             // 3. Search the far side.
             if let Some((child, part)) = far {

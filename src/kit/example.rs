@@ -172,7 +172,7 @@ examples! {
     GraphQuery => GraphQuery {
         graph: Graph::default(),
         ray: example(),
-        savings: Savings::default(),
+        savings: GraphOptimisations::default(),
         table: Table::default(),
     };
     CachedGraphQuery => CachedGraphQuery { search: example(), cache: ChildCache::default() };

@@ -394,7 +394,7 @@ macro_rules! student_functions {
                     = stage8_scene_graph::enter_bounding_sphere; [BoundingSphereQuery Copy]
                 /// The closest hit in a scene graph, with the given optimisations; `None` if nothing is hit.
                 /// Of two hits at the same `t` the smaller primitive number wins.
-                GraphHit fn closest_hit_in_graph[P: Probe](graph: &Graph, probe: &mut P, ray: &Ray, savings: Savings) -> Option<PrimitiveHit>
+                GraphHit fn closest_hit_in_graph[P: Probe](graph: &Graph, probe: &mut P, ray: &Ray, savings: GraphOptimisations) -> Option<PrimitiveHit>
                     = stage8_scene_graph::closest_hit_in_graph;
                 { |q: GraphQuery| -> GraphAnswer {
                     let mut probe = TableProbe::without_hierarchy(&q.table);
@@ -404,7 +404,7 @@ macro_rules! student_functions {
                 /// The closest hit in a scene graph, as without a cache; in each node the child in which the
                 /// previous ray had its closest hit is visited first.
                 CachedGraphHit fn closest_hit_with_child_cache[P: Probe](
-                    graph: &Graph, probe: &mut P, ray: &Ray, savings: Savings, cache: &mut ChildCache
+                    graph: &Graph, probe: &mut P, ray: &Ray, savings: GraphOptimisations, cache: &mut ChildCache
                 ) -> Option<PrimitiveHit>
                     = stage8_child_cache::closest_hit_with_child_cache;
                 { |q: CachedGraphQuery| -> CachedGraphAnswer {

@@ -1,7 +1,7 @@
 //! Stage 8, the scene graph and other shapes: queries and answers.
 
 use super::{SearchAnswer, Table};
-use crate::graph::{ChildCache, Graph, Savings};
+use crate::graph::{ChildCache, Graph, GraphOptimisations};
 use crate::ray::Ray;
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ pub struct GraphQuery {
     /// answers.
     pub ray: Ray,
     /// The optimisations that the search uses.
-    pub savings: Savings,
+    pub savings: GraphOptimisations,
     /// The answers to all calls; its boxes are the bounding volumes of the nodes.
     pub table: Table,
 }

@@ -6,7 +6,7 @@ pub use crate::bvh::{Bvh, PrimitiveHit, PrimitiveRef, Probe};
 pub use crate::camera::{Camera, Lens, Shutter};
 pub use crate::effects::{Effects, LightEffects, MaterialEffects};
 pub use crate::emitter::{AreaEmitter, EmitterSample, EmitterShape};
-pub use crate::graph::{ChildCache, Graph, Placement, Savings};
+pub use crate::graph::{ChildCache, Graph, GraphOptimisations, Placement};
 pub use crate::light_path::{
     BsdfSample, PathEffects, PathState, PathStep, PathVertex, Scattering, StepNumbers,
 };

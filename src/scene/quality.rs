@@ -1,6 +1,6 @@
 //! The settings of a scene that trade accuracy for time: acceleration structure, sampling and precision.
 
-use crate::graph::Savings;
+use crate::graph::GraphOptimisations;
 use crate::partition::KdHeuristics;
 use crate::random::Sampler;
 use serde::{Deserialize, Serialize};
@@ -273,7 +273,7 @@ names! {
 }
 
 switches! {
-    Savings { volumes skip sort }
+    GraphOptimisations { volumes skip sort }
     KdHeuristics { longest_axis balanced_counts few_straddlers cut_off_empty_space stop_at_overlap }
 }
 
@@ -383,7 +383,7 @@ settings! {
     triangle_method: TriangleMethod = TriangleMethod::Watertight, Name, "The ray/triangle test in single precision";
     sphere_method: SphereMethod = SphereMethod::Algebraic, Name, "The ray/sphere test in single precision";
     copies: bool = false, Truth, "Whether a mesh with several instances is copied for each of them";
-    savings: Savings = Savings::default(), Switches, "Optimisations of the search of the scene graph";
+    savings: GraphOptimisations = GraphOptimisations::default(), Switches, "Optimisations of the search of the scene graph";
     precision: Precision = Precision::Single, Name, "Precision of tests against triangles and spheres";
     grid_resolution: u32 = 0, Whole(0..=MAX_GRID), "Cells of a grid along its longest side; 0 takes the number of the formula";
     kd_heuristics: KdHeuristics = KdHeuristics::default(), Switches, "Heuristics that the builder of a kd-tree follows";

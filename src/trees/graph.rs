@@ -53,7 +53,7 @@ pub struct Placement {
 /// the same for all combinations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Savings {
+pub struct GraphOptimisations {
     /// Test the bounding volume of a node first, and skip a node whose volume the ray misses.
     pub volumes: bool,
     /// Skip a node whose volume the ray enters beyond the closest hit so far.
@@ -62,9 +62,9 @@ pub struct Savings {
     pub sort: bool,
 }
 
-impl Default for Savings {
+impl Default for GraphOptimisations {
     fn default() -> Self {
-        Savings { volumes: true, skip: true, sort: true }
+        GraphOptimisations { volumes: true, skip: true, sort: true }
     }
 }
 

@@ -62,7 +62,7 @@ fn along(resolution: UVec3) -> String {
 /// The number of references of a grid: for each box the number of cells that it touches.
 fn n_references(bounds: &[Aabb], around: &Aabb, resolution: UVec3) -> f64 {
     let (min, max) = (around.min.as_dvec3(), around.max.as_dvec3());
-    // Leave as much room around each box as builders do (`widened` of stage 9).
+    // Leave as much room around each box as builders do (`padded_boxes` of stage 9).
     let largest = min.abs().max(max.abs()).max_element();
     let room = ((max - min).max_element() * (-18f64).exp2()).max(largest * (-22f64).exp2());
     let (min, size) = (min - room, max - min + 2.0 * room);

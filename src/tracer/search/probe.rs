@@ -9,7 +9,7 @@ use super::structure::Structure;
 use crate::aabb::Aabb;
 use crate::bvh::{Contents, Node, PrimitiveHit, Probe};
 use crate::count::{Event, Tally};
-use crate::graph::Savings;
+use crate::graph::GraphOptimisations;
 use crate::kit::{GramScalars, StudentFunctions};
 use crate::partition::Cells;
 use crate::ray::Ray;
@@ -37,7 +37,7 @@ pub struct StructuredWorld {
     /// Whether `conservative_slab` of stage 10 tests the boxes of hierarchies; otherwise `slab` of stage 3.
     pub conservative: bool,
     /// Which shortcuts a search of the scene graph takes.
-    pub savings: Savings,
+    pub savings: GraphOptimisations,
 }
 
 /// The scalars of the Gram method, one entry per primitive: they are computed once and not for every ray. Empty for

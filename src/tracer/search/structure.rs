@@ -7,7 +7,7 @@ use super::wide::Wide;
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, Probe};
 use crate::count::Event;
-use crate::graph::{ChildCache, Graph, Savings};
+use crate::graph::{ChildCache, Graph, GraphOptimisations};
 use crate::kit::{StructureSize, StudentFunctions};
 use crate::partition::limit::limited;
 use crate::partition::{Bsp, Cells, Grid, KdTree, Octree, PolygonBsp, Tree, TreeNode, corners};
@@ -173,7 +173,7 @@ impl Structure {
         &self,
         probe: &mut P,
         ray: &Ray,
-        savings: Savings,
+        savings: GraphOptimisations,
     ) -> Option<PrimitiveHit> {
         match self {
             Structure::Wide(wide) => wide.closest_hit::<F, P>(probe, ray),
@@ -203,7 +203,7 @@ impl Structure {
         &self,
         probe: &mut P,
         ray: &Ray,
-        savings: Savings,
+        savings: GraphOptimisations,
         cache: &mut ChildCache,
     ) -> Option<PrimitiveHit> {
         match self {
@@ -222,7 +222,7 @@ impl Structure {
         &self,
         probe: &mut P,
         ray: &Ray,
-        savings: Savings,
+        savings: GraphOptimisations,
     ) -> bool {
         match self {
             Structure::Wide(wide) => wide.any_hit::<F, P>(probe, ray),

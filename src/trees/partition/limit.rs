@@ -47,7 +47,7 @@ pub(super) fn count(n: usize) {
     assert!(
         built.n_references <= MOST_REFERENCES * built.n_primitives,
         "the leaves list {} references to {} primitives, more than {MOST_REFERENCES} per primitive: make a leaf \
-         where `Growth::divide` returns `None`",
+         where `ListGrowth::divide` returns `None`",
         built.n_references,
         built.n_primitives
     );

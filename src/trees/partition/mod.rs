@@ -2,13 +2,13 @@
 //! searching them are exercises of stage 9.
 //!
 //! `tree` (what all but the grid have in common) · `grid` · `octree` · `kd_tree` · `bsp` · `polygon_bsp` (with polygons in its nodes) · `planes` (of both BSP trees) ·
-//! `growth` (the bound on references) · `limit` (enforces it)
+//! `list_growth` (the bound on references) · `limit` (enforces it)
 
 pub mod bsp;
 pub mod grid;
-pub mod growth;
 pub mod kd_tree;
 pub(crate) mod limit;
+pub mod list_growth;
 pub mod octree;
 pub mod planes;
 pub mod polygon_bsp;
@@ -16,8 +16,8 @@ pub mod tree;
 
 pub use bsp::{Bsp, BspNode};
 pub use grid::{Grid, MOST_CELLS_ALONG};
-pub use growth::{Growth, MOST_REFERENCES};
 pub use kd_tree::{KdHeuristics, KdNode, KdTree};
+pub use list_growth::{ListGrowth, MOST_REFERENCES};
 pub use octree::{Octree, OctreeNode};
 pub use planes::{CutPlane, PlaneNode};
 pub use polygon_bsp::{PolygonBsp, PolygonBspNode};

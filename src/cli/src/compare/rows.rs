@@ -1,6 +1,6 @@
 //! The rows that can be compared: settings that differ in one thing.
 
-use raykata::graph::Savings;
+use raykata::graph::GraphOptimisations;
 use raykata::partition::KdHeuristics;
 use raykata::scene::{Accelerator, Precision, Quality, Scene, SphereMethod, Split, TriangleMethod};
 
@@ -74,20 +74,24 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
             let graph = |name: &str, accelerator, savings| {
                 with(name, &|quality| (quality.accelerator, quality.savings) = (accelerator, savings))
             };
-            let none = Savings { volumes: false, skip: false, sort: false };
+            let none = GraphOptimisations { volumes: false, skip: false, sort: false };
             let boxes = Accelerator::BoundingBoxes;
             let spheres = Accelerator::BoundingSpheres;
             let cached = Accelerator::CachedBoundingBoxes;
-            let unsorted = Savings { sort: false, ..Savings::default() };
+            let unsorted = GraphOptimisations { sort: false, ..GraphOptimisations::default() };
             vec![
                 graph("graph, nothing saved", boxes, none),
-                graph("graph, boxes first", boxes, Savings { volumes: true, ..none }),
+                graph("graph, boxes first", boxes, GraphOptimisations { volumes: true, ..none }),
                 graph("graph, boxes, skip", boxes, unsorted),
                 graph("graph, boxes, skip, cached child", cached, unsorted),
-                graph("graph, boxes, sort", boxes, Savings { skip: false, ..Savings::default() }),
-                graph("graph, boxes, skip and sort", boxes, Savings::default()),
-                graph("graph, boxes, skip, sort, cached child", cached, Savings::default()),
-                graph("graph, spheres, skip and sort", spheres, Savings::default()),
+                graph(
+                    "graph, boxes, sort",
+                    boxes,
+                    GraphOptimisations { skip: false, ..GraphOptimisations::default() },
+                ),
+                graph("graph, boxes, skip and sort", boxes, GraphOptimisations::default()),
+                graph("graph, boxes, skip, sort, cached child", cached, GraphOptimisations::default()),
+                graph("graph, spheres, skip and sort", spheres, GraphOptimisations::default()),
                 with("bvh, both children", &|quality| quality.accelerator = Accelerator::BvhBothChildren),
                 with("bvh", &|quality| quality.accelerator = Accelerator::Bvh),
                 with("bvh, last hit first", &|quality| quality.accelerator = Accelerator::CachedBvh),

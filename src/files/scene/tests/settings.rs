@@ -4,7 +4,7 @@ use super::{CAMERA, check_refused, check_refused_with, scene, scene as scene_fro
 use crate::camera::{Lens, Shutter};
 use crate::files::scene::set;
 use crate::film::{Tone, ToneCurve};
-use crate::graph::Savings;
+use crate::graph::GraphOptimisations;
 use crate::partition::KdHeuristics;
 use crate::scene::{
     Accelerator, Background, ColorPlace, Encoding, Field, FilmSettings, Gradient, GradientColor,
@@ -69,7 +69,7 @@ fn every_setting_arrives() {
         split: Split::ObjectMedian,
         leaf_size: 1,
         copies: true,
-        savings: Savings { skip: false, ..Savings::default() },
+        savings: GraphOptimisations { skip: false, ..GraphOptimisations::default() },
         triangle_method: TriangleMethod::InsideByAreas,
         sphere_method: SphereMethod::Geometric,
         precision: Precision::Double,
@@ -260,7 +260,7 @@ fn a_command_line_sets_what_a_scene_sets() {
         clamp: 1.5,
         accelerator: Accelerator::OctreeByCells,
         copies: true,
-        savings: Savings { skip: false, ..Savings::default() },
+        savings: GraphOptimisations { skip: false, ..GraphOptimisations::default() },
         ..Quality::default()
     };
     assert_eq!(quality, wanted);

@@ -118,8 +118,13 @@ pub(super) fn child_cache_goes_first(trial: &Trial<'_>) -> CheckResult {
     let as_listed = "you do not sort the other children although `sort` is on";
     let never = "you do not skip a child that begins beyond the closest hit";
     // A root with four children at the places 0 to 3 along the ray, as listed; the place in the cache; the tests expected.
-    type Case<'a> =
-        (&'a [u32], Option<u32>, raykata::graph::Savings, &'a [u32], &'a [(&'a [u32], &'static str)]);
+    type Case<'a> = (
+        &'a [u32],
+        Option<u32>,
+        raykata::graph::GraphOptimisations,
+        &'a [u32],
+        &'a [(&'a [u32], &'static str)],
+    );
     let cases: [Case<'_>; 7] = [
         (&[3, 1, 0, 2], Some(2), NOTHING, &[2, 3, 1, 0], &[(&[3, 1, 0, 2], ignored), (&[2], cached_only)]),
         (&[1, 3, 0, 2], Some(0), VOLUMES, &[0, 1, 3, 2], &[(&[1, 3, 0, 2], ignored), (&[0], cached_only)]),

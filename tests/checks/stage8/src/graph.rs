@@ -8,19 +8,20 @@ use glam::Vec3;
 use oracle::splitmix::Random;
 use proptest::prelude::*;
 use raykata::bvh::PrimitiveHit;
-use raykata::graph::{Graph, GraphNode, Savings};
+use raykata::graph::{Graph, GraphNode, GraphOptimisations};
 use raykata::kit::{GraphAnswer, GraphQuery, Table};
 use raykata::ray::Ray;
 
-pub(super) const NOTHING: Savings = Savings { volumes: false, skip: false, sort: false };
-pub(super) const VOLUMES: Savings = Savings { volumes: true, ..NOTHING };
-pub(super) const SKIP: Savings = Savings { volumes: true, skip: true, sort: false };
-pub(super) const SORT: Savings = Savings { volumes: true, skip: false, sort: true };
-pub(super) const ALL: Savings = Savings { volumes: true, skip: true, sort: true };
+pub(super) const NOTHING: GraphOptimisations =
+    GraphOptimisations { volumes: false, skip: false, sort: false };
+pub(super) const VOLUMES: GraphOptimisations = GraphOptimisations { volumes: true, ..NOTHING };
+pub(super) const SKIP: GraphOptimisations = GraphOptimisations { volumes: true, skip: true, sort: false };
+pub(super) const SORT: GraphOptimisations = GraphOptimisations { volumes: true, skip: false, sort: true };
+pub(super) const ALL: GraphOptimisations = GraphOptimisations { volumes: true, skip: true, sort: true };
 
 /// A tree of up to a dozen nodes with hits at multiples of 1/2, so that there are ties, and volumes that contain their
 /// hits.
-pub(super) fn random_query(random: &mut Random, savings: Savings) -> GraphQuery {
+pub(super) fn random_query(random: &mut Random, savings: GraphOptimisations) -> GraphQuery {
     let n_nodes = 1 + random.below(12) as usize;
     let mut nodes = vec![GraphNode::default(); n_nodes];
     for node in 1..n_nodes {
@@ -72,7 +73,7 @@ pub(super) fn describe(query: &GraphQuery) -> String {
         format!("{index} ({enter}..{leave}): [{}] children {:?}", hits.join(", "), node.children)
     };
     let nodes: Vec<String> = query.graph.nodes.iter().enumerate().map(node).collect();
-    let Savings { volumes, skip, sort } = query.savings;
+    let GraphOptimisations { volumes, skip, sort } = query.savings;
     format!(
         "closest_hit_in_graph, t in {}..{}, volumes {volumes}, skip {skip}, sort {sort}, nodes\n{}",
         query.ray.t_min,
@@ -269,7 +270,7 @@ impl Row {
 
     /// A root with up to four children one behind the other along the ray, each with one primitive at its centre. The root
     /// lists them in the given order.
-    pub(super) fn query(&self, order: &[u32], savings: Savings) -> GraphQuery {
+    pub(super) fn query(&self, order: &[u32], savings: GraphOptimisations) -> GraphQuery {
         let n = order.len() as u32;
         // The places along the ray in the order of their nodes' numbers.
         let mut places: Vec<u32> = (0..n).collect();

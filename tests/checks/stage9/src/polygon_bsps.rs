@@ -249,7 +249,7 @@ pub(super) fn polygon_bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
         let query = BspQuery { hulls, leaf_size: 1, max_depth };
         let input = format!("build of {name}, leaf_size 1, max_depth {max_depth}");
         let too_deep = "stop at max_depth, and where no plane divides the solids";
-        let too_many = "you divide where that repeats too many primitives: make a leaf where `Growth::divide` returns `None`";
+        let too_many = "you divide where that repeats too many primitives: make a leaf where `ListGrowth::divide` returns `None`";
         let build = || trial.kit.polygon_bsp_build(std::slice::from_ref(&query)).remove(0);
         let yours = ended(&input, WHAT_MAKES_IT, [too_deep, too_many], build)?;
         judge_tree(&query, &yours)?;

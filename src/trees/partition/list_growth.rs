@@ -24,26 +24,26 @@ pub const MOST_REFERENCES: usize = 16;
 /// depend on the order in which nodes are built, which it would if a builder counted down a total.
 ///
 /// ```
-/// use raykata::partition::Growth;
+/// use raykata::partition::ListGrowth;
 /// // 100 long boxes of which each is in 3 of 4 cells: two divisions are allowed, and a third is not.
-/// let once = Growth::ROOT.divide(100, 300).unwrap();
+/// let once = ListGrowth::ROOT.divide(100, 300).unwrap();
 /// let twice = once.divide(75, 225).unwrap();
 /// assert_eq!(twice.divide(56, 168), None);
 /// // A division that repeats no primitive is always allowed.
 /// assert_eq!(twice.divide(56, 56), Some(twice));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Growth(f64);
+pub struct ListGrowth(f64);
 
-impl Growth {
+impl ListGrowth {
     /// The growth of the root, 1.
-    pub const ROOT: Growth = Growth(1.0);
+    pub const ROOT: ListGrowth = ListGrowth(1.0);
 
     /// The growth of the children of a node with this growth. The node lists `before` primitives, above 0, and
     /// its children together list `after`. `None` if the growth would be above [`MOST_REFERENCES`]; then the
     /// node must be a leaf.
-    pub fn divide(self, before: usize, after: usize) -> Option<Growth> {
+    pub fn divide(self, before: usize, after: usize) -> Option<ListGrowth> {
         let growth = self.0 * after as f64 / before as f64;
-        (growth <= MOST_REFERENCES as f64).then_some(Growth(growth))
+        (growth <= MOST_REFERENCES as f64).then_some(ListGrowth(growth))
     }
 }
