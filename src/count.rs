@@ -4,6 +4,7 @@
 //! number; with [`Uncounted`] the calls compile to nothing.
 
 use crate::aabb::Aabb;
+use crate::message;
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
@@ -64,6 +65,11 @@ pub struct Counts {
     /// The number of colours that were read from images.
     pub texture_reads: u64,
 }
+
+message! { Counts {
+    primary, shadow, reflection, transmission, indirect, absorbed, hits, node_visits, box_tests,
+    primitive_tests, random_numbers, texture_reads
+} }
 
 impl Counts {
     /// The number of rays of all five kinds: primary, shadow, reflected, refracted and indirect.

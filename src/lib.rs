@@ -11,6 +11,7 @@
 //! | [`count`] | what a frame costs |
 //! | [`bvh`], [`graph`], [`partition`], [`wide`] | acceleration structures as data, and what a search may ask ([`bvh::Probe`], [`partition::Cells`]) |
 //! | [`scene`], [`effects`] | a scene as data, the readers of its files (TOML, PLY, OBJ), and the effects that it needs |
+//! | [`message`] | values as bytes, for other programs |
 //! | [`kit`], [`worker`] | the list of student functions, the door through which they are called, and the process that answers for a kit |
 //! | [`world`] | the scene flattened into primitives |
 //! | [`course`], [`rubric`] | points, titles and hints of the checks, and what a course changes in them |
@@ -33,6 +34,7 @@ mod files;
 mod geometry;
 pub mod kit;
 mod light;
+pub mod message;
 mod progress;
 pub mod tracer;
 mod trees;

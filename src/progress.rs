@@ -3,8 +3,8 @@
 //! anything itself.
 
 use crate::film::Film;
+use crate::message;
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -36,7 +36,7 @@ pub trait Watch: Sync {
 }
 
 /// A finished rectangle of a frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Tile {
     /// The column of its upper left pixel.
     pub x: u32,
@@ -47,6 +47,8 @@ pub struct Tile {
     /// The colours row by row from the top, in linear radiance.
     pub pixels: Vec<Vec3>,
 }
+
+message! { Tile { x, y, width, pixels } }
 
 impl Tile {
     /// Whether the tile is a rectangle within a film of `width` by `height` pixels.

@@ -1,5 +1,6 @@
 //! The film: one colour per pixel in linear light, and the files that it can be written to.
 
+use crate::message;
 use glam::Vec3;
 use image::codecs::hdr::HdrEncoder;
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
@@ -20,17 +21,21 @@ pub struct Film {
     pub pixels: Vec<Vec3>,
 }
 
+message! { Film { width, height, pixels } }
+
 /// The radius of the Gaussian pixel filter along x and along y, in pixels.
 pub const FILTER_RADIUS: f32 = 1.5;
 
 /// The colour of a sample and its weight in the pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightedColor {
     /// The colour of the sample, in linear radiance.
     pub color: Vec3,
     /// The weight of the sample among those of its pixel, at least 0.
     pub weight: f32,
 }
+
+message! { WeightedColor { color, weight } }
 
 /// How radiance above 1 is brought into the range that a screen can show. A curve is applied to each channel by itself, so
 /// that no channel exceeds 1; very bright colours become white.
@@ -47,6 +52,8 @@ pub enum ToneCurve {
     /// (ACES), which has more contrast, by Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
     Aces,
 }
+
+message! { enum ToneCurve { Clamp, Reinhard, Aces } }
 
 impl ToneCurve {
     /// All curves, with their names in scene files.
@@ -74,6 +81,8 @@ pub struct Tone {
     /// The curve, clamp by default.
     pub curve: ToneCurve,
 }
+
+message! { Tone { exposure, curve } }
 
 impl Tone {
     /// The value in `0..=1` that is shown for `x` of linear light. Negative values count as 0; NaN stays NaN.

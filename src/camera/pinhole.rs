@@ -1,12 +1,12 @@
 //! The camera: a pinhole, a thin lens around it, and a shutter.
 
+use crate::message;
 use crate::ray::Ray;
 use glam::{Vec2, Vec3};
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// A thin lens, which adds depth of field to a pinhole camera (stage 6).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
     /// The diameter of the aperture in world units, at least 0; with 0 the camera is a pinhole.
     pub aperture: f32,
@@ -15,8 +15,10 @@ pub struct Lens {
     pub focal_distance: f32,
 }
 
+message! { Lens { aperture, focal_distance } }
+
 /// The interval of time in which the film receives light; `0..=1` is the time in which nodes move (stage 6).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shutter {
     /// The time at which the shutter opens, `0 <= open <= 1`.
     pub open: f32,
@@ -24,9 +26,11 @@ pub struct Shutter {
     pub close: f32,
 }
 
+message! { Shutter { open, close } }
+
 /// A camera that looks along `towards`; `right` and `up` span the film. The three axes have unit length and
 /// are perpendicular to each other.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// The centre of projection in world units, where all pinhole rays start.
     pub position: Vec3,
@@ -45,6 +49,8 @@ pub struct Camera {
     /// The shutter; `None` if the picture is taken at time 0.
     pub shutter: Option<Shutter>,
 }
+
+message! { Camera { position, towards, right, up, half_height, aspect, lens, shutter } }
 
 /// Why [`Camera::new`] cannot build a camera from its arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]

@@ -1,5 +1,6 @@
 //! Rows of a picture: a frame can be rendered in pieces, each by another process or on another machine.
 
+use crate::message;
 use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display};
 use std::str::FromStr;
@@ -19,6 +20,8 @@ pub struct Rows {
     /// The row after the last one.
     pub end: u32,
 }
+
+message! { Rows { start, end } }
 
 impl Rows {
     /// All rows of a picture of this height.

@@ -5,6 +5,7 @@
 //! neighbouring pixels.
 
 use crate::light::surface::Bounce;
+use crate::message;
 use glam::{UVec2, Vec2, uvec2};
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +27,8 @@ pub enum Sampler {
     /// An Owen-scrambled Sobol sequence, which spreads samples evenly; a single sample lies in the centre.
     LowDiscrepancy,
 }
+
+message! { enum Sampler { Center, Random, Jittered, Gaussian, LowDiscrepancy } }
 
 impl Sampler {
     /// Whether any of `samples` samples per pixel lies elsewhere than in the centre of the pixel.
@@ -63,7 +66,7 @@ pub enum Purpose {
 
 /// A sample of the unit square by stratified sampling: it lies in cell `cell` of a grid of `grid.x` columns
 /// and `grid.y` rows, at `u` within the cell. Samples that are not stratified have a grid of a single cell.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stratum {
     /// The column and row of the cell, `0 <= cell.x < grid.x` and `0 <= cell.y < grid.y`.
     pub cell: UVec2,
@@ -72,6 +75,8 @@ pub struct Stratum {
     /// Two random numbers, `0 <= u < 1` each.
     pub u: Vec2,
 }
+
+message! { Stratum { cell, grid, u } }
 
 /// The address of a path's random numbers. Equal addresses give equal numbers.
 #[derive(Clone, Copy, Debug)]

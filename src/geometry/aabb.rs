@@ -1,5 +1,6 @@
 //! Axis-aligned boxes as data. Union, centroid, surface area and the slab test are exercises of stage 3.
 
+use crate::message;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +21,8 @@ pub struct Aabb {
     /// The corner with the largest coordinate on each axis, in world units; it belongs to the box.
     pub max: Vec3,
 }
+
+message! { Aabb { min, max } }
 
 impl Aabb {
     /// The box that contains no point, with `min` = +∞ and `max` = -∞. It is the neutral element of union.

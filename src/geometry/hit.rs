@@ -1,10 +1,10 @@
 //! What the tests of rays with shapes answer.
 
+use crate::message;
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// A hit of a ray with a triangle, in barycentric coordinates: `o + t d = (1 - β - γ) a + β b + γ c`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
     /// The ray parameter of the hit: the distance along the ray, in lengths of its direction.
     pub t: f32,
@@ -14,8 +14,10 @@ pub struct TriangleHit {
     pub gamma: f32,
 }
 
+message! { TriangleHit { t, beta, gamma } }
+
 /// The four numbers of a triangle that the Gram method computes once, for `u = b - a` and `v = c - a`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GramScalars {
     /// The dot product `u · v`, in square world units.
     pub uv: f32,
@@ -27,8 +29,10 @@ pub struct GramScalars {
     pub d: f32,
 }
 
+message! { GramScalars { uv, vv, uu, d } }
+
 /// A hit of a ray with the surface of a solid.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolidHit {
     /// The ray parameter of the hit: the distance along the ray, in lengths of its direction.
     pub t: f32,
@@ -37,3 +41,5 @@ pub struct SolidHit {
     /// anticlockwise.
     pub normal: Vec3,
 }
+
+message! { SolidHit { t, normal } }

@@ -1,14 +1,14 @@
 //! Indexed triangle meshes: one table of vertices, one of triangles (lecture "Compact Representation").
 
 use crate::aabb::{Aabb, bounds_of_points};
+use crate::message;
 use glam::{Vec2, Vec3};
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A triangle mesh. Triangles refer to their vertices by index, so a vertex is stored once however many
 /// triangles share it. Texture coordinates and normals are optional; [`Mesh::validate`] says which tables fit
 /// together.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// The position of each vertex, in units of the mesh's own space.
     pub positions: Vec<Vec3>,
@@ -23,6 +23,8 @@ pub struct Mesh {
     /// The names of the materials that the file gives to its faces, in order of first use.
     pub material_names: Vec<String>,
 }
+
+message! { Mesh { positions, normals, uvs, triangles, face_materials, material_names } }
 
 impl Mesh {
     /// The positions of the three corners of triangle `index`.
@@ -82,7 +84,7 @@ impl Mesh {
 }
 
 /// A mesh of the scene, with the settings that the scene file gives for it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SceneMesh {
     /// Positions, triangles and optional normals, texture coordinates and face materials, in the space of the
     /// mesh.
@@ -100,3 +102,5 @@ pub struct SceneMesh {
     /// take the material of the node that shows the mesh.
     pub materials: Vec<usize>,
 }
+
+message! { SceneMesh { mesh, smooth, one_sided, subdivisions, materials } }

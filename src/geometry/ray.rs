@@ -1,7 +1,7 @@
 //! Rays: `o + t d` over an open range of `t`, at one moment of time.
 
+use crate::message;
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// A ray `origin + t * direction` for `t_min < t < t_max`.
 ///
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// `direction` need not be of unit length: `t` counts lengths of `direction`, so that a ray can be transformed into the
 /// space of an instance and back without a change of `t`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// The point at `t` = 0, in world units.
     pub origin: Vec3,
@@ -30,6 +30,8 @@ pub struct Ray {
     /// The time of the ray, `0..=1`, at which moving nodes are intersected.
     pub time: f32,
 }
+
+message! { Ray { origin, direction, t_min, t_max, time } }
 
 impl Ray {
     /// A ray from `origin` along `direction` (any length but zero) with the range `0 < t < ∞`, at time 0.

@@ -3,12 +3,12 @@
 
 use crate::aabb::{Aabb, bounds_of_points};
 use crate::mesh::SceneMesh;
+use crate::message;
 use glam::{DVec3, Vec2, Vec3, vec2};
-use serde::{Deserialize, Serialize};
 use std::f32::consts::{PI, TAU};
 
 /// A sphere: all points at the distance `radius` from `center`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     /// The centre, in world units.
     pub center: Vec3,
@@ -16,8 +16,10 @@ pub struct Sphere {
     pub radius: f32,
 }
 
+message! { Sphere { center, radius } }
+
 /// An infinite plane through `point`, perpendicular to `normal`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// Any point of the plane, in world units.
     pub point: Vec3,
@@ -25,11 +27,13 @@ pub struct Plane {
     pub normal: Vec3,
 }
 
+message! { Plane { point, normal } }
+
 /// An infinite plane as an equation: all points `(x, y, z)` with `A x + B y + C z + D = 0`.
 ///
 /// All four coefficients times the same factor other than 0 give the same plane; a negative factor turns its
 /// normal to the other side.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneEquation {
     /// `(A, B, C)`, a normal of the plane, of any length but zero.
     pub normal: Vec3,
@@ -37,6 +41,8 @@ pub struct PlaneEquation {
     /// of the normal.
     pub d: f32,
 }
+
+message! { PlaneEquation { normal, d } }
 
 impl PlaneEquation {
     /// The same plane by a point and a normal. The point is the one nearest to the origin, rounded to single
@@ -50,7 +56,7 @@ impl PlaneEquation {
 
 /// A triangle with corners `a`, `b`, `c`; its normal `(b - a) × (c - a)` points to the side from which the
 /// corners run anticlockwise.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     /// The first corner, in world units.
     pub a: Vec3,
@@ -60,8 +66,10 @@ pub struct Triangle {
     pub c: Vec3,
 }
 
+message! { Triangle { a, b, c } }
+
 /// A solid box with faces perpendicular to the axes. It may be flat.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
     /// The corner with the smallest coordinate on each axis, in world units.
     pub min: Vec3,
@@ -69,8 +77,10 @@ pub struct Cuboid {
     pub max: Vec3,
 }
 
+message! { Cuboid { min, max } }
+
 /// A solid cylinder from `base` to `top`, closed by a disk at each end.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cylinder {
     /// The centre of one end, in world units.
     pub base: Vec3,
@@ -80,8 +90,10 @@ pub struct Cylinder {
     pub radius: f32,
 }
 
+message! { Cylinder { base, top, radius } }
+
 /// A solid cone from the disk around `base` to the point `apex`, closed by that disk.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
     /// The centre of the base disk, in world units.
     pub base: Vec3,
@@ -91,8 +103,10 @@ pub struct Cone {
     pub radius: f32,
 }
 
+message! { Cone { base, apex, radius } }
+
 /// A flat disk, which is hit from either side.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disk {
     /// The centre, in world units.
     pub center: Vec3,
@@ -102,15 +116,19 @@ pub struct Disk {
     pub radius: f32,
 }
 
+message! { Disk { center, normal, radius } }
+
 /// A flat convex polygon, which is hit from either side. A concave polygon of a scene file becomes a mesh.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     /// Three or more corners in order around the polygon, in world units.
     pub corners: Vec<Vec3>,
 }
 
+message! { Polygon { corners } }
+
 /// A bicubic Bézier patch: a curved surface that is defined by a control net of four by four points.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BezierPatch {
     /// The control net, in world units: `u` runs along a row and `v` from row to row. The surface passes
     /// through its corners `rows[0][0]`, `rows[0][3]`, `rows[3][3]` and `rows[3][0]`, and in general through
@@ -118,9 +136,11 @@ pub struct BezierPatch {
     pub rows: [[Vec3; 4]; 4],
 }
 
+message! { BezierPatch { rows } }
+
 /// A NURBS surface: a control net of any size with a weight for each point, and a degree and knots along both directions.
 /// With equal weights it is a B-spline surface.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct NurbsPatch {
     /// The degrees along `u` and along `v`, each at least 1.
     pub degrees: [usize; 2],
@@ -133,6 +153,8 @@ pub struct NurbsPatch {
     /// The weight of each control point, above 0, in rows like those of the net.
     pub weights: Vec<Vec<f32>>,
 }
+
+message! { NurbsPatch { degrees, knots, rows, weights } }
 
 impl NurbsPatch {
     /// The spans that are not empty between the knots of the domain, each with its ends, in ascending order: along `u` for
@@ -149,7 +171,7 @@ impl NurbsPatch {
 }
 
 /// A shape of a scene, in the space of the node that contains it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// The surface of a sphere.
     Sphere(Sphere),
@@ -187,6 +209,11 @@ pub enum Shape {
     /// An instance of the mesh with this index in [`crate::scene::Scene::meshes`].
     Mesh(usize),
 }
+
+message! { enum Shape {
+    Sphere(a), Plane(a), PlaneEquation(a), Triangle(a), Cuboid(a), Cylinder(a), Cone(a), Disk(a),
+    Polygon(a), Bezier { patch, steps }, Nurbs { patch, steps }, Mesh(a)
+} }
 
 impl Shape {
     /// A box around the shape in the shape's own space; `meshes` are those that instances refer to. `None`

@@ -10,6 +10,7 @@ use crate::emitter::EmitterSample;
 use crate::graph::Placement;
 use crate::light_path::{BsdfSample, PathEffects, PathStep};
 use crate::mesh::Mesh;
+use crate::message;
 use crate::partition::{Bsp, Grid, KdTree, Octree, PolygonBsp};
 use crate::progress::Watch;
 use crate::random::Stratum;
@@ -18,7 +19,6 @@ use crate::scene::{Sampler, Scene, Split};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 use crate::wide::{BinSplit, Bins, Entered, FlatTree, ForkedTree, WideTree};
 use glam::{Affine3A, UVec3, Vec2, Vec3};
-use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::sync::Arc;
 use std::time::Duration;
@@ -150,7 +150,7 @@ macro_rules! door {
         })*
 
         /// A call of a student function, or for a frame, as a message to a worker.
-        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        #[derive(Clone, Debug, PartialEq)]
         pub enum Request {
             $($($(#[$doc])* $Message(Vec<query_type!($how ($($arguments)*))>),)*)*
             /// Renders a whole frame.
@@ -171,7 +171,7 @@ macro_rules! door {
         }
 
         /// The answer to a [`Request`] as a message: one answer per query, in the same order.
-        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        #[derive(Clone, Debug, PartialEq)]
         pub enum Answer {
             $($($(#[$doc])* $Message(Vec<answer_type!($how $Return)>),)*)*
             /// A whole frame; `None` if it was cancelled.
@@ -185,6 +185,17 @@ macro_rules! door {
             /// The first hit of each ray in a scene.
             FirstHits(Vec<Option<PrimitiveHit>>),
         }
+
+        message! { enum Request {
+            $($($Message(queries),)*)*
+            Render(job), RenderInTiles(job), Trace(job, x, y), Visits(job, x, y), Outlines(job, depth),
+            FirstHits(job, rays), Withheld(request)
+        } }
+
+        message! { enum Answer {
+            $($($Message(answers),)*)*
+            Render(rendering), Trace(rays), Visits(rays), Outlines(edges), FirstHits(hits)
+        } }
 
         impl Request {
             /// The frame that is to be rendered, if any.

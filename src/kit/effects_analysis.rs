@@ -1,9 +1,9 @@
 //! Stage 7, the effects analysis: queries and answers.
 
-use serde::{Deserialize, Serialize};
+use crate::message;
 
 /// The number of rays of each kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RayCounts {
     /// The number of rays from the camera.
     pub primary: u64,
@@ -15,8 +15,10 @@ pub struct RayCounts {
     pub transmission: u64,
 }
 
+message! { RayCounts { primary, shadow, reflection, transmission } }
+
 /// The hits of rays with surfaces of one material.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MaterialHits {
     /// The index of the material.
     pub material: usize,
@@ -26,3 +28,5 @@ pub struct MaterialHits {
     /// front of the surface.
     pub in_front: Vec<u64>,
 }
+
+message! { MaterialHits { material, hits, in_front } }

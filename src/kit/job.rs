@@ -2,6 +2,7 @@
 
 use crate::count::Counts;
 use crate::film::Film;
+use crate::message;
 use crate::scene::{Accelerator, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -19,8 +20,10 @@ pub enum View {
     Work,
 }
 
+message! { enum View { Shaded, Normals, Work } }
+
 /// A request to render a whole frame in the process that contains the student's code.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RenderJob {
     /// The scene, with the size of the film and the quality of the picture.
     pub scene: Scene,
@@ -36,6 +39,8 @@ pub struct RenderJob {
     /// scene and kept them. Pixels, counts and the reported build time are the same either way.
     pub reuse: bool,
 }
+
+message! { RenderJob { scene, view, seed, threads, count, reuse } }
 
 impl RenderJob {
     /// Whether a picture has the width of the job's film, and the rows that the job asks for.
@@ -58,6 +63,8 @@ pub struct StructureSize {
     /// The memory of nodes and lists, in bytes.
     pub bytes: u64,
 }
+
+message! { StructureSize { nodes, levels, references, bytes } }
 
 /// A rendered frame and its cost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -83,3 +90,7 @@ pub struct Rendering {
     /// sentence each.
     pub notes: Vec<String>,
 }
+
+message! { Rendering {
+    film, counts, primitives, accelerator, structure, bytes_of_parts, build_seconds, render_seconds, notes
+} }

@@ -1,14 +1,14 @@
 //! The reasons why student code does not return an answer.
 
 use super::Function;
-use serde::{Deserialize, Serialize};
+use crate::message;
 use std::cell::RefCell;
 use std::fmt;
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
 
 /// The reason why there is no answer.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KitError {
     /// The code reached a `todo!`.
     NotWritten {
@@ -17,7 +17,6 @@ pub enum KitError {
         /// The place of the `todo!` as `file:line`.
         place: String,
         /// The innermost student function that was running; `None` if that was in another process.
-        #[serde(skip)]
         function: Option<Function>,
     },
     /// The code panicked.
@@ -43,6 +42,11 @@ pub enum KitError {
         what: String,
     },
 }
+
+message! { enum KitError {
+    NotWritten { task, place; function }, Panicked { message, place }, Crashed { how }, TimedOut { seconds },
+    Malformed { what }
+} }
 
 impl fmt::Display for KitError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -6,12 +6,12 @@ use crate::count::{Counts, Event, Tally};
 use crate::kit::Table;
 use crate::kit::questions::Asker;
 use crate::kit::table::Known;
+use crate::message;
 use crate::partition::Cells;
 use crate::ray::Ray;
-use serde::{Deserialize, Serialize};
 
 /// Asks for the closest hit in `cells`, with a table that has the answer to every primitive test.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CellsQuery<S> {
     /// The grid or the tree that is searched.
     pub cells: S,
@@ -21,8 +21,10 @@ pub struct CellsQuery<S> {
     pub hits: Vec<f32>,
 }
 
+message! { CellsQuery<S> { cells, ray, hits } }
+
 /// The result of a search of cells, and the calls that it made.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct CellsAnswer {
     /// The closest hit; `None` if nothing is hit.
     pub hit: Option<PrimitiveHit>,
@@ -32,8 +34,10 @@ pub struct CellsAnswer {
     pub tests: Vec<u32>,
 }
 
+message! { CellsAnswer { hit, visits, tests } }
+
 /// Asks for the closest hit of a ray, given the first hit of the previous ray.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CachedQuery {
     /// The number of the primitive that the previous ray hit first; `None` if it hit nothing.
     pub last: Option<u32>,
@@ -44,6 +48,8 @@ pub struct CachedQuery {
     /// For each primitive the `t` at which the ray enters its box.
     pub entries: Vec<f32>,
 }
+
+message! { CachedQuery { last, ray, hits, entries } }
 
 impl CachedQuery {
     /// The search that the cache speeds up: it visits and tests every primitive whose box is entered before
@@ -67,7 +73,7 @@ impl CachedQuery {
 }
 
 /// Asks for the closest hits of several rays at once.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PacketQuery {
     /// The hierarchy that is searched.
     pub bvh: Bvh,
@@ -77,8 +83,10 @@ pub struct PacketQuery {
     pub tables: Vec<Table>,
 }
 
+message! { PacketQuery { bvh, rays, tables } }
+
 /// The result of a search with a packet of rays, and the calls that it made.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PacketAnswer {
     /// The closest hit of each ray; `None` if it hits nothing.
     pub hits: Vec<Option<PrimitiveHit>>,
@@ -87,6 +95,8 @@ pub struct PacketAnswer {
     /// The number of node visits, box tests and primitive tests.
     pub counts: Counts,
 }
+
+message! { PacketAnswer { hits, opened, counts } }
 
 /// Answers a search of cells from a table of hits, and records its calls.
 ///

@@ -12,7 +12,7 @@
 
 use super::example::{Example, example};
 use super::types::*;
-use serde::{Deserialize, Serialize};
+use crate::message;
 
 /// The type of a query.
 macro_rules! query_type {
@@ -95,10 +95,12 @@ macro_rules! query {
     (@ ($Query:ident $name:ident $($Copy:ident)?) ($($argument:ident: $Type:ty,)*) ()) => {
         #[doc = concat!("The arguments of [`", stringify!($name), "`](StudentFunctions::", stringify!($name), ").")]
         #[allow(missing_docs)]
-        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize $(, $Copy)?)]
+        #[derive(Clone, Debug, PartialEq $(, $Copy)?)]
         pub struct $Query {
             $(pub $argument: $Type,)*
         }
+
+        message! { $Query { $($argument),* } }
 
         impl Example for $Query {
             fn example() -> Self {

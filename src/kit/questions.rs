@@ -2,15 +2,15 @@
 //! request: each probe in the worker then asks the judge, and the judge counts.
 
 use crate::bvh::{Contents, PrimitiveHit};
+use crate::message;
 use crate::ray::Ray;
 use crate::wide::Entered;
-use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::io;
 use std::rc::Rc;
 
 /// A call that only the judge can answer.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Question {
     /// The index of the query in its request.
     pub query: u32,
@@ -20,8 +20,10 @@ pub struct Question {
     pub call: Call,
 }
 
+message! { Question { query, visits, call } }
+
 /// A call of a probe.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Call {
     /// Asks for the contents of a node.
     Open(u32),
@@ -43,8 +45,13 @@ pub enum Call {
     End,
 }
 
+message! { enum Call {
+    Open(a), Enter(a, b), Hit(a, b), Search(a), Visible(a, b), EnterWide(a, b), Candidates(a, b, c),
+    HitLane(a, b, c), End
+} }
+
 /// The answer to a [`Question`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Response {
     /// The contents of a node.
     Contents(Contents),
@@ -63,6 +70,8 @@ pub enum Response {
     /// The call is not allowed. The text is the message of the panic that it causes.
     Refused(String),
 }
+
+message! { enum Response { Contents(a), T(a), Found(a), Visible(a), Entered(a), Lanes(a), Recorded, Refused(a) } }
 
 /// Carries questions to the judge.
 pub type Ask = Rc<dyn Fn(&Question) -> io::Result<Response>>;

@@ -2,11 +2,11 @@
 
 use super::{SearchAnswer, Table};
 use crate::graph::{ChildCache, Graph, GraphOptimisations};
+use crate::message;
 use crate::ray::Ray;
-use serde::{Deserialize, Serialize};
 
 /// Asks where `ray` hits `solid`; the answer is a [`SolidHit`](super::SolidHit) if there is a hit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SolidQuery<S> {
     /// The ray, in the space of the solid; its range says which hits count.
     pub ray: Ray,
@@ -14,9 +14,11 @@ pub struct SolidQuery<S> {
     pub solid: S,
 }
 
+message! { SolidQuery<S> { ray, solid } }
+
 /// Asks for the closest hit in `graph`, with a table that has the answer to every call of the search. The
 /// answer is a [`GraphAnswer`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct GraphQuery {
     /// The scene graph that is searched.
     pub graph: Graph,
@@ -29,8 +31,10 @@ pub struct GraphQuery {
     pub table: Table,
 }
 
+message! { GraphQuery { graph, ray, savings, table } }
+
 /// The result of a search of a scene graph, and the order of its primitive tests.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct GraphAnswer {
     /// The hit and the cost of the search.
     pub search: SearchAnswer,
@@ -38,8 +42,10 @@ pub struct GraphAnswer {
     pub asked: Vec<u32>,
 }
 
+message! { GraphAnswer { search, asked } }
+
 /// Asks for the closest hit in a scene graph with a cache in each node. The answer is a [`CachedGraphAnswer`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CachedGraphQuery {
     /// The graph, the ray and the answers to all calls of the search.
     pub search: GraphQuery,
@@ -47,11 +53,15 @@ pub struct CachedGraphQuery {
     pub cache: ChildCache,
 }
 
+message! { CachedGraphQuery { search, cache } }
+
 /// The result of a search of a scene graph with a cache in each node.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CachedGraphAnswer {
     /// The hit, the cost and the order of the primitive tests.
     pub found: GraphAnswer,
     /// The cache after the search.
     pub cache: ChildCache,
 }
+
+message! { CachedGraphAnswer { found, cache } }

@@ -3,12 +3,12 @@
 use crate::kit::questions::Asker;
 use crate::light::surface::{LightSample, Surface};
 use crate::material::Material;
+use crate::message;
 use crate::ray::Ray;
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// Asks which colour the viewer sees at a point; the answer is a [`ShadeAnswer`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ShadeQuery {
     /// The point that is shaded.
     pub surface: Surface,
@@ -24,8 +24,10 @@ pub struct ShadeQuery {
     pub visible: Vec<bool>,
 }
 
+message! { ShadeQuery { surface, to_viewer, material, ambient, lights, visible } }
+
 /// The colour of a point, and the shadow rays that were traced for it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ShadeAnswer {
     /// The colour that the viewer sees, in linear light.
     pub color: Vec3,
@@ -34,6 +36,8 @@ pub struct ShadeAnswer {
     /// The shadow rays that were traced, in the same order.
     pub rays: Vec<Ray>,
 }
+
+message! { ShadeAnswer { color, traced, rays } }
 
 /// Answers the shadow rays of a shading from the query, and records them.
 pub struct ShadowProbe<'a> {

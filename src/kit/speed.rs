@@ -2,15 +2,15 @@
 
 use crate::bvh::PrimitiveHit;
 use crate::kit::questions::{Asker, Call};
+use crate::message;
 use crate::ray::Ray;
 use crate::wide::{
     BinGrid, BinSplit, Bins, Child, Entered, NO_PRIMITIVE, PrimitiveBox, TriangleBlock, WideNode, WideProbe,
     WideTree,
 };
-use serde::{Deserialize, Serialize};
 
 /// Asks for the cheapest split between bins.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct BinSplitQuery {
     /// The bins of all three axes.
     pub bins: Box<Bins>,
@@ -18,8 +18,10 @@ pub struct BinSplitQuery {
     pub n_bins: u32,
 }
 
+message! { BinSplitQuery { bins, n_bins } }
+
 /// Asks for the two sides of a split.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PartitionQuery {
     /// The primitives.
     pub primitives: Vec<PrimitiveBox>,
@@ -29,8 +31,10 @@ pub struct PartitionQuery {
     pub split: BinSplit,
 }
 
+message! { PartitionQuery { primitives, grid, split } }
+
 /// Asks which boxes of a node a ray enters.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WideBoxesQuery {
     /// The node.
     pub node: Box<WideNode>,
@@ -38,8 +42,10 @@ pub struct WideBoxesQuery {
     pub ray: Ray,
 }
 
+message! { WideBoxesQuery { node, ray } }
+
 /// Asks which triangles of a block a ray may hit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct BlockQuery {
     /// The triangles.
     pub block: Box<TriangleBlock>,
@@ -47,8 +53,10 @@ pub struct BlockQuery {
     pub ray: Ray,
 }
 
+message! { BlockQuery { block, ray } }
+
 /// Asks for a hit in a wide tree whose boxes and primitives are a table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WideQuery {
     /// The tree. Its boxes are not read.
     pub tree: WideTree,
@@ -60,8 +68,10 @@ pub struct WideQuery {
     pub hits: Vec<f32>,
 }
 
+message! { WideQuery { tree, ray, entries, hits } }
+
 /// The hit of a search in a wide tree, and what it cost.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct WideAnswer {
     /// The hit.
     pub hit: Option<PrimitiveHit>,
@@ -76,6 +86,8 @@ pub struct WideAnswer {
     /// The number of calls after the first hit.
     pub calls_after_hit: u32,
 }
+
+message! { WideAnswer { hit, found, nodes, blocks, primitives, calls_after_hit } }
 
 /// The probe that answers from the table of a [`WideQuery`] and lists all calls. Where a judge keeps the tables, it asks the
 /// judge, which lists the calls.

@@ -5,12 +5,12 @@ use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, PrimitiveRef, Probe};
 use crate::count::{Counts, Event, Tally};
 use crate::kit::questions::Asker;
+use crate::message;
 use crate::ray::Ray;
 use crate::scene::Split;
-use serde::{Deserialize, Serialize};
 
 /// Asks where `ray` enters and leaves `bounds`; the answer is two `t` if it does.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlabQuery {
     /// The ray; its range limits the answer.
     pub ray: Ray,
@@ -18,8 +18,10 @@ pub struct SlabQuery {
     pub bounds: Aabb,
 }
 
+message! { SlabQuery { ray, bounds } }
+
 /// Asks into which two groups `primitives` are divided; the answer is a [`SplitAnswer`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SplitQuery {
     /// The rule by which they are divided.
     pub split: Split,
@@ -27,8 +29,10 @@ pub struct SplitQuery {
     pub primitives: Vec<PrimitiveRef>,
 }
 
+message! { SplitQuery { split, primitives } }
+
 /// The two groups into which primitives were divided.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SplitAnswer {
     /// The ids of the primitives in their new order.
     pub order: Vec<u32>,
@@ -36,9 +40,11 @@ pub struct SplitAnswer {
     pub middle: Option<usize>,
 }
 
+message! { SplitAnswer { order, middle } }
+
 /// The answers to all tests of one ray: the interval of `t` in each box and the nearest hit with each
 /// primitive.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     /// For each node the `t` at which the ray, without limits, enters and leaves its box; `(inf, -inf)` if it
     /// misses.
@@ -46,6 +52,8 @@ pub struct Table {
     /// For each primitive the `t` of its nearest hit; `inf` if there is none.
     pub primitives: Vec<f32>,
 }
+
+message! { Table { boxes, primitives } }
 
 impl Table {
     /// The `t` at which `ray` enters the box of `node`, at least `ray.t_min`. `None` if the ray misses the
@@ -81,7 +89,7 @@ impl Table {
 
 /// Asks for a hit in `bvh`, with a table that has the answer to every call of the search. The answer is a
 /// [`SearchAnswer`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SearchQuery {
     /// The hierarchy that is searched; it has no nodes for a search of all primitives.
     pub bvh: Bvh,
@@ -92,8 +100,10 @@ pub struct SearchQuery {
     pub table: Table,
 }
 
+message! { SearchQuery { bvh, ray, table } }
+
 /// The result of a search and the calls that it made.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchAnswer {
     /// The hit that the search returned; `None` if there is none, and for a search for any hit.
     pub hit: Option<PrimitiveHit>,
@@ -102,6 +112,8 @@ pub struct SearchAnswer {
     /// The number of primitive tests after one had reported a hit.
     pub tests_after_hit: u64,
 }
+
+message! { SearchAnswer { hit, counts, tests_after_hit } }
 
 /// Answers a search from a [`Table`] and counts its calls.
 ///

@@ -1,6 +1,7 @@
 //! The rays of one pixel, and what is visited to find their hits, as data.
 
 use crate::aabb::Aabb;
+use crate::message;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +20,8 @@ pub enum RayKind {
     /// A shadow ray to a light.
     Shadow,
 }
+
+message! { enum RayKind { Primary, Reflection, Transmission, Indirect, Shadow } }
 
 /// A ray that was traced for a pixel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,6 +43,8 @@ pub struct TracedRay {
     pub hit: Option<(f32, String)>,
 }
 
+message! { TracedRay { kind, parent, depth, weight, origin, direction, hit } }
+
 /// What the search for the hit of one ray visits.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RayVisits {
@@ -55,6 +60,8 @@ pub struct RayVisits {
     pub boxes: Vec<TestedBox>,
 }
 
+message! { RayVisits { node_visits, box_tests, primitive_tests, boxes } }
+
 /// A box that was tested.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TestedBox {
@@ -63,3 +70,5 @@ pub struct TestedBox {
     /// Whether the ray enters it.
     pub hit: bool,
 }
+
+message! { TestedBox { bounds, hit } }

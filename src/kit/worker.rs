@@ -1,14 +1,15 @@
 //! The worker: a process that contains a kit and answers requests, one after the other, until the pipe
 //! closes.
 //!
-//! Messages are `postcard` bytes after a length of four bytes. On Unix both directions use the socket that
+//! Messages are bytes in the format of [`message`](crate::message) after a length of four bytes. On Unix both directions use the socket that
 //! the other side passes as standard input, so nothing that student code prints can get between two messages;
 //! elsewhere requests come through standard input and replies leave through standard output.
 
 use crate::kit::questions::{self, Question, Response};
 use crate::kit::{Answer, KitError, Request, StudentKit, kit_error};
+use crate::message;
+use crate::message::{Message, from_bytes, to_bytes};
 use crate::progress::{Tile, Watch};
-use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::cell::RefCell;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -53,7 +54,7 @@ pub const LONGEST_MESSAGE: usize = 1 << 30;
 pub const STACK_BYTES: usize = 64 << 20;
 
 /// A message from a worker: progress, a question, an answer, or the reason why there is no answer.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Reply {
     /// The progress of a frame; the answer follows later.
     Progress {
@@ -79,6 +80,10 @@ pub enum Reply {
     KitError(KitError),
 }
 
+message! { enum Reply {
+    Progress { done, total }, Tile(a), Building { placed, total }, Question(a), Answer(a), KitError(a)
+} }
+
 /// Writes one message to the pipe: four bytes of length, little-endian, then the message itself. Flushes the
 /// pipe.
 ///
@@ -86,8 +91,8 @@ pub enum Reply {
 ///
 /// If the message cannot be serialised, if it is longer than `u32::MAX` bytes, or if the pipe cannot be
 /// written.
-pub fn send<T: Serialize>(pipe: &mut impl Write, message: &T) -> io::Result<()> {
-    let bytes = postcard::to_stdvec(message).map_err(io::Error::other)?;
+pub fn send<T: Message>(pipe: &mut impl Write, message: &T) -> io::Result<()> {
+    let bytes = to_bytes(message);
     let length = u32::try_from(bytes.len()).map_err(io::Error::other)?;
     pipe.write_all(&length.to_le_bytes())?;
     pipe.write_all(&bytes)?;
@@ -102,7 +107,7 @@ pub fn send<T: Serialize>(pipe: &mut impl Write, message: &T) -> io::Result<()> 
 ///   one.
 /// - [`io::ErrorKind::Other`] if the message is too long or malformed.
 /// - Any error of reading the pipe.
-pub fn receive<T: DeserializeOwned>(pipe: &mut impl Read) -> io::Result<T> {
+pub fn receive<T: Message>(pipe: &mut impl Read) -> io::Result<T> {
     receive_up_to(pipe, LONGEST_MESSAGE)
 }
 
@@ -112,7 +117,7 @@ pub fn receive<T: DeserializeOwned>(pipe: &mut impl Read) -> io::Result<T> {
 /// # Errors
 ///
 /// The same as those of [`receive`].
-pub fn receive_up_to<T: DeserializeOwned>(pipe: &mut impl Read, longest: usize) -> io::Result<T> {
+pub fn receive_up_to<T: Message>(pipe: &mut impl Read, longest: usize) -> io::Result<T> {
     let mut length = [0; 4];
     pipe.read_exact(&mut length)?;
     let length = u32::from_le_bytes(length) as usize;
@@ -125,7 +130,7 @@ pub fn receive_up_to<T: DeserializeOwned>(pipe: &mut impl Read, longest: usize) 
     if bytes.len() < length {
         return Err(io::ErrorKind::UnexpectedEof.into());
     }
-    postcard::from_bytes(&bytes).map_err(|error| io::Error::other(format!("no message: {error}")))
+    from_bytes(&bytes).map_err(|error| io::Error::other(format!("no message: {error}")))
 }
 
 /// Writes a request to the pipe of a worker, as [`send`] does.

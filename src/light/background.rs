@@ -1,12 +1,12 @@
 //! What rays see that hit nothing: one colour, a gradient, or an environment map.
 
+use crate::message;
 use crate::shape::around_sphere;
 use glam::{Quat, Vec2, Vec3};
-use serde::{Deserialize, Serialize};
 
 /// The radiance of rays that hit nothing. Camera rays, reflected and refracted rays see it, and diffuse rays in a scene
 /// with indirect light.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Background {
     /// One colour in all directions, in linear radiance.
     Color(Vec3),
@@ -16,8 +16,10 @@ pub enum Background {
     Map(EnvironmentMap),
 }
 
+message! { enum Background { Color(a), Gradient(a), Map(a) } }
+
 /// A vertical gradient, for example a sky. Up is +y. All colours are linear radiance, at least 0 in each channel.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gradient {
     /// The colour straight up.
     pub zenith: Vec3,
@@ -26,6 +28,8 @@ pub struct Gradient {
     /// The colour straight down.
     pub nadir: Vec3,
 }
+
+message! { Gradient { zenith, horizon, nadir } }
 
 impl Gradient {
     /// The colour in `direction`, which may have any length: interpolated linearly over the sine of the elevation, from
@@ -39,7 +43,7 @@ impl Gradient {
 }
 
 /// An equirectangular image around the scene, infinitely far away.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnvironmentMap {
     /// Index into [`crate::scene::Scene::textures`].
     pub texture: usize,
@@ -48,6 +52,8 @@ pub struct EnvironmentMap {
     /// The factor on the colours of the image, at least 0.
     pub scale: f32,
 }
+
+message! { EnvironmentMap { texture, rotation, scale } }
 
 impl EnvironmentMap {
     /// The texture coordinates in `direction`, which may have any length, for an image with `rows` rows.

@@ -3,12 +3,12 @@
 //! An [`AreaEmitter`] has a shape that rays can hit, so its light is found in two ways: a ray happens to hit it, or a point
 //! of it is sampled. A [`Light`](crate::material::Light) of a scene, in contrast, can only be sampled.
 
+use crate::message;
 use crate::shape::{Sphere, Triangle};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// The shape of an area emitter, in world units. Each shape has a front.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EmitterShape {
     /// A sphere, whose front is the outside.
     Sphere(Sphere),
@@ -24,9 +24,11 @@ pub enum EmitterShape {
     },
 }
 
+message! { enum EmitterShape { Sphere(a), Triangle(a), Parallelogram { corner, edges } } }
+
 /// A surface that emits the same radiance from each of its points in all directions on its front, and also on its back if
 /// it is two-sided.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaEmitter {
     /// The shape.
     pub shape: EmitterShape,
@@ -36,8 +38,10 @@ pub struct AreaEmitter {
     pub two_sided: bool,
 }
 
+message! { AreaEmitter { shape, radiance, two_sided } }
+
 /// A point of an emitter as it is seen from another point.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmitterSample {
     /// The direction to the point of the emitter, of unit length.
     pub direction: Vec3,
@@ -48,3 +52,5 @@ pub struct EmitterSample {
     /// The probability density of the direction, per steradian: above 0 and finite.
     pub pdf: f32,
 }
+
+message! { EmitterSample { direction, distance, radiance, pdf } }

@@ -1,8 +1,8 @@
 //! What surfaces do with light, and where light comes from, as data.
 
+use crate::message;
 use crate::shape::{Polygon, Shape};
 use glam::{Vec2, Vec3};
-use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// `A·ka + Σ (I·kd·cosθ + I·ks·cosⁿφ) + Ks·reflection + Kr·refraction`
 ///
 /// Colours are linear red, green and blue, at least 0.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// `ka`, the ambient reflectance: the fraction of the scene's ambient light that is reflected. A scene
     /// file that does not name it gets the value of `diffuse`.
@@ -40,6 +40,11 @@ pub struct Material {
     pub texture: Option<usize>,
 }
 
+message! { Material {
+    ambient, diffuse, specular, exponent, mirror, transmission, index_of_refraction, fresnel, roughness,
+    emission, texture
+} }
+
 impl Default for Material {
     /// A dull light grey.
     fn default() -> Self {
@@ -60,8 +65,7 @@ impl Default for Material {
 }
 
 /// By which formula the reflected fraction of light depends on the angle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fresnel {
     /// No dependence: constant weights, as in the lecture notes.
     #[default]
@@ -72,9 +76,10 @@ pub enum Fresnel {
     Exact,
 }
 
+message! { enum Fresnel { None, Schlick, Exact } }
+
 /// What an image shows at texture coordinates outside of `0..=1`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
     /// The image repeats.
     #[default]
@@ -85,8 +90,10 @@ pub enum Wrap {
     Mirror,
 }
 
+message! { enum Wrap { Repeat, Clamp, Mirror } }
+
 /// An image in linear light, stored row by row from the top, each row from the left.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// The number of pixels per row, at least 1.
     pub width: u32,
@@ -98,6 +105,8 @@ pub struct Texture {
     pub wrap: Wrap,
 }
 
+message! { Texture { width, height, pixels, wrap } }
+
 impl Texture {
     /// The colour of the pixel in which `uv` lies, both in `0..=1`; `(0, 0)` is the lower left corner.
     pub(crate) fn pixel_at(&self, uv: Vec2) -> Vec3 {
@@ -108,8 +117,7 @@ impl Texture {
 }
 
 /// How light from a point or area light depends on the distance.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Falloff {
     /// No dependence, as in the lecture notes.
     #[default]
@@ -118,8 +126,10 @@ pub enum Falloff {
     InverseSquare,
 }
 
+message! { enum Falloff { None, InverseSquare } }
+
 /// The position and extent of a light.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Emitter {
     /// A point light.
     Point {
@@ -142,8 +152,10 @@ pub enum Emitter {
     },
 }
 
+message! { enum Emitter { Point { position, falloff }, Directional { direction }, Area { shape, falloff } } }
+
 /// The shape of an area light, in world units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum AreaShape {
     /// The parallelogram of all `corner + u * edges.0 + v * edges.1` with `u` and `v` in `0..=1`.
     Rectangle {
@@ -157,6 +169,8 @@ pub enum AreaShape {
     /// The surface of a sphere.
     Sphere(crate::shape::Sphere),
 }
+
+message! { enum AreaShape { Rectangle { corner, edges }, Disk(a), Sphere(a) } }
 
 impl AreaShape {
     /// The area that the light shows from straight ahead: that of its disk for a sphere.
@@ -192,7 +206,7 @@ impl AreaShape {
 }
 
 /// A light. Its colour is `intensity * color`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Light {
     /// Where the light comes from: a point, a direction or an area.
     pub emitter: Emitter,
@@ -203,6 +217,8 @@ pub struct Light {
     /// Whether the light casts shadows. Without, it reaches every surface that faces it.
     pub shadows: bool,
 }
+
+message! { Light { emitter, color, intensity, shadows } }
 
 impl Light {
     /// `intensity * color`, in linear light. With [`Falloff::InverseSquare`] that is the light that arrives

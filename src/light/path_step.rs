@@ -6,11 +6,11 @@
 
 use crate::emitter::{AreaEmitter, EmitterSample};
 use crate::light::surface::{Bounce, SecondaryRay, Surface};
+use crate::message;
 use glam::{Vec2, Vec3};
-use serde::{Deserialize, Serialize};
 
 /// A way in which a surface sends light on: a part (lobe) of its bidirectional scattering distribution function (BSDF).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lobe {
     /// Diffuse (Lambertian) reflection in all directions above the surface.
     Diffuse,
@@ -19,6 +19,8 @@ pub enum Lobe {
     /// Transmission in one direction, that of the refracted ray of stage 5.
     Transmission,
 }
+
+message! { enum Lobe { Diffuse, Reflection, Transmission } }
 
 impl Lobe {
     /// On which side of the surface rays of the lobe leave it: a diffuse ray leaves on the side of a reflected ray.
@@ -31,7 +33,7 @@ impl Lobe {
 }
 
 /// How a surface scatters light that arrives along one ray.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Scattering {
     /// `kd`, the diffuse reflectance, at least 0 in each channel.
     pub diffuse: Vec3,
@@ -42,8 +44,10 @@ pub struct Scattering {
     pub secondary: Vec<SecondaryRay>,
 }
 
+message! { Scattering { diffuse, normal, secondary } }
+
 /// A direction in which a path continues, sampled at random.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfSample {
     /// The lobe that was chosen.
     pub lobe: Lobe,
@@ -57,8 +61,10 @@ pub struct BsdfSample {
     pub pdf: f32,
 }
 
+message! { BsdfSample { lobe, direction, weight, pdf } }
+
 /// A path from the camera up to a ray that has just hit a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathState {
     /// The point of the surface that the ray left, or its origin at the camera, in world units.
     pub origin: Vec3,
@@ -74,8 +80,10 @@ pub struct PathState {
     pub pdf: f32,
 }
 
+message! { PathState { origin, direction, weight, bounces, pdf } }
+
 /// An emitter of the scene, and how often it is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChosenEmitter {
     /// The emitter.
     pub emitter: AreaEmitter,
@@ -84,8 +92,10 @@ pub struct ChosenEmitter {
     pub probability: f32,
 }
 
+message! { ChosenEmitter { emitter, probability } }
+
 /// A light that the scaffold has chosen to be sampled at a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightCandidate {
     /// A surface that emits light, to be sampled by `sample_light`.
     Emitter(ChosenEmitter),
@@ -94,8 +104,10 @@ pub enum LightCandidate {
     Environment(EmitterSample),
 }
 
+message! { enum LightCandidate { Emitter(a), Environment(a) } }
+
 /// A point of a surface that a path meets.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PathVertex {
     /// The point and its normals, on the side that the path comes from.
     pub surface: Surface,
@@ -109,8 +121,10 @@ pub struct PathVertex {
     pub light: Option<LightCandidate>,
 }
 
+message! { PathVertex { surface, scattering, emission, emitter, light } }
+
 /// The random numbers of a step, `0 <= u < 1` each.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepNumbers {
     /// For the sample of a light.
     pub light: Vec2,
@@ -120,8 +134,10 @@ pub struct StepNumbers {
     pub roulette: f32,
 }
 
+message! { StepNumbers { light, bsdf, roulette } }
+
 /// A ray to a light, and the light that the path collects if no object is in the way.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowQuestion {
     /// The direction from the surface to the light, of unit length.
     pub direction: Vec3,
@@ -131,8 +147,10 @@ pub struct ShadowQuestion {
     pub light: Vec3,
 }
 
+message! { ShadowQuestion { direction, distance, light } }
+
 /// The ray along which a path continues.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NextRay {
     /// The lobe of the surface in which the ray leaves it.
     pub lobe: Lobe,
@@ -144,8 +162,10 @@ pub struct NextRay {
     pub pdf: f32,
 }
 
+message! { NextRay { lobe, direction, weight, pdf } }
+
 /// What a path does at a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathStep {
     /// Light that the path collects at once, the weight of the path included.
     pub light: Vec3,
@@ -155,8 +175,10 @@ pub struct PathStep {
     pub next: Option<NextRay>,
 }
 
+message! { PathStep { light, shadow, next } }
+
 /// What the paths of a scene need. The default needs nothing.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PathEffects {
     /// For each material of the scene, by its index, whether diffuse rays leave its surfaces.
     pub diffuse: Vec<bool>,
@@ -166,6 +188,8 @@ pub struct PathEffects {
     /// Whether directions of the environment map are sampled.
     pub environment: bool,
 }
+
+message! { PathEffects { diffuse, sampled, environment } }
 
 impl PathEffects {
     /// Whether any path bounces off a diffuse surface. If none does, direct light and the rays of stage 5 find all light.

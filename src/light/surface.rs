@@ -1,10 +1,10 @@
 //! A point of a surface, the light that arrives there, and the rays that leave it.
 
+use crate::message;
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// A point of a surface that is to be shaded, with its normals and its rounding error.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// The point in world units, rounded to single precision.
     pub point: Vec3,
@@ -16,8 +16,10 @@ pub struct Surface {
     pub shading_normal: Vec3,
 }
 
+message! { Surface { point, error, geometric_normal, shading_normal } }
+
 /// The light that would arrive at a point from one point of a light, without occlusion.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
     /// The direction from the point to the light, of unit length.
     pub direction: Vec3,
@@ -28,8 +30,10 @@ pub struct LightSample {
     pub radiance: Vec3,
 }
 
+message! { LightSample { direction, distance, radiance } }
+
 /// How a secondary ray leaves a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bounce {
     /// The ray is reflected.
     Reflection,
@@ -37,8 +41,10 @@ pub enum Bounce {
     Transmission,
 }
 
+message! { enum Bounce { Reflection, Transmission } }
+
 /// A secondary ray that leaves a surface: its kind, direction and weight.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondaryRay {
     /// Whether the ray is reflected or refracted.
     pub bounce: Bounce,
@@ -48,11 +54,15 @@ pub struct SecondaryRay {
     pub weight: Vec3,
 }
 
+message! { SecondaryRay { bounce, direction, weight } }
+
 /// The limits at which a path ends.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// The greatest number of reflections and refractions on a path from the camera.
     pub max_depth: u32,
     /// The smallest weight: a ray whose weight is below it in every channel is not traced.
     pub min_contribution: f32,
 }
+
+message! { Limits { max_depth, min_contribution } }

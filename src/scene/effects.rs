@@ -2,13 +2,13 @@
 //! 7); the frame driver and the tracer compute what [`Effects`] lists and nothing else.
 
 use crate::material::{Emitter, Light};
+use crate::message;
 use crate::scene::{Node, Scene};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// What rendering a scene needs: the effects of the camera, of each light, of each material and of each mesh.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Effects {
     /// Whether rays start at points all over the lens (depth of field), and not at its centre.
     pub lens: bool,
@@ -25,8 +25,10 @@ pub struct Effects {
     pub smooth_meshes: Vec<bool>,
 }
 
+message! { Effects { lens, motion, indirect_light, lights, materials, smooth_meshes } }
+
 /// What a light needs. The default needs nothing: it is that of a light that emits nothing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LightEffects {
     /// The number of points of the light that each hit samples: 0 for a light that emits nothing, 1 for a
     /// light that shines from one point or one direction.
@@ -37,8 +39,10 @@ pub struct LightEffects {
     pub shadows: bool,
 }
 
+message! { LightEffects { samples, area, shadows } }
+
 /// What a material needs. All fields are `false` or empty for a material that no surface of the scene has.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MaterialEffects {
     /// The indices of the lights that can make the material brighter, in ascending order.
     pub lights: Vec<usize>,
@@ -51,6 +55,8 @@ pub struct MaterialEffects {
     /// Whether the colour of the material is read from an image.
     pub texture: bool,
 }
+
+message! { MaterialEffects { lights, mirror, transmission, glossy, texture } }
 
 impl Effects {
     /// All effects that a scene with these lights and materials can need, without a closer look. Rendered
@@ -101,8 +107,7 @@ impl Effects {
 }
 
 /// An effect that a scene can need and that costs time only where it is needed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Effect {
     /// Shadow rays to lights.
     Shadows,
@@ -125,6 +130,11 @@ pub enum Effect {
     /// Indirect light, which surfaces reflect to each other.
     IndirectLight,
 }
+
+message! { enum Effect {
+    Shadows, AreaLights, Mirrors, Transmission, Glossy, Lens, Motion, SmoothNormals, Textures,
+    IndirectLight
+} }
 
 impl Effect {
     /// All ten effects, in the order of their declaration.

@@ -1,18 +1,20 @@
 //! Which colours and images of a scene are encoded with gamma 2, the gamma of the lecture notes.
 
+use crate::message;
 use crate::scene::{Background, Scene};
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// The colours and images of a scene that are encoded with gamma 2. To decode them is an exercise of stage 4, so the
 /// loader decodes them with the sRGB curve, and a frame replaces these values.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Gamma2 {
     /// The colours, each with its place in the scene and its bytes: red, green and blue.
     pub colors: Vec<(ColorPlace, [u8; 3])>,
     /// Indices of images in [`Scene::textures`] whose files have 8 bits per component.
     pub textures: Vec<usize>,
 }
+
+message! { Gamma2 { colors, textures } }
 
 impl Gamma2 {
     /// Whether nothing is encoded with gamma 2.
@@ -22,7 +24,7 @@ impl Gamma2 {
 }
 
 /// The place of a colour in a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColorPlace {
     /// The background, if it is one colour.
     Background,
@@ -36,8 +38,10 @@ pub enum ColorPlace {
     Gradient(GradientColor),
 }
 
+message! { enum ColorPlace { Background, AmbientLight, Light(a), Material(a, b), Gradient(a) } }
+
 /// One of the colours of a gradient.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GradientColor {
     /// The colour straight up.
     Zenith,
@@ -47,8 +51,10 @@ pub enum GradientColor {
     Nadir,
 }
 
+message! { enum GradientColor { Zenith, Horizon, Nadir } }
+
 /// One of the colours of a material.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialColor {
     /// The reflectance for ambient light.
     Ambient,
@@ -63,6 +69,8 @@ pub enum MaterialColor {
     /// The light that the surface emits.
     Emission,
 }
+
+message! { enum MaterialColor { Ambient, Diffuse, Specular, Mirror, Transmission, Emission } }
 
 impl Scene {
     /// The colour at `place`, which can be changed; `None` if the scene has no such light, material or background.

@@ -19,6 +19,7 @@ pub use shown::Shown;
 use crate::camera::Camera;
 use crate::film::Tone;
 use crate::material::{Light, Material, Texture};
+use crate::message;
 use crate::rows::Rows;
 use crate::shape::Shape;
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
@@ -34,6 +35,8 @@ pub enum Encoding {
     /// The square root (power 1/2), the gamma of the lecture notes.
     Gamma2,
 }
+
+message! { enum Encoding { Srgb, Gamma2 } }
 
 /// Size of the picture in pixels, and how its light becomes the numbers of 8-bit files.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,6 +54,8 @@ pub struct FilmSettings {
     pub rows: Option<Rows>,
 }
 
+message! { FilmSettings { width, height, encoding, tone, rows } }
+
 impl FilmSettings {
     /// The rows that a frame renders.
     pub fn rendered_rows(&self) -> Rows {
@@ -66,7 +71,7 @@ impl Default for FilmSettings {
 }
 
 /// A visible area light, with the material of the node that shows it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VisibleLight {
     /// Index into [`Scene::lights`] of an area light.
     pub light: usize,
@@ -74,8 +79,10 @@ pub struct VisibleLight {
     pub material: usize,
 }
 
+message! { VisibleLight { light, material } }
+
 /// A node of the scene graph. Nodes may have several parents; they never form a cycle.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Node {
     /// Name for messages: that of the scene file, or `node 1`, `node 2` and so on by position in the file.
     pub name: String,
@@ -93,6 +100,8 @@ pub struct Node {
     /// Indices into [`Scene::nodes`] of the children, which stand in the space of this node.
     pub children: Vec<usize>,
 }
+
+message! { Node { name, transform, transform_end, shape, material, children } }
 
 impl Scene {
     /// A scene without shapes and lights, seen by `camera`. Its film is 1 by 1 pixel, its background is
@@ -146,7 +155,7 @@ pub fn blend(start: &Affine3A, end: &Affine3A, time: f32) -> Affine3A {
 }
 
 /// A scene, ready to be rendered: what is shown, from where, and with which accuracy.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Size of the picture in pixels, and encoding of its 8-bit files.
     pub film: FilmSettings,
@@ -182,3 +191,8 @@ pub struct Scene {
     /// The most primitives of the flattened scene; meshes beyond it are left out, with a note.
     pub max_primitives: u32,
 }
+
+message! { Scene {
+    film, camera, background, ambient, indirect_light, lights, visible_lights, materials, material_names,
+    textures, meshes, nodes, roots, gamma2, quality, max_primitives
+} }

@@ -1,6 +1,7 @@
 //! The settings of a scene that trade accuracy for time: acceleration structure, sampling and precision.
 
 use crate::graph::GraphOptimisations;
+use crate::message;
 use crate::partition::KdHeuristics;
 use crate::random::Sampler;
 use serde::{Deserialize, Serialize};
@@ -51,6 +52,11 @@ pub enum Accelerator {
     PacketBvh,
 }
 
+message! { enum Accelerator {
+    Auto, BruteForce, BoundingBoxes, BoundingSpheres, CachedBoundingBoxes, Bvh, WideBvh, BvhBothChildren,
+    Grid, Octree, OctreeByCells, OctreeByNeighbours, KdTree, Bsp, PolygonBsp, CachedBvh, PacketBvh
+} }
+
 impl Accelerator {
     /// Every structure once, so without [`Accelerator::Auto`]: brute force, the volumes of the scene graph, the hierarchies, then the
     /// structures that divide space.
@@ -95,6 +101,8 @@ pub enum Split {
     SurfaceArea,
 }
 
+message! { enum Split { ObjectMedian, SpatialMedian, SurfaceArea } }
+
 impl Split {
     /// All three splits, in the order of the lecture.
     pub const ALL: [Split; 3] = [Split::ObjectMedian, Split::SpatialMedian, Split::SurfaceArea];
@@ -125,6 +133,10 @@ pub enum TriangleMethod {
     Watertight,
 }
 
+message! { enum TriangleMethod {
+    Cramer, Gram, InsideByPlanes, InsideByDirection, InsideByAreas, Choice, Watertight
+} }
+
 /// Which ray/sphere test is used with [`Precision::Single`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -139,6 +151,8 @@ pub enum SphereMethod {
     StableRoots,
 }
 
+message! { enum SphereMethod { Algebraic, Geometric, StableRoots } }
+
 /// How images are read (stage 7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -149,6 +163,8 @@ pub enum TextureFilter {
     /// covers, with 1 to 32 reads per hit. A distant image does not sparkle.
     Mipmap,
 }
+
+message! { enum TextureFilter { Bilinear, Mipmap } }
 
 /// With indirect light: how paths find the light of emitters and of an environment map (stage 11). All three give the same
 /// picture with enough samples.
@@ -164,6 +180,8 @@ pub enum NextEvent {
     On,
 }
 
+message! { enum NextEvent { Off, Only, On } }
+
 /// Floating-point precision of the ray tests against triangles and spheres (stage 10).
 ///
 /// Rays and shapes themselves are stored in single precision. Infinite planes, boxes, cylinders, cones, disks
@@ -177,6 +195,8 @@ pub enum Precision {
     /// Double precision, 53 bits, with any [`TriangleMethod`] and [`SphereMethod`].
     Double,
 }
+
+message! { enum Precision { Single, Double } }
 
 /// The most primitives of a flattened scene, unless a caller sets another limit.
 pub(crate) const MOST_PRIMITIVES: u32 = 20_000_000;
@@ -319,6 +339,8 @@ macro_rules! settings {
             #[doc = concat!($words, $(" (`", stringify!($range), "`)",)? "; `", stringify!($default), "` by default.")]
             pub $key: $type,
         )+}
+
+        message! { Quality { $($key),+ } }
 
         impl Default for Quality {
             fn default() -> Self {

@@ -6,8 +6,17 @@ use std::fs;
 use std::path::Path;
 
 /// The files and folders of `src`, from the lowest floor to the highest. Programs stand above them.
-const FLOORS: [&str; 8] =
-    ["geometry", "light camera count", "progress", "trees", "scene", "files kit", "world course", "tracer"];
+const FLOORS: [&str; 9] = [
+    "message",
+    "geometry",
+    "light camera count",
+    "progress",
+    "trees",
+    "scene",
+    "files kit",
+    "world course",
+    "tracer",
+];
 
 /// The packages of the workspace in the same order. None uses another one of its own floor.
 const PACKAGES: [&str; 9] = [

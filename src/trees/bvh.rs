@@ -1,12 +1,12 @@
 //! The bounding volume hierarchy as data. Splitting, building and traversing it are exercises of stage 3.
 
 use crate::aabb::Aabb;
+use crate::message;
 use crate::ray::Ray;
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// A primitive as the builder of a hierarchy sees it: its number, its box and the centre of that box.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimitiveRef {
     /// The number of the primitive. [`Bvh::set_leaf`] copies it into [`Bvh::order`].
     pub id: u32,
@@ -16,8 +16,10 @@ pub struct PrimitiveRef {
     pub centroid: Vec3,
 }
 
+message! { PrimitiveRef { id, bounds, centroid } }
+
 /// What a node contains: either two child nodes or a range of primitives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contents {
     /// An inner node, which has exactly two children.
     Inner {
@@ -35,14 +37,18 @@ pub enum Contents {
     },
 }
 
+message! { enum Contents { Inner { left, right }, Leaf { first, count } } }
+
 /// A node of a bounding volume hierarchy: a box and what it contains.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node {
     /// A closed box around all primitives below this node, in world units.
     pub bounds: Aabb,
     /// The node's children, or its primitives if it is a leaf.
     pub contents: Contents,
 }
+
+message! { Node { bounds, contents } }
 
 /// A bounding volume hierarchy over primitives `0..n`. Node 0 is the root; a hierarchy over no primitives has
 /// no nodes.
@@ -68,7 +74,7 @@ pub struct Node {
 /// assert_eq!((bvh.root(), bvh.depth()), (Some(0), 2));
 /// assert_eq!(bvh.order, [0, 1]);
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh {
     /// All nodes. A parent has a smaller index than its children.
     pub nodes: Vec<Node>,
@@ -76,6 +82,8 @@ pub struct Bvh {
     pub order: Vec<u32>,
     most_nodes: usize,
 }
+
+message! { Bvh { nodes, order, most_nodes } }
 
 impl Bvh {
     /// A hierarchy without nodes, which can take at most the `2 n - 1` nodes that a binary tree over
@@ -205,13 +213,15 @@ pub trait Probe {
 }
 
 /// A hit of a ray: the number of the primitive and the ray parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimitiveHit {
     /// The ray parameter of the hit: the distance along the ray, in lengths of its direction.
     pub t: f32,
     /// The number of the primitive that is hit.
     pub primitive: u32,
 }
+
+message! { PrimitiveHit { t, primitive } }
 
 /// The depth from which on every split of a hierarchy is an object median; the root has depth 0.
 ///

@@ -1,11 +1,12 @@
 //! The scene graph as data for a search: nodes that contain primitives and child nodes. Searching it is an
 //! exercise of stage 8.
 
+use crate::message;
 use glam::Affine3A;
 use serde::{Deserialize, Serialize};
 
 /// A node of a scene graph: its own primitives, and its child nodes.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct GraphNode {
     /// The indices of the child nodes in [`Graph::nodes`].
     pub children: Vec<u32>,
@@ -13,13 +14,17 @@ pub struct GraphNode {
     pub primitives: Vec<u32>,
 }
 
+message! { GraphNode { children, primitives } }
+
 /// A scene graph unfolded into a tree: a node with several parents appears once per parent. Node 0 is the
 /// root; a graph over nothing has no nodes.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Graph {
     /// All nodes. A parent has a smaller index than its children.
     pub nodes: Vec<GraphNode>,
 }
+
+message! { Graph { nodes } }
 
 impl Graph {
     /// The number of nodes on the longest path from the root to a leaf, both counted; 0 if there are no
@@ -40,13 +45,15 @@ impl Graph {
 }
 
 /// The transforms of a node from its own space to the world and back.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// The transform from the space of the node to the world.
     pub to_world: Affine3A,
     /// The inverse transform, from the world to the space of the node.
     pub to_object: Affine3A,
 }
+
+message! { Placement { to_world, to_object } }
 
 /// The three optimisations of a search of a scene graph (lecture "Bounding Volumes", "Ray-Scene
 /// Intersection"). Each can be switched off, to measure what it saves; the default has all three. The hit is
@@ -62,6 +69,8 @@ pub struct GraphOptimisations {
     pub sort: bool,
 }
 
+message! { GraphOptimisations { volumes, skip, sort } }
+
 impl Default for GraphOptimisations {
     fn default() -> Self {
         GraphOptimisations { volumes: true, skip: true, sort: true }
@@ -69,11 +78,13 @@ impl Default for GraphOptimisations {
 }
 
 /// For each node of a scene graph the child in which the previous ray had its closest hit.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChildCache {
     /// The entries, by node. A node beyond the end has none.
     pub children: Vec<Option<u32>>,
 }
+
+message! { ChildCache { children } }
 
 impl ChildCache {
     /// The child that is stored for `node`; `None` if there is none.

@@ -3,9 +3,8 @@
 
 use crate::kits::{Need, Program, Which, build};
 use anyhow::{Context, Result};
+use raykata::message::Message;
 use raykata::worker::{receive, send};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Child, Command, ExitCode, Stdio};
@@ -38,13 +37,13 @@ impl Judge {
     }
 
     /// Sends a message to the judge.
-    pub fn send<T: Serialize>(&mut self, message: &T) -> Result<()> {
+    pub fn send<T: Message>(&mut self, message: &T) -> Result<()> {
         let pipe = self.0.stdin.as_mut().context("the judge has no standard input")?;
         send(pipe, message).context("the judge accepts no message")
     }
 
     /// The next message of the judge.
-    pub fn receive<T: DeserializeOwned>(&mut self) -> Result<T> {
+    pub fn receive<T: Message>(&mut self) -> Result<T> {
         let pipe = self.0.stdout.as_mut().context("the judge has no standard output")?;
         receive(pipe).context("the judge does not answer")
     }

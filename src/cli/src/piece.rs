@@ -10,6 +10,7 @@ use anyhow::{Context, Result, bail, ensure};
 use glam::Vec3;
 use raykata::film::write_atomically;
 use raykata::kit::{RenderJob, Rendering, View};
+use raykata::message::to_bytes;
 use raykata::rows::Rows;
 use raykata::scene::{FilmSettings, Quality, Scene};
 use serde::{Deserialize, Serialize};
@@ -51,9 +52,8 @@ impl Settings {
         let scene = &job.scene;
         let film = FilmSettings { rows: None, ..scene.film };
         let rest = Scene { film: FilmSettings::default(), quality: Quality::default(), ..scene.clone() };
-        let rest = serde_json::to_vec(&rest).context("the scene cannot be written as JSON")?;
         Ok(Settings {
-            scene: fingerprint([&rest[..]]),
+            scene: fingerprint([&to_bytes(&rest)[..]]),
             code: code(root, which)?,
             kit: which.package().to_owned(),
             view: job.view,

@@ -1,10 +1,10 @@
 //! The messages of `judge verdicts`, the verdicts of a stage, each as soon as it is known, and of `judge trials`.
 
-use serde::{Deserialize, Serialize};
+use raykata::message;
 use std::path::PathBuf;
 
 /// A check and its verdict.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CheckVerdict {
     /// The name of the check.
     pub check: String,
@@ -12,8 +12,10 @@ pub struct CheckVerdict {
     pub verdict: Verdict,
 }
 
+message! { CheckVerdict { check, verdict } }
+
 /// The result of a check for the student.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// The law holds.
     Passed,
@@ -28,8 +30,10 @@ pub enum Verdict {
     Failed(String),
 }
 
+message! { enum Verdict { Passed, NotWritten { task, place }, Failed(message) } }
+
 /// A request to `judge trials`: one check of one worker. The answer is a [`Verdict`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CheckTrial {
     /// The stage of the check.
     pub stage: u8,
@@ -40,3 +44,5 @@ pub struct CheckTrial {
     /// Whether a failure needs a message. Without one the verdict comes sooner.
     pub needs_message: bool,
 }
+
+message! { CheckTrial { stage, check, worker, needs_message } }

@@ -2,10 +2,10 @@
 
 use super::planes::{CutPlane, PlaneNode, both_sides};
 use super::{Tree, TreeNode};
-use serde::{Deserialize, Serialize};
+use crate::message;
 
 /// What a node of a BSP tree contains: a plane with two child nodes, or a range of primitives.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BspNode {
     /// An inner node: two nodes, one on each side of a plane.
     Inner {
@@ -24,6 +24,8 @@ pub enum BspNode {
         count: u32,
     },
 }
+
+message! { enum BspNode { Inner { plane, back, front }, Leaf { first, count } } }
 
 impl TreeNode for BspNode {
     type Region = Vec<(CutPlane, f64)>;

@@ -2,15 +2,15 @@
 
 use super::Cell;
 use crate::aabb::Aabb;
+use crate::message;
 use glam::{DVec3, UVec3};
-use serde::{Deserialize, Serialize};
 
 /// The most cells along an axis when the resolution follows from the number of primitives: 256³ cells take 64
 /// MiB before any primitive is in them.
 pub const MOST_CELLS_ALONG: u32 = 256;
 
 /// A uniform grid of cells of equal size. Cell `(x, y, z)` has the number `x + nx · (y + ny · z)`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// The box that the cells divide, in world units; it contains all primitives that can be hit. It is empty
     /// if there are none.
@@ -24,6 +24,8 @@ pub struct Grid {
     /// overlaps.
     pub items: Vec<u32>,
 }
+
+message! { Grid { bounds, resolution, starts, items } }
 
 impl Grid {
     /// The number of the cell with the coordinates `cell`, each `0 <= cell < resolution`, which is not

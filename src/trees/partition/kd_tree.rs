@@ -2,6 +2,7 @@
 
 use super::{Cell, CellTree, Tree, TreeNode};
 use crate::aabb::Aabb;
+use crate::message;
 use serde::{Deserialize, Serialize};
 
 /// Which of the five heuristics of the lecture ("Heuristics" 1 to 5) a builder follows; the default is all of
@@ -19,6 +20,8 @@ pub struct KdHeuristics {
     /// Stop dividing if 60 % of the primitives on one side are also on the other.
     pub stop_at_overlap: bool,
 }
+
+message! { KdHeuristics { longest_axis, balanced_counts, few_straddlers, cut_off_empty_space, stop_at_overlap } }
 
 impl KdHeuristics {
     /// No heuristic, which is the "easy way" of the lecture: planes across x, y, z in turn, in the middle of the cell.
@@ -44,7 +47,7 @@ impl Default for KdHeuristics {
 }
 
 /// What a node of a kd-tree contains: a plane with two child nodes, or a range of primitives.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum KdNode {
     /// An inner node: two nodes, one on each side of a plane.
     Inner {
@@ -65,6 +68,8 @@ pub enum KdNode {
         count: u32,
     },
 }
+
+message! { enum KdNode { Inner { axis, at, left, right }, Leaf { first, count } } }
 
 impl TreeNode for KdNode {
     type Region = Cell;

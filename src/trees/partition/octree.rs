@@ -2,10 +2,10 @@
 
 use super::{Cell, CellTree, Tree, TreeNode};
 use crate::aabb::Aabb;
-use serde::{Deserialize, Serialize};
+use crate::message;
 
 /// What a node of an octree contains: eight child nodes, or a range of primitives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OctreeNode {
     /// An inner node with the eight nodes `first..first + 8`, in the order of [`Cell::octant`].
     Inner {
@@ -20,6 +20,8 @@ pub enum OctreeNode {
         count: u32,
     },
 }
+
+message! { enum OctreeNode { Inner { first }, Leaf { first, count } } }
 
 impl TreeNode for OctreeNode {
     type Region = Cell;

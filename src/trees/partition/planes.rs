@@ -2,18 +2,20 @@
 
 use super::{Tree, TreeNode};
 use crate::aabb::Aabb;
+use crate::message;
 use glam::{DVec3, Vec3};
-use serde::{Deserialize, Serialize};
 
 /// A plane that divides space: all points `p` with `normal · p = offset`. The front is the side to which the
 /// normal points.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutPlane {
     /// The normal of the plane, of unit length.
     pub normal: DVec3,
     /// The signed distance of the plane from the origin along the normal, in world units.
     pub offset: f64,
 }
+
+message! { CutPlane { normal, offset } }
 
 impl CutPlane {
     /// The plane at coordinate `at` (world units) of `axis`, 0 for x, 1 for y, 2 for z; its front has the

@@ -2,12 +2,12 @@
 
 use super::planes::{CutPlane, PlaneNode, both_sides};
 use super::{Tree, TreeNode};
-use serde::{Deserialize, Serialize};
+use crate::message;
 use std::ops::{Deref, DerefMut};
 
 /// What a node of a [`PolygonBsp`] contains: a plane with the polygons on it and two child nodes, or a range of
 /// primitives.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PolygonBspNode {
     /// An inner node: the polygons `items[first..first + count]` lie on the plane, at least with a part.
     Inner {
@@ -30,6 +30,8 @@ pub enum PolygonBspNode {
         count: u32,
     },
 }
+
+message! { enum PolygonBspNode { Inner { plane, first, count, back, front }, Leaf { first, count } } }
 
 impl TreeNode for PolygonBspNode {
     type Region = Vec<(CutPlane, f64)>;
@@ -60,7 +62,7 @@ impl PlaneNode for PolygonBspNode {
 
 /// A binary space partition with polygons in its nodes. The root's region is all of space. A polygon is listed in each
 /// node on whose plane one of its parts lies; a primitive that is no polygon is listed in every leaf that it overlaps.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PolygonBsp {
     /// The nodes and the primitives that they list.
     pub tree: Tree<PolygonBspNode>,
@@ -68,6 +70,8 @@ pub struct PolygonBsp {
     /// A polygon in front of a plane may extend behind it by this distance.
     pub room: f64,
 }
+
+message! { PolygonBsp { tree, room } }
 
 impl Deref for PolygonBsp {
     type Target = Tree<PolygonBspNode>;

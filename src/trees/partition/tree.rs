@@ -2,7 +2,7 @@
 
 use super::{Cell, limit};
 use crate::aabb::Aabb;
-use serde::{Deserialize, Serialize};
+use crate::message;
 use std::ops::{Deref, DerefMut};
 
 /// A node of a [`Tree`]: a leaf, or something that divides the region of the node among its children.
@@ -24,13 +24,15 @@ pub trait TreeNode: Copy {
 }
 
 /// The nodes and leaves of a tree. Node 0 is the root. A tree over no primitives has no nodes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Tree<N> {
     /// All nodes. A parent has a smaller index than its children.
     pub nodes: Vec<N>,
     /// The numbers of primitives, those of a node adjacent. A primitive is listed in every leaf that it overlaps.
     pub items: Vec<u32>,
 }
+
+message! { Tree<N> { nodes, items } }
 
 impl<N> Default for Tree<N> {
     fn default() -> Self {
@@ -150,13 +152,15 @@ impl<N: TreeNode> Tree<N> {
 }
 
 /// A tree whose nodes are cells.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CellTree<N> {
     /// The cell of the root, in world units; it contains all primitives that can be hit.
     pub bounds: Aabb,
     /// The nodes and the primitives in their leaves.
     pub tree: Tree<N>,
 }
+
+message! { CellTree<N> { bounds, tree } }
 
 impl<N: TreeNode<Region = Cell>> CellTree<N> {
     /// The cells at `depth` (the root has depth 0), and the leaves above it, as boxes for drawing.

@@ -1,19 +1,21 @@
 //! The boxes of primitives as the binned builder sees them, and its bins.
 
 use crate::aabb::Aabb;
+use crate::message;
 use glam::{Vec3A, Vec4};
-use serde::{Deserialize, Serialize};
 
 /// A primitive as the binned builder sees it: its number and its box, in 32 bytes.
 ///
 /// Each corner of the box is a vector of four numbers, so that one instruction takes the minimum of all coordinates. The
 /// fourth number of `low` holds the number of the primitive.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
 pub struct PrimitiveBox {
     low: [f32; 4],
     high: [f32; 4],
 }
+
+message! { PrimitiveBox { low, high } }
 
 /// The bits of a number are those of `2.0` plus the index, which never makes a NaN, an infinity or a subnormal number: with
 /// these some instructions are slow.
@@ -64,13 +66,15 @@ impl PrimitiveBox {
 }
 
 /// A box whose corners are in registers of four numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxA {
     /// The corner with the smallest coordinate on each axis.
     pub low: Vec3A,
     /// The corner with the largest coordinate on each axis.
     pub high: Vec3A,
 }
+
+message! { BoxA { low, high } }
 
 impl BoxA {
     /// The box that contains no point; the neutral element of union.
@@ -81,7 +85,7 @@ impl BoxA {
 pub const MAX_BINS: usize = 16;
 
 /// Where the bins of a node lie: `n_bins` equal bins along each axis, over the box around twice the centroids.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BinGrid {
     /// The smallest value of twice the centroid, on each axis.
     pub low: Vec3A,
@@ -91,8 +95,10 @@ pub struct BinGrid {
     pub n_bins: u32,
 }
 
+message! { BinGrid { low, scale, n_bins } }
+
 /// One bin: the primitives whose centroid lies in it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bin {
     /// The box around the boxes of these primitives.
     pub bounds: BoxA,
@@ -100,14 +106,18 @@ pub struct Bin {
     pub count: u32,
 }
 
+message! { Bin { bounds, count } }
+
 impl Bin {
     /// A bin without primitives.
     pub const EMPTY: Bin = Bin { bounds: BoxA::EMPTY, count: 0 };
 }
 
 /// The bins of a node: `bins[axis][i]`. Bins from `n_bins` on are empty.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bins(pub [[Bin; MAX_BINS]; 3]);
+
+message! { Bins { 0 } }
 
 impl Bins {
     /// Bins without primitives.
@@ -115,7 +125,7 @@ impl Bins {
 }
 
 /// A division of the primitives of a node: those in bins before `bin` along `axis` go to the left side.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BinSplit {
     /// 0 for x, 1 for y, 2 for z.
     pub axis: u32,
@@ -125,3 +135,5 @@ pub struct BinSplit {
     /// half the surface area `A` of the box of a side, in square world units.
     pub cost: f32,
 }
+
+message! { BinSplit { axis, bin, cost } }

@@ -2,13 +2,13 @@
 
 use super::PrimitiveBox;
 use crate::aabb::Aabb;
+use crate::message;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 /// A place in a parallel build where two pieces of work may run at the same time.
 ///
 /// The primitives of the forked node identify it: no two nodes of a tree with two children each have the same range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fork {
     /// The position of the node's first primitive in the order of the finished tree.
     pub first: u32,
@@ -18,8 +18,10 @@ pub struct Fork {
     pub kind: ForkKind,
 }
 
+message! { Fork { first, count, kind } }
+
 /// What is done in parallel at a node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForkKind {
     /// The trees below its two children are built in parallel.
     Children,
@@ -29,6 +31,8 @@ pub enum ForkKind {
         pieces: u32,
     },
 }
+
+message! { enum ForkKind { Children, Binning { pieces } } }
 
 /// Runs pieces of work in parallel, and keeps a log of them.
 ///

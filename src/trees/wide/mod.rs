@@ -12,13 +12,13 @@ pub use forks::{Fork, ForkKind, Forks};
 
 use crate::aabb::Aabb;
 use crate::bvh::PrimitiveHit;
+use crate::message;
 use crate::ray::Ray;
 use crate::shape::Triangle;
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
 
 /// A node of a flat tree: its box, and its two children or its primitives, in 32 bytes. Two nodes fill a line of the cache.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct FlatNode {
     /// The corner of the box with the smallest coordinates, in world units.
@@ -31,6 +31,8 @@ pub struct FlatNode {
     /// The number of primitives of a leaf; 0 for an inner node.
     pub count: u32,
 }
+
+message! { FlatNode { low, first, high, count } }
 
 impl FlatNode {
     /// Whether the node is a leaf.
@@ -49,7 +51,7 @@ impl FlatNode {
 /// A binary bounding volume hierarchy in one array. Node 0 is the root, and a parent comes before its children. The two children
 /// of a node are neighbours, and the nodes below the first child come before those below the second (depth first). So there is
 /// one order of the nodes. A tree over no primitives has no nodes.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlatTree {
     /// All nodes.
     pub nodes: Vec<FlatNode>,
@@ -57,14 +59,18 @@ pub struct FlatTree {
     pub order: Vec<u32>,
 }
 
+message! { FlatTree { nodes, order } }
+
 /// What a parallel build returns: the tree, and where it forked.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ForkedTree {
     /// The tree, the same as without forks.
     pub tree: FlatTree,
     /// The forks, in the order of [`Forks::into_log`].
     pub forks: Vec<Fork>,
 }
+
+message! { ForkedTree { tree, forks } }
 
 /// The cost of visiting an inner node of a binary tree, in the surface area heuristic of stage 12.
 pub const NODE_COST: f32 = 0.25;
@@ -82,8 +88,10 @@ pub const MAX_LEAF: usize = 32;
 ///
 /// A leaf is its first block of triangles and its number of primitives, which fill the blocks in order: only the last block
 /// may have free lanes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Child(u32);
+
+message! { Child { 0 } }
 
 /// What a [`Child`] means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,7 +162,7 @@ impl Child {
 }
 
 /// A node with up to eight children, in 256 bytes: the boxes of all children as a structure of arrays.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct WideNode {
     /// `bounds[axis][side][i]` is a coordinate of the box of child `i`: the smallest for side 0, the largest for side 1. A place
@@ -165,6 +173,8 @@ pub struct WideNode {
     /// Bit `i` is set if place `i` holds a child. [`WideNode::set`] sets it.
     pub occupied: u32,
 }
+
+message! { WideNode { bounds, children, occupied } }
 
 impl WideNode {
     /// A node without children.
@@ -209,7 +219,7 @@ pub type BlockIds = [u32; BLOCK];
 pub const NO_PRIMITIVE: u32 = u32::MAX;
 
 /// A hierarchy with eight children per node. Node 0 is the root; a tree over no primitives has no nodes.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct WideTree {
     /// All nodes. A parent has a smaller index than its children.
     pub nodes: Vec<WideNode>,
@@ -217,11 +227,13 @@ pub struct WideTree {
     pub blocks: Vec<BlockIds>,
 }
 
+message! { WideTree { nodes, blocks } }
+
 /// The largest coordinate for which triangles are tested four at once: a product of three such numbers does not overflow.
 pub const LARGEST: f32 = (1u64 << 40) as f32;
 
 /// Four triangles as a structure of arrays, in 176 bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
 pub struct TriangleBlock {
     /// `corners[corner][axis][lane]`. A lane has NaN if its primitive is not a triangle, if the lane is free, or if
@@ -232,6 +244,8 @@ pub struct TriangleBlock {
     /// The numbers of the primitives.
     pub ids: BlockIds,
 }
+
+message! { TriangleBlock { corners, size, ids } }
 
 impl TriangleBlock {
     /// The block of the primitives `ids`; `triangle` returns the triangle of a primitive, or `None` if it is another shape.
@@ -301,13 +315,15 @@ impl WideRay {
 }
 
 /// Which boxes of a wide node a ray enters, and where.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entered {
     /// Bit `i` is set if the ray enters the box of child `i`.
     pub mask: u32,
     /// The `t` at which the ray enters the box of child `i`, not negative; any number where the bit is not set.
     pub t: [f32; 8],
 }
+
+message! { Entered { mask, t } }
 
 /// All that a search of a wide tree may ask. Each call is counted.
 pub trait WideProbe {

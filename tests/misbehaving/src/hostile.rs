@@ -370,7 +370,7 @@ impl Transport for Recorder {
     }
 }
 
-fn bytes_of<T: serde::Serialize>(message: &T) -> Vec<u8> {
+fn bytes_of<T: raykata::message::Message>(message: &T) -> Vec<u8> {
     let mut bytes = Vec::new();
     // Writing into a vector cannot fail.
     let _ = send(&mut bytes, message);

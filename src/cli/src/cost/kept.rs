@@ -7,6 +7,7 @@ use anyhow::{Context, Result};
 use glam::Vec3;
 use raykata::film::Film;
 use raykata::kit::{RenderJob, Rendering};
+use raykata::message::to_bytes;
 use raykata::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -64,8 +65,7 @@ impl Kept {
         }
         let without_settings =
             Scene { film: Default::default(), quality: Default::default(), ..scene.clone() };
-        let bytes = serde_json::to_vec(&without_settings).context("the scene cannot be serialised")?;
-        let name = fingerprint([&bytes[..]]);
+        let name = fingerprint([&to_bytes(&without_settings)[..]]);
         *last = Some((without_settings, name.clone()));
         Ok(name)
     }

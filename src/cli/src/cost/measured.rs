@@ -5,6 +5,7 @@ use super::parameter::Parameter;
 use super::setting::Setting;
 use raykata::count::Counts;
 use raykata::film::Film;
+use raykata::message;
 use serde::{Deserialize, Serialize};
 
 /// The measurements of one setting.
@@ -104,6 +105,8 @@ pub struct Verdicts {
     /// The number of wrong rays that passed through a closed surface.
     pub leaks: u64,
 }
+
+message! { Verdicts { rays, wrong, leaks } }
 
 /// The reference of a scene.
 pub struct Reference {

@@ -12,6 +12,7 @@ use crate::report::bar_of_steps;
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};
 use raykata::film::{Film, write_atomically};
+use raykata::message::to_bytes;
 use raykata::scene::{Accelerator, NextEvent, Quality, Sampler, Scene, Split, TextureFilter};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -110,8 +111,7 @@ impl Sums {
 
 /// The file of a reference, named after the scene and the code that renders it.
 fn file_of(scene: &Scene, cache: &Path, code: &str) -> Result<PathBuf> {
-    let scene = serde_json::to_vec(scene).context("the scene cannot be serialised")?;
-    let name = fingerprint([code.as_bytes(), &scene]);
+    let name = fingerprint([code.as_bytes(), &to_bytes(scene)]);
     Ok(cache.join(format!("{name}.sums")))
 }
 

@@ -1,0 +1,328 @@
+//! Messages between programs: values as bytes, without names.
+//!
+//! The format has no description of itself; both sides have the same types.
+//!
+//! | value | bytes |
+//! |---|---|
+//! | `u8`, `u32`, `u64`, `i64`, `f32`, `f64` | 1, 4 or 8, little-endian; a floating-point number by its bits |
+//! | `usize` | as `u64` |
+//! | `bool` | one byte, 0 or 1 |
+//! | a vector of `glam` | its components |
+//! | a transform of `glam` | its four columns |
+//! | a structure, an array, a tuple | its parts, in the order of the definition |
+//! | a variant of an enumeration | one byte with its number, from 0, then its parts |
+//! | `Option` | one byte, 0 for `None` or 1, then the value |
+//! | `Vec`, `String` | the number of items or bytes of UTF-8, four bytes, then the items |
+//! | `PathBuf` | as `String` |
+//! | `Box`, `Arc` | the value |
+//!
+//! Each type has one function that writes it and one that reads it. A format with serializers, deserializers and visitors for
+//! each type took more than half of the time in which this crate was compiled.
+
+use glam::{Affine3A, DVec3, UVec2, UVec3, Vec2, Vec3, Vec3A};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A value that can be sent to another program.
+pub trait Message: Sized {
+    /// Appends the value to `bytes`.
+    fn write(&self, bytes: &mut Vec<u8>);
+
+    /// Takes the value from the start of `bytes`. Memory grows with the bytes that are there, and not with an announced
+    /// length.
+    ///
+    /// # Errors
+    ///
+    /// If `bytes` does not begin with a value of this type.
+    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed>;
+}
+
+/// Bytes that are no message, and why.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Malformed(&'static str);
+
+/// The value that consists of all of `bytes`.
+///
+/// # Errors
+///
+/// If the bytes are not exactly one value of this type.
+pub fn from_bytes<T: Message>(mut bytes: &[u8]) -> Result<T, Malformed> {
+    let value = T::read(&mut bytes)?;
+    if bytes.is_empty() { Ok(value) } else { Err(Malformed("bytes are left after its end")) }
+}
+
+/// The bytes of a value.
+pub fn to_bytes(value: &impl Message) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    value.write(&mut bytes);
+    bytes
+}
+
+fn take<const N: usize>(bytes: &mut &[u8]) -> Result<[u8; N], Malformed> {
+    let (first, rest) = bytes.split_first_chunk().ok_or(Malformed("it ends too early"))?;
+    *bytes = rest;
+    Ok(*first)
+}
+
+macro_rules! numbers {
+    ($($Type:ty)*) => {
+        $(impl Message for $Type {
+            fn write(&self, bytes: &mut Vec<u8>) {
+                bytes.extend_from_slice(&self.to_le_bytes());
+            }
+
+            fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
+                take(bytes).map(<$Type>::from_le_bytes)
+            }
+        })*
+    };
+}
+
+numbers! { u8 u32 u64 i64 f32 f64 }
+
+/// Types that are written as another one.
+macro_rules! like {
+    ($($Type:ty: |$value:ident| $to:expr, $Other:ty, |$other:ident| $from:expr;)*) => {
+        $(impl Message for $Type {
+            fn write(&self, bytes: &mut Vec<u8>) {
+                let $value = self;
+                $to.write(bytes);
+            }
+
+            fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
+                let $other = <$Other>::read(bytes)?;
+                $from
+            }
+        })*
+    };
+}
+
+like! {
+    usize: |n| (*n as u64), u64, |n| n.try_into().map_err(|_| Malformed("a number is too large"));
+    bool: |truth| u8::from(*truth), u8, |byte| match byte {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => Err(Malformed("a truth value is neither 0 nor 1")),
+    };
+    Vec2: |v| v.to_array(), [f32; 2], |v| Ok(v.into());
+    Vec3: |v| v.to_array(), [f32; 3], |v| Ok(v.into());
+    Vec3A: |v| v.to_array(), [f32; 3], |v| Ok(v.into());
+    DVec3: |v| v.to_array(), [f64; 3], |v| Ok(v.into());
+    UVec2: |v| v.to_array(), [u32; 2], |v| Ok(v.into());
+    UVec3: |v| v.to_array(), [u32; 3], |v| Ok(v.into());
+    PathBuf: |path| path.to_string_lossy().into_owned(), String, |path| Ok(path.into());
+    Affine3A: |transform| transform.to_cols_array(), [f32; 12], |columns| Ok(Affine3A::from_cols_array(&columns));
+}
+
+impl Message for String {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        write_length(self.len(), bytes);
+        bytes.extend_from_slice(self.as_bytes());
+    }
+
+    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
+        let length = u32::read(bytes)? as usize;
+        let (text, rest) = bytes.split_at_checked(length).ok_or(Malformed("it ends too early"))?;
+        *bytes = rest;
+        String::from_utf8(text.into()).map_err(|_| Malformed("a text is not UTF-8"))
+    }
+}
+
+/// # Panics
+///
+/// If a list is longer than `u32::MAX`: four times as long as the longest message.
+fn write_length(length: usize, bytes: &mut Vec<u8>) {
+    u32::try_from(length).expect("a list of at most u32::MAX items").write(bytes);
+}
+
+impl<T: Message> Message for Vec<T> {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        write_length(self.len(), bytes);
+        for item in self {
+            item.write(bytes);
+        }
+    }
+
+    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
+        let length = u32::read(bytes)? as usize;
+        // Most items have about as many bytes in a message as in memory.
+        let mut items = Vec::with_capacity(length.min(bytes.len() / size_of::<T>().max(1)));
+        for _ in 0..length {
+            items.push(T::read(bytes)?);
+        }
+        Ok(items)
+    }
+}
+
+impl<T: Message> Message for Option<T> {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        self.is_some().write(bytes);
+        if let Some(value) = self {
+            value.write(bytes);
+        }
+    }
+
+    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
+        if bool::read(bytes)? { T::read(bytes).map(Some) } else { Ok(None) }
+    }
+}
+
+impl<T: Message> Message for Box<T> {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        (**self).write(bytes);
+    }
+
+    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
+        T::read(bytes).map(Box::new)
+    }
+}
+
+impl<T: Message> Message for Arc<T> {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        (**self).write(bytes);
+    }
+
+    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
+        T::read(bytes).map(Arc::new)
+    }
+}
+
+impl<T: Message, const N: usize> Message for [T; N] {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        for part in self {
+            part.write(bytes);
+        }
+    }
+
+    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
+        let parts = std::array::from_fn(|_| T::read(bytes).ok());
+        if parts.iter().any(Option::is_none) {
+            return Err(Malformed("an array is not complete"));
+        }
+        Ok(parts.map(|part: Option<T>| part.expect("it was just checked")))
+    }
+}
+
+macro_rules! tuples {
+    ($(($($T:ident $part:tt),*))*) => {
+        $(impl<$($T: Message),*> Message for ($($T,)*) {
+            fn write(&self, bytes: &mut Vec<u8>) {
+                $(self.$part.write(bytes);)*
+            }
+
+            fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
+                Ok(($($T::read(bytes)?,)*))
+            }
+        })*
+    };
+}
+
+tuples! { (A 0, B 1) (A 0, B 1, C 2) (A 0, B 1, C 2, D 3) }
+
+/// Implements [`Message`] for a structure, `Ray { origin, direction }` or `Child { 0 }` for one without names of fields, or for
+/// an enumeration, `enum Shape { Sphere(sphere), Box { min, max }, Nothing }`. The order is that of the bytes. A field after a
+/// semicolon is not sent, and read as its default.
+#[macro_export]
+#[doc(hidden)]
+macro_rules! message {
+    (enum $Name:ident {
+        $($Variant:ident $(($($part:ident),+))? $({ $($field:ident),+ $(; $unsent:ident)? })?),* $(,)?
+    }) => {
+        impl $crate::message::Message for $Name {
+            #[allow(unused_assignments, reason = "the number after the last variant")]
+            fn write(&self, bytes: &mut Vec<u8>) {
+                match self {
+                    $($Name::$Variant { .. } => {})* // The compiler misses none.
+                }
+                let mut number = 0;
+                $(
+                    if let $Name::$Variant $(($($part),+))? $({ $($field,)+ .. })? = self {
+                        bytes.push(number);
+                        $($($crate::message::Message::write($part, bytes);)+)?
+                        $($($crate::message::Message::write($field, bytes);)+)?
+                        return;
+                    }
+                    number += 1;
+                )*
+            }
+
+            #[allow(unused_assignments, reason = "the number after the last variant")]
+            fn read(bytes: &mut &[u8]) -> Result<Self, $crate::message::Malformed> {
+                let variant = <u8 as $crate::message::Message>::read(bytes)?;
+                let mut number = 0;
+                $(
+                    if variant == number {
+                        $($(let $part = $crate::message::Message::read(bytes)?;)+)?
+                        $($(let $field = $crate::message::Message::read(bytes)?;)+)?
+                        return Ok($Name::$Variant $(($($part),+))? $({ $($field,)+ $($unsent: Default::default())? })?);
+                    }
+                    number += 1;
+                )*
+                Err($crate::message::no_such_variant())
+            }
+        }
+    };
+    ($Name:ident $(<$T:ident>)? { $($field:tt),* $(,)? }) => {
+        impl$(<$T: $crate::message::Message>)? $crate::message::Message for $Name$(<$T>)? {
+            fn write(&self, bytes: &mut Vec<u8>) {
+                $($crate::message::Message::write(&self.$field, bytes);)*
+            }
+
+            fn read(bytes: &mut &[u8]) -> Result<Self, $crate::message::Malformed> {
+                Ok($Name { $($field: $crate::message::Message::read(bytes)?),* })
+            }
+        }
+    };
+}
+
+/// The error of a number that no variant has.
+#[doc(hidden)]
+pub fn no_such_variant() -> Malformed {
+    Malformed("there is no variant of this number")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Clone, Debug, PartialEq)]
+    enum Shape {
+        Dot,
+        Disk(f32, bool),
+        Named { name: String, at: Option<Vec3>, cost: usize },
+    }
+
+    crate::message! { enum Shape { Dot, Disk(radius, filled), Named { name, at; cost } } }
+
+    #[test]
+    fn values_come_back_and_no_prefix_of_them_does() {
+        let shapes = vec![
+            Shape::Dot,
+            Shape::Disk(f32::NEG_INFINITY, true),
+            Shape::Named { name: "größer".into(), at: Some(Vec3::new(0.1, -0.0, 3.0)), cost: 0 },
+        ];
+        let bytes = to_bytes(&(shapes.clone(), [1u8, 2, 3], Box::new(7usize)));
+        let back: (Vec<Shape>, [u8; 3], Box<usize>) = from_bytes(&bytes).expect("a message");
+        assert_eq!(back, (shapes, [1, 2, 3], Box::new(7)));
+        for end in 0..bytes.len() {
+            assert!(from_bytes::<(Vec<Shape>, [u8; 3], Box<usize>)>(&bytes[..end]).is_err(), "{end} bytes");
+        }
+        assert!(from_bytes::<u8>(&[1, 2]).is_err());
+    }
+
+    #[test]
+    fn what_is_no_value_is_an_error() {
+        assert!(from_bytes::<Shape>(&[3]).is_err());
+        assert!(from_bytes::<bool>(&[2]).is_err());
+        assert!(from_bytes::<String>(&[1, 0, 0, 0, 0xff]).is_err());
+        // A length that nothing follows allocates nothing.
+        assert!(from_bytes::<Vec<u64>>(&u32::MAX.to_le_bytes()).is_err());
+    }
+
+    #[test]
+    fn unsent_fields_get_their_default() {
+        let bytes = to_bytes(&Shape::Named { name: String::new(), at: None, cost: 9 });
+        assert_eq!(from_bytes(&bytes), Ok(Shape::Named { name: String::new(), at: None, cost: 0 }));
+    }
+}
