@@ -1,11 +1,13 @@
 //! `raykata doctor`: looks for what the kit needs on this machine, and says what to install.
 
-use crate::args::Spec;
+use crate::args::{Given, Spec};
 use crate::kits::root;
+use crate::program::exit_code;
 use crate::report::Bytes;
+use anyhow::Result;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitCode, Stdio};
 
 /// `raykata doctor`.
 pub static SPEC: Spec = Spec {
@@ -29,8 +31,8 @@ enum Finding {
     Needed(String, String),
 }
 
-/// Prints what was found; `true` if nothing that is needed is missing.
-pub fn run() -> bool {
+/// Prints what was found. It succeeds if nothing that is needed is missing.
+pub fn run(_: &Given) -> Result<ExitCode> {
     let root = root().ok();
     let findings = [
         ("kit", kit(root.as_deref())),
@@ -55,7 +57,7 @@ pub fn run() -> bool {
         0 => println!("\nEverything that the kit needs is there. `cargo run` shows the next step."),
         _ => println!("\n{missing} missing: install what is named above, and run this again."),
     }
-    missing == 0
+    Ok(exit_code(missing == 0))
 }
 
 /// What a program writes to standard output, if it can be started and succeeds.

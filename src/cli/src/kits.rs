@@ -5,9 +5,10 @@ use crate::args::{Given, Misuse, Opt, names};
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result, anyhow, bail};
 use raykata::kit::{Door, Kit};
+use std::ffi::OsStr;
 use std::io::{BufRead, BufReader, IsTerminal, Read};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitCode, Stdio};
 use std::sync::Arc;
 
 /// The kit whose code is used.
@@ -54,6 +55,12 @@ impl Choice {
     pub fn or_reference(self, root: &Path) -> Which {
         let default = if has_solutions(root) { Which::Solutions } else { Which::Exercises };
         self.0.unwrap_or(default)
+    }
+
+    /// Builds the selected kit with the renderer, and starts it. By default it is that of [`Choice::or_reference`].
+    pub fn start(self) -> Result<Arc<dyn Kit + Send + Sync>> {
+        let root = root()?;
+        Ok(Source::prepare(&root, self.or_reference(&root), Need::Frames)?.fresh())
     }
 
     /// The selected kit. By default the exercises.
@@ -160,21 +167,28 @@ pub fn build_worker(root: &Path, which: Which, need: Need) -> Result<PathBuf> {
         Which::Exercises => "your exercises",
         Which::Solutions => "the solutions",
     };
-    let built = build(root, what, &[Program::worker(which, need)])?;
-    built.into_iter().next().context("nothing was built")
+    let [program] = build(root, what, [Program::worker(which, need)])?;
+    Ok(program)
 }
 
 /// Builds programs of the workspace at `root` in the profile of this program, and returns their paths. If
 /// something has to be built, it prints a line that names `what`, followed by the output of cargo.
-pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBuf>> {
+pub fn build<const N: usize>(root: &Path, what: &str, programs: [Program; N]) -> Result<[PathBuf; N]> {
     let (cargo, paths) = cargo_build(root, programs)?;
     run_cargo(cargo, what)?;
     Ok(paths)
 }
 
+/// Runs a program with these words to its end, and returns its exit code; 1 if it was killed.
+pub fn run_program(program: &Path, words: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Result<ExitCode> {
+    let status = Command::new(program).args(words).status();
+    let status = status.with_context(|| format!("{} cannot be started", program.display()))?;
+    Ok(ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)))
+}
+
 /// The command that builds programs of the workspace at `root` in the profile of this program, and their paths afterwards.
-pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<(Command, Vec<PathBuf>)> {
-    for program in programs {
+pub fn cargo_build<const N: usize>(root: &Path, programs: [Program; N]) -> Result<(Command, [PathBuf; N])> {
+    for program in &programs {
         if program.package == Which::Solutions.package() && !has_solutions(root) {
             bail!("there are no solutions in {}: omit `--kit solutions`", root.display());
         }
@@ -183,7 +197,7 @@ pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<(Command, Vec<Pa
     let folder = build_folder()?;
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(root).arg("build");
-    for program in programs {
+    for program in &programs {
         cargo.args(["--package", program.package, "--bin", program.name]);
         if let Some(feature) = program.feature {
             // Pass the feature without the name of the package: the solutions depend on themselves in their
@@ -191,14 +205,17 @@ pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<(Command, Vec<Pa
             cargo.args(["--features", feature]);
         }
     }
-    match folder.file_name().and_then(|name| name.to_str()) {
-        None | Some("debug") => {}
-        Some(profile) => _ = cargo.args(["--profile", profile]),
-    }
+    cargo.args(profile_of(&folder));
     if let Some(target) = folder.parent() {
         cargo.arg("--target-dir").arg(target);
     }
-    Ok((cargo, programs.iter().map(|program| folder.join(program.file())).collect()))
+    Ok((cargo, programs.map(|program| folder.join(program.file()))))
+}
+
+/// The option of cargo for the profile of a folder in the target folder, which has its name.
+pub(crate) fn profile_of(folder: &Path) -> Option<String> {
+    let name = folder.file_name()?.to_str().filter(|name| *name != "debug")?;
+    Some(format!("--profile={name}"))
 }
 
 /// The folder of this program inside of the target folder, whose name is that of its profile.

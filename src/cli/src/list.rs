@@ -1,9 +1,11 @@
 //! `raykata list` and `raykata hint`: the contents of the rubric.
 
-use crate::args::{Argument, Given, Misuse, Opt, Spec};
+use crate::args::{Argument, Given, Misuse, Spec, whole_number};
+use crate::report::say;
 use anyhow::{Result, bail};
 use raykata::rubric::{self, CheckEntry};
 use std::fmt::Write;
+use std::process::ExitCode;
 
 /// The maximum width of a line, in columns.
 const WIDTH: usize = 80;
@@ -12,7 +14,7 @@ const WIDTH: usize = 80;
 pub static LIST: Spec = Spec {
     name: "raykata list",
     about: "List the checks with their points.",
-    arguments: &[Argument::optional("STAGE", "One stage only, such as 3 or stage3.")],
+    arguments: &[STAGE],
     options: &[],
 };
 
@@ -27,40 +29,8 @@ pub static HINT: Spec = Spec {
     options: &[],
 };
 
-/// The argument of `raykata check`.
+/// The argument of `raykata list` and `raykata watch`.
 pub const STAGE: Argument = Argument::optional("STAGE", "One stage only, such as 3 or stage3.");
-
-const PIXEL: &[Opt] = &[Opt::value(
-    "--pixel",
-    "X,Y",
-    "Ask for one pixel of the picture of a check again, and print each call with its input and your answer.",
-)];
-
-/// `raykata check`.
-pub static CHECK: Spec = Spec {
-    name: "raykata check",
-    about: "Grade your exercises and print the scorecard.",
-    arguments: &[Argument::optional("STAGE", "One stage only, such as 3 or stage3; with --pixel, a check.")],
-    options: &[PIXEL, crate::kits::Choice::OPTIONS],
-};
-
-/// `raykata gauntlet`.
-pub static GAUNTLET: Spec = Spec {
-    name: "raykata gauntlet",
-    about: "Measure the accuracy of your ray/triangle tests on hard inputs, against exact arithmetic.",
-    arguments: &[],
-    options: &[
-        &[
-            Opt::value(
-                "--inputs",
-                "N",
-                "Inputs per distribution, and rays per closed mesh [default: 20000].",
-            ),
-            Opt::value("--seed", "N", "Seed of the inputs [default: 1]."),
-        ],
-        crate::kits::Choice::OPTIONS,
-    ],
-};
 
 /// The requested stage, if any: `3` and `stage3` are the same. A stage that does not exist is an error.
 pub fn stage(given: &Given) -> Result<Option<u8>, Misuse> {
@@ -72,6 +42,19 @@ pub fn stage(given: &Given) -> Result<Option<u8>, Misuse> {
             format!("there is no such stage; there are stages {first} to {last}")
         })
     })
+}
+
+/// Prints the checks of a stage, or of all.
+pub fn run(given: &Given) -> Result<ExitCode> {
+    say(format_args!("{}", list(stage(given)?)));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Prints a hint for a check.
+pub fn run_hint(given: &Given) -> Result<ExitCode> {
+    let level = given.parsed_argument(1, |text| whole_number(text, &(1..=3)))?.unwrap_or(1);
+    say(format_args!("{}", hint(&given.required(0)?.to_string_lossy(), level)?));
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The checks of a stage, or of all stages, with their points and titles. Bonus points have a plus.

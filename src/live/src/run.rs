@@ -83,11 +83,10 @@ fn work(root: &Path, task: Task, process: &Process, report: &impl Fn(Event)) -> 
         Task::Check(_) => Need::Checks,
         Task::Render(..) => Need::Frames,
     };
-    let (mut cargo, programs) = cargo_build(root, &[Program::worker(Which::Exercises, need)])?;
+    let (mut cargo, [worker]) = cargo_build(root, [Program::worker(Which::Exercises, need)])?;
     cargo.arg("--message-format=json");
     // Compile for checks as `cargo test` does: without optimisation and incrementally, which takes a fifth of the time.
-    let in_debug =
-        programs.first().and_then(|program| program.parent()).is_some_and(|folder| folder.ends_with("debug"));
+    let in_debug = worker.parent().is_some_and(|folder| folder.ends_with("debug"));
     if matches!(task, Task::Check(_)) && in_debug {
         cargo.args(["--profile", "test"]);
     }
@@ -105,9 +104,8 @@ fn work(root: &Path, task: Task, process: &Process, report: &impl Fn(Event)) -> 
         return Ok(());
     }
     report(Event::Compiled(begin.elapsed()));
-    let [worker] = &programs[..] else { bail!("the worker was not built") };
     match task {
-        Task::Check(stage) => check(root, worker, stage, process, report),
+        Task::Check(stage) => check(root, &worker, stage, process, report),
         Task::Render(stage, width, height) => render(root, stage, (width, height), process, report),
     }
 }

@@ -3,8 +3,6 @@
 use super::measure::Measured;
 use crate::args::wrapped;
 use crate::report::{Bytes, Thousands};
-use anyhow::{Context, Result};
-use std::path::Path;
 
 /// A column: its head, its width, its numbers and their format. Smaller is better in all columns.
 struct Column {
@@ -111,11 +109,4 @@ fn cell(column: &Column, row: &Measured, rows: &[Measured]) -> String {
     let least = rows.iter().filter_map(column.value).fold(f64::INFINITY, f64::min);
     let wins = column.contest && rows.len() > 1 && value == least;
     format!("{:>width$}{}", (column.write)(value), if wins { '*' } else { ' ' })
-}
-
-/// Writes all numbers.
-pub fn write_json(file: &Path, rows: &[Measured]) -> Result<()> {
-    let text = serde_json::to_string_pretty(rows)?;
-    raykata::film::write_atomically(file, |out| std::io::Write::write_all(out, text.as_bytes()))
-        .with_context(|| format!("cannot write {}", file.display()))
 }

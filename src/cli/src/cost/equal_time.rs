@@ -7,13 +7,11 @@ use super::measured::Reference;
 use super::plot::{Line, Plot, svg};
 use super::setting::Setting;
 use crate::html::csv_line;
-use crate::report::make_folder;
-use anyhow::{Context, Result, bail};
+use crate::report::{make_folder, write_file};
+use anyhow::{Result, bail};
 use glam::Vec3;
-use raykata::film::write_atomically;
 use raykata::scene::Scene;
 use raykata::shape::Shape;
-use std::io::Write;
 use std::path::Path;
 
 /// How often each value is timed before its samples are chosen; the fastest frame counts.
@@ -71,8 +69,8 @@ pub fn run(
     }
     print(scene, sizes, &rows);
     make_folder(out)?;
-    write(&out.join("equal_time.csv"), &table(&rows))?;
-    write(&out.join("equal_time.svg"), &plot(&rows, sizes))?;
+    write_file(&out.join("equal_time.csv"), table(&rows).as_bytes())?;
+    write_file(&out.join("equal_time.svg"), plot(&rows, sizes).as_bytes())?;
     println!("\nthe plot: {}", out.join("equal_time.svg").display());
     Ok(true)
 }
@@ -208,19 +206,13 @@ fn short(value: &str) -> &str {
     value.split_once(", ").map_or(value, |(_, value)| value)
 }
 
-fn write(file: &Path, text: &str) -> Result<()> {
-    write_atomically(file, |out| out.write_all(text.as_bytes()))
-        .with_context(|| format!("cannot write {}", file.display()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn lights_change_their_size_and_keep_their_power() {
-        let scene =
-            crate::report::load_scene(Path::new("../../scenes/veach.toml"), Default::default()).unwrap();
+        let scene = crate::report::scene_of_kit("veach");
         let sized = with_lights_of(&scene, 0.5).unwrap();
         let mut lights = 0;
         for (node, before) in sized.nodes.iter().zip(&scene.nodes) {
@@ -235,8 +227,7 @@ mod tests {
             lights += 1;
         }
         assert_eq!(lights, 4);
-        let dark =
-            crate::report::load_scene(Path::new("../../scenes/stage1.toml"), Default::default()).unwrap();
+        let dark = crate::report::scene_of_kit("stage1");
         assert!(with_lights_of(&dark, 2.0).is_err() && with_lights_of(&dark, 1.0).is_ok());
     }
 }

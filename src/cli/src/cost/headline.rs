@@ -7,12 +7,11 @@
 use super::landscape::{scene, sides};
 use super::measure::Bench;
 use crate::journal::Journal;
-use crate::report::{FrameBar, Thousands, make_folder};
-use anyhow::{Context, Result};
+use crate::report::{FrameBar, Thousands, make_folder, write_file};
+use anyhow::Result;
 use raykata::kit::{RenderJob, Rendering, View};
 use raykata::scene::{Accelerator, Scene};
 use serde::{Deserialize, Serialize};
-use std::io::Write;
 use std::path::Path;
 
 /// The screen of the lecture notes.
@@ -73,9 +72,7 @@ impl Row {
 pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, code: &str) -> Result<bool> {
     let file = out.join("unfinished.jsonl");
     let about = format!("rows of {hierarchy:?} with {} threads by the program {code}", bench.threads);
-    let is_ours = Journal::<Row>::about(&file).is_some_and(|theirs| theirs == about);
-    let mut kept: Journal<Row> =
-        if is_ours { Journal::resume(&file, &about)? } else { Journal::create(&file, &about)? };
+    let mut kept: Journal<Row> = Journal::open(&file, &about)?;
     println!(
         "A landscape of n triangles on {} × {} pixels: one ray per pixel,\nnormals as colours, {} \
          threads. Brute force is timed on a slice of rays, and\nthe counts per ray are means over a sixteenth \
@@ -119,9 +116,7 @@ pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, cod
     arithmetic(last);
     make_folder(out)?;
     let file = out.join("headline.json");
-    let json = serde_json::to_vec_pretty(&rows)?;
-    raykata::film::write_atomically(&file, |file| file.write_all(&json))
-        .with_context(|| format!("cannot write {}", file.display()))?;
+    write_file(&file, &serde_json::to_vec_pretty(&rows)?)?;
     if !bench.stopped() {
         kept.finish()?;
     }

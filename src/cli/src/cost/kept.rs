@@ -33,9 +33,7 @@ impl Kept {
     pub fn open(out: &Path, code: &str) -> Result<Kept> {
         let file = out.join("unfinished.jsonl");
         let about = format!("pictures by the program {code}");
-        let is_ours = Journal::<Picture>::about(&file).is_some_and(|theirs| theirs == about);
-        let journal: Journal<Picture> =
-            if is_ours { Journal::resume(&file, &about)? } else { Journal::create(&file, &about)? };
+        let journal: Journal<Picture> = Journal::open(&file, &about)?;
         match journal.kept().count() {
             0 => {}
             n => {

@@ -231,9 +231,7 @@ mod tests {
 
     #[test]
     fn a_parameter_that_buys_nothing_says_why() {
-        let scene =
-            crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml"), Default::default())
-                .unwrap();
+        let scene = crate::report::scene_of_kit("stage1");
         let effects = Effects::default();
         let called = Called { scene: &scene, effects: &effects, primitives: 1, most_samples: 64 };
         let offered = |parameter: Parameter| parameter.ladders(&called).is_ok();

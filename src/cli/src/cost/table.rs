@@ -1,11 +1,10 @@
 //! The report as a table in the terminal.
 
 use super::Report;
-use super::advice::Advice;
 use super::files::expected_slope;
-use super::goal::Goal;
 use super::measured::Series;
 use super::parameter::Parameter;
+use super::search::{Advice, Goal};
 use crate::args::wrapped;
 use crate::report::Thousands;
 

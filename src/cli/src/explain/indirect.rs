@@ -2,9 +2,9 @@
 //! most, and how much light is missing beyond the largest depth.
 
 use super::why::{list, material};
-use super::{Explained, REASON_COLUMN, about_hits, bounds_table, render};
+use super::{Explained, REASON_COLUMN, about_hits, bounds_table};
 use crate::args::wrapped;
-use crate::report::Thousands;
+use crate::report::{Thousands, job, render};
 use anyhow::Result;
 use glam::Vec3;
 use raykata::kit::{KitError, kit_error};
@@ -41,7 +41,7 @@ pub fn asked(explained: &Explained<'_>) {
 /// Prints the predicted and the counted numbers of rays. A path has one ray per bounce, diffuse, reflected or refracted.
 pub fn bounds(explained: &Explained<'_>) -> Result<()> {
     let Explained { scene, kit, effects, paths } = explained;
-    let (counted, _) = render(*kit, (*scene).clone())?;
+    let counted = render(*kit, &job((*scene).clone()))?.counts;
     let (film, quality) = (&scene.film, &scene.quality);
     let camera = u64::from(film.width) * u64::from(film.height) * u64::from(quality.samples_per_pixel);
     let bounces = u64::from(quality.max_depth);

@@ -2,10 +2,10 @@
 
 use super::Explained;
 use crate::args::wrapped;
-use anyhow::{Context, Result};
+use crate::report::{job, render};
+use anyhow::Result;
 use raykata::film::Film;
-use raykata::frame::Unwatched;
-use raykata::kit::{HitsQuery, KitError, MaterialHits, RenderJob, View, kit_error};
+use raykata::kit::{HitsQuery, KitError, MaterialHits, RenderJob, kit_error};
 
 /// Prints, for each material that is shown, the rays that one of its hits needs if all lights are in front of it.
 pub fn rays_per_hit(explained: &Explained<'_>) -> Result<()> {
@@ -54,15 +54,7 @@ pub fn samples(explained: &Explained<'_>) -> Result<()> {
     // Render the picture twice with different random numbers. The difference of two independent pixels has twice the
     // variance of one.
     let film = |seed| -> Result<Film> {
-        let job = RenderJob {
-            scene: (*scene).clone(),
-            view: View::Shaded,
-            seed,
-            threads: 0,
-            count: false,
-            reuse: true,
-        };
-        Ok(kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?.film)
+        Ok(render(*kit, &RenderJob { seed, count: false, ..job((*scene).clone()) })?.film)
     };
     let (one, other) = (film(1)?, film(2)?);
     let pairs = one.pixels.iter().zip(&other.pixels);

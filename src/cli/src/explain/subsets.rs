@@ -1,7 +1,7 @@
 //! The cost of each set of effects.
 
-use super::{Explained, render};
-use crate::report::{Thousands, bar_of_steps};
+use super::Explained;
+use crate::report::{Thousands, bar_of_steps, job, render};
 use anyhow::{Result, bail};
 use raykata::effects::Effect;
 
@@ -31,7 +31,7 @@ pub fn print(explained: &Explained<'_>) -> Result<()> {
         let has = |bit: usize| set & (1 << bit) != 0;
         let absent = (0..called.len()).filter(|&bit| !has(bit)).map(|bit| called[bit]);
         let scene = absent.fold(explained.scene.clone(), |scene, effect: Effect| effect.removed_from(&scene));
-        let (counts, _) = render(explained.kit, scene)?;
+        let counts = render(explained.kit, &job(scene))?.counts;
         let letters: String = ('A'..)
             .take(called.len())
             .enumerate()

@@ -4,7 +4,7 @@
 //! does not use the workers of other commands. It writes a small workspace into the target folder, with one package per
 //! kit, which compiles the files of its folder.
 
-use crate::kits::{Which, build_folder, run_cargo};
+use crate::kits::{Which, build_folder, profile_of, run_cargo};
 use anyhow::{Context, Result, bail};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -80,10 +80,7 @@ pub fn build(root: &Path, racers: &[Racer]) -> Result<Vec<PathBuf>> {
     }
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(&workspace).args(["build", "--workspace", "--bins", "--target-dir"]).arg(target);
-    match built.file_name().and_then(|name| name.to_str()) {
-        None | Some("debug") => {}
-        Some(profile) => _ = cargo.args(["--profile", profile]),
-    }
+    cargo.args(profile_of(&built));
     run_cargo(cargo, "the kits of the race")?;
     let program = |i| built.join(format!("{}{}", package_name(i), std::env::consts::EXE_SUFFIX));
     Ok((0..racers.len()).map(program).collect())

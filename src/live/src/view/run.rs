@@ -226,15 +226,14 @@ impl Work {
 
     /// Renders the reference.
     fn reference(&self, job: &RenderJob) -> Result<()> {
-        let program = Program::worker(Which::Solutions, Need::Frames);
-        let (cargo, programs) = cargo_build(&self.studio.root, &[program])?;
+        let worker = Program::worker(Which::Solutions, Need::Frames);
+        let (cargo, [program]) = cargo_build(&self.studio.root, [worker])?;
         let all = |out: &mut BufReader<_>| Ok(_ = std::io::copy(out, &mut std::io::sink())?);
         let Some((compiled, words)) = self.builds[1].follow(cargo, all)? else { return Ok(()) };
         if !compiled {
             bail!("the solutions cannot be built:\n{}", words.trim());
         }
-        let program = programs.first().context("the solutions were not built")?;
-        let kit = self.start_kits(program, &|| self.is_over()).renderer;
+        let kit = self.start_kits(&program, &|| self.is_over()).renderer;
         let rendered = self.render_silently(&kit, job)?;
         if let Some(Rendering { film, .. }) = rendered {
             let rgb = encoded(&job.scene, &film, &kit);
@@ -260,11 +259,10 @@ impl Work {
     /// Compiles the exercises and returns a copy of the program; `None` if that fails, which the page shows, or if the run is
     /// over.
     fn compile(&self, quick: bool) -> Result<Option<PathBuf>> {
-        let program = Program::worker(Which::Exercises, Need::Frames);
-        let (mut cargo, programs) = cargo_build(&self.studio.root, &[program])?;
-        let program = programs.first().context("nothing was built")?;
+        let worker = Program::worker(Which::Exercises, Need::Frames);
+        let (mut cargo, [program]) = cargo_build(&self.studio.root, [worker])?;
         if quick {
-            without_optimisation(&mut cargo, program);
+            without_optimisation(&mut cargo, &program);
         }
         cargo.arg("--message-format=json");
         let mut errors = Vec::new();
@@ -281,7 +279,7 @@ impl Work {
             self.studio.errors(self.number, errors);
             return Ok(None);
         }
-        Ok(Some(copied(program, if quick { "exercises-quick" } else { "exercises-full" })?))
+        Ok(Some(copied(&program, if quick { "exercises-quick" } else { "exercises-full" })?))
     }
 }
 
