@@ -5,7 +5,7 @@ use glam::{Affine3A, Vec2, Vec3, vec3};
 use raykata::kit::{BasisQuery, Kit, NormalQuery, ObjectRayQuery, PatchQuery, SphereQuery};
 use raykata::ray::Ray;
 use raykata::shape::{BezierPatch, Sphere};
-use raykata_cli::svg::{Axis, Drawing, Ink, Middle, Plot, Point, SMALL, Start, TEXT, View, offset, steps};
+use raykata_cli::svg::{Axis, Drawing, Ink, Middle, Plot, Point, SMALL, Start, TEXT, offset, plane, steps};
 use std::f32::consts::TAU;
 
 fn circle() -> impl Iterator<Item = Vec3> {
@@ -23,8 +23,7 @@ pub fn ray_to_object(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("A ray in the world and in the space of an object", 1000.0, 500.0);
     let spaces = [(250.0, to_world, ray, "world"), (760.0, Affine3A::IDENTITY, object_ray, "object")];
     for (x, shape, ray, name) in spaces {
-        let view = View { origin: [x, 240.0], scale: 98.0 };
-        let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+        let (_, at) = plane([x, 240.0], 98.0);
         let outline: Vec<Point> = circle().map(|v| at(shape.transform_point3(v))).collect();
         drawing.area(&outline, Ink::Color(4), 0.16);
         drawing.polyline(&outline, Ink::Color(4).pen(3.0));
@@ -58,8 +57,7 @@ pub fn normal_transform(kit: &dyn Kit) -> Result<String> {
         (810.0, stretch, &right, "normal_to_world", Ink::Color(2)),
     ];
     for (x, shape, turn, name, ink) in columns {
-        let view = View { origin: [x, 190.0], scale: 61.0 };
-        let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+        let (_, at) = plane([x, 190.0], 61.0);
         let outline: Vec<Point> = circle().map(|v| at(shape.transform_point3(v))).collect();
         drawing.polyline(&outline, Ink::Faint.pen(4.0));
         for i in 0..12 {
@@ -79,8 +77,7 @@ pub fn de_casteljau(kit: &dyn Kit) -> Result<String> {
     let at_u = |u: f32| kit.bezier_point(&[PatchQuery { patch, uv: Vec2::new(u, 0.5) }])[0];
     let u = 0.6;
     let mut drawing = Drawing::new("The algorithm of de Casteljau", 1000.0, 560.0);
-    let view = View { origin: [120.0, 490.0], scale: 108.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (_, at) = plane([120.0, 490.0], 108.0);
     let curve: Vec<Point> = steps(0.0, 1.0, 80).map(|u| at(at_u(u as f32))).collect();
     drawing.polyline(&curve, Ink::Text.pen(5.0));
     // Each round replaces neighbouring points by points between them.

@@ -5,7 +5,7 @@ use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{Kit, SlabQuery};
 use raykata::ray::Ray;
-use raykata_cli::svg::{Drawing, End, Ink, Middle, SMALL, Start, TEXT, View, offset};
+use raykata_cli::svg::{Drawing, End, Ink, Middle, SMALL, Start, TEXT, offset, plane};
 
 /// Larger than everything in a diagram.
 const FAR: f32 = 1000.0;
@@ -25,8 +25,7 @@ pub fn slab_intervals(kit: &dyn Kit) -> Result<String> {
 
     let mut drawing =
         Drawing::new("A ray through two slabs, and the interval that both have in common", 1000.0, 620.0);
-    let view = View { origin: [40.0, 370.0], scale: 105.0 };
-    let at = |point: Vec3| view.at(f64::from(point.x), f64::from(point.y));
+    let (view, at) = plane([40.0, 370.0], 105.0);
     let point = |t: f32| at(ray.at(t));
     let (x_slab, y_slab, both) = (Ink::Color(4), Ink::Color(1), Ink::Color(2));
 

@@ -7,7 +7,7 @@ use raykata::kit::{Kit, LensQuery};
 use raykata::ray::Ray;
 use raykata::scene::Scene;
 use raykata::shape::Shape;
-use raykata_cli::svg::{Axis, Drawing, End, Ink, Middle, Plot, SMALL, Start, TEXT, View, offset, steps};
+use raykata_cli::svg::{Axis, Drawing, End, Ink, Middle, Plot, SMALL, Start, TEXT, offset, plane, steps};
 use std::path::Path;
 
 /// A thin lens from the side: five rays meet in a point of the focal plane, and a point behind it is spread over a circle of
@@ -33,8 +33,7 @@ pub fn thin_lens(kit: &dyn Kit) -> Result<String> {
 
     let mut drawing =
         Drawing::new("A thin lens, the focal plane, and the circle of confusion", 1000.0, 560.0);
-    let view = View { origin: [90.0, 290.0], scale: 112.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (view, at) = plane([90.0, 290.0], 112.0);
     let (half, focus) = (f64::from(lens.aperture / 2.0), f64::from(lens.focal_distance));
     let (meet, blur) = (Ink::Color(0), Ink::Color(1));
 
@@ -80,7 +79,7 @@ pub fn thin_lens(kit: &dyn Kit) -> Result<String> {
 /// The diameter of the circle of confusion in pixels over the distance, for the camera of a scene, and that of the centre of
 /// each of its spheres.
 pub fn circle_of_confusion(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let scene = raykata::scene::load::load(&root.join("scenes/lens.toml"))?;
+    let scene = crate::pictures::load(root, "lens.toml")?;
     let camera = raykata::world::camera_for(&scene);
     let lens = camera.lens.context("this camera has no lens")?;
     let (aperture, focus) = (f64::from(lens.aperture), f64::from(lens.focal_distance));

@@ -5,7 +5,7 @@ use glam::{Vec3, vec3};
 use raykata::film::ToneCurve;
 use raykata::kit::{Kit, TermQuery};
 use raykata_cli::svg::{
-    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, View, offset, polar, steps,
+    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, offset, plane, polar, steps,
 };
 
 /// The unit vector that leans by `degrees` from the vertical to the right.
@@ -26,8 +26,7 @@ pub fn face_forward(kit: &dyn Kit) -> Result<String> {
         [(250.0, vec3(0.6, -0.8, 0.0), "from above"), (750.0, vec3(0.6, 0.8, 0.0), "from below")]
     {
         let center = [x, 240.0];
-        let view = View { origin: center, scale: 170.0 };
-        let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+        let (_, at) = plane(center, 170.0);
         drawing.line([x - 210.0, 240.0], [x + 210.0, 240.0], Ink::Text.pen(5.0));
         let forward = kit.face_forward(&[(Vec3::Y, direction)])[0];
         drawing.arrow(center, at(Vec3::Y), Ink::Faint.pen(3.0));
@@ -49,8 +48,7 @@ pub fn face_forward(kit: &dyn Kit) -> Result<String> {
 pub fn phong_vectors(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("The vectors of the Phong model", 1000.0, 520.0);
     let center = [440.0, 450.0];
-    let view = View { origin: center, scale: 380.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (_, at) = plane(center, 380.0);
     draw_surface(&mut drawing, 450.0, [80.0, 920.0]);
     let light = leaning(-40.0);
     let reflected = kit.reflect(&[(-light, Vec3::Y)])[0];
@@ -90,8 +88,7 @@ pub fn lambert(kit: &dyn Kit) -> Result<String> {
         let to_light = leaning(-degrees);
         let query = TermQuery { normal: Vec3::Y, to_light, to_viewer: Vec3::Y, exponent: 1.0 };
         let diffuse = kit.diffuse_term(&[query])[0];
-        let view = View { origin: [x, 400.0], scale: 150.0 };
-        let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+        let (view, at) = plane([x, 400.0], 150.0);
         draw_surface(&mut drawing, 400.0, [x - 215.0, x + 230.0]);
         // The beam has width 1, so it lights 1 / cos θ of the surface.
         let half = 0.5 / to_light.dot(Vec3::Y);

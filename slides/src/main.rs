@@ -31,12 +31,11 @@ mod triangles;
 
 use anyhow::{Context, Result, bail};
 use list::{Exact, Figure};
-use raykata::film::write_atomically;
 use raykata::kit::{Kit, kit_error};
 use raykata_cli::args::did_you_mean;
 use raykata_cli::kits::{Source, Which};
-use raykata_cli::report::{bar_of_steps, make_folder_of, say};
-use std::io::Write;
+use raykata_cli::program::ended;
+use raykata_cli::report::{bar_of_steps, make_folder_of, say, write_file};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
@@ -90,14 +89,7 @@ const FROM_SCENES: &[(&str, FromScenes)] = drawings! {
 };
 
 fn main() -> ExitCode {
-    match run(&std::env::args().skip(1).collect::<Vec<_>>()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::from(1)
-        }
-    }
+    ended(run(&std::env::args().skip(1).collect::<Vec<_>>()))
 }
 
 /// Makes or checks figures. `Ok(false)` if one of them differs.
@@ -123,8 +115,7 @@ fn run(words: &[String]) -> Result<bool> {
             differences.extend(difference(figure, &made, &file));
         } else {
             make_folder_of(&file)?;
-            write_atomically(&file, |out| out.write_all(&made))
-                .with_context(|| format!("cannot write {}", file.display()))?;
+            write_file(&file, &made)?;
         }
         bar.inc(1);
     }

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use raykata::kit::{FresnelQuery, Kit, RefractQuery};
 use raykata_cli::svg::{
-    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, View, offset, steps,
+    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, offset, plane, steps,
 };
 
 const GLASS: f32 = 1.5;
@@ -19,8 +19,7 @@ pub fn snell(kit: &dyn Kit) -> Result<String> {
 
 /// A ray that meets the surface of glass around `center` at an angle, from above or from below.
 fn panel(kit: &dyn Kit, drawing: &mut Drawing, center: Point, degrees: f32, from_above: bool) -> Result<()> {
-    let view = View { origin: center, scale: 190.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (view, at) = plane(center, 190.0);
     let (sin, cos) = degrees.to_radians().sin_cos();
     let up = if from_above { 1.0 } else { -1.0 };
     let (direction, normal) = (vec3(sin, -up * cos, 0.0), vec3(0.0, up, 0.0));
@@ -154,8 +153,7 @@ pub fn reflection(kit: &dyn Kit) -> Result<String> {
     let reflected = kit.reflect(&[(direction, Vec3::Y)])[0];
     let mut drawing = Drawing::new("A ray and its reflection", 1000.0, 560.0);
     let center = [500.0, 430.0];
-    let view = View { origin: center, scale: 390.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (view, at) = plane(center, 390.0);
     drawing.rectangle([60.0, 430.0], [940.0, 470.0], Ink::Faint, 0.25);
     drawing.line([60.0, 430.0], [940.0, 430.0], Ink::Text.pen(3.0));
     drawing.arrow(center, view.at(0.0, 0.95), Ink::Text.pen(3.0));

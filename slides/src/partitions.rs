@@ -7,7 +7,7 @@ use raykata::aabb::Aabb;
 use raykata::kit::{BspQuery, CellsAnswer, CellsQuery, KdQuery, Kit, OctreeQuery, SlabQuery};
 use raykata::partition::{Bsp, BspNode, KdHeuristics, Octree, OctreeNode};
 use raykata::ray::Ray;
-use raykata_cli::svg::{Drawing, Ink, LARGE, Middle, Point, SMALL, Start, View};
+use raykata_cli::svg::{Drawing, Ink, LARGE, Middle, Point, SMALL, Start, View, plane};
 
 /// A node of the lower half of an octree, with its cell, its depth and its position in the row of this depth.
 struct Node {
@@ -73,8 +73,7 @@ fn draw_cells(
     answer: &CellsAnswer,
     left: f64,
 ) {
-    let view = View { origin: [left - 8.0, 226.0], scale: 39.0 };
-    let at = |v: Vec3| -> Point { view.at(f64::from(v.x), f64::from(v.y)) };
+    let (_, at) = plane([left - 8.0, 226.0], 39.0);
     for node in
         nodes.iter().filter(|node| matches!(octree.nodes[node.index as usize], OctreeNode::Leaf { .. }))
     {

@@ -1,8 +1,8 @@
 //! Diagrams of the rays of one pixel.
 
-use anyhow::{Context, Result};
-use raykata::frame::Unwatched;
-use raykata::kit::{Kit, RayKind, RenderJob, TracedRay, View};
+use crate::pictures::{job, load, render};
+use anyhow::Result;
+use raykata::kit::{Kit, RayKind, TracedRay};
 use raykata::scene::Accelerator;
 use raykata_cli::svg::{Axis, Drawing, End, Ink, Middle, Pen, Plot, Point, SMALL, Start, TEXT, offset};
 use std::path::Path;
@@ -20,9 +20,7 @@ fn ink_of(kind: RayKind) -> Ink {
 
 /// The rays of a pixel of scenes/stage5.toml as a tree, with their weights.
 pub fn ray_tree(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let scene = raykata::scene::load::load(&root.join("scenes/stage5.toml"))?;
-    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false, reuse: false };
-    let rays = kit.trace(&job, 430, 240);
+    let rays = kit.trace(&job(&load(root, "stage5.toml")?), 430, 240);
     let mut drawing = Drawing::new("The rays of one pixel as a tree", 1000.0, 620.0);
     // Give each ray without successors a column, and each other ray the middle of its successors.
     let mut columns = vec![0.0; rays.len()];
@@ -81,21 +79,13 @@ fn place(rays: &[TracedRay], ray: usize, columns: &mut [f64], free: &mut f64) {
 
 /// Tests and visited cells per ray over the resolution of a grid.
 pub fn grid_resolution(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let mut scene = raykata::scene::load::load(&root.join("scenes/showcase.toml"))?;
+    let mut scene = load(root, "showcase.toml")?;
     (scene.film.width, scene.film.height) = (96, 60);
     scene.quality.samples_per_pixel = 1;
     scene.quality.accelerator = Accelerator::Grid;
     let mut measure = |resolution: u32| -> Result<[f64; 2]> {
         scene.quality.grid_resolution = resolution;
-        let job = RenderJob {
-            scene: scene.clone(),
-            view: View::Shaded,
-            seed: 0,
-            threads: 0,
-            count: true,
-            reuse: false,
-        };
-        let counts = kit.render(&job, &Unwatched).context("the frame was cancelled")?.counts;
+        let counts = render(kit, &scene)?.counts;
         Ok([counts.primitive_tests, counts.node_visits].map(|n| n as f64 / counts.rays() as f64))
     };
     let resolutions = [8u32, 16, 32, 64, 128, 256];

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use glam::{DVec3, Vec3, dvec3, vec3};
 use raykata::kit::{Kit, LightSample, OffsetQuery, ShadowQuery, Surface};
-use raykata_cli::svg::{Drawing, End, Ink, LARGE, Middle, SMALL, Start, TEXT, View, offset};
+use raykata_cli::svg::{Drawing, End, Ink, LARGE, Middle, SMALL, Start, TEXT, View, offset, plane};
 
 /// The unit vector at an angle in degrees, counterclockwise from the right.
 fn at_angle(degrees: f32) -> Vec3 {
@@ -14,8 +14,7 @@ fn at_angle(degrees: f32) -> Vec3 {
 /// A faceted cylinder, and a ray that meets a facet near its silhouette.
 pub fn silhouette_normal(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("The interpolated normal near a silhouette", 1000.0, 620.0);
-    let view = View { origin: [250.0, 660.0], scale: 400.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (_, at) = plane([250.0, 660.0], 400.0);
     // The corners of the ten facets are at these angles; the facet that is met lies between 62 and 98 degrees.
     let corner = |index: i32| at_angle(62.0 + 36.0 * index as f32);
     let outline: Vec<[f64; 2]> = (-2..=3).map(|index| at(corner(index))).collect();

@@ -7,7 +7,7 @@ use raykata::kit::{FILTER_RADIUS, Kit, RectangleQuery};
 use raykata::random::{Points, Purpose};
 use raykata::scene::Sampler;
 use raykata_cli::svg::{
-    Axis, Drawing, Ink, LARGE, Middle, Plot, Point, SMALL, Start, TEXT, View, offset, steps,
+    Axis, Drawing, Ink, LARGE, Middle, Plot, SMALL, Start, TEXT, View, offset, plane, steps,
 };
 
 /// The weight of the Gaussian filter, and the Gaussian that is cut off.
@@ -98,8 +98,7 @@ pub fn penumbra(kit: &dyn Kit) -> Result<String> {
             });
             free.count() as f64 / points.len() as f64
         };
-        let view = View { origin: [x, 370.0], scale: 105.0 };
-        let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+        let (view, at) = plane([x, 370.0], 105.0);
         let fractions: Vec<[f64; 2]> = steps(-2.0, 2.0, 400).map(|place| [place, visible(place)]).collect();
         // Draw the floor, darker where less light arrives: one layer per level over all places that are darker. Layers are
         // nested, because gaps would show between pieces side by side.
@@ -139,8 +138,7 @@ pub fn motion_bounds(kit: &dyn Kit) -> Result<String> {
     let start = Aabb::new(vec3(0.0, 0.0, 0.0), vec3(1.6, 1.1, 1.0));
     let end = Aabb::new(vec3(6.0, 2.2, 0.0), vec3(7.1, 4.0, 1.0));
     let mut drawing = Drawing::new("A box in motion, and the box around its motion", 1000.0, 560.0);
-    let view = View { origin: [90.0, 500.0], scale: 112.0 };
-    let at = |v: Vec3| -> Point { view.at(f64::from(v.x), f64::from(v.y)) };
+    let (_, at) = plane([90.0, 500.0], 112.0);
     for time in [0.25, 0.5, 0.75] {
         let [low, high] =
             [(start.min, end.min), (start.max, end.max)].map(|(a, b)| kit.lerp(&[(a, b, time)])[0]);

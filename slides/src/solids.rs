@@ -1,12 +1,13 @@
 //! Diagrams of solids as intervals on a line, of Loop subdivision, and of a scene graph.
 
+use crate::pictures::load;
 use anyhow::{Context, Result, ensure};
 use glam::{Vec3, vec3};
 use raykata::kit::{Kit, SolidQuery};
 use raykata::mesh::Mesh;
 use raykata::ray::Ray;
 use raykata::shape::{Cone, Cylinder};
-use raykata_cli::svg::{Drawing, End, Ink, Middle, Point, SMALL, Start, TEXT, View, offset, polar};
+use raykata_cli::svg::{Drawing, End, Ink, Middle, Point, SMALL, Start, TEXT, View, offset, plane, polar};
 use std::path::Path;
 
 /// A line through a cylinder, and the intervals of `t` in its parts.
@@ -16,8 +17,7 @@ pub fn solid_intervals(kit: &dyn Kit) -> Result<String> {
     let hit =
         kit.cylinder(&[SolidQuery { ray, solid: cylinder }])[0].context("the ray misses the cylinder")?;
     let mut drawing = Drawing::new("A line through a cylinder, and its intervals", 1000.0, 620.0);
-    let view = View { origin: [60.0, 400.0], scale: 104.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (view, at) = plane([60.0, 400.0], 104.0);
     let [left, right] = [cylinder.base.x - cylinder.radius, cylinder.base.x + cylinder.radius];
     // The infinite cylinder, and the slab between the end planes.
     drawing.rectangle(view.at(f64::from(left), 3.6), view.at(f64::from(right), -0.4), Ink::Color(0), 0.12);
@@ -62,8 +62,7 @@ pub fn solid_intervals(kit: &dyn Kit) -> Result<String> {
 pub fn double_cone(kit: &dyn Kit) -> Result<String> {
     let cone = Cone { base: vec3(0.0, -1.5, 0.0), apex: Vec3::ZERO, radius: 1.0 };
     let mut drawing = Drawing::new("A double cone and three lines", 1000.0, 660.0);
-    let view = View { origin: [420.0, 340.0], scale: 190.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (_, at) = plane([420.0, 340.0], 190.0);
     let corners = [cone.apex, vec3(-1.0, -1.5, 0.0), vec3(1.0, -1.5, 0.0)];
     drawing.area(&corners.map(at), Ink::Color(4), 0.35);
     drawing.polyline(&[at(corners[1]), at(corners[2])], Ink::Text.pen(5.0));
@@ -121,7 +120,7 @@ pub fn loop_subdivision(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let mut drawing =
         Drawing::new("Loop subdivision: the masks, and a cube after 0 to 3 steps", 1000.0, 560.0);
     draw_masks(&mut drawing);
-    let scene = raykata::scene::load::load(&root.join("scenes/smooth_cube.toml"))?;
+    let scene = load(root, "smooth_cube.toml")?;
     let cube = scene.meshes.iter().find(|one| one.mesh.triangles.len() == 12);
     let cube = cube.context("the scene has no cube of twelve triangles")?;
     // Only positions and triangles matter.
@@ -212,7 +211,7 @@ fn draw_masks(drawing: &mut Drawing) {
 
 /// The nodes of scenes/graph.toml, from the roots to the shapes.
 pub fn scene_graph(_kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let scene = raykata::scene::load::load(&root.join("scenes/graph.toml"))?;
+    let scene = load(root, "graph.toml")?;
     // The deepest way to each node is its level. The floor, which has no name, is left out.
     let nodes = &scene.nodes;
     let mut level = vec![0usize; nodes.len()];

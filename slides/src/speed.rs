@@ -1,14 +1,12 @@
 //! Diagrams of stage 12: bins and their cuts, leaves of whole blocks, a node with eight children, work and span.
 
-use crate::pictures::{job, load, panels};
+use crate::pictures::{heat_panels, load, work};
 use anyhow::{Context, Result};
 use glam::{Vec3A, vec3};
 use raykata::aabb::Aabb;
-use raykata::frame::Unwatched;
-use raykata::kit::{BinSplitQuery, BinsQuery, Kit, RenderJob, View};
+use raykata::kit::{BinSplitQuery, BinsQuery, Kit};
 use raykata::scene::Accelerator;
 use raykata::wide::{BinGrid, Bins, ChildContents, FlatTree, ForkKind, MAX_BINS, NO_PRIMITIVE, PrimitiveBox};
-use raykata_cli::compare::heat_color;
 use raykata_cli::report::Thousands;
 use raykata_cli::svg::{Axis, Drawing, End, Ink, Middle, Plot, SMALL, Start, TEXT, offset};
 use std::collections::HashSet;
@@ -302,18 +300,10 @@ pub fn wide_heatmaps(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     for (accelerator, name) in [(Accelerator::Bvh, "two children"), (Accelerator::WideBvh, "eight children")]
     {
         scene.quality.accelerator = accelerator;
-        let rendering = kit
-            .render(&RenderJob { view: View::Work, ..job(&scene) }, &Unwatched)
-            .context("the frame was cancelled")?;
+        let rendering = work(kit, &scene)?;
         let visits = rendering.counts.node_visits as f64 / rendering.counts.rays() as f64;
         films.push((rendering.film, format!("{name}: {visits:.1} visits/ray")));
     }
     // The red channel of this view holds the node visits.
-    let most = films.iter().flat_map(|(film, _)| &film.pixels).map(|pixel| pixel.x).fold(0.0, f32::max);
-    for (film, _) in &mut films {
-        for pixel in &mut film.pixels {
-            *pixel = heat_color(pixel.x, most);
-        }
-    }
-    panels(&films, 2)
+    heat_panels(films, |pixel| pixel.x)
 }

@@ -7,15 +7,14 @@ use raykata::random::{Points, Purpose};
 use raykata::ray::Ray;
 use raykata::scene::Sampler;
 use raykata::shape::Sphere;
-use raykata_cli::svg::{Axis, Drawing, End, Ink, Middle, Plot, SMALL, Start, TEXT, View, offset};
+use raykata_cli::svg::{Axis, Drawing, End, Ink, Middle, Plot, SMALL, Start, TEXT, offset, plane};
 
 const UNIT: Sphere = Sphere { center: Vec3::ZERO, radius: 1.0 };
 
 /// Five rays and a circle, with the roots of their equations.
 pub fn sphere_roots(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("The roots of five rays and a sphere", 1000.0, 620.0);
-    let view = View { origin: [420.0, 310.0], scale: 190.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (view, at) = plane([420.0, 310.0], 190.0);
     drawing.circle(view.origin, view.scale, Ink::Faint.pen(4.0));
     let starts = [(-2.0, 1.4), (-2.0, 1.0), (-2.0, 0.5), (0.2, -0.3), (1.5, -0.7)];
     for (x, y) in starts {
@@ -69,8 +68,7 @@ pub fn sphere_geometry(kit: &dyn Kit) -> Result<String> {
     let foot = vec3(sphere.center.x, 0.0, 0.0);
 
     let mut drawing = Drawing::new("The geometric solution of a ray and a sphere", 1000.0, 560.0);
-    let view = View { origin: [600.0, 190.0], scale: 205.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (view, at) = plane([600.0, 190.0], 205.0);
     drawing.circle(at(sphere.center), view.scale, Ink::Faint.pen(4.0));
     drawing.arrow(at(ray.origin), view.at(1.85, 0.0), Ink::Text.pen(3.0));
     drawing.arrow(at(ray.origin), at(sphere.center), Ink::Color(0).pen(3.0));

@@ -7,7 +7,7 @@ use raykata::material::{Texture, Wrap};
 use raykata::mesh::Mesh;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
-use raykata_cli::svg::{Drawing, End, Ink, Middle, Point, SMALL, Start, TEXT, View, offset};
+use raykata_cli::svg::{Drawing, End, Ink, Middle, Point, SMALL, Start, TEXT, View, offset, plane};
 use std::sync::Arc;
 
 /// The three inside tests at the same triangle and point.
@@ -128,8 +128,7 @@ pub fn texture_coordinates(kit: &dyn Kit) -> Result<String> {
     let corners = uvs.map(|uv| uv.extend(0.0));
     let uv = kit.interpolate(&[InterpolateQuery { barycentric, corners }])[0].truncate();
     // The triangle in space.
-    let view = View { origin: [90.0, 380.0], scale: 112.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (_, at) = plane([90.0, 380.0], 112.0);
     let places = [triangle.a, triangle.b, triangle.c].map(at);
     drawing.area(&places, Ink::Color(4), 0.2);
     drawing.polyline(&[places[0], places[1], places[2], places[0]], Ink::Text.pen(3.0));

@@ -1,12 +1,12 @@
 //! Diagrams of light transport: cosine-weighted directions, solid angles, the corner, and the light that short paths miss.
 
+use crate::pictures::{load, render};
 use anyhow::{Context, Result};
 use glam::{Vec2, Vec3, vec3};
 use raykata::emitter::{AreaEmitter, EmitterShape};
-use raykata::frame::Unwatched;
-use raykata::kit::{EmitterPdfQuery, Kit, RenderJob, View as Frame};
+use raykata::kit::{EmitterPdfQuery, Kit};
 use raykata_cli::svg::{
-    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, View, offset, polar,
+    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, View, offset, plane, polar,
 };
 use std::path::Path;
 
@@ -55,8 +55,7 @@ pub fn malley(kit: &dyn Kit) -> Result<String> {
 /// A piece of a light, and the solid angle that it fills as seen from a point.
 pub fn light_solid_angle(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("The solid angle of a piece of a light", 1000.0, 600.0);
-    let view = View { origin: [330.0, 520.0], scale: 150.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (view, at) = plane([330.0, 520.0], 150.0);
     // The light is a parallelogram seen from its edge; its depth is 1.
     let [from, to] = [vec3(0.6, 2.9, 0.0), vec3(3.1, 2.5, 0.0)];
     let corner = from - 0.5 * Vec3::Z;
@@ -149,7 +148,7 @@ pub fn corner(kit: &dyn Kit) -> Result<String> {
 
 /// The light that paths of limited length miss in a furnace: measured, and by `cut_off`.
 pub fn furnace_bias(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let mut scene = raykata::scene::load::load(&root.join("scenes/furnace.toml"))?;
+    let mut scene = load(root, "furnace.toml")?;
     (scene.film.width, scene.film.height) = (32, 24);
     scene.quality.samples_per_pixel = 256;
     // All surfaces emit Le and reflect ρ of the light, so each point sends out Le / (1 - ρ).
@@ -161,15 +160,7 @@ pub fn furnace_bias(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let mut measured = Vec::new();
     for depth in depths {
         scene.quality.max_depth = depth;
-        let job = RenderJob {
-            scene: scene.clone(),
-            view: Frame::Shaded,
-            seed: 0,
-            threads: 0,
-            count: false,
-            reuse: false,
-        };
-        let film = kit.render(&job, &Unwatched).context("the frame was cancelled")?.film;
+        let film = render(kit, &scene)?.film;
         let sum: f64 = film.pixels.iter().map(|pixel| f64::from(pixel.x)).sum();
         measured.push([f64::from(depth), whole - sum / film.pixels.len() as f64]);
     }

@@ -6,15 +6,14 @@ use raykata::aabb::Aabb;
 use raykata::kit::{InsideQuery, Kit, SlabQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
-use raykata_cli::svg::{Drawing, End, Ink, Middle, SMALL, Start, TEXT, View, offset};
+use raykata_cli::svg::{Drawing, End, Ink, Middle, SMALL, Start, TEXT, View, offset, plane};
 
 /// A triangle, and the signs of the barycentric coordinates in the seven regions of its plane.
 pub fn barycentric(kit: &dyn Kit) -> Result<String> {
     let triangle = Triangle { a: Vec3::ZERO, b: vec3(3.4, -0.2, 0.0), c: vec3(1.3, 2.7, 0.0) };
     let Triangle { a, b, c } = triangle;
     let mut drawing = Drawing::new("Barycentric coordinates and their signs", 1000.0, 620.0);
-    let view = View { origin: [330.0, 420.0], scale: 105.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (_, at) = plane([330.0, 420.0], 105.0);
     drawing.area(&[at(a), at(b), at(c)], Ink::Color(4), 0.2);
     // Draw the lines on which beta and gamma are constant.
     for share in [0.25, 0.5, 0.75] {

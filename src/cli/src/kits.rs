@@ -87,13 +87,10 @@ pub enum Need {
     Checks,
 }
 
-/// The cargo feature of `exercises` and `solutions` that builds the renderer.
-const FRAMES: &str = "frames";
-
 impl Need {
     /// The feature that a worker must be built with.
     pub fn feature(self) -> Option<&'static str> {
-        (self == Need::Frames).then_some(FRAMES)
+        (self == Need::Frames).then_some("frames")
     }
 }
 
@@ -241,14 +238,14 @@ pub fn run_cargo(mut cargo: Command, what: &str) -> Result<Vec<u8>> {
         stdout.map_or(Ok(0), |mut stdout| stdout.read_to_end(&mut bytes)).map(|_| bytes)
     });
     // Show its messages as soon as something is compiled.
-    let mut shown = Shown { what, held_back: Vec::new(), building: false };
+    let mut output = CargoOutput { what, held_back: Vec::new(), building: false };
     if let Some(stderr) = running.stderr.take() {
         for line in BufReader::new(stderr).split(b'\n') {
-            shown.line(String::from_utf8_lossy(&line?).into_owned());
+            output.line(String::from_utf8_lossy(&line?).into_owned());
         }
     }
     if !running.wait()?.success() {
-        shown.begin();
+        output.begin();
         bail!("{what} cannot be built: see the errors of the compiler above");
     }
     // Reading cannot panic.
@@ -259,14 +256,14 @@ pub fn run_cargo(mut cargo: Command, what: &str) -> Result<Vec<u8>> {
 }
 
 /// Filters the output of cargo: it shows nothing while everything is up to date.
-struct Shown<'a> {
+struct CargoOutput<'a> {
     what: &'a str,
     /// Lines that are held back, such as warnings of crates that were built before.
     held_back: Vec<String>,
     building: bool,
 }
 
-impl Shown<'_> {
+impl CargoOutput<'_> {
     fn line(&mut self, line: String) {
         let plain = without_colours(&line);
         let word = plain.split_whitespace().next().unwrap_or_default();

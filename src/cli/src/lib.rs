@@ -8,6 +8,7 @@ macro_rules! println {
 
 pub mod args;
 pub mod caption;
+pub mod columns;
 pub mod compare;
 pub mod cost;
 pub mod doctor;

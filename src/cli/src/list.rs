@@ -1,14 +1,11 @@
 //! `raykata list` and `raykata hint`: the contents of the rubric.
 
-use crate::args::{Argument, Given, Misuse, Spec, whole_number};
+use crate::args::{Argument, Given, Misuse, Spec, whole_number, wrapped};
 use crate::report::say;
 use anyhow::{Result, bail};
 use raykata::rubric::{self, CheckEntry};
 use std::fmt::Write;
 use std::process::ExitCode;
-
-/// The maximum width of a line, in columns.
-const WIDTH: usize = 80;
 
 /// `raykata list`.
 pub static LIST: Spec = Spec {
@@ -65,34 +62,15 @@ pub fn list(stage: Option<u8>) -> String {
     {
         let _ = writeln!(text, "stage {number} · {}", about.title);
         let how = format!("work in {}, run `cargo test --test stage{number}`", about.file);
-        for line in lines(&how, WIDTH - 2) {
-            let _ = writeln!(text, "  {line}");
-        }
+        let _ = writeln!(text, "  {}", wrapped(&how, 2));
         for (name, entry) in about.in_order() {
             let sign = if entry.bonus { "+" } else { "" };
             let _ = writeln!(text, "  {:>2}  {name}", format!("{sign}{}", entry.points));
-            for line in lines(&entry.title, WIDTH - 6) {
-                let _ = writeln!(text, "      {line}");
-            }
+            let _ = writeln!(text, "      {}", wrapped(&entry.title, 6));
         }
         text.push('\n');
     }
     text
-}
-
-/// The words wrapped to lines of at most `width` characters.
-pub fn lines(words: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in words.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }
 
 /// The entry of a check in the rubric; the error names checks with similar names.
@@ -131,7 +109,7 @@ mod tests {
     #[test]
     fn the_list_fits_a_terminal_and_has_every_check() {
         let all = list(None);
-        let long: Vec<&str> = all.lines().filter(|line| line.chars().count() > WIDTH).collect();
+        let long: Vec<&str> = all.lines().filter(|line| line.chars().count() > 80).collect();
         assert!(long.is_empty(), "{long:#?}");
         for (number, stage) in rubric::stages() {
             let one = list(Some(number));

@@ -3,6 +3,7 @@
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names, whole_number};
 use crate::caption;
+use crate::columns::Columns;
 use crate::compare::with_edges;
 use crate::kits::Choice;
 use crate::picture_file::write_png;
@@ -13,6 +14,7 @@ use raykata::film::Film;
 use raykata::kit::kit_error;
 use raykata::scene::{Quality, Sampler, Scene};
 use raykata::world::camera_for;
+use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -67,21 +69,18 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let (width, height, tone) = (scene.film.width, scene.film.height, scene.film.tone);
     let n = pictures.len() as u32;
     let mut strip = Film::new(n * width + (n - 1) * GAP, height + caption::HEIGHT);
-    println!(
-        "{:>15}  {:>14}  {:>14}  {:>14}  {:>9}",
-        "picture", "reflected rays", "refracted rays", "indirect rays", "seconds"
-    );
+    const COLUMNS: Columns = Columns("  ", &[15, 14, 14, 14, 9]);
+    let heads: [&dyn Display; 5] =
+        [&"picture", &"reflected rays", &"refracted rays", &"indirect rays", &"seconds"];
+    println!("{}", COLUMNS.row(&heads));
     for (column, Picture { what, scene, level }) in pictures.into_iter().enumerate() {
         let camera = camera_for(&scene);
         let job = job(scene);
         let rendering = render(&*kit, &job)?;
-        let (counts, seconds) = (rendering.counts, rendering.render_seconds);
-        println!(
-            "{what:>15}  {:>14}  {:>14}  {:>14}  {seconds:>9.3}",
-            Thousands(counts.reflection),
-            Thousands(counts.transmission),
-            Thousands(counts.indirect)
-        );
+        let (counts, seconds) = (rendering.counts, format!("{:.3}", rendering.render_seconds));
+        let [reflected, refracted, indirect] =
+            [counts.reflection, counts.transmission, counts.indirect].map(Thousands);
+        println!("{}", COLUMNS.row(&[&what, &reflected, &refracted, &indirect, &seconds]));
         let left = column as u32 * (width + GAP);
         // Draw the boxes of the level over the picture.
         let mut film = rendering.film.toned(tone);

@@ -6,6 +6,7 @@
 mod plot;
 
 pub use Anchor::{End, Middle, Start};
+use glam::Vec3;
 pub use plot::Plot;
 use std::fmt::Write;
 
@@ -242,19 +243,6 @@ impl Drawing {
         );
     }
 
-    /// Text that is read from below, with its middle at `at`.
-    pub fn text_upwards(&mut self, at: Point, size: f64, ink: Ink, text: &str) {
-        let [x, y] = at.map(number);
-        let _ = writeln!(
-            self.body,
-            "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" font-size=\"{}\" class=\"f{}\" transform=\"rotate(-90 \
-             {x} {y})\">{}</text>",
-            number(size),
-            ink.class(),
-            escaped(text)
-        );
-    }
-
     /// The file.
     pub fn svg(self) -> String {
         let Drawing { width, height, title, body } = self;
@@ -325,6 +313,12 @@ impl View {
     }
 }
 
+/// A view with this origin and scale, and the position of a point by its x and y.
+pub fn plane(origin: Point, scale: f64) -> (View, impl Fn(Vec3) -> Point + Copy) {
+    let view = View { origin, scale };
+    (view, move |v| view.at(f64::from(v.x), f64::from(v.y)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -337,7 +331,6 @@ mod tests {
         drawing.rectangle(view.at(1.0, 1.0), view.at(2.0, 3.0), Ink::Faint, 0.25);
         drawing.circle([50.0, 25.0], 10.0, Ink::Text.pen(1.5).dashed());
         drawing.text([5.0, 12.0], Start, TEXT, Ink::Text, "t & u");
-        drawing.text_upwards([5.0, 25.0], SMALL, Ink::Faint, "up");
         insta::assert_snapshot!(drawing.svg());
     }
 

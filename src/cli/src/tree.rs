@@ -81,22 +81,16 @@ pub fn run(given: &Given) -> Result<ExitCode> {
 fn as_text(rays: &[TracedRay]) -> String {
     let mut text = String::new();
     for (root, _) in rays.iter().enumerate().filter(|(_, ray)| ray.parent.is_none()) {
-        write_below(rays, root, &mut text);
+        write_below(rays, root, 0, &mut text);
     }
     text
 }
 
-fn write_below(rays: &[TracedRay], index: usize, text: &mut String) {
-    let ray = &rays[index];
-    let indent = "  ".repeat(levels_above(rays, index));
-    let _ = writeln!(text, "{indent}{}", label(ray));
+fn write_below(rays: &[TracedRay], index: usize, level: usize, text: &mut String) {
+    let _ = writeln!(text, "{:1$}{2}", "", 2 * level, label(&rays[index]));
     for (child, _) in rays.iter().enumerate().filter(|(_, child)| child.parent == Some(index)) {
-        write_below(rays, child, text);
+        write_below(rays, child, level + 1, text);
     }
-}
-
-fn levels_above(rays: &[TracedRay], index: usize) -> usize {
-    std::iter::successors(rays[index].parent, |&parent| rays[parent].parent).count()
 }
 
 /// The kind, depth, weight and hit of a ray in one line.

@@ -18,7 +18,7 @@ use anyhow::Result;
 pub use drawing::{heat_color, projected, with_edges};
 use measure::Bench;
 use raykata::scene::Accelerator;
-use rows::Of;
+use rows::Comparison;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -37,7 +37,7 @@ pub static SPEC: Spec = Spec {
                  spheres; or instances and copies \
                  [default: structures].",
             )
-            .choices(&names(&Of::NAMES)),
+            .choices(&names(&Comparison::NAMES)),
             Opt::value("--only", "LIST", "Only these accelerators, instead of all.")
                 .choices(&names(&Accelerator::NAMES))
                 .many(),
@@ -76,7 +76,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     // Read the command line.
     given.exclude("--only", "--of")?;
     let file = Path::new(given.required(0)?);
-    let of = given.choice("--of", &Of::NAMES)?.unwrap_or(Of::Structures);
+    let of = given.choice("--of", &Comparison::NAMES)?.unwrap_or(Comparison::Structures);
     let only = given.choices("--only", &Accelerator::NAMES)?;
     let (kit, quality, threads) = (Choice::read(given)?, QualityOptions::read(given)?, threads(given)?);
     let rounds = given.number("--rounds", 1..=1000)?.unwrap_or(3);
@@ -106,6 +106,6 @@ pub fn run(given: &Given) -> Result<ExitCode> {
         println!("\npictures, plot and numbers are in {}", out.display());
     }
     // Methods round differently, and so do rays that are transformed into the space of an instance.
-    let may_differ = matches!(of, Of::Instances | Of::Methods);
+    let may_differ = matches!(of, Comparison::Instances | Comparison::Methods);
     Ok(exit_code(may_differ || measured.iter().all(|row| row.different_pixels == 0)))
 }

@@ -6,6 +6,7 @@ use super::measure::Bench;
 use super::measured::Reference;
 use super::plot::{Line, Plot, svg};
 use super::setting::Setting;
+use crate::columns::Columns;
 use crate::html::csv_line;
 use crate::report::{make_folder, write_file};
 use anyhow::{Result, bail};
@@ -135,7 +136,8 @@ fn with_lights_of(scene: &Scene, size: f32) -> Result<Scene> {
 fn print(scene: &Scene, sizes: &[f32], rows: &[Row]) {
     let (width, height) = (scene.film.width, scene.film.height);
     println!("at equal time, {width} × {height} pixels; samples are per pixel, rays in millions per second");
-    println!("{:<44}{:>8}{:>9}{:>8}{:>10}", "", "samples", "ms", "rays", "RMSE");
+    const COLUMNS: Columns = Columns("", &[-43, -1, 8, 9, 8, 10]);
+    println!("{}", COLUMNS.row(&[&"", &"", &"samples", &"ms", &"rays", &"RMSE"]));
     for &size in sizes {
         if sizes.len() > 1 {
             println!("lights {size} times as large, of the same power");
@@ -143,15 +145,10 @@ fn print(scene: &Scene, sizes: &[f32], rows: &[Row]) {
         let of_size = || rows.iter().filter(move |row| row.size == size);
         let best = of_size().map(|row| row.error).fold(f64::INFINITY, f64::min);
         for row in of_size() {
-            println!(
-                "  {:<41}{}{:>8}{:>9.1}{:>8.1}{:>10.5}",
-                row.value,
-                if row.error == best { "•" } else { " " },
-                row.samples,
-                1e3 * row.seconds,
-                1e-6 * row.rays_per_second(),
-                row.error
-            );
+            let mark = if row.error == best { "•" } else { "" };
+            let [ms, rays] = [1e3 * row.seconds, 1e-6 * row.rays_per_second()].map(|x| format!("{x:.1}"));
+            let (value, error) = (format!("  {}", row.value), format!("{:.5}", row.error));
+            println!("{}", COLUMNS.row(&[&value, &mark, &row.samples, &ms, &rays, &error]));
         }
     }
     println!("• the smallest error");

@@ -6,12 +6,14 @@
 
 use super::landscape::{scene, sides};
 use super::measure::Bench;
+use crate::columns::Columns;
 use crate::journal::Journal;
 use crate::report::{FrameBar, Thousands, make_folder, write_file};
 use anyhow::Result;
 use raykata::kit::{RenderJob, Rendering, View};
 use raykata::scene::{Accelerator, Scene};
 use serde::{Deserialize, Serialize};
+use std::fmt::Display;
 use std::path::Path;
 
 /// The screen of the lecture notes.
@@ -81,10 +83,10 @@ pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, cod
         SCREEN.1,
         if bench.threads == 0 { crate::queue::cores() } else { bench.threads }
     );
-    println!(
-        "{:>10} {:>6} {:>8} {:>5} {:>9} {:>6} {:>8} {:>11} {:>9}",
-        "n", "log2 n", "build", "boxes", "triangles", "ns/ray", "frame", "brute force", "times"
-    );
+    const COLUMNS: Columns = Columns(" ", &[10, 6, 8, 5, 9, 6, 8, 11, 9]);
+    let heads: [&dyn Display; 9] =
+        [&"n", &"log2 n", &"build", &"boxes", &"triangles", &"ns/ray", &"frame", &"brute force", &"times"];
+    println!("{}", COLUMNS.row(&heads));
     let mut rows: Vec<Row> = Vec::new();
     for triangles in sizes(most) {
         let row = match kept.take(&triangles.to_string()) {
@@ -95,18 +97,18 @@ pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, cod
                 row
             }
         };
-        println!(
-            "{:>10} {:>6.1} {:>8} {:>5.1} {:>9.2} {:>6.0} {:>8} {:>11} {:>9}",
-            Thousands(row.triangles).to_string(),
-            (row.triangles as f64).log2(),
-            duration(row.build_seconds),
-            row.box_tests,
-            row.triangle_tests,
-            row.nanoseconds_a_ray(),
-            duration(row.frame_seconds),
-            duration(row.brute_seconds()),
-            Thousands((row.brute_seconds() / row.frame_seconds) as u64).to_string(),
-        );
+        let cells: [&dyn Display; 9] = [
+            &Thousands(row.triangles),
+            &format!("{:.1}", (row.triangles as f64).log2()),
+            &duration(row.build_seconds),
+            &format!("{:.1}", row.box_tests),
+            &format!("{:.2}", row.triangle_tests),
+            &format!("{:.0}", row.nanoseconds_a_ray()),
+            &duration(row.frame_seconds),
+            &duration(row.brute_seconds()),
+            &Thousands((row.brute_seconds() / row.frame_seconds) as u64),
+        ];
+        println!("{}", COLUMNS.row(&cells));
         rows.push(row);
         if bench.stopped() {
             break;

@@ -1,7 +1,7 @@
 //! Measures errors and counts, which are exact, and times, which vary and are therefore measured in turn.
 
 use super::error::errors;
-use super::kept::Kept;
+use super::kept::KeptPictures;
 use super::ladder::Ladder;
 use super::measured::{Measured, Point, Reference, Series};
 use super::setting::Setting;
@@ -28,7 +28,7 @@ pub struct Bench<'a> {
     /// Set when the program is being stopped.
     pub stop: &'a AtomicBool,
     /// The pictures that a stopped run has measured, and where this run keeps its own.
-    pub kept: Option<&'a Kept>,
+    pub kept: Option<&'a KeptPictures>,
 }
 
 /// Cancels a frame that takes too long or is no longer wanted, and shows its progress.

@@ -34,7 +34,7 @@ use crate::quality_options::arguments;
 use crate::report::{FrameBar, load_scene, make_folder, name_of, with_at_most};
 use anyhow::{Context, Result, bail};
 use called::Called;
-use kept::Kept;
+use kept::KeptPictures;
 use ladder::Ladder;
 use measure::{Bench, pareto_front};
 pub use measured::Verdicts;
@@ -156,7 +156,7 @@ pub fn run(given: &Given, program: &str, numerics: Option<&Numerics<'_>>) -> Res
 
     // Continue a run that was stopped.
     let code = fingerprint(&source)?;
-    let kept = Kept::open(&out, &code)?;
+    let kept = KeptPictures::open(&out, &code)?;
     let bench = Bench { kept: Some(&kept), ..bench };
 
     // Choose the values to measure.

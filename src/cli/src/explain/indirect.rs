@@ -59,7 +59,6 @@ pub fn bounds(explained: &Explained<'_>) -> Result<()> {
     let of_lights = of_lights.max().unwrap_or(0);
     let of_emitters = any(diffuse && sampled && quality.next_event != NextEvent::Off);
     let shadow = camera.saturating_mul(1 + bounces).saturating_mul(of_lights).saturating_add(of_emitters);
-    println!("{:<16}  {:>20}  {:>13}", "rays", "at most, predicted", "counted");
     bounds_table(&[
         ("from the camera", camera, counted.primary),
         ("to lights", shadow, counted.shadow),

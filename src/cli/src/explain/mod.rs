@@ -7,6 +7,7 @@ mod subsets;
 mod why;
 
 use crate::args::{Argument, Given, Opt, Spec, wrapped};
+use crate::columns::Columns;
 use crate::kits::Choice;
 use crate::quality_options::QualityOptions;
 use crate::report::{Thousands, bar_of_steps, job, quartiles, render, with_at_most};
@@ -16,6 +17,7 @@ use raykata::effects::{Effect, Effects};
 use raykata::kit::{BoundQuery, Kit, KitError, kit_error};
 use raykata::light_path::PathEffects;
 use raykata::scene::Scene;
+use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -184,33 +186,30 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
 
     // Print what the picture saves without each effect.
     let with = &seconds[0];
-    println!(
-        "{:<16}  {:>13}  {:>15}  {:>13}  {:>15}",
-        "costs", "its rays", "random numbers", "image reads", "share of time"
-    );
+    const COLUMNS: Columns = Columns("  ", &[-16, 13, 15, 13, 15]);
+    let heads: [&dyn Display; 5] =
+        [&"costs", &"its rays", &"random numbers", &"image reads", &"share of time"];
+    println!("{}", COLUMNS.row(&heads));
     for (index, effect) in called.iter().enumerate() {
         let without = &seconds[index + 1];
         // Compare pictures of the same round, because they were rendered within moments of each other.
         let shares = with.iter().zip(without).map(|(with, without)| 100.0 * (1.0 - without / with)).collect();
         let (share, spread) = median_and_spread(shares);
         let [all, rest] = [&counts[0], &counts[index + 1]];
-        println!(
-            "  {effect:<14}  {:>13}  {:>15}  {:>13}  {:>15}",
-            signed(all.rays(), rest.rays()),
-            signed(all.random_numbers, rest.random_numbers),
-            signed(all.texture_reads, rest.texture_reads),
-            spread_of(rounds, &format!("{share:.0} %"), &format!("{spread:.0}"))
-        );
+        let time = spread_of(rounds, &format!("{share:.0} %"), &format!("{spread:.0}"));
+        let saved = [
+            (all.rays(), rest.rays()),
+            (all.random_numbers, rest.random_numbers),
+            (all.texture_reads, rest.texture_reads),
+        ];
+        let [rays, numbers, reads] = saved.map(|(with, without)| signed(with, without));
+        println!("{}", COLUMNS.row(&[&format!("  {effect}"), &rays, &numbers, &reads, &time]));
     }
     let (whole, spread) = median_and_spread(with.clone());
-    println!(
-        "  {:<14}  {:>13}  {:>15}  {:>13}  {:>15}",
-        "everything",
-        Thousands(counts[0].rays()).to_string(),
-        Thousands(counts[0].random_numbers).to_string(),
-        Thousands(counts[0].texture_reads).to_string(),
-        spread_of(rounds, &format!("{whole:.3} s"), &format!("{spread:.3}"))
-    );
+    let time = spread_of(rounds, &format!("{whole:.3} s"), &format!("{spread:.3}"));
+    let [rays, numbers, reads] =
+        [counts[0].rays(), counts[0].random_numbers, counts[0].texture_reads].map(Thousands);
+    println!("{}", COLUMNS.row(&[&"  everything", &rays, &numbers, &reads, &time]));
     let times = match rounds {
         1 => "Times are from one round, so they show no spread.".to_owned(),
         _ => {
@@ -254,24 +253,26 @@ fn bounds(explained: &Explained<'_>) -> Result<()> {
     }
     let most = kit_error::catch(|| kit.most_rays(std::slice::from_ref(&query)))?.remove(0);
     let counted = render(*kit, &job((*scene).clone()))?.counts;
-    println!("{:<16}  {:>20}  {:>13}", "rays", "at most, predicted", "counted");
-    let lines = [
+    bounds_table(&[
         ("from the camera", most.primary, counted.primary),
         ("to lights", most.shadow, counted.shadow),
         ("reflected", most.reflection, counted.reflection),
         ("refracted", most.transmission, counted.transmission),
-    ];
-    bounds_table(&lines);
+    ]);
     println!("  {}", wrapped(&about_hits(&counted), 2));
     Ok(())
 }
 
 /// Prints lines of predicted and counted rays.
 fn bounds_table(lines: &[(&str, u64, u64)]) {
+    const COLUMNS: Columns = Columns("  ", &[-18, 18, 13]);
+    println!("{}", COLUMNS.row(&[&"rays", &"at most, predicted", &"counted"]));
     for (what, most, counted) in lines {
-        let most =
-            if *most == u64::MAX { "too many to count".to_owned() } else { Thousands(*most).to_string() };
-        println!("  {what:<16}  {most:>18}  {:>13}", Thousands(*counted).to_string());
+        let most = match *most {
+            u64::MAX => "too many to count".to_owned(),
+            most => Thousands(most).to_string(),
+        };
+        println!("{}", COLUMNS.row(&[&format!("  {what}"), &most, &Thousands(*counted)]));
     }
 }
 

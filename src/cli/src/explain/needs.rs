@@ -2,6 +2,7 @@
 
 use super::Explained;
 use crate::args::wrapped;
+use crate::columns::Columns;
 use crate::report::{job, render};
 use anyhow::Result;
 use raykata::film::Film;
@@ -22,10 +23,8 @@ pub fn rays_per_hit(explained: &Explained<'_>) -> Result<()> {
     };
     let queries: Vec<HitsQuery> = materials.iter().map(query).collect();
     let Some(rays) = written(kit_error::catch(|| kit.rays_of_hits(&queries)))? else { return Ok(()) };
-    println!(
-        "{:<24}  {:>18}  {:>11}  {:>11}",
-        "rays per hit", "to lights, at most", "reflected", "refracted"
-    );
+    const COLUMNS: Columns = Columns("  ", &[-24, 18, 11, 11]);
+    println!("{}", COLUMNS.row(&[&"rays per hit", &"to lights, at most", &"reflected", &"refracted"]));
     let mut is_path = false;
     for (material, rays) in materials.into_iter().zip(rays) {
         let name = scene.material_names.get(material).filter(|name| !name.is_empty());
@@ -33,10 +32,9 @@ pub fn rays_per_hit(explained: &Explained<'_>) -> Result<()> {
         let diffuse = paths.as_ref().is_some_and(|paths| paths.diffuse.get(material) == Some(&true));
         is_path |= diffuse;
         let diffuse = if diffuse { "  a diffuse ray" } else { "" };
-        println!(
-            "  {name:<22}  {:>18}  {:>11}  {:>11}{diffuse}",
-            rays.shadow, rays.reflection, rays.transmission
-        );
+        let name = format!("  {name}");
+        let row = COLUMNS.row(&[&name, &rays.shadow, &rays.reflection, &rays.transmission]);
+        println!("{row}{diffuse}");
     }
     if is_path {
         println!("  A path of indirect light continues with one of the rays other than those to lights.");
