@@ -1,4 +1,4 @@
-//! The printer of all aligned tables.
+//! The printer of aligned tables.
 
 use std::fmt::Display;
 

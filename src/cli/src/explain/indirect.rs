@@ -2,7 +2,7 @@
 //! most, and how much light is missing beyond the largest depth.
 
 use super::why::{list, material};
-use super::{Explained, REASON_COLUMN, about_hits, bounds_table};
+use super::{Explained, REASON_COLUMN, STEP, about_hits, bounds_table};
 use crate::args::wrapped;
 use crate::report::{Thousands, job, render};
 use anyhow::Result;
@@ -80,9 +80,6 @@ pub fn bounds(explained: &Explained<'_>) -> Result<()> {
     println!("  {}", wrapped(&note, 2));
     Ok(())
 }
-
-/// The relative error that a screen just shows: one of its 256 steps of brightness.
-const STEP: f32 = 1.0 / 255.0;
 
 /// Prints how much light the largest depth leaves out at most, by `cut_off` and `bounces_for_error` of stage 11.
 pub fn depth(explained: &Explained<'_>) -> Result<()> {

@@ -129,6 +129,9 @@ fn smaller(scene: &Scene) -> Scene {
     small
 }
 
+/// The smallest error that a screen shows: one of its 256 steps of brightness.
+const STEP: f32 = 1.0 / 255.0;
+
 /// The column at which reasons begin.
 const REASON_COLUMN: usize = 18;
 

@@ -1,6 +1,6 @@
 //! What a hit of each material needs at most, and how many samples a pixel needs.
 
-use super::Explained;
+use super::{Explained, REASON_COLUMN, STEP};
 use crate::args::wrapped;
 use crate::columns::Columns;
 use crate::report::{job, render};
@@ -43,9 +43,6 @@ pub fn rays_per_hit(explained: &Explained<'_>) -> Result<()> {
     Ok(())
 }
 
-/// The standard error of a pixel that a screen just shows: one of its 256 steps of brightness.
-const STEP: f32 = 1.0 / 255.0;
-
 /// Measures the noise of the picture, and prints how many samples a pixel needs for an error of one step of brightness.
 pub fn samples(explained: &Explained<'_>) -> Result<()> {
     let Explained { scene, kit, .. } = explained;
@@ -72,7 +69,7 @@ pub fn samples(explained: &Explained<'_>) -> Result<()> {
             variance.sqrt()
         ),
     };
-    println!("noise             {}\n", wrapped(&text, super::REASON_COLUMN));
+    println!("noise             {}\n", wrapped(&text, REASON_COLUMN));
     Ok(())
 }
 
