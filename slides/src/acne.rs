@@ -1,6 +1,6 @@
 //! Pictures of shadow acne: spheres on a floor, traced with the kit's own functions, whose shadow rays start in three ways.
 
-use crate::pictures::{crop, magnified, panels};
+use crate::pictures::{crop, load, magnified, panels};
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use raykata::camera::Camera;
@@ -11,7 +11,7 @@ use raykata::kit::{
 use raykata::material::{Emitter, Light, Material};
 use raykata::ray::Ray;
 use raykata::rounding::gamma;
-use raykata::scene::{Background, Scene};
+use raykata::scene::Background;
 use raykata::shape::{Plane, Shape, Sphere};
 use raykata::world::camera_for;
 use std::path::Path;
@@ -193,7 +193,7 @@ fn rays_of(camera: &Camera, [width, height]: [u32; 2]) -> Vec<Ray> {
 
 /// scenes/stage4.toml with shadow rays that start at the computed point, and with those of `shadow_ray`.
 pub fn shadow_acne(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let scene: Scene = raykata::scene::load::load(&root.join("scenes/stage4.toml"))?;
+    let scene = load(root, "stage4.toml")?;
     let material = |index: Option<usize>| scene.materials[index.unwrap_or(0)].clone();
     let mut place = Place {
         spheres: Vec::new(),

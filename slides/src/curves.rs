@@ -1,12 +1,11 @@
 //! Diagrams of stage 8: transforms, and curved surfaces.
 
-use crate::sketch::{Axis, Plot, offset, steps};
 use anyhow::{Context, Result};
 use glam::{Affine3A, Vec2, Vec3, vec3};
 use raykata::kit::{BasisQuery, Kit, NormalQuery, ObjectRayQuery, PatchQuery, SphereQuery};
 use raykata::ray::Ray;
 use raykata::shape::{BezierPatch, Sphere};
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
+use raykata_cli::svg::{Axis, Drawing, Ink, Middle, Plot, Point, SMALL, Start, TEXT, offset, plane, steps};
 use std::f32::consts::TAU;
 
 fn circle() -> impl Iterator<Item = Vec3> {
@@ -24,24 +23,22 @@ pub fn ray_to_object(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("A ray in the world and in the space of an object", 1000.0, 500.0);
     let spaces = [(250.0, to_world, ray, "world"), (760.0, Affine3A::IDENTITY, object_ray, "object")];
     for (x, shape, ray, name) in spaces {
-        let view = View { origin: [x, 240.0], scale: 98.0 };
-        let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+        let (_, at) = plane([x, 240.0], 98.0);
         let outline: Vec<Point> = circle().map(|v| at(shape.transform_point3(v))).collect();
         drawing.area(&outline, Ink::Color(4), 0.16);
-        drawing.polyline(&outline, Pen::new(Ink::Color(4)));
-        drawing.arrow(at(ray.origin), at(ray.at(6.6)), Pen::new(Ink::Text));
+        drawing.polyline(&outline, Ink::Color(4).pen(3.0));
+        drawing.arrow(at(ray.origin), at(ray.at(6.6)), Ink::Text.pen(3.0));
         for mark in [1.0, 2.0, 3.0] {
             drawing.dot(at(ray.at(mark)), 6.0, Ink::Text);
-            let label = offset(at(ray.at(mark)), [8.0, 28.0]);
-            drawing.text(label, Anchor::Middle, SMALL, Ink::Text, &format!("{mark}"));
+            drawing.text(offset(at(ray.at(mark)), [8.0, 28.0]), Middle, SMALL, Ink::Text, &format!("{mark}"));
         }
         drawing.dot(at(ray.at(t)), 9.0, Ink::Color(1));
         let label = offset(at(ray.at(t)), [-2.0, -22.0]);
-        drawing.text(label, Anchor::Middle, SMALL, Ink::Color(1), &format!("t = {t:.2}"));
-        drawing.text([x, 480.0], Anchor::Middle, TEXT, Ink::Text, name);
+        drawing.text(label, Middle, SMALL, Ink::Color(1), &format!("t = {t:.2}"));
+        drawing.text([x, 480.0], Middle, TEXT, Ink::Text, name);
     }
-    drawing.arrow([410.0, 440.0], [600.0, 440.0], Pen::new(Ink::Color(0)).wide(4.0));
-    drawing.text([505.0, 424.0], Anchor::Middle, TEXT, Ink::Color(0), "inverse");
+    drawing.arrow([410.0, 440.0], [600.0, 440.0], Ink::Color(0).pen(4.0));
+    drawing.text([505.0, 424.0], Middle, TEXT, Ink::Color(0), "inverse");
     Ok(drawing.svg())
 }
 
@@ -60,16 +57,15 @@ pub fn normal_transform(kit: &dyn Kit) -> Result<String> {
         (810.0, stretch, &right, "normal_to_world", Ink::Color(2)),
     ];
     for (x, shape, turn, name, ink) in columns {
-        let view = View { origin: [x, 190.0], scale: 61.0 };
-        let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+        let (_, at) = plane([x, 190.0], 61.0);
         let outline: Vec<Point> = circle().map(|v| at(shape.transform_point3(v))).collect();
-        drawing.polyline(&outline, Pen::new(Ink::Faint).wide(4.0));
+        drawing.polyline(&outline, Ink::Faint.pen(4.0));
         for i in 0..12 {
             let normal = Vec2::from_angle((i as f32 + 0.5) / 12.0 * TAU).extend(0.0);
             let place = shape.transform_point3(normal);
-            drawing.arrow(at(place), at(place + 0.75 * turn(normal)), Pen::new(ink));
+            drawing.arrow(at(place), at(place + 0.75 * turn(normal)), ink.pen(3.0));
         }
-        drawing.text([x, 390.0], Anchor::Middle, TEXT, ink, name);
+        drawing.text([x, 390.0], Middle, TEXT, ink, name);
     }
     Ok(drawing.svg())
 }
@@ -81,29 +77,27 @@ pub fn de_casteljau(kit: &dyn Kit) -> Result<String> {
     let at_u = |u: f32| kit.bezier_point(&[PatchQuery { patch, uv: Vec2::new(u, 0.5) }])[0];
     let u = 0.6;
     let mut drawing = Drawing::new("The algorithm of de Casteljau", 1000.0, 560.0);
-    let view = View { origin: [120.0, 490.0], scale: 108.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (_, at) = plane([120.0, 490.0], 108.0);
     let curve: Vec<Point> = steps(0.0, 1.0, 80).map(|u| at(at_u(u as f32))).collect();
-    drawing.polyline(&curve, Pen::new(Ink::Text).wide(5.0));
+    drawing.polyline(&curve, Ink::Text.pen(5.0));
     // Each round replaces neighbouring points by points between them.
     let mut points = row.to_vec();
     let names =
         [("four control points", Ink::Faint), ("three points", Ink::Color(4)), ("two points", Ink::Color(2))];
     for (line, (name, ink)) in names.into_iter().enumerate() {
         let places: Vec<Point> = points.iter().map(|&point| at(point)).collect();
-        drawing.polyline(&places, Pen::new(ink));
+        drawing.polyline(&places, ink.pen(3.0));
         for place in places {
             drawing.dot(place, 9.0, ink);
         }
-        drawing.text([330.0, 392.0 + 34.0 * line as f64], Anchor::Start, SMALL, ink, name);
+        drawing.text([330.0, 392.0 + 34.0 * line as f64], Start, SMALL, ink, name);
         points = points.windows(2).map(|pair| pair[0].lerp(pair[1], u)).collect();
     }
     drawing.dot(at(at_u(u)), 12.0, Ink::Color(1));
-    drawing.text([330.0, 494.0], Anchor::Start, SMALL, Ink::Color(1), "the point of the curve, u = 0.6");
+    drawing.text([330.0, 494.0], Start, SMALL, Ink::Color(1), "the point of the curve, u = 0.6");
     for (i, point) in row.iter().enumerate() {
         let below = if i % 3 == 0 { 38.0 } else { -16.0 };
-        let label = offset(at(*point), [0.0, below]);
-        drawing.text(label, Anchor::Middle, TEXT, Ink::Text, &format!("p{i}"));
+        drawing.text(offset(at(*point), [0.0, below]), Middle, TEXT, Ink::Text, &format!("p{i}"));
     }
     Ok(drawing.svg())
 }
@@ -114,12 +108,7 @@ pub fn bspline_basis(kit: &dyn Kit) -> Result<String> {
     let degree = 3;
     let n = knots.len() - degree - 1;
     let mut drawing = Drawing::new("Cubic B-spline basis functions", 1000.0, 560.0);
-    let plot = Plot {
-        x: Axis::linear(0.0, 4.0),
-        y: Axis::linear(0.0, 1.1),
-        corner: [80.0, 470.0],
-        size: [870.0, 400.0],
-    };
+    let plot = Plot::new(Axis::linear(0.0, 4.0), Axis::linear(0.0, 1.1), [80.0, 470.0], [870.0, 400.0]);
     let x = [(0.0, "0"), (1.0, "1"), (2.0, "2"), (3.0, "3"), (4.0, "4")];
     plot.draw_axes(
         &mut drawing,
@@ -137,7 +126,7 @@ pub fn bspline_basis(kit: &dyn Kit) -> Result<String> {
             *sum += value;
         }
         let curve: Vec<[f64; 2]> = us.iter().zip(values).map(|(&u, value)| [u, value]).collect();
-        plot.draw_curve(&mut drawing, curve.iter().copied(), Pen::new(Ink::Color(index)).wide(4.0));
+        plot.draw_curve(&mut drawing, curve.iter().copied(), Ink::Color(index).pen(4.0));
         let top = curve
             .iter()
             .copied()
@@ -150,13 +139,13 @@ pub fn bspline_basis(kit: &dyn Kit) -> Result<String> {
             [0.0, -14.0]
         };
         let label = offset(plot.at(top[0], top[1]), by);
-        drawing.text(label, Anchor::Middle, TEXT, Ink::Color(index), &index.to_string());
+        drawing.text(label, Middle, TEXT, Ink::Color(index), &index.to_string());
     }
     plot.draw_curve(
         &mut drawing,
         us.into_iter().zip(sums).map(|(u, sum)| [u, sum]),
-        Pen::new(Ink::Text).dashed(),
+        Ink::Text.pen(3.0).dashed(),
     );
-    drawing.text(offset(plot.at(2.0, 1.0), [0.0, -14.0]), Anchor::Middle, SMALL, Ink::Text, "sum");
+    drawing.text(offset(plot.at(2.0, 1.0), [0.0, -14.0]), Middle, SMALL, Ink::Text, "sum");
     Ok(drawing.svg())
 }

@@ -1,12 +1,11 @@
 //! Diagrams of rays and boxes.
 
-use crate::sketch::offset;
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{Kit, SlabQuery};
 use raykata::ray::Ray;
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, SMALL, TEXT, View};
+use raykata_cli::svg::{Drawing, End, Ink, Middle, SMALL, Start, TEXT, offset, plane};
 
 /// Larger than everything in a diagram.
 const FAR: f32 = 1000.0;
@@ -26,8 +25,7 @@ pub fn slab_intervals(kit: &dyn Kit) -> Result<String> {
 
     let mut drawing =
         Drawing::new("A ray through two slabs, and the interval that both have in common", 1000.0, 620.0);
-    let view = View { origin: [40.0, 370.0], scale: 105.0 };
-    let at = |point: Vec3| view.at(f64::from(point.x), f64::from(point.y));
+    let (view, at) = plane([40.0, 370.0], 105.0);
     let point = |t: f32| at(ray.at(t));
     let (x_slab, y_slab, both) = (Ink::Color(4), Ink::Color(1), Ink::Color(2));
 
@@ -36,14 +34,14 @@ pub fn slab_intervals(kit: &dyn Kit) -> Result<String> {
     let [x0, x1, y0, y1] = [low.x, high.x, low.y, high.y].map(f64::from);
     drawing.rectangle(view.at(x0, bottom), view.at(x1, top), x_slab, 0.16);
     drawing.rectangle(view.at(left, y0), view.at(right, y1), y_slab, 0.16);
-    drawing.frame(at(low), at(high), Pen::new(Ink::Text));
-    drawing.text(view.at(x1 + 0.1, top - 0.28), Anchor::Start, TEXT, x_slab, "slab of x");
-    drawing.text(view.at(right, y0 + 0.12), Anchor::End, TEXT, y_slab, "slab of y");
+    drawing.frame(at(low), at(high), Ink::Text.pen(3.0));
+    drawing.text(view.at(x1 + 0.1, top - 0.28), Start, TEXT, x_slab, "slab of x");
+    drawing.text(view.at(right, y0 + 0.12), End, TEXT, y_slab, "slab of y");
 
     // Draw the ray, and where it enters and leaves the slabs.
-    drawing.arrow(at(ray.origin), point(7.4), Pen::new(Ink::Text));
+    drawing.arrow(at(ray.origin), point(7.4), Ink::Text.pen(3.0));
     drawing.dot(at(ray.origin), 7.0, Ink::Text);
-    drawing.text(offset(at(ray.origin), [4.0, 34.0]), Anchor::Start, TEXT, Ink::Text, "o");
+    drawing.text(offset(at(ray.origin), [4.0, 34.0]), Start, TEXT, Ink::Text, "o");
     for (&(enter, leave), ink) in intervals.iter().zip([x_slab, y_slab]) {
         for t in [enter, leave] {
             drawing.dot(point(t), 8.0, ink);
@@ -54,20 +52,20 @@ pub fn slab_intervals(kit: &dyn Kit) -> Result<String> {
     let axis = |t: f32| 130.0 + 105.0 * f64::from(t);
     let rows = [("x", 440.0, x_slab), ("y", 495.0, y_slab), ("box", 550.0, both)];
     for (&(enter, leave), (name, y, ink)) in intervals.iter().zip(rows) {
-        drawing.text([40.0, y + 9.0], Anchor::Start, TEXT, ink, name);
-        drawing.line([axis(0.0), y], [axis(7.8), y], Pen::new(Ink::Faint).wide(1.5));
-        drawing.line([axis(enter), y], [axis(leave), y], Pen::new(ink).wide(14.0));
-        drawing.text([axis(enter), y - 14.0], Anchor::Middle, SMALL, ink, &format!("{enter:.2}"));
-        drawing.text([axis(leave), y - 14.0], Anchor::Middle, SMALL, ink, &format!("{leave:.2}"));
+        drawing.text([40.0, y + 9.0], Start, TEXT, ink, name);
+        drawing.line([axis(0.0), y], [axis(7.8), y], Ink::Faint.pen(1.5));
+        drawing.line([axis(enter), y], [axis(leave), y], ink.pen(14.0));
+        drawing.text([axis(enter), y - 14.0], Middle, SMALL, ink, &format!("{enter:.2}"));
+        drawing.text([axis(leave), y - 14.0], Middle, SMALL, ink, &format!("{leave:.2}"));
     }
-    drawing.text([axis(7.8) + 8.0, 559.0], Anchor::Start, TEXT, Ink::Text, "t");
+    drawing.text([axis(7.8) + 8.0, 559.0], Start, TEXT, Ink::Text, "t");
     let (enter, leave) = intervals[2];
     for t in [enter, leave] {
-        drawing.line([axis(t), 430.0], [axis(t), 575.0], Pen::new(both).wide(2.0).dashed());
+        drawing.line([axis(t), 430.0], [axis(t), 575.0], both.pen(2.0).dashed());
     }
     drawing.text(
         [axis(0.0), 605.0],
-        Anchor::Start,
+        Start,
         SMALL,
         Ink::Text,
         "the last entry and the first exit: the ray meets the box",

@@ -1,11 +1,12 @@
 //! Diagrams of normals, of the Phong model, and of tone curves.
 
-use crate::sketch::{Axis, Plot, arc, offset, polar, steps};
 use anyhow::Result;
 use glam::{Vec3, vec3};
 use raykata::film::ToneCurve;
 use raykata::kit::{Kit, TermQuery};
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
+use raykata_cli::svg::{
+    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, offset, plane, polar, steps,
+};
 
 /// The unit vector that leans by `degrees` from the vertical to the right.
 fn leaning(degrees: f32) -> Vec3 {
@@ -15,7 +16,7 @@ fn leaning(degrees: f32) -> Vec3 {
 
 fn draw_surface(drawing: &mut Drawing, y: f64, [left, right]: [f64; 2]) {
     drawing.rectangle([left, y], [right, y + 36.0], Ink::Faint, 0.3);
-    drawing.line([left, y], [right, y], Pen::new(Ink::Text));
+    drawing.line([left, y], [right, y], Ink::Text.pen(3.0));
 }
 
 /// A surface that is seen from its front and from its back.
@@ -25,27 +26,20 @@ pub fn face_forward(kit: &dyn Kit) -> Result<String> {
         [(250.0, vec3(0.6, -0.8, 0.0), "from above"), (750.0, vec3(0.6, 0.8, 0.0), "from below")]
     {
         let center = [x, 240.0];
-        let view = View { origin: center, scale: 170.0 };
-        let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
-        drawing.line([x - 210.0, 240.0], [x + 210.0, 240.0], Pen::new(Ink::Text).wide(5.0));
+        let (_, at) = plane(center, 170.0);
+        drawing.line([x - 210.0, 240.0], [x + 210.0, 240.0], Ink::Text.pen(5.0));
         let forward = kit.face_forward(&[(Vec3::Y, direction)])[0];
-        drawing.arrow(center, at(Vec3::Y), Pen::new(Ink::Faint));
-        drawing.text(offset(at(Vec3::Y), [12.0, 16.0]), Anchor::Start, TEXT, Ink::Text, "n");
-        drawing.arrow(at(-1.15 * direction), center, Pen::new(Ink::Color(0)).wide(4.0));
-        drawing.text(offset(at(-1.15 * direction), [-10.0, 6.0]), Anchor::End, TEXT, Ink::Color(0), "d");
-        drawing.arrow(offset(center, [0.0, 0.0]), at(0.85 * forward), Pen::new(Ink::Color(1)).wide(6.0));
+        drawing.arrow(center, at(Vec3::Y), Ink::Faint.pen(3.0));
+        drawing.text(offset(at(Vec3::Y), [12.0, 16.0]), Start, TEXT, Ink::Text, "n");
+        drawing.arrow(at(-1.15 * direction), center, Ink::Color(0).pen(4.0));
+        drawing.text(offset(at(-1.15 * direction), [-10.0, 6.0]), End, TEXT, Ink::Color(0), "d");
+        drawing.arrow(offset(center, [0.0, 0.0]), at(0.85 * forward), Ink::Color(1).pen(6.0));
         let result = if forward.y > 0.0 { "n" } else { "-n" };
-        drawing.text(
-            [x, 450.0],
-            Anchor::Middle,
-            TEXT,
-            Ink::Color(1),
-            &format!("face_forward returns {result}"),
-        );
+        drawing.text([x, 450.0], Middle, TEXT, Ink::Color(1), &format!("face_forward returns {result}"));
         let dot = Vec3::Y.dot(direction);
         let sign = if dot < 0.0 { "<" } else { ">" };
         let text = format!("{name}: n·d = {dot:.1} {sign} 0");
-        drawing.text([x, 484.0], Anchor::Middle, SMALL, Ink::Text, &text);
+        drawing.text([x, 484.0], Middle, SMALL, Ink::Text, &text);
     }
     Ok(drawing.svg())
 }
@@ -54,20 +48,19 @@ pub fn face_forward(kit: &dyn Kit) -> Result<String> {
 pub fn phong_vectors(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("The vectors of the Phong model", 1000.0, 520.0);
     let center = [440.0, 450.0];
-    let view = View { origin: center, scale: 380.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (_, at) = plane(center, 380.0);
     draw_surface(&mut drawing, 450.0, [80.0, 920.0]);
     let light = leaning(-40.0);
     let reflected = kit.reflect(&[(-light, Vec3::Y)])[0];
     let viewer = leaning(55.0);
     let arrows = [
-        (Vec3::Y, "n, the normal", Ink::Text, Anchor::Middle, [0.0, -14.0]),
-        (light, "l, to the light", Ink::Color(3), Anchor::Middle, [0.0, -14.0]),
-        (reflected, "r, reflected", Ink::Color(1), Anchor::Start, [10.0, -6.0]),
-        (viewer, "v, to the viewer", Ink::Color(0), Anchor::Start, [10.0, -4.0]),
+        (Vec3::Y, "n, the normal", Ink::Text, Middle, [0.0, -14.0]),
+        (light, "l, to the light", Ink::Color(3), Middle, [0.0, -14.0]),
+        (reflected, "r, reflected", Ink::Color(1), Start, [10.0, -6.0]),
+        (viewer, "v, to the viewer", Ink::Color(0), Start, [10.0, -4.0]),
     ];
     for (vector, name, ink, anchor, by) in arrows {
-        drawing.arrow(center, at(vector), Pen::new(ink).wide(4.0));
+        drawing.arrow(center, at(vector), ink.pen(4.0));
         drawing.text(offset(at(vector), by), anchor, TEXT, ink, name);
     }
     let degrees = |v: Vec3| f64::from(v.y.atan2(v.x)).to_degrees();
@@ -78,12 +71,12 @@ pub fn phong_vectors(kit: &dyn Kit) -> Result<String> {
         ([turn_r, turn_v], 210.0, "φ", Ink::Color(0)),
     ];
     for ([from, to], radius, name, ink) in angles {
-        arc(&mut drawing, center, radius, [from, to], Pen::new(ink).wide(2.0));
+        drawing.arc(center, radius, [from, to], ink.pen(2.0));
         let label = offset(polar(center, radius + 24.0, (from + to) / 2.0), [0.0, 9.0]);
-        drawing.text(label, Anchor::Middle, TEXT, ink, name);
+        drawing.text(label, Middle, TEXT, ink, name);
     }
     let text = format!("θ = {:.0}°, φ = {:.0}°", turn_l - 90.0, turn_r - turn_v);
-    drawing.text([100.0, 430.0], Anchor::Start, SMALL, Ink::Text, &text);
+    drawing.text([100.0, 430.0], Start, SMALL, Ink::Text, &text);
     Ok(drawing.svg())
 }
 
@@ -95,8 +88,7 @@ pub fn lambert(kit: &dyn Kit) -> Result<String> {
         let to_light = leaning(-degrees);
         let query = TermQuery { normal: Vec3::Y, to_light, to_viewer: Vec3::Y, exponent: 1.0 };
         let diffuse = kit.diffuse_term(&[query])[0];
-        let view = View { origin: [x, 400.0], scale: 150.0 };
-        let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+        let (view, at) = plane([x, 400.0], 150.0);
         draw_surface(&mut drawing, 400.0, [x - 215.0, x + 230.0]);
         // The beam has width 1, so it lights 1 / cos θ of the surface.
         let half = 0.5 / to_light.dot(Vec3::Y);
@@ -106,18 +98,18 @@ pub fn lambert(kit: &dyn Kit) -> Result<String> {
         let far = [2.0 * to_light - across, 2.0 * to_light + across];
         drawing.area(&[at(far[0]), at(far[1]), at(ends[1]), at(ends[0])], Ink::Color(3), 0.22);
         for (far, end) in far.into_iter().zip(ends) {
-            drawing.arrow(at(far), at(end), Pen::new(Ink::Color(3)));
+            drawing.arrow(at(far), at(end), Ink::Color(3).pen(3.0));
         }
-        drawing.line(at(far[0]), at(far[1]), Pen::new(Ink::Text).wide(2.0));
+        drawing.line(at(far[0]), at(far[1]), Ink::Text.pen(2.0));
         let label: Point = offset(at(2.0 * to_light), [0.0, -14.0]);
         let (anchor, label) =
-            if degrees > 0.0 { (Anchor::End, offset(label, [-16.0, 0.0])) } else { (Anchor::Middle, label) };
+            if degrees > 0.0 { (End, offset(label, [-16.0, 0.0])) } else { (Middle, label) };
         drawing.text(label, anchor, SMALL, Ink::Text, "1 wide");
-        drawing.line(at(ends[0]), at(ends[1]), Pen::new(Ink::Color(1)).wide(9.0));
+        drawing.line(at(ends[0]), at(ends[1]), Ink::Color(1).pen(9.0));
         let text = format!("lit length {:.0}", 2.0 * half);
-        drawing.text(view.at(0.0, -0.42), Anchor::Middle, TEXT, Ink::Color(1), &text);
+        drawing.text(view.at(0.0, -0.42), Middle, TEXT, Ink::Color(1), &text);
         let text = format!("θ = {degrees}°, diffuse_term = {diffuse:.1}");
-        drawing.text(view.at(0.1, -0.68), Anchor::Middle, SMALL, Ink::Text, &text);
+        drawing.text(view.at(0.1, -0.68), Middle, SMALL, Ink::Text, &text);
     }
     Ok(drawing.svg())
 }
@@ -125,12 +117,7 @@ pub fn lambert(kit: &dyn Kit) -> Result<String> {
 /// The specular term against the angle between the reflected light and the viewer.
 pub fn phong_exponents(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("The specular term for four exponents", 1000.0, 620.0);
-    let plot = Plot {
-        x: Axis::linear(0.0, 90.0),
-        y: Axis::linear(0.0, 1.0),
-        corner: [80.0, 530.0],
-        size: [600.0, 460.0],
-    };
+    let plot = Plot::new(Axis::linear(0.0, 90.0), Axis::linear(0.0, 1.0), [80.0, 530.0], [600.0, 460.0]);
     let x = [(0.0, "0°"), (30.0, "30°"), (60.0, "60°"), (90.0, "90°")];
     let y = [(0.0, "0"), (0.5, "0.5"), (1.0, "1")];
     plot.draw_axes(&mut drawing, &x, &y, ["angle φ between r and v", "specular_term"]);
@@ -147,15 +134,15 @@ pub fn phong_exponents(kit: &dyn Kit) -> Result<String> {
         let terms = kit.specular_term(&angles.iter().map(query).collect::<Vec<_>>());
         let values: Vec<[f64; 2]> =
             angles.iter().zip(terms).map(|(&degrees, term)| [degrees, f64::from(term)]).collect();
-        plot.draw_curve(&mut drawing, values.iter().copied(), Pen::new(ink).wide(4.0));
+        plot.draw_curve(&mut drawing, values.iter().copied(), ink.pen(4.0));
         // Mark the angle at which half of the light is left, between the two steps around it.
         let after = values.iter().position(|[_, term]| *term < 0.5).unwrap_or(1);
         let ([x0, y0], [x1, y1]) = (values[after - 1], values[after]);
         let half = x0 + (x1 - x0) * (y0 - 0.5) / (y0 - y1);
         drawing.dot(plot.at(half, 0.5), 8.0, ink);
         let y = 130.0 + 90.0 * row as f64;
-        drawing.text([705.0, y], Anchor::Start, TEXT, ink, &format!("exponent {exponent}"));
-        drawing.text([705.0, y + 32.0], Anchor::Start, SMALL, ink, &format!("half height at {half:.1}°"));
+        drawing.text([705.0, y], Start, TEXT, ink, &format!("exponent {exponent}"));
+        drawing.text([705.0, y + 32.0], Start, SMALL, ink, &format!("half height at {half:.1}°"));
     }
     Ok(drawing.svg())
 }
@@ -163,19 +150,14 @@ pub fn phong_exponents(kit: &dyn Kit) -> Result<String> {
 /// The three tone curves.
 pub fn tone_curves(_kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("Three tone curves", 1000.0, 600.0);
-    let plot = Plot {
-        x: Axis::linear(0.0, 4.0),
-        y: Axis::linear(0.0, 1.1),
-        corner: [80.0, 510.0],
-        size: [640.0, 440.0],
-    };
+    let plot = Plot::new(Axis::linear(0.0, 4.0), Axis::linear(0.0, 1.1), [80.0, 510.0], [640.0, 440.0]);
     let x = [(0.0, "0"), (1.0, "1"), (2.0, "2"), (3.0, "3"), (4.0, "4")];
     plot.draw_axes(&mut drawing, &x, &[(0.0, "0"), (0.5, "0.5"), (1.0, "1")], ["linear light x", "shown"]);
-    plot.draw_mark(&mut drawing, 1.0, Pen::new(Ink::Text).wide(2.0).dashed());
+    plot.draw_mark(&mut drawing, 1.0, Ink::Text.pen(2.0).dashed());
     let inks = [Ink::Color(0), Ink::Color(1), Ink::Color(2)];
     for ((name, curve), ink) in ToneCurve::ALL.into_iter().zip(inks) {
         let value = |x: f64| f64::from(curve.apply(x as f32));
-        plot.draw_curve(&mut drawing, steps(0.0, 4.0, 200).map(|x| [x, value(x)]), Pen::new(ink).wide(4.0));
+        plot.draw_curve(&mut drawing, steps(0.0, 4.0, 200).map(|x| [x, value(x)]), ink.pen(4.0));
         drawing.dot(plot.at(1.0, value(1.0)), 8.0, ink);
         // Clamp and ACES end close to each other.
         let by = match curve {
@@ -184,7 +166,7 @@ pub fn tone_curves(_kit: &dyn Kit) -> Result<String> {
             ToneCurve::Reinhard => 8.0,
         };
         let text = format!("{name}: {:.2} at 1", value(1.0));
-        drawing.text(offset(plot.at(4.0, value(4.0)), [14.0, by]), Anchor::Start, SMALL, ink, &text);
+        drawing.text(offset(plot.at(4.0, value(4.0)), [14.0, by]), Start, SMALL, ink, &text);
     }
     Ok(drawing.svg())
 }

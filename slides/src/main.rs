@@ -20,7 +20,6 @@ mod pipeline;
 mod rays;
 mod rounding;
 mod sampling;
-mod sketch;
 mod solids;
 mod speed;
 mod spheres;
@@ -32,113 +31,65 @@ mod triangles;
 
 use anyhow::{Context, Result, bail};
 use list::{Exact, Figure};
-use raykata::film::write_atomically;
 use raykata::kit::{Kit, kit_error};
 use raykata_cli::args::did_you_mean;
 use raykata_cli::kits::{Source, Which};
-use raykata_cli::report::{bar_of_steps, make_folder_of, say};
-use std::io::Write;
+use raykata_cli::program::ended;
+use raykata_cli::report::{bar_of_steps, make_folder_of, say, write_file};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
 /// Draws a diagram from the answers of a kit.
 type Draw = fn(&dyn Kit) -> Result<String>;
 
-/// All diagrams, by name.
-const DIAGRAMS: &[(&str, Draw)] = &[
-    ("slab-intervals", intersection::slab_intervals),
-    ("camera-frame", camera_frame::camera_frame),
-    ("sphere-roots", spheres::sphere_roots),
-    ("sphere-geometry", spheres::sphere_geometry),
-    ("sphere-cancellation", spheres::sphere_cancellation),
-    ("barycentric", triangles::barycentric),
-    ("traversal-order", triangles::traversal_order),
-    ("judge-and-worker", pipeline::judge_and_worker),
-    ("face-forward", lighting::face_forward),
-    ("phong-vectors", lighting::phong_vectors),
-    ("lambert", lighting::lambert),
-    ("phong-exponents", lighting::phong_exponents),
-    ("tone-curves", lighting::tone_curves),
-    ("reflection", optics::reflection),
-    ("snell", optics::snell),
-    ("critical-angle", optics::critical_angle),
-    ("fresnel", optics::fresnel),
-    ("ray-tree-bound", rays::ray_tree_bound),
-    ("gaussian-weight", sampling::gaussian_weight),
-    ("disk-samples", sampling::disk_samples),
-    ("penumbra", sampling::penumbra),
-    ("motion-bounds", sampling::motion_bounds),
-    ("thin-lens", lens::thin_lens),
-    ("sah-cuts", splits::sah_cuts),
-    ("object-median-problem", splits::object_median_problem),
-    ("spatial-median-corner", splits::spatial_median_corner),
-    ("grid-steps", structures::grid_steps),
-    ("kd-traversal", structures::kd_traversal),
-    ("ray-to-object", curves::ray_to_object),
-    ("normal-transform", curves::normal_transform),
-    ("de-casteljau", curves::de_casteljau),
-    ("bspline-basis", curves::bspline_basis),
-    ("inside-tests", surfaces::inside_tests),
-    ("vertex-normals", surfaces::vertex_normals),
-    ("texture-coordinates", surfaces::texture_coordinates),
-    ("bilinear", surfaces::bilinear),
-    ("silhouette-normal", rounding::silhouette_normal),
-    ("rounded-point", rounding::rounded_point),
-    ("edge-gap", rounding::edge_gap),
-    ("offset-bound", rounding::offset_bound),
-    ("solid-intervals", solids::solid_intervals),
-    ("double-cone", solids::double_cone),
-    ("octree-searches", partitions::octree_searches),
-    ("bsp-sheets", partitions::bsp_sheets),
-    ("malley", transport::malley),
-    ("light-solid-angle", transport::light_solid_angle),
-    ("corner", transport::corner),
-    ("bins-and-cuts", speed::bins_and_cuts),
-    ("blocks-that-pay", speed::blocks_that_pay),
-    ("wide-node", speed::wide_node),
-    ("work-and-span", speed::work_and_span),
-];
-
 /// Makes the bytes of a figure from the scenes of the kit at a path.
 type FromScenes = fn(&dyn Kit, &Path) -> Result<Vec<u8>>;
 
-/// All figures that are made from scenes, by name.
-const FROM_SCENES: &[(&str, FromScenes)] = &[
-    ("circle-of-confusion", lens::circle_of_confusion),
-    ("ray-tree", rays::ray_tree),
-    ("grid-resolution", rays::grid_resolution),
-    ("antialias-crops", pictures::antialias_crops),
-    ("sampler-strip", pictures::sampler_strip),
-    ("sampling-101", pictures::sampling_101),
-    ("hierarchy-levels", pictures::hierarchy_levels),
-    ("four-partitions", pictures::four_partitions),
-    ("kd-easy-and-five", pictures::kd_easy_and_five),
-    ("split-heatmaps", pictures::split_heatmaps),
-    ("cramer-determinant", pictures::cramer_determinant),
-    ("tiles", pictures::tiles),
-    ("heckbert", pictures::heckbert),
-    ("gamma-steps", pictures::gamma_steps),
-    ("three-scales", pictures::three_scales),
-    ("scene-graph", solids::scene_graph),
-    ("loop-subdivision", solids::loop_subdivision),
-    ("furnace-bias", transport::furnace_bias),
-    ("shadow-acne", acne::shadow_acne),
-    ("offset-strip", acne::offset_strip),
-    ("leaks", leaks::leaks),
-    ("shadow-ray-map", leaks::shadow_ray_map),
-    ("cornell-next-event", leaks::cornell_next_event),
-    ("wide-heatmaps", speed::wide_heatmaps),
-];
+/// The drawings with their names: those of their functions, with dashes.
+macro_rules! drawings {
+    ($($module:ident: $($function:ident),+;)*) => {
+        &[$($((stringify!($function), $module::$function)),+),*]
+    };
+}
+
+/// All diagrams.
+const DIAGRAMS: &[(&str, Draw)] = drawings! {
+    intersection: slab_intervals;
+    camera_frame: camera_frame;
+    spheres: sphere_roots, sphere_geometry, sphere_cancellation;
+    triangles: barycentric, traversal_order;
+    pipeline: judge_and_worker;
+    lighting: face_forward, phong_vectors, lambert, phong_exponents, tone_curves;
+    optics: reflection, snell, critical_angle, fresnel;
+    rays: ray_tree_bound;
+    sampling: gaussian_weight, disk_samples, penumbra, motion_bounds;
+    lens: thin_lens;
+    splits: sah_cuts, object_median_problem, spatial_median_corner;
+    structures: grid_steps, kd_traversal;
+    curves: ray_to_object, normal_transform, de_casteljau, bspline_basis;
+    surfaces: inside_tests, vertex_normals, texture_coordinates, bilinear;
+    rounding: silhouette_normal, rounded_point, edge_gap, offset_bound;
+    solids: solid_intervals, double_cone;
+    partitions: octree_searches, bsp_sheets;
+    transport: malley, light_solid_angle, corner;
+    speed: bins_and_cuts, blocks_that_pay, wide_node, work_and_span;
+};
+
+/// All figures that are made from scenes.
+const FROM_SCENES: &[(&str, FromScenes)] = drawings! {
+    lens: circle_of_confusion;
+    rays: ray_tree, grid_resolution;
+    pictures: antialias_crops, sampler_strip, sampling_101, hierarchy_levels, four_partitions, kd_easy_and_five;
+    pictures: split_heatmaps, cramer_determinant, tiles, heckbert, gamma_steps, three_scales;
+    solids: scene_graph, loop_subdivision;
+    transport: furnace_bias;
+    acne: shadow_acne, offset_strip;
+    leaks: leaks, shadow_ray_map, cornell_next_event;
+    speed: wide_heatmaps;
+};
 
 fn main() -> ExitCode {
-    match run(&std::env::args().skip(1).collect::<Vec<_>>()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::from(1)
-        }
-    }
+    ended(run(&std::env::args().skip(1).collect::<Vec<_>>()))
 }
 
 /// Makes or checks figures. `Ok(false)` if one of them differs.
@@ -164,8 +115,7 @@ fn run(words: &[String]) -> Result<bool> {
             differences.extend(difference(figure, &made, &file));
         } else {
             make_folder_of(&file)?;
-            write_atomically(&file, |out| out.write_all(&made))
-                .with_context(|| format!("cannot write {}", file.display()))?;
+            write_file(&file, &made)?;
         }
         bar.inc(1);
     }
@@ -211,13 +161,12 @@ fn make(figure: &Figure, kit: &dyn Kit, root: &Path, raykata: &str) -> Result<Ve
     let words: Vec<&str> = figure.command.split_whitespace().collect();
     match words.as_slice() {
         ["raykata", "figures", name] => {
-            if let Some((_, make)) = FROM_SCENES.iter().find(|(known, _)| known == name) {
+            let function = name.replace('-', "_");
+            if let Some((_, make)) = FROM_SCENES.iter().find(|(known, _)| *known == function) {
                 return kit_error::catch(|| make(kit, root))?;
             }
-            let (_, draw) = DIAGRAMS
-                .iter()
-                .find(|(known, _)| known == name)
-                .with_context(|| format!("`raykata figures` draws no diagram `{name}`"))?;
+            let draw = DIAGRAMS.iter().find(|(known, _)| *known == function);
+            let (_, draw) = draw.with_context(|| format!("`raykata figures` draws no diagram `{name}`"))?;
             Ok(kit_error::catch(|| draw(kit))??.into_bytes())
         }
         ["raykata", rest @ ..] => {
@@ -278,23 +227,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_drawing_is_listed() {
+    fn what_is_listed_can_be_drawn_and_what_can_be_drawn_is_listed() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("slides/ is in a folder");
         let listed = list::read(root).unwrap();
-        let drawn = DIAGRAMS.iter().map(|one| one.0).chain(FROM_SCENES.iter().map(|one| one.0));
-        for name in drawn {
-            let command = format!("raykata figures {name}");
-            assert!(listed.iter().any(|figure| figure.command == command), "{name} is not listed");
+        let names = listed.iter().filter_map(|figure| {
+            let name = figure.command.strip_prefix("raykata figures ")?.replace('-', "_");
+            Some((name, figure.planned))
+        });
+        let names: Vec<(String, bool)> = names.collect();
+        let drawn = || DIAGRAMS.iter().map(|one| one.0).chain(FROM_SCENES.iter().map(|one| one.0));
+        for name in drawn() {
+            assert!(names.iter().any(|(listed, _)| listed == name), "{name} is not listed");
         }
-    }
-
-    #[test]
-    fn every_figure_that_is_not_planned_can_be_made() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("slides/ is in a folder");
-        for figure in list::read(root).unwrap().iter().filter(|figure| !figure.planned) {
-            let Some(name) = figure.command.strip_prefix("raykata figures ") else { continue };
-            let names = DIAGRAMS.iter().map(|one| one.0).chain(FROM_SCENES.iter().map(|one| one.0));
-            assert!(names.into_iter().any(|known| known == name), "there is no drawing {name}");
+        for (name, _) in names.iter().filter(|(_, planned)| !planned) {
+            assert!(drawn().any(|known| known == name), "there is no drawing {name}");
         }
     }
 }

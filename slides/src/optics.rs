@@ -1,10 +1,11 @@
 //! Diagrams of reflection and refraction.
 
-use crate::sketch::{Axis, Plot, arc, offset, steps};
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use raykata::kit::{FresnelQuery, Kit, RefractQuery};
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
+use raykata_cli::svg::{
+    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, offset, plane, steps,
+};
 
 const GLASS: f32 = 1.5;
 
@@ -18,8 +19,7 @@ pub fn snell(kit: &dyn Kit) -> Result<String> {
 
 /// A ray that meets the surface of glass around `center` at an angle, from above or from below.
 fn panel(kit: &dyn Kit, drawing: &mut Drawing, center: Point, degrees: f32, from_above: bool) -> Result<()> {
-    let view = View { origin: center, scale: 190.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (view, at) = plane(center, 190.0);
     let (sin, cos) = degrees.to_radians().sin_cos();
     let up = if from_above { 1.0 } else { -1.0 };
     let (direction, normal) = (vec3(sin, -up * cos, 0.0), vec3(0.0, up, 0.0));
@@ -29,33 +29,33 @@ fn panel(kit: &dyn Kit, drawing: &mut Drawing, center: Point, degrees: f32, from
 
     // Shade the glass, and draw surface and normal.
     drawing.rectangle(view.at(-1.22, 0.0), view.at(1.22, -1.35), Ink::Color(4), 0.14);
-    drawing.line(view.at(-1.22, 0.0), view.at(1.22, 0.0), Pen::new(Ink::Text));
-    drawing.line(view.at(0.0, 1.35), view.at(0.0, -1.35), Pen::new(Ink::Faint).wide(2.0).dashed());
-    drawing.text(view.at(1.2, 0.06), Anchor::End, SMALL, Ink::Text, "air, n = 1");
-    drawing.text(view.at(-1.2, -0.15), Anchor::Start, SMALL, Ink::Text, "glass, n = 1.5");
+    drawing.line(view.at(-1.22, 0.0), view.at(1.22, 0.0), Ink::Text.pen(3.0));
+    drawing.line(view.at(0.0, 1.35), view.at(0.0, -1.35), Ink::Faint.pen(2.0).dashed());
+    drawing.text(view.at(1.2, 0.06), End, SMALL, Ink::Text, "air, n = 1");
+    drawing.text(view.at(-1.2, -0.15), Start, SMALL, Ink::Text, "glass, n = 1.5");
 
     // Draw both rays with their angles, and their parts along the surface.
     for (name, way, end, ink) in
         [("1", direction, -direction, Ink::Color(0)), ("2", refracted, refracted, Ink::Color(1))]
     {
         let foot = vec3(0.0, end.y, 0.0);
-        drawing.line(at(foot), at(end), Pen::new(Ink::Color(2)).wide(5.0));
+        drawing.line(at(foot), at(end), Ink::Color(2).pen(5.0));
         let below = if end.y > 0.0 { -12.0 } else { 28.0 };
         let middle = offset(at((foot + end) / 2.0), [0.0, below]);
         let (anchor, middle) = if end.x > 0.0 {
-            (Anchor::Start, [at(foot)[0] + 8.0, middle[1]])
+            (Start, [at(foot)[0] + 8.0, middle[1]])
         } else {
-            (Anchor::End, [at(foot)[0] - 8.0, middle[1]])
+            (End, [at(foot)[0] - 8.0, middle[1]])
         };
         drawing.text(middle, anchor, SMALL, Ink::Color(2), &format!("sin θ{name} = {:.2}", way.x.abs()));
         let ends = if end == -direction { [at(end), at(Vec3::ZERO)] } else { [at(Vec3::ZERO), at(end)] };
-        drawing.arrow(ends[0], ends[1], Pen::new(ink).wide(4.0));
+        drawing.arrow(ends[0], ends[1], ink.pen(4.0));
         let vertical: f64 = if end.y > 0.0 { 90.0 } else { 270.0 };
         let angle = f64::from(way.x.abs().atan2(way.y.abs()).to_degrees());
         let turn = if (end.x > 0.0) == (end.y > 0.0) { -angle } else { angle };
-        arc(drawing, center, 75.0, [vertical, vertical + turn], Pen::new(ink).wide(2.0));
+        drawing.arc(center, 75.0, [vertical, vertical + turn], ink.pen(2.0));
         // The angle is written on the free side of the normal.
-        let (anchor, x) = if end.x > 0.0 { (Anchor::End, -10.0) } else { (Anchor::Start, 10.0) };
+        let (anchor, x) = if end.x > 0.0 { (End, -10.0) } else { (Start, 10.0) };
         let y = if end.y > 0.0 { -62.0 } else { 78.0 };
         drawing.text(offset(center, [x, y]), anchor, SMALL, ink, &format!("θ{name} = {angle:.1}°"));
     }
@@ -74,12 +74,7 @@ const DEGREES: [(f64, &str); 4] = [(0.0, "0°"), (30.0, "30°"), (60.0, "60°"),
 /// The angle of the refracted ray against that of the ray.
 pub fn critical_angle(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("The angle of refraction, and the critical angle", 1000.0, 620.0);
-    let plot = Plot {
-        x: Axis::linear(0.0, 90.0),
-        y: Axis::linear(0.0, 90.0),
-        corner: [90.0, 530.0],
-        size: [640.0, 460.0],
-    };
+    let plot = Plot::new(Axis::linear(0.0, 90.0), Axis::linear(0.0, 90.0), [90.0, 530.0], [640.0, 460.0]);
     plot.draw_axes(&mut drawing, &DEGREES, &DEGREES, ["θ1", "θ2"]);
     let media = [
         (1.5, 1.0, "1.5 to 1", Ink::Color(1)),
@@ -96,22 +91,18 @@ pub fn critical_angle(kit: &dyn Kit) -> Result<String> {
         let thinned = values.iter().enumerate();
         let thinned =
             thinned.filter(|(i, value)| i % 50 == 0 || (last[1] > 80.0 && value[1] > 75.0 && i % 5 == 0));
-        plot.draw_curve(
-            &mut drawing,
-            thinned.map(|(_, value)| *value).chain([last]),
-            Pen::new(ink).wide(4.0),
-        );
+        plot.draw_curve(&mut drawing, thinned.map(|(_, value)| *value).chain([last]), ink.pen(4.0));
         let y = 100.0 + 90.0 * row as f64;
         if values.len() < 9000 {
-            plot.draw_mark(&mut drawing, last[0], Pen::new(ink).wide(2.0).dashed());
-            drawing.text([760.0, y], Anchor::Start, TEXT, ink, name);
+            plot.draw_mark(&mut drawing, last[0], ink.pen(2.0).dashed());
+            drawing.text([760.0, y], Start, TEXT, ink, name);
             let text = format!("None from {:.1}°", last[0]);
-            drawing.text([760.0, y + 32.0], Anchor::Start, SMALL, ink, &text);
+            drawing.text([760.0, y + 32.0], Start, SMALL, ink, &text);
         } else {
             let [x, y] = plot.at(last[0], last[1]);
-            drawing.text([x + 30.0, y - 4.0], Anchor::Start, TEXT, ink, name);
+            drawing.text([x + 30.0, y - 4.0], Start, TEXT, ink, name);
             let text = format!("at most {:.1}°", last[1]);
-            drawing.text([x + 30.0, y + 28.0], Anchor::Start, SMALL, ink, &text);
+            drawing.text([x + 30.0, y + 28.0], Start, SMALL, ink, &text);
         }
     }
     Ok(drawing.svg())
@@ -120,12 +111,7 @@ pub fn critical_angle(kit: &dyn Kit) -> Result<String> {
 /// Reflectance against the angle, exact and by Schlick's approximation.
 pub fn fresnel(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("Fresnel reflectance against the angle", 1000.0, 620.0);
-    let plot = Plot {
-        x: Axis::linear(0.0, 90.0),
-        y: Axis::linear(0.0, 1.0),
-        corner: [90.0, 530.0],
-        size: [640.0, 460.0],
-    };
+    let plot = Plot::new(Axis::linear(0.0, 90.0), Axis::linear(0.0, 1.0), [90.0, 530.0], [640.0, 460.0]);
     let y = [(0.0, "0"), (0.5, "0.5"), (1.0, "1")];
     plot.draw_axes(&mut drawing, &DEGREES, &y, ["θ1", "reflectance"]);
     let media = [(1.0, GLASS, "air to glass", Ink::Color(0)), (GLASS, 1.0, "glass to air", Ink::Color(1))];
@@ -134,20 +120,20 @@ pub fn fresnel(kit: &dyn Kit) -> Result<String> {
         let angles: Vec<f64> = steps(0.0, 90.0, 900).collect();
         let queries: Vec<_> = angles.iter().map(|&degrees| query(degrees)).collect();
         for (values, pen) in [
-            (kit.fresnel_exact(&queries), Pen::new(ink).wide(4.0)),
-            (kit.fresnel_schlick(&queries), Pen::new(ink).wide(3.0).dashed()),
+            (kit.fresnel_exact(&queries), ink.pen(4.0)),
+            (kit.fresnel_schlick(&queries), ink.pen(3.0).dashed()),
         ] {
             let values = angles.iter().zip(values).map(|(&degrees, value)| [degrees, f64::from(value)]);
             plot.draw_curve(&mut drawing, values, pen);
         }
         let at_zero = kit.fresnel_exact(&[query(0.0)])[0];
         let y = 160.0 + 170.0 * row as f64;
-        drawing.text([760.0, y], Anchor::Start, TEXT, ink, name);
-        drawing.line([760.0, y + 26.0], [810.0, y + 26.0], Pen::new(ink).wide(4.0));
-        drawing.text([820.0, y + 33.0], Anchor::Start, SMALL, ink, "exact");
-        drawing.line([760.0, y + 58.0], [810.0, y + 58.0], Pen::new(ink).dashed());
-        drawing.text([820.0, y + 65.0], Anchor::Start, SMALL, ink, "Schlick");
-        drawing.text([760.0, y + 97.0], Anchor::Start, SMALL, ink, &format!("{at_zero:.2} at 0°"));
+        drawing.text([760.0, y], Start, TEXT, ink, name);
+        drawing.line([760.0, y + 26.0], [810.0, y + 26.0], ink.pen(4.0));
+        drawing.text([820.0, y + 33.0], Start, SMALL, ink, "exact");
+        drawing.line([760.0, y + 58.0], [810.0, y + 58.0], ink.pen(3.0).dashed());
+        drawing.text([820.0, y + 65.0], Start, SMALL, ink, "Schlick");
+        drawing.text([760.0, y + 97.0], Start, SMALL, ink, &format!("{at_zero:.2} at 0°"));
     }
     // Mark the critical angle: the first at which everything is reflected.
     let all = |degrees: &f64| {
@@ -155,9 +141,8 @@ pub fn fresnel(kit: &dyn Kit) -> Result<String> {
         kit.fresnel_exact(&[FresnelQuery { cos_theta, n1: GLASS, n2: 1.0 }])[0] == 1.0
     };
     let critical = steps(0.0, 90.0, 900).find(all).context("no angle with total internal reflection")?;
-    plot.draw_mark(&mut drawing, critical, Pen::new(Ink::Faint).wide(2.0).dashed());
-    let label = offset(plot.at(critical, 0.5), [-10.0, 0.0]);
-    drawing.text(label, Anchor::End, SMALL, Ink::Text, "critical angle");
+    plot.draw_mark(&mut drawing, critical, Ink::Faint.pen(2.0).dashed());
+    drawing.text(offset(plot.at(critical, 0.5), [-10.0, 0.0]), End, SMALL, Ink::Text, "critical angle");
     Ok(drawing.svg())
 }
 
@@ -168,50 +153,43 @@ pub fn reflection(kit: &dyn Kit) -> Result<String> {
     let reflected = kit.reflect(&[(direction, Vec3::Y)])[0];
     let mut drawing = Drawing::new("A ray and its reflection", 1000.0, 560.0);
     let center = [500.0, 430.0];
-    let view = View { origin: center, scale: 390.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (view, at) = plane(center, 390.0);
     drawing.rectangle([60.0, 430.0], [940.0, 470.0], Ink::Faint, 0.25);
-    drawing.line([60.0, 430.0], [940.0, 430.0], Pen::new(Ink::Text));
-    drawing.arrow(center, view.at(0.0, 0.95), Pen::new(Ink::Text));
-    drawing.text(offset(view.at(0.0, 0.95), [12.0, 16.0]), Anchor::Start, TEXT, Ink::Text, "n");
+    drawing.line([60.0, 430.0], [940.0, 430.0], Ink::Text.pen(3.0));
+    drawing.arrow(center, view.at(0.0, 0.95), Ink::Text.pen(3.0));
+    drawing.text(offset(view.at(0.0, 0.95), [12.0, 16.0]), Start, TEXT, Ink::Text, "n");
     let (before, after, part) = (Ink::Color(0), Ink::Color(1), Ink::Color(2));
     // Draw the parts of both, then the rays over them.
     for (end, ink) in [(-direction, before), (reflected, after)] {
         let foot = vec3(end.x, 0.0, 0.0);
-        drawing.line(at(end), at(foot), Pen::new(ink).wide(2.0).dashed());
-        drawing.line(offset(at(foot), [0.0, 0.0]), center, Pen::new(ink).wide(5.0));
+        drawing.line(at(end), at(foot), ink.pen(2.0).dashed());
+        drawing.line(offset(at(foot), [0.0, 0.0]), center, ink.pen(5.0));
     }
-    drawing.arrow(at(-direction), center, Pen::new(before).wide(4.0));
-    drawing.arrow(center, at(reflected), Pen::new(after).wide(4.0));
-    drawing.text(offset(at(-direction), [-12.0, 0.0]), Anchor::End, TEXT, before, "d");
-    drawing.text(offset(at(reflected), [12.0, 0.0]), Anchor::Start, TEXT, after, "d'");
+    drawing.arrow(at(-direction), center, before.pen(4.0));
+    drawing.arrow(center, at(reflected), after.pen(4.0));
+    drawing.text(offset(at(-direction), [-12.0, 0.0]), End, TEXT, before, "d");
+    drawing.text(offset(at(reflected), [12.0, 0.0]), Start, TEXT, after, "d'");
     for (degrees, ink) in [([90.0, 140.0], before), ([40.0, 90.0], after)] {
-        arc(&mut drawing, center, 90.0, degrees, Pen::new(ink).wide(2.0));
+        drawing.arc(center, 90.0, degrees, ink.pen(2.0));
     }
     let angle = f64::from(reflected.x.atan2(reflected.y)).to_degrees();
-    drawing.text(offset(center, [-46.0, -100.0]), Anchor::Middle, SMALL, before, "50°");
-    drawing.text(offset(center, [46.0, -100.0]), Anchor::Middle, SMALL, after, &format!("{angle:.0}°"));
+    drawing.text(offset(center, [-46.0, -100.0]), Middle, SMALL, before, "50°");
+    drawing.text(offset(center, [46.0, -100.0]), Middle, SMALL, after, &format!("{angle:.0}°"));
     // Move d to the foot of d', where the difference of both is along the normal.
     let below = vec3(reflected.x, direction.y + 0.0, 0.0);
     let length = (reflected - direction).length();
     let half = at(vec3(below.x, reflected.y / 2.0, 0.0));
     let along = format!("along n: {:.2}", length / 2.0);
-    drawing.text(offset(half, [12.0, 0.0]), Anchor::Start, SMALL, after, &along);
+    drawing.text(offset(half, [12.0, 0.0]), Start, SMALL, after, &along);
     let half = at(vec3(-direction.x, -direction.y / 2.0, 0.0));
-    drawing.text(
-        offset(half, [-12.0, 0.0]),
-        Anchor::End,
-        SMALL,
-        before,
-        &format!("along n: {:.2}", direction.y),
-    );
+    drawing.text(offset(half, [-12.0, 0.0]), End, SMALL, before, &format!("along n: {:.2}", direction.y));
     for (x, value, ink) in
         [(-direction.x / 2.0, direction.x, before), (reflected.x / 2.0, reflected.x, after)]
     {
         let label = offset(at(vec3(x, 0.0, 0.0)), [0.0, 30.0]);
-        drawing.text(label, Anchor::Middle, SMALL, ink, &format!("along it: {value:.2}"));
+        drawing.text(label, Middle, SMALL, ink, &format!("along it: {value:.2}"));
     }
     let text = format!("d' = reflect(d, n): d' - d = {length:.2} n = -2 n (d·n)");
-    drawing.text([500.0, 530.0], Anchor::Middle, TEXT, part, &text);
+    drawing.text([500.0, 530.0], Middle, TEXT, part, &text);
     Ok(drawing.svg())
 }

@@ -7,7 +7,7 @@ use raykata::aabb::Aabb;
 use raykata::kit::{BspQuery, CellsAnswer, CellsQuery, KdQuery, Kit, OctreeQuery, SlabQuery};
 use raykata::partition::{Bsp, BspNode, KdHeuristics, Octree, OctreeNode};
 use raykata::ray::Ray;
-use raykata_cli::svg::{Anchor, Drawing, Ink, LARGE, Pen, Point, SMALL, View};
+use raykata_cli::svg::{Drawing, Ink, LARGE, Middle, Point, SMALL, Start, View, plane};
 
 /// A node of the lower half of an octree, with its cell, its depth and its position in the row of this depth.
 struct Node {
@@ -54,9 +54,9 @@ pub fn octree_searches(kit: &dyn Kit) -> Result<String> {
         let left = 14.0 + 334.0 * panel as f64;
         draw_cells(&mut drawing, &octree, &nodes, &ray, &answer, left);
         draw_levels(&mut drawing, &nodes, &answer, left);
-        drawing.text([left, 428.0], Anchor::Start, SMALL, Ink::Text, name);
+        drawing.text([left, 428.0], Start, SMALL, Ink::Text, name);
         let text = format!("{} visits", answer.visits.len());
-        drawing.text([left, 458.0], Anchor::Start, SMALL, Ink::Color(1), &text);
+        drawing.text([left, 458.0], Start, SMALL, Ink::Color(1), &text);
     }
     Ok(drawing.svg())
 }
@@ -73,21 +73,20 @@ fn draw_cells(
     answer: &CellsAnswer,
     left: f64,
 ) {
-    let view = View { origin: [left - 8.0, 226.0], scale: 39.0 };
-    let at = |v: Vec3| -> Point { view.at(f64::from(v.x), f64::from(v.y)) };
+    let (_, at) = plane([left - 8.0, 226.0], 39.0);
     for node in
         nodes.iter().filter(|node| matches!(octree.nodes[node.index as usize], OctreeNode::Leaf { .. }))
     {
         if visits(answer, node.index) > 0 {
             drawing.rectangle(at(node.cell.min), at(node.cell.max), Ink::Color(1), 0.2);
         }
-        drawing.frame(at(node.cell.min), at(node.cell.max), Pen::new(Ink::Faint).wide(1.5));
+        drawing.frame(at(node.cell.min), at(node.cell.max), Ink::Faint.pen(1.5));
     }
     for bounds in boxes() {
         drawing.rectangle(at(bounds.min), at(bounds.max), Ink::Color(0), 0.5);
     }
     let end = answer.hit.map_or(8.3, |hit| hit.t);
-    drawing.arrow(at(ray.at(0.55)), at(ray.at(end)), Pen::new(Ink::Text));
+    drawing.arrow(at(ray.at(0.55)), at(ray.at(end)), Ink::Text.pen(3.0));
 }
 
 /// The tree as rows of dots, which are larger for more visits.
@@ -134,22 +133,18 @@ pub fn bsp_sheets(kit: &dyn Kit) -> Result<String> {
         let at = |v: DVec3| -> Point { view.at(v.x, v.y) };
         if panel == 0 {
             for (_, cell) in leaves(&kd_tree) {
-                drawing.frame(
-                    at(cell.min.as_dvec3()),
-                    at(cell.max.as_dvec3()),
-                    Pen::new(Ink::Color(3)).wide(2.0),
-                );
+                drawing.frame(at(cell.min.as_dvec3()), at(cell.max.as_dvec3()), Ink::Color(3).pen(2.0));
             }
         } else {
             let square = [dvec2(0.0, 0.0), dvec2(4.4, 0.0), dvec2(4.4, 4.4), dvec2(0.0, 4.4)];
             draw_planes(&mut drawing, &view, &bsp, 0, square.to_vec());
-            drawing.frame(view.at(0.0, 0.0), view.at(4.4, 4.4), Pen::new(Ink::Faint).wide(2.0));
+            drawing.frame(view.at(0.0, 0.0), view.at(4.4, 4.4), Ink::Faint.pen(2.0));
         }
         for hull in &hulls {
-            drawing.line(at(hull[0].as_dvec3()), at(hull[1].as_dvec3()), Pen::new(Ink::Color(0)).wide(5.0));
+            drawing.line(at(hull[0].as_dvec3()), at(hull[1].as_dvec3()), Ink::Color(0).pen(5.0));
         }
         let text = format!("{name}: {references} references");
-        drawing.text([view.origin[0] + 210.0, 525.0], Anchor::Middle, LARGE, Ink::Text, &text);
+        drawing.text([view.origin[0] + 210.0, 525.0], Middle, LARGE, Ink::Text, &text);
     }
     Ok(drawing.svg())
 }
@@ -174,7 +169,7 @@ fn draw_planes(drawing: &mut Drawing, view: &View, bsp: &Bsp, node: u32, region:
             cut.push(view.at(crossing.x, crossing.y));
         }
     }
-    drawing.polyline(&cut, Pen::new(Ink::Color(1)).wide(2.5).dashed());
+    drawing.polyline(&cut, Ink::Color(1).pen(2.5).dashed());
     draw_planes(drawing, view, bsp, back, behind);
     draw_planes(drawing, view, bsp, front, before);
 }

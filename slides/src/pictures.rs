@@ -5,7 +5,6 @@ use glam::{Vec3, vec3};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use raykata::camera::Camera;
 use raykata::film::{Film, encode_srgb};
-use raykata::frame::Unwatched;
 use raykata::kit::{Kit, RenderJob, Rendering, TriangleQuery, View};
 use raykata::partition::KdHeuristics;
 use raykata::ray::Ray;
@@ -14,6 +13,7 @@ use raykata::shape::Triangle;
 use raykata::world::camera_for;
 use raykata_cli::caption;
 use raykata_cli::compare::{heat_color, with_edges};
+use raykata_cli::report;
 use std::path::Path;
 
 /// Pixels between two panels.
@@ -24,11 +24,25 @@ pub fn load(root: &Path, name: &str) -> Result<Scene> {
 }
 
 pub fn job(scene: &Scene) -> RenderJob {
-    RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 0, count: true, reuse: false }
+    RenderJob { reuse: false, ..report::job(scene.clone()) }
 }
 
 pub fn render(kit: &dyn Kit, scene: &Scene) -> Result<Rendering> {
-    kit.render(&job(scene), &Unwatched).context("the frame was cancelled")
+    report::render(kit, &job(scene))
+}
+
+/// The work of each pixel of a scene, and what it cost in all.
+pub fn work(kit: &dyn Kit, scene: &Scene) -> Result<Rendering> {
+    report::render(kit, &RenderJob { view: View::Work, ..job(scene) })
+}
+
+/// Panels in a row whose pixels are colours for sums, on one logarithmic scale.
+pub fn heat_panels(mut films: Vec<(Film, String)>, sum: fn(&Vec3) -> f32) -> Result<Vec<u8>> {
+    let most = films.iter().flat_map(|(film, _)| &film.pixels).map(sum).fold(0.0, f32::max);
+    for pixel in films.iter_mut().flat_map(|(film, _)| &mut film.pixels) {
+        *pixel = heat_color(sum(pixel), most);
+    }
+    panels(&films, films.len() as u32)
 }
 
 /// The picture as a screen shows it, in linear light up to 1.
@@ -288,21 +302,12 @@ pub fn split_heatmaps(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
         (Split::SurfaceArea, "surface area"),
     ] {
         scene.quality.split = split;
-        let rendering = kit
-            .render(&RenderJob { view: View::Work, ..job(&scene) }, &Unwatched)
-            .context("the frame was cancelled")?;
+        let rendering = work(kit, &scene)?;
         let counts = rendering.counts;
         let tests = (counts.box_tests + counts.primitive_tests) as f64 / counts.rays() as f64;
         films.push((rendering.film, format!("{name}: {tests:.0} tests/ray")));
     }
-    let sums = films.iter().flat_map(|(film, _)| &film.pixels).map(|pixel| pixel.element_sum());
-    let most = sums.fold(0.0, f32::max);
-    for (film, _) in &mut films {
-        for pixel in &mut film.pixels {
-            *pixel = heat_color(pixel.element_sum(), most);
-        }
-    }
-    panels(&films, 3)
+    heat_panels(films, |pixel| pixel.element_sum())
 }
 
 /// A triangle by Cramer's rule, with the right determinant and with that of the lecture notes.

@@ -1,23 +1,19 @@
 //! Diagrams of samples: the Gaussian filter, points of a disk, soft shadows, and boxes that move.
 
-use crate::sketch::{Axis, Plot, offset, steps};
 use anyhow::Result;
 use glam::{Vec2, Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{FILTER_RADIUS, Kit, RectangleQuery};
 use raykata::random::{Points, Purpose};
 use raykata::scene::Sampler;
-use raykata_cli::svg::{Anchor, Drawing, Ink, LARGE, Pen, Point, SMALL, TEXT, View};
+use raykata_cli::svg::{
+    Axis, Drawing, Ink, LARGE, Middle, Plot, SMALL, Start, TEXT, View, offset, plane, steps,
+};
 
 /// The weight of the Gaussian filter, and the Gaussian that is cut off.
 pub fn gaussian_weight(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("The weight of a sample over its distance", 1000.0, 600.0);
-    let plot = Plot {
-        x: Axis::linear(-2.0, 2.0),
-        y: Axis::linear(0.0, 1.0),
-        corner: [70.0, 510.0],
-        size: [560.0, 430.0],
-    };
+    let plot = Plot::new(Axis::linear(-2.0, 2.0), Axis::linear(0.0, 1.0), [70.0, 510.0], [560.0, 430.0]);
     let radius = f64::from(FILTER_RADIUS);
     let xs: Vec<f64> = steps(-2.0, 2.0, 400).collect();
     let points: Vec<Vec2> = xs.iter().map(|&x| Vec2::new(x as f32, 0.0)).collect();
@@ -34,26 +30,19 @@ pub fn gaussian_weight(kit: &dyn Kit) -> Result<String> {
     let x = [(-2.0, "-2"), (-1.0, "-1"), (0.0, "0"), (1.0, "1"), (2.0, "2")];
     let titles = ["distance from the centre of the pixel, in pixels", "weight, 1 in the middle"];
     plot.draw_axes(&mut drawing, &x, &[(0.0, "0"), (0.5, "0.5"), (1.0, "1")], titles);
-    drawing.text(offset(plot.at(0.0, 0.0), [0.0, -14.0]), Anchor::Middle, SMALL, Ink::Text, "pixel");
+    drawing.text(offset(plot.at(0.0, 0.0), [0.0, -14.0]), Middle, SMALL, Ink::Text, "pixel");
     // The inset shows the end of both curves, with weights ten times as large.
-    let inset = Plot {
-        x: Axis::linear(1.2, 1.7),
-        y: Axis::linear(0.0, 0.06),
-        corner: [720.0, 510.0],
-        size: [250.0, 258.0],
-    };
+    let inset = Plot::new(Axis::linear(1.2, 1.7), Axis::linear(0.0, 0.06), [720.0, 510.0], [250.0, 258.0]);
     let ticks = [(0.0, "0"), (0.02, "0.02"), (0.04, "0.04"), (0.06, "0.06")];
     inset.draw_axes(&mut drawing, &[(1.2, "1.2"), (1.5, "1.5")], &ticks, ["", "the end, magnified"]);
-    for (curve, pen) in
-        [(&cut, Pen::new(Ink::Color(1)).wide(4.0).dashed()), (&ours, Pen::new(Ink::Color(0)).wide(4.0))]
-    {
+    for (curve, pen) in [(&cut, Ink::Color(1).pen(4.0).dashed()), (&ours, Ink::Color(0).pen(4.0))] {
         plot.draw_curve(&mut drawing, curve.iter().copied(), pen);
         let end = curve.iter().copied().filter(|[x, y]| (1.2..=1.7).contains(x) && *y <= 0.06);
         inset.draw_curve(&mut drawing, end, pen);
     }
-    drawing.text([660.0, 90.0], Anchor::Start, SMALL, Ink::Color(0), "gaussian_weight, scaled");
-    drawing.text([660.0, 130.0], Anchor::Start, SMALL, Ink::Color(1), "exp(-2 x²), cut at 1.5:");
-    drawing.text([660.0, 166.0], Anchor::Start, SMALL, Ink::Color(1), &format!("a step of {step:.3}"));
+    drawing.text([660.0, 90.0], Start, SMALL, Ink::Color(0), "gaussian_weight, scaled");
+    drawing.text([660.0, 130.0], Start, SMALL, Ink::Color(1), "exp(-2 x²), cut at 1.5:");
+    drawing.text([660.0, 166.0], Start, SMALL, Ink::Color(1), &format!("a step of {step:.3}"));
     Ok(drawing.svg())
 }
 
@@ -74,12 +63,12 @@ pub fn disk_samples(kit: &dyn Kit) -> Result<String> {
         for point in &points {
             drawing.dot(view.at(f64::from(point.x), f64::from(point.y)), 3.0, ink);
         }
-        drawing.circle(view.origin, 220.0, Pen::new(Ink::Text).wide(2.0));
-        drawing.circle(view.origin, 110.0, Pen::new(Ink::Text).wide(4.0));
+        drawing.circle(view.origin, 220.0, Ink::Text.pen(2.0));
+        drawing.circle(view.origin, 110.0, Ink::Text.pen(4.0));
         let inside = points.iter().filter(|point| point.length() < 0.5).count();
-        drawing.text([x, 502.0], Anchor::Middle, TEXT, Ink::Text, name);
+        drawing.text([x, 502.0], Middle, TEXT, Ink::Text, name);
         let share = format!("{:.1} % within half the radius", inside as f64 / 10.0);
-        drawing.text([x, 538.0], Anchor::Middle, SMALL, Ink::Text, &share);
+        drawing.text([x, 538.0], Middle, SMALL, Ink::Text, &share);
     }
     Ok(drawing.svg())
 }
@@ -109,8 +98,7 @@ pub fn penumbra(kit: &dyn Kit) -> Result<String> {
             });
             free.count() as f64 / points.len() as f64
         };
-        let view = View { origin: [x, 370.0], scale: 105.0 };
-        let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+        let (view, at) = plane([x, 370.0], 105.0);
         let fractions: Vec<[f64; 2]> = steps(-2.0, 2.0, 400).map(|place| [place, visible(place)]).collect();
         // Draw the floor, darker where less light arrives: one layer per level over all places that are darker. Layers are
         // nested, because gaps would show between pieces side by side.
@@ -123,38 +111,24 @@ pub fn penumbra(kit: &dyn Kit) -> Result<String> {
             let opacity = 1.0 / f64::from(LEVELS - level + 1);
             drawing.rectangle(view.at(first, 0.0), view.at(last, -0.14), Ink::Text, opacity);
         }
-        drawing.line(view.at(-2.0, 0.0), view.at(2.0, 0.0), Pen::new(Ink::Text));
+        drawing.line(view.at(-2.0, 0.0), view.at(2.0, 0.0), Ink::Text.pen(3.0));
         for end in [-half, half] {
             for edge in occluder {
                 let light = vec3(end, 3.0, 0.0);
                 let floor = light + (edge - light) * (3.0 / (3.0 - 1.2));
-                drawing.line(at(light), at(floor), Pen::new(Ink::Color(3)).wide(1.5));
+                drawing.line(at(light), at(floor), Ink::Color(3).pen(1.5));
             }
         }
-        drawing.line(at(occluder[0]), at(occluder[1]), Pen::new(Ink::Text).wide(10.0));
-        drawing.line(
-            view.at(-f64::from(half), 3.0),
-            view.at(f64::from(half), 3.0),
-            Pen::new(Ink::Color(3)).wide(10.0),
-        );
+        drawing.line(at(occluder[0]), at(occluder[1]), Ink::Text.pen(10.0));
+        drawing.line(view.at(-f64::from(half), 3.0), view.at(f64::from(half), 3.0), Ink::Color(3).pen(10.0));
         drawing.dot(view.at(0.0, 3.0), 8.0, Ink::Color(3));
-        drawing.text(view.at(0.7, 2.95), Anchor::Start, SMALL, Ink::Color(3), name);
-        drawing.text(view.at(0.62, 1.14), Anchor::Start, SMALL, Ink::Text, "occluder");
-        let plot = Plot {
-            x: Axis::linear(-2.0, 2.0),
-            y: Axis::linear(0.0, 1.0),
-            corner: [x - 210.0, 570.0],
-            size: [420.0, 120.0],
-        };
+        drawing.text(view.at(0.7, 2.95), Start, SMALL, Ink::Color(3), name);
+        drawing.text(view.at(0.62, 1.14), Start, SMALL, Ink::Text, "occluder");
+        let plot =
+            Plot::new(Axis::linear(-2.0, 2.0), Axis::linear(0.0, 1.0), [x - 210.0, 570.0], [420.0, 120.0]);
         plot.draw_axes(&mut drawing, &[], &[(0.0, "0"), (1.0, "1")], ["", ""]);
-        plot.draw_curve(&mut drawing, fractions.iter().copied(), Pen::new(Ink::Color(0)).wide(4.0));
-        drawing.text(
-            [x, 604.0],
-            Anchor::Middle,
-            SMALL,
-            Ink::Color(0),
-            "fraction of the light that is visible",
-        );
+        plot.draw_curve(&mut drawing, fractions.iter().copied(), Ink::Color(0).pen(4.0));
+        drawing.text([x, 604.0], Middle, SMALL, Ink::Color(0), "fraction of the light that is visible");
     }
     Ok(drawing.svg())
 }
@@ -164,31 +138,30 @@ pub fn motion_bounds(kit: &dyn Kit) -> Result<String> {
     let start = Aabb::new(vec3(0.0, 0.0, 0.0), vec3(1.6, 1.1, 1.0));
     let end = Aabb::new(vec3(6.0, 2.2, 0.0), vec3(7.1, 4.0, 1.0));
     let mut drawing = Drawing::new("A box in motion, and the box around its motion", 1000.0, 560.0);
-    let view = View { origin: [90.0, 500.0], scale: 112.0 };
-    let at = |v: Vec3| -> Point { view.at(f64::from(v.x), f64::from(v.y)) };
+    let (_, at) = plane([90.0, 500.0], 112.0);
     for time in [0.25, 0.5, 0.75] {
         let [low, high] =
             [(start.min, end.min), (start.max, end.max)].map(|(a, b)| kit.lerp(&[(a, b, time)])[0]);
         drawing.rectangle(at(low), at(high), Ink::Color(4), 0.16);
-        drawing.frame(at(low), at(high), Pen::new(Ink::Color(4)).wide(1.5));
+        drawing.frame(at(low), at(high), Ink::Color(4).pen(1.5));
         let middle = offset(at((low + high) / 2.0), [0.0, 14.0]);
-        drawing.text(middle, Anchor::Middle, LARGE, Ink::Text, &time.to_string());
+        drawing.text(middle, Middle, LARGE, Ink::Text, &time.to_string());
     }
     let corner = |bounds: &Aabb, i: usize| {
         let [low, high] = [bounds.min, bounds.max];
         vec3(if i & 1 == 0 { low.x } else { high.x }, if i & 2 == 0 { low.y } else { high.y }, 0.0)
     };
     for i in 0..4 {
-        drawing.arrow(at(corner(&start, i)), at(corner(&end, i)), Pen::new(Ink::Faint).wide(1.5));
+        drawing.arrow(at(corner(&start, i)), at(corner(&end, i)), Ink::Faint.pen(1.5));
     }
     for (bounds, name) in [(start, "time 0"), (end, "time 1")] {
-        drawing.frame(at(bounds.min), at(bounds.max), Pen::new(Ink::Color(0)).wide(4.0));
+        drawing.frame(at(bounds.min), at(bounds.max), Ink::Color(0).pen(4.0));
         let middle = offset(at((bounds.min + bounds.max) / 2.0), [0.0, 14.0]);
-        drawing.text(middle, Anchor::Middle, LARGE, Ink::Color(0), name);
+        drawing.text(middle, Middle, LARGE, Ink::Color(0), name);
     }
     let around = kit.motion_bounds(&[(start, end)])[0];
-    drawing.frame(at(around.min), at(around.max), Pen::new(Ink::Color(1)).wide(4.0).dashed());
+    drawing.frame(at(around.min), at(around.max), Ink::Color(1).pen(4.0).dashed());
     let label = offset(at(vec3(around.min.x, around.max.y, 0.0)), [14.0, 46.0]);
-    drawing.text(label, Anchor::Start, LARGE, Ink::Color(1), "motion_bounds");
+    drawing.text(label, Start, LARGE, Ink::Color(1), "motion_bounds");
     Ok(drawing.svg())
 }

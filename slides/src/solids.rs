@@ -1,13 +1,13 @@
 //! Diagrams of solids as intervals on a line, of Loop subdivision, and of a scene graph.
 
-use crate::sketch::offset;
+use crate::pictures::load;
 use anyhow::{Context, Result, ensure};
 use glam::{Vec3, vec3};
 use raykata::kit::{Kit, SolidQuery};
 use raykata::mesh::Mesh;
 use raykata::ray::Ray;
 use raykata::shape::{Cone, Cylinder};
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
+use raykata_cli::svg::{Drawing, End, Ink, Middle, Point, SMALL, Start, TEXT, View, offset, plane, polar};
 use std::path::Path;
 
 /// A line through a cylinder, and the intervals of `t` in its parts.
@@ -17,26 +17,15 @@ pub fn solid_intervals(kit: &dyn Kit) -> Result<String> {
     let hit =
         kit.cylinder(&[SolidQuery { ray, solid: cylinder }])[0].context("the ray misses the cylinder")?;
     let mut drawing = Drawing::new("A line through a cylinder, and its intervals", 1000.0, 620.0);
-    let view = View { origin: [60.0, 400.0], scale: 104.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (view, at) = plane([60.0, 400.0], 104.0);
     let [left, right] = [cylinder.base.x - cylinder.radius, cylinder.base.x + cylinder.radius];
     // The infinite cylinder, and the slab between the end planes.
     drawing.rectangle(view.at(f64::from(left), 3.6), view.at(f64::from(right), -0.4), Ink::Color(0), 0.12);
     drawing.rectangle(view.at(0.0, 2.4), view.at(8.8, 0.0), Ink::Color(3), 0.12);
-    drawing.frame(
-        view.at(f64::from(left), 2.4),
-        view.at(f64::from(right), 0.0),
-        Pen::new(Ink::Text).wide(4.0),
-    );
-    drawing.text(
-        view.at(f64::from(left) + 0.1, 3.35),
-        Anchor::Start,
-        SMALL,
-        Ink::Color(0),
-        "infinite cylinder",
-    );
-    drawing.text(view.at(7.0, 0.12), Anchor::Start, SMALL, Ink::Color(3), "between ends");
-    drawing.arrow(at(ray.origin), at(ray.at(8.9)), Pen::new(Ink::Text));
+    drawing.frame(view.at(f64::from(left), 2.4), view.at(f64::from(right), 0.0), Ink::Text.pen(4.0));
+    drawing.text(view.at(f64::from(left) + 0.1, 3.35), Start, SMALL, Ink::Color(0), "infinite cylinder");
+    drawing.text(view.at(7.0, 0.12), Start, SMALL, Ink::Color(3), "between ends");
+    drawing.arrow(at(ray.origin), at(ray.at(8.9)), Ink::Text.pen(3.0));
     // The line is seen from the side, so it passes the side of the cylinder where its x is that of the outline.
     let t_of_x = |x: f32| (x - ray.origin.x) / ray.direction.x;
     let t_of_y = |y: f32| (y - ray.origin.y) / ray.direction.y;
@@ -56,16 +45,16 @@ pub fn solid_intervals(kit: &dyn Kit) -> Result<String> {
         let y = 478.0 + 44.0 * row as f64;
         let end = axis(to.min(8.9));
         drawing.rectangle([axis(from), y - 12.0], [end, y + 12.0], ink, 0.75);
-        drawing.text([axis(from) - 12.0, y + 7.0], Anchor::End, SMALL, ink, name);
+        drawing.text([axis(from) - 12.0, y + 7.0], End, SMALL, ink, name);
         for t in [from, to] {
             drawing.dot(at(ray.at(t.min(8.8))), if t > 8.9 { 0.0 } else { 8.0 }, ink);
         }
     }
-    drawing.line([axis(0.0), 602.0], [axis(8.9), 602.0], Pen::new(Ink::Faint).wide(2.0));
-    drawing.text([axis(8.9) + 14.0, 608.0], Anchor::Start, TEXT, Ink::Text, "t");
-    drawing.line([axis(hit.t), 445.0], [axis(hit.t), 602.0], Pen::new(Ink::Color(1)).dashed());
+    drawing.line([axis(0.0), 602.0], [axis(8.9), 602.0], Ink::Faint.pen(2.0));
+    drawing.text([axis(8.9) + 14.0, 608.0], Start, TEXT, Ink::Text, "t");
+    drawing.line([axis(hit.t), 445.0], [axis(hit.t), 602.0], Ink::Color(1).pen(3.0).dashed());
     let text = format!("cylinder: t = {:.2}", hit.t);
-    drawing.text([axis(hit.t) + 10.0, 459.0], Anchor::Start, SMALL, Ink::Color(1), &text);
+    drawing.text([axis(hit.t) + 10.0, 459.0], Start, SMALL, Ink::Color(1), &text);
     Ok(drawing.svg())
 }
 
@@ -73,16 +62,15 @@ pub fn solid_intervals(kit: &dyn Kit) -> Result<String> {
 pub fn double_cone(kit: &dyn Kit) -> Result<String> {
     let cone = Cone { base: vec3(0.0, -1.5, 0.0), apex: Vec3::ZERO, radius: 1.0 };
     let mut drawing = Drawing::new("A double cone and three lines", 1000.0, 660.0);
-    let view = View { origin: [420.0, 340.0], scale: 190.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (_, at) = plane([420.0, 340.0], 190.0);
     let corners = [cone.apex, vec3(-1.0, -1.5, 0.0), vec3(1.0, -1.5, 0.0)];
     drawing.area(&corners.map(at), Ink::Color(4), 0.35);
-    drawing.polyline(&[at(corners[1]), at(corners[2])], Pen::new(Ink::Text).wide(5.0));
+    drawing.polyline(&[at(corners[1]), at(corners[2])], Ink::Text.pen(5.0));
     for side in [-1.0, 1.0] {
-        drawing.line(at(1.1 * vec3(side, 1.5, 0.0)), at(-1.1 * vec3(side, 1.5, 0.0)), Pen::new(Ink::Text));
+        drawing.line(at(1.1 * vec3(side, 1.5, 0.0)), at(-1.1 * vec3(side, 1.5, 0.0)), Ink::Text.pen(3.0));
     }
-    drawing.text(at(vec3(-0.42, -1.38, 0.0)), Anchor::Middle, SMALL, Ink::Text, "the cone");
-    drawing.text(at(vec3(0.0, 1.45, 0.0)), Anchor::Middle, SMALL, Ink::Text, "the second cone");
+    drawing.text(at(vec3(-0.42, -1.38, 0.0)), Middle, SMALL, Ink::Text, "the cone");
+    drawing.text(at(vec3(0.0, 1.45, 0.0)), Middle, SMALL, Ink::Text, "the second cone");
     // k = r² / |A|², the squared slope of the side.
     let k = (cone.radius / cone.base.length()).powi(2);
     let lines = [
@@ -102,12 +90,12 @@ pub fn double_cone(kit: &dyn Kit) -> Result<String> {
         let mut roots = [(-b - root) / a, (-b + root) / a];
         roots.sort_by(f32::total_cmp);
         let far = if row == 1 { 3.25 } else { 4.0 };
-        let pen = Pen::new(ink);
+        let pen = ink.pen(3.0);
         drawing.line(at(ray.at(0.0)), at(ray.at(far)), if hit.is_some() { pen } else { pen.dashed() });
         // Inside between the roots, or beyond them.
         let inside: [[f32; 2]; 2] = if a > 0.0 { [roots, roots] } else { [[0.0, roots[0]], [roots[1], far]] };
         for [from, to] in inside {
-            drawing.line(at(ray.at(from)), at(ray.at(to)), pen.wide(9.0));
+            drawing.line(at(ray.at(from)), at(ray.at(to)), pen.ink.pen(9.0));
         }
         for root in roots {
             drawing.dot(at(ray.at(root)), 10.0, ink);
@@ -117,13 +105,13 @@ pub fn double_cone(kit: &dyn Kit) -> Result<String> {
         let y = 150.0 + 130.0 * row as f64;
         for (line, text) in [name, sign, &verdict].into_iter().enumerate() {
             let size = if line == 0 { TEXT } else { SMALL };
-            drawing.text([650.0, y + 35.0 * line as f64], Anchor::Start, size, ink, text);
+            drawing.text([650.0, y + 35.0 * line as f64], Start, size, ink, text);
         }
         if let Some(hit) = hit {
-            drawing.circle(at(ray.at(hit.t)), 17.0, Pen::new(Ink::Text));
+            drawing.circle(at(ray.at(hit.t)), 17.0, Ink::Text.pen(3.0));
         }
     }
-    drawing.text([650.0, 560.0], Anchor::Start, SMALL, Ink::Text, "circle: cone()");
+    drawing.text([650.0, 560.0], Start, SMALL, Ink::Text, "circle: cone()");
     Ok(drawing.svg())
 }
 
@@ -132,7 +120,7 @@ pub fn loop_subdivision(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let mut drawing =
         Drawing::new("Loop subdivision: the masks, and a cube after 0 to 3 steps", 1000.0, 560.0);
     draw_masks(&mut drawing);
-    let scene = raykata::scene::load::load(&root.join("scenes/smooth_cube.toml"))?;
+    let scene = load(root, "smooth_cube.toml")?;
     let cube = scene.meshes.iter().find(|one| one.mesh.triangles.len() == 12);
     let cube = cube.context("the scene has no cube of twelve triangles")?;
     // Only positions and triangles matter.
@@ -150,7 +138,7 @@ pub fn loop_subdivision(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
         draw_mesh(&mut drawing, &mesh, center);
         let text = format!("{step} steps: {} triangles", mesh.triangles.len());
         let text = text.replace("1 steps", "1 step");
-        drawing.text(offset(center, [0.0, 138.0]), Anchor::Middle, SMALL, Ink::Text, &text);
+        drawing.text(offset(center, [0.0, 138.0]), Middle, SMALL, Ink::Text, &text);
     }
     Ok(drawing.svg().into_bytes())
 }
@@ -168,15 +156,15 @@ fn draw_mesh(drawing: &mut Drawing, mesh: &Mesh, center: Point) {
             continue;
         }
         drawing.area(&[at(a), at(b), at(c)], Ink::Color(4), 0.15);
-        drawing.polyline(&[at(a), at(b), at(c), at(a)], Pen::new(Ink::Color(0)).wide(1.2));
+        drawing.polyline(&[at(a), at(b), at(c), at(a)], Ink::Color(0).pen(1.2));
     }
 }
 
 fn draw_masks(drawing: &mut Drawing) {
-    let pen = Pen::new(Ink::Faint).wide(2.0);
+    let pen = Ink::Faint.pen(2.0);
     let number = |drawing: &mut Drawing, at: Point, text: &str, ink: Ink| {
         drawing.dot(at, 6.0, ink);
-        drawing.text(offset(at, [0.0, -12.0]), Anchor::Middle, SMALL, ink, text);
+        drawing.text(offset(at, [0.0, -12.0]), Middle, SMALL, ink, text);
     };
     // A new vertex of an inner edge.
     let [left, right, top, bottom] = [[60.0, 110.0], [260.0, 110.0], [160.0, 40.0], [160.0, 180.0]];
@@ -185,11 +173,10 @@ fn draw_masks(drawing: &mut Drawing) {
         number(drawing, at, text, Ink::Text);
     }
     drawing.dot([160.0, 110.0], 9.0, Ink::Color(1));
-    drawing.text([160.0, 212.0], Anchor::Middle, SMALL, Ink::Color(1), "new, on an edge");
+    drawing.text([160.0, 212.0], Middle, SMALL, Ink::Color(1), "new, on an edge");
     // An old vertex with six neighbours.
     let middle = [160.0, 330.0];
-    let around: Vec<Point> =
-        (0..6).map(|i| crate::sketch::polar(middle, 78.0, 60.0 * f64::from(i))).collect();
+    let around: Vec<Point> = (0..6).map(|i| polar(middle, 78.0, 60.0 * f64::from(i))).collect();
     for (index, at) in around.iter().enumerate() {
         drawing.line(middle, *at, pen);
         drawing.line(*at, around[(index + 1) % 6], pen);
@@ -203,28 +190,28 @@ fn draw_masks(drawing: &mut Drawing) {
             _ => [0.0, 28.0],
         };
         let anchor = match index {
-            0 => Anchor::Start,
-            3 => Anchor::End,
-            _ => Anchor::Middle,
+            0 => Start,
+            3 => End,
+            _ => Middle,
         };
         drawing.text(offset(at, by), anchor, SMALL, Ink::Text, "1/16");
     }
     drawing.dot(middle, 9.0, Ink::Color(0));
-    drawing.text(offset(middle, [0.0, 36.0]), Anchor::Middle, SMALL, Ink::Color(0), "10/16");
-    drawing.text([160.0, 462.0], Anchor::Middle, SMALL, Ink::Color(0), "old: 1 - 6 β, β = 1/16");
+    drawing.text(offset(middle, [0.0, 36.0]), Middle, SMALL, Ink::Color(0), "10/16");
+    drawing.text([160.0, 462.0], Middle, SMALL, Ink::Color(0), "old: 1 - 6 β, β = 1/16");
     // A border.
     let [left, right] = [[60.0, 515.0], [260.0, 515.0]];
-    drawing.line(left, right, Pen::new(Ink::Text).wide(2.0));
+    drawing.line(left, right, Ink::Text.pen(2.0));
     number(drawing, left, "1/8", Ink::Text);
     number(drawing, right, "1/8", Ink::Text);
     drawing.dot([160.0, 515.0], 9.0, Ink::Color(2));
-    drawing.text([160.0, 503.0], Anchor::Middle, SMALL, Ink::Color(2), "3/4");
-    drawing.text([160.0, 548.0], Anchor::Middle, SMALL, Ink::Color(2), "old, on a border");
+    drawing.text([160.0, 503.0], Middle, SMALL, Ink::Color(2), "3/4");
+    drawing.text([160.0, 548.0], Middle, SMALL, Ink::Color(2), "old, on a border");
 }
 
 /// The nodes of scenes/graph.toml, from the roots to the shapes.
 pub fn scene_graph(_kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let scene = raykata::scene::load::load(&root.join("scenes/graph.toml"))?;
+    let scene = load(root, "graph.toml")?;
     // The deepest way to each node is its level. The floor, which has no name, is left out.
     let nodes = &scene.nodes;
     let mut level = vec![0usize; nodes.len()];
@@ -258,7 +245,7 @@ pub fn scene_graph(_kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     for index in (0..nodes.len()).filter(is_drawn) {
         for &child in &nodes[index].children {
             let [from, to] = [offset(place(index), [0.0, 24.0]), offset(place(child), [0.0, -24.0])];
-            drawing.arrow(from, to, Pen::new(Ink::Faint).wide(2.0));
+            drawing.arrow(from, to, Ink::Faint.pen(2.0));
         }
     }
     for index in (0..nodes.len()).filter(is_drawn) {
@@ -268,8 +255,8 @@ pub fn scene_graph(_kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
         if parents[index] > 1 {
             drawing.rectangle(from, to, ink, 0.18);
         }
-        drawing.frame(from, to, Pen::new(ink));
-        drawing.text(offset(center, [0.0, 8.0]), Anchor::Middle, SMALL, Ink::Text, &nodes[index].name);
+        drawing.frame(from, to, ink.pen(3.0));
+        drawing.text(offset(center, [0.0, 8.0]), Middle, SMALL, Ink::Text, &nodes[index].name);
     }
     // Count the nodes of the tree in which nothing is shared.
     fn unfolded(nodes: &[raykata::scene::Node], index: usize) -> usize {
@@ -278,7 +265,7 @@ pub fn scene_graph(_kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let roots = (0..nodes.len()).filter(|&index| parents[index] == 0 && is_drawn(&index));
     let tree: usize = roots.map(|root| unfolded(nodes, root)).sum();
     let text = format!("{} nodes here; {tree} as a tree", (0..nodes.len()).filter(is_drawn).count());
-    drawing.text([20.0, 590.0], Anchor::Start, SMALL, Ink::Text, &text);
-    drawing.text([980.0, 590.0], Anchor::End, SMALL, Ink::Color(1), "shaded: several parents");
+    drawing.text([20.0, 590.0], Start, SMALL, Ink::Text, &text);
+    drawing.text([980.0, 590.0], End, SMALL, Ink::Color(1), "shaded: several parents");
     Ok(drawing.svg().into_bytes())
 }

@@ -1,17 +1,14 @@
 //! Diagrams of stage 12: bins and their cuts, leaves of whole blocks, a node with eight children, work and span.
 
-use crate::pictures::{job, load, panels};
-use crate::sketch::{Axis, Plot, offset};
+use crate::pictures::{heat_panels, load, work};
 use anyhow::{Context, Result};
 use glam::{Vec3A, vec3};
 use raykata::aabb::Aabb;
-use raykata::frame::Unwatched;
-use raykata::kit::{BinSplitQuery, BinsQuery, Kit, RenderJob, View};
+use raykata::kit::{BinSplitQuery, BinsQuery, Kit};
 use raykata::scene::Accelerator;
 use raykata::wide::{BinGrid, Bins, ChildContents, FlatTree, ForkKind, MAX_BINS, NO_PRIMITIVE, PrimitiveBox};
-use raykata_cli::compare::heat_color;
 use raykata_cli::report::Thousands;
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, SMALL, TEXT};
+use raykata_cli::svg::{Axis, Drawing, End, Ink, Middle, Plot, SMALL, Start, TEXT, offset};
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -50,12 +47,12 @@ pub fn bins_and_cuts(kit: &dyn Kit) -> Result<String> {
     let best = kit.cheapest_split(&[query]).remove(0).context("these boxes can be split")?;
 
     let mut drawing = Drawing::new("Sixteen bins, and the cost of each cut", 1000.0, 640.0);
-    let plot = Plot {
-        x: Axis::linear(f64::from(low) / 2.0, f64::from(high) / 2.0),
-        y: Axis::linear(3000.0, 15000.0),
-        corner: [110.0, 400.0],
-        size: [850.0, 310.0],
-    };
+    let plot = Plot::new(
+        Axis::linear(f64::from(low) / 2.0, f64::from(high) / 2.0),
+        Axis::linear(3000.0, 15000.0),
+        [110.0, 400.0],
+        [850.0, 310.0],
+    );
     // Draw the cost of each cut of the sorted boxes.
     let mut sorted = boxes.clone();
     sorted.sort_by(|p, q| p.min.x.total_cmp(&q.min.x));
@@ -77,8 +74,8 @@ pub fn bins_and_cuts(kit: &dyn Kit) -> Result<String> {
     let numbers = [4000.0, 8000.0, 12000.0].map(|y| (y, format!("{y:.0}")));
     let labels: Vec<(f64, &str)> = numbers.iter().map(|(y, text)| (*y, text.as_str())).collect();
     plot.draw_axes(&mut drawing, &[], &labels, ["", "A(L) c(L) + A(R) c(R)"]);
-    plot.draw_curve(&mut drawing, sweep, Pen::new(Ink::Faint).wide(3.0));
-    drawing.text([960.0, 30.0], Anchor::End, SMALL, Ink::Faint, "all 59 cuts of the sorted boxes");
+    plot.draw_curve(&mut drawing, sweep, Ink::Faint.pen(3.0));
+    drawing.text([960.0, 30.0], End, SMALL, Ink::Faint, "all 59 cuts of the sorted boxes");
     // Draw the cost of each cut between two bins.
     let border = |bin: usize| f64::from(low + bin as f32 / scale) / 2.0;
     for bin in 1..MAX_BINS {
@@ -90,10 +87,10 @@ pub fn bins_and_cuts(kit: &dyn Kit) -> Result<String> {
         drawing.dot(at, if is_best { 11.0 } else { 8.0 }, ink);
         if is_best {
             let text = format!("cheapest_split: bin {bin}, cost {:.0}", best.cost);
-            drawing.text(offset(at, [0.0, 36.0]), Anchor::Middle, SMALL, ink, &text);
+            drawing.text(offset(at, [0.0, 36.0]), Middle, SMALL, ink, &text);
         }
     }
-    drawing.text([960.0, 66.0], Anchor::End, SMALL, Ink::Color(0), "15 cuts between bins");
+    drawing.text([960.0, 66.0], End, SMALL, Ink::Color(0), "15 cuts between bins");
     draw_bins(&mut drawing, &plot, &bins, border);
     Ok(drawing.svg())
 }
@@ -106,9 +103,9 @@ fn draw_bins(drawing: &mut Drawing, plot: &Plot, bins: &Bins, border: impl Fn(us
         let height = 110.0 * f64::from(bin.count) / f64::from(most);
         drawing.rectangle([left + 2.0, 570.0 - height], [right - 2.0, 570.0], Ink::Color(0), 0.5);
         let text = bin.count.to_string();
-        drawing.text([(left + right) / 2.0, 596.0], Anchor::Middle, SMALL, Ink::Text, &text);
+        drawing.text([(left + right) / 2.0, 596.0], Middle, SMALL, Ink::Text, &text);
     }
-    drawing.text([960.0, 628.0], Anchor::End, SMALL, Ink::Text, "boxes per bin, by fill_bins");
+    drawing.text([960.0, 628.0], End, SMALL, Ink::Text, "boxes per bin, by fill_bins");
 }
 
 /// The cost of a leaf over its number of primitives.
@@ -116,18 +113,13 @@ pub fn blocks_that_pay(kit: &dyn Kit) -> Result<String> {
     let sizes: Vec<u32> = (1..=16).collect();
     let costs = kit.block_cost(&sizes);
     let mut drawing = Drawing::new("The cost of a leaf, in blocks of four", 1000.0, 520.0);
-    let plot = Plot {
-        x: Axis::linear(0.0, 17.0),
-        y: Axis::linear(0.0, 4.4),
-        corner: [80.0, 430.0],
-        size: [880.0, 360.0],
-    };
+    let plot = Plot::new(Axis::linear(0.0, 17.0), Axis::linear(0.0, 4.4), [80.0, 430.0], [880.0, 360.0]);
     let names: Vec<String> = sizes.iter().map(u32::to_string).collect();
     let x: Vec<(f64, &str)> =
         sizes.iter().map(|&n| f64::from(n)).zip(names.iter().map(String::as_str)).collect();
     let y = [(1.0, "1"), (2.0, "2"), (3.0, "3"), (4.0, "4")];
     plot.draw_axes(&mut drawing, &x, &y, ["primitives", "block_cost"]);
-    plot.draw_curve(&mut drawing, [[0.0, 0.0], [17.0, 4.25]], Pen::new(Ink::Faint).wide(3.0).dashed());
+    plot.draw_curve(&mut drawing, [[0.0, 0.0], [17.0, 4.25]], Ink::Faint.pen(3.0).dashed());
     for (&n, &cost) in sizes.iter().zip(&costs) {
         let top = plot.at(f64::from(n), f64::from(cost));
         let ink = if n % 4 == 0 { Ink::Color(1) } else { Ink::Color(0) };
@@ -138,13 +130,7 @@ pub fn blocks_that_pay(kit: &dyn Kit) -> Result<String> {
             0.85,
         );
     }
-    drawing.text(
-        plot.at(0.3, 3.6),
-        Anchor::Start,
-        SMALL,
-        Ink::Color(1),
-        "full blocks cost a quarter per primitive",
-    );
+    drawing.text(plot.at(0.3, 3.6), Start, SMALL, Ink::Color(1), "full blocks cost a quarter per primitive");
     Ok(drawing.svg())
 }
 
@@ -202,7 +188,7 @@ pub fn wide_node(kit: &dyn Kit) -> Result<String> {
     };
     for (index, node) in tree.nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
         for child in [node.first as usize, node.first as usize + 1] {
-            drawing.line(at(index), at(child), Pen::new(Ink::Faint).wide(2.0));
+            drawing.line(at(index), at(child), Ink::Faint.pen(2.0));
         }
     }
     // The children of the root of the wide tree have the boxes of nodes of the binary tree.
@@ -222,29 +208,23 @@ pub fn wide_node(kit: &dyn Kit) -> Result<String> {
     }
     let nodes = wide.nodes.len();
     let inner = tree.nodes.iter().filter(|node| !node.is_leaf()).count();
-    drawing.text([20.0, 40.0], Anchor::Start, TEXT, Ink::Color(0), "opened: its box is not stored");
-    drawing.text(
-        [980.0, 40.0],
-        Anchor::End,
-        TEXT,
-        Ink::Color(1),
-        &format!("the {n_children} children of the root"),
-    );
+    drawing.text([20.0, 40.0], Start, TEXT, Ink::Color(0), "opened: its box is not stored");
+    drawing.text([980.0, 40.0], End, TEXT, Ink::Color(1), &format!("the {n_children} children of the root"));
     // Draw the wide node below: one place per child, with what it holds.
     let width = 960.0 / 8.0;
     for place in 0..n_children {
         let left = 20.0 + width * place as f64;
-        drawing.frame([left, 470.0], [left + width, 530.0], Pen::new(Ink::Color(1)).wide(3.0));
+        drawing.frame([left, 470.0], [left + width, 530.0], Ink::Color(1).pen(3.0));
         let text = match root.children[place].contents() {
             ChildContents::Inner(node) => format!("node {node}"),
             ChildContents::Leaf { count, .. } => format!("leaf of {count}"),
         };
-        drawing.text([left + width / 2.0, 508.0], Anchor::Middle, SMALL, Ink::Text, &text);
+        drawing.text([left + width / 2.0, 508.0], Middle, SMALL, Ink::Text, &text);
     }
     let free = wide.blocks.iter().flatten().filter(|&&id| id == NO_PRIMITIVE).count();
     let fill = 4.0 - free as f64 / wide.blocks.len() as f64;
     let text = format!("{inner} inner nodes become {nodes}; a block of four holds {fill:.1} primitives");
-    drawing.text([500.0, 578.0], Anchor::Middle, SMALL, Ink::Text, &text);
+    drawing.text([500.0, 578.0], Middle, SMALL, Ink::Text, &text);
     Ok(drawing.svg())
 }
 
@@ -298,17 +278,17 @@ pub fn work_and_span(kit: &dyn Kit) -> Result<String> {
         let (a, b) = ([x(all.first[index]), y], [x(all.first[index] + all.count[index]), y + row - 6.0]);
         let ink = if path.contains(&index) { Ink::Color(1) } else { Ink::Color(0) };
         drawing.rectangle(a, b, ink, if path.contains(&index) { 0.85 } else { 0.3 });
-        drawing.frame(a, b, Pen::new(Ink::Text).wide(1.0));
+        drawing.frame(a, b, Ink::Text.pen(1.0));
     }
-    drawing.text([20.0, 44.0], Anchor::Start, TEXT, Ink::Text, "100,000 primitives: one level per row");
+    drawing.text([20.0, 44.0], Start, TEXT, Ink::Text, "100,000 primitives: one level per row");
     let [work, span] = costs[0];
     let levels = 1 + all.depth.iter().max().context("a tree")?;
     let text = format!("work {}: all rows of all {levels} levels", Thousands(work));
-    drawing.text([20.0, 506.0], Anchor::Start, SMALL, Ink::Color(0), &text);
+    drawing.text([20.0, 506.0], Start, SMALL, Ink::Color(0), &text);
     let text = format!("span {}: the longest path, work / {:.1}", Thousands(span), work as f64 / span as f64);
-    drawing.text([20.0, 542.0], Anchor::Start, SMALL, Ink::Color(1), &text);
+    drawing.text([20.0, 542.0], Start, SMALL, Ink::Color(1), &text);
     let text = format!("{} forks", forks.len());
-    drawing.text([980.0, 44.0], Anchor::End, TEXT, Ink::Text, &text);
+    drawing.text([980.0, 44.0], End, TEXT, Ink::Text, &text);
     Ok(drawing.svg())
 }
 
@@ -320,18 +300,10 @@ pub fn wide_heatmaps(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     for (accelerator, name) in [(Accelerator::Bvh, "two children"), (Accelerator::WideBvh, "eight children")]
     {
         scene.quality.accelerator = accelerator;
-        let rendering = kit
-            .render(&RenderJob { view: View::Work, ..job(&scene) }, &Unwatched)
-            .context("the frame was cancelled")?;
+        let rendering = work(kit, &scene)?;
         let visits = rendering.counts.node_visits as f64 / rendering.counts.rays() as f64;
         films.push((rendering.film, format!("{name}: {visits:.1} visits/ray")));
     }
     // The red channel of this view holds the node visits.
-    let most = films.iter().flat_map(|(film, _)| &film.pixels).map(|pixel| pixel.x).fold(0.0, f32::max);
-    for (film, _) in &mut films {
-        for pixel in &mut film.pixels {
-            *pixel = heat_color(pixel.x, most);
-        }
-    }
-    panels(&films, 2)
+    heat_panels(films, |pixel| pixel.x)
 }

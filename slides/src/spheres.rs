@@ -1,6 +1,5 @@
 //! Diagrams of the intersection of rays and spheres.
 
-use crate::sketch::{Axis, Plot, offset};
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec2, Vec3, vec3};
 use raykata::kit::{Kit, SphereQuery};
@@ -8,23 +7,22 @@ use raykata::random::{Points, Purpose};
 use raykata::ray::Ray;
 use raykata::scene::Sampler;
 use raykata::shape::Sphere;
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, SMALL, TEXT, View};
+use raykata_cli::svg::{Axis, Drawing, End, Ink, Middle, Plot, SMALL, Start, TEXT, offset, plane};
 
 const UNIT: Sphere = Sphere { center: Vec3::ZERO, radius: 1.0 };
 
 /// Five rays and a circle, with the roots of their equations.
 pub fn sphere_roots(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("The roots of five rays and a sphere", 1000.0, 620.0);
-    let view = View { origin: [420.0, 310.0], scale: 190.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
-    drawing.circle(view.origin, view.scale, Pen::new(Ink::Faint).wide(4.0));
+    let (view, at) = plane([420.0, 310.0], 190.0);
+    drawing.circle(view.origin, view.scale, Ink::Faint.pen(4.0));
     let starts = [(-2.0, 1.4), (-2.0, 1.0), (-2.0, 0.5), (0.2, -0.3), (1.5, -0.7)];
     for (x, y) in starts {
         let ray = Ray::new(vec3(x, y, 0.0), Vec3::X);
         let hit = kit.sphere_algebraic(&[SphereQuery { ray, sphere: UNIT }])[0];
         let ink = if hit.is_some() { Ink::Color(0) } else { Ink::Text };
-        drawing.line(view.at(-2.1, f64::from(y)), at(ray.origin), Pen::new(Ink::Faint).wide(1.5).dashed());
-        drawing.arrow(at(ray.origin), view.at(1.95, f64::from(y)), Pen::new(ink));
+        drawing.line(view.at(-2.1, f64::from(y)), at(ray.origin), Ink::Faint.pen(1.5).dashed());
+        drawing.arrow(at(ray.origin), view.at(1.95, f64::from(y)), ink.pen(3.0));
         drawing.dot(at(ray.origin), 5.0, ink);
         // The line meets the circle at x = ±√(1 - y²).
         let square = 1.0 - y * y;
@@ -38,19 +36,19 @@ pub fn sphere_roots(kit: &dyn Kit) -> Result<String> {
             if ray.contains(t) {
                 drawing.dot(place, 9.0, ink);
             } else {
-                drawing.circle(place, 8.0, Pen::new(ink));
+                drawing.circle(place, 8.0, ink.pen(3.0));
             }
             // Write beside the circle: outside of its upper half, inside of its lower half.
             let by = 30.0 * f64::from((x + t) * y.signum()).signum();
             let by = if square == 0.0 { 0.0 } else { by };
-            drawing.text(offset(place, [by, -16.0]), Anchor::Middle, SMALL, ink, &format!("{t:.2}"));
+            drawing.text(offset(place, [by, -16.0]), Middle, SMALL, ink, &format!("{t:.2}"));
         }
         let text = hit.map_or("None".into(), |t| format!("Some({t:.2})"));
-        drawing.text(offset(view.at(2.0, f64::from(y)), [10.0, 9.0]), Anchor::Start, TEXT, ink, &text);
+        drawing.text(offset(view.at(2.0, f64::from(y)), [10.0, 9.0]), Start, TEXT, ink, &text);
     }
     drawing.text(
         [30.0, 606.0],
-        Anchor::Start,
+        Start,
         SMALL,
         Ink::Text,
         "filled: a root with t above 0; hollow: behind the origin",
@@ -70,14 +68,13 @@ pub fn sphere_geometry(kit: &dyn Kit) -> Result<String> {
     let foot = vec3(sphere.center.x, 0.0, 0.0);
 
     let mut drawing = Drawing::new("The geometric solution of a ray and a sphere", 1000.0, 560.0);
-    let view = View { origin: [600.0, 190.0], scale: 205.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
-    drawing.circle(at(sphere.center), view.scale, Pen::new(Ink::Faint).wide(4.0));
-    drawing.arrow(at(ray.origin), view.at(1.85, 0.0), Pen::new(Ink::Text));
-    drawing.arrow(at(ray.origin), at(sphere.center), Pen::new(Ink::Color(0)));
-    drawing.line(at(foot), at(sphere.center), Pen::new(Ink::Color(2)));
-    drawing.line(at(sphere.center), at(far), Pen::new(Ink::Text).wide(2.0).dashed());
-    drawing.line(at(near), at(far), Pen::new(Ink::Color(1)).wide(7.0));
+    let (view, at) = plane([600.0, 190.0], 205.0);
+    drawing.circle(at(sphere.center), view.scale, Ink::Faint.pen(4.0));
+    drawing.arrow(at(ray.origin), view.at(1.85, 0.0), Ink::Text.pen(3.0));
+    drawing.arrow(at(ray.origin), at(sphere.center), Ink::Color(0).pen(3.0));
+    drawing.line(at(foot), at(sphere.center), Ink::Color(2).pen(3.0));
+    drawing.line(at(sphere.center), at(far), Ink::Text.pen(2.0).dashed());
+    drawing.line(at(near), at(far), Ink::Color(1).pen(7.0));
     for (point, ink) in [
         (ray.origin, Ink::Text),
         (sphere.center, Ink::Text),
@@ -100,7 +97,7 @@ pub fn sphere_geometry(kit: &dyn Kit) -> Result<String> {
         ((far + sphere.center) / 2.0, [26.0, 26.0], "r", Ink::Text),
     ];
     for (point, by, name, ink) in labels {
-        drawing.text(offset(at(point), by), Anchor::Middle, TEXT, ink, name);
+        drawing.text(offset(at(point), by), Middle, TEXT, ink, name);
     }
     Ok(drawing.svg())
 }
@@ -109,12 +106,8 @@ pub fn sphere_geometry(kit: &dyn Kit) -> Result<String> {
 pub fn sphere_cancellation(kit: &dyn Kit) -> Result<String> {
     const RAYS: u64 = 20_000;
     let mut drawing = Drawing::new("Hits that are lost with the distance", 1000.0, 620.0);
-    let plot = Plot {
-        x: Axis::logarithmic(10.0, 1e6),
-        y: Axis::linear(0.0, 100.0),
-        corner: [130.0, 530.0],
-        size: [770.0, 460.0],
-    };
+    let plot =
+        Plot::new(Axis::logarithmic(10.0, 1e6), Axis::linear(0.0, 100.0), [130.0, 530.0], [770.0, 460.0]);
     let x =
         [(10.0, "10"), (100.0, "100"), (1e3, "1,000"), (1e4, "10,000"), (1e5, "100,000"), (1e6, "1,000,000")];
     let y = [(0.0, "0 %"), (50.0, "50 %"), (100.0, "100 %")];
@@ -150,10 +143,10 @@ pub fn sphere_cancellation(kit: &dyn Kit) -> Result<String> {
         (&textbook, Ink::Color(1), "b² - a c in single precision", 12),
         (&ours, Ink::Color(0), "sphere_algebraic", 20),
     ] {
-        plot.draw_curve(&mut drawing, values.iter().copied(), Pen::new(ink).wide(4.0));
+        plot.draw_curve(&mut drawing, values.iter().copied(), ink.pen(4.0));
         let [x, y] = values[at];
         let label = if at == 20 { [-10.0, -22.0] } else { [-16.0, -30.0] };
-        drawing.text(offset(plot.at(x, y), label), Anchor::End, TEXT, ink, name);
+        drawing.text(offset(plot.at(x, y), label), End, TEXT, ink, name);
     }
     Ok(drawing.svg())
 }

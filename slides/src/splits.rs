@@ -1,12 +1,11 @@
 //! Diagrams of the splits of a bounding volume hierarchy.
 
-use crate::sketch::{Axis, Plot, offset};
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveRef;
 use raykata::kit::{Kit, SplitAnswer};
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, SMALL, TEXT};
+use raykata_cli::svg::{Axis, Drawing, End, Ink, Middle, Plot, SMALL, Start, TEXT, View, offset};
 
 fn references(kit: &dyn Kit, boxes: &[Aabb]) -> Vec<PrimitiveRef> {
     let one = |(id, (bounds, centroid)): (u32, (&Aabb, Vec3))| PrimitiveRef { id, bounds: *bounds, centroid };
@@ -48,23 +47,19 @@ pub fn sah_cuts(kit: &dyn Kit) -> Result<String> {
     let chosen = cut(kit.split_surface_area(&[primitives]))?;
 
     let mut drawing = Drawing::new("The cost of each cut by the surface area heuristic", 1000.0, 660.0);
-    let plot = Plot {
-        x: Axis::logarithmic(0.9, 90.0),
-        y: Axis::linear(0.0, 2600.0),
-        corner: [60.0, 490.0],
-        size: [900.0, 400.0],
-    };
-    drawing.line(plot.at(0.9, 0.0), plot.at(90.0, 0.0), Pen::new(Ink::Text).wide(2.0));
+    let plot =
+        Plot::new(Axis::logarithmic(0.9, 90.0), Axis::linear(0.0, 2600.0), [60.0, 490.0], [900.0, 400.0]);
+    drawing.line(plot.at(0.9, 0.0), plot.at(90.0, 0.0), Ink::Text.pen(2.0));
     // Draw the boxes under the axis.
     for bounds in &boxes {
         let corners = [bounds.min.x, bounds.max.x].map(|x| plot.at(f64::from(x), 0.0));
         let (a, b) = (offset(corners[0], [0.0, 40.0]), offset(corners[1], [0.0, 80.0]));
         drawing.rectangle(a, b, Ink::Faint, 0.35);
-        drawing.frame(a, b, Pen::new(Ink::Text).wide(2.0));
+        drawing.frame(a, b, Ink::Text.pen(2.0));
         let below = [(a[0] + b[0]) / 2.0, b[1] + 26.0];
-        drawing.text(below, Anchor::Middle, SMALL, Ink::Text, &format!("{}", bounds.min.x));
+        drawing.text(below, Middle, SMALL, Ink::Text, &format!("{}", bounds.min.x));
     }
-    drawing.text([962.0, 646.0], Anchor::End, SMALL, Ink::Text, "x of each box, logarithmic");
+    drawing.text([962.0, 646.0], End, SMALL, Ink::Text, "x of each box, logarithmic");
     // Draw a bar above the gap of each cut.
     let marks = [
         (object, "object", "median", Ink::Color(2)),
@@ -79,18 +74,18 @@ pub fn sah_cuts(kit: &dyn Kit) -> Result<String> {
         drawing.rectangle(offset(top, [-17.0, 0.0]), offset(plot.at(gap, 0.0), [17.0, 0.0]), ink, 0.9);
         // The number of a bar that ends just under the dashed line stands beside the bar.
         let is_high = (0.9 * leaf..leaf).contains(&cost);
-        let (anchor, by) = if is_high { (Anchor::End, [-24.0, 28.0]) } else { (Anchor::Middle, [0.0, -9.0]) };
+        let (anchor, by) = if is_high { (End, [-24.0, 28.0]) } else { (Middle, [0.0, -9.0]) };
         drawing.text(offset(top, by), anchor, SMALL, ink, &format!("{cost:.0}"));
         if let Some((_, first, second, _)) = mark {
-            drawing.text(offset(top, [0.0, -72.0]), Anchor::Middle, SMALL, ink, first);
-            drawing.text(offset(top, [0.0, -40.0]), Anchor::Middle, SMALL, ink, second);
+            drawing.text(offset(top, [0.0, -72.0]), Middle, SMALL, ink, first);
+            drawing.text(offset(top, [0.0, -40.0]), Middle, SMALL, ink, second);
         }
     }
     let y = plot.at(1.0, f64::from(leaf));
-    drawing.line([60.0, y[1]], [960.0, y[1]], Pen::new(Ink::Text).wide(2.0).dashed());
+    drawing.line([60.0, y[1]], [960.0, y[1]], Ink::Text.pen(2.0).dashed());
     let text = format!("a leaf, less the traversal: {:.0} - {whole:.0} = {leaf:.0}", whole * n as f32);
-    drawing.text([960.0, y[1] - 12.0], Anchor::End, SMALL, Ink::Text, &text);
-    drawing.text([60.0, 36.0], Anchor::Start, TEXT, Ink::Text, "A(L) n(L) + A(R) n(R) for each cut");
+    drawing.text([960.0, y[1] - 12.0], End, SMALL, Ink::Text, &text);
+    drawing.text([60.0, 36.0], Start, TEXT, Ink::Text, "A(L) n(L) + A(R) n(R) for each cut");
     Ok(drawing.svg())
 }
 
@@ -107,7 +102,7 @@ pub fn object_median_problem(kit: &dyn Kit) -> Result<String> {
     ];
     let mut drawing = Drawing::new("The object median and the surface area heuristic", 1000.0, 520.0);
     for ((name, answer), y) in rows.into_iter().zip([190.0, 440.0]) {
-        let view = raykata_cli::svg::View { origin: [50.0, y], scale: 40.0 };
+        let view = View { origin: [50.0, y], scale: 40.0 };
         let at = |x: f32, y: f32| view.at(f64::from(x), f64::from(y));
         let sides = sides(&boxes, &answer)?;
         let mut cost = 0.0;
@@ -115,15 +110,15 @@ pub fn object_median_problem(kit: &dyn Kit) -> Result<String> {
             let whole = around(kit, side);
             cost += area(kit, side) * side.len() as f32;
             drawing.rectangle(at(whole.min.x, whole.min.y), at(whole.max.x, whole.max.y), ink, 0.14);
-            drawing.frame(at(whole.min.x, whole.min.y), at(whole.max.x, whole.max.y), Pen::new(ink));
+            drawing.frame(at(whole.min.x, whole.min.y), at(whole.max.x, whole.max.y), ink.pen(3.0));
             for one in side {
                 drawing.rectangle(at(one.min.x, one.min.y), at(one.max.x, one.max.y), ink, 0.8);
             }
             let label = offset(at((whole.min.x + whole.max.x) / 2.0, whole.min.y), [0.0, 28.0]);
-            drawing.text(label, Anchor::Middle, SMALL, ink, &format!("{} boxes", side.len()));
+            drawing.text(label, Middle, SMALL, ink, &format!("{} boxes", side.len()));
         }
         let text = format!("{name}: A(L) n(L) + A(R) n(R) = {cost:.0}");
-        drawing.text([50.0, y - 110.0], Anchor::Start, TEXT, Ink::Text, &text);
+        drawing.text([50.0, y - 110.0], Start, TEXT, Ink::Text, &text);
     }
     Ok(drawing.svg())
 }
@@ -131,11 +126,11 @@ pub fn object_median_problem(kit: &dyn Kit) -> Result<String> {
 /// Boxes for which a cut in the middle has all centroids on one side.
 pub fn spatial_median_corner(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("A corner case of the spatial median", 1000.0, 500.0);
-    let pen = Pen::new(Ink::Text).wide(2.0);
+    let pen = Ink::Text.pen(2.0);
     // Left: concentric boxes, all of whose centroids lie on the cut.
     let concentric: Vec<Aabb> =
         (1..=6).map(|size| size as f32 * vec3(0.5, 0.35, 0.2)).map(|half| Aabb::new(-half, half)).collect();
-    let view = raykata_cli::svg::View { origin: [240.0, 240.0], scale: 68.0 };
+    let view = View { origin: [240.0, 240.0], scale: 68.0 };
     for bounds in &concentric {
         let [a, b] = [bounds.min, bounds.max].map(|v| view.at(f64::from(v.x), f64::from(v.y)));
         drawing.rectangle(a, b, Ink::Color(0), 0.1);
@@ -152,9 +147,9 @@ pub fn spatial_median_corner(kit: &dyn Kit) -> Result<String> {
         drawing.rectangle([530.0, y], [right, y - 26.0], Ink::Color(0), 0.25);
         drawing.frame([530.0, y], [right, y - 26.0], pen);
     }
-    drawing.text([530.0, 415.0], Anchor::Middle, SMALL, Ink::Text, "0");
-    drawing.text([565.0, 415.0], Anchor::Middle, SMALL, Ink::Text, "1");
-    drawing.text([950.0, 415.0], Anchor::Middle, SMALL, Ink::Text, "1000");
+    drawing.text([530.0, 415.0], Middle, SMALL, Ink::Text, "0");
+    drawing.text([565.0, 415.0], Middle, SMALL, Ink::Text, "1");
+    drawing.text([950.0, 415.0], Middle, SMALL, Ink::Text, "1000");
     cut(kit, &mut drawing, &skewed, 740.0, 740.0);
     Ok(drawing.svg())
 }
@@ -168,12 +163,12 @@ fn cut(kit: &dyn Kit, drawing: &mut Drawing, boxes: &[Aabb], x: f64, middle: f64
     let below = centroids.iter().filter(|centroid| centroid.x < at).count();
     let on = centroids.iter().filter(|centroid| centroid.x == at).count();
     let above = centroids.len() - below - on;
-    drawing.line([x, 26.0], [x, 420.0], Pen::new(Ink::Color(1)).wide(4.0).dashed());
+    drawing.line([x, 26.0], [x, 420.0], Ink::Color(1).pen(4.0).dashed());
     let counts = format!("{below} left, {on} on the cut, {above} right");
-    drawing.text([middle, 454.0], Anchor::Middle, SMALL, Ink::Color(1), &counts);
+    drawing.text([middle, 454.0], Middle, SMALL, Ink::Color(1), &counts);
     let answer = kit.split_spatial_median(&[references(kit, boxes)]).remove(0);
     if let Some(left) = answer.middle {
         let text = format!("the split returns {left} and {}", boxes.len() - left);
-        drawing.text([middle, 486.0], Anchor::Middle, SMALL, Ink::Text, &text);
+        drawing.text([middle, 486.0], Middle, SMALL, Ink::Text, &text);
     }
 }

@@ -6,7 +6,7 @@ use raykata::aabb::Aabb;
 use raykata::kit::{CellsAnswer, CellsQuery, GridQuery, KdQuery, Kit};
 use raykata::partition::{KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, SMALL, TEXT, View};
+use raykata_cli::svg::{Drawing, Ink, Middle, SMALL, Start, TEXT, View};
 
 /// Boxes in the plane, in a square of 8 by 5 units.
 const BOXES: [[f32; 4]; 11] = [
@@ -49,10 +49,10 @@ fn draw_search(drawing: &mut Drawing, ray: &Ray, answer: &CellsAnswer) {
         let tested = answer.tests.contains(&index);
         let ink = if tested { Ink::Color(1) } else { Ink::Faint };
         drawing.rectangle(at(bounds.min), at(bounds.max), ink, if tested { 0.55 } else { 0.35 });
-        drawing.frame(at(bounds.min), at(bounds.max), Pen::new(ink).wide(2.0));
+        drawing.frame(at(bounds.min), at(bounds.max), ink.pen(2.0));
     }
     let end = answer.hit.map_or(9.2, |hit| hit.t);
-    drawing.arrow(at(ray.origin), at(ray.at(end)), Pen::new(Ink::Text).wide(3.5));
+    drawing.arrow(at(ray.origin), at(ray.at(end)), Ink::Text.pen(3.5));
     if answer.hit.is_some() {
         drawing.dot(at(ray.at(end)), 9.0, Ink::Text);
     }
@@ -62,7 +62,7 @@ fn draw_search(drawing: &mut Drawing, ray: &Ray, answer: &CellsAnswer) {
 fn draw_visit(drawing: &mut Drawing, bounds: &Aabb, step: usize) {
     drawing.rectangle(at(bounds.min), at(bounds.max), Ink::Color(4), 0.2);
     let [x, y] = at(vec3(bounds.min.x, bounds.max.y, 0.0));
-    drawing.text([x + 8.0, y + 24.0], Anchor::Start, SMALL, Ink::Color(4), &step.to_string());
+    drawing.text([x + 8.0, y + 24.0], Start, SMALL, Ink::Color(4), &step.to_string());
 }
 
 /// A ray through a uniform grid: the cells that it visits, numbered, up to the first hit.
@@ -82,7 +82,7 @@ pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
             let plane = grid.plane(axis, index) as f32;
             let end =
                 |limit: Vec3| if axis == 0 { vec3(plane, limit.y, 0.0) } else { vec3(limit.x, plane, 0.0) };
-            drawing.line(at(end(grid.bounds.min)), at(end(grid.bounds.max)), Pen::new(Ink::Faint).wide(1.5));
+            drawing.line(at(end(grid.bounds.min)), at(end(grid.bounds.max)), Ink::Faint.pen(1.5));
         }
     }
     draw_search(&mut drawing, &ray, &answer);
@@ -92,7 +92,7 @@ pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
 
 fn caption(drawing: &mut Drawing, what: &str, answer: &CellsAnswer) {
     let text = format!("{} {what} visited, boxes tested: {}", answer.visits.len(), answer.tests.len());
-    drawing.text([100.0, 604.0], Anchor::Start, TEXT, Ink::Text, &text);
+    drawing.text([100.0, 604.0], Start, TEXT, Ink::Text, &text);
 }
 
 /// A ray through a kd-tree: its leaves in the order of the visits, up to the first hit.
@@ -109,7 +109,7 @@ pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
         draw_visit(&mut drawing, cell, step);
     }
     for (_, cell) in &cells {
-        drawing.frame(at(cell.min), at(cell.max), Pen::new(Ink::Faint).wide(2.0));
+        drawing.frame(at(cell.min), at(cell.max), Ink::Faint.pen(2.0));
     }
     draw_search(&mut drawing, &ray, &answer);
     let n_leaves = answer.visits.iter().filter(|&node| cells.iter().any(|(leaf, _)| leaf == node)).count();
@@ -119,7 +119,7 @@ pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
         answer.visits.len() - n_leaves,
         answer.tests.len()
     );
-    drawing.text([500.0, 588.0], Anchor::Middle, SMALL, Ink::Text, &text);
+    drawing.text([500.0, 588.0], Middle, SMALL, Ink::Text, &text);
     Ok(drawing.svg())
 }
 

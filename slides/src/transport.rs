@@ -1,12 +1,13 @@
 //! Diagrams of light transport: cosine-weighted directions, solid angles, the corner, and the light that short paths miss.
 
-use crate::sketch::{Axis, Plot, arc, offset, polar};
+use crate::pictures::{load, render};
 use anyhow::{Context, Result};
 use glam::{Vec2, Vec3, vec3};
 use raykata::emitter::{AreaEmitter, EmitterShape};
-use raykata::frame::Unwatched;
-use raykata::kit::{EmitterPdfQuery, Kit, RenderJob, View as Frame};
-use raykata_cli::svg::{Anchor, Drawing, Ink, Pen, Point, SMALL, TEXT, View};
+use raykata::kit::{EmitterPdfQuery, Kit};
+use raykata_cli::svg::{
+    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, View, offset, plane, polar,
+};
 use std::path::Path;
 
 /// `2 n` directions of `cosine_direction` in a plane through the normal: the sine and the cosine of each with the normal. On
@@ -22,11 +23,11 @@ fn directions_in_plane(kit: &dyn Kit, n: u32) -> Vec<[f64; 2]> {
 pub fn malley(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("Uniform points of a disk, projected up to the hemisphere", 1000.0, 560.0);
     let view = View { origin: [500.0, 470.0], scale: 400.0 };
-    arc(&mut drawing, view.origin, view.scale, [0.0, 180.0], Pen::new(Ink::Text));
-    drawing.line(view.at(-1.0, 0.0), view.at(1.0, 0.0), Pen::new(Ink::Text).wide(5.0));
+    drawing.arc(view.origin, view.scale, [0.0, 180.0], Ink::Text.pen(3.0));
+    drawing.line(view.at(-1.0, 0.0), view.at(1.0, 0.0), Ink::Text.pen(5.0));
     for [x, y] in directions_in_plane(kit, 12) {
-        drawing.line(view.at(x, 0.0), view.at(x, y), Pen::new(Ink::Faint).wide(1.5).dashed());
-        drawing.line(view.origin, view.at(x, y), Pen::new(Ink::Color(0)).wide(2.0));
+        drawing.line(view.at(x, 0.0), view.at(x, y), Ink::Faint.pen(1.5).dashed());
+        drawing.line(view.origin, view.at(x, y), Ink::Color(0).pen(2.0));
         drawing.dot(view.at(x, 0.0), 6.0, Ink::Color(1));
         drawing.dot(view.at(x, y), 6.0, Ink::Color(0));
     }
@@ -35,27 +36,26 @@ pub fn malley(kit: &dyn Kit) -> Result<String> {
         drawing.line(
             polar(view.origin, 330.0, degrees),
             polar(view.origin, 440.0, degrees),
-            Pen::new(Ink::Color(3)).wide(4.0),
+            Ink::Color(3).pen(4.0),
         );
     }
-    drawing.text(polar(view.origin, 462.0, 45.0), Anchor::Start, TEXT, Ink::Color(3), "45°");
+    drawing.text(polar(view.origin, 462.0, 45.0), Start, TEXT, Ink::Color(3), "45°");
     let within = directions_in_plane(kit, 12).iter().filter(|[x, y]| x.abs() < *y).count();
     let text = format!("{within} of 24 within 45°");
-    drawing.text([990.0, 60.0], Anchor::End, SMALL, Ink::Color(3), &text);
-    drawing.arrow(view.origin, view.at(0.0, 1.12), Pen::new(Ink::Text));
-    drawing.text(offset(view.at(0.0, 1.12), [14.0, 18.0]), Anchor::Start, TEXT, Ink::Text, "n");
+    drawing.text([990.0, 60.0], End, SMALL, Ink::Color(3), &text);
+    drawing.arrow(view.origin, view.at(0.0, 1.12), Ink::Text.pen(3.0));
+    drawing.text(offset(view.at(0.0, 1.12), [14.0, 18.0]), Start, TEXT, Ink::Text, "n");
     let below = offset(view.origin, [0.0, 50.0]);
     let text = "points of the disk, uniform in its area";
-    drawing.text(below, Anchor::Middle, TEXT, Ink::Color(1), text);
-    drawing.text([20.0, 120.0], Anchor::Start, TEXT, Ink::Color(0), "cosine_direction");
+    drawing.text(below, Middle, TEXT, Ink::Color(1), text);
+    drawing.text([20.0, 120.0], Start, TEXT, Ink::Color(0), "cosine_direction");
     Ok(drawing.svg())
 }
 
 /// A piece of a light, and the solid angle that it fills as seen from a point.
 pub fn light_solid_angle(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("The solid angle of a piece of a light", 1000.0, 600.0);
-    let view = View { origin: [330.0, 520.0], scale: 150.0 };
-    let at = |v: Vec3| view.at(f64::from(v.x), f64::from(v.y));
+    let (view, at) = plane([330.0, 520.0], 150.0);
     // The light is a parallelogram seen from its edge; its depth is 1.
     let [from, to] = [vec3(0.6, 2.9, 0.0), vec3(3.1, 2.5, 0.0)];
     let corner = from - 0.5 * Vec3::Z;
@@ -66,37 +66,30 @@ pub fn light_solid_angle(kit: &dyn Kit) -> Result<String> {
     let normal = vec3(-(to - from).y, (to - from).x, 0.0).normalize() * -1.0;
     // The cone to the piece, and the arc that it cuts from the unit circle.
     drawing.area(&[view.origin, at(low), at(high)], Ink::Color(3), 0.25);
-    arc(&mut drawing, view.origin, view.scale, [0.0, 180.0], Pen::new(Ink::Faint));
+    drawing.arc(view.origin, view.scale, [0.0, 180.0], Ink::Faint.pen(3.0));
     let degrees = |v: Vec3| f64::from(v.y.atan2(v.x)).to_degrees();
-    arc(
-        &mut drawing,
-        view.origin,
-        view.scale,
-        [degrees(high), degrees(low)],
-        Pen::new(Ink::Color(1)).wide(10.0),
-    );
+    drawing.arc(view.origin, view.scale, [degrees(high), degrees(low)], Ink::Color(1).pen(10.0));
     drawing.rectangle([60.0, 520.0], [640.0, 552.0], Ink::Faint, 0.3);
-    drawing.line([60.0, 520.0], [640.0, 520.0], Pen::new(Ink::Text));
-    drawing.arrow(view.origin, view.at(0.0, 1.7), Pen::new(Ink::Text));
-    drawing.text(offset(view.at(0.0, 1.7), [-14.0, 14.0]), Anchor::End, TEXT, Ink::Text, "n");
-    drawing.line(view.origin, at(middle), Pen::new(Ink::Color(0)).dashed());
-    drawing.line(at(from), at(to), Pen::new(Ink::Color(3)).wide(6.0));
-    drawing.line(at(low), at(high), Pen::new(Ink::Color(1)).wide(10.0));
-    drawing.arrow(at(middle), at(middle + 0.9 * normal), Pen::new(Ink::Text));
-    let label = offset(at(middle + 0.9 * normal), [14.0, 0.0]);
-    drawing.text(label, Anchor::Start, TEXT, Ink::Text, "n of the light");
+    drawing.line([60.0, 520.0], [640.0, 520.0], Ink::Text.pen(3.0));
+    drawing.arrow(view.origin, view.at(0.0, 1.7), Ink::Text.pen(3.0));
+    drawing.text(offset(view.at(0.0, 1.7), [-14.0, 14.0]), End, TEXT, Ink::Text, "n");
+    drawing.line(view.origin, at(middle), Ink::Color(0).pen(3.0).dashed());
+    drawing.line(at(from), at(to), Ink::Color(3).pen(6.0));
+    drawing.line(at(low), at(high), Ink::Color(1).pen(10.0));
+    drawing.arrow(at(middle), at(middle + 0.9 * normal), Ink::Text.pen(3.0));
+    drawing.text(offset(at(middle + 0.9 * normal), [14.0, 0.0]), Start, TEXT, Ink::Text, "n of the light");
     // The angle at the light, between its normal and the direction to the point.
     let back = [degrees(normal), degrees(-middle)];
     let back = [back[0].rem_euclid(360.0), back[1].rem_euclid(360.0)];
-    arc(&mut drawing, at(middle), 74.0, back, Pen::new(Ink::Color(0)).wide(2.0));
+    drawing.arc(at(middle), 74.0, back, Ink::Color(0).pen(2.0));
     let label = offset(polar(at(middle), 98.0, (back[0] + back[1]) / 2.0), [0.0, 9.0]);
-    drawing.text(label, Anchor::Middle, TEXT, Ink::Color(0), "θ");
-    drawing.text(offset(at(0.55 * middle), [18.0, 20.0]), Anchor::Start, TEXT, Ink::Color(0), "d");
-    drawing.text(offset(at(high), [0.0, -18.0]), Anchor::Start, TEXT, Ink::Color(1), "dA");
+    drawing.text(label, Middle, TEXT, Ink::Color(0), "θ");
+    drawing.text(offset(at(0.55 * middle), [18.0, 20.0]), Start, TEXT, Ink::Color(0), "d");
+    drawing.text(offset(at(high), [0.0, -18.0]), Start, TEXT, Ink::Color(1), "dA");
     let label = offset(polar(view.origin, view.scale, degrees(middle)), [34.0, 18.0]);
-    drawing.text(label, Anchor::Start, TEXT, Ink::Color(1), "dω");
-    drawing.text(offset(at(to), [12.0, -8.0]), Anchor::Start, TEXT, Ink::Color(3), "light, area A");
-    drawing.text([60.0, 590.0], Anchor::Start, SMALL, Ink::Text, "the half circle has radius 1");
+    drawing.text(label, Start, TEXT, Ink::Color(1), "dω");
+    drawing.text(offset(at(to), [12.0, -8.0]), Start, TEXT, Ink::Color(3), "light, area A");
+    drawing.text([60.0, 590.0], Start, SMALL, Ink::Text, "the half circle has radius 1");
     // The density at the middle, by the formula and by the kit.
     let direction = middle.normalize();
     let pdf = kit.light_pdf(&[EmitterPdfQuery { emitter, from: Vec3::ZERO, direction }])[0];
@@ -108,9 +101,7 @@ pub fn light_solid_angle(kit: &dyn Kit) -> Result<String> {
         format!("= {:.2}", d * d / (area * cos)),
         format!("light_pdf: {pdf:.2}"),
     ];
-    for (row, line) in lines.iter().enumerate() {
-        drawing.text([650.0, 400.0 + 42.0 * row as f64], Anchor::Start, TEXT, Ink::Text, line);
-    }
+    drawing.lines([650.0, 400.0], 42.0, TEXT, Ink::Text, &lines);
     Ok(drawing.svg())
 }
 
@@ -120,7 +111,7 @@ pub fn corner(kit: &dyn Kit) -> Result<String> {
     let (left, floor) = (150.0, 520.0);
     drawing.rectangle([left - 36.0, 40.0], [left, floor + 36.0], Ink::Faint, 0.35);
     drawing.rectangle([left, floor], [960.0, floor + 36.0], Ink::Faint, 0.35);
-    drawing.polyline(&[[left, 40.0], [left, floor], [960.0, floor]], Pen::new(Ink::Text).wide(4.0));
+    drawing.polyline(&[[left, 40.0], [left, floor], [960.0, floor]], Ink::Text.pen(4.0));
     let view = View { origin: [430.0, floor], scale: 420.0 };
     for [x, y] in directions_in_plane(kit, 8) {
         // A direction to the left meets the wall at some height.
@@ -130,34 +121,34 @@ pub fn corner(kit: &dyn Kit) -> Result<String> {
         let end = view.at(reach * x, reach * y);
         match x < 0.0 && end[0] < left + 1.0 {
             true => {
-                drawing.line(view.origin, end, Pen::new(ink));
+                drawing.line(view.origin, end, ink.pen(3.0));
                 drawing.dot(end, 6.0, ink);
             }
             // Beyond the end of the drawing the wall goes on.
-            false => drawing.arrow(view.origin, end, Pen::new(ink)),
+            false => drawing.arrow(view.origin, end, ink.pen(3.0)),
         }
     }
     drawing.dot(view.origin, 9.0, Ink::Text);
     let square: [Point; 3] = [[left, floor - 40.0], [left + 40.0, floor - 40.0], [left + 40.0, floor]];
-    drawing.polyline(&square, Pen::new(Ink::Text).wide(2.0));
-    drawing.text([left + 8.0, floor - 9.0], Anchor::Start, TEXT, Ink::Text, "β");
-    drawing.text([left + 30.0, 40.0], Anchor::Start, TEXT, Ink::Color(1), "F: meets the wall");
-    drawing.text([600.0, 40.0], Anchor::Start, TEXT, Ink::Color(0), "1 - F: meets the sky, L");
-    drawing.text([left - 50.0, 290.0], Anchor::End, TEXT, Ink::Text, "B₂");
-    drawing.text([900.0, floor + 29.0], Anchor::Middle, TEXT, Ink::Text, "B₁");
+    drawing.polyline(&square, Ink::Text.pen(2.0));
+    drawing.text([left + 8.0, floor - 9.0], Start, TEXT, Ink::Text, "β");
+    drawing.text([left + 30.0, 40.0], Start, TEXT, Ink::Color(1), "F: meets the wall");
+    drawing.text([600.0, 40.0], Start, TEXT, Ink::Color(0), "1 - F: meets the sky, L");
+    drawing.text([left - 50.0, 290.0], End, TEXT, Ink::Text, "B₂");
+    drawing.text([900.0, floor + 29.0], Middle, TEXT, Ink::Text, "B₁");
     let all = directions_in_plane(kit, 8);
     let text = format!(
         "{} of {} directions meet the wall: F = (1 + cos 90°) / 2 = 1/2",
         all.iter().filter(|[x, _]| *x < 0.0).count(),
         all.len()
     );
-    drawing.text([left, floor + 72.0], Anchor::Start, SMALL, Ink::Text, &text);
+    drawing.text([left, floor + 72.0], Start, SMALL, Ink::Text, &text);
     Ok(drawing.svg())
 }
 
 /// The light that paths of limited length miss in a furnace: measured, and by `cut_off`.
 pub fn furnace_bias(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let mut scene = raykata::scene::load::load(&root.join("scenes/furnace.toml"))?;
+    let mut scene = load(root, "furnace.toml")?;
     (scene.film.width, scene.film.height) = (32, 24);
     scene.quality.samples_per_pixel = 256;
     // All surfaces emit Le and reflect ρ of the light, so each point sends out Le / (1 - ρ).
@@ -169,25 +160,13 @@ pub fn furnace_bias(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let mut measured = Vec::new();
     for depth in depths {
         scene.quality.max_depth = depth;
-        let job = RenderJob {
-            scene: scene.clone(),
-            view: Frame::Shaded,
-            seed: 0,
-            threads: 0,
-            count: false,
-            reuse: false,
-        };
-        let film = kit.render(&job, &Unwatched).context("the frame was cancelled")?.film;
+        let film = render(kit, &scene)?.film;
         let sum: f64 = film.pixels.iter().map(|pixel| f64::from(pixel.x)).sum();
         measured.push([f64::from(depth), whole - sum / film.pixels.len() as f64]);
     }
     let mut drawing = Drawing::new("The light that paths of limited length miss in a furnace", 1000.0, 560.0);
-    let plot = Plot {
-        x: Axis::linear(0.5, 5.5),
-        y: Axis::logarithmic(0.01, 0.4),
-        corner: [110.0, 470.0],
-        size: [620.0, 400.0],
-    };
+    let plot =
+        Plot::new(Axis::linear(0.5, 5.5), Axis::logarithmic(0.01, 0.4), [110.0, 470.0], [620.0, 400.0]);
     let x = [(1.0, "1"), (2.0, "2"), (3.0, "3"), (4.0, "4"), (5.0, "5")];
     let y = [(0.01, "0.01"), (0.03, "0.03"), (0.1, "0.1"), (0.3, "0.3")];
     let titles = ["largest depth of paths", "missing radiance, of 0.8"];
@@ -196,14 +175,14 @@ pub fn furnace_bias(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let queries: Vec<(f32, u32)> = depths.iter().map(|&depth| (albedo, depth)).collect();
     let missing = kit.cut_off(&queries);
     let line = depths.iter().zip(missing).map(|(&depth, share)| [f64::from(depth), whole * f64::from(share)]);
-    plot.draw_curve(&mut drawing, line, Pen::new(Ink::Color(0)).wide(4.0));
+    plot.draw_curve(&mut drawing, line, Ink::Color(0).pen(4.0));
     for [depth, bias] in &measured {
         drawing.dot(plot.at(*depth, *bias), 9.0, Ink::Color(1));
         let label = offset(plot.at(*depth, *bias), [16.0, -8.0]);
-        drawing.text(label, Anchor::Start, SMALL, Ink::Color(1), &format!("{bias:.4}"));
+        drawing.text(label, Start, SMALL, Ink::Color(1), &format!("{bias:.4}"));
     }
-    drawing.text([600.0, 120.0], Anchor::Start, SMALL, Ink::Color(1), "measured in the furnace");
-    drawing.text([600.0, 164.0], Anchor::Start, SMALL, Ink::Color(0), "0.8 · cut_off(0.5, depth)");
-    drawing.text([600.0, 202.0], Anchor::Start, SMALL, Ink::Color(0), "= 0.8 · 0.5^(depth + 1)");
+    drawing.text([600.0, 120.0], Start, SMALL, Ink::Color(1), "measured in the furnace");
+    drawing.text([600.0, 164.0], Start, SMALL, Ink::Color(0), "0.8 · cut_off(0.5, depth)");
+    drawing.text([600.0, 202.0], Start, SMALL, Ink::Color(0), "= 0.8 · 0.5^(depth + 1)");
     Ok(drawing.svg().into_bytes())
 }

@@ -1,11 +1,13 @@
 //! `raykata doctor`: looks for what the kit needs on this machine, and says what to install.
 
-use crate::args::Spec;
+use crate::args::{Given, Spec};
 use crate::kits::root;
+use crate::program::exit_code;
 use crate::report::Bytes;
+use anyhow::Result;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitCode, Stdio};
 
 /// `raykata doctor`.
 pub static SPEC: Spec = Spec {
@@ -29,8 +31,20 @@ enum Finding {
     Needed(String, String),
 }
 
-/// Prints what was found; `true` if nothing that is needed is missing.
-pub fn run() -> bool {
+fn good(what: impl Into<String>) -> Finding {
+    Finding::Good(what.into())
+}
+
+fn optional(what: impl Into<String>, help: impl Into<String>) -> Finding {
+    Finding::Optional(what.into(), help.into())
+}
+
+fn needed(what: impl Into<String>, help: impl Into<String>) -> Finding {
+    Finding::Needed(what.into(), help.into())
+}
+
+/// Prints what was found. It succeeds if nothing that is needed is missing.
+pub fn run(_: &Given) -> Result<ExitCode> {
     let root = root().ok();
     let findings = [
         ("kit", kit(root.as_deref())),
@@ -55,7 +69,7 @@ pub fn run() -> bool {
         0 => println!("\nEverything that the kit needs is there. `cargo run` shows the next step."),
         _ => println!("\n{missing} missing: install what is named above, and run this again."),
     }
-    missing == 0
+    Ok(exit_code(missing == 0))
 }
 
 /// What a program writes to standard output, if it can be started and succeeds.
@@ -85,11 +99,10 @@ fn for_system(linux: &str, macos: &str, windows: &str) -> String {
 
 fn kit(root: Option<&Path>) -> Finding {
     match root {
-        Some(root) => Finding::Good(root.display().to_string()),
-        None => Finding::Needed(
-            "there is no kit in this folder or above it".into(),
-            "go to the folder that holds exercises/".into(),
-        ),
+        Some(root) => good(root.display().to_string()),
+        None => {
+            needed("there is no kit in this folder or above it", "go to the folder that holds exercises/")
+        }
     }
 }
 
@@ -105,13 +118,13 @@ fn version(text: &str) -> Option<(u32, u32)> {
     Some((numbers.next()?.ok()?, numbers.next()?.ok()?))
 }
 
-fn compiler(said: Option<&str>, needed: (u32, u32)) -> Finding {
+fn compiler(said: Option<&str>, oldest: (u32, u32)) -> Finding {
     let help = |words: &str| format!("{words} (https://rustup.rs explains it)");
     match said.map(|said| (said, version(said))) {
-        None => Finding::Needed("there is no rustc".into(), help("install Rust with rustup")),
-        Some((said, Some(found))) if found >= needed => Finding::Good(said.to_owned()),
-        Some((said, _)) => Finding::Needed(
-            format!("{said} is too old: the kit needs {}.{}", needed.0, needed.1),
+        None => needed("there is no rustc", help("install Rust with rustup")),
+        Some((said, Some(found))) if found >= oldest => good(said.to_owned()),
+        Some((said, _)) => needed(
+            format!("{said} is too old: the kit needs {}.{}", oldest.0, oldest.1),
             help("run `rustup update`"),
         ),
     }
@@ -119,22 +132,22 @@ fn compiler(said: Option<&str>, needed: (u32, u32)) -> Finding {
 
 fn formatter() -> Finding {
     match said("cargo", &["fmt", "--version"]) {
-        Some(said) => Finding::Good(said),
-        None => Finding::Optional("there is no rustfmt".into(), "run `rustup component add rustfmt`".into()),
+        Some(said) => good(said),
+        None => optional("there is no rustfmt", "run `rustup component add rustfmt`"),
     }
 }
 
 fn linker() -> Finding {
     let names: &[&str] = if cfg!(windows) { &["link", "lld-link"] } else { &["cc", "clang", "gcc"] };
     match names.iter().find_map(|name| find(name)) {
-        Some(file) => Finding::Good(file.display().to_string()),
+        Some(file) => good(file.display().to_string()),
         // On Windows the compiler finds the linker without `PATH`.
-        None if cfg!(windows) => Finding::Optional(
-            "there is none in PATH; the compiler may find it".into(),
-            "if builds fail: the Build Tools for Visual Studio".into(),
+        None if cfg!(windows) => optional(
+            "there is none in PATH; the compiler may find it",
+            "if builds fail: the Build Tools for Visual Studio",
         ),
-        None => Finding::Needed(
-            "there is no C compiler, which links programs".into(),
+        None => needed(
+            "there is no C compiler, which links programs",
             for_system("sudo apt install build-essential (Fedora: dnf: gcc)", "xcode-select --install", ""),
         ),
     }
@@ -144,14 +157,11 @@ fn disk(folder: &Path) -> Finding {
     // The standard library does not say how much is free, and `df` does on every Unix.
     let table = said("df", &["-Pk", &folder.display().to_string()]);
     match table.as_deref().and_then(free_in) {
-        None => Finding::Optional(
-            "the free space is unknown".into(),
-            format!("all commands together need {}", Bytes(DISK)),
-        ),
-        Some(free) if free >= DISK => Finding::Good(format!("{} free", Bytes(free))),
-        Some(free) => Finding::Optional(
+        None => optional("the free space is unknown", format!("all commands together need {}", Bytes(DISK))),
+        Some(free) if free >= DISK => good(format!("{} free", Bytes(free))),
+        Some(free) => optional(
             format!("only {} free; all builds take {}", Bytes(free), Bytes(DISK)),
-            "free some space; `cargo clean` removes the builds of this kit".into(),
+            "free some space; `cargo clean` removes the builds of this kit",
         ),
     }
 }
@@ -179,19 +189,17 @@ fn terminal() -> Finding {
             name.to_lowercase().contains("utf-8") || name.to_lowercase().contains("utf8")
         });
     if !std::io::stdout().is_terminal() {
-        let help = "`raykata watch` prints lines there, and no screen".to_owned();
-        return Finding::Optional("the output is no terminal".into(), help);
+        return optional("the output is no terminal", "`raykata watch` prints lines there, and no screen");
     }
     match (is_utf8, ["truecolor", "24bit"].contains(&value("COLORTERM").as_str())) {
-        (true, true) => Finding::Good("Unicode and 24-bit colours".into()),
-        (true, false) => Finding::Optional(
-            "it names no 24-bit colours: `watch` shows no pictures".into(),
+        (true, true) => good("Unicode and 24-bit colours"),
+        (true, false) => optional(
+            "it names no 24-bit colours: `watch` shows no pictures",
             set("if it has them, run", "COLORTERM", "truecolor"),
         ),
-        (false, _) => Finding::Optional(
-            "it names no Unicode: `watch` writes ASCII".into(),
-            set("if it has it, run", "LANG", "C.UTF-8"),
-        ),
+        (false, _) => {
+            optional("it names no Unicode: `watch` writes ASCII", set("if it has it, run", "LANG", "C.UTF-8"))
+        }
     }
 }
 
@@ -200,9 +208,9 @@ fn editor() -> Finding {
         .iter()
         .find_map(|name| std::env::var(name).ok().filter(|editor| !editor.is_empty()))
     {
-        Some(editor) => Finding::Good(editor),
-        None => Finding::Optional(
-            "none is chosen for the key `o` of `raykata watch`".into(),
+        Some(editor) => good(editor),
+        None => optional(
+            "none is chosen for the key `o` of `raykata watch`",
             set("for example", "EDITOR", if cfg!(windows) { "code" } else { "nano" }),
         ),
     }
@@ -215,19 +223,16 @@ fn browser() -> Finding {
     let found =
         found.or_else(|| (cfg!(windows) || cfg!(target_os = "macos")).then(|| "that of the system".into()));
     match found {
-        Some(browser) => Finding::Good(browser),
-        None => Finding::Optional(
-            "there is none for `raykata view`, reports and slides".into(),
-            "sudo apt install firefox".into(),
-        ),
+        Some(browser) => good(browser),
+        None => optional("there is none for `raykata view`, reports and slides", "sudo apt install firefox"),
     }
 }
 
 fn node() -> Finding {
     match said("node", &["--version"]) {
-        Some(version) => Finding::Good(version),
-        None => Finding::Optional(
-            "there is none; only `raykata slides` needs it".into(),
+        Some(version) => good(version),
+        None => optional(
+            "there is none; only `raykata slides` needs it",
             for_system(
                 "sudo apt install nodejs npm   (or see https://nodejs.org)",
                 "brew install node   (or see https://nodejs.org)",

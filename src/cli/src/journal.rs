@@ -96,6 +96,18 @@ impl<T: Serialize + DeserializeOwned> Journal<T> {
         Ok(Journal { file: file.to_owned(), out, length, kept })
     }
 
+    /// Continues the journal of an earlier run of the same work, and begins one in place of any other.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read or written.
+    pub fn open(file: &Path, about: &str) -> Result<Journal<T>> {
+        match Journal::<T>::about(file).as_deref() == Some(about) {
+            true => Journal::resume(file, about),
+            false => Journal::create(file, about),
+        }
+    }
+
     /// What the journal in a file is about; `None` if there is none.
     pub fn about(file: &Path) -> Option<String> {
         let text = fs::read(file).ok()?;

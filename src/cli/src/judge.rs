@@ -1,7 +1,9 @@
-//! Starts the judge, the program that contains the checks and the exact oracle. It is built when it is
+//! `raykata check` and `raykata gauntlet`: start the judge, the program that contains the checks and the exact oracle. It is built when it is
 //! needed, so that a picture does not wait for that.
 
-use crate::kits::{Need, Program, Which, build};
+use crate::args::{Argument, Given, Misuse, Opt, Spec};
+use crate::kits::{Choice, Need, Program, Which, build, root, run_program};
+use crate::list;
 use anyhow::{Context, Result};
 use raykata::message::Message;
 use raykata::worker::{receive, send};
@@ -9,19 +11,72 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Child, Command, ExitCode, Stdio};
 
+/// `raykata check`.
+pub static CHECK: Spec = Spec {
+    name: "raykata check",
+    about: "Grade your exercises and print the scorecard.",
+    arguments: &[Argument::optional("STAGE", "One stage only, such as 3 or stage3; with --pixel, a check.")],
+    options: &[PIXEL, Choice::OPTIONS],
+};
+
+const PIXEL: &[Opt] = &[Opt::value(
+    "--pixel",
+    "X,Y",
+    "Ask for one pixel of the picture of a check again, and print each call with its input and your answer.",
+)];
+
+/// Runs the checks of a stage or of all, or asks for one pixel again; returns the exit code of the judge.
+pub fn check(given: &Given) -> Result<ExitCode> {
+    let which = Choice::read(given)?.or_exercises();
+    if let Some(pixel) = given.path("--pixel") {
+        let check = given.required(0).map_err(|_| {
+            Misuse::new("`--pixel` needs the name of a check, as in `raykata check CHECK --pixel 12,7`")
+        })?;
+        return judge("pixel", which, &[check, pixel.as_os_str()]);
+    }
+    judge("check", which, list::stage(given)?.map(|stage| stage.to_string()).as_slice())
+}
+
+/// `raykata gauntlet`.
+pub static GAUNTLET: Spec = Spec {
+    name: "raykata gauntlet",
+    about: "Measure the accuracy of your ray/triangle tests on hard inputs, against exact arithmetic.",
+    arguments: &[],
+    options: &[
+        &[
+            Opt::value(
+                "--inputs",
+                "N",
+                "Inputs per distribution, and rays per closed mesh [default: 20000].",
+            ),
+            Opt::value("--seed", "N", "Seed of the inputs [default: 1]."),
+        ],
+        Choice::OPTIONS,
+    ],
+};
+
+/// Runs the gauntlet; returns the exit code of the judge.
+pub fn gauntlet(given: &Given) -> Result<ExitCode> {
+    let inputs = given.number("--inputs", 100..=u64::MAX)?.unwrap_or(20_000).to_string();
+    let seed = given.number("--seed", 0..=u64::MAX)?.unwrap_or(1).to_string();
+    judge("gauntlet", Choice::read(given)?.or_exercises(), &[inputs, seed])
+}
+
+/// Shows the points of the exercises and the next step; returns the exit code of the judge.
+pub fn status() -> Result<ExitCode> {
+    judge::<&str>("status", Which::Exercises, &[])
+}
+
 /// Runs the judge with a command such as `check` on a kit, and returns its exit code.
-pub fn judge<S: AsRef<OsStr>>(root: &Path, what: &str, which: Which, more: &[S]) -> Result<ExitCode> {
+fn judge<S: AsRef<OsStr>>(what: &str, which: Which, more: &[S]) -> Result<ExitCode> {
+    let root = root()?;
     let whose = match which {
         Which::Exercises => "your exercises and their judge",
         Which::Solutions => "the solutions and their judge",
     };
-    let programs = build(root, whose, &[Program::JUDGE, Program::worker(which, Need::Checks)])?;
-    let [judge, worker] = &programs[..] else { anyhow::bail!("the judge was not built") };
-    let mut command = Command::new(judge);
-    let status = command.arg(what).arg(root).arg(worker).args(more).status();
-    let status = status.with_context(|| format!("{} cannot be started", judge.display()))?;
-    let code = status.code().and_then(|code| u8::try_from(code).ok());
-    Ok(ExitCode::from(code.unwrap_or(1)))
+    let [judge, worker] = build(&root, whose, [Program::JUDGE, Program::worker(which, Need::Checks)])?;
+    let words = [OsStr::new(what), root.as_os_str(), worker.as_os_str()];
+    run_program(&judge, words.into_iter().chain(more.iter().map(AsRef::as_ref)))
 }
 
 /// A judge that gets requests through its standard input and answers through its standard output.
@@ -30,9 +85,8 @@ pub struct Judge(Child);
 impl Judge {
     /// Starts the judge with this command.
     pub fn start(root: &Path, what: &str) -> Result<Judge> {
-        let programs = build(root, "the judge of your exercises", &[Program::JUDGE])?;
-        let program = programs.first().context("the judge was not built")?;
-        let child = Command::new(program).arg(what).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
+        let [program] = build(root, "the judge of your exercises", [Program::JUDGE])?;
+        let child = Command::new(&program).arg(what).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
         Ok(Judge(child.with_context(|| format!("{} cannot be started", program.display()))?))
     }
 

@@ -5,9 +5,10 @@ use crate::args::{Given, Misuse, Opt, names};
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result, anyhow, bail};
 use raykata::kit::{Door, Kit};
+use std::ffi::OsStr;
 use std::io::{BufRead, BufReader, IsTerminal, Read};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitCode, Stdio};
 use std::sync::Arc;
 
 /// The kit whose code is used.
@@ -56,6 +57,12 @@ impl Choice {
         self.0.unwrap_or(default)
     }
 
+    /// Builds the selected kit with the renderer, and starts it. By default it is that of [`Choice::or_reference`].
+    pub fn start(self) -> Result<Arc<dyn Kit + Send + Sync>> {
+        let root = root()?;
+        Ok(Source::prepare(&root, self.or_reference(&root), Need::Frames)?.fresh())
+    }
+
     /// The selected kit. By default the exercises.
     pub fn or_exercises(self) -> Which {
         self.0.unwrap_or(Which::Exercises)
@@ -80,13 +87,10 @@ pub enum Need {
     Checks,
 }
 
-/// The cargo feature of `exercises` and `solutions` that builds the renderer.
-const FRAMES: &str = "frames";
-
 impl Need {
     /// The feature that a worker must be built with.
     pub fn feature(self) -> Option<&'static str> {
-        (self == Need::Frames).then_some(FRAMES)
+        (self == Need::Frames).then_some("frames")
     }
 }
 
@@ -160,21 +164,28 @@ pub fn build_worker(root: &Path, which: Which, need: Need) -> Result<PathBuf> {
         Which::Exercises => "your exercises",
         Which::Solutions => "the solutions",
     };
-    let built = build(root, what, &[Program::worker(which, need)])?;
-    built.into_iter().next().context("nothing was built")
+    let [program] = build(root, what, [Program::worker(which, need)])?;
+    Ok(program)
 }
 
 /// Builds programs of the workspace at `root` in the profile of this program, and returns their paths. If
 /// something has to be built, it prints a line that names `what`, followed by the output of cargo.
-pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBuf>> {
+pub fn build<const N: usize>(root: &Path, what: &str, programs: [Program; N]) -> Result<[PathBuf; N]> {
     let (cargo, paths) = cargo_build(root, programs)?;
     run_cargo(cargo, what)?;
     Ok(paths)
 }
 
+/// Runs a program with these words to its end, and returns its exit code; 1 if it was killed.
+pub fn run_program(program: &Path, words: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Result<ExitCode> {
+    let status = Command::new(program).args(words).status();
+    let status = status.with_context(|| format!("{} cannot be started", program.display()))?;
+    Ok(ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)))
+}
+
 /// The command that builds programs of the workspace at `root` in the profile of this program, and their paths afterwards.
-pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<(Command, Vec<PathBuf>)> {
-    for program in programs {
+pub fn cargo_build<const N: usize>(root: &Path, programs: [Program; N]) -> Result<(Command, [PathBuf; N])> {
+    for program in &programs {
         if program.package == Which::Solutions.package() && !has_solutions(root) {
             bail!("there are no solutions in {}: omit `--kit solutions`", root.display());
         }
@@ -183,7 +194,7 @@ pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<(Command, Vec<Pa
     let folder = build_folder()?;
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(root).arg("build");
-    for program in programs {
+    for program in &programs {
         cargo.args(["--package", program.package, "--bin", program.name]);
         if let Some(feature) = program.feature {
             // Pass the feature without the name of the package: the solutions depend on themselves in their
@@ -191,14 +202,17 @@ pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<(Command, Vec<Pa
             cargo.args(["--features", feature]);
         }
     }
-    match folder.file_name().and_then(|name| name.to_str()) {
-        None | Some("debug") => {}
-        Some(profile) => _ = cargo.args(["--profile", profile]),
-    }
+    cargo.args(profile_of(&folder));
     if let Some(target) = folder.parent() {
         cargo.arg("--target-dir").arg(target);
     }
-    Ok((cargo, programs.iter().map(|program| folder.join(program.file())).collect()))
+    Ok((cargo, programs.map(|program| folder.join(program.file()))))
+}
+
+/// The option of cargo for the profile of a folder in the target folder, which has its name.
+pub(crate) fn profile_of(folder: &Path) -> Option<String> {
+    let name = folder.file_name()?.to_str().filter(|name| *name != "debug")?;
+    Some(format!("--profile={name}"))
 }
 
 /// The folder of this program inside of the target folder, whose name is that of its profile.
@@ -224,14 +238,14 @@ pub fn run_cargo(mut cargo: Command, what: &str) -> Result<Vec<u8>> {
         stdout.map_or(Ok(0), |mut stdout| stdout.read_to_end(&mut bytes)).map(|_| bytes)
     });
     // Show its messages as soon as something is compiled.
-    let mut shown = Shown { what, held_back: Vec::new(), building: false };
+    let mut output = CargoOutput { what, held_back: Vec::new(), building: false };
     if let Some(stderr) = running.stderr.take() {
         for line in BufReader::new(stderr).split(b'\n') {
-            shown.line(String::from_utf8_lossy(&line?).into_owned());
+            output.line(String::from_utf8_lossy(&line?).into_owned());
         }
     }
     if !running.wait()?.success() {
-        shown.begin();
+        output.begin();
         bail!("{what} cannot be built: see the errors of the compiler above");
     }
     // Reading cannot panic.
@@ -242,14 +256,14 @@ pub fn run_cargo(mut cargo: Command, what: &str) -> Result<Vec<u8>> {
 }
 
 /// Filters the output of cargo: it shows nothing while everything is up to date.
-struct Shown<'a> {
+struct CargoOutput<'a> {
     what: &'a str,
     /// Lines that are held back, such as warnings of crates that were built before.
     held_back: Vec<String>,
     building: bool,
 }
 
-impl Shown<'_> {
+impl CargoOutput<'_> {
     fn line(&mut self, line: String) {
         let plain = without_colours(&line);
         let word = plain.split_whitespace().next().unwrap_or_default();

@@ -1,18 +1,17 @@
 //! `raykata list` and `raykata hint`: the contents of the rubric.
 
-use crate::args::{Argument, Given, Misuse, Opt, Spec};
+use crate::args::{Argument, Given, Misuse, Spec, whole_number, wrapped};
+use crate::report::say;
 use anyhow::{Result, bail};
 use raykata::rubric::{self, CheckEntry};
 use std::fmt::Write;
-
-/// The maximum width of a line, in columns.
-const WIDTH: usize = 80;
+use std::process::ExitCode;
 
 /// `raykata list`.
 pub static LIST: Spec = Spec {
     name: "raykata list",
     about: "List the checks with their points.",
-    arguments: &[Argument::optional("STAGE", "One stage only, such as 3 or stage3.")],
+    arguments: &[STAGE],
     options: &[],
 };
 
@@ -27,40 +26,8 @@ pub static HINT: Spec = Spec {
     options: &[],
 };
 
-/// The argument of `raykata check`.
+/// The argument of `raykata list` and `raykata watch`.
 pub const STAGE: Argument = Argument::optional("STAGE", "One stage only, such as 3 or stage3.");
-
-const PIXEL: &[Opt] = &[Opt::value(
-    "--pixel",
-    "X,Y",
-    "Ask for one pixel of the picture of a check again, and print each call with its input and your answer.",
-)];
-
-/// `raykata check`.
-pub static CHECK: Spec = Spec {
-    name: "raykata check",
-    about: "Grade your exercises and print the scorecard.",
-    arguments: &[Argument::optional("STAGE", "One stage only, such as 3 or stage3; with --pixel, a check.")],
-    options: &[PIXEL, crate::kits::Choice::OPTIONS],
-};
-
-/// `raykata gauntlet`.
-pub static GAUNTLET: Spec = Spec {
-    name: "raykata gauntlet",
-    about: "Measure the accuracy of your ray/triangle tests on hard inputs, against exact arithmetic.",
-    arguments: &[],
-    options: &[
-        &[
-            Opt::value(
-                "--inputs",
-                "N",
-                "Inputs per distribution, and rays per closed mesh [default: 20000].",
-            ),
-            Opt::value("--seed", "N", "Seed of the inputs [default: 1]."),
-        ],
-        crate::kits::Choice::OPTIONS,
-    ],
-};
 
 /// The requested stage, if any: `3` and `stage3` are the same. A stage that does not exist is an error.
 pub fn stage(given: &Given) -> Result<Option<u8>, Misuse> {
@@ -74,6 +41,19 @@ pub fn stage(given: &Given) -> Result<Option<u8>, Misuse> {
     })
 }
 
+/// Prints the checks of a stage, or of all.
+pub fn run(given: &Given) -> Result<ExitCode> {
+    say(format_args!("{}", list(stage(given)?)));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Prints a hint for a check.
+pub fn run_hint(given: &Given) -> Result<ExitCode> {
+    let level = given.parsed_argument(1, |text| whole_number(text, &(1..=3)))?.unwrap_or(1);
+    say(format_args!("{}", hint(&given.required(0)?.to_string_lossy(), level)?));
+    Ok(ExitCode::SUCCESS)
+}
+
 /// The checks of a stage, or of all stages, with their points and titles. Bonus points have a plus.
 pub fn list(stage: Option<u8>) -> String {
     let mut text = String::new();
@@ -82,34 +62,15 @@ pub fn list(stage: Option<u8>) -> String {
     {
         let _ = writeln!(text, "stage {number} · {}", about.title);
         let how = format!("work in {}, run `cargo test --test stage{number}`", about.file);
-        for line in lines(&how, WIDTH - 2) {
-            let _ = writeln!(text, "  {line}");
-        }
+        let _ = writeln!(text, "  {}", wrapped(&how, 2));
         for (name, entry) in about.in_order() {
             let sign = if entry.bonus { "+" } else { "" };
             let _ = writeln!(text, "  {:>2}  {name}", format!("{sign}{}", entry.points));
-            for line in lines(&entry.title, WIDTH - 6) {
-                let _ = writeln!(text, "      {line}");
-            }
+            let _ = writeln!(text, "      {}", wrapped(&entry.title, 6));
         }
         text.push('\n');
     }
     text
-}
-
-/// The words wrapped to lines of at most `width` characters.
-pub fn lines(words: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in words.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }
 
 /// The entry of a check in the rubric; the error names checks with similar names.
@@ -148,7 +109,7 @@ mod tests {
     #[test]
     fn the_list_fits_a_terminal_and_has_every_check() {
         let all = list(None);
-        let long: Vec<&str> = all.lines().filter(|line| line.chars().count() > WIDTH).collect();
+        let long: Vec<&str> = all.lines().filter(|line| line.chars().count() > 80).collect();
         assert!(long.is_empty(), "{long:#?}");
         for (number, stage) in rubric::stages() {
             let one = list(Some(number));

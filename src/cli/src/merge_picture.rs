@@ -1,7 +1,7 @@
 //! `raykata merge-picture`: puts the pieces of a picture together. The result is equal to the picture that is rendered at once,
 //! to the last bit, because each pixel depends on its own samples only.
 
-use crate::args::{Argument, Given, Misuse, Opt, Spec};
+use crate::args::{Argument, Given, Opt, Spec};
 use crate::kits::{Need, Source, root};
 use crate::picture_file::{Format, Summary, write_picture};
 use crate::piece::{Piece, Settings};
@@ -11,7 +11,9 @@ use raykata::kit::Rendering;
 use raykata::rows::Rows;
 use raykata::scene::Encoding;
 use serde_json::Value;
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::ExitCode;
 
 /// `raykata merge-picture`.
 pub static SPEC: Spec = Spec {
@@ -21,29 +23,16 @@ pub static SPEC: Spec = Spec {
     options: &[&[Opt::value("--out", "FILE", "The picture: .png, .hdr or .exr.").short("-o").required()]],
 };
 
-/// The pieces, and the picture to write.
-pub struct Options {
-    pieces: Vec<PathBuf>,
-    out: PathBuf,
-}
-
-impl Options {
-    /// Reads the arguments and options.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        given.required(0)?;
-        let pieces = given.arguments(0).iter().map(PathBuf::from).collect();
-        Ok(Options { pieces, out: given.required_path("--out")? })
-    }
-}
-
 /// Merges the pieces, writes the picture, and prints what it cost.
-pub fn run(options: &Options) -> Result<()> {
-    let format = Format::of(&options.out)?;
-    let read = |file: &PathBuf| Ok((file.display().to_string(), Piece::read(file)?));
-    let pieces: Vec<(String, Piece)> = options.pieces.iter().map(read).collect::<Result<_>>()?;
+pub fn run(given: &Given) -> Result<ExitCode> {
+    given.required(0)?;
+    let out = given.required_path("--out")?;
+    let format = Format::of(&out)?;
+    let read = |file: &OsString| Ok((file.display().to_string(), Piece::read(Path::new(file))?));
+    let pieces: Vec<(String, Piece)> = given.arguments(0).iter().map(read).collect::<Result<_>>()?;
     let n_pieces = pieces.len();
     let (settings, rendering) = merge(pieces)?;
-    make_folder_of(&options.out)?;
+    make_folder_of(&out)?;
     // Gamma 2 is an exercise, so the kit that rendered the pieces encodes the picture.
     let kit = if format.is_8_bit() && settings.film.encoding == Encoding::Gamma2 {
         let which = settings.which().with_context(|| format!("there is no kit `{}`", settings.kit))?;
@@ -51,19 +40,12 @@ pub fn run(options: &Options) -> Result<()> {
     } else {
         None
     };
-    write_picture(
-        &rendering.film,
-        &options.out,
-        format,
-        settings.view,
-        &settings.film,
-        kit.as_deref().map(|kit| kit as _),
-    )?;
     let film = &rendering.film;
+    write_picture(film, &out, format, settings.view, &settings.film, kit.as_deref().map(|kit| kit as _))?;
     let size = format!("{} × {} pixels from {n_pieces} pieces", film.width, film.height);
-    let (quality, indirect_light, count) = (&settings.quality, settings.indirect_light, settings.count);
-    Summary { size, quality, indirect_light, count }.print(&options.out, &rendering);
-    Ok(())
+    let Settings { quality, indirect_light, count, .. } = &settings;
+    Summary { size, quality, indirect_light: *indirect_light, count: *count }.print(&out, &rendering);
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The whole picture of these pieces, each with the name of its file, and its settings.

@@ -1,5 +1,6 @@
 //! Pictures in files: their formats, how they are written, and what is printed about them.
 
+use crate::args::wrapped;
 use crate::piece;
 use crate::report::{Bytes, Thousands};
 use anyhow::{Context, Result, anyhow, bail, ensure};
@@ -141,20 +142,25 @@ impl Summary<'_> {
         println!("  build            {:.3} s", rendering.build_seconds);
         println!("  render           {:.3} s", rendering.render_seconds);
         if *count {
-            println!("  primary rays     {}", Thousands(counts.primary));
-            println!("  shadow rays      {}", Thousands(counts.shadow));
-            println!("  reflected rays   {}", Thousands(counts.reflection));
-            println!("  refracted rays   {}", Thousands(counts.transmission));
-            if *indirect_light {
-                println!("  indirect rays    {}", Thousands(counts.indirect));
-                println!("  absorbed paths   {}", Thousands(counts.absorbed));
+            let indirect = [("indirect rays", counts.indirect), ("absorbed paths", counts.absorbed)];
+            let numbers = [
+                ("primary rays", counts.primary),
+                ("shadow rays", counts.shadow),
+                ("reflected rays", counts.reflection),
+                ("refracted rays", counts.transmission),
+            ];
+            let others = [
+                ("hits", counts.hits),
+                ("random numbers", counts.random_numbers),
+                ("image reads", counts.texture_reads),
+                ("node visits", counts.node_visits),
+                ("box tests", counts.box_tests),
+                ("primitive tests", counts.primitive_tests),
+            ];
+            let indirect = if *indirect_light { &indirect[..] } else { &[] };
+            for (name, number) in numbers.iter().chain(indirect).chain(&others) {
+                println!("  {name:<15}  {}", Thousands(*number));
             }
-            println!("  hits             {}", Thousands(counts.hits));
-            println!("  random numbers   {}", Thousands(counts.random_numbers));
-            println!("  image reads      {}", Thousands(counts.texture_reads));
-            println!("  node visits      {}", Thousands(counts.node_visits));
-            println!("  box tests        {}", Thousands(counts.box_tests));
-            println!("  primitive tests  {}", Thousands(counts.primitive_tests));
             let rays = counts.rays().max(1) as f64;
             println!(
                 "  per ray          {:.1} box tests, {:.1} primitive tests, {:.0} ns (all threads)",
@@ -164,9 +170,7 @@ impl Summary<'_> {
             );
         }
         for note in &rendering.notes {
-            for (line, words) in crate::list::lines(note, 80 - 19).into_iter().enumerate() {
-                println!("  {:<15}  {words}", if line == 0 { "note" } else { "" });
-            }
+            println!("  {:<15}  {}", "note", wrapped(note, 19));
         }
         match film.not_a_number() {
             0 => {}

@@ -96,8 +96,8 @@ fn code(root: &Path, which: Which) -> Result<String> {
     Ok(fingerprint(texts.iter().map(Vec::as_slice)))
 }
 
-/// Some rows of a picture.
-#[derive(Clone, Debug, PartialEq)]
+/// Some rows of a picture. The second line of the file is a piece whose film has no pixels; they follow.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Piece {
     /// The settings of the whole picture.
     pub settings: Settings,
@@ -105,14 +105,6 @@ pub struct Piece {
     pub rows: Rows,
     /// The pixels of these rows, and their cost.
     pub rendering: Rendering,
-}
-
-/// The second line of the file. The film of the rendering has no pixels here; they follow.
-#[derive(Serialize, Deserialize)]
-struct Head {
-    settings: Settings,
-    rows: Rows,
-    rendering: Rendering,
 }
 
 impl Piece {
@@ -123,9 +115,8 @@ impl Piece {
 
     /// Writes the file; it is complete or absent.
     pub fn write(&self, file: &Path) -> Result<()> {
-        let mut rendering = self.rendering.clone();
-        let pixels = std::mem::take(&mut rendering.film.pixels);
-        let head = Head { settings: self.settings.clone(), rows: self.rows, rendering };
+        let mut head = self.clone();
+        let pixels = std::mem::take(&mut head.rendering.film.pixels);
         let head = serde_json::to_string(&head).context("the settings cannot be written as JSON")?;
         write_atomically(file, |out| {
             out.write_all(FIRST_LINE)?;
@@ -148,11 +139,11 @@ impl Piece {
         let end = rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len());
         let (head, numbers) = rest.split_at(end);
         let head = serde_json::from_slice(head);
-        let Head { settings, rows, mut rendering } =
+        let mut piece: Piece =
             head.with_context(|| format!("{} is from another version: render it again", file.display()))?;
-        let film = &mut rendering.film;
-        let fits = rows.check(settings.film.height).is_ok()
-            && (film.width, film.height) == (settings.film.width, rows.n_rows());
+        let (rows, whole, film) = (piece.rows, &piece.settings.film, &mut piece.rendering.film);
+        let fits =
+            rows.check(whole.height).is_ok() && (film.width, film.height) == (whole.width, rows.n_rows());
         let (components, more) = numbers.get(1..).unwrap_or_default().as_chunks::<4>();
         let n_components = 3 * u64::from(film.width) * u64::from(film.height);
         ensure!(
@@ -162,6 +153,6 @@ impl Piece {
         );
         let components: Vec<f32> = components.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
         film.pixels = components.as_chunks::<3>().0.iter().map(|pixel| Vec3::from_array(*pixel)).collect();
-        Ok(Piece { settings, rows, rendering })
+        Ok(piece)
     }
 }

@@ -1,52 +1,30 @@
 //! The quality parameters of a scene as options, the same for all commands that render.
 
 use crate::args::{Given, Misuse, Opt, names};
+use crate::report::load_scene;
 use anyhow::{Result, anyhow};
 use raykata::film::ToneCurve;
 use raykata::scene::error::LoadError;
 use raykata::scene::load::{Limits, set};
 use raykata::scene::{Accelerator, Field, Quality, Scene};
+use std::path::Path;
 
 /// The number of threads that render, the same for all commands.
-pub struct Threads(u16);
+pub const THREADS: &[Opt] = &[Opt::value("--threads", "N", "Threads; 0 takes one per core [default: 0].")];
 
-impl Threads {
-    /// The option.
-    pub const OPTIONS: &[Opt] =
-        &[Opt::value("--threads", "N", "Threads; 0 takes one per core [default: 0].")];
-
-    /// Reads the options.
-    pub fn read(given: &Given) -> Result<Threads, Misuse> {
-        Ok(Threads(given.number("--threads", 0..=1024)?.unwrap_or(0)))
-    }
-
-    /// The number of threads for a job.
-    pub fn count(&self) -> usize {
-        usize::from(self.0)
-    }
+/// Reads [`THREADS`]: the number of threads for a job.
+pub fn threads(given: &Given) -> Result<usize, Misuse> {
+    Ok(given.number("--threads", 0..=1024)?.unwrap_or(0))
 }
 
 /// The memory that a scene may use, the same for all commands that read one.
-#[derive(Clone, Copy, Default)]
-pub struct Memory(Limits);
+pub const MEMORY: Opt =
+    Opt::value("--memory", "GB", "The most memory for film, textures and triangles [default: 4].");
 
-impl Memory {
-    const OPTION: Opt =
-        Opt::value("--memory", "GB", "The most memory for film, textures and triangles [default: 4].");
-
-    /// The option.
-    pub const OPTIONS: &[Opt] = &[Memory::OPTION];
-
-    /// Reads the option.
-    pub fn read(given: &Given) -> Result<Memory, Misuse> {
-        let gigabytes: Option<u64> = given.number("--memory", 1..=1_000_000)?;
-        Ok(Memory(gigabytes.map_or(Limits::default(), |n| Limits { memory: n * 1_000_000_000 })))
-    }
-
-    /// The limits for a scene.
-    pub fn limits(self) -> Limits {
-        self.0
-    }
+/// Reads [`MEMORY`]: the limits for a scene.
+pub fn limits(given: &Given) -> Result<Limits, Misuse> {
+    let gigabytes: Option<u64> = given.number("--memory", 1..=1_000_000)?;
+    Ok(gigabytes.map_or(Limits::default(), |n| Limits { memory: n * 1_000_000_000 }))
 }
 
 /// How bright a picture file is, the same for all commands that write a picture of a scene.
@@ -91,7 +69,8 @@ pub struct QualityOptions {
     /// The settings that are given, and their keys.
     wanted: Quality,
     keys: Vec<&'static str>,
-    memory: Memory,
+    /// The limits for a scene.
+    pub limits: Limits,
 }
 
 impl QualityOptions {
@@ -113,14 +92,14 @@ impl QualityOptions {
         .choices(&Quality::KEYS)
         .many()
         .earlier(earlier),
-        Memory::OPTION,
+        MEMORY,
     ];
 
     /// Reads the options.
     pub fn read(given: &Given) -> Result<QualityOptions, Misuse> {
         let mut options = QualityOptions {
             size: given.parsed("--size", parse_size)?,
-            memory: Memory::read(given)?,
+            limits: limits(given)?,
             ..QualityOptions::default()
         };
         let mut changes = given.repeated("--set", |text| match text.split_once('=') {
@@ -144,11 +123,6 @@ impl QualityOptions {
         self.keys.contains(&"accelerator").then_some(self.wanted.accelerator)
     }
 
-    /// The limits for a scene.
-    pub fn limits(&self) -> Limits {
-        self.memory.limits()
-    }
-
     /// Whether a size was given.
     pub fn names_a_size(&self) -> bool {
         self.size.is_some()
@@ -159,10 +133,17 @@ impl QualityOptions {
         self.keys.contains(&"samples_per_pixel")
     }
 
+    /// Reads a scene, and sets the given parameters in it.
+    pub fn load(&self, file: &Path) -> Result<Scene> {
+        let mut scene = load_scene(file, self.limits)?;
+        self.apply(&mut scene)?;
+        Ok(scene)
+    }
+
     /// Sets the given parameters in the scene. Fails if a picture of the given size needs more memory than the limit.
     pub fn apply(&self, scene: &mut Scene) -> Result<()> {
         if let Some((width, height)) = self.size {
-            self.limits().check_film(width, height).map_err(|message| anyhow!(message))?;
+            self.limits.check_film(width, height).map_err(|message| anyhow!(message))?;
             (scene.film.width, scene.film.height) = (width, height);
         }
         for key in &self.keys {
@@ -252,9 +233,7 @@ mod tests {
 
     #[test]
     fn arguments_turn_every_parameter() {
-        let mut scene =
-            crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml"), Limits::default())
-                .unwrap();
+        let mut scene = crate::report::scene_of_kit("stage1");
         let own = scene.quality;
         let wanted = Quality {
             samples_per_pixel: 343,

@@ -1,17 +1,18 @@
 //! `raykata render`: renders a scene to a picture, or some rows of it to a piece that `raykata merge-picture` takes.
 
-use crate::args::{Argument, Given, Misuse, Opt, Spec};
+use crate::args::{Argument, Given, Opt, Spec};
 use crate::kits::{Choice, Need, Source, root};
 use crate::lock::Lock;
 use crate::merge_picture;
 use crate::picture_file::{Format, Summary, write_picture};
 use crate::piece::{self, Piece, Settings};
-use crate::quality_options::{QualityOptions, Threads, ToneOptions};
-use crate::report::{FrameBar, load_scene, make_folder, make_folder_of};
+use crate::quality_options::{QualityOptions, THREADS, ToneOptions, threads};
+use crate::report::{FrameBar, make_folder, make_folder_of, name_of};
 use anyhow::{Context, Result, anyhow};
 use raykata::kit::{Kit, RenderJob, Rendering, View, kit_error};
 use raykata::rows::Rows;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::process::ExitCode;
 
 /// `raykata render`.
 pub static SPEC: Spec = Spec {
@@ -22,7 +23,7 @@ pub static SPEC: Spec = Spec {
         &[Opt::value("--out", "FILE", "The picture: .png, .hdr or .exr [default: out/NAME.png].")
             .short("-o")],
         Choice::OPTIONS,
-        Threads::OPTIONS,
+        THREADS,
         &[
             Opt::value(
                 "--rows",
@@ -46,76 +47,41 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// The scene, and how to render it.
-pub struct Options {
-    scene: PathBuf,
-    out: Option<PathBuf>,
-    kit: Choice,
-    threads: Threads,
-    rows: Option<Rows>,
-    pieces: Option<u32>,
-    seed: u64,
-    quality: QualityOptions,
-    tone: ToneOptions,
-    normals: bool,
-    no_counts: bool,
-}
-
-impl Options {
-    /// Reads the arguments and options.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        given.exclude("--rows", "--pieces")?;
-        Ok(Options {
-            scene: given.required(0)?.into(),
-            out: given.path("--out"),
-            kit: Choice::read(given)?,
-            threads: Threads::read(given)?,
-            rows: given.parsed("--rows", str::parse)?,
-            pieces: given.number("--pieces", 1..=u32::MAX)?,
-            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
-            quality: QualityOptions::read(given)?,
-            tone: ToneOptions::read(given)?,
-            normals: given.has("--normals"),
-            no_counts: given.has("--no-counts"),
-        })
-    }
-}
-
 /// Renders the picture and prints what it cost.
-pub fn run(options: &Options) -> Result<()> {
-    let mut scene = load_scene(&options.scene, options.quality.limits())?;
-    options.quality.apply(&mut scene)?;
-    options.tone.apply(&mut scene);
-    let height = scene.film.height;
-    if let Some(rows) = options.rows {
-        rows.check(height).map_err(|why| anyhow!("`--rows {rows}`: {why}"))?;
+pub fn run(given: &Given) -> Result<ExitCode> {
+    // Read the command line and the scene.
+    given.exclude("--rows", "--pieces")?;
+    let scene_file = Path::new(given.required(0)?);
+    let (kit, threads) = (Choice::read(given)?, threads(given)?);
+    let rows: Option<Rows> = given.parsed("--rows", str::parse)?;
+    let pieces: Option<u32> = given.number("--pieces", 1..=u32::MAX)?;
+    let seed = given.number("--seed", 0..=u64::MAX)?.unwrap_or(0);
+    let (quality, tone) = (QualityOptions::read(given)?, ToneOptions::read(given)?);
+    let mut scene = quality.load(scene_file)?;
+    tone.apply(&mut scene);
+    if let Some(rows) = rows {
+        rows.check(scene.film.height).map_err(|why| anyhow!("`--rows {rows}`: {why}"))?;
         scene.film.rows = Some(rows);
     }
-    let name = options.scene.file_stem().context("the scene has no name")?;
-    let out = match (&options.out, options.rows) {
-        (Some(out), _) => out.clone(),
-        (None, Some(rows)) => Path::new("out").join(Piece::file_name(&name.to_string_lossy(), rows)),
+    let name = name_of(scene_file)?;
+    let out = match (given.path("--out"), rows) {
+        (Some(out), _) => out,
+        (None, Some(rows)) => Path::new("out").join(Piece::file_name(&name, rows)),
         (None, None) => Path::new("out").join(name).with_extension("png"),
     };
-    let format = if options.rows.is_some() { Format::of_piece(&out)? } else { Format::of(&out)? };
+    let format = if rows.is_some() { Format::of_piece(&out)? } else { Format::of(&out)? };
     make_folder_of(&out)?;
 
     // Build the kit.
     let root = root()?;
-    let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
+    let source = Source::prepare(&root, kit.or_reference(&root), Need::Frames)?;
     let kit = source.fresh();
     // Render the picture.
-    let view = if options.normals { View::Normals } else { View::Shaded };
-    let job = RenderJob {
-        scene,
-        view,
-        seed: options.seed,
-        threads: options.threads.count(),
-        count: !options.no_counts,
-        // A structure that was built for one piece is used for the next.
-        reuse: options.pieces.is_some(),
-    };
-    let rendering = match options.pieces {
+    let view = if given.has("--normals") { View::Normals } else { View::Shaded };
+    // A structure that was built for one piece is used for the next.
+    let (count, reuse) = (!given.has("--no-counts"), pieces.is_some());
+    let job = RenderJob { scene, view, seed, threads, count, reuse };
+    let rendering = match pieces {
         Some(n) => in_pieces(&*kit, &job, &Settings::new(&job, source.which, &root)?, &out, n)?,
         None => rendered(&*kit, &job, "")?,
     };
@@ -125,13 +91,13 @@ pub fn run(options: &Options) -> Result<()> {
         1 => "1 sample per pixel".to_owned(),
         n => format!("{n} samples per pixel"),
     };
-    let (quality, indirect_light, count) = (&job.scene.quality, job.scene.indirect_light, job.count);
-    let width = rendering.film.width;
-    let size = match options.rows {
+    let (quality, indirect_light) = (&job.scene.quality, job.scene.indirect_light);
+    let (width, height) = (rendering.film.width, job.scene.film.height);
+    let size = match rows {
         Some(rows) => format!("rows {rows} of {width} × {height} pixels, {samples}"),
         None => format!("{width} × {height} pixels, {samples}"),
     };
-    let rendering = if let Some(rows) = options.rows {
+    let rendering = if let Some(rows) = rows {
         let piece = Piece { settings: Settings::new(&job, source.which, &root)?, rows, rendering };
         piece.write(&out).with_context(|| format!("cannot write {}", out.display()))?;
         piece.rendering
@@ -140,7 +106,7 @@ pub fn run(options: &Options) -> Result<()> {
         rendering
     };
     Summary { size, quality, indirect_light, count }.print(&out, &rendering);
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }
 
 fn rendered(kit: &dyn Kit, job: &RenderJob, what: &str) -> Result<Rendering> {

@@ -3,7 +3,9 @@
 use crate::progress::ProgressBar;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use anyhow::{Context, Result, anyhow};
-use raykata::frame::Watch;
+use raykata::film::write_atomically;
+use raykata::frame::{Unwatched, Watch};
+use raykata::kit::{Kit, RenderJob, Rendering, View, kit_error};
 use raykata::scene::Scene;
 use raykata::scene::error::{LoadError, printable};
 use raykata::scene::load::{self, Limits, Loaded};
@@ -76,6 +78,13 @@ pub fn load_scene(file: &Path, limits: Limits) -> Result<Scene> {
     Ok(scene)
 }
 
+/// A scene of the kit, for tests.
+#[cfg(test)]
+pub fn scene_of_kit(name: &str) -> Scene {
+    let file = format!("../../scenes/{name}.toml");
+    load_scene(Path::new(&file), Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// The scene with at most `pixels` pixels, at least 1, in nearly the same shape. Commands that measure render many pictures of
 /// this size.
 pub fn with_at_most(pixels: f64, scene: &Scene) -> Scene {
@@ -112,6 +121,27 @@ fn draw_as(level: Level<'_>, error: &LoadError) -> String {
     // The caller says "error: " or "warning: " itself.
     let plain = drawn.strip_prefix("error: ").or_else(|| drawn.strip_prefix("warning: "));
     plain.map_or_else(|| drawn.clone(), str::to_owned)
+}
+
+/// Writes a whole file, which is complete or absent.
+pub fn write_file(file: &Path, bytes: &[u8]) -> Result<()> {
+    write_atomically(file, |out| out.write_all(bytes))
+        .with_context(|| format!("cannot write {}", file.display()))
+}
+
+/// The name of a scene, which the default names of its pictures and reports begin with.
+pub fn name_of(scene: &Path) -> Result<String> {
+    Ok(scene.file_stem().context("the scene has no name")?.to_string_lossy().into_owned())
+}
+
+/// A picture of a scene with the seed 0, on all processors, with counts. Structures of the picture before are used again.
+pub fn job(scene: Scene) -> RenderJob {
+    RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true, reuse: true }
+}
+
+/// Renders a picture to its end.
+pub fn render(kit: &dyn Kit, job: &RenderJob) -> Result<Rendering> {
+    kit_error::catch(|| kit.render(job, &Unwatched))?.context("the frame was cancelled")
 }
 
 /// Creates a folder and its parent folders.

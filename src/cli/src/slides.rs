@@ -2,14 +2,14 @@
 //!
 //! The decks are Markdown for Marp, a program for Node.js. `slides/package.json` names its version, and npm installs it there.
 
-use crate::args::{Argument, Given, Misuse, Opt, Spec, did_you_mean};
+use crate::args::{Argument, Given, Opt, Spec, did_you_mean};
 use crate::html::escape;
 use crate::kits::root;
-use crate::report::make_folder;
-use anyhow::{Context, Result, bail};
+use crate::report::{make_folder, write_file};
+use anyhow::{Context, Error, Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitCode, Stdio};
 
 /// `raykata slides`.
 pub static SPEC: Spec = Spec {
@@ -22,24 +22,6 @@ pub static SPEC: Spec = Spec {
     ]],
 };
 
-/// Which decks are built.
-pub struct Options {
-    decks: Vec<String>,
-    pdf: bool,
-    out: Option<PathBuf>,
-}
-
-impl Options {
-    /// Reads the arguments and options.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        Ok(Options {
-            decks: given.arguments(0).iter().map(|deck| deck.to_string_lossy().into_owned()).collect(),
-            pdf: given.has("--pdf"),
-            out: given.path("--out"),
-        })
-    }
-}
-
 /// A deck: its name, and what its first lines say.
 struct Deck {
     name: String,
@@ -48,25 +30,23 @@ struct Deck {
 }
 
 /// Builds the decks, and prints where they are.
-pub fn run(options: &Options) -> Result<()> {
+pub fn run(given: &Given) -> Result<ExitCode> {
+    let (wanted, pdf) = (given.texts(0), given.has("--pdf"));
     // Find the decks.
     let slides = root()?.join("slides");
     let all = decks(&slides)?;
     let known: Vec<&str> = all.iter().map(|deck| deck.name.as_str()).collect();
-    for name in &options.decks {
+    for name in &wanted {
         if !known.contains(&name.as_str()) {
             bail!("there is no deck `{name}` in {}{}", slides.display(), did_you_mean(name, &known));
         }
     }
-    let chosen: Vec<&Deck> =
-        all.iter().filter(|deck| options.decks.is_empty() || options.decks.contains(&deck.name)).collect();
+    let is_wanted = |deck: &&Deck| wanted.is_empty() || wanted.contains(&deck.name);
+    let chosen: Vec<&Deck> = all.iter().filter(is_wanted).collect();
     let marp = installed(&slides)?;
 
     // Copy decks and figures to one folder, because the pages name the figures by their place beside them.
-    let out = match &options.out {
-        Some(out) => out.clone(),
-        None => root()?.join("out/slides"),
-    };
+    let out = given.path("--out").map_or_else(|| Ok::<_, Error>(root()?.join("out/slides")), Ok)?;
     make_folder(&out.join("figures"))?;
     for figure in fs::read_dir(slides.join("figures")).context("slides/figures cannot be read")? {
         let figure = figure?.path();
@@ -78,16 +58,16 @@ pub fn run(options: &Options) -> Result<()> {
     for deck in &chosen {
         let (from, to) = (slides.join(format!("{}.md", deck.name)), out.join(format!("{}.md", deck.name)));
         let text = fs::read_to_string(&from).with_context(|| format!("cannot read {}", from.display()))?;
-        fs::write(&to, without_names(&text)).with_context(|| format!("cannot write {}", to.display()))?;
+        write_file(&to, without_names(&text).as_bytes())?;
     }
     // Build the pages, and an index of them.
-    for pdf in [false, true].into_iter().take(1 + usize::from(options.pdf)) {
+    for is_pdf in [false, true].into_iter().take(1 + usize::from(pdf)) {
         let mut command = Command::new(&marp);
         command
             .current_dir(&out)
             .args(["--theme-set", "raykata.css", "--allow-local-files"])
             .stdin(Stdio::null());
-        if pdf {
+        if is_pdf {
             command.args(["--pdf", "--pdf-notes"]);
         }
         let status = command.args(chosen.iter().map(|deck| format!("{}.md", deck.name))).status();
@@ -97,10 +77,9 @@ pub fn run(options: &Options) -> Result<()> {
         }
     }
     let index = out.join("index.html");
-    fs::write(&index, page(&chosen, options.pdf))
-        .with_context(|| format!("cannot write {}", index.display()))?;
+    write_file(&index, page(&chosen, pdf).as_bytes())?;
     println!("{} decks: {}", chosen.len(), index.display());
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }
 
 fn copy(from: &Path, to: &Path) -> Result<()> {

@@ -3,18 +3,20 @@
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names, whole_number};
 use crate::caption;
+use crate::columns::Columns;
 use crate::compare::with_edges;
-use crate::kits::{Choice, Need, Source, root};
+use crate::kits::Choice;
 use crate::picture_file::write_png;
 use crate::quality_options::{QualityOptions, ToneOptions};
-use crate::report::{Thousands, load_scene, make_folder_of};
-use anyhow::{Context, Result};
+use crate::report::{Thousands, job, make_folder_of, name_of, render};
+use anyhow::{Context, Error, Result};
 use raykata::film::Film;
-use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, View, kit_error};
+use raykata::kit::kit_error;
 use raykata::scene::{Quality, Sampler, Scene};
 use raykata::world::camera_for;
-use std::path::{Path, PathBuf};
+use std::fmt::Display;
+use std::path::Path;
+use std::process::ExitCode;
 
 /// Pixels between two pictures.
 const GAP: u32 = 4;
@@ -51,89 +53,47 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// The scene, and the depths, samplers or levels.
-pub struct Options {
-    scene: PathBuf,
-    depths: Vec<u32>,
-    samplers: Vec<Sampler>,
-    levels: Vec<u32>,
-    quality: QualityOptions,
-    tone: ToneOptions,
-    out: Option<PathBuf>,
-    kit: Choice,
-}
-
-impl Options {
-    /// Reads the arguments and options.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        given.exclude("--samplers", "--depths")?;
-        given.exclude("--levels", "--depths")?;
-        given.exclude("--levels", "--samplers")?;
-        let mut depths = given.list("--depths", |text| whole_number(text, &(0..=1000)))?;
-        if depths.is_empty() {
-            depths = vec![1, 2, 5, 10];
-        }
-        Ok(Options {
-            scene: given.required(0)?.into(),
-            depths,
-            samplers: given.choices("--samplers", &Sampler::NAMES)?,
-            levels: given.list("--levels", |text| whole_number(text, &(0..=1000)))?,
-            quality: QualityOptions::read(given)?,
-            tone: ToneOptions::read(given)?,
-            out: given.path("--out"),
-            kit: Choice::read(given)?,
-        })
-    }
-}
-
 /// Renders the strip, with the depth, sampler or level below each picture, and prints what each picture cost.
-pub fn run(options: &Options) -> Result<()> {
-    let mut scene = load_scene(&options.scene, options.quality.limits())?;
-    options.quality.apply(&mut scene)?;
-    options.tone.apply(&mut scene);
-    let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy();
-    let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-strip.png")));
+pub fn run(given: &Given) -> Result<ExitCode> {
+    let (quality, tone, kit) =
+        (QualityOptions::read(given)?, ToneOptions::read(given)?, Choice::read(given)?);
+    let scene_file = Path::new(given.required(0)?);
+    let chosen = Chosen::read(given)?;
+    let mut scene = quality.load(scene_file)?;
+    tone.apply(&mut scene);
+    let default = || Ok::<_, Error>(Path::new("out").join(format!("{}-strip.png", name_of(scene_file)?)));
+    let out = given.path("--out").map_or_else(default, Ok)?;
     make_folder_of(&out)?;
-    let root = root()?;
-    let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
-    let kit = source.fresh();
-    let pictures = pictures(options, &scene);
+    let kit = kit.start()?;
+    let pictures = chosen.pictures(&scene);
     let (width, height, tone) = (scene.film.width, scene.film.height, scene.film.tone);
     let n = pictures.len() as u32;
     let mut strip = Film::new(n * width + (n - 1) * GAP, height + caption::HEIGHT);
-    println!(
-        "{:>15}  {:>14}  {:>14}  {:>14}  {:>9}",
-        "picture", "reflected rays", "refracted rays", "indirect rays", "seconds"
-    );
+    const COLUMNS: Columns = Columns("  ", &[15, 14, 14, 14, 9]);
+    let heads: [&dyn Display; 5] =
+        [&"picture", &"reflected rays", &"refracted rays", &"indirect rays", &"seconds"];
+    println!("{}", COLUMNS.row(&heads));
     for (column, Picture { what, scene, level }) in pictures.into_iter().enumerate() {
         let camera = camera_for(&scene);
-        let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true, reuse: true };
-        let rendering =
-            kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
-        let (counts, seconds) = (rendering.counts, rendering.render_seconds);
-        println!(
-            "{what:>15}  {:>14}  {:>14}  {:>14}  {seconds:>9.3}",
-            Thousands(counts.reflection),
-            Thousands(counts.transmission),
-            Thousands(counts.indirect)
-        );
+        let job = job(scene);
+        let rendering = render(&*kit, &job)?;
+        let (counts, seconds) = (rendering.counts, format!("{:.3}", rendering.render_seconds));
+        let [reflected, refracted, indirect] =
+            [counts.reflection, counts.transmission, counts.indirect].map(Thousands);
+        println!("{}", COLUMNS.row(&[&what, &reflected, &refracted, &indirect, &seconds]));
         let left = column as u32 * (width + GAP);
         // Draw the boxes of the level over the picture.
-        let film = match level {
-            Some(level) => with_edges(
-                &rendering.film.toned(tone),
-                &camera,
-                &kit_error::catch(|| kit.outlines(&job, level))?,
-            ),
-            None => rendering.film.toned(tone),
-        };
+        let mut film = rendering.film.toned(tone);
+        if let Some(level) = level {
+            film = with_edges(&film, &camera, &kit_error::catch(|| kit.outlines(&job, level))?);
+        }
         paste(&film, &mut strip, left);
         caption::write(&mut strip, &what, [left, height], width);
     }
     write_png(&strip, &out, scene.film.encoding, Some(&*kit))
         .with_context(|| format!("cannot write {}", out.display()))?;
     println!("{}", out.display());
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }
 
 /// A picture of the strip.
@@ -145,30 +105,47 @@ struct Picture {
     level: Option<u32>,
 }
 
-/// The scene once for each depth, sampler or level.
-fn pictures(options: &Options, scene: &Scene) -> Vec<Picture> {
-    let with = |change: &dyn Fn(&mut Quality)| {
-        let mut scene = scene.clone();
-        change(&mut scene.quality);
-        scene
-    };
-    if !options.levels.is_empty() {
-        let of = |&level: &u32| Picture {
-            what: format!("level {level}"),
-            scene: scene.clone(),
-            level: Some(level),
+/// What the pictures of a strip differ in.
+enum Chosen {
+    Depths(Vec<u32>),
+    Samplers(Vec<Sampler>),
+    Levels(Vec<u32>),
+}
+
+impl Chosen {
+    fn read(given: &Given) -> Result<Chosen, Misuse> {
+        given.exclude("--samplers", "--depths")?;
+        given.exclude("--levels", "--depths")?;
+        given.exclude("--levels", "--samplers")?;
+        let numbers = |option| given.list(option, |text| whole_number(text, &(0..=1000)));
+        let (depths, levels) = (numbers("--depths")?, numbers("--levels")?);
+        let samplers = given.choices("--samplers", &Sampler::NAMES)?;
+        Ok(match (levels.is_empty(), samplers.is_empty()) {
+            (false, _) => Chosen::Levels(levels),
+            (_, false) => Chosen::Samplers(samplers),
+            _ if depths.is_empty() => Chosen::Depths(vec![1, 2, 5, 10]),
+            _ => Chosen::Depths(depths),
+        })
+    }
+
+    /// The scene once for each depth, sampler or level.
+    fn pictures(&self, scene: &Scene) -> Vec<Picture> {
+        let picture = |what: String, quality: Quality, level: Option<u32>| Picture {
+            what,
+            scene: Scene { quality, ..scene.clone() },
+            level,
         };
-        return options.levels.iter().map(of).collect();
+        let own = scene.quality;
+        let of_depth = |max_depth| picture(format!("depth {max_depth}"), Quality { max_depth, ..own }, None);
+        let of_level = |level| picture(format!("level {level}"), own, Some(level));
+        let of_sampler =
+            |sampler: Sampler| picture(sampler.name().replace('_', "-"), Quality { sampler, ..own }, None);
+        match self {
+            Chosen::Depths(depths) => depths.iter().copied().map(of_depth).collect(),
+            Chosen::Samplers(samplers) => samplers.iter().copied().map(of_sampler).collect(),
+            Chosen::Levels(levels) => levels.iter().copied().map(of_level).collect(),
+        }
     }
-    let picture = |what: String, scene: Scene| Picture { what, scene, level: None };
-    if options.samplers.is_empty() {
-        let of = |&depth: &u32| picture(format!("depth {depth}"), with(&|quality| quality.max_depth = depth));
-        return options.depths.iter().map(of).collect();
-    }
-    let named = |sampler: &Sampler| {
-        picture(sampler.name().replace('_', "-"), with(&|quality| quality.sampler = *sampler))
-    };
-    options.samplers.iter().map(named).collect()
 }
 
 fn paste(picture: &Film, strip: &mut Film, x: u32) {

@@ -3,6 +3,11 @@
 //! Colours are Paul Tol's, which colour-blind readers can distinguish. Each is given twice, for light and for dark pages:
 //! the file follows the setting of the reader's system.
 
+mod plot;
+
+pub use Anchor::{End, Middle, Start};
+use glam::Vec3;
+pub use plot::Plot;
 use std::fmt::Write;
 
 /// A position in a drawing, from its upper left corner.
@@ -72,6 +77,11 @@ const DARK: [&str; 11] = [
 ];
 
 impl Ink {
+    /// A line of this colour and width.
+    pub const fn pen(self, width: f64) -> Pen {
+        Pen { ink: self, width, dashed: false }
+    }
+
     fn class(self) -> String {
         match self {
             Ink::Text => "0".into(),
@@ -81,7 +91,7 @@ impl Ink {
     }
 }
 
-/// How a line is drawn.
+/// How a line is drawn: see [`Ink::pen`].
 #[derive(Clone, Copy, Debug)]
 pub struct Pen {
     /// Its colour.
@@ -93,16 +103,6 @@ pub struct Pen {
 }
 
 impl Pen {
-    /// A line of this colour, 3 wide.
-    pub const fn new(ink: Ink) -> Pen {
-        Pen { ink, width: 3.0, dashed: false }
-    }
-
-    /// The same with another width.
-    pub const fn wide(self, width: f64) -> Pen {
-        Pen { width, ..self }
-    }
-
     /// The same, dashed.
     pub const fn dashed(self) -> Pen {
         Pen { dashed: true, ..self }
@@ -213,6 +213,19 @@ impl Drawing {
         );
     }
 
+    /// An arc around `center` between two directions in degrees, counterclockwise from the right.
+    pub fn arc(&mut self, center: Point, radius: f64, [from, to]: [f64; 2], pen: Pen) {
+        let points: Vec<Point> = steps(from, to, 24).map(|degrees| polar(center, radius, degrees)).collect();
+        self.polyline(&points, pen);
+    }
+
+    /// Lines of text below each other, `apart` from baseline to baseline; that of the first one is at `at`.
+    pub fn lines(&mut self, at: Point, apart: f64, size: f64, ink: Ink, lines: &[impl AsRef<str>]) {
+        for (row, line) in lines.iter().enumerate() {
+            self.text([at[0], at[1] + apart * row as f64], Start, size, ink, line.as_ref());
+        }
+    }
+
     /// Text whose baseline is at `at`.
     pub fn text(&mut self, at: Point, anchor: Anchor, size: f64, ink: Ink, text: &str) {
         let [x, y] = at.map(number);
@@ -224,19 +237,6 @@ impl Drawing {
         let _ = writeln!(
             self.body,
             "<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" font-size=\"{}\" class=\"f{}\">{}</text>",
-            number(size),
-            ink.class(),
-            escaped(text)
-        );
-    }
-
-    /// Text that is read from below, with its middle at `at`.
-    pub fn text_upwards(&mut self, at: Point, size: f64, ink: Ink, text: &str) {
-        let [x, y] = at.map(number);
-        let _ = writeln!(
-            self.body,
-            "<text x=\"{x}\" y=\"{y}\" text-anchor=\"middle\" font-size=\"{}\" class=\"f{}\" transform=\"rotate(-90 \
-             {x} {y})\">{}</text>",
             number(size),
             ink.class(),
             escaped(text)
@@ -263,6 +263,22 @@ impl Drawing {
             styles(&DARK)
         )
     }
+}
+
+/// `point`, moved by `by`.
+pub fn offset(point: Point, by: Point) -> Point {
+    [point[0] + by[0], point[1] + by[1]]
+}
+
+/// The point at `radius` from `center`, in a direction that is `degrees` counterclockwise from the right.
+pub fn polar(center: Point, radius: f64, degrees: f64) -> Point {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    [center[0] + radius * cos, center[1] - radius * sin]
+}
+
+/// `n + 1` values from `low` to `high`.
+pub fn steps(low: f64, high: f64, n: u32) -> impl Iterator<Item = f64> {
+    (0..=n).map(move |i| low + (high - low) * f64::from(i) / f64::from(n))
 }
 
 fn list(points: &[Point]) -> String {
@@ -297,6 +313,12 @@ impl View {
     }
 }
 
+/// A view with this origin and scale, and the position of a point by its x and y.
+pub fn plane(origin: Point, scale: f64) -> (View, impl Fn(Vec3) -> Point + Copy) {
+    let view = View { origin, scale };
+    (view, move |v| view.at(f64::from(v.x), f64::from(v.y)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -305,28 +327,33 @@ mod tests {
     fn a_drawing_holds_what_was_drawn() {
         let mut drawing = Drawing::new("a < b", 100.0, 50.0);
         let view = View { origin: [10.0, 40.0], scale: 10.0 };
-        drawing.arrow(view.at(0.0, 0.0), view.at(3.0, 0.0), Pen::new(Ink::Color(9)));
+        drawing.arrow(view.at(0.0, 0.0), view.at(3.0, 0.0), Ink::Color(9).pen(3.0));
         drawing.rectangle(view.at(1.0, 1.0), view.at(2.0, 3.0), Ink::Faint, 0.25);
-        drawing.circle([50.0, 25.0], 10.0, Pen::new(Ink::Text).wide(1.5).dashed());
-        drawing.text([5.0, 12.0], Anchor::Start, TEXT, Ink::Text, "t & u");
-        drawing.text_upwards([5.0, 25.0], SMALL, Ink::Faint, "up");
+        drawing.circle([50.0, 25.0], 10.0, Ink::Text.pen(1.5).dashed());
+        drawing.text([5.0, 12.0], Start, TEXT, Ink::Text, "t & u");
         insta::assert_snapshot!(drawing.svg());
     }
 
     #[test]
-    fn an_axis_begins_at_zero_and_ends_at_one() {
+    fn positions_lie_where_they_are_said_to_lie() {
         for axis in [Axis::linear(-2.0, 6.0), Axis::logarithmic(0.5, 32.0)] {
             assert_eq!([axis.share(axis.low), axis.share(axis.high)], [0.0, 1.0]);
         }
         assert_eq!(Axis::linear(-2.0, 6.0).share(2.0), 0.5);
         // The middle of a logarithmic axis is the geometric mean of its ends, but for the rounding of two logarithms.
         assert!((Axis::logarithmic(0.5, 32.0).share(4.0) - 0.5).abs() < 1e-12);
+        let plot = Plot::new(Axis::linear(0.0, 1.0), Axis::linear(0.0, 10.0), [50.0, 400.0], [200.0, 300.0]);
+        assert_eq!([plot.at(0.0, 0.0), plot.at(1.0, 10.0)], [[50.0, 400.0], [250.0, 100.0]]);
+        assert_eq!(steps(1.0, 2.0, 4).collect::<Vec<_>>(), [1.0, 1.25, 1.5, 1.75, 2.0]);
+        let [x, y] = polar([10.0, 10.0], 5.0, 90.0);
+        // The cosine of 90 degrees is rounded.
+        assert!((x - 10.0).abs() < 1e-12 && y == 5.0);
     }
 
     #[test]
     fn an_arrow_without_length_is_not_drawn() {
         let mut drawing = Drawing::new("", 10.0, 10.0);
-        drawing.arrow([1.0, 1.0], [1.0, 1.0], Pen::new(Ink::Text));
+        drawing.arrow([1.0, 1.0], [1.0, 1.0], Ink::Text.pen(3.0));
         assert!(!drawing.svg().contains("polygon"));
     }
 

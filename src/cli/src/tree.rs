@@ -1,13 +1,14 @@
 //! `raykata tree`: the rays behind the first sample of one pixel, as text, JSON or a graph.
 
-use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
-use crate::kits::{Choice, Need, Source, root};
-use crate::quality_options::Memory;
-use crate::report::{load_scene, say};
+use crate::args::{Argument, Given, Opt, Spec, names};
+use crate::kits::Choice;
+use crate::quality_options::{MEMORY, limits};
+use crate::report::{job, load_scene, say};
 use anyhow::{Result, bail};
-use raykata::kit::{RayKind, RenderJob, TracedRay, View, kit_error};
+use raykata::kit::{RayKind, RenderJob, TracedRay, kit_error};
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::Path;
+use std::process::ExitCode;
 
 const FORMATS: [(&str, Format); 3] = [("text", Format::Text), ("json", Format::Json), ("dot", Format::Dot)];
 
@@ -28,36 +29,13 @@ pub static SPEC: Spec = Spec {
             .choices(&names(&FORMATS)),
         ],
         Choice::OPTIONS,
-        Memory::OPTIONS,
+        &[MEMORY],
     ],
 };
 
-/// The scene, the pixel and the format.
-pub struct Options {
-    scene: PathBuf,
-    pixel: (u32, u32),
-    kit: Choice,
-    format: Format,
-    memory: Memory,
-}
-
-impl Options {
-    /// Reads the arguments and options.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        let pixel = given.parsed("--pixel", parse_pixel)?;
-        Ok(Options {
-            scene: given.required(0)?.into(),
-            pixel: pixel.ok_or_else(|| given.misuse("`--pixel X,Y` is missing"))?,
-            kit: Choice::read(given)?,
-            format: given.choice("--format", &FORMATS)?.unwrap_or(Format::Text),
-            memory: Memory::read(given)?,
-        })
-    }
-}
-
 /// The format of a tree.
 #[derive(Clone, Copy)]
-pub enum Format {
+enum Format {
     /// Indented lines.
     Text,
     /// A list of rays, each with the index of its parent.
@@ -73,9 +51,14 @@ fn parse_pixel(text: &str) -> Result<(u32, u32), String> {
 }
 
 /// Traces the first sample of the pixel and prints its tree.
-pub fn run(options: &Options) -> Result<()> {
-    let scene = load_scene(&options.scene, options.memory.limits())?;
-    let ((x, y), film) = (options.pixel, scene.film);
+pub fn run(given: &Given) -> Result<ExitCode> {
+    let pixel = given.parsed("--pixel", parse_pixel)?;
+    let scene_file = Path::new(given.required(0)?);
+    let (x, y) = pixel.ok_or_else(|| given.misuse("`--pixel X,Y` is missing"))?;
+    let kit = Choice::read(given)?;
+    let format = given.choice("--format", &FORMATS)?.unwrap_or(Format::Text);
+    let scene = load_scene(scene_file, limits(given)?)?;
+    let film = scene.film;
     if x >= film.width || y >= film.height {
         bail!(
             "there is no pixel {x},{y}: columns go from 0 to {}, rows from 0 to {}",
@@ -83,42 +66,31 @@ pub fn run(options: &Options) -> Result<()> {
             film.height - 1
         );
     }
-    let root = root()?;
-    let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
-    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false, reuse: false };
-    let rays = kit_error::catch(|| source.fresh().trace(&job, x, y))?;
-    say(format_args!("{}", show(&rays, options.format)?));
-    Ok(())
-}
-
-/// The tree in this format.
-pub fn show(rays: &[TracedRay], format: Format) -> Result<String> {
-    Ok(match format {
-        Format::Text => as_text(rays),
-        Format::Json => serde_json::to_string_pretty(rays)? + "\n",
-        Format::Dot => as_dot(rays),
-    })
+    let kit = kit.start()?;
+    let job = RenderJob { threads: 1, count: false, reuse: false, ..job(scene) };
+    let rays = kit_error::catch(|| kit.trace(&job, x, y))?;
+    let tree = match format {
+        Format::Text => as_text(&rays),
+        Format::Json => serde_json::to_string_pretty(&rays)? + "\n",
+        Format::Dot => as_dot(&rays),
+    };
+    say(format_args!("{tree}"));
+    Ok(ExitCode::SUCCESS)
 }
 
 fn as_text(rays: &[TracedRay]) -> String {
     let mut text = String::new();
     for (root, _) in rays.iter().enumerate().filter(|(_, ray)| ray.parent.is_none()) {
-        write_below(rays, root, &mut text);
+        write_below(rays, root, 0, &mut text);
     }
     text
 }
 
-fn write_below(rays: &[TracedRay], index: usize, text: &mut String) {
-    let ray = &rays[index];
-    let indent = "  ".repeat(levels_above(rays, index));
-    let _ = writeln!(text, "{indent}{}", label(ray));
+fn write_below(rays: &[TracedRay], index: usize, level: usize, text: &mut String) {
+    let _ = writeln!(text, "{:1$}{2}", "", 2 * level, label(&rays[index]));
     for (child, _) in rays.iter().enumerate().filter(|(_, child)| child.parent == Some(index)) {
-        write_below(rays, child, text);
+        write_below(rays, child, level + 1, text);
     }
-}
-
-fn levels_above(rays: &[TracedRay], index: usize) -> usize {
-    std::iter::successors(rays[index].parent, |&parent| rays[parent].parent).count()
 }
 
 /// The kind, depth, weight and hit of a ray in one line.

@@ -1,37 +1,20 @@
 //! What is shown, and what keys, saves and events do to it.
 
-use crate::course::{Check, Course, Stage};
+use crate::course::{Check, Stage, keep, stages};
 use crate::pixels::Pixels;
 use crate::reset::{function_at, reset};
 use crate::run::{Event, Task};
+use crossterm::event::KeyCode;
 use live::compiler::CompilerError;
+use live::files::names_in;
 use raykata_cli::verdicts::Verdict;
 use std::path::Path;
 use std::time::Duration;
 
-/// A key of the student.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Key {
-    /// A letter or another sign.
-    Sign(char),
-    /// Enter.
-    Enter,
-    /// Escape.
-    Escape,
-    /// Backspace.
-    Back,
-    /// The arrow up.
-    Up,
-    /// The arrow down.
-    Down,
-}
-
 /// What must be done next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// Nothing.
     Nothing,
-    /// Ends the program.
     Quit,
     /// Starts a run in place of the one before.
     Start(Task),
@@ -99,8 +82,8 @@ impl Page {
 
 /// The state of the program.
 pub struct App {
-    /// The course, with the last verdicts.
-    pub course: Course,
+    /// The stages of the course, with the last verdicts.
+    pub stages: Vec<Stage>,
     /// The index of the stage.
     pub stage: usize,
     /// The index of the check that is shown, in its stage.
@@ -124,10 +107,10 @@ pub struct App {
 impl App {
     /// Begins with this stage, or with the first one that is not done, and returns the first action.
     pub fn new(stage: Option<u8>, size: (usize, usize)) -> (App, Action) {
-        let course = Course::new();
-        let index = stage.and_then(|stage| course.stages.iter().position(|one| one.number == stage));
+        let stages = stages();
+        let index = stage.and_then(|stage| stages.iter().position(|one| one.number == stage));
         let app = App {
-            course,
+            stages,
             stage: index.unwrap_or(0),
             check: 0,
             is_chosen: false,
@@ -144,7 +127,7 @@ impl App {
 
     /// The stage that is shown.
     pub fn stage(&self) -> &Stage {
-        &self.course.stages[self.stage]
+        &self.stages[self.stage]
     }
 
     /// The check that is shown.
@@ -155,12 +138,13 @@ impl App {
     /// The checks of the list, as the indices of their stage and of the check in it.
     pub fn listed(&self, word: &str) -> Vec<(usize, usize)> {
         let word = word.to_lowercase();
-        let fits = |check: &Check| check.name.contains(&word) || check.title.to_lowercase().contains(&word);
+        let fits =
+            |check: &Check| check.name.contains(&word) || check.entry.title.to_lowercase().contains(&word);
         let of_stage = |(index, stage): (usize, &Stage)| -> Vec<(usize, usize)> {
             let checks = stage.checks.iter().enumerate();
             checks.filter(|(_, check)| fits(check)).map(|(check, _)| (index, check)).collect()
         };
-        self.course.stages.iter().enumerate().flat_map(of_stage).collect()
+        self.stages.iter().enumerate().flat_map(of_stage).collect()
     }
 
     /// A file of the student has changed.
@@ -199,7 +183,7 @@ impl App {
             Event::Compiled(time) => (self.compiled, self.phase) = (time, Phase::Working),
             Event::Errors(errors) => self.phase = Phase::Errors(errors),
             Event::Broken(why) => self.phase = Phase::Broken(why),
-            Event::Verdict(verdict) => self.course.keep(verdict),
+            Event::Verdict(verdict) => keep(&mut self.stages, verdict),
             Event::Picture(pixels) => {
                 self.phase = Phase::Ended { compiled: self.compiled, checked: Duration::ZERO };
                 if let Page::Picture(shown) = &mut self.page {
@@ -217,7 +201,7 @@ impl App {
 
     /// All checks of the stage have a verdict: shows what comes next.
     fn checked(&mut self) -> Action {
-        let is_last = self.stage + 1 == self.course.stages.len();
+        let is_last = self.stage + 1 == self.stages.len();
         if self.is_searching && self.stage().is_done() && !is_last {
             self.stage += 1;
             self.check = 0;
@@ -225,7 +209,7 @@ impl App {
         }
         self.is_searching = false;
         if self.is_chosen && self.check().passes() {
-            self.note = format!("passes now: {}", self.check().title);
+            self.note = format!("passes now: {}", self.check().entry.title);
             self.is_chosen = false;
         }
         if !self.is_chosen {
@@ -242,33 +226,30 @@ impl App {
     }
 
     /// A key was pressed.
-    pub fn key(&mut self, key: Key) -> Action {
+    pub fn key(&mut self, key: KeyCode) -> Action {
         self.note.clear();
         match self.page {
             Page::List { .. } => return self.key_in_list(key),
-            Page::Reset { .. } if key == Key::Sign('y') => return Action::Reset,
-            Page::Reset { .. } => {
-                self.page = Page::CHECK;
-                return Action::Nothing;
-            }
+            Page::Reset { .. } if key == KeyCode::Char('y') => return Action::Reset,
+            Page::Reset { .. } => return self.back(),
             _ => {}
         }
         match key {
-            Key::Sign('q') => return Action::Quit,
-            Key::Sign('n') | Key::Down => return self.next(),
-            Key::Sign('p') | Key::Up => {
+            KeyCode::Char('q') => return Action::Quit,
+            KeyCode::Char('n') | KeyCode::Down => return self.next(),
+            KeyCode::Char('p') | KeyCode::Up => {
                 if let Some(previous) = self.stage().previous_open(self.check) {
                     return self.go(self.stage, previous);
                 }
             }
-            Key::Sign('l') => {
+            KeyCode::Char('l') => {
                 let all = self.listed("");
                 let at = all.iter().position(|place| *place == (self.stage, self.check)).unwrap_or(0);
                 self.page = Page::List { word: String::new(), is_typing: false, at };
             }
-            Key::Sign('o') => return Action::Edit,
-            Key::Sign('r') => return Action::AskReset,
-            Key::Sign('v') => {
+            KeyCode::Char('o') => return Action::Edit,
+            KeyCode::Char('r') => return Action::AskReset,
+            KeyCode::Char('v') => {
                 if matches!(self.page, Page::Picture(_)) {
                     self.page = Page::CHECK;
                 } else {
@@ -276,18 +257,18 @@ impl App {
                 }
                 return self.run();
             }
-            Key::Sign('h') => {
+            KeyCode::Char('h') => {
                 let hints = match self.page {
                     Page::Check { hints, .. } => hints % 3 + 1,
                     _ => 1,
                 };
                 self.page = Page::Check { hints, unfolded: false };
             }
-            Key::Sign('e') => {
+            KeyCode::Char('e') => {
                 let unfolded = !matches!(self.page, Page::Check { unfolded: true, .. });
                 self.page = Page::Check { hints: 0, unfolded };
             }
-            Key::Escape => self.page = Page::CHECK,
+            KeyCode::Esc => self.page = Page::CHECK,
             _ => {}
         }
         Action::Nothing
@@ -297,7 +278,7 @@ impl App {
     fn next(&mut self) -> Action {
         match self.stage().next_open(self.check, false) {
             Some(next) => self.go(self.stage, next),
-            None if self.stage + 1 < self.course.stages.len() => {
+            None if self.stage + 1 < self.stages.len() => {
                 let action = self.go(self.stage + 1, 0);
                 self.is_chosen = false;
                 action
@@ -306,39 +287,39 @@ impl App {
         }
     }
 
-    fn key_in_list(&mut self, key: Key) -> Action {
+    /// Shows the check again.
+    fn back(&mut self) -> Action {
+        self.page = Page::CHECK;
+        Action::Nothing
+    }
+
+    fn key_in_list(&mut self, key: KeyCode) -> Action {
         let Page::List { word, is_typing, at } = &self.page else { return Action::Nothing };
         let (mut word, mut is_typing, mut at) = (word.clone(), *is_typing, *at);
         let listed = self.listed(&word);
         match key {
-            Key::Enter => {
+            KeyCode::Enter => {
                 if let Some(&(stage, check)) = listed.get(at) {
                     return self.go(stage, check);
                 }
             }
-            Key::Escape if is_typing => (word, is_typing) = (String::new(), false),
-            Key::Escape => {
-                self.page = Page::CHECK;
-                return Action::Nothing;
-            }
-            Key::Up => at = at.saturating_sub(1),
-            Key::Down => at = (at + 1).min(listed.len().saturating_sub(1)),
-            Key::Sign(sign) if is_typing => {
+            KeyCode::Esc if is_typing => (word, is_typing) = (String::new(), false),
+            KeyCode::Esc => return self.back(),
+            KeyCode::Up => at = at.saturating_sub(1),
+            KeyCode::Down => at = (at + 1).min(listed.len().saturating_sub(1)),
+            KeyCode::Char(sign) if is_typing => {
                 word.push(sign);
                 at = 0;
             }
-            Key::Back if is_typing => {
+            KeyCode::Backspace if is_typing => {
                 word.pop();
                 at = 0;
             }
-            Key::Sign('/') => is_typing = true,
-            Key::Sign('p') => at = at.saturating_sub(1),
-            Key::Sign('n') => at = (at + 1).min(listed.len().saturating_sub(1)),
-            Key::Sign('l') => {
-                self.page = Page::CHECK;
-                return Action::Nothing;
-            }
-            Key::Sign('q') => return Action::Quit,
+            KeyCode::Char('/') => is_typing = true,
+            KeyCode::Char('p') => at = at.saturating_sub(1),
+            KeyCode::Char('n') => at = (at + 1).min(listed.len().saturating_sub(1)),
+            KeyCode::Char('l') => return self.back(),
+            KeyCode::Char('q') => return Action::Quit,
             _ => {}
         }
         self.page = Page::List { word, is_typing, at };
@@ -395,9 +376,8 @@ impl App {
 
 /// The files of a stage, from the root of the kit.
 fn files_of(root: &Path, stage: u8) -> Vec<String> {
-    let entries = std::fs::read_dir(live::exercises(root)).into_iter().flatten().flatten();
-    let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-    let mut names: Vec<String> = names.filter(|name| name.starts_with(&format!("stage{stage}_"))).collect();
+    let mut names = names_in(&live::exercises(root));
+    names.retain(|name| name.starts_with(&format!("stage{stage}_")));
     names.sort();
     names.into_iter().map(|name| format!("exercises/src/{name}")).collect()
 }
@@ -422,7 +402,7 @@ mod tests {
     use raykata_cli::verdicts::CheckVerdict;
 
     fn tell(app: &mut App, check: usize, verdict: Verdict) {
-        let name = app.stage().checks[check].name.clone();
+        let name = app.stage().checks[check].name.to_owned();
         app.event(Event::Verdict(CheckVerdict { check: name, verdict }));
     }
 
@@ -460,7 +440,7 @@ mod tests {
         end(&mut app);
         let mut visited = vec![app.check];
         for key in "nnnpp".chars() {
-            app.key(Key::Sign(key));
+            app.key(KeyCode::Char(key));
             visited.push(app.check);
         }
         assert_eq!(visited, [1, 4, 6, 1, 6, 4]);
@@ -471,7 +451,7 @@ mod tests {
         let (mut app, _) = App::new(Some(1), (80, 24));
         all(&mut app, &failed());
         end(&mut app);
-        app.key(Key::Sign('n'));
+        app.key(KeyCode::Char('n'));
         assert_eq!(app.saved(), Action::Start(Task::Check(1)));
         end(&mut app);
         assert_eq!(app.check, 1, "it still fails");
@@ -486,19 +466,19 @@ mod tests {
         let (mut app, _) = App::new(Some(1), (80, 24));
         all(&mut app, &Verdict::Passed);
         assert_eq!(end(&mut app), Action::Nothing, "a stage that was asked for stays");
-        assert_eq!(app.key(Key::Sign('n')), Action::Start(Task::Check(2)));
+        assert_eq!(app.key(KeyCode::Char('n')), Action::Start(Task::Check(2)));
     }
 
     #[test]
     fn the_list_is_searched_and_leads_to_a_check() {
         let (mut app, _) = App::new(Some(1), (80, 24));
-        app.key(Key::Sign('l'));
-        app.key(Key::Sign('/'));
-        "refract".chars().for_each(|sign| _ = app.key(Key::Sign(sign)));
+        app.key(KeyCode::Char('l'));
+        app.key(KeyCode::Char('/'));
+        "refract".chars().for_each(|sign| _ = app.key(KeyCode::Char(sign)));
         let found = app.listed("refract");
         assert!(!found.is_empty() && found.len() < 40, "{}", found.len());
-        app.key(Key::Down);
-        let action = app.key(Key::Enter);
+        app.key(KeyCode::Down);
+        let action = app.key(KeyCode::Enter);
         assert_eq!((app.stage, app.check), found[1]);
         assert_eq!(action, Action::Start(Task::Check(app.stage().number)));
         assert_eq!(app.page, Page::CHECK);
@@ -514,7 +494,7 @@ mod tests {
         let levels: Vec<usize> = "hhhh"
             .chars()
             .map(|key| {
-                app.key(Key::Sign(key));
+                app.key(KeyCode::Char(key));
                 hints(&app)
             })
             .collect();
@@ -524,14 +504,14 @@ mod tests {
     #[test]
     fn the_picture_is_rendered_again_at_each_save() {
         let (mut app, _) = App::new(Some(4), (80, 24));
-        let Action::Start(Task::Render(4, width, height)) = app.key(Key::Sign('v')) else {
+        let Action::Start(Task::Render(4, width, height)) = app.key(KeyCode::Char('v')) else {
             panic!("no picture")
         };
         assert!(width <= 80 && height <= 36, "{width} × {height}");
         assert!(matches!(app.saved(), Action::Start(Task::Render(4, ..))));
         app.event(Event::Picture(Pixels(vec![vec![([1; 3], [2; 3])]])));
         assert!(matches!(app.page, Page::Picture(Some(_))));
-        assert_eq!(app.key(Key::Sign('v')), Action::Start(Task::Check(4)), "back to the checks");
+        assert_eq!(app.key(KeyCode::Char('v')), Action::Start(Task::Check(4)), "back to the checks");
     }
 
     #[test]
@@ -568,14 +548,14 @@ mod tests {
         let (mut app, _) = App::new(Some(1), (80, 24));
         tell(&mut app, 0, Verdict::Failed("stage 1\n  input     nearest_root()\n".into()));
         for (key, action) in [('n', Action::Nothing), ('y', Action::Reset)] {
-            assert_eq!(app.key(Key::Sign('r')), Action::AskReset);
+            assert_eq!(app.key(KeyCode::Char('r')), Action::AskReset);
             app.ask_reset(root.path());
             assert!(
                 matches!(&app.page, Page::Reset { name, .. } if name == "nearest_root"),
                 "{:?}",
                 app.page
             );
-            assert_eq!(app.key(Key::Sign(key)), action);
+            assert_eq!(app.key(KeyCode::Char(key)), action);
         }
         app.reset(root.path());
         assert_eq!(std::fs::read_to_string(file).unwrap(), stub);

@@ -1,9 +1,14 @@
 //! The errors of the compiler, condensed to the lines of the student.
 
+use crate::process::Process;
+use anyhow::{Result, bail};
+use serde::Serialize;
 use serde_json::Value;
+use std::io::{BufRead, BufReader};
+use std::process::Command;
 
 /// An error: where it is, what is wrong, and the line of code.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CompilerError {
     /// `file:line:column`, or nothing if it belongs to no place.
     pub place: String,
@@ -13,6 +18,26 @@ pub struct CompilerError {
     pub code: String,
     /// What the compiler says about the place, and what it suggests.
     pub notes: Vec<String>,
+}
+
+/// Runs a build of the exercises by cargo, and returns the errors of the compiler; `None` if the run is over.
+///
+/// # Errors
+///
+/// If cargo cannot be started, or fails for another reason.
+pub fn compile(process: &Process, mut cargo: Command) -> Result<Option<Vec<CompilerError>>> {
+    cargo.arg("--message-format=json");
+    let mut errors = Vec::new();
+    let lines = |out: &mut BufReader<_>| {
+        errors.extend(out.lines().map_while(Result::ok).filter_map(|line| error_in(&line)));
+        Ok(())
+    };
+    let Some((compiled, words)) = process.follow(cargo, lines)? else { return Ok(None) };
+    match compiled {
+        true => Ok(Some(Vec::new())),
+        false if errors.is_empty() => bail!("the exercises cannot be built:\n{}", words.trim()),
+        false => Ok(Some(errors)),
+    }
 }
 
 /// Reads one line that cargo writes with `--message-format=json`; `None` if it is no error.

@@ -16,18 +16,13 @@ mod screen;
 mod terminal;
 
 use anyhow::{Context, Result, bail};
+use raykata_cli::program::ended;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match watch() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::from(1)
-        }
-    }
+    ended(watch().map(|()| true))
 }
 
 fn watch() -> Result<()> {

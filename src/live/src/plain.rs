@@ -47,7 +47,7 @@ pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
 fn lines(app: &App) -> String {
     let stage = app.stage();
     let (checks, points) = stage.earned();
-    let head = format!("\nstage {} · {}: {checks} pass, {points}\n", stage.number, stage.title);
+    let head = format!("\nstage {} · {}: {checks} pass, {points}\n", stage.number, stage.entry.title);
     let body = match (&app.phase, &app.check().verdict) {
         (Phase::Errors(errors), _) => {
             let error = |error: &live::compiler::CompilerError| {

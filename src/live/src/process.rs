@@ -88,4 +88,13 @@ impl Process {
         result?;
         Ok(Some((succeeded, words)))
     }
+
+    /// The same for a process whose standard output is of no interest.
+    ///
+    /// # Errors
+    ///
+    /// If the process cannot be started.
+    pub fn follow_silently(&self, command: Command) -> Result<Option<(bool, String)>> {
+        self.follow(command, |out| Ok(_ = std::io::copy(out, &mut std::io::sink())?))
+    }
 }

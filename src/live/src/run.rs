@@ -3,13 +3,13 @@
 
 use crate::pixels::Pixels;
 use anyhow::{Context, Result, bail};
-use live::compiler::{CompilerError, error_in};
+use live::compiler::{CompilerError, compile};
 use live::process::Process;
 use live::scene_of;
 use raykata::worker::receive;
 use raykata_cli::kits::{Need, Program, Which, cargo_build};
 use raykata_cli::verdicts::CheckVerdict;
-use std::io::{BufRead, BufReader, ErrorKind};
+use std::io::{BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
@@ -83,31 +83,20 @@ fn work(root: &Path, task: Task, process: &Process, report: &impl Fn(Event)) -> 
         Task::Check(_) => Need::Checks,
         Task::Render(..) => Need::Frames,
     };
-    let (mut cargo, programs) = cargo_build(root, &[Program::worker(Which::Exercises, need)])?;
-    cargo.arg("--message-format=json");
+    let (mut cargo, [worker]) = cargo_build(root, [Program::worker(Which::Exercises, need)])?;
     // Compile for checks as `cargo test` does: without optimisation and incrementally, which takes a fifth of the time.
-    let in_debug =
-        programs.first().and_then(|program| program.parent()).is_some_and(|folder| folder.ends_with("debug"));
+    let in_debug = worker.parent().is_some_and(|folder| folder.ends_with("debug"));
     if matches!(task, Task::Check(_)) && in_debug {
         cargo.args(["--profile", "test"]);
     }
-    let mut errors = Vec::new();
-    let lines = |out: &mut BufReader<_>| {
-        errors.extend(out.lines().map_while(Result::ok).filter_map(|line| error_in(&line)));
-        Ok(())
-    };
-    let Some((compiled, words)) = process.follow(cargo, lines)? else { return Ok(()) };
-    if !compiled {
-        if errors.is_empty() {
-            bail!("the exercises cannot be built:\n{}", words.trim());
-        }
+    let Some(errors) = compile(process, cargo)? else { return Ok(()) };
+    if !errors.is_empty() {
         report(Event::Errors(errors));
         return Ok(());
     }
     report(Event::Compiled(begin.elapsed()));
-    let [worker] = &programs[..] else { bail!("the worker was not built") };
     match task {
-        Task::Check(stage) => check(root, worker, stage, process, report),
+        Task::Check(stage) => check(root, &worker, stage, process, report),
         Task::Render(stage, width, height) => render(root, stage, (width, height), process, report),
     }
 }
@@ -148,8 +137,7 @@ fn render(
     let mut command = Command::new(raykata);
     command.current_dir(root).arg("render").arg(&scene).arg("--out").arg(&out);
     command.args(["--kit", "exercises", "--size", &format!("{width}x{height}"), "--spp", "1"]);
-    let nothing = |out: &mut BufReader<_>| Ok(_ = std::io::copy(out, &mut std::io::sink())?);
-    match process.follow(command, nothing)? {
+    match process.follow_silently(command)? {
         None => {}
         Some((true, _)) => report(Event::Picture(Pixels::read(&out, width)?)),
         Some((false, words)) => bail!("{}", words.trim().trim_start_matches("error: ")),

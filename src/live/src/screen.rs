@@ -134,7 +134,7 @@ pub fn rows(app: &App, look: Look) -> Vec<Row> {
 fn head(app: &App, look: Look) -> Vec<Row> {
     let stage = app.stage();
     let (checks, points) = stage.earned();
-    let name = format!("stage {} · {}", stage.number, stage.title);
+    let name = format!("stage {} · {}", stage.number, stage.entry.title);
     let counts = format!("{checks}   {points}");
     let signs = stage.checks.iter().enumerate().map(|(index, check)| match index == app.check {
         true => format!("[{}]", look.sign(check)),
@@ -154,20 +154,20 @@ fn check(app: &App, hints: usize, unfolded: bool, columns: usize) -> Vec<Row> {
     let plain = |text: String| Row::Words(Tone::Plain, text);
     let mut rows = Vec::new();
     let mut law = |tone, word: &str| {
-        let title = wrapped(&format!("{word}: {} ({})", check.title, check.worth), columns);
+        let title = wrapped(&format!("{word}: {} ({})", check.entry.title, check.entry.worth()), columns);
         rows.extend(title.into_iter().map(|line| Row::Words(tone, line)));
-        rows.push(Row::Words(Tone::Quiet, format!("  slides: {}", check.slide)));
+        rows.push(Row::Words(Tone::Quiet, format!("  slides: {}", check.entry.slide)));
     };
     match &check.verdict {
         None => law(Tone::Plain, "no verdict yet"),
         Some(Verdict::Passed) => {
             law(Tone::Good, "passes");
-            if app.stage().is_done() {
-                let stage = app.stage();
+            let stage = app.stage();
+            if stage.is_done() {
                 rows.push(plain(String::new()));
                 rows.push(Row::Words(Tone::Good, format!("Stage {} is done.", stage.number)));
-                rows.push(plain(match app.course.stages.get(app.stage + 1) {
-                    Some(next) => format!("n goes on to stage {}: {}", next.number, next.files),
+                rows.push(plain(match app.stages.get(app.stage + 1) {
+                    Some(next) => format!("n goes on to stage {}: {}", next.number, next.entry.file),
                     None => "It was the last stage.".into(),
                 }));
                 rows.push(plain("v shows the picture.".into()));
@@ -177,9 +177,7 @@ fn check(app: &App, hints: usize, unfolded: bool, columns: usize) -> Vec<Row> {
             law(Tone::Plain, "not written yet");
             rows.push(plain(String::new()));
             rows.push(plain(place.clone()));
-            rows.extend(
-                wrapped(&format!("  {task}"), columns).into_iter().map(|line| Row::Words(Tone::Plain, line)),
-            );
+            rows.extend(wrapped(&format!("  {task}"), columns).into_iter().map(plain));
         }
         Some(Verdict::Failed(message)) => {
             law(Tone::Bad, "FAILS");
@@ -194,7 +192,7 @@ fn check(app: &App, hints: usize, unfolded: bool, columns: usize) -> Vec<Row> {
             }
         }
     }
-    for (level, hint) in check.hints.iter().enumerate().take(hints) {
+    for (level, hint) in check.entry.hints.iter().enumerate().take(hints) {
         rows.push(plain(String::new()));
         let text = wrapped(&format!("hint {}: {hint}", level + 1), columns);
         rows.extend(text.into_iter().map(plain));
@@ -239,10 +237,10 @@ fn list(app: &App, look: Look, word: &str, is_typing: bool, at: usize, room: usi
     let cursor = if is_typing { "_" } else { "" };
     let mut rows = vec![Row::Words(Tone::Plain, format!("{} checks   search: {word}{cursor}", listed.len()))];
     // Names are unique, and titles say more.
-    let chosen = listed.get(at).map(|&(stage, check)| app.course.stages[stage].checks[check].title.clone());
+    let chosen = listed.get(at).map(|&(stage, check)| app.stages[stage].checks[check].entry.title.clone());
     rows.push(Row::Words(Tone::Quiet, chosen.unwrap_or_default()));
     for (index, &(stage, check)) in listed.iter().enumerate().skip(first).take(room) {
-        let (number, check) = (app.course.stages[stage].number, &app.course.stages[stage].checks[check]);
+        let (number, check) = (app.stages[stage].number, &app.stages[stage].checks[check]);
         let mark = if index == at { '>' } else { ' ' };
         let tone = if index == at { Tone::Plain } else { Tone::Quiet };
         rows.push(Row::Words(tone, format!("{mark} {number:>2} {} {}", look.sign(check), check.name)));
@@ -316,8 +314,9 @@ fn wrapped(text: &str, columns: usize) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::{Action, Key};
+    use crate::app::Action;
     use crate::run::Event;
+    use crossterm::event::KeyCode;
     use raykata_cli::verdicts::CheckVerdict;
     use std::time::Duration;
 
@@ -336,7 +335,7 @@ mod tests {
         let (mut app, action) = App::new(Some(1), (80, 24));
         assert_ne!(action, Action::Nothing);
         app.event(Event::Compiled(Duration::from_millis(640)));
-        let names: Vec<String> = app.stage().checks.iter().map(|check| check.name.clone()).collect();
+        let names: Vec<String> = app.stage().checks.iter().map(|check| check.name.to_owned()).collect();
         for (index, check) in names.into_iter().enumerate() {
             let verdict = match index {
                 0 | 1 => Verdict::Passed,
@@ -362,7 +361,7 @@ mod tests {
     fn the_screen_fits_and_shows_the_check_that_comes_next() {
         let mut app = app();
         for (keys, name) in [("", "fails"), ("h", "hint"), ("e", "unfolded"), ("n", "gap"), ("l", "list")] {
-            keys.chars().for_each(|key| _ = app.key(Key::Sign(key)));
+            keys.chars().for_each(|key| _ = app.key(KeyCode::Char(key)));
             let shown = text(&app, LOOK);
             assert_eq!(shown.lines().count(), 24, "{shown}");
             assert!(shown.lines().all(|line| line.chars().count() <= 80), "{shown}");
@@ -378,7 +377,7 @@ mod tests {
         for (columns, height) in [(1, 1), (10, 3), (20, 6), (40, 12), (200, 60)] {
             app.size = (columns, height);
             for key in ['h', 'e', 'l', 'l', 'v', 'v'] {
-                app.key(Key::Sign(key));
+                app.key(KeyCode::Char(key));
                 let rows = rows(&app, LOOK);
                 assert!(rows.len() <= height, "{columns} × {height}");
             }
@@ -389,7 +388,7 @@ mod tests {
     fn without_unicode_every_sign_is_ascii() {
         let mut app = app();
         for key in ['h', 'h', 'h', 'e', 'l'] {
-            app.key(Key::Sign(key));
+            app.key(KeyCode::Char(key));
             assert!(text(&app, Look { has_unicode: false, has_true_colour: false }).is_ascii());
         }
     }

@@ -1,6 +1,6 @@
 //! The screen of a terminal: draws the rows, and reads the keys.
 
-use crate::app::{Action, App, Key};
+use crate::app::{Action, App};
 use crate::editor;
 use crate::run::{Report, Run};
 use crate::screen::{Look, Row, Tone, rows};
@@ -86,7 +86,7 @@ pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
                     let is_control = key.modifiers.contains(KeyModifiers::CONTROL);
                     action = match key.code {
                         KeyCode::Char('c' | 'd') if is_control => Action::Quit,
-                        code => key_of(code).map_or(Action::Nothing, |key| app.key(key)),
+                        code => app.key(code),
                     };
                 }
                 Event::Resize(columns, rows) => {
@@ -112,18 +112,6 @@ pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
 fn size() -> (usize, usize) {
     let (columns, rows) = terminal::size().unwrap_or((80, 24));
     (columns.into(), rows.into())
-}
-
-fn key_of(code: KeyCode) -> Option<Key> {
-    Some(match code {
-        KeyCode::Char(sign) => Key::Sign(sign),
-        KeyCode::Enter => Key::Enter,
-        KeyCode::Esc => Key::Escape,
-        KeyCode::Backspace => Key::Back,
-        KeyCode::Up => Key::Up,
-        KeyCode::Down => Key::Down,
-        _ => return None,
-    })
 }
 
 /// Draws all rows. Each one is overwritten and not cleared first, so that nothing flickers.

@@ -7,18 +7,18 @@ mod kit_folder;
 mod view_kit;
 
 use browser::Browser;
+use kit_folder::{PATIENCE, runs};
 use serde_json::Value;
 use std::fs;
 use std::net::{IpAddr, TcpStream, UdpSocket};
 use std::os::unix::fs::PermissionsExt;
-use std::path::Path;
 use std::time::{Duration, Instant};
-use view_kit::{Kit, PATIENCE, SCENE, View, answer};
+use view_kit::{SCENE, View, answer, new_kit, view};
 
 #[test]
 fn strangers_are_refused() {
-    let (kit, other) = (Kit::new(), Kit::new());
-    let (view, other) = (kit.view(), other.view());
+    let (kit, other) = (new_kit(), new_kit());
+    let (view, other) = (view(&kit), view(&other));
     let page = format!("/{}/", view.token);
     let (status, body) = view.get(&page);
     assert_eq!(status, 200);
@@ -49,6 +49,7 @@ fn strangers_are_refused() {
         }
         _ => println!("this machine has no other address"),
     }
+    assert_eq!(view.address, format!("http://127.0.0.1:{}/{}/", view.port, view.token));
     // The token is readable for the user alone.
     let mode = fs::metadata(kit.path("out/.view")).unwrap().permissions().mode();
     assert_eq!(mode & 0o777, 0o600);
@@ -56,8 +57,8 @@ fn strangers_are_refused() {
 
 #[test]
 fn no_path_leads_out_of_the_reports() {
-    let kit = Kit::new();
-    let view = kit.view();
+    let kit = new_kit();
+    let view = view(&kit);
     let at = |path: &str| view.get(&format!("/{}/{path}", view.token));
     assert_eq!(at("out/a-cost/cost.html"), (200, "<title>cost</title>".into()));
     for path in [
@@ -79,8 +80,8 @@ fn no_path_leads_out_of_the_reports() {
 
 #[test]
 fn messages_show_the_picture_from_coarse_to_fine() {
-    let kit = Kit::new();
-    let view = kit.view();
+    let kit = new_kit();
+    let view = view(&kit);
     let mut events = view.events();
     // Every pass covers the whole picture, in this order.
     let mut passes: Vec<(String, u64)> = Vec::new();
@@ -126,24 +127,18 @@ fn messages_show_the_picture_from_coarse_to_fine() {
 
 #[test]
 fn each_save_renders_again_and_ends_what_is_stale() {
-    let kit = Kit::new();
-    let view = kit.view();
+    let kit = new_kit();
+    let view = view(&kit);
     let mut events = view.events();
     events.wait_for_phase("done");
     // Code that never ends is ended by the next save.
     kit.save("// loop");
+    let looping = kit.wait_for_file("looping");
     let begin = Instant::now();
-    let looping = loop {
-        match fs::read_to_string(kit.path("looping")) {
-            Ok(text) if text.ends_with('\n') => break text.trim().parse().unwrap(),
-            _ => assert!(begin.elapsed() < PATIENCE, "no endless loop"),
-        }
-        std::thread::sleep(Duration::from_millis(20));
-    };
     kit.save("// an error");
     let errors = events.wait_for("errors", |data| data["errors"] != Value::Array(Vec::new()));
     assert_eq!(errors["errors"][0]["place"], "exercises/src/stage1_shapes.rs:7:4");
-    while runs(looping) {
+    while runs(&looping) {
         assert!(begin.elapsed() < PATIENCE, "the run before the save is still there");
         std::thread::sleep(Duration::from_millis(20));
     }
@@ -164,8 +159,8 @@ fn each_save_renders_again_and_ends_what_is_stale() {
 
 #[test]
 fn two_pages_follow_one_kit() {
-    let kit = Kit::new();
-    let views = [kit.view(), kit.view()];
+    let kit = new_kit();
+    let views = [view(&kit), view(&kit)];
     let mut all = views.each_ref().map(View::events);
     all.iter_mut().for_each(|events| events.wait_for_phase("done"));
     for save in ["// red", "// green!", "// red again"] {
@@ -177,11 +172,6 @@ fn two_pages_follow_one_kit() {
             });
         }
     }
-}
-
-/// Whether a process runs.
-fn runs(id: i32) -> bool {
-    nix::sys::signal::kill(nix::unistd::Pid::from_raw(id), None).is_ok()
 }
 
 /// The middle of an element in the window.
@@ -197,8 +187,8 @@ fn middle(browser: &mut Browser, id: &str) -> (f64, f64) {
 #[test]
 fn the_page_works_in_a_browser() {
     let Some(mut browser) = Browser::start().unwrap() else { return };
-    let kit = Kit::new();
-    let mut view = kit.view();
+    let kit = new_kit();
+    let mut view = view(&kit);
     browser.window(1200, 900, false).unwrap();
     browser.open(&view.address).unwrap();
     // Tiles arrive, and the canvas has their colour.
@@ -271,7 +261,7 @@ fn the_page_works_in_a_browser() {
     drop(view);
     browser.wait_for("document.body.dataset.phase === 'lost'").unwrap();
     kit.save("// green again");
-    view = kit.view();
+    view = view_kit::view(&kit);
     assert_eq!(view.address, address);
     browser.wait_for(&format!("document.body.dataset.connected === 'yes' && {color} === '0,255,0'")).unwrap();
     let uncaught: Vec<&String> = browser
@@ -280,12 +270,4 @@ fn the_page_works_in_a_browser() {
         .filter(|one| !one.contains("ERR_") && !one.contains("Failed to load"))
         .collect();
     assert!(uncaught.is_empty(), "{uncaught:?}");
-}
-
-#[test]
-fn the_address_is_one_that_a_terminal_can_open() {
-    let kit = Kit::new();
-    let view = kit.view();
-    assert_eq!(view.address, format!("http://127.0.0.1:{}/{}/", view.port, view.token));
-    assert!(Path::new(&kit.path("out/.view")).is_file());
 }

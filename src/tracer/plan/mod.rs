@@ -1,20 +1,19 @@
 //! What a frame computes, and what it leaves out while exercises are not written yet.
 
 mod accelerator;
+mod capability;
 pub mod written;
 
 use crate::effects::Effects;
 use crate::kit::{Function, RenderJob, StudentFunctions, View};
 use crate::light_path::PathEffects;
-use crate::material::{Emitter, Light, Material};
 use crate::scene::{
-    Accelerator, Background, Node, Precision, Quality, Sampler, Scene, SphereMethod, TextureFilter,
-    TriangleMethod,
+    Accelerator, Background, Precision, Quality, Scene, SphereMethod, TextureFilter, TriangleMethod,
 };
-use crate::shape::Shape;
 use crate::tracer::search::intersection::{ShapeTests, SphereTest, TriangleTest};
 use crate::world::WorldFunctions;
 use accelerator::choose_accelerator;
+use capability::capabilities;
 use glam::Vec3;
 use written::Written;
 
@@ -117,213 +116,13 @@ impl Plan {
             notes,
         };
         // Leave out effects and shapes whose functions are not written, and note that.
-        plan.leave_out_shapes(scene, written);
-        plan.leave_out_normals(scene, written);
-        plan.leave_out_mirrors(scene, written);
-        plan.leave_out_distribution(scene, written);
-        plan.leave_out_images(scene, written);
-        plan.leave_out_spaces(scene);
+        for capability in capabilities(plan.tests) {
+            capability.decide(&mut plan, scene, written);
+        }
         plan.leave_out_indirect_light(scene, written);
         let images = plan.effects.materials.iter().any(|material| material.texture);
         plan.mipmaps = images && scene.quality.texture_filter == TextureFilter::Mipmap;
         plan
-    }
-
-    fn leave_out_shapes<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
-        let spheres: &[Function] = match self.tests.spheres {
-            SphereTest::Algebraic => &[Function::sphere_algebraic],
-            SphereTest::Geometric => &[Function::sphere_geometric],
-            SphereTest::StableRoots => &[Function::stable_roots, Function::nearest_root],
-            SphereTest::InDouble => &[Function::sphere_in_double],
-        };
-        let is_sphere = |shape: &Shape| matches!(shape, Shape::Sphere(_));
-        let has_equation = |shape: &Shape| matches!(shape, Shape::PlaneEquation(_));
-        let is_plane = |shape: &Shape| matches!(shape, Shape::Plane(_)) || has_equation(shape);
-        for &function in spheres.iter().chain(&[Function::sphere_normal]) {
-            if self.world.spheres && !written.has(function) {
-                self.world.spheres = false;
-                self.note_if(
-                    shows(scene, is_sphere),
-                    &format!("spheres are left out: {function} is not written yet"),
-                );
-            }
-        }
-        if !written.has(Function::plane) {
-            self.world.planes = false;
-            // A plane that moves is tested by a point and a normal, however it is given.
-            let tested = |shape: &Shape, moves: bool| self.world.equations && has_equation(shape) && !moves;
-            let left_out = scene.shown().iter().any(|shown| {
-                let shape = scene.nodes[shown.node].shape.as_ref();
-                shape.is_some_and(|shape| is_plane(shape) && !tested(shape, shown.moves))
-            });
-            self.note_if(left_out, &format!("planes are left out: {} is not written yet", Function::plane));
-        }
-        self.note_if(
-            self.world.planes && !self.world.equations && shows(scene, has_equation),
-            &format!(
-                "planes that coefficients give are tested by a point and a normal: {} is not written yet",
-                Function::plane_by_coefficients
-            ),
-        );
-        let functions: &[Function] = match self.tests.triangles {
-            TriangleTest::Watertight => &[Function::watertight],
-            TriangleTest::Choice => &[Function::triangle_choice],
-            TriangleTest::Cramer => &[Function::triangle_cramer],
-            TriangleTest::Gram => &[Function::gram_scalars, Function::triangle_gram],
-            TriangleTest::InsideByPlanes => {
-                &[Function::plane, Function::inside_by_planes, Function::inside_by_areas]
-            }
-            TriangleTest::InsideByDirection => {
-                &[Function::plane, Function::inside_by_direction, Function::inside_by_areas]
-            }
-            TriangleTest::InsideByAreas => &[Function::plane, Function::inside_by_areas],
-            TriangleTest::InDouble => &[Function::triangle_in_double],
-        };
-        if let Some(missing) = functions.iter().find(|&&function| !written.has(function)) {
-            self.world.triangles = false;
-            let in_triangles = |shape: &Shape| {
-                matches!(
-                    shape,
-                    Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. }
-                ) || (self.world.placement.is_none() && !is_sphere(shape) && !is_plane(shape))
-            };
-            let shown = shows(scene, in_triangles);
-            self.note_if(shown, &format!("triangles and meshes are left out: {missing} is not written yet"));
-        }
-        self.note_if(
-            self.world.triangles && !self.world.one_sided && scene.meshes.iter().any(|mesh| mesh.one_sided),
-            &format!("one-sided meshes are hit from both sides: {} is not written yet", Function::backfacing),
-        );
-        self.note_if(
-            !self.facing,
-            "surfaces that are seen from inside are dark: `face_forward` of stage 1 is not written yet",
-        );
-    }
-
-    fn leave_out_normals<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
-        let mut smooth = scene.meshes.iter().filter(|mesh| mesh.smooth);
-        let averaged = smooth.clone().any(|mesh| mesh.mesh.normals.is_empty());
-        let is_curved = |node: &Node| matches!(node.shape, Some(Shape::Bezier { .. } | Shape::Nurbs { .. }));
-        let curved = scene.nodes.iter().any(is_curved);
-        let is_missing = self.smooth && self.world.vertex_normals.is_none();
-        self.note_if(
-            is_missing && averaged,
-            "smooth meshes whose files have no normals are flat: `vertex_normals` of stage 2 is not written yet",
-        );
-        self.note_if(
-            is_missing && curved,
-            "curved surfaces have flat parts: `vertex_normals` of stage 2 is not written yet",
-        );
-        let missing = [Function::shading_normal, Function::interpolate];
-        if let Some(missing) = missing.into_iter().find(|&function| !written.has(function)) {
-            self.note_if(
-                smooth.next().is_some(),
-                &format!("smooth meshes are flat: {missing} is not written yet"),
-            );
-            self.note_if(curved, &format!("curved surfaces have flat parts: {missing} is not written yet"));
-        }
-    }
-
-    fn leave_out_mirrors<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
-        if written.has_all(&[Function::scatter, Function::spawn_ray]) {
-            return;
-        }
-        let wanted = |m: &Material| m.mirror != Vec3::ZERO || m.transmission != Vec3::ZERO;
-        self.note_if(
-            scene.materials.iter().any(wanted),
-            "mirrors and glass spawn no secondary rays: stage 5 is not written yet",
-        );
-        for material in &mut self.effects.materials {
-            (material.mirror, material.transmission, material.glossy) = (false, false, false);
-        }
-    }
-
-    fn leave_out_distribution<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
-        let quality = &scene.quality;
-        let spreads = quality.sampler.spreads(quality.samples_per_pixel);
-        self.note_if(
-            spreads && !self.positions && quality.sampler != Sampler::LowDiscrepancy,
-            "the samples of a pixel lie anywhere in it: `pixel_position` of stage 6 is not written yet",
-        );
-        self.note_if(
-            quality.sampler == Sampler::Gaussian && !self.weights,
-            "all samples of a pixel have the same weight: `filter_pixel` and `gaussian_weight` of stage 6 \
-             are not written yet",
-        );
-        let jittered = written.has(Function::jittered);
-        if !(jittered && written.has_all(&[Function::sample_disk, Function::lens_ray])) {
-            let lens = scene.camera.lens.is_some_and(|lens| lens.aperture > 0.0);
-            self.note_if(lens, "the lens is a pinhole: stage 6 is not written yet");
-            self.effects.lens = false;
-        }
-        let area_lights = [Function::sample_rectangle, Function::sample_light_disk, Function::sample_sphere];
-        if !(jittered && written.has_all(&area_lights)) {
-            let area = |light: &Light| matches!(light.emitter, Emitter::Area { .. });
-            self.note_if(
-                scene.lights.iter().any(area) && quality.light_samples > 0,
-                "area lights shine from their centre: stage 6 is not written yet",
-            );
-            for light in &mut self.effects.lights {
-                (light.samples, light.area) = (light.samples.min(1), false);
-            }
-        }
-        if !(jittered && written.has(Function::sample_phong_lobe)) {
-            let glossy = self.effects.materials.iter().any(|m| m.glossy && (m.mirror || m.transmission));
-            self.note_if(glossy, "glossy reflection and refraction are sharp: stage 6 is not written yet");
-            for material in &mut self.effects.materials {
-                material.glossy = false;
-            }
-        }
-        let motion =
-            [Function::temporal_slot, Function::time_in_shutter, Function::lerp, Function::motion_bounds];
-        if !written.has_all(&motion) {
-            self.note_if(
-                scene.shown().iter().any(|shown| shown.moves),
-                "moving shapes stand still: stage 6 is not written yet",
-            );
-            self.effects.motion = false;
-        }
-    }
-
-    fn leave_out_images<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
-        self.note_if(
-            !scene.gamma2.is_empty() && !written.has(Function::decode_gamma),
-            "gamma 2 is decoded with the sRGB curve: `decode_gamma` of stage 4 is not written yet",
-        );
-        if self.images {
-            return;
-        }
-        self.note_if(
-            matches!(scene.background, Background::Map(_)),
-            "the environment map is not interpolated: `texture_color` of stage 7 is not written yet",
-        );
-        self.note_if(
-            scene.materials.iter().any(|material| material.texture.is_some()),
-            "images are left out: `texture_color` of stage 7 is not written yet",
-        );
-        for material in &mut self.effects.materials {
-            material.texture = false;
-        }
-    }
-
-    fn leave_out_spaces(&mut self, scene: &Scene) {
-        let round = |shape: &Shape| matches!(shape, Shape::Cylinder(_) | Shape::Cone(_) | Shape::Disk(_));
-        self.note_if(
-            self.world.placement.is_none() && self.world.triangles && shows(scene, round),
-            "cylinders, cones and disks are made of triangles: stage 8 is not written yet",
-        );
-        self.note_if(
-            self.world.subdivide.is_none() && scene.meshes.iter().any(|mesh| mesh.subdivisions > 0),
-            "meshes are not subdivided: `loop_subdivide` of stage 8 is not written yet",
-        );
-        self.note_if(
-            self.world.bezier_point.is_none() && shows(scene, |shape| matches!(shape, Shape::Bezier { .. })),
-            "curved surfaces are left out: `bezier_point` of stage 8 is not written yet",
-        );
-        self.note_if(
-            self.world.nurbs_point.is_none() && shows(scene, |shape| matches!(shape, Shape::Nurbs { .. })),
-            "B-spline and NURBS surfaces are left out: `nurbs_point` or `bspline_basis` of stage 8 is not written yet",
-        );
     }
 
     /// Decides whether paths compute indirect light.
@@ -356,17 +155,6 @@ impl Plan {
         self.ambient = Vec3::ZERO;
         self.paths = paths.bounces().then_some(paths);
     }
-
-    fn note_if(&mut self, missing: bool, what: &str) {
-        if missing {
-            self.notes.push(what.into());
-        }
-    }
-}
-
-/// Whether any node that is shown has a shape of this kind.
-fn shows(scene: &Scene, wanted: impl Fn(&Shape) -> bool) -> bool {
-    scene.shown().iter().any(|shown| scene.nodes[shown.node].shape.as_ref().is_some_and(&wanted))
 }
 
 fn choose_view<F: StudentFunctions>(wanted: View, written: &Written<F>, notes: &mut Vec<String>) -> View {

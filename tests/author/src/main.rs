@@ -4,16 +4,22 @@ use author::{bars, cases, corpus, gaps, gauntlet, generate, mutants, new_check, 
 #[cfg(target_os = "linux")]
 use author::{rehearsal, run_attacks};
 use grader::kits::root;
-use grader::program::{Command, Program, done, in_kit};
-use raykata_cli::cost;
+use grader::program::{Command, Program, done, exit_code, in_kit};
 use std::process::ExitCode;
 
-const PROGRAM: Program = Program {
+const PROGRAM: Program<bool> = Program {
     name: "author",
-    about: "Generate the exercises, and test the checks and the grader. Instructors run\n`grader`, students `raykata`.",
+    about: "Generate the exercises, and test the checks and the grader. Instructors run
+`grader`, students `raykata`.
+
+Exit codes: 0 success; 1 failure, for example a submission could not be graded
+or files differ; 2 the command line is wrong.",
+    help_explains: "explains a command.",
     commands: COMMANDS,
     groups: &[],
-    moved: (&[], ""),
+    without_command: None,
+    elsewhere: |_| Ok(String::new()),
+    ends: exit_code,
 };
 
 const COMMANDS: &[Command] = &[
@@ -29,12 +35,12 @@ const COMMANDS: &[Command] = &[
     #[cfg(target_os = "linux")]
     (&rehearsal::SPEC, |given| in_kit(rehearsal::Options::read(given), rehearsal::run)),
     (&gauntlet::SPEC, |given| done(in_kit(gauntlet::Options::read(given), gauntlet::run))),
-    (&gauntlet::COST, |given| gauntlet::cost(&cost::Options::read(given)?)),
+    (&gauntlet::COST, gauntlet::cost),
     (&bars::SPEC, |given| done(in_kit(bars::Options::read(given), bars::run))),
     (&cases::SPEC, |_| done(cases::list(&root()?))),
     (&generate::SPEC, |given| done(generate::write(&generate::folder(given)))),
 ];
 
 fn main() -> ExitCode {
-    PROGRAM.main()
+    grader::program::main(&PROGRAM)
 }

@@ -1,21 +1,31 @@
 //! `grader`: grades submissions and makes hand-outs. It is the program of instructors.
 
 use grader::kits::root;
-use grader::program::{Command, Program, done, in_kit};
+use grader::program::{Command, Program, done, exit_code, in_kit};
 use grader::{course, handout, release};
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
+use raykata_cli::args::Misuse;
 use std::process::ExitCode;
 
-const PROGRAM: Program = Program {
+const PROGRAM: Program<bool> = Program {
     name: "grader",
-    about: "Grade submissions and make hand-outs. Students run `raykata`, authors `author`.",
+    about: "Grade submissions and make hand-outs. Students run `raykata`, authors `author`.
+
+Exit codes: 0 success; 1 failure, for example a submission could not be graded
+or files differ; 2 the command line is wrong.",
+    help_explains: "explains a command.",
     commands: COMMANDS,
     groups: &[
         #[cfg(target_os = "linux")]
         ("export", "Write the files with which Gradescope, GitHub Classroom or Slurm grade."),
     ],
-    moved: (MOVED, "author"),
+    without_command: None,
+    elsewhere: |name| match MOVED.contains(&name) {
+        true => Err(Misuse::new(format!("this command moved: cargo run -p author -- {name}"))),
+        false => Ok(String::new()),
+    },
+    ends: exit_code,
 };
 
 const COMMANDS: &[Command] = &[
@@ -56,5 +66,5 @@ const MOVED: &[&str] = &[
 ];
 
 fn main() -> ExitCode {
-    PROGRAM.main()
+    grader::program::main(&PROGRAM)
 }

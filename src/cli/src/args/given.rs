@@ -113,6 +113,11 @@ impl Given {
         self.arguments.get(place..).unwrap_or_default()
     }
 
+    /// All arguments from this index on, as text.
+    pub fn texts(&self, place: usize) -> Vec<String> {
+        self.arguments(place).iter().map(|word| word.to_string_lossy().into_owned()).collect()
+    }
+
     /// The argument at this index; an error if it is missing.
     pub fn required(&self, place: usize) -> Result<&OsStr, Misuse> {
         self.argument(place).ok_or_else(|| {

@@ -2,12 +2,11 @@
 
 use super::measure::Measured;
 use crate::args::wrapped;
-use crate::report::Thousands;
+use crate::report::{Thousands, job, render};
 use anyhow::{Context, Result};
 use glam::{Vec2, Vec3};
 use raykata::camera::Camera;
 use raykata::film::{Film, encode_srgb};
-use raykata::frame::Unwatched;
 use raykata::kit::{Kit, RenderJob, View, kit_error};
 use raykata::scene::Scene;
 use raykata::world::camera_for;
@@ -24,13 +23,12 @@ pub fn write(out: &Path, kit: &dyn Kit, scene: &Scene, rows: &[Measured], depth:
         scene.quality = row.row.quality;
         (scene.film.width, scene.film.height) = (row.film.width, row.film.height);
         let file = |what: &str| out.join(format!("{what}-{}.png", file_name(&row.name)));
-        let job = RenderJob { scene, view: View::Work, seed: 0, threads: 0, count: true, reuse: false };
+        let job = RenderJob { view: View::Work, reuse: false, ..job(scene) };
         let edges = kit_error::catch(|| kit.outlines(&job, depth))?;
         if !edges.is_empty() {
             save(&with_edges(&row.film, &camera_for(&job.scene), &edges), &file("cells"))?;
         }
-        let work = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
-        works.push((file("tests"), work.film));
+        works.push((file("tests"), render(kit, &job)?.film));
     }
     // Scale all pictures by the most expensive pixel of all, so that they can be compared.
     let most = works.iter().flat_map(|(_, film)| &film.pixels).map(|p| p.element_sum()).fold(1.0, f32::max);

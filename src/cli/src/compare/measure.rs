@@ -1,13 +1,12 @@
 //! Measuring: each picture once with counts, then all pictures in turn for times.
 
 use super::rows::Row;
-use crate::report::{bar_of_steps, quartiles};
-use anyhow::{Context, Result};
+use crate::report::{bar_of_steps, job, quartiles, render};
+use anyhow::Result;
 use glam::Vec3;
 use raykata::count::Counts;
 use raykata::film::Film;
-use raykata::frame::Unwatched;
-use raykata::kit::{Kit, RenderJob, Rendering, StructureSize, View, kit_error};
+use raykata::kit::{Kit, RenderJob, Rendering, StructureSize};
 use raykata::scene::{Accelerator, Scene, Split};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -187,8 +186,6 @@ impl Bench<'_> {
         scene.quality = row.quality;
         scene.film.width = (scene.film.width / slice).max(1);
         scene.film.height = (scene.film.height / slice).max(1);
-        let job =
-            RenderJob { scene, view: View::Shaded, seed: 0, threads: self.threads, count, reuse: false };
-        kit_error::catch(|| self.kit.render(&job, &Unwatched))?.context("the frame was cancelled")
+        render(self.kit, &RenderJob { threads: self.threads, count, reuse: false, ..job(scene) })
     }
 }

@@ -9,16 +9,18 @@ mod plot;
 mod rows;
 mod table;
 
-use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
-use crate::kits::{Choice, Need, Source, root};
-use crate::quality_options::{QualityOptions, Threads};
-use crate::report::{load_scene, make_folder, with_at_most};
-use anyhow::{Context, Result};
+use crate::args::{Argument, Given, Opt, Spec, names};
+use crate::kits::Choice;
+use crate::program::exit_code;
+use crate::quality_options::{QualityOptions, THREADS, threads};
+use crate::report::{make_folder, name_of, with_at_most, write_file};
+use anyhow::Result;
 pub use drawing::{heat_color, projected, with_edges};
 use measure::Bench;
 use raykata::scene::Accelerator;
-use rows::Of;
-use std::path::{Path, PathBuf};
+use rows::Comparison;
+use std::path::Path;
+use std::process::ExitCode;
 
 /// `raykata compare`.
 pub static SPEC: Spec = Spec {
@@ -35,7 +37,7 @@ pub static SPEC: Spec = Spec {
                  spheres; or instances and copies \
                  [default: structures].",
             )
-            .choices(&names(&Of::NAMES)),
+            .choices(&names(&Comparison::NAMES)),
             Opt::value("--only", "LIST", "Only these accelerators, instead of all.")
                 .choices(&names(&Accelerator::NAMES))
                 .many(),
@@ -59,82 +61,51 @@ pub static SPEC: Spec = Spec {
             Opt::flag("--full", "Measure pictures of the scene's own size, not smaller ones."),
         ],
         Choice::OPTIONS,
-        Threads::OPTIONS,
+        THREADS,
         QualityOptions::OPTIONS,
     ],
 };
-
-/// The scene, what is compared, and how often.
-pub struct Options {
-    scene: PathBuf,
-    of: Of,
-    only: Vec<Accelerator>,
-    kit: Choice,
-    rounds: u32,
-    threads: Threads,
-    level: u32,
-    quality: QualityOptions,
-    out: Option<PathBuf>,
-    table: bool,
-    full: bool,
-}
 
 /// The most pixels of a measured picture, without `--full` and `--size`. The scene of the README then takes about 10 s on two
 /// cores.
 const MEASURED_PIXELS: f64 = 50_000.0;
 
-impl Options {
-    /// Reads the arguments and options.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        given.exclude("--only", "--of")?;
-        Ok(Options {
-            scene: given.required(0)?.into(),
-            of: given.choice("--of", &Of::NAMES)?.unwrap_or(Of::Structures),
-            only: given.choices("--only", &Accelerator::NAMES)?,
-            kit: Choice::read(given)?,
-            rounds: given.number("--rounds", 1..=1000)?.unwrap_or(3),
-            threads: Threads::read(given)?,
-            level: given.number("--level", 0..=64)?.unwrap_or(6),
-            quality: QualityOptions::read(given)?,
-            out: given.path("--out"),
-            table: given.has("--table"),
-            full: given.has("--full"),
-        })
-    }
-}
-
-/// Measures, prints the table and writes the rest. Returns whether all rows make the same picture; copies and
-/// instances may differ, because a ray that is transformed into another space is rounded, and so may tests of shapes.
-pub fn run(options: &Options) -> Result<bool> {
-    let mut scene = load_scene(&options.scene, options.quality.limits())?;
-    options.quality.apply(&mut scene)?;
-    let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
-    let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-compare")));
-    let root = root()?;
-    let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
-    let kit = &*source.fresh();
+/// Measures, prints the table and writes the rest. It succeeds if all rows make the same picture; copies and instances may
+/// differ, because a ray that is transformed into another space is rounded, and so may tests of shapes.
+pub fn run(given: &Given) -> Result<ExitCode> {
+    // Read the command line.
+    given.exclude("--only", "--of")?;
+    let file = Path::new(given.required(0)?);
+    let of = given.choice("--of", &Comparison::NAMES)?.unwrap_or(Comparison::Structures);
+    let only = given.choices("--only", &Accelerator::NAMES)?;
+    let (kit, quality, threads) = (Choice::read(given)?, QualityOptions::read(given)?, threads(given)?);
+    let rounds = given.number("--rounds", 1..=1000)?.unwrap_or(3);
+    let level = given.number("--level", 0..=64)?.unwrap_or(6);
+    let mut scene = quality.load(file)?;
+    let name = name_of(file)?;
+    let out = given.path("--out").unwrap_or_else(|| Path::new("out").join(format!("{name}-compare")));
+    let kit = &*kit.start()?;
 
     // Measure smaller pictures, unless a size is given.
-    if !options.full && !options.quality.names_a_size() {
+    if !given.has("--full") && !quality.names_a_size() {
         let small = with_at_most(MEASURED_PIXELS, &scene);
         if small.film != scene.film {
             println!("smaller pictures are measured; `--full` measures those of the scene's own size");
         }
         scene = small;
     }
-    let rows = rows::rows(options.of, &options.only, &scene);
-    let bench = Bench { kit, rounds: options.rounds, threads: options.threads.count() };
-    let measured = bench.measure(&scene, &rows)?;
+    let rows = rows::rows(of, &only, &scene);
+    let measured = Bench { kit, rounds, threads }.measure(&scene, &rows)?;
     let title = format!("{name}.toml, {} × {} pixels", scene.film.width, scene.film.height);
     table::print(&title, &measured);
-    if !options.table {
+    if !given.has("--table") {
         make_folder(&out)?;
-        drawing::write(&out, kit, &scene, &measured, options.level)?;
-        plot::write(&out.join("compare.svg"), &title, &measured)?;
-        table::write_json(&out.join("compare.json"), &measured)?;
+        drawing::write(&out, kit, &scene, &measured, level)?;
+        write_file(&out.join("compare.svg"), plot::svg(&title, &measured).as_bytes())?;
+        write_file(&out.join("compare.json"), &serde_json::to_vec_pretty(&measured)?)?;
         println!("\npictures, plot and numbers are in {}", out.display());
     }
     // Methods round differently, and so do rays that are transformed into the space of an instance.
-    Ok(matches!(options.of, Of::Instances | Of::Methods)
-        || measured.iter().all(|row| row.different_pixels == 0))
+    let may_differ = matches!(of, Comparison::Instances | Comparison::Methods);
+    Ok(exit_code(may_differ || measured.iter().all(|row| row.different_pixels == 0)))
 }

@@ -2,22 +2,13 @@
 //! same SVG file.
 
 use super::measure::Measured;
-use crate::svg::{Anchor, Drawing, Ink, Pen, SMALL, TEXT};
-use anyhow::{Context, Result};
-use std::path::Path;
+use crate::svg::{Drawing, End, Ink, Middle, SMALL, Start, TEXT};
 
 const ROW: f64 = 34.0;
 const LABEL: f64 = 270.0;
 const BARS: f64 = 270.0;
 const GAP: f64 = 95.0;
 const TOP: f64 = 110.0;
-
-/// Writes the plot.
-pub fn write(file: &Path, title: &str, rows: &[Measured]) -> Result<()> {
-    let text = svg(title, rows);
-    raykata::film::write_atomically(file, |out| std::io::Write::write_all(out, text.as_bytes()))
-        .with_context(|| format!("cannot write {}", file.display()))
-}
 
 /// One panel: numbers above 0, and their format.
 struct Panel {
@@ -51,13 +42,14 @@ const PANELS: [Panel; 2] = [
     },
 ];
 
-fn svg(title: &str, rows: &[Measured]) -> String {
+/// The plot.
+pub fn svg(title: &str, rows: &[Measured]) -> String {
     let height = TOP + ROW * rows.len() as f64 + 44.0;
     let mut drawing = Drawing::new(title, LABEL + 2.0 * (BARS + GAP), height);
-    drawing.text([10.0, 34.0], Anchor::Start, TEXT, Ink::Text, title);
+    drawing.text([10.0, 34.0], Start, TEXT, Ink::Text, title);
     for (i, row) in rows.iter().enumerate() {
         let y = TOP + ROW * (i as f64 + 0.7);
-        drawing.text([LABEL - 12.0, y], Anchor::End, SMALL, Ink::Text, &row.name);
+        drawing.text([LABEL - 12.0, y], End, SMALL, Ink::Text, &row.name);
     }
     for (i, panel) in PANELS.iter().enumerate() {
         panel.draw(&mut drawing, LABEL + i as f64 * (BARS + GAP), rows);
@@ -75,13 +67,13 @@ impl Panel {
             ((0.5 * least).log10().floor(), most.log10().ceil().max((0.5 * least).log10().floor() + 1.0));
         let x = |value: f64| left + BARS * ((value.log10() - low) / (high - low)).max(0.0);
         let bottom = TOP + ROW * rows.len() as f64;
-        drawing.text([left, TOP - 38.0], Anchor::Start, SMALL, Ink::Text, self.title);
-        drawing.text([left, TOP - 12.0], Anchor::Start, SMALL, Ink::Faint, self.what);
+        drawing.text([left, TOP - 38.0], Start, SMALL, Ink::Text, self.title);
+        drawing.text([left, TOP - 12.0], Start, SMALL, Ink::Faint, self.what);
         for power in low as i32..=high as i32 {
             let at = x(10f64.powi(power));
-            drawing.line([at, TOP], [at, bottom], Pen::new(Ink::Faint).wide(0.5));
+            drawing.line([at, TOP], [at, bottom], Ink::Faint.pen(0.5));
             let text = power_of_ten(power);
-            drawing.text([at, bottom + 28.0], Anchor::Middle, SMALL, Ink::Faint, &text);
+            drawing.text([at, bottom + 28.0], Middle, SMALL, Ink::Faint, &text);
         }
         let winner = values.iter().copied().fold(f64::INFINITY, f64::min);
         for (i, &value) in values.iter().enumerate() {
@@ -89,7 +81,7 @@ impl Panel {
             let (end, star) = (x(value), if value == winner { "*" } else { "" });
             drawing.rectangle([left, y], [end, y + 0.7 * ROW], self.ink, 1.0);
             let text = format!("{}{star}", (self.write)(value));
-            drawing.text([end + 6.0, y + 0.55 * ROW], Anchor::Start, SMALL, Ink::Text, &text);
+            drawing.text([end + 6.0, y + 0.55 * ROW], Start, SMALL, Ink::Text, &text);
         }
     }
 }

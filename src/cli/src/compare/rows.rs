@@ -6,7 +6,7 @@ use raykata::scene::{Accelerator, Precision, Quality, Scene, SphereMethod, Split
 
 /// What is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Of {
+pub enum Comparison {
     /// Every accelerator; the hierarchy with each of its splits.
     Structures,
     /// The optimisations of a scene graph search: volumes, skipping, sorting; and a hierarchy with a cache or
@@ -22,15 +22,15 @@ pub enum Of {
     Instances,
 }
 
-impl Of {
+impl Comparison {
     /// All of them by name.
-    pub const NAMES: [(&str, Of); 6] = [
-        ("structures", Of::Structures),
-        ("savings", Of::Savings),
-        ("heuristics", Of::Heuristics),
-        ("grids", Of::Grids),
-        ("methods", Of::Methods),
-        ("instances", Of::Instances),
+    pub const NAMES: [(&str, Comparison); 6] = [
+        ("structures", Comparison::Structures),
+        ("savings", Comparison::Savings),
+        ("heuristics", Comparison::Heuristics),
+        ("grids", Comparison::Grids),
+        ("methods", Comparison::Methods),
+        ("instances", Comparison::Instances),
     ];
 }
 
@@ -44,14 +44,14 @@ pub struct Row {
 }
 
 /// The lines. `only` names accelerators, or is empty.
-pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
+pub fn rows(of: Comparison, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
     let with = |name: &str, change: &dyn Fn(&mut Quality)| {
         let mut quality = scene.quality;
         change(&mut quality);
         Row { name: name.replace('_', " "), quality }
     };
     match of {
-        Of::Structures => {
+        Comparison::Structures => {
             let all: &[Accelerator] = if only.is_empty() { &Accelerator::ALL } else { only };
             let rows = |&accelerator: &Accelerator| match accelerator {
                 Accelerator::Bvh => Split::ALL
@@ -70,7 +70,7 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
             };
             all.iter().flat_map(rows).collect()
         }
-        Of::Savings => {
+        Comparison::Savings => {
             let graph = |name: &str, accelerator, savings| {
                 with(name, &|quality| (quality.accelerator, quality.savings) = (accelerator, savings))
             };
@@ -99,7 +99,7 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
                 with("bvh, 8 children per node", &|quality| quality.accelerator = Accelerator::WideBvh),
             ]
         }
-        Of::Heuristics => {
+        Comparison::Heuristics => {
             let (all, easy) = (KdHeuristics::default(), KdHeuristics::NONE);
             let tree = |name: &str, heuristics: KdHeuristics| {
                 with(name, &|quality| {
@@ -121,7 +121,7 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
                 tree("easy, stop at 60 %", KdHeuristics { stop_at_overlap: true, ..easy }),
             ]
         }
-        Of::Grids => {
+        Comparison::Grids => {
             let grid = |name: &str, n: u32| {
                 with(name, &|quality| {
                     (quality.accelerator, quality.grid_resolution) = (Accelerator::Grid, n);
@@ -130,7 +130,7 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
             let ladder = [1, 4, 8, 16, 32, 64, 128, 256].map(|n| grid(&format!("grid, {n} along"), n));
             [ladder.to_vec(), vec![grid("grid, by the formula", 0)]].concat()
         }
-        Of::Methods => {
+        Comparison::Methods => {
             let single = |name: String, change: &dyn Fn(&mut Quality)| {
                 with(&name, &|quality| {
                     quality.precision = Precision::Single;
@@ -146,7 +146,7 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
             let double = with("both, double precision", &|quality| quality.precision = Precision::Double);
             [triangles.to_vec(), spheres.to_vec(), vec![double]].concat()
         }
-        Of::Instances => vec![
+        Comparison::Instances => vec![
             with("one mesh, many places", &|quality| quality.copies = false),
             with("copies", &|quality| quality.copies = true),
         ],

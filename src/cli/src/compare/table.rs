@@ -1,79 +1,55 @@
-//! The table, with the best value of each column marked; and the same numbers as JSON.
+//! The table, with the best value of each column marked.
 
 use super::measure::Measured;
 use crate::args::wrapped;
+use crate::columns::Columns;
 use crate::report::{Bytes, Thousands};
-use anyhow::{Context, Result};
-use std::path::Path;
 
-/// A column: its head, its width, its numbers and their format. Smaller is better in all columns.
-struct Column {
-    head: &'static str,
-    width: usize,
-    value: fn(&Measured) -> Option<f64>,
-    write: fn(f64) -> String,
-    /// Whether the smallest number is marked.
-    contest: bool,
-}
+/// A column of numbers: its head, its numbers, their format, and whether the smallest one is marked.
+type Numbers = (&'static str, fn(&Measured) -> Option<f64>, fn(f64) -> String, bool);
 
-fn a_ray(one: &Measured, n: u64) -> Option<f64> {
-    Some(n as f64 / one.rays.max(1) as f64)
-}
-
-/// A column whose smallest number is marked.
-const fn contest(
-    head: &'static str,
-    width: usize,
-    value: fn(&Measured) -> Option<f64>,
-    write: fn(f64) -> String,
-) -> Column {
-    Column { head, width, value, write, contest: true }
-}
-
-/// A column without a mark.
-const fn plain(
-    head: &'static str,
-    width: usize,
-    value: fn(&Measured) -> Option<f64>,
-    write: fn(f64) -> String,
-) -> Column {
-    Column { head, width, value, write, contest: false }
-}
-
-/// Together with the names they take 80 columns.
-const COLUMNS: [Column; 7] = [
-    contest("build s", 7, |one| one.size.map(|_| one.build_seconds), |x| format!("{x:.3}")),
-    contest("memory", 8, |one| one.size.map(|_| one.bytes as f64), |x| Bytes(x as u64).to_string()),
-    plain("nodes", 9, |one| one.size.map(|size| size.nodes as f64), |x| Thousands(x as u64).to_string()),
-    plain("visits", 7, |one| a_ray(one, one.counts.node_visits), per_ray),
-    plain("boxes", 7, |one| a_ray(one, one.counts.box_tests), per_ray),
-    contest("tests", 7, |one| a_ray(one, one.counts.primitive_tests), per_ray),
-    contest("ns/ray", 7, |one| Some(one.nanoseconds), |x| Thousands(x as u64).to_string()),
+/// The columns of numbers. Smaller is better in all of them.
+const NUMBERS: [Numbers; 7] = [
+    ("build s", |one| one.size.map(|_| one.build_seconds), |x| format!("{x:.3}"), true),
+    ("memory", |one| one.size.map(|_| one.bytes as f64), |x| Bytes(x as u64).to_string(), true),
+    ("nodes", |one| one.size.map(|size| size.nodes as f64), |x| Thousands(x as u64).to_string(), false),
+    ("visits", |one| per_ray(one, one.counts.node_visits), with_tenths, false),
+    ("boxes", |one| per_ray(one, one.counts.box_tests), with_tenths, false),
+    ("tests", |one| per_ray(one, one.counts.primitive_tests), with_tenths, true),
+    ("ns/ray", |one| Some(one.nanoseconds), |x| Thousands(x as u64).to_string(), true),
 ];
+
+/// The names and the columns of numbers, whose last character is the mark. Together they take 80 columns.
+const COLUMNS: Columns = Columns("", &[-(NAMES as isize), 8, 9, 10, 8, 8, 8, 8]);
 
 /// The width of the column of names. A longer name has a line of its own.
 const NAMES: usize = 21;
 
-/// A mean per ray, with a tenth where it is small.
-fn per_ray(x: f64) -> String {
+fn per_ray(one: &Measured, n: u64) -> Option<f64> {
+    Some(n as f64 / one.rays.max(1) as f64)
+}
+
+/// A mean, with a tenth where it is small.
+fn with_tenths(x: f64) -> String {
     if x < 1000.0 { format!("{x:.1}") } else { Thousands(x as u64).to_string() }
 }
 
 /// Prints the table.
 pub fn print(title: &str, rows: &[Measured]) {
     println!("{title}");
-    let heads: String =
-        COLUMNS.iter().map(|column| format!("{:>width$} ", column.head, width = column.width)).collect();
-    println!("{:NAMES$}{}", "", heads.trim_end());
+    let line = |name: &str, numbers: [String; 7]| {
+        let [a, b, c, d, e, f, g] = &numbers;
+        println!("{}", COLUMNS.row(&[&name, a, b, c, d, e, f, g]).trim_end());
+    };
+    line("", NUMBERS.map(|(head, ..)| format!("{head} ")));
     for row in rows {
-        let cells: String = COLUMNS.iter().map(|column| cell(column, row, rows)).collect();
         let name = if row.name.chars().count() > NAMES {
             println!("{}", row.name);
             ""
         } else {
             &row.name
         };
-        println!("{name:NAMES$}{}", cells.trim_end());
+        line(name, NUMBERS.map(|numbers| cell(numbers, row, rows)));
     }
     println!("* smallest of its column. visits: nodes or cells that a ray visits; boxes and");
     println!("tests: of boxes and of primitives per ray; ns/ray: on all threads together,");
@@ -105,17 +81,10 @@ pub fn print(title: &str, rows: &[Measured]) {
     }
 }
 
-fn cell(column: &Column, row: &Measured, rows: &[Measured]) -> String {
-    let width = column.width;
-    let Some(value) = (column.value)(row) else { return format!("{:>width$} ", "–") };
-    let least = rows.iter().filter_map(column.value).fold(f64::INFINITY, f64::min);
-    let wins = column.contest && rows.len() > 1 && value == least;
-    format!("{:>width$}{}", (column.write)(value), if wins { '*' } else { ' ' })
-}
-
-/// Writes all numbers.
-pub fn write_json(file: &Path, rows: &[Measured]) -> Result<()> {
-    let text = serde_json::to_string_pretty(rows)?;
-    raykata::film::write_atomically(file, |out| std::io::Write::write_all(out, text.as_bytes()))
-        .with_context(|| format!("cannot write {}", file.display()))
+/// A number and its mark.
+fn cell((_, value, write, contest): Numbers, row: &Measured, rows: &[Measured]) -> String {
+    let Some(own) = value(row) else { return "– ".to_owned() };
+    let least = rows.iter().filter_map(value).fold(f64::INFINITY, f64::min);
+    let wins = contest && rows.len() > 1 && own == least;
+    write(own) + if wins { "*" } else { " " }
 }

@@ -6,14 +6,13 @@ use super::measure::Bench;
 use super::measured::Reference;
 use super::plot::{Line, Plot, svg};
 use super::setting::Setting;
+use crate::columns::Columns;
 use crate::html::csv_line;
-use crate::report::make_folder;
-use anyhow::{Context, Result, bail};
+use crate::report::{make_folder, write_file};
+use anyhow::{Result, bail};
 use glam::Vec3;
-use raykata::film::write_atomically;
 use raykata::scene::Scene;
 use raykata::shape::Shape;
-use std::io::Write;
 use std::path::Path;
 
 /// How often each value is timed before its samples are chosen; the fastest frame counts.
@@ -71,8 +70,8 @@ pub fn run(
     }
     print(scene, sizes, &rows);
     make_folder(out)?;
-    write(&out.join("equal_time.csv"), &table(&rows))?;
-    write(&out.join("equal_time.svg"), &plot(&rows, sizes))?;
+    write_file(&out.join("equal_time.csv"), table(&rows).as_bytes())?;
+    write_file(&out.join("equal_time.svg"), plot(&rows, sizes).as_bytes())?;
     println!("\nthe plot: {}", out.join("equal_time.svg").display());
     Ok(true)
 }
@@ -137,7 +136,8 @@ fn with_lights_of(scene: &Scene, size: f32) -> Result<Scene> {
 fn print(scene: &Scene, sizes: &[f32], rows: &[Row]) {
     let (width, height) = (scene.film.width, scene.film.height);
     println!("at equal time, {width} × {height} pixels; samples are per pixel, rays in millions per second");
-    println!("{:<44}{:>8}{:>9}{:>8}{:>10}", "", "samples", "ms", "rays", "RMSE");
+    const COLUMNS: Columns = Columns("", &[-43, -1, 8, 9, 8, 10]);
+    println!("{}", COLUMNS.row(&[&"", &"", &"samples", &"ms", &"rays", &"RMSE"]));
     for &size in sizes {
         if sizes.len() > 1 {
             println!("lights {size} times as large, of the same power");
@@ -145,15 +145,10 @@ fn print(scene: &Scene, sizes: &[f32], rows: &[Row]) {
         let of_size = || rows.iter().filter(move |row| row.size == size);
         let best = of_size().map(|row| row.error).fold(f64::INFINITY, f64::min);
         for row in of_size() {
-            println!(
-                "  {:<41}{}{:>8}{:>9.1}{:>8.1}{:>10.5}",
-                row.value,
-                if row.error == best { "•" } else { " " },
-                row.samples,
-                1e3 * row.seconds,
-                1e-6 * row.rays_per_second(),
-                row.error
-            );
+            let mark = if row.error == best { "•" } else { "" };
+            let [ms, rays] = [1e3 * row.seconds, 1e-6 * row.rays_per_second()].map(|x| format!("{x:.1}"));
+            let (value, error) = (format!("  {}", row.value), format!("{:.5}", row.error));
+            println!("{}", COLUMNS.row(&[&value, &mark, &row.samples, &ms, &rays, &error]));
         }
     }
     println!("• the smallest error");
@@ -208,19 +203,13 @@ fn short(value: &str) -> &str {
     value.split_once(", ").map_or(value, |(_, value)| value)
 }
 
-fn write(file: &Path, text: &str) -> Result<()> {
-    write_atomically(file, |out| out.write_all(text.as_bytes()))
-        .with_context(|| format!("cannot write {}", file.display()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn lights_change_their_size_and_keep_their_power() {
-        let scene =
-            crate::report::load_scene(Path::new("../../scenes/veach.toml"), Default::default()).unwrap();
+        let scene = crate::report::scene_of_kit("veach");
         let sized = with_lights_of(&scene, 0.5).unwrap();
         let mut lights = 0;
         for (node, before) in sized.nodes.iter().zip(&scene.nodes) {
@@ -235,8 +224,7 @@ mod tests {
             lights += 1;
         }
         assert_eq!(lights, 4);
-        let dark =
-            crate::report::load_scene(Path::new("../../scenes/stage1.toml"), Default::default()).unwrap();
+        let dark = crate::report::scene_of_kit("stage1");
         assert!(with_lights_of(&dark, 2.0).is_err() && with_lights_of(&dark, 1.0).is_ok());
     }
 }

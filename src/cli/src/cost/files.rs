@@ -6,17 +6,16 @@ use super::plot::{Line, Plot, svg};
 use super::slope::theory;
 use super::{Report, Summary};
 use crate::html::csv_line;
-use anyhow::{Context, Result};
-use raykata::film::write_atomically;
-use std::io::Write;
+use crate::report::write_file;
+use anyhow::Result;
 use std::path::Path;
 
 /// Writes `cost.json`, `cost.csv` and the plots into a folder.
 pub fn write(out: &Path, report: &Report<'_>) -> Result<()> {
-    write_whole(&out.join("cost.json"), &serde_json::to_vec_pretty(report)?)?;
-    write_whole(&out.join("cost.csv"), table(report).as_bytes())?;
+    write_file(&out.join("cost.json"), &serde_json::to_vec_pretty(report)?)?;
+    write_file(&out.join("cost.csv"), table(report).as_bytes())?;
     for (name, plot) in plots(report) {
-        write_whole(&out.join(name), plot.as_bytes())?;
+        write_file(&out.join(name), plot.as_bytes())?;
     }
     Ok(())
 }
@@ -73,11 +72,6 @@ fn table(report: &Report<'_>) -> String {
         }
     }
     table
-}
-
-fn write_whole(file: &Path, bytes: &[u8]) -> Result<()> {
-    write_atomically(file, |out| out.write_all(bytes))
-        .with_context(|| format!("cannot write {}", file.display()))
 }
 
 /// The names and contents of the plots: all parameters, and the samplers if they were compared.

@@ -6,13 +6,14 @@
 
 use super::landscape::{scene, sides};
 use super::measure::Bench;
+use crate::columns::Columns;
 use crate::journal::Journal;
-use crate::report::{FrameBar, Thousands, make_folder};
-use anyhow::{Context, Result};
+use crate::report::{FrameBar, Thousands, make_folder, write_file};
+use anyhow::Result;
 use raykata::kit::{RenderJob, Rendering, View};
 use raykata::scene::{Accelerator, Scene};
 use serde::{Deserialize, Serialize};
-use std::io::Write;
+use std::fmt::Display;
 use std::path::Path;
 
 /// The screen of the lecture notes.
@@ -73,9 +74,7 @@ impl Row {
 pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, code: &str) -> Result<bool> {
     let file = out.join("unfinished.jsonl");
     let about = format!("rows of {hierarchy:?} with {} threads by the program {code}", bench.threads);
-    let is_ours = Journal::<Row>::about(&file).is_some_and(|theirs| theirs == about);
-    let mut kept: Journal<Row> =
-        if is_ours { Journal::resume(&file, &about)? } else { Journal::create(&file, &about)? };
+    let mut kept: Journal<Row> = Journal::open(&file, &about)?;
     println!(
         "A landscape of n triangles on {} × {} pixels: one ray per pixel,\nnormals as colours, {} \
          threads. Brute force is timed on a slice of rays, and\nthe counts per ray are means over a sixteenth \
@@ -84,10 +83,10 @@ pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, cod
         SCREEN.1,
         if bench.threads == 0 { crate::queue::cores() } else { bench.threads }
     );
-    println!(
-        "{:>10} {:>6} {:>8} {:>5} {:>9} {:>6} {:>8} {:>11} {:>9}",
-        "n", "log2 n", "build", "boxes", "triangles", "ns/ray", "frame", "brute force", "times"
-    );
+    const COLUMNS: Columns = Columns(" ", &[10, 6, 8, 5, 9, 6, 8, 11, 9]);
+    let heads: [&dyn Display; 9] =
+        [&"n", &"log2 n", &"build", &"boxes", &"triangles", &"ns/ray", &"frame", &"brute force", &"times"];
+    println!("{}", COLUMNS.row(&heads));
     let mut rows: Vec<Row> = Vec::new();
     for triangles in sizes(most) {
         let row = match kept.take(&triangles.to_string()) {
@@ -98,18 +97,18 @@ pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, cod
                 row
             }
         };
-        println!(
-            "{:>10} {:>6.1} {:>8} {:>5.1} {:>9.2} {:>6.0} {:>8} {:>11} {:>9}",
-            Thousands(row.triangles).to_string(),
-            (row.triangles as f64).log2(),
-            duration(row.build_seconds),
-            row.box_tests,
-            row.triangle_tests,
-            row.nanoseconds_a_ray(),
-            duration(row.frame_seconds),
-            duration(row.brute_seconds()),
-            Thousands((row.brute_seconds() / row.frame_seconds) as u64).to_string(),
-        );
+        let cells: [&dyn Display; 9] = [
+            &Thousands(row.triangles),
+            &format!("{:.1}", (row.triangles as f64).log2()),
+            &duration(row.build_seconds),
+            &format!("{:.1}", row.box_tests),
+            &format!("{:.2}", row.triangle_tests),
+            &format!("{:.0}", row.nanoseconds_a_ray()),
+            &duration(row.frame_seconds),
+            &duration(row.brute_seconds()),
+            &Thousands((row.brute_seconds() / row.frame_seconds) as u64),
+        ];
+        println!("{}", COLUMNS.row(&cells));
         rows.push(row);
         if bench.stopped() {
             break;
@@ -119,9 +118,7 @@ pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, cod
     arithmetic(last);
     make_folder(out)?;
     let file = out.join("headline.json");
-    let json = serde_json::to_vec_pretty(&rows)?;
-    raykata::film::write_atomically(&file, |file| file.write_all(&json))
-        .with_context(|| format!("cannot write {}", file.display()))?;
+    write_file(&file, &serde_json::to_vec_pretty(&rows)?)?;
     if !bench.stopped() {
         kept.finish()?;
     }

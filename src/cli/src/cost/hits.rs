@@ -6,7 +6,7 @@ use super::measured::Measured;
 use crate::judge::Judge;
 use crate::report::bar_of_steps;
 use anyhow::{Context, Result};
-use raykata::kit::{RenderJob, View, kit_error};
+use raykata::kit::kit_error;
 use raykata::ray::Ray;
 use raykata::scene::Scene;
 use std::path::Path;
@@ -34,15 +34,7 @@ pub fn judge(root: &Path, bench: &Bench<'_>, scene: &Scene, measured: &mut Measu
             break;
         }
         let point = &mut measured.points[index];
-        let scene = point.setting.apply(scene);
-        let job = RenderJob {
-            scene,
-            view: View::Shaded,
-            seed: 0,
-            threads: bench.threads,
-            count: false,
-            reuse: true,
-        };
+        let job = bench.job(&point.setting.apply(scene), 0, false);
         let hits = kit_error::catch(|| bench.kit.first_hits(&job, &rays))?;
         judge.send(&hits)?;
         point.hits = Some(judge.receive().context("the judge has no verdict on first hits")?);

@@ -22,28 +22,26 @@ struct Picture {
 }
 
 /// The kept pictures.
-pub struct Kept {
+pub struct KeptPictures {
     journal: Mutex<Journal<Picture>>,
     /// The scene of the last job, and its fingerprint. Most jobs of a run have the same scene with other settings, and the
     /// fingerprint of a large one takes longer than a picture.
     scene: Mutex<Option<(Scene, String)>>,
 }
 
-impl Kept {
+impl KeptPictures {
     /// Opens the file in the folder of a report. Pictures of other code are forgotten.
-    pub fn open(out: &Path, code: &str) -> Result<Kept> {
+    pub fn open(out: &Path, code: &str) -> Result<KeptPictures> {
         let file = out.join("unfinished.jsonl");
         let about = format!("pictures by the program {code}");
-        let is_ours = Journal::<Picture>::about(&file).is_some_and(|theirs| theirs == about);
-        let journal: Journal<Picture> =
-            if is_ours { Journal::resume(&file, &about)? } else { Journal::create(&file, &about)? };
+        let journal: Journal<Picture> = Journal::open(&file, &about)?;
         match journal.kept().count() {
             0 => {}
             n => {
                 println!("continues a run that was stopped: {n} measured pictures are in {}", file.display())
             }
         }
-        Ok(Kept { journal: Mutex::new(journal), scene: Mutex::default() })
+        Ok(KeptPictures { journal: Mutex::new(journal), scene: Mutex::default() })
     }
 
     /// A name for a job: jobs that differ in anything have different names.
@@ -115,11 +113,11 @@ mod tests {
             render_seconds: 1.0 / 3.0,
             notes: vec!["x".into()],
         };
-        let kept = Kept::open(folder.path(), "a").unwrap();
+        let kept = KeptPictures::open(folder.path(), "a").unwrap();
         kept.add("one", &frame).unwrap();
         assert!(kept.take("one").is_none(), "only pictures of an earlier run are taken");
         drop(kept);
-        let kept = Kept::open(folder.path(), "a").unwrap();
+        let kept = KeptPictures::open(folder.path(), "a").unwrap();
         let back = kept.take("one").unwrap();
         let bits = |film: &Film| -> Vec<[u32; 3]> {
             film.pixels.iter().map(|pixel| pixel.to_array().map(f32::to_bits)).collect()
@@ -128,6 +126,6 @@ mod tests {
         assert_eq!((back.render_seconds, back.notes), (frame.render_seconds, frame.notes));
         assert!(kept.take("one").is_none());
         drop(kept);
-        assert!(Kept::open(folder.path(), "other code").unwrap().take("one").is_none());
+        assert!(KeptPictures::open(folder.path(), "other code").unwrap().take("one").is_none());
     }
 }

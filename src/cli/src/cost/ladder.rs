@@ -3,7 +3,6 @@
 use super::called::Called;
 use super::parameter::Parameter;
 use super::setting::Setting;
-use crate::args::names;
 use crate::report::Thousands;
 use raykata::effects::Effect;
 use raykata::scene::load::set;
@@ -51,18 +50,15 @@ impl Parameter {
             Ladder { parameter: self, name: self.name(), levels: levels.collect(), left_out: Vec::new() }
         };
         // A level per value of the setting, read as the command line reads it.
-        let levels = |values: &[&str]| {
-            let level = |value: &&str| {
+        let levels = |values: &[String]| {
+            let level = |value: &String| {
                 let mut quality = quality;
                 set(&mut quality, self.key(), value).map_err(|error| error.message)?;
                 Ok((value.replace('_', " "), quality))
             };
             Ok::<_, String>(vec![ladder(values.iter().map(level).collect::<Result<_, String>>()?)])
         };
-        let numbers = |values: Vec<u32>| {
-            let texts: Vec<String> = values.iter().map(u32::to_string).collect();
-            levels(&texts.iter().map(String::as_str).collect::<Vec<_>>())
-        };
+        let numbers = |values: Vec<u32>| levels(&values.iter().map(u32::to_string).collect::<Vec<_>>());
         let ladders = match self {
             Parameter::Samples => numbers(doubling(quality.samples_per_pixel, *most_samples))?,
             Parameter::Sampler => {
@@ -123,16 +119,13 @@ impl Parameter {
                 needs(mirrors, "no surface reflects or transmits light")?;
                 let mut least = vec![0.1, 0.03, 0.01, 0.003, 0.001, 0.0003];
                 least.push(quality.min_contribution);
-                least.sort_by(|a, b| b.total_cmp(a));
+                least.sort_by(|a: &f32, b| b.total_cmp(a));
                 least.dedup();
-                let with = |min_contribution: f32| {
-                    (min_contribution.to_string(), Quality { min_contribution, ..quality })
-                };
-                vec![ladder(least.into_iter().map(with).collect())]
+                levels(&least.iter().map(f32::to_string).collect::<Vec<_>>())?
             }
             Parameter::TextureFilter => {
                 needs(effects.calls_for(Effect::Textures), "no surface shows an image")?;
-                levels(&names(&TextureFilter::NAMES))?
+                levels(&TextureFilter::NAMES.map(|(name, _)| name.to_owned()))?
             }
             Parameter::SmoothNormals => {
                 needs(effects.calls_for(Effect::SmoothNormals), "no mesh has smooth normals")?;
@@ -143,7 +136,7 @@ impl Parameter {
             Parameter::Intersection => {
                 needs(called.shows_triangles(), "there are no triangles")?;
                 // With the watertight test last: it is the default, and it takes longest.
-                levels(&names(&TriangleMethod::NAMES))?
+                levels(&TriangleMethod::NAMES.map(|(name, _)| name.to_owned()))?
             }
             Parameter::SphereTest => {
                 needs(called.shows_spheres(), "there are no spheres")?;
@@ -151,14 +144,14 @@ impl Parameter {
                     quality.precision == Precision::Single,
                     "the precision is double, which has one sphere test",
                 )?;
-                levels(&names(&SphereMethod::NAMES))?
+                levels(&SphereMethod::NAMES.map(|(name, _)| name.to_owned()))?
             }
             Parameter::Precision => {
                 needs(
                     called.shows_triangles() || called.shows_spheres(),
                     "there are no triangles and no spheres, and other shapes have one test each",
                 )?;
-                levels(&names(&Precision::NAMES))?
+                levels(&Precision::NAMES.map(|(name, _)| name.to_owned()))?
             }
             Parameter::Accelerator => {
                 let most = |one: Accelerator| match one {
@@ -188,7 +181,7 @@ impl Parameter {
             }
             Parameter::Split => {
                 needs(hierarchy, "the accelerator is not a hierarchy")?;
-                levels(&names(&Split::NAMES))?
+                levels(&Split::NAMES.map(|(name, _)| name.to_owned()))?
             }
             Parameter::LeafSize => {
                 needs(hierarchy, "the accelerator is not a hierarchy")?;
@@ -231,31 +224,16 @@ mod tests {
 
     #[test]
     fn a_parameter_that_buys_nothing_says_why() {
-        let scene =
-            crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml"), Default::default())
-                .unwrap();
+        let scene = crate::report::scene_of_kit("stage1");
         let effects = Effects::default();
         let called = Called { scene: &scene, effects: &effects, primitives: 1, most_samples: 64 };
-        let offered = |parameter: Parameter| parameter.ladders(&called).is_ok();
-        for parameter in [
-            Parameter::Samples,
-            Parameter::Sampler,
-            Parameter::Precision,
-            Parameter::Accelerator,
-            Parameter::Split,
-        ] {
-            assert!(offered(parameter), "{parameter:?}");
+        use Parameter::*;
+        for parameter in [Samples, Sampler, Precision, Accelerator, Split] {
+            assert!(parameter.ladders(&called).is_ok(), "{parameter:?}");
         }
-        for parameter in [
-            Parameter::LightSamples,
-            Parameter::GlossySamples,
-            Parameter::Depth,
-            Parameter::Intersection,
-            Parameter::GridResolution,
-            Parameter::NextEvent,
-            Parameter::Clamp,
-        ] {
-            assert!(!offered(parameter), "{parameter:?}");
+        for parameter in [LightSamples, GlossySamples, Depth, Intersection, GridResolution, NextEvent, Clamp]
+        {
+            assert!(parameter.ladders(&called).is_err(), "{parameter:?}");
         }
     }
 }

@@ -1,14 +1,14 @@
 //! Measures errors and counts, which are exact, and times, which vary and are therefore measured in turn.
 
 use super::error::errors;
-use super::kept::Kept;
+use super::kept::KeptPictures;
 use super::ladder::Ladder;
 use super::measured::{Measured, Point, Reference, Series};
 use super::setting::Setting;
-use crate::report::{FrameBar, bar_of_steps, quartiles};
+use crate::report::{FrameBar, bar_of_steps, job, quartiles};
 use anyhow::Result;
 use raykata::frame::Watch;
-use raykata::kit::{Kit, RenderJob, Rendering, View, kit_error};
+use raykata::kit::{Kit, RenderJob, Rendering, kit_error};
 use raykata::scene::Scene;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -28,7 +28,7 @@ pub struct Bench<'a> {
     /// Set when the program is being stopped.
     pub stop: &'a AtomicBool,
     /// The pictures that a stopped run has measured, and where this run keeps its own.
-    pub kept: Option<&'a Kept>,
+    pub kept: Option<&'a KeptPictures>,
 }
 
 /// Cancels a frame that takes too long or is no longer wanted, and shows its progress.
@@ -67,14 +67,7 @@ impl Bench<'_> {
     }
 
     pub fn job(&self, scene: &Scene, seed: u64, count: bool) -> RenderJob {
-        RenderJob {
-            scene: scene.clone(),
-            view: View::Shaded,
-            seed,
-            threads: self.threads,
-            count,
-            reuse: true,
-        }
+        RenderJob { seed, threads: self.threads, count, ..job(scene.clone()) }
     }
 
     /// The same with a deadline, and with a progress bar.
@@ -233,9 +226,7 @@ mod tests {
 
     #[test]
     fn the_front_holds_what_nothing_beats_and_nothing_that_leaks() {
-        let scene =
-            crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml"), Default::default())
-                .unwrap();
+        let scene = crate::report::scene_of_kit("stage1");
         let point = |error, seconds, leaks| Point::made_up(Setting::of(&scene), error, seconds, leaks);
         let points = [
             point(0.1, 1.0, 0),

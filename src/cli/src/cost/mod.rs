@@ -2,17 +2,14 @@
 //!
 //! `options` (the command line) · `called`, `ladder` and `setting` (the parameters and their values) ·
 //! `kept` (the pictures of a stopped run) · `reference` (the converged picture) · `error` (differences from it) · `hits` (exact verdicts) · `measure`
-//! (counts, times) · `slope` (how fast the error falls) · `advice` and `greedy` (the best settings for a time
+//! (counts, times) · `slope` (how fast the error falls) · `search` (the best settings for a time
 //! or an error) · `equal_time` (values with equal times) · `table`, `page`, `plot`, `files` (the report) · `headline` and `landscape` (brute force
 //! against a hierarchy)
 
-mod advice;
 mod called;
 mod equal_time;
 mod error;
 mod files;
-mod goal;
-mod greedy;
 mod headline;
 mod hits;
 mod kept;
@@ -25,29 +22,30 @@ mod page;
 mod parameter;
 mod plot;
 mod reference;
+mod search;
 mod setting;
 mod slope;
 mod table;
 
-use crate::args::wrapped;
+use crate::args::{Given, wrapped};
 use crate::kits::{Need, Source, root};
 use crate::lock::Lock;
 use crate::quality_options::arguments;
-use crate::report::{FrameBar, load_scene, make_folder, with_at_most};
-use advice::Advice;
+use crate::report::{FrameBar, load_scene, make_folder, name_of, with_at_most};
 use anyhow::{Context, Result, bail};
 use called::Called;
-use goal::Goal;
-use kept::Kept;
+use kept::KeptPictures;
 use ladder::Ladder;
 use measure::{Bench, pareto_front};
 pub use measured::Verdicts;
 use measured::{Measured, Reference};
-pub use options::{Options, SPEC};
+use options::CostOptions;
+pub use options::SPEC;
 use parameter::Parameter;
 use raykata::effects::Effects;
 use raykata::kit::{Kit, KitError, kit_error};
 use raykata::scene::{Accelerator, Quality, Scene};
+use search::{Advice, Goal, advise};
 use serde::Serialize;
 use setting::Setting;
 use slope::Slope;
@@ -113,7 +111,8 @@ pub struct Summary {
 
 /// Measures, prints a table and writes the report. `Ok(false)` if it was stopped. With `numerics` the report
 /// has a section about ray/triangle tests; `program` is the command that starts this program.
-pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) -> Result<bool> {
+pub fn run(given: &Given, program: &str, numerics: Option<&Numerics<'_>>) -> Result<bool> {
+    let options = &CostOptions::read(given)?;
     // Build the kit and prepare the measurement.
     let began = Instant::now();
     let root = root()?;
@@ -124,7 +123,7 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     let bench = Bench {
         kit,
         rounds: options.rounds,
-        threads: options.threads.count(),
+        threads: options.threads,
         seed: options.seed,
         stop: &stop,
         kept: None,
@@ -138,7 +137,7 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         return headline::run(&bench, hierarchy, options.most, &out, &fingerprint(&source)?);
     };
     // Read the scene, in its own size and in that of the measured pictures.
-    let mut full = load_scene(file, options.quality.limits())?;
+    let mut full = load_scene(file, options.quality.limits)?;
     let as_written = full.quality;
     options.quality.apply(&mut full)?;
     let pixels = options.pixels();
@@ -151,13 +150,13 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
             *samples = options.most_samples();
         }
     }
-    let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
+    let name = name_of(file)?;
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
     let _lock = Lock::on(&out)?;
 
     // Continue a run that was stopped.
     let code = fingerprint(&source)?;
-    let kept = Kept::open(&out, &code)?;
+    let kept = KeptPictures::open(&out, &code)?;
     let bench = Bench { kept: Some(&kept), ..bench };
 
     // Choose the values to measure.
@@ -194,7 +193,7 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     // Search the best settings for the goal.
     let goal = options.budget.map(Goal::Seconds).or(options.error.map(Goal::Error));
     let advice = match goal {
-        Some(goal) if !bench.stopped() => advised(&bench, &small, &full, &measured, &right, goal)?,
+        Some(goal) if !bench.stopped() => advise(&bench, [&small, &full], &measured, &right, goal)?,
         _ => None,
     };
     let advice = advice.map(|advice| {
@@ -248,7 +247,7 @@ fn ladders(
     kit: &dyn Kit,
     bench: &Bench<'_>,
     scene: &Scene,
-    options: &Options,
+    options: &CostOptions,
 ) -> Result<(Vec<Ladder>, NotOffered)> {
     let turned = &options.turned;
     let effects = match kit_error::catch(|| kit.effects(std::slice::from_ref(scene))) {
@@ -279,23 +278,6 @@ fn ladders(
         }
     }
     Ok((ladders, not_offered))
-}
-
-fn advised(
-    bench: &Bench<'_>,
-    small: &Scene,
-    full: &Scene,
-    measured: &Measured,
-    right: &Reference,
-    goal: Goal,
-) -> Result<Option<Advice>> {
-    let pixels = |scene: &Scene| f64::from(scene.film.width) * f64::from(scene.film.height);
-    let times = pixels(full) / pixels(small);
-    let Some(mut advice) = advice::advise(bench, small, measured, right, goal, times)? else {
-        return Ok(None);
-    };
-    advice::verify(bench, small, full, right, &mut advice)?;
-    Ok(Some(advice))
 }
 
 /// The command that renders the proposal.

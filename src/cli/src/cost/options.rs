@@ -3,7 +3,7 @@
 use super::parameter::Parameter;
 use crate::args::{Argument, Given, Misuse, Opt, Spec, chosen, names};
 use crate::kits::Choice;
-use crate::quality_options::{QualityOptions, Threads, key_of};
+use crate::quality_options::{QualityOptions, THREADS, key_of, threads};
 use raykata::scene::Accelerator;
 use std::path::PathBuf;
 
@@ -77,35 +77,35 @@ pub static SPEC: Spec = Spec {
             .short("-o"),
         ],
         Choice::OPTIONS,
-        Threads::OPTIONS,
+        THREADS,
         QualityOptions::OPTIONS,
     ],
 };
 
 /// The scene, the parameters, and how long to measure.
-pub struct Options {
+pub struct CostOptions {
     /// `None` for the headline.
-    pub(super) scene: Option<PathBuf>,
-    pub(super) most: u64,
-    pub(super) turned: Vec<Parameter>,
-    pub(super) kit: Choice,
-    pub(super) budget: Option<f64>,
-    pub(super) error: Option<f64>,
-    pub(super) reference: u32,
-    pub(super) rounds: u32,
-    pub(super) full: bool,
-    pub(super) equal_time: bool,
+    pub scene: Option<PathBuf>,
+    pub most: u64,
+    pub turned: Vec<Parameter>,
+    pub kit: Choice,
+    pub budget: Option<f64>,
+    pub error: Option<f64>,
+    pub reference: u32,
+    pub rounds: u32,
+    pub full: bool,
+    pub equal_time: bool,
     /// Factors for the size of the lights, above 0; at least one.
-    pub(super) light_sizes: Vec<f32>,
-    pub(super) threads: Threads,
-    pub(super) seed: u64,
-    pub(super) quality: QualityOptions,
-    pub(super) out: Option<PathBuf>,
+    pub light_sizes: Vec<f32>,
+    pub threads: usize,
+    pub seed: u64,
+    pub quality: QualityOptions,
+    pub out: Option<PathBuf>,
 }
 
-impl Options {
+impl CostOptions {
     /// Reads the arguments and options.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<CostOptions, Misuse> {
         let (scene, headline) = (given.argument(0).map(PathBuf::from), given.has("--headline"));
         match (&scene, headline) {
             (Some(_), true) => return Err(given.misuse("`--headline` takes no SCENE")),
@@ -133,7 +133,7 @@ impl Options {
             light_sizes = vec![1.0];
         }
         let full = given.has("--full");
-        Ok(Options {
+        Ok(CostOptions {
             scene,
             most: given.number("--most", 2..=16_000_000)?.unwrap_or(12_000_000),
             turned: given.list("--parameter", |text| match key_of(text) {
@@ -150,7 +150,7 @@ impl Options {
             full,
             equal_time,
             light_sizes,
-            threads: Threads::read(given)?,
+            threads: threads(given)?,
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
             quality,
             out: given.path("--out"),
@@ -159,12 +159,12 @@ impl Options {
 
     /// The most pixels of a measured picture, unless a size is given, because some hundred pictures are rendered. Without
     /// `--full` the scene of the README then takes less than 20 s on two cores.
-    pub(super) fn pixels(&self) -> f64 {
+    pub fn pixels(&self) -> f64 {
         if self.full { 10_000.0 } else { 2_500.0 }
     }
 
     /// The number of samples that ladders reach at least.
-    pub(super) fn most_samples(&self) -> u32 {
+    pub fn most_samples(&self) -> u32 {
         if self.full { 64 } else { 16 }
     }
 }

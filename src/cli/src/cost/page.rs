@@ -1,24 +1,21 @@
 //! The report as one self-contained HTML file, for screens, phones and paper.
 
 use super::Report;
-use super::advice::Advice;
 use super::error::{heat, shown};
 use super::files::{expected_slope, plots};
 use super::measured::Series;
 use super::parameter::Parameter;
+use super::search::Advice;
 use super::table::{about_hits, about_kit_times, bias, goal, named, verdict, waste};
 use crate::html::{around, base64, element, escape};
+use crate::report::write_file;
 use anyhow::{Context, Result};
 use image::RgbImage;
-use raykata::film::write_atomically;
-use std::io::Write;
 use std::path::Path;
 
 /// Writes the page.
 pub fn write(file: &Path, report: &Report<'_>) -> Result<()> {
-    let page = page(report)?;
-    write_atomically(file, |out| out.write_all(page.as_bytes()))
-        .with_context(|| format!("cannot write {}", file.display()))
+    write_file(file, page(report)?.as_bytes())
 }
 
 fn page(report: &Report<'_>) -> Result<String> {

@@ -83,21 +83,9 @@ impl Parameter {
     }
 
     /// Whether the parameter decides only how hits are found: if all tests are right, all values make the
-    /// same picture.
+    /// same picture. The parameters that change it come first.
     pub fn is_geometric(self) -> bool {
-        !matches!(
-            self,
-            Parameter::Samples
-                | Parameter::Sampler
-                | Parameter::LightSamples
-                | Parameter::GlossySamples
-                | Parameter::Depth
-                | Parameter::MinContribution
-                | Parameter::NextEvent
-                | Parameter::Clamp
-                | Parameter::TextureFilter
-                | Parameter::SmoothNormals
-        )
+        self >= Parameter::Intersection
     }
 
     /// Whether `--equal-time` measures the parameter, if it names `turned`: samples and samplers have times of their own, and

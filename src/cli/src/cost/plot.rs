@@ -1,6 +1,6 @@
 //! A plot of error over time on logarithmic axes. The same numbers give the same SVG file.
 
-use crate::svg::{Anchor, Axis, Drawing, Ink, Pen, Point, SMALL, TEXT};
+use crate::svg::{self, Axis, Drawing, End, Ink, Middle, Point, SMALL, Start, TEXT};
 
 /// The contents of a plot.
 pub struct Plot<'a> {
@@ -37,136 +37,129 @@ const RIGHT: f64 = 550.0;
 const TOP: f64 = 110.0;
 const BOTTOM: f64 = 470.0;
 
-/// A logarithmic axis, which ends at whole or half powers of ten, and where it lies in the drawing.
-struct Scale {
-    axis: Axis,
-    from: f64,
-    to: f64,
+/// A logarithmic axis over these values, which ends at whole or half powers of ten.
+fn axis_over(values: impl Iterator<Item = f64>) -> Axis {
+    let logs = values.filter(|value| *value > 0.0 && value.is_finite()).map(f64::log10);
+    let (low, high) =
+        logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let (low, high) = match low > high {
+        true => (0.0, 1.0),
+        false => ((2.0 * low - 0.1).floor() / 2.0, (2.0 * high + 0.1).ceil() / 2.0),
+    };
+    Axis::logarithmic(10f64.powf(low), 10f64.powf(high))
 }
 
-impl Scale {
-    fn over(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Scale {
-        let logs = values.filter(|value| *value > 0.0 && value.is_finite()).map(f64::log10);
-        let (low, high) =
-            logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        let (low, high) = if low > high {
-            (0.0, 1.0)
-        } else {
-            ((2.0 * low - 0.1).floor() / 2.0, (2.0 * high + 0.1).ceil() / 2.0)
-        };
-        Scale { axis: Axis::logarithmic(10f64.powf(low), 10f64.powf(high)), from, to }
-    }
-
-    fn at(&self, value: f64) -> f64 {
-        self.from + (self.to - self.from) * self.axis.share(value)
-    }
-
-    /// The ticks: 1, 2 and 5 times the powers of ten between the ends, or only the powers if there are many.
-    fn ticks(&self) -> Vec<(f64, bool)> {
-        let (low, high) = (self.axis.low.log10(), self.axis.high.log10());
-        let powers = (low - 1.0) as i32..=high.ceil() as i32;
-        let ticks = powers.flat_map(|power| [1.0, 2.0, 5.0].map(|digit| (digit, power)));
-        let within = |value: f64| (low - 1e-9..=high + 1e-9).contains(&value.log10());
-        let named = |digit: f64| digit == 1.0 || high - low < 2.6;
-        ticks
-            .map(|(digit, power)| (digit * 10f64.powi(power), named(digit)))
-            .filter(|(value, _)| within(*value))
-            .collect()
-    }
+/// The ticks of an axis, and whether each has a number: 1, 2 and 5 times the powers of ten between the ends, or only the
+/// powers if there are many.
+fn ticks(axis: &Axis) -> impl Iterator<Item = (f64, bool)> {
+    let (low, high) = (axis.low.log10(), axis.high.log10());
+    let powers = (low - 1.0) as i32..=high.ceil() as i32;
+    let ticks = powers.flat_map(|power| [1.0, 2.0, 5.0].map(|digit| (digit, power)));
+    let named = move |digit: f64| digit == 1.0 || high - low < 2.6;
+    ticks
+        .map(move |(digit, power)| (digit * 10f64.powi(power), named(digit)))
+        .filter(move |(value, _)| (low - 1e-9..=high + 1e-9).contains(&value.log10()))
 }
 
 /// The plot as SVG.
 pub fn svg(plot: &Plot<'_>) -> String {
     let floored = |y: f64| y.max(plot.floor);
     let points = || plot.lines.iter().flat_map(|line| &line.points);
-    let x = Scale::over(points().map(|point| point[0]), LEFT, RIGHT);
-    let y = Scale::over(points().flat_map(|point| [floored(point[1]), floored(point[3])]), BOTTOM, TOP);
+    let x = axis_over(points().map(|point| point[0]));
+    let y = axis_over(points().flat_map(|point| [floored(point[1]), floored(point[3])]));
+    let field =
+        Field { axes: svg::Plot::new(x, y, [LEFT, BOTTOM], [RIGHT - LEFT, BOTTOM - TOP]), floor: plot.floor };
     let mut drawing = Drawing::new(plot.title, WIDTH, HEIGHT);
-    drawing.text([LEFT - 90.0, 34.0], Anchor::Start, TEXT, Ink::Text, plot.title);
-    draw_axes(&mut drawing, plot, &x, &y);
-    draw_pareto_front(&mut drawing, &plot.pareto_front, &x, &y, plot.floor);
-    draw_guides(&mut drawing, plot, &x, &y);
+    drawing.text([LEFT - 90.0, 34.0], Start, TEXT, Ink::Text, plot.title);
+    draw_axes(&mut drawing, plot, &field);
+    draw_pareto_front(&mut drawing, &plot.pareto_front, &field);
+    draw_guides(&mut drawing, plot, &field);
     let mut labels = Vec::new();
     for (index, line) in plot.lines.iter().enumerate() {
-        draw_line(&mut drawing, line, index, &x, &y, plot.floor);
+        draw_line(&mut drawing, line, index, &field);
         if let Some(last) = line.points.last() {
-            labels.push(Label {
-                from: [x.at(last[0]), y.at(floored(last[1]))],
-                ink: Ink::Color(index),
-                name: &line.name,
-            });
+            labels.push(Label { from: field.at(last[0], last[1]), ink: Ink::Color(index), name: &line.name });
         }
     }
     draw_labels(&mut drawing, labels);
     drawing.svg()
 }
 
-fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, x: &Scale, y: &Scale) {
-    let pen = Pen::new(Ink::Faint).wide(0.5);
+/// The axes, and the smallest error that is drawn.
+struct Field {
+    axes: svg::Plot,
+    floor: f64,
+}
+
+impl Field {
+    fn at(&self, time: f64, error: f64) -> Point {
+        self.axes.at(time, error.max(self.floor))
+    }
+}
+
+fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, field: &Field) {
+    let pen = Ink::Faint.pen(0.5);
     let mut free = 0.0;
-    for (value, is_named) in x.ticks() {
-        let at = x.at(value);
+    for (value, is_named) in ticks(&field.axes.x) {
+        let [at, _] = field.at(value, 1.0);
         drawing.line([at, TOP], [at, BOTTOM], pen);
         // Leave out a number that would touch the one before it.
         if is_named && at >= free {
             free = at + 80.0;
-            drawing.text([at, BOTTOM + 34.0], Anchor::Middle, SMALL, Ink::Text, &number(value));
+            drawing.text([at, BOTTOM + 34.0], Middle, SMALL, Ink::Text, &number(value));
         }
     }
-    for (value, is_named) in y.ticks() {
-        let at = y.at(value);
+    for (value, is_named) in ticks(&field.axes.y) {
+        let [_, at] = field.axes.at(1.0, value);
         drawing.line([LEFT, at], [RIGHT, at], pen);
         if is_named {
             // Everything below the floor is drawn there, for example 0, which has no place on a logarithmic axis.
             let below = if plot.holds_less() && value <= plot.floor { "≤ " } else { "" };
             let name = format!("{below}{}", number(value));
-            drawing.text([LEFT - 10.0, at + 7.0], Anchor::End, SMALL, Ink::Text, &name);
+            drawing.text([LEFT - 10.0, at + 7.0], End, SMALL, Ink::Text, &name);
         }
     }
-    drawing.text([RIGHT, BOTTOM + 76.0], Anchor::End, SMALL, Ink::Text, plot.x_axis);
-    drawing.text([LEFT - 90.0, TOP - 28.0], Anchor::Start, SMALL, Ink::Text, plot.y_axis);
+    drawing.text([RIGHT, BOTTOM + 76.0], End, SMALL, Ink::Text, plot.x_axis);
+    drawing.text([LEFT - 90.0, TOP - 28.0], Start, SMALL, Ink::Text, plot.y_axis);
 }
 
 /// Draws the Pareto front as a dashed step line: every setting above it is slower or less accurate than one on it.
-fn draw_pareto_front(drawing: &mut Drawing, points: &[(f64, f64)], x: &Scale, y: &Scale, floor: f64) {
+fn draw_pareto_front(drawing: &mut Drawing, points: &[(f64, f64)], field: &Field) {
     let mut steps: Vec<Point> = Vec::new();
     for &(time, error) in points {
-        let corner = [x.at(time), y.at(error.max(floor))];
+        let corner = field.at(time, error);
         if let Some(&[_, before]) = steps.last() {
             steps.push([corner[0], before]);
         }
         steps.push(corner);
     }
     if !steps.is_empty() {
-        drawing.polyline(&steps, Pen::new(Ink::Text).wide(2.0).dashed());
+        drawing.polyline(&steps, Ink::Text.pen(2.0).dashed());
     }
 }
 
-fn draw_guides(drawing: &mut Drawing, plot: &Plot<'_>, x: &Scale, y: &Scale) {
+fn draw_guides(drawing: &mut Drawing, plot: &Plot<'_>, field: &Field) {
     let Some(&[x0, y0, ..]) = plot.lines.first().and_then(|line| line.points.first()) else { return };
-    let y0 = y0.max(plot.floor);
+    let (x, y, y0) = (&field.axes.x, &field.axes.y, y0.max(field.floor));
     for (slope, name) in &plot.guides {
         // Draw to the right end, or to where the line leaves the plot at the bottom.
-        let to_bottom = (y.axis.low.log10() - y0.log10()) / slope;
-        let length =
-            (x.axis.high.log10() - x0.log10()).min(if *slope < 0.0 { to_bottom } else { f64::INFINITY });
-        let end = (x0 * 10f64.powf(length), y0 * 10f64.powf(slope * length));
-        let to = [x.at(end.0), y.at(end.1)];
-        drawing.line([x.at(x0), y.at(y0)], to, Pen::new(Ink::Faint).wide(2.0).dashed());
-        drawing.text([to[0] - 6.0, to[1] - 8.0], Anchor::End, SMALL, Ink::Faint, name);
+        let to_bottom = if *slope < 0.0 { (y.low.log10() - y0.log10()) / slope } else { f64::INFINITY };
+        let length = (x.high.log10() - x0.log10()).min(to_bottom);
+        let to = field.axes.at(x0 * 10f64.powf(length), y0 * 10f64.powf(slope * length));
+        drawing.line(field.at(x0, y0), to, Ink::Faint.pen(2.0).dashed());
+        drawing.text([to[0] - 6.0, to[1] - 8.0], End, SMALL, Ink::Faint, name);
     }
 }
 
 /// Draws one line with markers of its own shape for colour-blind readers, and the range over all rounds at each point.
-fn draw_line(drawing: &mut Drawing, line: &Line, index: usize, x: &Scale, y: &Scale, floor: f64) {
+fn draw_line(drawing: &mut Drawing, line: &Line, index: usize, field: &Field) {
     let ink = Ink::Color(index);
-    let at = |point: &[f64; 4]| [x.at(point[0]), y.at(point[1].max(floor))];
-    let path: Vec<Point> = line.points.iter().map(at).collect();
-    drawing.polyline(&path, Pen::new(ink).wide(2.5));
+    let path: Vec<Point> = line.points.iter().map(|point| field.at(point[0], point[1])).collect();
+    drawing.polyline(&path, ink.pen(2.5));
     for (point, &[cx, cy]) in line.points.iter().zip(&path) {
-        let (low, high) = (y.at(point[2].max(floor)), y.at(point[3].max(floor)));
+        let [low, high] = [point[2], point[3]].map(|error| field.at(point[0], error)[1]);
         if (low - high).abs() > 1.0 {
-            drawing.line([cx, low], [cx, high], Pen::new(ink).wide(1.5));
+            drawing.line([cx, low], [cx, high], ink.pen(1.5));
         }
         let r = 6.0;
         match index % 4 {
@@ -196,8 +189,8 @@ fn draw_labels(drawing: &mut Drawing, mut labels: Vec<Label<'_>>) {
     for (index, Label { from, ink, name }) in labels.into_iter().enumerate() {
         let at = from[1].max(free).min(lowest(n - 1 - index));
         free = at + apart;
-        drawing.line([from[0] + 8.0, from[1]], [RIGHT + 10.0, at], Pen::new(ink).wide(0.7));
-        drawing.text([RIGHT + 14.0, at + 7.0], Anchor::Start, SMALL.min(0.95 * apart), ink, name);
+        drawing.line([from[0] + 8.0, from[1]], [RIGHT + 10.0, at], ink.pen(0.7));
+        drawing.text([RIGHT + 14.0, at + 7.0], Start, SMALL.min(0.95 * apart), ink, name);
     }
 }
 

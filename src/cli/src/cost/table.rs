@@ -1,13 +1,14 @@
 //! The report as a table in the terminal.
 
 use super::Report;
-use super::advice::Advice;
 use super::files::expected_slope;
-use super::goal::Goal;
-use super::measured::Series;
+use super::measured::{Series, Verdicts};
 use super::parameter::Parameter;
+use super::search::{Advice, Goal};
 use crate::args::wrapped;
+use crate::columns::Columns;
 use crate::report::Thousands;
+use std::fmt::Display;
 
 /// Prints the report.
 pub fn print(report: &Report<'_>) {
@@ -17,11 +18,14 @@ pub fn print(report: &Report<'_>) {
          quartiles; rays are per pixel, tests per ray\n",
         report.scene, report.width, report.height, report.measured.rounds,
     );
-    let [similar, tests] = match report.has_bias {
-        true => [format!("{:>15}", "bias"), String::new()],
-        false => [format!("{:>8}", "similar"), format!("{:>7}", "tests")],
+    // A table of 80 columns has room for the bias in place of two other columns.
+    let (columns, similar, tests) = match report.has_bias {
+        true => (Columns("", &[-23, -1, -1, 8, 15, 14, 6, 0, 6, 6]), "bias", ""),
+        false => (Columns("", &[-23, -1, -1, 8, 8, 14, 6, 7, 6, 6]), "similar", "tests"),
     };
-    println!("{:<25}{:>8}{similar}{:>14}{:>6}{tests}{:>6}{:>6}", "", "RMSE", "ms", "rays", "wrong", "leaks");
+    let heads: [&dyn Display; 10] =
+        [&"", &"", &"", &"RMSE", &similar, &"ms", &"rays", &tests, &"wrong", &"leaks"];
+    println!("{}", columns.row(&heads));
     for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
         println!("{}", heading(series));
         if let Some(slope) = slope(report, series) {
@@ -32,24 +36,28 @@ pub fn print(report: &Report<'_>) {
             let rays = point.counts.rays();
             let tests = point.counts.box_tests + point.counts.primitive_tests;
             let hits = point.hits.filter(|_| series.parameter.is_geometric());
-            // A table of 80 columns has room for the bias in place of two other columns.
             let [similar, tests] = match report.has_bias {
-                true => [format!("{:>15}", bias(report, *index)), String::new()],
-                false => [
-                    format!("{:>8.4}", point.errors.similarity),
-                    format!("{:>7}", short(1, tests as f64 / rays.max(1) as f64)),
-                ],
+                true => [bias(report, *index), String::new()],
+                false => {
+                    [format!("{:.4}", point.errors.similarity), short(1, tests as f64 / rays.max(1) as f64)]
+                }
             };
-            println!(
-                "  {name:<21}{}{}{:>8.5}{similar}{:>14}{:>6}{tests}{:>6}{:>6}",
-                if report.own == Some(*index) { "*" } else { " " },
-                if report.pareto_front.contains(index) { "•" } else { " " },
-                point.error(),
-                time(point.seconds, point.spread),
-                short(2, rays as f64 / (f64::from(report.width) * f64::from(report.height))),
-                hits.map_or(String::new(), |hits| hits.wrong.to_string()),
-                hits.map_or(String::new(), |hits| hits.leaks.to_string()),
-            );
+            let of_hits = |number: fn(&Verdicts) -> u64| {
+                hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
+            };
+            let cells: [&dyn Display; 10] = [
+                &format!("  {name}"),
+                if report.own == Some(*index) { &"*" } else { &"" },
+                if report.pareto_front.contains(index) { &"•" } else { &"" },
+                &format!("{:.5}", point.error()),
+                &similar,
+                &time(point.seconds, point.spread),
+                &short(2, rays as f64 / (f64::from(report.width) * f64::from(report.height))),
+                &tests,
+                &of_hits(|hits| hits.wrong),
+                &of_hits(|hits| hits.leaks),
+            ];
+            println!("{}", columns.row(&cells));
         }
         if let Some(waste) = waste(report, series) {
             println!("  {}", wrapped(&waste, 2));
@@ -165,18 +173,14 @@ fn numerics(report: &Report<'_>) {
     if numerics.is_empty() {
         return;
     }
-    println!(
-        "\n{:<36}{:>8}{:>18}{:>18}",
-        "ray/triangle tests, judged exactly", "ns", "wrong per million", "leaks per million"
-    );
+    const COLUMNS: Columns = Columns("", &[-36, 8, 18, 18]);
+    let title = "ray/triangle tests, judged exactly";
+    println!("\n{}", COLUMNS.row(&[&title, &"ns", &"wrong per million", &"leaks per million"]));
     for one in numerics {
-        println!(
-            "  {:<34}{:>8.1}{:>18}{:>18}",
-            one.name,
-            one.nanoseconds,
-            Thousands(one.wrong_per_million.round() as u64).to_string(),
-            Thousands(one.leaks_per_million.round() as u64).to_string()
-        );
+        let [wrong, leaks] =
+            [one.wrong_per_million, one.leaks_per_million].map(|n| Thousands(n.round() as u64));
+        let (name, ns) = (format!("  {}", one.name), format!("{:.1}", one.nanoseconds));
+        println!("{}", COLUMNS.row(&[&name, &ns, &wrong, &leaks]));
     }
     if let Some(warning) = about_kit_times(report) {
         println!("  {}", wrapped(warning, 2));

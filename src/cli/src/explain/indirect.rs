@@ -2,9 +2,9 @@
 //! most, and how much light is missing beyond the largest depth.
 
 use super::why::{list, material};
-use super::{Explained, REASON_COLUMN, about_hits, bounds_table, render};
+use super::{Explained, REASON_COLUMN, STEP, about_hits, bounds_table};
 use crate::args::wrapped;
-use crate::report::Thousands;
+use crate::report::{Thousands, job, render};
 use anyhow::Result;
 use glam::Vec3;
 use raykata::kit::{KitError, kit_error};
@@ -41,7 +41,7 @@ pub fn asked(explained: &Explained<'_>) {
 /// Prints the predicted and the counted numbers of rays. A path has one ray per bounce, diffuse, reflected or refracted.
 pub fn bounds(explained: &Explained<'_>) -> Result<()> {
     let Explained { scene, kit, effects, paths } = explained;
-    let (counted, _) = render(*kit, (*scene).clone())?;
+    let counted = render(*kit, &job((*scene).clone()))?.counts;
     let (film, quality) = (&scene.film, &scene.quality);
     let camera = u64::from(film.width) * u64::from(film.height) * u64::from(quality.samples_per_pixel);
     let bounces = u64::from(quality.max_depth);
@@ -59,7 +59,6 @@ pub fn bounds(explained: &Explained<'_>) -> Result<()> {
     let of_lights = of_lights.max().unwrap_or(0);
     let of_emitters = any(diffuse && sampled && quality.next_event != NextEvent::Off);
     let shadow = camera.saturating_mul(1 + bounces).saturating_mul(of_lights).saturating_add(of_emitters);
-    println!("{:<16}  {:>20}  {:>13}", "rays", "at most, predicted", "counted");
     bounds_table(&[
         ("from the camera", camera, counted.primary),
         ("to lights", shadow, counted.shadow),
@@ -81,9 +80,6 @@ pub fn bounds(explained: &Explained<'_>) -> Result<()> {
     println!("  {}", wrapped(&note, 2));
     Ok(())
 }
-
-/// The relative error that a screen just shows: one of its 256 steps of brightness.
-const STEP: f32 = 1.0 / 255.0;
 
 /// Prints how much light the largest depth leaves out at most, by `cut_off` and `bounces_for_error` of stage 11.
 pub fn depth(explained: &Explained<'_>) -> Result<()> {

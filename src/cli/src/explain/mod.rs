@@ -6,18 +6,20 @@ mod needs;
 mod subsets;
 mod why;
 
-use crate::args::{Argument, Given, Misuse, Opt, Spec, wrapped};
-use crate::kits::{Choice, Need, Source, root};
+use crate::args::{Argument, Given, Opt, Spec, wrapped};
+use crate::columns::Columns;
+use crate::kits::Choice;
 use crate::quality_options::QualityOptions;
-use crate::report::{Thousands, bar_of_steps, load_scene, quartiles, with_at_most};
-use anyhow::{Context, Result};
+use crate::report::{Thousands, bar_of_steps, job, quartiles, render, with_at_most};
+use anyhow::Result;
 use raykata::count::Counts;
 use raykata::effects::{Effect, Effects};
-use raykata::frame::Unwatched;
-use raykata::kit::{BoundQuery, Kit, KitError, RenderJob, View, kit_error};
+use raykata::kit::{BoundQuery, Kit, KitError, kit_error};
 use raykata::light_path::PathEffects;
 use raykata::scene::Scene;
-use std::path::PathBuf;
+use std::fmt::Display;
+use std::path::Path;
+use std::process::ExitCode;
 
 /// `raykata explain`.
 pub static SPEC: Spec = Spec {
@@ -43,16 +45,6 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// The scene, and how often to measure.
-pub struct Options {
-    scene: PathBuf,
-    kit: Choice,
-    rounds: u32,
-    quality: QualityOptions,
-    full: bool,
-    subsets: bool,
-}
-
 /// The most samples per pixel of a picture that is measured, without `--full`. Several are left, so that effects with one
 /// random number per sample, as a lens, still show their work.
 const MEASURED_SAMPLES: u32 = 4;
@@ -60,20 +52,6 @@ const MEASURED_SAMPLES: u32 = 4;
 /// The most samples of a picture that is measured, without `--full`. With five rounds and ten effects, the scene of the README
 /// then takes about 10 s on two cores.
 const MEASURED_WORK: f64 = 150_000.0;
-
-impl Options {
-    /// Reads the arguments and options.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        Ok(Options {
-            scene: given.required(0)?.into(),
-            kit: Choice::read(given)?,
-            rounds: given.number("--rounds", 1..=1000)?.unwrap_or(5),
-            quality: QualityOptions::read(given)?,
-            full: given.has("--full"),
-            subsets: given.has("--subsets"),
-        })
-    }
-}
 
 /// A scene, the kit, and the effects that the scene needs.
 struct Explained<'a> {
@@ -103,32 +81,35 @@ impl Explained<'_> {
 }
 
 /// Analyses the scene, measures its effects, and prints the report.
-pub fn run(options: &Options) -> Result<()> {
-    let mut scene = load_scene(&options.scene, options.quality.limits())?;
-    options.quality.apply(&mut scene)?;
-    let root = root()?;
-    let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
-    let kit = &*source.fresh();
+pub fn run(given: &Given) -> Result<ExitCode> {
+    let (quality, kit) = (QualityOptions::read(given)?, Choice::read(given)?);
+    let rounds = given.number("--rounds", 1..=1000)?.unwrap_or(5);
+    let file = Path::new(given.required(0)?);
+    let scene = quality.load(file)?;
+    let kit = &*kit.start()?;
     let explained = Explained::new(&scene, kit)?;
-    println!("{}: {}\n", options.scene.display(), size(&scene));
-    if !options.subsets {
+    println!("{}: {}\n", file.display(), size(&scene));
+    let subsets = given.has("--subsets");
+    if !subsets {
         asked(&explained);
     }
     // Measure a smaller picture, whose shares of time are those of the whole one.
-    let small = if options.full { scene.clone() } else { smaller(&scene) };
+    let small = if given.has("--full") { scene.clone() } else { smaller(&scene) };
     let measured = Explained::new(&small, kit)?;
     if small.film != scene.film || small.quality != scene.quality {
         let measured = format!("measured with {}; `--full` measures the whole picture", size(&small));
         println!("{}\n", wrapped(&measured, 0));
     }
-    if options.subsets {
-        return subsets::print(&measured);
+    if subsets {
+        subsets::print(&measured)?;
+        return Ok(ExitCode::SUCCESS);
     }
-    cost(&measured, options.rounds)?;
+    cost(&measured, rounds)?;
     needs::samples(&measured)?;
     needs::rays_per_hit(&measured)?;
     bounds(&measured)?;
-    indirect::depth(&measured)
+    indirect::depth(&measured)?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The size of a picture, in words.
@@ -147,6 +128,9 @@ fn smaller(scene: &Scene) -> Scene {
     small.quality.samples_per_pixel = samples;
     small
 }
+
+/// The smallest error that a screen shows: one of its 256 steps of brightness.
+const STEP: f32 = 1.0 / 255.0;
 
 /// The column at which reasons begin.
 const REASON_COLUMN: usize = 18;
@@ -183,13 +167,6 @@ fn asked(explained: &Explained<'_>) {
     println!();
 }
 
-/// The counts and the time of a picture.
-fn render(kit: &dyn Kit, scene: Scene) -> Result<(Counts, f64)> {
-    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true, reuse: true };
-    let rendering = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
-    Ok((rendering.counts, rendering.render_seconds))
-}
-
 /// Renders the scene with all effects and without each effect, in turn, and prints the differences.
 fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
     // Render the scene with all effects and without each of them, in turn.
@@ -202,9 +179,9 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
     let bar = bar_of_steps(rounds as usize * scenes.len());
     for _ in 0..rounds {
         for (index, scene) in scenes.iter().enumerate() {
-            let (counted, took) = render(explained.kit, scene.clone())?;
-            counts[index] = counted;
-            seconds[index].push(took);
+            let rendering = render(explained.kit, &job(scene.clone()))?;
+            counts[index] = rendering.counts;
+            seconds[index].push(rendering.render_seconds);
             bar.inc(1);
         }
     }
@@ -212,33 +189,30 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
 
     // Print what the picture saves without each effect.
     let with = &seconds[0];
-    println!(
-        "{:<16}  {:>13}  {:>15}  {:>13}  {:>15}",
-        "costs", "its rays", "random numbers", "image reads", "share of time"
-    );
+    const COLUMNS: Columns = Columns("  ", &[-16, 13, 15, 13, 15]);
+    let heads: [&dyn Display; 5] =
+        [&"costs", &"its rays", &"random numbers", &"image reads", &"share of time"];
+    println!("{}", COLUMNS.row(&heads));
     for (index, effect) in called.iter().enumerate() {
         let without = &seconds[index + 1];
         // Compare pictures of the same round, because they were rendered within moments of each other.
         let shares = with.iter().zip(without).map(|(with, without)| 100.0 * (1.0 - without / with)).collect();
         let (share, spread) = median_and_spread(shares);
         let [all, rest] = [&counts[0], &counts[index + 1]];
-        println!(
-            "  {effect:<14}  {:>13}  {:>15}  {:>13}  {:>15}",
-            signed(all.rays(), rest.rays()),
-            signed(all.random_numbers, rest.random_numbers),
-            signed(all.texture_reads, rest.texture_reads),
-            spread_of(rounds, &format!("{share:.0} %"), &format!("{spread:.0}"))
-        );
+        let time = spread_of(rounds, &format!("{share:.0} %"), &format!("{spread:.0}"));
+        let saved = [
+            (all.rays(), rest.rays()),
+            (all.random_numbers, rest.random_numbers),
+            (all.texture_reads, rest.texture_reads),
+        ];
+        let [rays, numbers, reads] = saved.map(|(with, without)| signed(with, without));
+        println!("{}", COLUMNS.row(&[&format!("  {effect}"), &rays, &numbers, &reads, &time]));
     }
     let (whole, spread) = median_and_spread(with.clone());
-    println!(
-        "  {:<14}  {:>13}  {:>15}  {:>13}  {:>15}",
-        "everything",
-        Thousands(counts[0].rays()).to_string(),
-        Thousands(counts[0].random_numbers).to_string(),
-        Thousands(counts[0].texture_reads).to_string(),
-        spread_of(rounds, &format!("{whole:.3} s"), &format!("{spread:.3}"))
-    );
+    let time = spread_of(rounds, &format!("{whole:.3} s"), &format!("{spread:.3}"));
+    let [rays, numbers, reads] =
+        [counts[0].rays(), counts[0].random_numbers, counts[0].texture_reads].map(Thousands);
+    println!("{}", COLUMNS.row(&[&"  everything", &rays, &numbers, &reads, &time]));
     let times = match rounds {
         1 => "Times are from one round, so they show no spread.".to_owned(),
         _ => {
@@ -281,25 +255,27 @@ fn bounds(explained: &Explained<'_>) -> Result<()> {
         return indirect::bounds(explained);
     }
     let most = kit_error::catch(|| kit.most_rays(std::slice::from_ref(&query)))?.remove(0);
-    let (counted, _) = render(*kit, (*scene).clone())?;
-    println!("{:<16}  {:>20}  {:>13}", "rays", "at most, predicted", "counted");
-    let lines = [
+    let counted = render(*kit, &job((*scene).clone()))?.counts;
+    bounds_table(&[
         ("from the camera", most.primary, counted.primary),
         ("to lights", most.shadow, counted.shadow),
         ("reflected", most.reflection, counted.reflection),
         ("refracted", most.transmission, counted.transmission),
-    ];
-    bounds_table(&lines);
+    ]);
     println!("  {}", wrapped(&about_hits(&counted), 2));
     Ok(())
 }
 
 /// Prints lines of predicted and counted rays.
 fn bounds_table(lines: &[(&str, u64, u64)]) {
+    const COLUMNS: Columns = Columns("  ", &[-18, 18, 13]);
+    println!("{}", COLUMNS.row(&[&"rays", &"at most, predicted", &"counted"]));
     for (what, most, counted) in lines {
-        let most =
-            if *most == u64::MAX { "too many to count".to_owned() } else { Thousands(*most).to_string() };
-        println!("  {what:<16}  {most:>18}  {:>13}", Thousands(*counted).to_string());
+        let most = match *most {
+            u64::MAX => "too many to count".to_owned(),
+            most => Thousands(most).to_string(),
+        };
+        println!("{}", COLUMNS.row(&[&format!("  {what}"), &most, &Thousands(*counted)]));
     }
 }
 

@@ -1,11 +1,12 @@
 //! What a hit of each material needs at most, and how many samples a pixel needs.
 
-use super::Explained;
+use super::{Explained, REASON_COLUMN, STEP};
 use crate::args::wrapped;
-use anyhow::{Context, Result};
+use crate::columns::Columns;
+use crate::report::{job, render};
+use anyhow::Result;
 use raykata::film::Film;
-use raykata::frame::Unwatched;
-use raykata::kit::{HitsQuery, KitError, MaterialHits, RenderJob, View, kit_error};
+use raykata::kit::{HitsQuery, KitError, MaterialHits, RenderJob, kit_error};
 
 /// Prints, for each material that is shown, the rays that one of its hits needs if all lights are in front of it.
 pub fn rays_per_hit(explained: &Explained<'_>) -> Result<()> {
@@ -22,10 +23,8 @@ pub fn rays_per_hit(explained: &Explained<'_>) -> Result<()> {
     };
     let queries: Vec<HitsQuery> = materials.iter().map(query).collect();
     let Some(rays) = written(kit_error::catch(|| kit.rays_of_hits(&queries)))? else { return Ok(()) };
-    println!(
-        "{:<24}  {:>18}  {:>11}  {:>11}",
-        "rays per hit", "to lights, at most", "reflected", "refracted"
-    );
+    const COLUMNS: Columns = Columns("  ", &[-24, 18, 11, 11]);
+    println!("{}", COLUMNS.row(&[&"rays per hit", &"to lights, at most", &"reflected", &"refracted"]));
     let mut is_path = false;
     for (material, rays) in materials.into_iter().zip(rays) {
         let name = scene.material_names.get(material).filter(|name| !name.is_empty());
@@ -33,10 +32,9 @@ pub fn rays_per_hit(explained: &Explained<'_>) -> Result<()> {
         let diffuse = paths.as_ref().is_some_and(|paths| paths.diffuse.get(material) == Some(&true));
         is_path |= diffuse;
         let diffuse = if diffuse { "  a diffuse ray" } else { "" };
-        println!(
-            "  {name:<22}  {:>18}  {:>11}  {:>11}{diffuse}",
-            rays.shadow, rays.reflection, rays.transmission
-        );
+        let name = format!("  {name}");
+        let row = COLUMNS.row(&[&name, &rays.shadow, &rays.reflection, &rays.transmission]);
+        println!("{row}{diffuse}");
     }
     if is_path {
         println!("  A path of indirect light continues with one of the rays other than those to lights.");
@@ -45,24 +43,13 @@ pub fn rays_per_hit(explained: &Explained<'_>) -> Result<()> {
     Ok(())
 }
 
-/// The standard error of a pixel that a screen just shows: one of its 256 steps of brightness.
-const STEP: f32 = 1.0 / 255.0;
-
 /// Measures the noise of the picture, and prints how many samples a pixel needs for an error of one step of brightness.
 pub fn samples(explained: &Explained<'_>) -> Result<()> {
     let Explained { scene, kit, .. } = explained;
     // Render the picture twice with different random numbers. The difference of two independent pixels has twice the
     // variance of one.
     let film = |seed| -> Result<Film> {
-        let job = RenderJob {
-            scene: (*scene).clone(),
-            view: View::Shaded,
-            seed,
-            threads: 0,
-            count: false,
-            reuse: true,
-        };
-        Ok(kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?.film)
+        Ok(render(*kit, &RenderJob { seed, count: false, ..job((*scene).clone()) })?.film)
     };
     let (one, other) = (film(1)?, film(2)?);
     let pairs = one.pixels.iter().zip(&other.pixels);
@@ -82,7 +69,7 @@ pub fn samples(explained: &Explained<'_>) -> Result<()> {
             variance.sqrt()
         ),
     };
-    println!("noise             {}\n", wrapped(&text, super::REASON_COLUMN));
+    println!("noise             {}\n", wrapped(&text, REASON_COLUMN));
     Ok(())
 }
 

@@ -1,9 +1,11 @@
 //! The cost of each set of effects.
 
-use super::{Explained, render};
-use crate::report::{Thousands, bar_of_steps};
+use super::Explained;
+use crate::columns::Columns;
+use crate::report::{Thousands, bar_of_steps, job, render};
 use anyhow::{Result, bail};
 use raykata::effects::Effect;
+use std::fmt::Display;
 
 /// Prints one line for each set of the effects that the scene needs, from none to all.
 pub fn print(explained: &Explained<'_>) -> Result<()> {
@@ -14,24 +16,30 @@ pub fn print(explained: &Explained<'_>) -> Result<()> {
     for (effect, letter) in called.iter().zip('A'..) {
         println!("  {letter}  {effect}");
     }
-    let head = [
-        "from camera",
-        "to lights",
-        "reflected",
-        "refracted",
-        "indirect",
-        "random numbers",
-        "image reads",
-        "box tests",
-    ];
-    let head: Vec<String> = head.iter().map(|title| format!("{title:>14}")).collect();
-    println!("\n{:<width$}  {}", "effects", head.join("  "), width = called.len().max(7));
+    let width = called.len().max(7);
+    let row = |set: &str, cells: [&dyn Display; 8]| {
+        println!("{set:<width$}  {}", Columns("  ", &[14; 8]).row(&cells));
+    };
+    println!();
+    row(
+        "effects",
+        [
+            &"from camera",
+            &"to lights",
+            &"reflected",
+            &"refracted",
+            &"indirect",
+            &"random numbers",
+            &"image reads",
+            &"box tests",
+        ],
+    );
     let bar = bar_of_steps(1 << called.len());
     for set in 0..1usize << called.len() {
         let has = |bit: usize| set & (1 << bit) != 0;
         let absent = (0..called.len()).filter(|&bit| !has(bit)).map(|bit| called[bit]);
         let scene = absent.fold(explained.scene.clone(), |scene, effect: Effect| effect.removed_from(&scene));
-        let (counts, _) = render(explained.kit, scene)?;
+        let counts = render(explained.kit, &job(scene))?.counts;
         let letters: String = ('A'..)
             .take(called.len())
             .enumerate()
@@ -47,11 +55,8 @@ pub fn print(explained: &Explained<'_>) -> Result<()> {
             counts.texture_reads,
             counts.box_tests,
         ];
-        let numbers: Vec<String> =
-            numbers.iter().map(|&n| format!("{:>14}", Thousands(n).to_string())).collect();
-        bar.suspend(|| {
-            println!("{letters:<width$}  {}", numbers.join("  "), width = called.len().max(7));
-        });
+        let numbers = numbers.map(Thousands);
+        bar.suspend(|| row(&letters, numbers.each_ref().map(|number| number as &dyn Display)));
         bar.inc(1);
     }
     bar.finish_and_clear();

@@ -11,19 +11,20 @@ mod racers;
 mod statistics;
 mod table;
 
-use crate::args::{Argument, Given, Misuse, Opt, Spec};
+use crate::args::{Argument, Given, Opt, Spec};
 use crate::kits::{Choice, Which, root};
+use crate::program::exit_code;
 use crate::quality_options::QualityOptions;
-use crate::report::{bar_of_steps, load_scene, with_at_most};
+use crate::report::{bar_of_steps, job, render, with_at_most};
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result};
 use pictures::different_pixels;
 use processor_time::processor_time;
 use racers::Racer;
-use raykata::frame::Unwatched;
-use raykata::kit::{Door, Frames, RenderJob, Rendering, View, kit_error};
+use raykata::kit::{Door, RenderJob, Rendering};
 use raykata::scene::Scene;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use table::{Lane, Race};
 
@@ -49,62 +50,37 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// The scene, the kits, and how often they render it.
-pub struct Options {
-    scene: PathBuf,
-    kit: Choice,
-    against: Vec<PathBuf>,
-    rounds: usize,
-    full: bool,
-    quality: QualityOptions,
-}
-
 /// The most pixels of a picture, without `--full` and `--size`: a race in the scenes of the README then takes about a minute.
 const RACED_PIXELS: f64 = 50_000.0;
 
-impl Options {
-    /// Reads the arguments and options.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        Ok(Options {
-            scene: given.required(0)?.into(),
-            kit: Choice::read(given)?,
-            against: given.repeated("--against", |text| Ok::<_, String>(PathBuf::from(text)))?,
-            rounds: given.number("--rounds", statistics::FEWEST..=10_000)?.unwrap_or(15),
-            full: given.has("--full"),
-            quality: QualityOptions::read(given)?,
-        })
-    }
-}
-
-/// Runs the race and prints its table. Returns whether all kits make the same picture.
-pub fn run(options: &Options) -> Result<bool> {
-    let mut scene = load_scene(&options.scene, options.quality.limits())?;
-    options.quality.apply(&mut scene)?;
-    if !options.full && !options.quality.names_a_size() {
+/// Runs the race and prints its table. It succeeds if all kits make the same picture.
+pub fn run(given: &Given) -> Result<ExitCode> {
+    let file = Path::new(given.required(0)?);
+    let (kit, quality) = (Choice::read(given)?, QualityOptions::read(given)?);
+    let against = given.repeated("--against", |text| Ok::<_, String>(PathBuf::from(text)))?;
+    let rounds = given.number("--rounds", statistics::FEWEST..=10_000)?.unwrap_or(15);
+    let mut scene = quality.load(file)?;
+    if !given.has("--full") && !quality.names_a_size() {
         scene = with_at_most(RACED_PIXELS, &scene);
     }
     // Find the kits before anything is built. The first opponent is the baseline, and comes first.
     let root = root()?;
-    let mut racers = match options.against.as_slice() {
+    let mut racers = match against.as_slice() {
         [] => vec![racers::of_kit(&root, Which::Solutions)?],
         folders => folders.iter().map(|folder| racers::in_folder(&root, folder)).collect::<Result<_>>()?,
     };
-    racers.push(racers::of_kit(&root, options.kit.or_exercises())?);
+    racers.push(racers::of_kit(&root, kit.or_exercises())?);
     let programs = racers::build(&root, &racers)?;
 
     let samples = match scene.quality.samples_per_pixel {
         1 => "1 sample".to_owned(),
         n => format!("{n} samples"),
     };
-    let title = format!(
-        "{}, {} × {} pixels, {samples} each",
-        options.scene.display(),
-        scene.film.width,
-        scene.film.height
-    );
-    let race = measure(&scene, title, &racers, &programs, options.rounds)?;
+    let (width, height) = (scene.film.width, scene.film.height);
+    let title = format!("{}, {width} × {height} pixels, {samples} each", file.display());
+    let race = measure(&scene, title, &racers, &programs, rounds)?;
     println!("{}", race.report().trim_end());
-    Ok(race.is_valid())
+    Ok(exit_code(race.is_valid()))
 }
 
 /// A kit in its process.
@@ -116,19 +92,11 @@ struct Contestant {
 impl Contestant {
     /// Renders a frame, and returns it with the time that the operating system measured: processor time, or else elapsed time.
     fn frame(&self, scene: &Scene, seed: u64, by_processor: bool) -> Result<(Rendering, Duration)> {
-        let job = RenderJob {
-            scene: scene.clone(),
-            view: View::Shaded,
-            seed,
-            threads: 1,
-            count: false,
-            reuse: false,
-        };
+        let job = RenderJob { seed, threads: 1, count: false, reuse: false, ..job(scene.clone()) };
         let clock = || self.kit.0.process().and_then(processor_time).unwrap_or_default();
         let (before, started) = (clock(), Instant::now());
-        let rendering = kit_error::catch(|| self.kit.render(&job, &Unwatched))
-            .with_context(|| format!("{} cannot finish its frame", self.name))?
-            .context("the frame was cancelled")?;
+        let rendering = render(&self.kit, &job);
+        let rendering = rendering.with_context(|| format!("{} cannot finish its frame", self.name))?;
         let time = if by_processor { clock().saturating_sub(before) } else { started.elapsed() };
         Ok((rendering, time))
     }

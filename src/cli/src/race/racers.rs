@@ -4,7 +4,7 @@
 //! does not use the workers of other commands. It writes a small workspace into the target folder, with one package per
 //! kit, which compiles the files of its folder.
 
-use crate::kits::{Which, build_folder, run_cargo};
+use crate::kits::{Which, build_folder, profile_of, run_cargo};
 use anyhow::{Context, Result, bail};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -80,10 +80,7 @@ pub fn build(root: &Path, racers: &[Racer]) -> Result<Vec<PathBuf>> {
     }
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(&workspace).args(["build", "--workspace", "--bins", "--target-dir"]).arg(target);
-    match built.file_name().and_then(|name| name.to_str()) {
-        None | Some("debug") => {}
-        Some(profile) => _ = cargo.args(["--profile", profile]),
-    }
+    cargo.args(profile_of(&built));
     run_cargo(cargo, "the kits of the race")?;
     let program = |i| built.join(format!("{}{}", package_name(i), std::env::consts::EXE_SUFFIX));
     Ok((0..racers.len()).map(program).collect())
@@ -94,23 +91,8 @@ fn package_name(racer: usize) -> String {
 }
 
 /// The crates whose options of the root manifest also count in a race: those that the racers are compiled with.
-const CRATES: [&str; 15] = [
-    "crc32fast",
-    "crossbeam-deque",
-    "crossbeam-epoch",
-    "crossbeam-utils",
-    "fdeflate",
-    "fearless_simd",
-    "flate2",
-    "glam",
-    "miniz_oxide",
-    "png",
-    "raykata",
-    "rayon",
-    "rayon-core",
-    "sobol_burley",
-    "toml_parser",
-];
+const CRATES: &str = "crc32fast crossbeam-deque crossbeam-epoch crossbeam-utils fdeflate fearless_simd flate2 glam miniz_oxide \
+                      png raykata rayon rayon-core sobol_burley toml_parser";
 
 /// The manifest of the workspace: its packages, and the profiles of the root manifest. All racers have the options of the
 /// solutions.
@@ -122,7 +104,7 @@ fn workspace_manifest(root: &str, n_racers: usize) -> String {
         if let Some(header) = line.strip_prefix('[') {
             let header = header.trim_end_matches(']');
             kept = match header.strip_prefix("profile.dev.package.") {
-                Some(name) => name == "\"*\"" || CRATES.contains(&name),
+                Some(name) => name == "\"*\"" || CRATES.split(' ').any(|one| one == name),
                 None => header == "profile.dev" || header == "profile.release",
             };
         }
@@ -134,7 +116,7 @@ fn workspace_manifest(root: &str, n_racers: usize) -> String {
     for i in 0..n_racers {
         let _ = writeln!(
             text,
-            "[profile.dev.package.{}]\nopt-level = 3\noverflow-checks = false",
+            "[profile.dev.package.{}]\nopt-level = 3\nincremental = false\noverflow-checks = false",
             package_name(i)
         );
     }
@@ -201,7 +183,7 @@ mod tests {
         for i in 0..2 {
             assert_eq!(section(&text, &format!("profile.dev.package.racer-{i}")), solutions);
         }
-        for same in CRATES.iter().map(|name| format!("profile.dev.package.{name}")) {
+        for same in CRATES.split(' ').map(|name| format!("profile.dev.package.{name}")) {
             assert_eq!(section(&text, &same), section(&root, &same));
         }
         assert_eq!(section(&text, "profile.dev"), section(&root, "profile.dev"));

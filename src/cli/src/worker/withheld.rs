@@ -3,8 +3,8 @@
 use raykata::bvh::Probe;
 use raykata::kit::questions::{Call, Question, Response};
 use raykata::kit::{
-    Answer, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, Costs, KitError, PacketProbe, PacketQuery,
-    Request, SearchQuery, ShadeQuery, ShadowProbe, TableProbe, WideQuery, WideTableProbe, kit_error,
+    Answer, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, Costs, KitError, PacketProbe, Request,
+    SearchQuery, ShadowProbe, TableProbe, WideQuery, WideTableProbe, kit_error,
 };
 use raykata::partition::Cells;
 use raykata::wide::WideProbe;
@@ -13,16 +13,16 @@ use raykata::wide::WideProbe;
 const MOST_CALLS: u32 = 1 << 20;
 
 /// The tables of a request, and the calls that the worker has made so far.
-pub(super) struct Withheld<'a>(Vec<Asked<'a>>);
+pub(super) struct Withheld<'a>(Vec<QueryCalls<'a>>);
 
 /// The calls of one query.
-struct Asked<'a> {
+struct QueryCalls<'a> {
     n_calls: u32,
-    probe: Kept<'a>,
+    probe: ProbeOfQuery<'a>,
 }
 
 /// A probe with its table.
-enum Kept<'a> {
+enum ProbeOfQuery<'a> {
     Table(TableProbe<'a>),
     Cells(CellsProbe<'a>),
     Cached(CellsProbe<'a>, &'a CachedQuery),
@@ -33,97 +33,78 @@ enum Kept<'a> {
 
 /// Returns the request without its tables; `None` if it has none.
 pub fn withheld(request: &Request) -> Option<Request> {
-    let blank = |values: &[f32]| vec![f32::NAN; values.len()];
-    let search = |queries: &[SearchQuery]| -> Vec<SearchQuery> {
-        queries.iter().map(|query| SearchQuery { table: query.table.withheld(), ..query.clone() }).collect()
-    };
-    fn cells<S: Clone>(queries: &[CellsQuery<S>]) -> Vec<CellsQuery<S>> {
-        let blank = |query: &CellsQuery<S>| CellsQuery {
-            cells: query.cells.clone(),
-            ray: query.ray,
-            hits: vec![f32::NAN; query.hits.len()],
-        };
-        queries.iter().map(blank).collect()
+    fn search(queries: &mut [SearchQuery]) {
+        queries.iter_mut().for_each(|query| query.table = query.table.withheld());
     }
-    let wide = |queries: &[WideQuery]| -> Vec<WideQuery> {
-        let blank = |query: &WideQuery| WideQuery {
-            tree: query.tree.clone(),
-            ray: query.ray,
-            entries: vec![[f32::NAN; 8]; query.entries.len()],
-            hits: blank(&query.hits),
-        };
-        queries.iter().map(blank).collect()
-    };
-    let without_tables = match request {
-        Request::BruteForce(queries) => Request::BruteForce(search(queries)),
-        Request::ClosestHitBoth(queries) => Request::ClosestHitBoth(search(queries)),
-        Request::ClosestHit(queries) => Request::ClosestHit(search(queries)),
-        Request::AnyHit(queries) => Request::AnyHit(search(queries)),
+    fn cells<S>(queries: &mut [CellsQuery<S>]) {
+        queries.iter_mut().for_each(|query| query.hits.fill(f32::NAN));
+    }
+    fn wide(queries: &mut [WideQuery]) {
+        for query in queries {
+            query.entries.fill([f32::NAN; 8]);
+            query.hits.fill(f32::NAN);
+        }
+    }
+    // A job for a picture has no tables, and its scene may be large.
+    if request.frame().is_some() {
+        return None;
+    }
+    let mut request = request.clone();
+    match &mut request {
+        Request::BruteForce(queries)
+        | Request::ClosestHitBoth(queries)
+        | Request::ClosestHit(queries)
+        | Request::AnyHit(queries) => search(queries),
         Request::GraphHit(queries) => {
-            let mut queries = queries.clone();
             queries.iter_mut().for_each(|query| query.table = query.table.withheld());
-            Request::GraphHit(queries)
         }
         Request::CachedGraphHit(queries) => {
-            let mut queries = queries.clone();
             queries.iter_mut().for_each(|query| query.search.table = query.search.table.withheld());
-            Request::CachedGraphHit(queries)
         }
-        Request::GridSearch(queries) => Request::GridSearch(cells(queries)),
-        Request::OctreeByCells(queries) => Request::OctreeByCells(cells(queries)),
-        Request::OctreeByNeighbours(queries) => Request::OctreeByNeighbours(cells(queries)),
-        Request::OctreeSearch(queries) => Request::OctreeSearch(cells(queries)),
-        Request::KdSearch(queries) => Request::KdSearch(cells(queries)),
-        Request::BspSearch(queries) => Request::BspSearch(cells(queries)),
-        Request::PolygonBspSearch(queries) => Request::PolygonBspSearch(cells(queries)),
+        Request::GridSearch(queries) => cells(queries),
+        Request::OctreeByCells(queries)
+        | Request::OctreeByNeighbours(queries)
+        | Request::OctreeSearch(queries) => cells(queries),
+        Request::KdSearch(queries) => cells(queries),
+        Request::BspSearch(queries) => cells(queries),
+        Request::PolygonBspSearch(queries) => cells(queries),
         Request::CachedSearch(queries) => {
-            let blank = |query: &CachedQuery| CachedQuery {
-                hits: blank(&query.hits),
-                entries: blank(&query.entries),
-                ..query.clone()
-            };
-            Request::CachedSearch(queries.iter().map(blank).collect())
+            for query in queries {
+                query.hits.fill(f32::NAN);
+                query.entries.fill(f32::NAN);
+            }
         }
         Request::PacketSearch(queries) => {
-            let blank = |query: &PacketQuery| PacketQuery {
-                tables: query.tables.iter().map(|table| table.withheld()).collect(),
-                ..query.clone()
-            };
-            Request::PacketSearch(queries.iter().map(blank).collect())
+            for table in queries.iter_mut().flat_map(|query| &mut query.tables) {
+                *table = table.withheld();
+            }
         }
-        Request::Shade(queries) => {
-            let blank = |query: &ShadeQuery| ShadeQuery {
-                visible: vec![false; query.visible.len()],
-                ..query.clone()
-            };
-            Request::Shade(queries.iter().map(blank).collect())
-        }
-        Request::WideClosestHit(queries) => Request::WideClosestHit(wide(queries)),
-        Request::WideAnyHit(queries) => Request::WideAnyHit(wide(queries)),
+        Request::Shade(queries) => queries.iter_mut().for_each(|query| query.visible.fill(false)),
+        Request::WideClosestHit(queries) | Request::WideAnyHit(queries) => wide(queries),
         _ => return None,
-    };
-    Some(Request::Withheld(Box::new(without_tables)))
+    }
+    Some(Request::Withheld(Box::new(request)))
 }
 
 impl<'a> Withheld<'a> {
     /// Keeps the tables of `request`, whose worker gets [`withheld`] tables.
     pub(super) fn of(request: &'a Request) -> Withheld<'a> {
-        fn cells<S>(queries: &[CellsQuery<S>]) -> Vec<Kept<'_>> {
-            queries.iter().map(|query| Kept::Cells(CellsProbe::new(&query.hits))).collect()
+        fn cells<S>(queries: &[CellsQuery<S>]) -> Vec<ProbeOfQuery<'_>> {
+            queries.iter().map(|query| ProbeOfQuery::Cells(CellsProbe::new(&query.hits))).collect()
         }
-        let probes: Vec<Kept<'a>> = match request {
+        let probes: Vec<ProbeOfQuery<'a>> = match request {
             Request::BruteForce(queries)
             | Request::ClosestHitBoth(queries)
             | Request::ClosestHit(queries)
             | Request::AnyHit(queries) => {
-                queries.iter().map(|query| Kept::Table(TableProbe::new(query))).collect()
+                queries.iter().map(|query| ProbeOfQuery::Table(TableProbe::new(query))).collect()
             }
             Request::GraphHit(queries) => {
-                let probe = |table| Kept::Table(TableProbe::without_hierarchy(table));
+                let probe = |table| ProbeOfQuery::Table(TableProbe::without_hierarchy(table));
                 queries.iter().map(|query| probe(&query.table)).collect()
             }
             Request::CachedGraphHit(queries) => {
-                let probe = |table| Kept::Table(TableProbe::without_hierarchy(table));
+                let probe = |table| ProbeOfQuery::Table(TableProbe::without_hierarchy(table));
                 queries.iter().map(|query| probe(&query.search.table)).collect()
             }
             Request::GridSearch(queries) => cells(queries),
@@ -133,21 +114,22 @@ impl<'a> Withheld<'a> {
             Request::KdSearch(queries) => cells(queries),
             Request::BspSearch(queries) => cells(queries),
             Request::PolygonBspSearch(queries) => cells(queries),
-            Request::CachedSearch(queries) => {
-                queries.iter().map(|query| Kept::Cached(CellsProbe::new(&query.hits), query)).collect()
-            }
+            Request::CachedSearch(queries) => queries
+                .iter()
+                .map(|query| ProbeOfQuery::Cached(CellsProbe::new(&query.hits), query))
+                .collect(),
             Request::PacketSearch(queries) => {
-                queries.iter().map(|query| Kept::Packet(PacketProbe::new(query))).collect()
+                queries.iter().map(|query| ProbeOfQuery::Packet(PacketProbe::new(query))).collect()
             }
             Request::Shade(queries) => {
-                queries.iter().map(|query| Kept::Shadows(ShadowProbe::new(query))).collect()
+                queries.iter().map(|query| ProbeOfQuery::Shadows(ShadowProbe::new(query))).collect()
             }
             Request::WideClosestHit(queries) | Request::WideAnyHit(queries) => {
-                queries.iter().map(|query| Kept::Wide(WideTableProbe::new(query))).collect()
+                queries.iter().map(|query| ProbeOfQuery::Wide(WideTableProbe::new(query))).collect()
             }
             _ => Vec::new(),
         };
-        Withheld(probes.into_iter().map(|probe| Asked { n_calls: 0, probe }).collect())
+        Withheld(probes.into_iter().map(|probe| QueryCalls { n_calls: 0, probe }).collect())
     }
 
     /// Answers a question, and counts it. A call that the probe does not allow is refused with the message of its panic.
@@ -171,20 +153,22 @@ impl<'a> Withheld<'a> {
     pub(super) fn correct(self, answer: &mut Answer) {
         for (costs, asked) in answer.costs().into_iter().zip(self.0) {
             match (costs, asked.probe) {
-                (Costs::Search(answer), Kept::Table(probe)) => *answer = probe.answer(answer.hit),
-                (Costs::Graph(answer), Kept::Table(probe)) => {
+                (Costs::Search(answer), ProbeOfQuery::Table(probe)) => *answer = probe.answer(answer.hit),
+                (Costs::Graph(answer), ProbeOfQuery::Table(probe)) => {
                     answer.search = probe.answer(answer.search.hit);
                     answer.asked = probe.asked;
                 }
-                (Costs::Cells(answer), Kept::Cells(probe) | Kept::Cached(probe, _)) => {
+                (Costs::Cells(answer), ProbeOfQuery::Cells(probe) | ProbeOfQuery::Cached(probe, _)) => {
                     *answer = CellsAnswer { hit: answer.hit, ..probe.answer };
                 }
-                (Costs::Packet(answer), Kept::Packet(probe)) => {
+                (Costs::Packet(answer), ProbeOfQuery::Packet(probe)) => {
                     answer.opened = probe.answer.opened;
                     answer.counts = probe.answer.counts;
                 }
-                (Costs::Wide(answer), Kept::Wide(probe)) => *answer = probe.answer(answer.hit, answer.found),
-                (Costs::Shade(answer), Kept::Shadows(probe)) => *answer = probe.finish(answer.color),
+                (Costs::Wide(answer), ProbeOfQuery::Wide(probe)) => {
+                    *answer = probe.answer(answer.hit, answer.found)
+                }
+                (Costs::Shade(answer), ProbeOfQuery::Shadows(probe)) => *answer = probe.finish(answer.color),
                 // An answer of another kind than its request is refused elsewhere.
                 _ => {}
             }
@@ -192,27 +176,31 @@ impl<'a> Withheld<'a> {
     }
 }
 
-impl Kept<'_> {
+impl ProbeOfQuery<'_> {
     fn answer(&mut self, question: &Question) -> Response {
-        if let Kept::Cells(probe) | Kept::Cached(probe, _) = self {
+        if let ProbeOfQuery::Cells(probe) | ProbeOfQuery::Cached(probe, _) = self {
             question.visits.iter().for_each(|node| probe.visit(*node));
         }
         match (self, question.call) {
-            (Kept::Table(probe), call) => of_nodes(probe, call),
-            (Kept::Packet(probe), call) => of_nodes(probe, call),
-            (Kept::Cells(probe) | Kept::Cached(probe, _), Call::Hit(primitive, ray)) => {
+            (ProbeOfQuery::Table(probe), call) => of_nodes(probe, call),
+            (ProbeOfQuery::Packet(probe), call) => of_nodes(probe, call),
+            (ProbeOfQuery::Cells(probe) | ProbeOfQuery::Cached(probe, _), Call::Hit(primitive, ray)) => {
                 Response::T(probe.hit(primitive, &ray))
             }
-            (Kept::Cells(_) | Kept::Cached(..), Call::End) => Response::Recorded,
-            (Kept::Cached(probe, query), Call::Search(ray)) => Response::Found(query.search(probe, &ray)),
-            (Kept::Shadows(probe), Call::Visible(light, ray)) => {
+            (ProbeOfQuery::Cells(_) | ProbeOfQuery::Cached(..), Call::End) => Response::Recorded,
+            (ProbeOfQuery::Cached(probe, query), Call::Search(ray)) => {
+                Response::Found(query.search(probe, &ray))
+            }
+            (ProbeOfQuery::Shadows(probe), Call::Visible(light, ray)) => {
                 Response::Visible(probe.visible(light as usize, &ray))
             }
-            (Kept::Wide(probe), Call::EnterWide(node, t_max)) => Response::Entered(probe.enter(node, t_max)),
-            (Kept::Wide(probe), Call::Candidates(block, n, t_max)) => {
+            (ProbeOfQuery::Wide(probe), Call::EnterWide(node, t_max)) => {
+                Response::Entered(probe.enter(node, t_max))
+            }
+            (ProbeOfQuery::Wide(probe), Call::Candidates(block, n, t_max)) => {
                 Response::Lanes(probe.candidates(block, n, t_max))
             }
-            (Kept::Wide(probe), Call::HitLane(block, lane, ray)) => {
+            (ProbeOfQuery::Wide(probe), Call::HitLane(block, lane, ray)) => {
                 Response::Found(probe.hit(block, lane, &ray))
             }
             _ => other_kind(),

@@ -1,25 +1,12 @@
 //! Runs the command `compare`.
 
-use super::program_runs::{printed, raykata};
+use super::program_runs::said;
 
 #[test]
 fn structures_are_compared_side_by_side() {
     let out = tempfile::tempdir().expect("a folder");
-    let folder = out.path().to_string_lossy();
-    let output = raykata(&[
-        "compare",
-        "scenes/graph.toml",
-        "--size",
-        "32x20",
-        "--rounds",
-        "1",
-        "--level",
-        "2",
-        "--out",
-        &folder,
-    ]);
-    let (said, complained) = printed(&output);
-    assert!(output.status.success(), "{said}{complained}");
+    let folder = out.path().display();
+    let said = said(&format!("compare scenes/graph.toml --size 32x20 --rounds 1 --level 2 --out {folder}"));
     let rows = [
         "brute force",
         "bounding boxes",
@@ -45,26 +32,16 @@ fn structures_are_compared_side_by_side() {
     for row in rows {
         assert!(said.lines().any(|line| line.starts_with(&format!("{row}  "))), "no line for {row}:\n{said}");
         let picture = out.path().join(format!("tests-{}.png", row.replace(", ", "-").replace(' ', "-")));
-        assert!(
-            std::fs::read(&picture).is_ok_and(|png| png.starts_with(b"\x89PNG")),
-            "{}",
-            picture.display()
-        );
+        assert!(std::fs::read(&picture).is_ok_and(|png| png.starts_with(b"\x89PNG")), "{picture:?}");
     }
     assert!(said.contains("\nall pictures are the same, bit by bit\n"), "{said}");
     assert!(said.lines().all(|line| line.starts_with("pictures,") || line.chars().count() <= 80), "{said}");
     // Each column in which smaller is better has a mark.
     assert!(said.matches('*').count() > 4, "{said}");
     // Structures with cells or boxes are drawn; brute force has none.
-    let drawn = |row: &str| out.path().join(format!("cells-{row}.png")).exists();
-    assert!(
-        drawn("bsp")
-            && drawn("polygon-bsp")
-            && drawn("grid")
-            && drawn("kd-tree")
-            && drawn("bounding-spheres")
-            && !drawn("brute-force")
-    );
+    let drawn = |row: &&str| out.path().join(format!("cells-{row}.png")).exists();
+    assert!(["bsp", "polygon-bsp", "grid", "kd-tree", "bounding-spheres"].iter().all(drawn));
+    assert!(!drawn(&"brute-force"));
 
     let numbers = std::fs::read_to_string(out.path().join("compare.json")).expect("numbers");
     let numbers: serde_json::Value = serde_json::from_str(&numbers).expect("JSON");
@@ -87,19 +64,7 @@ fn savings_heuristics_grids_methods_and_instances_have_tables() {
         ("methods", "spheres, stable roots"),
         ("instances", "copies"),
     ] {
-        let output = raykata(&[
-            "compare",
-            "scenes/graph.toml",
-            "--size",
-            "16x10",
-            "--rounds",
-            "1",
-            "--of",
-            of,
-            "--table",
-        ]);
-        let (said, complained) = printed(&output);
-        assert!(said.contains(row), "{of}: {said}{complained}");
-        assert!(output.status.success(), "{of}: {said}{complained}");
+        let said = said(&format!("compare scenes/graph.toml --size 16x10 --rounds 1 --of {of} --table"));
+        assert!(said.contains(row), "{of}: {said}");
     }
 }

@@ -6,7 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-fn cost(folder: &Path, arguments: &[&str]) -> Output {
+/// Runs `cost` with this command line in a folder.
+fn cost(folder: &Path, line: &str) -> Output {
     let root = raykata_cli::kits::root().unwrap();
     // References lie below the current folder; `root` is only where the scenes are.
     let scenes = folder.join("scenes");
@@ -14,14 +15,20 @@ fn cost(folder: &Path, arguments: &[&str]) -> Output {
         std::os::unix::fs::symlink(root.join("scenes"), &scenes).unwrap();
     }
     let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
-    command.current_dir(folder).stdin(Stdio::null()).arg("cost").args(arguments).output().unwrap()
+    command
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .arg("cost")
+        .args(line.split_whitespace())
+        .output()
+        .unwrap()
 }
 
 fn said(output: &Output) -> String {
     String::from_utf8_lossy(&[&output.stdout[..], &output.stderr[..]].concat()).into_owned()
 }
 
-const QUICK: [&str; 5] = ["--full", "--size", "16x12", "--rounds", "2"];
+const QUICK: &str = "--full --size 16x12 --rounds 2";
 
 /// The report without measured times.
 fn without_times(folder: &Path) -> (Value, Vec<String>) {
@@ -43,15 +50,14 @@ fn without_times(folder: &Path) -> (Value, Vec<String>) {
 #[test]
 fn two_runs_have_the_same_errors_and_counts() {
     let folder = tempfile::tempdir().unwrap();
-    let run = |out: &str, more: &[&str]| {
-        let arguments = [&["scenes/soft_shadows.toml", "--out", out][..], &QUICK, more].concat();
-        let output = cost(folder.path(), &arguments);
+    let run = |out: &str, more: &str| {
+        let output = cost(folder.path(), &format!("scenes/soft_shadows.toml --out {out} {QUICK} {more}"));
         assert!(output.status.success(), "{}", said(&output));
         (said(&output), without_times(&folder.path().join(out)))
     };
-    let parameters = ["--parameter", "samples_per_pixel,sampler,light_samples", "--reference", "128"];
-    let (text, one) = run("one", &parameters);
-    let (_, other) = run("other", &[&parameters[..], &["--threads", "1"]].concat());
+    let parameters = "--parameter samples_per_pixel,sampler,light_samples --reference 128";
+    let (text, one) = run("one", parameters);
+    let (_, other) = run("other", &format!("{parameters} --threads 1"));
     assert_eq!(one, other);
     assert_eq!(one.1, ["cost.csv", "cost.json", "cost.svg", "index.html", "samplers.svg"]);
     assert!(
@@ -74,13 +80,13 @@ fn two_runs_have_the_same_errors_and_counts() {
     // The reference was kept, and a longer one continues it.
     let kept: Vec<_> = fs::read_dir(folder.path().join("out/references")).unwrap().collect();
     assert_eq!(kept.len(), 1);
-    let (_, longer) = run("longer", &["--parameter", "samples_per_pixel", "--reference", "192"]);
+    let (_, longer) = run("longer", "--parameter samples_per_pixel --reference 192");
     assert_eq!(longer.0["reference_samples"], 192);
     assert_eq!(fs::read_dir(folder.path().join("out/references")).unwrap().count(), 1);
 
     // A second run refuses a folder that a first one is writing to.
     let lock = Lock::on(&folder.path().join("one")).unwrap();
-    let refused = cost(folder.path(), &["scenes/soft_shadows.toml", "--out", "one"]);
+    let refused = cost(folder.path(), "scenes/soft_shadows.toml --out one");
     assert!(said(&refused).contains("another run is writing to one"), "{}", said(&refused));
     drop(lock);
 }
@@ -100,15 +106,14 @@ fn kill_when(run: &mut std::process::Child, file: &Path, n_lines: usize) {
 #[test]
 fn a_measurement_that_is_killed_continues_and_gives_the_same_report() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = |out: &'static str| {
-        let parameters =
-            ["scenes/stage5.toml", "--parameter", "samples_per_pixel,max_depth", "--reference", "128"];
-        [&parameters[..], &["--out", out], &QUICK].concat()
+    let arguments = |out: &str| {
+        let parameters = "--parameter samples_per_pixel,max_depth --reference 128";
+        format!("scenes/stage5.toml {parameters} --out {out} {QUICK}")
     };
     let output = cost(folder.path(), &arguments("whole"));
     assert!(output.status.success(), "{}", said(&output));
     let mut run = Command::new(env!("CARGO_BIN_EXE_raykata"));
-    run.current_dir(folder.path()).arg("cost").args(arguments("killed")).stdout(Stdio::null());
+    run.current_dir(folder.path()).arg("cost").args(arguments("killed").split(' ')).stdout(Stdio::null());
     let unfinished = folder.path().join("killed/unfinished.jsonl");
     kill_when(&mut run.stderr(Stdio::null()).spawn().unwrap(), &unfinished, 5);
     let kept = fs::read_to_string(&unfinished).unwrap().lines().count() - 1;
@@ -127,19 +132,8 @@ fn a_measurement_that_is_killed_continues_and_gives_the_same_report() {
 #[test]
 fn a_proposal_is_tried_out() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = [
-        &[
-            "scenes/stage5.toml",
-            "--parameter",
-            "samples_per_pixel,max_depth",
-            "--error",
-            "0.03",
-            "--reference",
-            "128",
-        ][..],
-        &QUICK,
-    ];
-    let output = cost(folder.path(), &arguments.concat());
+    let parameters = "--parameter samples_per_pixel,max_depth --error 0.03 --reference 128";
+    let output = cost(folder.path(), &format!("scenes/stage5.toml {parameters} {QUICK}"));
     assert!(output.status.success(), "{}", said(&output));
     let json: Value =
         serde_json::from_slice(&fs::read(folder.path().join("out/stage5-cost/cost.json")).unwrap()).unwrap();
@@ -156,9 +150,9 @@ fn a_proposal_is_tried_out() {
 fn hits_are_judged_exactly() {
     let folder = tempfile::tempdir().unwrap();
     let judged = |method: &str| {
-        let set = format!("triangle_method={method}");
-        let arguments = ["scenes/stage2.toml", "--parameter", "split", "--set", &set, "--out", method];
-        let output = cost(folder.path(), &[&arguments[..], &["--reference", "128"], &QUICK].concat());
+        let method_and_out = format!("--set triangle_method={method} --out {method}");
+        let line = format!("scenes/stage2.toml --parameter split --reference 128 {method_and_out} {QUICK}");
+        let output = cost(folder.path(), &line);
         assert!(output.status.success(), "{}", said(&output));
         let json = fs::read(folder.path().join(method).join("cost.json")).unwrap();
         let json: Value = serde_json::from_slice(&json).unwrap();
@@ -181,14 +175,14 @@ fn hits_are_judged_exactly() {
 #[test]
 fn what_buys_nothing_is_said() {
     let folder = tempfile::tempdir().unwrap();
-    let output = cost(folder.path(), &["scenes/stage1.toml", "--parameter", "max_depth"]);
+    let output = cost(folder.path(), "scenes/stage1.toml --parameter max_depth");
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(said(&output), "error: depth changes nothing here: no surface reflects or transmits light\n");
     for (arguments, says) in [
-        (&["scenes/stage1.toml", "--budget", "soon"][..], "a time is a number above 0"),
-        (&["scenes/stage1.toml", "--budget", "1s", "--error", "0.1"], "cannot be used with"),
-        (&[], "SCENE is missing"),
-        (&["scenes/none.toml"], "scenes/none.toml"),
+        ("scenes/stage1.toml --budget soon", "a time is a number above 0"),
+        ("scenes/stage1.toml --budget 1s --error 0.1", "cannot be used with"),
+        ("", "SCENE is missing"),
+        ("scenes/none.toml", "scenes/none.toml"),
     ] {
         let output = cost(folder.path(), arguments);
         assert!(!output.status.success() && said(&output).contains(says), "{}", said(&output));
@@ -204,16 +198,8 @@ fn what_is_stopped_leaves_a_report() {
     let scenes = raykata_cli::kits::root().unwrap().join("scenes");
     let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
     command.current_dir(folder.path()).arg("cost").arg(scenes.join("stage1.toml"));
-    command.args([
-        "--size",
-        "16x12",
-        "--rounds",
-        "1000",
-        "--reference",
-        "128",
-        "--parameter",
-        "samples_per_pixel,sampler",
-    ]);
+    let line = "--size 16x12 --rounds 1000 --reference 128 --parameter samples_per_pixel,sampler";
+    command.args(line.split(' '));
     let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
     lines.find(|line| line.starts_with("its own error")).expect("it has begun");

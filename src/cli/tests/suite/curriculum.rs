@@ -21,13 +21,12 @@ fn table() -> String {
 
 /// Runs a command of the table.
 fn run(command: &str) -> Output {
-    let words: Vec<&str> = command.split_whitespace().collect();
-    match words.split_first() {
-        Some((&"cargo", arguments)) => {
-            let cargo = Command::new(env!("CARGO")).current_dir(root()).args(arguments).output();
-            cargo.expect("cargo starts")
+    match command.strip_prefix("cargo ") {
+        Some(arguments) => {
+            let mut cargo = Command::new(env!("CARGO"));
+            cargo.current_dir(root()).args(arguments.split_whitespace()).output().expect("cargo starts")
         }
-        _ => raykata(&words),
+        None => raykata(command),
     }
 }
 

@@ -1,6 +1,6 @@
 //! Runs the program as its users do.
 
-use super::program_runs::{printed, raykata, root};
+use super::program_runs::{complaint, printed, raykata, root, said};
 use raykata::scene::load;
 use std::path::PathBuf;
 
@@ -18,18 +18,8 @@ fn every_scene_of_the_kit_renders() {
     for file in files {
         load::load(&file).unwrap_or_else(|error| panic!("{error}"));
         let picture = out.path().join("picture.png");
-        let output = raykata(&[
-            "render",
-            &file.to_string_lossy(),
-            "--size",
-            "48x30",
-            "--out",
-            &picture.to_string_lossy(),
-        ]);
-        let (said, complained) = printed(&output);
-        assert!(output.status.success(), "{}: {complained}", file.display());
-        assert!(said.contains("primary rays"), "{said}");
-        assert!(!said.contains("NaN"), "{said}");
+        let said = said(&format!("render {} --size 48x30 --out {}", file.display(), picture.display()));
+        assert!(said.contains("primary rays") && !said.contains("NaN"), "{said}");
         std::fs::remove_file(picture).expect("a picture was written");
     }
 }
@@ -39,24 +29,19 @@ fn each_kind_of_picture_is_written_and_others_are_refused() {
     let out = tempfile::tempdir().expect("a folder");
     for (name, magic) in [("a.png", &b"\x89PNG"[..]), ("a.hdr", b"#?RADIANCE")] {
         let picture = out.path().join(name);
-        let output =
-            raykata(&["render", "scenes/gamma.toml", "--size", "9x7", "--out", &picture.to_string_lossy()]);
-        assert!(output.status.success(), "{}", printed(&output).1);
+        said(&format!("render scenes/gamma.toml --size 9x7 --out {}", picture.display()));
         assert!(std::fs::read(&picture).expect("a picture").starts_with(magic), "{name}");
     }
     // OpenEXR takes longer to build than all other formats together, so it is built only with the feature `exr`.
     let picture = out.path().join("a.exr");
-    let output =
-        raykata(&["render", "scenes/gamma.toml", "--size", "9x7", "--out", &picture.to_string_lossy()]);
-    let complaint = printed(&output).1;
+    let output = raykata(&format!("render scenes/gamma.toml --size 9x7 --out {}", picture.display()));
+    let refused = printed(&output).1;
     match std::fs::read(&picture) {
         Ok(bytes) => assert!(bytes.starts_with(b"\x76\x2f\x31\x01")),
-        Err(_) => assert!(complaint.contains("cargo run --features exr -- render"), "{complaint}"),
+        Err(_) => assert!(refused.contains("cargo run --features exr -- render"), "{refused}"),
     }
-    let output = raykata(&["render", "scenes/gamma.toml", "--out", "picture.jpg"]);
-    assert_eq!(output.status.code(), Some(1));
-    let complaint = printed(&output).1;
-    assert!(complaint.contains("let it end in .png, .hdr or .exr"), "{complaint}");
+    let unknown = complaint("render scenes/gamma.toml --out picture.jpg", 1);
+    assert!(unknown.contains("let it end in .png, .hdr or .exr"), "{unknown}");
 }
 
 #[test]
@@ -65,40 +50,33 @@ fn a_mistake_in_a_scene_is_drawn_and_nothing_is_written() {
     let file = out.path().join("typo.toml");
     std::fs::write(&file, "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n\n[fil]\nwidth = 3\n")
         .expect("written");
-    let output =
-        raykata(&["render", &file.to_string_lossy(), "--out", &out.path().join("a.png").to_string_lossy()]);
-    assert_eq!(output.status.code(), Some(1));
-    let complaint = printed(&output).1;
+    let picture = out.path().join("a.png");
+    let drawn = complaint(&format!("render {} --out {}", file.display(), picture.display()), 1);
     for part in ["unknown key `fil`", "did you mean `film`?", "typo.toml:5:2", "5 | [fil]"] {
-        assert!(complaint.contains(part), "no `{part}` in\n{complaint}");
+        assert!(drawn.contains(part), "no `{part}` in\n{drawn}");
     }
-    assert!(!out.path().join("a.png").exists());
-    let missing = raykata(&["render", "scenes/showcas.toml"]);
-    assert_eq!(missing.status.code(), Some(1));
-    assert!(printed(&missing).1.contains("showcase.toml"), "{}", printed(&missing).1);
+    assert!(!picture.exists());
+    let missing = complaint("render scenes/showcas.toml", 1);
+    assert!(missing.contains("showcase.toml"), "{missing}");
 }
 
 #[test]
 fn the_reference_has_all_points() {
-    let output = raykata(&["check", "--kit", "solutions"]);
-    let said = printed(&output).0;
-    assert!(output.status.success(), "{said}");
+    let said = said("check --kit solutions");
     assert!(said.trim_end().ends_with("passed, 0 failed"), "{said}");
 }
 
 #[test]
 fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_reported() {
-    let said = printed(&raykata(&["check", "1", "--kit", "solutions"])).0;
-    assert!(said.contains("stage  1 ·") && !said.contains("stage  2 ·"), "{said}");
-    assert_eq!(said, printed(&raykata(&["check", "stage1", "--kit", "solutions"])).0);
+    let one = said("check 1 --kit solutions");
+    assert!(one.contains("stage  1 ·") && !one.contains("stage  2 ·"), "{one}");
+    assert_eq!(one, said("check stage1 --kit solutions"));
     for wrong in ["77", "0", "stage13", "one"] {
         for command in ["check", "list"] {
-            let output = raykata(&[command, wrong]);
-            assert_eq!(output.status.code(), Some(2));
-            let complaint = printed(&output).1;
+            let refused = complaint(&format!("{command} {wrong}"), 2);
             assert!(
-                complaint.contains("there are stages 1 to 12") && !complaint.contains("building"),
-                "{complaint}"
+                refused.contains("there are stages 1 to 12") && !refused.contains("building"),
+                "{refused}"
             );
         }
     }
@@ -106,42 +84,34 @@ fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_reported() {
 
 #[test]
 fn one_pixel_of_the_picture_of_a_check_is_asked_for_again() {
-    let check = "picture_of_a_sphere_on_a_plane";
-    let output = raykata(&["check", check, "--pixel", "40,30", "--kit", "solutions"]);
-    let (said, complaint) = printed(&output);
-    assert!(output.status.success(), "{said}{complaint}");
+    let check = "check --kit solutions picture_of_a_sphere_on_a_plane --pixel";
+    let said = said(&format!("{check} 40,30"));
     for part in [
         "column 40, row 30",
         "the ray   &Ray::new(vec3(2.0,",
         "  sphere_geometric\n    input   SphereQuery {",
+        "(the golden picture)",
     ] {
         assert!(said.contains(part), "no `{part}` in\n{said}");
     }
-    assert!(said.contains("(the golden picture)"), "{said}");
-    let mistakes: [(&[&str], i32, &str); 5] = [
-        (&[check, "--pixel", "80,30"], 1, "has 80 columns and 60 rows"),
-        (&[check, "--pixel", "4"], 1, "its column and its row, such as 12,7"),
-        (
-            &["sphere_on_a_plane", "--pixel", "4,4"],
-            1,
-            "_of_a_sphere_on_a_plane, picture_of_a_sphere_on_a_plane?",
-        ),
-        (&["plane_hits", "--pixel", "4,4"], 1, "there is no check `plane_hits`"),
-        (&["--pixel", "4,4"], 2, "needs the name of a check"),
-    ];
-    for (words, code, part) in mistakes {
-        let output = raykata(&[&["check", "--kit", "solutions"], words].concat());
-        let complaint = printed(&output).1;
-        assert!(output.status.code() == Some(code) && complaint.contains(part), "{words:?}: {complaint}");
+    let other = |name: &str| format!("check --kit solutions {name} --pixel 4,4");
+    for (line, code, part) in [
+        (format!("{check} 80,30"), 1, "has 80 columns and 60 rows"),
+        (format!("{check} 4"), 1, "its column and its row, such as 12,7"),
+        (other("sphere_on_a_plane"), 1, "_of_a_sphere_on_a_plane, picture_of_a_sphere_on_a_plane?"),
+        (other("plane_hits"), 1, "there is no check `plane_hits`"),
+        (other(""), 2, "needs the name of a check"),
+    ] {
+        let complaint = complaint(&line, code);
+        assert!(complaint.contains(part), "{line}: {complaint}");
     }
 }
 
 #[test]
 fn checks_are_listed_by_stage() {
-    let all = printed(&raykata(&["list"])).0;
-    let one = printed(&raykata(&["list", "3"])).0;
+    let (all, one) = (said("list"), said("list 3"));
     assert!(all.contains(&one) && one.contains("picture_of_depth") && !one.contains("nearest_root"), "{one}");
-    assert_eq!(one, printed(&raykata(&["list", "stage3"])).0);
+    assert_eq!(one, said("list stage3"));
 }
 
 /// The reader closes the pipe, as in `raykata list | head -1`.
@@ -159,7 +129,7 @@ fn a_reader_that_goes_away_is_no_panic() {
 
 #[test]
 fn a_worker_that_is_up_to_date_is_not_mentioned() {
-    let tree = || raykata(&["tree", "scenes/stage1.toml", "--pixel", "1,1"]);
+    let tree = || raykata("tree scenes/stage1.toml --pixel 1,1");
     assert!(tree().status.success());
     // Other tests run cargo at the same time, which prints a line if it has to wait.
     let said: Vec<String> =
@@ -170,27 +140,22 @@ fn a_worker_that_is_up_to_date_is_not_mentioned() {
 #[test]
 fn hints_come_in_three_steps_and_near_names_are_suggested() {
     let name = "triangle_cramer_agrees_with_double_precision";
-    let hints: Vec<String> =
-        ["1", "2", "3"].map(|level| printed(&raykata(&["hint", name, level])).0).to_vec();
+    let hints = [1, 2, 3].map(|level| said(&format!("hint {name} {level}")));
     assert!(hints[0] != hints[1] && hints[1] != hints[2] && hints[0].contains("hint triangle_cramer"));
-    let output = raykata(&["hint", "triangle_cramer_agree"]);
-    assert_eq!(output.status.code(), Some(1));
-    assert!(printed(&output).1.contains(name));
+    assert!(complaint("hint triangle_cramer_agree", 1).contains(name));
 }
 
 #[test]
 fn the_command_line_says_when_it_does_not_understand() {
-    assert_eq!(raykata(&["rendr"]).status.code(), Some(2));
-    assert_eq!(raykata(&["render", "scenes/gamma.toml", "--size", "0x9"]).status.code(), Some(2));
-    assert_eq!(raykata(&["hint", "anything", "4"]).status.code(), Some(2));
-    assert!(printed(&raykata(&["--help"])).0.contains("Exit codes"));
+    for line in ["rendr", "render scenes/gamma.toml --size 0x9", "hint anything 4"] {
+        complaint(line, 2);
+    }
+    assert!(said("--help").contains("Exit codes"));
 }
 
 #[test]
 fn the_rays_behind_a_pixel_are_a_tree_in_three_formats() {
-    let tree = |format: &str| {
-        printed(&raykata(&["tree", "scenes/stage5.toml", "--pixel", "430,240", "--format", format])).0
-    };
+    let tree = |format: &str| said(&format!("tree scenes/stage5.toml --pixel 430,240 --format {format}"));
     let text = tree("text");
     checks::golden::compare("tree_of_a_pixel", "raykata tree scenes/stage5.toml --pixel 430,240", &text)
         .unwrap_or_else(|broken| panic!("{broken:?}"));
@@ -200,18 +165,15 @@ fn the_rays_behind_a_pixel_are_a_tree_in_three_formats() {
     assert_eq!(rays.iter().filter(|ray| ray["parent"].is_null()).count(), 1);
     let dot = tree("dot");
     assert_eq!(dot.matches(" -> ").count(), rays.len() - 1);
-    let outside = raykata(&["tree", "scenes/stage5.toml", "--pixel", "640,0"]);
-    assert!(printed(&outside).1.contains("there is no pixel 640,0: columns go from 0 to 639"));
+    let outside = complaint("tree scenes/stage5.toml --pixel 640,0", 1);
+    assert!(outside.contains("there is no pixel 640,0: columns go from 0 to 639"));
 }
 
 #[test]
 fn a_strip_shows_one_picture_a_depth() {
     let out = tempfile::tempdir().expect("a folder");
     let file = out.path().join("strip.png");
-    let output =
-        raykata(&["strip", "scenes/heckbert.toml", "--depths", "0,1,3", "--out", &file.to_string_lossy()]);
-    let said = printed(&output).0;
-    assert!(output.status.success(), "{}", printed(&output).1);
+    let said = said(&format!("strip scenes/heckbert.toml --depths 0,1,3 --out {}", file.display()));
     assert_eq!(said.lines().count(), 5, "{said}");
     let picture = std::fs::read(&file).expect("a picture");
     // Width and height follow the first 16 bytes of a PNG.
@@ -224,69 +186,64 @@ fn a_strip_shows_one_picture_a_depth() {
 #[test]
 fn exposure_and_tone_curve_change_png_files_and_no_others() {
     let out = tempfile::tempdir().expect("a folder");
-    let render = |name: &str, more: &[&str]| {
+    let render = |name: &str, more: &str| {
         let file = out.path().join(name);
-        let path = file.to_string_lossy().into_owned();
-        let line = ["render", "scenes/stage4.toml", "--size", "24x18", "--out", &path];
-        let output = raykata(&[&line, more].concat());
-        assert!(output.status.success(), "{}", printed(&output).1);
+        said(&format!("render scenes/stage4.toml --size 24x18 --out {} {more}", file.display()));
         std::fs::read(&file).expect("a picture")
     };
-    let plain = render("plain.png", &[]);
-    assert_eq!(render("clamp.png", &["--tone", "clamp", "--exposure", "0"]), plain);
-    assert_ne!(render("stop.png", &["--exposure", "-1.5"]), plain);
-    assert_ne!(render("aces.png", &["--tone", "aces"]), plain);
-    let all = ["--tone", "reinhard", "--exposure", "2"];
-    assert_eq!(render("all.hdr", &all), render("plain.hdr", &[]));
+    let plain = render("plain.png", "");
+    assert_eq!(render("clamp.png", "--tone clamp --exposure 0"), plain);
+    assert_ne!(render("stop.png", "--exposure -1.5"), plain);
+    assert_ne!(render("aces.png", "--tone aces"), plain);
+    let all = "--tone reinhard --exposure 2";
+    assert_eq!(render("all.hdr", all), render("plain.hdr", ""));
     // Normals are no light.
-    let normals = [&["--normals"][..], &all].concat();
-    assert_eq!(render("all.png", &normals), render("normals.png", &["--normals"]));
-    let output = raykata(&["render", "scenes/stage4.toml", "--exposure", "bright"]);
-    assert!(printed(&output).1.contains("an exposure is a number of stops from -100 to 100"));
+    assert_eq!(render("all.png", &format!("--normals {all}")), render("normals.png", "--normals"));
+    let refused = complaint("render scenes/stage4.toml --exposure bright", 2);
+    assert!(refused.contains("an exposure is a number of stops from -100 to 100"));
 }
 
 #[test]
 fn light_that_is_seen_and_filtered_images_are_explained() {
-    let explain = |scene: &str| {
-        let output = raykata(&["explain", scene, "--size", "24x15", "--spp", "1", "--rounds", "1"]);
-        assert!(output.status.success(), "{}", printed(&output).1);
-        printed(&output).0
-    };
+    let explain = |scene: &str| said(&format!("explain {scene} --size 24x15 --spp 1 --rounds 1"));
     let said = explain("scenes/visible_lights.toml");
-    for line in [
-        "  emission        `neon` (neon tube); costs no ray",
-        "  visible lights  light 1 (sphere), light 2 (disk), light 3 (rectangle); costs",
-        "  background      vertical gradient; costs no ray",
-    ] {
+    has_lines(
+        &said,
+        &[
+            "  emission        `neon` (neon tube); costs no ray",
+            "  visible lights  light 1 (sphere), light 2 (disk), light 3 (rectangle); costs",
+            "  background      vertical gradient; costs no ray",
+        ],
+    );
+    let said = explain("scenes/tiles.toml");
+    has_lines(&said, &["  texture filter  mip levels, 1 to 32 image reads per hit; costs no ray"]);
+    assert!(!said.contains("  emission"), "{said}");
+}
+
+#[track_caller]
+fn has_lines(said: &str, lines: &[&str]) {
+    for line in lines {
         assert!(said.contains(line), "no `{line}` in\n{said}");
     }
-    let said = explain("scenes/tiles.toml");
-    assert!(
-        said.contains("  texture filter  mip levels, 1 to 32 image reads per hit; costs no ray"),
-        "{said}"
-    );
-    assert!(!said.contains("  emission"), "{said}");
 }
 
 #[test]
 fn a_scene_is_explained_and_predictions_hold() {
-    let output =
-        raykata(&["explain", "scenes/effects.toml", "--size", "24x15", "--spp", "2", "--rounds", "1"]);
-    let (said, complained) = printed(&output);
-    assert!(output.status.success(), "{complained}");
-    for line in [
-        "  shadows         light 1 (rectangle), light 2 (point)",
-        "  mirrors         `mirror` (mirror ball), `brushed` (brass ball)",
-        "  glossy          `brushed` (brass ball)",
-        "  lens            camera: aperture 0.12, focal distance 7",
-        "  motion          toy ball",
-        "  indirect light  [environment] does not request it",
-        "noise             the pixels deviate by ",
-        // Two samples of the area light and one of the point light, and two glossy rays.
-        "  `brushed`                                3            2            0",
-    ] {
-        assert!(said.contains(line), "no `{line}` in\n{said}");
-    }
+    let said = said("explain scenes/effects.toml --size 24x15 --spp 2 --rounds 1");
+    has_lines(
+        &said,
+        &[
+            "  shadows         light 1 (rectangle), light 2 (point)",
+            "  mirrors         `mirror` (mirror ball), `brushed` (brass ball)",
+            "  glossy          `brushed` (brass ball)",
+            "  lens            camera: aperture 0.12, focal distance 7",
+            "  motion          toy ball",
+            "  indirect light  [environment] does not request it",
+            "noise             the pixels deviate by ",
+            // Two samples of the area light and one of the point light, and two glossy rays.
+            "  `brushed`                                3            2            0",
+        ],
+    );
     // 24 × 15 pixels with 2 samples each: predicted and counted.
     let primary =
         said.lines().find(|line| line.contains("from the camera")).expect("a line about the camera");
@@ -295,17 +252,15 @@ fn a_scene_is_explained_and_predictions_hold() {
 
 #[test]
 fn indirect_light_is_explained_and_its_rays_stay_below_the_prediction() {
-    let output =
-        raykata(&["explain", "scenes/cornell.toml", "--size", "20x20", "--spp", "2", "--rounds", "1"]);
-    let (said, complained) = printed(&output);
-    assert!(output.status.success(), "{complained}");
-    for line in [
-        "  indirect light  [environment]: indirect_light",
-        "  sampled lights  `light` (light in the ceiling)",
-        "depth             the largest diffuse reflectance is",
-    ] {
-        assert!(said.contains(line), "no `{line}` in\n{said}");
-    }
+    let said = said("explain scenes/cornell.toml --size 20x20 --spp 2 --rounds 1");
+    has_lines(
+        &said,
+        &[
+            "  indirect light  [environment]: indirect_light",
+            "  sampled lights  `light` (light in the ceiling)",
+            "depth             the largest diffuse reflectance is",
+        ],
+    );
     // 800 paths with at most 12 bounces each: 800 × (1 + 12) rays are predicted.
     let all = said.lines().find(|line| line.contains("of all paths")).expect("a line about all paths");
     let numbers: Vec<u64> =
@@ -317,13 +272,8 @@ fn indirect_light_is_explained_and_its_rays_stay_below_the_prediction() {
 
 #[test]
 fn every_set_of_effects_has_its_line() {
-    let output = raykata(&["explain", "scenes/stage5.toml", "--size", "24x15", "--spp", "1", "--subsets"]);
-    let (said, complained) = printed(&output);
-    assert!(output.status.success(), "{complained}");
+    let said = said("explain scenes/stage5.toml --size 24x15 --spp 1 --subsets");
     // Shadows, mirrors and transmission give eight sets, each with the same number of camera rays.
-    assert_eq!(
-        said.lines().filter(|line| line.split_whitespace().nth(1) == Some("360")).count(),
-        8,
-        "{said}"
-    );
+    let of_camera = |line: &&str| line.split_whitespace().nth(1) == Some("360");
+    assert_eq!(said.lines().filter(of_camera).count(), 8, "{said}");
 }

@@ -10,17 +10,12 @@ mod plan;
 use anyhow::{Result, bail};
 use kit::Kit;
 use plan::Plan;
+use raykata_cli::program::ended;
 use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match update() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::from(1)
-        }
-    }
+    ended(update().map(|()| true))
 }
 
 fn update() -> Result<()> {

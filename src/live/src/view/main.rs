@@ -17,6 +17,8 @@ mod server;
 mod studio;
 
 use anyhow::{Context, Result, bail};
+use live::files::names_in;
+use raykata_cli::program::ended;
 use raykata_cli::report::say;
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::{Path, PathBuf};
@@ -25,13 +27,7 @@ use std::sync::Arc;
 use studio::Studio;
 
 fn main() -> ExitCode {
-    match view() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::from(1)
-        }
-    }
+    ended(view().map(|()| true))
 }
 
 fn view() -> Result<()> {
@@ -75,17 +71,12 @@ fn listen(port: u16) -> Result<TcpListener> {
 /// The scene of the first stage of the course in which a function is not written; the showcase if all are.
 fn first_scene(root: &Path) -> PathBuf {
     let asked = raykata::rubric::stages();
-    let mut stages: Vec<u8> = std::fs::read_dir(live::exercises(root))
-        .into_iter()
-        .flatten()
-        .flatten()
-        .filter(|file| std::fs::read_to_string(file.path()).is_ok_and(|text| text.contains("todo!(")))
-        .filter_map(|file| {
-            let name = file.file_name().to_string_lossy().into_owned();
-            name.strip_prefix("stage")?.split('_').next()?.parse().ok()
-        })
-        .filter(|stage| asked.iter().any(|(number, _)| number == stage))
-        .collect();
+    let folder = live::exercises(root);
+    let open =
+        |name: &String| std::fs::read_to_string(folder.join(name)).is_ok_and(|text| text.contains("todo!("));
+    let stage = |name: String| name.strip_prefix("stage")?.split('_').next()?.parse().ok();
+    let mut stages: Vec<u8> = names_in(&folder).into_iter().filter(open).filter_map(stage).collect();
+    stages.retain(|stage| asked.iter().any(|(number, _)| number == stage));
     stages.sort_unstable();
     live::scene_of(root, stages.first().copied().unwrap_or(u8::MAX))
 }

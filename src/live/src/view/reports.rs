@@ -1,5 +1,6 @@
 //! The reports of `raykata cost` and `raykata compare`, which they write to `out/`.
 
+use live::files::names_in;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -19,13 +20,8 @@ pub fn list(root: &Path, scene: &Path) -> Value {
     let shown = scene.strip_prefix(root).unwrap_or(scene).display().to_string();
     let report = |command: &str, what: &str| {
         let folder = format!("{name}-{command}");
-        let mut files: Vec<String> = std::fs::read_dir(root.join("out").join(&folder))
-            .into_iter()
-            .flatten()
-            .flatten()
-            .map(|entry| entry.file_name().to_string_lossy().into_owned())
-            .filter(|name| file(root, &format!("{folder}/{name}")).is_some())
-            .collect();
+        let mut files = names_in(&root.join("out").join(&folder));
+        files.retain(|name| file(root, &format!("{folder}/{name}")).is_some());
         files.sort_by_key(|name| (!name.ends_with(".html"), name.clone()));
         json!({ "what": what, "command": format!("cargo run -- {command} {shown}"), "folder": folder, "files": files })
     };

@@ -9,7 +9,7 @@ use super::quick_tree::quickly_built;
 use super::reference::{Origin, Reference};
 use super::studio::{Kit, PATIENCE, Pass, Studio, encoded, job, read_scene};
 use anyhow::{Context, Result, bail};
-use live::compiler::error_in;
+use live::compiler::compile;
 use live::process::Process;
 use raykata::frame::{Tile, Watch};
 use raykata::kit::{Door, Frames, RenderJob, Rendering, View, kit_error};
@@ -18,7 +18,6 @@ use raykata_cli::kits::{Need, Program, Which, cargo_build};
 use raykata_cli::report::Thousands;
 use raykata_cli::worker::Worker;
 use serde_json::json;
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -226,17 +225,18 @@ impl Work {
 
     /// Renders the reference.
     fn reference(&self, job: &RenderJob) -> Result<()> {
-        let program = Program::worker(Which::Solutions, Need::Frames);
-        let (cargo, programs) = cargo_build(&self.studio.root, &[program])?;
-        let all = |out: &mut BufReader<_>| Ok(_ = std::io::copy(out, &mut std::io::sink())?);
-        let Some((compiled, words)) = self.builds[1].follow(cargo, all)? else { return Ok(()) };
+        let worker = Program::worker(Which::Solutions, Need::Frames);
+        let (cargo, [program]) = cargo_build(&self.studio.root, [worker])?;
+        let Some((compiled, words)) = self.builds[1].follow_silently(cargo)? else { return Ok(()) };
         if !compiled {
             bail!("the solutions cannot be built:\n{}", words.trim());
         }
-        let program = programs.first().context("the solutions were not built")?;
-        let kit = self.start_kits(program, &|| self.is_over()).renderer;
-        let rendered = self.render_silently(&kit, job)?;
-        if let Some(Rendering { film, .. }) = rendered {
+        let kit = self.start_kits(&program, &|| self.is_over()).renderer;
+        let rendered = kit_error::catch(|| kit.render(job, &Silent(self)));
+        if self.is_over() {
+            return Ok(());
+        }
+        if let Some(Rendering { film, .. }) = rendered? {
             let rgb = encoded(&job.scene, &film, &kit);
             let (width, height) = (film.width, film.height);
             self.studio
@@ -245,43 +245,20 @@ impl Work {
         Ok(())
     }
 
-    fn render_silently(&self, kit: &Kit, job: &RenderJob) -> Result<Option<Rendering>> {
-        struct Silent<'a>(&'a Work);
-        impl Watch for Silent<'_> {
-            fn progress(&self, _: u64, _: u64) {}
-            fn cancelled(&self) -> bool {
-                self.0.is_over()
-            }
-        }
-        let rendering = kit_error::catch(|| kit.render(job, &Silent(self)));
-        if self.is_over() { Ok(None) } else { Ok(rendering?) }
-    }
-
     /// Compiles the exercises and returns a copy of the program; `None` if that fails, which the page shows, or if the run is
     /// over.
     fn compile(&self, quick: bool) -> Result<Option<PathBuf>> {
-        let program = Program::worker(Which::Exercises, Need::Frames);
-        let (mut cargo, programs) = cargo_build(&self.studio.root, &[program])?;
-        let program = programs.first().context("nothing was built")?;
+        let worker = Program::worker(Which::Exercises, Need::Frames);
+        let (mut cargo, [program]) = cargo_build(&self.studio.root, [worker])?;
         if quick {
-            without_optimisation(&mut cargo, program);
+            without_optimisation(&mut cargo, &program);
         }
-        cargo.arg("--message-format=json");
-        let mut errors = Vec::new();
-        let lines = |out: &mut BufReader<_>| {
-            errors.extend(out.lines().map_while(Result::ok).filter_map(|line| error_in(&line)));
-            Ok(())
-        };
-        let build = &self.builds[usize::from(!quick)];
-        let Some((compiled, words)) = build.follow(cargo, lines)? else { return Ok(None) };
-        if !compiled {
-            if errors.is_empty() {
-                bail!("the exercises cannot be built:\n{}", words.trim());
-            }
+        let Some(errors) = compile(&self.builds[usize::from(!quick)], cargo)? else { return Ok(None) };
+        if !errors.is_empty() {
             self.studio.errors(self.number, errors);
             return Ok(None);
         }
-        Ok(Some(copied(program, if quick { "exercises-quick" } else { "exercises-full" })?))
+        Ok(Some(copied(&program, if quick { "exercises-quick" } else { "exercises-full" })?))
     }
 }
 
@@ -338,6 +315,17 @@ fn facts(rendering: &Rendering, compiled: Duration) -> serde_json::Value {
             ["render", format!("{:.2} s", rendering.render_seconds)],
         ],
     })
+}
+
+/// Shows nothing, and cancels a frame when the run is over.
+struct Silent<'a>(&'a Work);
+
+impl Watch for Silent<'_> {
+    fn progress(&self, _: u64, _: u64) {}
+
+    fn cancelled(&self) -> bool {
+        self.0.is_over()
+    }
 }
 
 /// Passes tiles on to the studio.

@@ -8,12 +8,13 @@ use super::reports;
 use super::run::Run;
 use anyhow::{Context, Result, anyhow, ensure};
 use live::compiler::CompilerError;
-use live::files::Files;
+use live::files::{Files, names_in};
 use raykata::film::{Film, encode_srgb};
-use raykata::frame::{Tile, Unwatched};
+use raykata::frame::Tile;
 use raykata::kit::{Door, Frames, RenderJob, Shading, View, kit_error};
 use raykata::scene::{Encoding, Scene};
 use raykata_cli::html::base64;
+use raykata_cli::report::render;
 use raykata_cli::worker::Worker;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -162,30 +163,26 @@ impl Studio {
 
     /// Removes the errors of earlier runs, because the code compiles.
     pub fn compiled(&self, run: u64) {
+        self.problems(run, Vec::new(), "");
+    }
+
+    /// Replaces the errors of the compiler, and the other reason why there is no picture.
+    fn problems(&self, run: u64, errors: Vec<CompilerError>, failure: &str) {
         self.change(run, |state| {
-            state.errors.clear();
-            state.failure.clear();
+            (state.errors, state.failure) = (errors, failure.to_owned());
             ("errors", errors_of(state))
         });
     }
 
     /// Shows the errors of the compiler.
     pub fn errors(&self, run: u64, errors: Vec<CompilerError>) {
-        self.change(run, |state| {
-            state.errors = errors;
-            state.failure.clear();
-            ("errors", errors_of(state))
-        });
+        self.problems(run, errors, "");
         self.status(run, "errors", "your code does not compile");
     }
 
     /// Says why there is no picture.
     pub fn failure(&self, run: u64, why: &str) {
-        self.change(run, |state| {
-            state.errors.clear();
-            state.failure = why.to_owned();
-            ("errors", errors_of(state))
-        });
+        self.problems(run, Vec::new(), why);
         self.status(run, "failed", "there is no picture");
     }
 
@@ -363,7 +360,7 @@ impl Studio {
 fn heat(scene: &Scene, kit: &Kit) -> Result<Value> {
     let mut job = job(scene, View::Work, true);
     job.scene.quality.samples_per_pixel = 1;
-    let work = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
+    let work = render(&**kit, &job)?;
     let has_visits = work.film.pixels.iter().any(|pixel| pixel.x > 0.0);
     let what = if has_visits { "node visits" } else { "primitive tests" };
     let counts: Vec<f32> =
@@ -380,7 +377,7 @@ fn heat(scene: &Scene, kit: &Kit) -> Result<Value> {
 
 /// A frame of the scene.
 pub fn job(scene: &Scene, view: View, count: bool) -> RenderJob {
-    RenderJob { scene: scene.clone(), view, seed: 0, threads: 0, count, reuse: true }
+    RenderJob { view, count, ..raykata_cli::report::job(scene.clone()) }
 }
 
 /// The colours as they are shown. Without a written `encode_gamma`, a scene with gamma 2 is shown in sRGB.
@@ -398,9 +395,7 @@ pub fn encoded(scene: &Scene, film: &Film, kit: &Door<Worker>) -> Vec<u8> {
 }
 
 fn errors_of(state: &State) -> Value {
-    let error = |error: &CompilerError| json!({ "place": error.place, "what": error.what, "code": error.code, "notes": error.notes });
-    let errors: Vec<Value> = state.errors.iter().map(error).collect();
-    json!({ "errors": errors, "failure": state.failure })
+    json!({ "errors": state.errors, "failure": state.failure })
 }
 
 fn scene_of(root: &Path, state: &State) -> Value {
@@ -427,10 +422,8 @@ fn command_of(root: &Path, file: &Path, [x, y]: [u32; 2]) -> String {
 
 /// The names of the scenes of the kit.
 fn scenes(root: &Path) -> Vec<String> {
-    let files = std::fs::read_dir(root.join("scenes")).into_iter().flatten().flatten();
-    let mut names: Vec<String> = files
-        .filter_map(|file| file.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned))
-        .collect();
+    let strip = |name: String| name.strip_suffix(".toml").map(str::to_owned);
+    let mut names: Vec<String> = names_in(&root.join("scenes")).into_iter().filter_map(strip).collect();
     // The scenes of the stages come first, in the order of the stages.
     let stage = |name: &str| name.strip_prefix("stage").and_then(|number| number.parse().ok());
     names.sort_by_key(|name| (stage(name).unwrap_or(u32::MAX), name.clone()));
@@ -439,7 +432,5 @@ fn scenes(root: &Path) -> Vec<String> {
 
 /// Reads the scene; the error shows the line that is wrong.
 pub fn read_scene(file: &Path) -> Result<Scene> {
-    let loaded =
-        raykata::scene::load::load(file).map_err(|error| anyhow!(raykata_cli::report::draw(&error)))?;
-    Ok(loaded)
+    raykata::scene::load::load(file).map_err(|error| anyhow!(raykata_cli::report::draw(&error)))
 }

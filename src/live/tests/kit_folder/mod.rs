@@ -3,7 +3,26 @@
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command};
+use std::time::{Duration, Instant};
+
+/// The longest time that anything may take on a busy machine.
+pub const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Whether a process runs.
+pub fn runs(id: &str) -> bool {
+    nix::sys::signal::kill(nix::unistd::Pid::from_raw(id.parse().unwrap()), None).is_ok()
+}
+
+/// A program that ends when the test ends.
+pub struct Running(pub Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
 
 /// The folder of the kit. It is removed at the end.
 pub struct KitFolder(tempfile::TempDir);
@@ -36,6 +55,23 @@ impl KitFolder {
         self.write(&draft, text);
         self.program(path, &self.path(&draft));
         fs::set_permissions(self.path(path), fs::Permissions::from_mode(0o755)).unwrap();
+    }
+
+    /// Writes the exercise. The lengths of texts differ, so that the change is seen where times are coarse.
+    pub fn save(&self, text: &str) {
+        self.write("exercises/src/stage1_shapes.rs", &format!("{text}\n"));
+    }
+
+    /// Waits until a file ends with a line, and returns its text.
+    pub fn wait_for_file(&self, path: &str) -> String {
+        let begin = Instant::now();
+        loop {
+            match fs::read_to_string(self.path(path)) {
+                Ok(text) if text.ends_with('\n') => return text.trim().to_owned(),
+                _ => assert!(begin.elapsed() < PATIENCE, "no {path}"),
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
     }
 
     /// Copies a program in a process of its own. While this process writes a program, another test may start a process, which

@@ -1,6 +1,6 @@
 //! A kit whose exercises are this program itself, which renders one colour, and a running `view` that shows it.
 
-use crate::kit_folder::KitFolder;
+use crate::kit_folder::{KitFolder, PATIENCE, Running};
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::count::{Counts, Uncounted};
@@ -14,11 +14,8 @@ use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-
-/// The longest time that anything may take on a busy machine.
-pub const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The script in place of cargo.
 const CARGO: &str = r#"#!/bin/sh
@@ -112,72 +109,49 @@ fn visits(n: u64) -> RayVisits {
 }
 
 /// A kit in a temporary folder.
-pub struct Kit(KitFolder);
-
-impl std::ops::Deref for Kit {
-    type Target = KitFolder;
-
-    fn deref(&self) -> &KitFolder {
-        &self.0
-    }
+pub fn new_kit() -> KitFolder {
+    let kit = KitFolder::with(&["exercises/src", "target/debug", "scenes/reference", "out/a-cost"]);
+    kit.write("error.json", ERROR);
+    kit.write("scenes/a.toml", SCENE);
+    kit.write("scenes/b.toml", SCENE);
+    kit.write("out/a-cost/cost.html", "<title>cost</title>");
+    kit.write("secret.png", "not for the page");
+    kit.script("cargo", CARGO);
+    let this = std::env::current_exe().unwrap();
+    let worker = format!(
+        "#!/bin/sh\nVIEW_TEST_ROOT='{}' exec '{}' --exact view_kit::the_worker --nocapture\n",
+        kit.root().display(),
+        this.display()
+    );
+    kit.script("target/debug/exercises-frames", &worker);
+    kit.program("target/debug/view", Path::new(env!("CARGO_BIN_EXE_view")));
+    // The reference is blue, at half the size.
+    let blue = image::RgbImage::from_pixel(32, 20, image::Rgb([0, 0, 255]));
+    blue.save(kit.path("scenes/reference/a.png")).unwrap();
+    kit.save("// green");
+    kit
 }
 
-impl Kit {
-    pub fn new() -> Kit {
-        let kit = Kit(KitFolder::with(&["exercises/src", "target/debug", "scenes/reference", "out/a-cost"]));
-        kit.write("error.json", ERROR);
-        kit.write("scenes/a.toml", SCENE);
-        kit.write("scenes/b.toml", SCENE);
-        kit.write("out/a-cost/cost.html", "<title>cost</title>");
-        kit.write("secret.png", "not for the page");
-        kit.script("cargo", CARGO);
-        let this = std::env::current_exe().unwrap();
-        let worker = format!(
-            "#!/bin/sh\nVIEW_TEST_ROOT='{}' exec '{}' --exact view_kit::the_worker --nocapture\n",
-            kit.root().display(),
-            this.display()
-        );
-        kit.script("target/debug/exercises-frames", &worker);
-        kit.program("target/debug/view", Path::new(env!("CARGO_BIN_EXE_view")));
-        // The reference is blue, at half the size.
-        let blue = image::RgbImage::from_pixel(32, 20, image::Rgb([0, 0, 255]));
-        blue.save(kit.path("scenes/reference/a.png")).unwrap();
-        kit.save("// green");
-        kit
-    }
-
-    /// Writes the exercise. The lengths differ, so that the change is seen where times are coarse.
-    pub fn save(&self, first: &str) {
-        self.write("exercises/src/stage1_shapes.rs", &format!("{first}\n"));
-    }
-
-    pub fn view(&self) -> View {
-        let mut command = Command::new(self.path("target/debug/view"));
-        command.arg(self.root()).arg(self.path("scenes/a.toml")).env("CARGO", self.path("cargo"));
-        let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
-        let mut line = String::new();
-        BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        let address = line.trim().rsplit(' ').next().unwrap().to_owned();
-        let rest = address.strip_prefix("http://127.0.0.1:").unwrap_or_else(|| panic!("{line}"));
-        let (port, token) = rest.split_once('/').unwrap();
-        let (port, token) = (port.parse().unwrap(), token.trim_end_matches('/').to_owned());
-        View { child, address, port, token }
-    }
+/// Starts `view` for a kit.
+pub fn view(kit: &KitFolder) -> View {
+    let mut command = Command::new(kit.path("target/debug/view"));
+    command.arg(kit.root()).arg(kit.path("scenes/a.toml")).env("CARGO", kit.path("cargo"));
+    let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut line = String::new();
+    BufReader::new(child.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    let address = line.trim().rsplit(' ').next().unwrap().to_owned();
+    let rest = address.strip_prefix("http://127.0.0.1:").unwrap_or_else(|| panic!("{line}"));
+    let (port, token) = rest.split_once('/').unwrap();
+    let (port, token) = (port.parse().unwrap(), token.trim_end_matches('/').to_owned());
+    View { _running: Running(child), address, port, token }
 }
 
 /// A running `view`.
 pub struct View {
-    pub child: Child,
+    _running: Running,
     pub address: String,
     pub port: u16,
     pub token: String,
-}
-
-impl Drop for View {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
 }
 
 impl View {

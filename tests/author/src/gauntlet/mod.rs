@@ -69,8 +69,8 @@ impl Options {
 }
 
 /// Measures the same as `raykata cost`, and the intersection methods. Returns whether it succeeded.
-pub fn cost(options: &cost::Options) -> Result<bool> {
-    cost::run(options, "cargo run --release -p author --", Some(&summary))
+pub fn cost(given: &Given) -> Result<bool> {
+    cost::run(given, "cargo run --release -p author --", Some(&summary))
 }
 
 /// Runs the gauntlet.

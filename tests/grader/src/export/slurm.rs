@@ -8,7 +8,6 @@ use raykata::rows::Rows;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use raykata_cli::kits::build_folder;
 use raykata_cli::quality_options::{QualityOptions, ToneOptions};
-use raykata_cli::report::load_scene;
 use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -149,8 +148,7 @@ pub fn slurm(root: &Path, options: &SlurmOptions) -> Result<()> {
 /// Writes the scripts that render a picture.
 pub fn picture(root: &Path, options: &PictureOptions) -> Result<()> {
     let file = absolute(&options.scene)?;
-    let mut scene = load_scene(&file, options.quality.limits())?;
-    options.quality.apply(&mut scene)?;
+    let scene = options.quality.load(&file)?;
     let rows = Rows::divide(scene.film.height, options.pieces);
     let raykata = build_folder()?.join("raykata");
     let folder = Folder::make(&options.out, "pieces")?;

@@ -23,8 +23,9 @@ fn misbehaving() -> PathBuf {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     let build = || {
         let program = Program { package: "misbehaving", name: "misbehaving-worker", feature: None };
-        let built = kits::build(&kits::root().expect("a kit"), "a worker that misbehaves", &[program]);
-        built.expect("it builds").remove(0)
+        let built = kits::build(&kits::root().expect("a kit"), "a worker that misbehaves", [program]);
+        let [program] = built.expect("it builds");
+        program
     };
     BUILT.get_or_init(build).clone()
 }

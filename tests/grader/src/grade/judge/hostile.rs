@@ -189,8 +189,9 @@ fn hostile() -> &'static PathBuf {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     BUILT.get_or_init(|| {
         let program = Program { package: "misbehaving", name: "hostile-worker", feature: None };
-        let built = kits::build(&kits::root().expect("a kit"), "a hostile worker", &[program]);
-        built.expect("it builds").remove(0)
+        let built = kits::build(&kits::root().expect("a kit"), "a hostile worker", [program]);
+        let [program] = built.expect("it builds");
+        program
     })
 }
 

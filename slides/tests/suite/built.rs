@@ -1,9 +1,9 @@
 //! The built decks work offline and are whole. Node.js, Marp and a browser build them, so this runs only with `CI_LONG=1`.
 
+use super::deck::{Deck, decks, root, runs_marp};
 use flate2::read::ZlibDecoder;
 use std::fs;
 use std::io::Read;
-use std::path::Path;
 use std::process::Command;
 
 /// The number of pages of a PDF file. Pages may stand in compressed streams.
@@ -51,39 +51,27 @@ fn network_references_are_found() {
 
 #[test]
 fn decks_are_built_whole_and_without_the_network() {
-    if std::env::var_os("CI_LONG").is_none() {
-        return println!("skipped: run only with CI_LONG=1");
-    }
-    let slides = Path::new(env!("CARGO_MANIFEST_DIR"));
-    if !slides.join("node_modules/@marp-team").is_dir() {
-        return eprintln!("SKIPPED: Marp is not installed: npm ci --prefix slides");
+    if !runs_marp() {
+        return;
     }
     if browser::path().is_none() {
         return eprintln!("SKIPPED: there is no browser, which makes the PDF files");
     }
     let out = std::env::temp_dir().join(format!("raykata-built-slides-{}", std::process::id()));
     let built = Command::new(env!("CARGO"))
-        .current_dir(slides.join(".."))
+        .current_dir(root())
         .args(["run", "--quiet", "--", "slides", "--pdf", "--out"])
         .arg(&out)
         .output()
         .expect("cargo starts");
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
-    let mut n_decks = 0;
-    for file in fs::read_dir(slides).unwrap().map(|file| file.unwrap().path()) {
-        let text = fs::read_to_string(&file).unwrap_or_default();
-        let Some((_, deck)) =
-            text.strip_prefix("---\nmarp: true\n").and_then(|rest| rest.split_once("\n---\n"))
-        else {
-            continue;
-        };
-        let name = file.file_stem().unwrap().to_string_lossy().into_owned();
+    let decks = decks();
+    for Deck { name, slides, .. } in &decks {
         let html = fs::read_to_string(out.join(format!("{name}.html"))).unwrap();
         assert_eq!(loaded_from_the_network(&html), Vec::<&str>::new(), "{name}");
         let pdf = fs::read(out.join(format!("{name}.pdf"))).unwrap();
-        assert_eq!(n_pages(&pdf), deck.split("\n---\n").count(), "{name}: pages of the PDF and slides");
-        n_decks += 1;
+        assert_eq!(n_pages(&pdf), slides.len(), "{name}: pages of the PDF and slides");
     }
-    assert!(n_decks > 10, "{n_decks} decks");
+    assert!(decks.len() > 10, "{} decks", decks.len());
     fs::remove_dir_all(out).unwrap();
 }

@@ -1,33 +1,25 @@
 //! No slide is fuller than its page. Node.js and Marp build the pages and a browser measures them, so this runs only with
 //! `CI_LONG=1`.
 
+use super::deck::{Deck, decks, root, runs_marp};
 use browser::Browser;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
-
-fn slides() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()
-}
 
 /// A line per slide that overflows. `None` if this is not to run, or if a program is missing; the output says which.
 fn overflowing(decks: &[PathBuf]) -> Option<Vec<String>> {
-    if std::env::var_os("CI_LONG").is_none() {
-        println!("skipped: run only with CI_LONG=1");
+    if !runs_marp() {
         return None;
     }
-    let marp = slides().join("node_modules/@marp-team/marp-cli/marp-cli.js");
-    if !marp.is_file() {
-        eprintln!("SKIPPED: Marp is not installed: npm ci --prefix slides");
-        return None;
-    }
+    let slides = root().join("slides");
     let mut browser = Browser::start().expect("the browser starts")?;
     browser.window(1280, 720, false).expect("the browser answers");
     // Build the pages in a folder that also has the figures.
     let folder = tempfile::tempdir().expect("a folder");
     let figures = folder.path().join("figures");
     fs::create_dir(&figures).expect("a folder");
-    for file in fs::read_dir(slides().join("figures")).expect("figures").flatten() {
+    for file in fs::read_dir(slides.join("figures")).expect("figures").flatten() {
         fs::copy(file.path(), figures.join(file.file_name())).expect("a figure");
     }
     let mut lines = Vec::new();
@@ -35,13 +27,18 @@ fn overflowing(decks: &[PathBuf]) -> Option<Vec<String>> {
         let name = deck.file_stem().expect("a name").to_string_lossy();
         let page = folder.path().join(format!("{name}.html"));
         let mut node = Command::new("node");
-        node.arg(&marp).args(["--no-stdin", "--template", "bare", "--theme-set"]);
+        node.arg(slides.join("node_modules/@marp-team/marp-cli/marp-cli.js")).args([
+            "--no-stdin",
+            "--template",
+            "bare",
+            "--theme-set",
+        ]);
         // Without an option between them, Marp would take the deck for another theme.
-        node.arg(slides().join("raykata.css")).arg("--html").arg(deck).arg("-o").arg(&page);
+        node.arg(slides.join("raykata.css")).arg("--html").arg(deck).arg("-o").arg(&page);
         let built = node.output().expect("node starts, because npm has installed Marp");
         assert!(built.status.success(), "{name}: {}", String::from_utf8_lossy(&built.stderr));
         browser.open(&format!("file://{}", page.display())).expect("a page");
-        let found = browser.evaluate(include_str!("overflow.js")).expect("measures");
+        let found = browser.evaluate(include_str!("../overflow.js")).expect("measures");
         let found = found.as_array().expect("a list").iter().filter_map(|line| line.as_str());
         lines.extend(found.map(|line| format!("{name}, {line}")));
     }
@@ -50,13 +47,8 @@ fn overflowing(decks: &[PathBuf]) -> Option<Vec<String>> {
 
 #[test]
 fn every_slide_fits_its_page() {
-    let mut decks: Vec<PathBuf> = fs::read_dir(slides())
-        .expect("slides/ is a folder")
-        .map(|file| file.expect("slides/ can be read").path())
-        .filter(|file| file.extension().is_some_and(|ending| ending == "md"))
-        .filter(|file| fs::read_to_string(file).is_ok_and(|text| text.starts_with("---\nmarp: true\n")))
-        .collect();
-    decks.sort();
+    let file = |deck: &Deck| root().join("slides").join(format!("{}.md", deck.name));
+    let decks: Vec<PathBuf> = decks().iter().map(file).collect();
     assert!(decks.len() > 10, "{decks:?}");
     if let Some(lines) = overflowing(&decks) {
         assert!(lines.is_empty(), "{}", lines.join("\n"));

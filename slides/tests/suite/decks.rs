@@ -1,57 +1,9 @@
 //! The decks are whole: every slide has a heading and a note, every row of the lectures and every slide that a check refers to has
 //! its place, figures exist, and signatures are those of the exercises.
 
-use std::collections::{BTreeMap, BTreeSet};
+use super::deck::{Deck, decks, root};
+use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("slides/ is in a folder").to_path_buf()
-}
-
-struct Deck {
-    name: String,
-    /// The settings at its top.
-    head: BTreeMap<String, String>,
-    slides: Vec<String>,
-}
-
-impl Deck {
-    fn stage(&self) -> Option<u8> {
-        self.head.get("stage").map(|stage| stage.parse().expect("a number of a stage"))
-    }
-
-    fn text(&self) -> String {
-        self.slides.concat()
-    }
-}
-
-/// All decks, by name.
-fn decks() -> Vec<Deck> {
-    let mut decks = Vec::new();
-    for file in fs::read_dir(root().join("slides")).unwrap().map(|file| file.unwrap().path()) {
-        if file.extension().is_none_or(|ending| ending != "md") {
-            continue;
-        }
-        let text = fs::read_to_string(&file).unwrap();
-        let Some((head, slides)) =
-            text.strip_prefix("---\nmarp: true\n").and_then(|rest| rest.split_once("\n---\n"))
-        else {
-            continue;
-        };
-        let pair = |line: &str| {
-            let (key, value) = line.split_once(": ").unwrap_or_else(|| panic!("{}: {line}", file.display()));
-            (key.to_owned(), value.trim_matches('"').to_owned())
-        };
-        decks.push(Deck {
-            name: file.file_stem().unwrap().to_string_lossy().into_owned(),
-            head: head.lines().map(pair).collect(),
-            slides: slides.split("\n---\n").map(str::to_owned).collect(),
-        });
-    }
-    decks.sort_by(|a, b| a.name.cmp(&b.name));
-    decks
-}
 
 fn heading(slide: &str) -> Option<&str> {
     slide.lines().find_map(|line| line.strip_prefix("## ").or_else(|| line.strip_prefix("# ")))

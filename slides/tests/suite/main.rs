@@ -1,0 +1,6 @@
+//! The tests of the slides in one program.
+
+mod built;
+mod deck;
+mod decks;
+mod overflow;
