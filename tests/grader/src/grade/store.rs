@@ -6,10 +6,10 @@ use super::result::{Class, Graded, Session};
 use super::shard::Part;
 use crate::course::CourseFiles;
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use nix::fcntl::{Flock, FlockArg};
+use raykata_cli::lock::Lock;
 use rusqlite::{Connection, OptionalExtension, params};
 use std::collections::HashSet;
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -36,21 +36,18 @@ pub struct Store {
     /// The path of the database, for errors.
     file: PathBuf,
     /// Kept until the store is dropped, if this process may write grades.
-    _lock: Option<Flock<File>>,
+    _lock: Option<Lock>,
 }
 
 impl Store {
     /// Opens or creates the database in `folder` to write grades. Returns an error if another process is writing.
     pub fn claim(folder: &Path) -> Result<Store> {
-        let path = folder.join(LOCK);
-        let file = fs::OpenOptions::new().create(true).append(true).open(&path);
-        let file = file.with_context(|| format!("cannot write {}", path.display()))?;
-        let Ok(lock) = Flock::lock(file, FlockArg::LockExclusiveNonblock) else {
-            bail!(
+        let lock = Lock::file(&folder.join(LOCK), || {
+            format!(
                 "another grader is writing to {}: wait until it is done, or choose another folder",
                 folder.display()
             )
-        };
+        })?;
         Ok(Store { _lock: Some(lock), ..Store::open(folder)? })
     }
 
