@@ -34,7 +34,7 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `author new-check`.
-pub struct Options {
+pub struct NewCheckOptions {
     name: String,
     stage: u8,
     function: Option<String>,
@@ -42,15 +42,15 @@ pub struct Options {
     after: Option<String>,
 }
 
-impl Options {
+impl NewCheckOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<NewCheckOptions, Misuse> {
         let name = |text: &str| {
             let is_name = text.starts_with(|letter: char| letter.is_ascii_lowercase())
                 && text.chars().all(|letter| matches!(letter, 'a'..='z' | '0'..='9' | '_'));
             if is_name { Ok(text.to_owned()) } else { Err("a name consists of a-z, 0-9 and _") }
         };
-        Ok(Options {
+        Ok(NewCheckOptions {
             name: given.parsed_argument(0, name)?.unwrap_or_default(),
             stage: given.parsed("--stage", |text| text.parse::<u8>())?.unwrap_or_default(),
             function: given.parsed("--function", name)?,
@@ -88,7 +88,7 @@ macro_rules! all_asked {
 raykata::student_functions! { all_asked }
 
 /// Writes what the check lacks, and says what is missing. Returns whether nothing is, or whether something was written.
-pub fn run(root: &Path, options: &Options) -> Result<bool> {
+pub fn run(root: &Path, options: &NewCheckOptions) -> Result<bool> {
     let stage = StageFiles::read(root, options.stage)?;
     let is_new = !stage.listed().iter().any(|(_, name)| *name == options.name);
     if is_new {
@@ -148,7 +148,7 @@ fn checked(line: &str) -> Option<(&str, &str)> {
 }
 
 /// Writes the check, its line in the list, its entry in the rubric and its entries in the corpus.
-fn write(root: &Path, stage: &StageFiles, options: &Options) -> Result<()> {
+fn write(root: &Path, stage: &StageFiles, options: &NewCheckOptions) -> Result<()> {
     // Find the function, the check before and the module.
     if let Some((stage, _)) =
         STAGES.iter().find(|(_, checks)| checks.iter().any(|check| check.name == options.name))
@@ -203,7 +203,7 @@ fn write(root: &Path, stage: &StageFiles, options: &Options) -> Result<()> {
 }
 
 /// The text of a rubric with a blank entry behind that of the check before, with the same slide, or at the end.
-fn with_entry(rubric: &str, options: &Options, before: Option<&str>) -> Result<String> {
+fn with_entry(rubric: &str, options: &NewCheckOptions, before: Option<&str>) -> Result<String> {
     let table = |check: &str| format!("[stage{}.checks.{check}]\n", options.stage);
     let (end, slide) = match before {
         Some(before) => {
@@ -257,7 +257,7 @@ fn write_entries(root: &Path, asked: &Asked, name: &str) -> Result<()> {
 }
 
 /// The function that the check asks.
-fn function(options: &Options) -> Result<&'static Asked> {
+fn function(options: &NewCheckOptions) -> Result<&'static Asked> {
     let of_stage = || ALL.iter().filter(|asked| asked.function.stage() == options.stage);
     let is = |asked: &&Asked, name: &str| asked.function.name() == name || asked.name == name;
     if let Some(name) = &options.function {
@@ -340,7 +340,7 @@ struct Rubric {
 }
 
 /// The blanks that are left, each with its place.
-fn missing(root: &Path, options: &Options) -> Result<Vec<String>> {
+fn missing(root: &Path, options: &NewCheckOptions) -> Result<Vec<String>> {
     let (mut missing, name) = (Vec::new(), &options.name);
     let stage = StageFiles::read(root, options.stage)?;
     let listed = stage.listed();
@@ -383,7 +383,7 @@ fn missing(root: &Path, options: &Options) -> Result<Vec<String>> {
 }
 
 /// The blanks of the corpus: of each mistake that the check must catch, and of the correct solution with its name.
-fn missing_entries(root: &Path, options: &Options) -> Result<Vec<String>> {
+fn missing_entries(root: &Path, options: &NewCheckOptions) -> Result<Vec<String>> {
     let (mut missing, mut is_caught, name) = (Vec::new(), false, options.name.as_str());
     let mut files: Vec<String> = Vec::new();
     for file in fs::read_dir(root.join(FOLDER)).with_context(|| format!("cannot read {FOLDER}"))? {
@@ -424,8 +424,8 @@ fn missing_entries(root: &Path, options: &Options) -> Result<Vec<String>> {
 }
 
 /// What to run when no blank is left.
-fn next_steps(options: &Options) -> String {
-    let Options { name, stage, .. } = options;
+fn next_steps(options: &NewCheckOptions) -> String {
+    let NewCheckOptions { name, stage, .. } = options;
     let steps = [
         ("the code has its format", "cargo fmt --all".to_owned()),
         ("the reference passes", format!("cargo test -p solutions --test suite {name}")),
@@ -471,8 +471,8 @@ mod tests {
         copy
     }
 
-    fn options(name: &str) -> Options {
-        Options { name: name.to_owned(), stage: 3, function: None, module: None, after: None }
+    fn options(name: &str) -> NewCheckOptions {
+        NewCheckOptions { name: name.to_owned(), stage: 3, function: None, module: None, after: None }
     }
 
     fn change(root: &Path, path: &str, old: &str, new: &str) {
@@ -520,7 +520,7 @@ mod tests {
     #[test]
     fn a_new_module_is_declared() {
         let copy = copy();
-        let options = Options { module: Some("quick".to_owned()), ..options("slab_is_quick") };
+        let options = NewCheckOptions { module: Some("quick".to_owned()), ..options("slab_is_quick") };
         run(copy.path(), &options).unwrap();
         let list = read(copy.path(), "tests/checks/stage3/src/lib.rs").unwrap();
         assert!(list.contains("mod picture;\nmod quick;\nmod search_mistakes;\n"), "{list}");
@@ -535,13 +535,15 @@ mod tests {
     #[test]
     fn errors_say_what_to_add() {
         let copy = copy();
-        let error = |options: Options| format!("{:#}", run(copy.path(), &options).unwrap_err());
+        let error = |options: NewCheckOptions| format!("{:#}", run(copy.path(), &options).unwrap_err());
         assert!(error(options("boxes_are_quick")).contains("add `--function NAME`, one of "));
         assert!(error(options("nearest_root_of_nan_is_the_other_one")).contains("is a check of stage 1"));
         assert!(
-            error(Options { after: Some("slab_is".to_owned()), ..options("slab_is_quick") })
+            error(NewCheckOptions { after: Some("slab_is".to_owned()), ..options("slab_is_quick") })
                 .contains("no check `slab_is`")
         );
-        assert!(error(Options { stage: 13, ..options("slab_is_quick") }).contains("there is no stage 13"));
+        assert!(
+            error(NewCheckOptions { stage: 13, ..options("slab_is_quick") }).contains("there is no stage 13")
+        );
     }
 }

@@ -35,17 +35,17 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `grader release`.
-pub struct Options {
+pub struct ReleaseOptions {
     out: PathBuf,
     course: Option<PathBuf>,
     vendor: bool,
     draft: bool,
 }
 
-impl Options {
+impl ReleaseOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        Ok(Options {
+    pub fn read(given: &Given) -> Result<ReleaseOptions, Misuse> {
+        Ok(ReleaseOptions {
             out: given.required_path("--out")?,
             course: given.path("--course"),
             vendor: given.has("--vendor"),
@@ -91,7 +91,7 @@ directory = \"vendor\"
 ";
 
 /// Writes both archives and their checksums.
-pub fn run(root: &Path, options: &Options) -> Result<()> {
+pub fn run(root: &Path, options: &ReleaseOptions) -> Result<()> {
     let version = env!("CARGO_PKG_VERSION");
     let changelog = fs::read_to_string(root.join("CHANGELOG.md")).context("cannot read CHANGELOG.md")?;
     let has_chapter = changelog.lines().any(|line| {

@@ -1,12 +1,12 @@
 //! Builds the judge with a changed check, and asks it for verdicts.
 //!
-//! It is built in a folder that contains copies of the checks and of what they need, as a [workshop] of the corpus is.
+//! It is built in a folder that contains copies of the checks and of what they need, as a [build folder] of the corpus is.
 //!
-//! [workshop]: crate::corpus::workshop
+//! [build folder]: crate::corpus::build_folder
 
 use crate::corpus::FOLDER;
+use crate::corpus::build_folder::{copy_folder, copy_with_times, cut_manifest, read, write_if_new};
 use crate::corpus::verdict::without_lines;
-use crate::corpus::workshop::{copy_folder, copy_with_times, cut_manifest, read, write_if_new};
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
 use checks::Check;

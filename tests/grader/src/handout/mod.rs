@@ -32,7 +32,7 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `grader handout`.
-pub struct Options {
+pub struct HandoutOptions {
     folder: PathBuf,
     /// The course file.
     file: Option<PathBuf>,
@@ -40,7 +40,7 @@ pub struct Options {
     stages: Option<String>,
 }
 
-impl Options {
+impl HandoutOptions {
     /// Reads the course file, or makes one of the title and the stages; `None` if there is none of these.
     fn course(&self) -> Result<Option<CourseFiles>> {
         match (&self.file, &self.title, &self.stages) {
@@ -51,11 +51,11 @@ impl Options {
     }
 
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<HandoutOptions, Misuse> {
         given.exclude("--course", "--title")?;
         given.exclude("--course", "--stages")?;
         let stages = |text: &str| stages_of(text).map(|_| text.to_owned());
-        Ok(Options {
+        Ok(HandoutOptions {
             folder: given.required(0)?.into(),
             file: given.path("--course"),
             title: given.parsed("--title", title)?,
@@ -111,7 +111,7 @@ const LIST: &str = "tests/kit.toml";
 const README: &str = include_str!("README.md");
 
 /// Writes the student's repository, completely or not at all.
-pub fn run(root: &Path, options: &Options) -> Result<()> {
+pub fn run(root: &Path, options: &HandoutOptions) -> Result<()> {
     let folder = std::path::absolute(&options.folder)?;
     if fs::read_dir(&folder).is_ok_and(|mut inside| inside.next().is_some()) || folder.is_file() {
         bail!("{} is not empty: a hand-out needs a new or empty folder", options.folder.display());

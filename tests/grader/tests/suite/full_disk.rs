@@ -68,7 +68,7 @@ fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
 }
 
 /// A command whose result is on a small disk.
-struct Case {
+struct FullDiskRun {
     program: PathBuf,
     /// The command. `DISK` is the small disk.
     command: String,
@@ -82,7 +82,7 @@ struct Case {
     result: &'static str,
 }
 
-impl Case {
+impl FullDiskRun {
     /// Runs the command on the small disk, and once more with room.
     fn holds(&self) -> bool {
         let folder = tempfile::tempdir().unwrap();
@@ -132,8 +132,8 @@ impl Case {
     }
 }
 
-fn try_all(cases: &[Case]) {
-    if !cases.iter().all(Case::holds) {
+fn try_all(cases: &[FullDiskRun]) {
+    if !cases.iter().all(FullDiskRun::holds) {
         println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
     }
 }
@@ -154,8 +154,15 @@ fn parts_of_a_class(around: &Path) -> [String; 2] {
     })
 }
 
-fn case(program: &Path, command: &str, size: &'static str, result: &'static str) -> Case {
-    Case { program: program.to_owned(), command: command.to_owned(), resume: "", size, keeps: None, result }
+fn case(program: &Path, command: &str, size: &'static str, result: &'static str) -> FullDiskRun {
+    FullDiskRun {
+        program: program.to_owned(),
+        command: command.to_owned(),
+        resume: "",
+        size,
+        keeps: None,
+        result,
+    }
 }
 
 #[test]
@@ -168,7 +175,10 @@ fn a_picture_that_does_not_fit_on_the_disk_is_rendered_when_there_is_room() {
     let gamma = root().join("scenes/gamma.toml").to_string_lossy().into_owned();
     let render = format!("render {gamma} --size 200x150 --spp 2 --out DISK/picture.hdr");
     let in_pieces = case(&raykata, &format!("{render} --pieces 6"), "160k", "picture.hdr");
-    try_all(&[case(&raykata, &render, "16k", "picture.hdr"), Case { keeps: Some(".piece"), ..in_pieces }]);
+    try_all(&[
+        case(&raykata, &render, "16k", "picture.hdr"),
+        FullDiskRun { keeps: Some(".piece"), ..in_pieces },
+    ]);
 }
 
 /// These take a third of a minute, so they run only with `CI_LONG=1`.
@@ -201,7 +211,7 @@ fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
     );
     let program = |name: &str| Path::new(env!("CARGO_BIN_EXE_grader")).with_file_name(name);
     try_all(&[
-        Case {
+        FullDiskRun {
             program: program("raykata"),
             command: cost,
             resume: "",
@@ -210,7 +220,7 @@ fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
             // All files contain measured times.
             result: "",
         },
-        Case {
+        FullDiskRun {
             program: program("author"),
             command: "rehearse --honest --students 4 --jobs 1 --out DISK/grades".into(),
             resume: "--resume",

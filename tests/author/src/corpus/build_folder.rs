@@ -2,7 +2,7 @@
 //! small crate.
 //!
 //! Path packages of different folders may have the same hash, and cargo detects changes by modification time. So each
-//! workshop has its own target folder, and a file is written only if its text differs. A build in which cargo found the
+//! build folder has its own target folder, and a file is written only if its text differs. A build in which cargo found the
 //! solutions unchanged is an error, because its verdict would belong to the previous entry.
 
 use anyhow::{Context, Result, bail};
@@ -41,7 +41,7 @@ const WITHOUT_FRAMES: [&str; 4] = [
 ];
 
 /// A folder that builds one entry at a time.
-pub struct Workshop {
+pub struct BuildFolder {
     root: PathBuf,
     folder: PathBuf,
     /// What its workers must be able to do.
@@ -56,29 +56,29 @@ pub enum Built {
     DoesNotCompile(String),
 }
 
-impl Workshop {
-    /// Opens `jobs` workshops for workers of this kind. The unchanged solutions are known to build in each.
-    pub fn open_all(root: &Path, jobs: usize, need: Need) -> Result<Vec<Workshop>> {
-        let first = Workshop::open(root, "0", need)?;
-        // Build the reference first. The other workshops copy its compiled crates.
+impl BuildFolder {
+    /// Opens `jobs` build folders for workers of this kind. The unchanged solutions are known to build in each.
+    pub fn open_all(root: &Path, jobs: usize, need: Need) -> Result<Vec<BuildFolder>> {
+        let first = BuildFolder::open(root, "0", need)?;
+        // Build the reference first. The other build folders copy its compiled crates.
         if let Built::DoesNotCompile(error) = first.build_with(&[])? {
             bail!("the unchanged solutions do not compile:\n{error}");
         }
-        let mut workshops = vec![first];
+        let mut build_folders = vec![first];
         for number in 1..jobs {
-            let workshop = Workshop::open(root, &number.to_string(), need)?;
-            workshop.take_over(&workshops[0])?;
-            workshops.push(workshop);
+            let build_folder = BuildFolder::open(root, &number.to_string(), need)?;
+            build_folder.take_over(&build_folders[0])?;
+            build_folders.push(build_folder);
         }
-        Ok(workshops)
+        Ok(build_folders)
     }
 
-    /// Opens the workshop of this name for the kit at `root` and updates its files, but not yet its solutions.
-    pub fn open(root: &Path, name: &str, need: Need) -> Result<Workshop> {
+    /// Opens the build folder of this name for the kit at `root` and updates its files, but not yet its solutions.
+    pub fn open(root: &Path, name: &str, need: Need) -> Result<BuildFolder> {
         let folder = root.join(super::FOLDER).join(name);
-        let workshop = Workshop { root: root.to_owned(), folder, need };
+        let build_folder = BuildFolder { root: root.to_owned(), folder, need };
         write_if_new(
-            &workshop.folder.join("Cargo.toml"),
+            &build_folder.folder.join("Cargo.toml"),
             &cut_manifest(
                 &read(&root.join("Cargo.toml"))?,
                 &["dev-dependencies", "[test]", "[bench]"],
@@ -86,28 +86,28 @@ impl Workshop {
             ),
         )?;
         write_if_new(
-            &workshop.folder.join("solutions/Cargo.toml"),
+            &build_folder.folder.join("solutions/Cargo.toml"),
             &cut_manifest(&read(&root.join("solutions/Cargo.toml"))?, &["dev-dependencies", "[bench]"], &[]),
         )?;
         // The build of the scaffold reads the rubric.
         for file in rubric::files() {
-            write_if_new(&workshop.folder.join(file), &read(&root.join(file))?)?;
+            write_if_new(&build_folder.folder.join(file), &read(&root.join(file))?)?;
         }
-        if !workshop.folder.join("Cargo.lock").exists() {
+        if !build_folder.folder.join("Cargo.lock").exists() {
             // Use the kit's versions of all crates. Cargo removes the crates that are not needed here.
-            write_if_new(&workshop.folder.join("Cargo.lock"), &read(&root.join("Cargo.lock"))?)?;
+            write_if_new(&build_folder.folder.join("Cargo.lock"), &read(&root.join("Cargo.lock"))?)?;
         }
-        copy_folder(&root.join("src"), &workshop.folder.join("src"))?;
-        Ok(workshop)
+        copy_folder(&root.join("src"), &build_folder.folder.join("src"))?;
+        Ok(build_folder)
     }
 
-    /// Returns the same workshop for workers of another kind.
-    pub fn with(&self, need: Need) -> Workshop {
-        Workshop { root: self.root.clone(), folder: self.folder.clone(), need }
+    /// Returns the same build folder for workers of another kind.
+    pub fn with(&self, need: Need) -> BuildFolder {
+        BuildFolder { root: self.root.clone(), folder: self.folder.clone(), need }
     }
 
-    /// Copies the compiled foreign crates of another workshop, so that they are not built again.
-    fn take_over(&self, other: &Workshop) -> Result<()> {
+    /// Copies the compiled foreign crates of another build folder, so that they are not built again.
+    fn take_over(&self, other: &BuildFolder) -> Result<()> {
         if !self.folder.join("target").exists() {
             copy_with_times(&other.folder.join("target"), &self.folder.join("target"))?;
         }
@@ -285,7 +285,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_manifest_of_a_workshop_has_one_member_and_no_tests() {
+    fn the_manifest_of_a_build_folder_has_one_member_and_no_tests() {
         let root = "[workspace]\nmembers = [\"a\", \"b\"]\ndefault-members = [\".\"]\n[package]\nname = \"r\"\n\
                     [dev-dependencies]\nchecks = \"1\"\n[[test]]\nname = \"s\"\n[lints]\nworkspace = true\n";
         assert_eq!(
