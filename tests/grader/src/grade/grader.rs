@@ -173,12 +173,8 @@ impl Grader {
         Graded {
             student: student.into(),
             content: taken.content(),
-            checks: Vec::new(),
-            remarks: Vec::new(),
-            compiler: String::new(),
             trouble: taken.trouble.clone().unwrap_or_default(),
-            cpu_ms: 0,
-            handed_in: String::new(),
+            ..Graded::default()
         }
     }
 

@@ -89,21 +89,10 @@ fn grade(root: &Path, options: &GradeOneOptions) -> Result<(Graded, Session)> {
 
 /// Returns the result for a failure of the grader itself: no points, and the reason.
 fn broken(options: &GradeOneOptions, trouble: &str) -> (Graded, Session) {
-    let graded = Graded {
-        student: "submission".into(),
-        content: String::new(),
-        checks: Vec::new(),
-        remarks: Vec::new(),
-        compiler: String::new(),
-        trouble: trouble.into(),
-        cpu_ms: 0,
-        handed_in: String::new(),
-    };
+    let graded = Graded { student: "submission".into(), trouble: trouble.into(), ..Graded::default() };
     let session = Session {
         kit: env!("CARGO_PKG_VERSION").into(),
-        stages: Vec::new(),
         seed: options.grading.seed.unwrap_or_default(),
-        isolation: String::new(),
         ..Session::default()
     };
     (graded, session)
