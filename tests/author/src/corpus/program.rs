@@ -1,7 +1,7 @@
 //! Builds all entries of the corpus as one program, and starts it as one of them.
 
 use super::FOLDER;
-use super::build_folder::{BuildFolder, Built};
+use super::build_folder::{BuildFolder, Built, Product};
 use super::entry::{Entry, Original, corpus_file};
 use super::schemata::{self, Form, Schema};
 use anyhow::{Context, Result, bail};
@@ -110,7 +110,7 @@ impl Program {
 
     /// Builds the entries that share a program.
     fn build_all(&self, root: &Path, texts: &mut Vec<(String, String)>, modules: &str) -> Result<()> {
-        let build_folder = BuildFolder::open(root, "all", Need::Checks)?;
+        let build_folder = BuildFolder::open(root, "all", Product::Worker(Need::Checks))?;
         let library = "solutions/src/lib.rs";
         let text = build_folder.original(library)?;
         texts.push((library.to_owned(), format!("#![allow(warnings)]\n{text}\n{modules}{SWITCH}")));
@@ -124,7 +124,7 @@ impl Program {
         let changes: Vec<(&str, &str)> =
             texts.iter().map(|(file, text)| (file.as_str(), text.as_str())).collect();
         match build_folder.build_with(&changes)? {
-            Built::Worker(worker) => {
+            Built::Program(worker) => {
                 fs::hard_link(worker, self.path(0))?;
                 Ok(())
             }
@@ -139,10 +139,10 @@ impl Program {
         if alone.is_empty() {
             return Ok(());
         }
-        let build_folder = BuildFolder::open(root, "alone", Need::Checks)?;
+        let build_folder = BuildFolder::open(root, "alone", Product::Worker(Need::Checks))?;
         for (entry, text) in alone {
             match build_folder.build_with(&[(&entry.file, text)])? {
-                Built::Worker(worker) => {
+                Built::Program(worker) => {
                     fs::copy(worker, self.path(schemata::number(entry)))?;
                 }
                 Built::DoesNotCompile(error) => {

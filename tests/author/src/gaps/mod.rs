@@ -162,7 +162,7 @@ pub fn lacks(
     whole: &[Shown],
 ) -> Result<String> {
     Ok(match build_folder.build_with(changes)? {
-        Built::Worker(worker) => differences(worker, scenes, whole),
+        Built::Program(worker) => differences(worker, scenes, whole),
         Built::DoesNotCompile(error) => format!("  {error}\n"),
     })
 }

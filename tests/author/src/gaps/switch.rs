@@ -51,7 +51,7 @@ impl Switchable {
         changes.push((library, build_folder.original(library)? + SWITCH));
         let changes: Vec<(&str, &str)> = changes.iter().map(|(file, text)| (*file, text.as_str())).collect();
         let program = match build_folder.build_with(&changes)? {
-            Built::Worker(program) => program,
+            Built::Program(program) => program,
             Built::DoesNotCompile(error) => bail!(error),
         };
         // The links must be on the file system of the program.

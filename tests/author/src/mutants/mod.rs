@@ -217,7 +217,7 @@ fn try_others(
     queue::run(build_folders, others, |build_folder, &mutant| {
         bar.set_message(mutant.file.clone());
         let verdict = match build_folder.build_with(&[(&mutant.file, &mutant.apply(build_folder)?)])? {
-            Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
+            Built::Program(worker) => match judge(mutant, &worker, &scenes, &expected) {
                 MutantVerdict::Survived if mutant.stage().is_none() => {
                     judge_by_gaps(mutant, build_folder, &gaps, &of_gaps)?
                 }
@@ -245,7 +245,7 @@ fn first_failure(
 ) -> Result<Option<MutantVerdict>> {
     let Some(own) = mutant.stage() else { return Ok(None) };
     Ok(match build_folder.with(Need::Checks).build_with(&[(&mutant.file, &mutant.apply(build_folder)?)])? {
-        Built::Worker(worker) => {
+        Built::Program(worker) => {
             failed_check(&worker, |stage| stage == own, latest).map(MutantVerdict::ByItsStage)
         }
         Built::DoesNotCompile(_) => Some(MutantVerdict::DoesNotCompile),

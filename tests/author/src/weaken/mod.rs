@@ -4,23 +4,24 @@
 //! A number that survives is a gap in the corpus, or decides nothing that an entry should notice. Those that were reviewed are
 //! listed in tests/corpus/harmless.toml, each with its reason.
 //!
-//! `numbers` (finds them) · `judges` (builds a judge with a change, and asks it)
+//! `numbers` (finds them) · `judges` (asks a judge with a change)
 
 mod judges;
 mod numbers;
 
 use crate::corpus::FOLDER;
+use crate::corpus::build_folder::{BuildFolder, Built, Product};
 use crate::corpus::entry::{Entry, read_all};
 use crate::corpus::plan::{Plan, Trial};
 use crate::corpus::program::Program;
 use crate::corpus::records::{Matrix, Messages, without_rubric};
 use crate::mutants::reviewed::Reviewed;
 use all_checks::STAGES;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use checks::Check;
 use grader::queue;
 use grader::report::bar_of_steps;
-use judges::{Judge, Judges};
+use judges::Judge;
 use numbers::numbers;
 use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use raykata_cli::fingerprint::fingerprint;
@@ -261,7 +262,7 @@ fn files(root: &Path) -> Result<Vec<(u8, String)>> {
 
 /// The corpus as it is kept, and the judges.
 struct Guard {
-    judges: Judges,
+    judges: BuildFolder,
     program: Program,
     entries: Vec<Entry>,
     messages: Messages,
@@ -273,11 +274,15 @@ impl Guard {
         let entries = read_all(root)?;
         let program = Program::build(root, &entries)?;
         let plan = Plan::of(&program, &Matrix::read(root), &entries, queue::cores())?;
-        Ok(Guard { judges: Judges::open(root)?, program, entries, messages: Messages::read(root), plan })
+        let judges = BuildFolder::open(root, "checks", Product::Judge)?;
+        if let Built::DoesNotCompile(error) = judges.build_with(&[])? {
+            bail!("the unchanged judge does not compile:\n{error}");
+        }
+        Ok(Guard { judges, program, entries, messages: Messages::read(root), plan })
     }
 
     fn judge(&self, change: &Change) -> Result<WeakenVerdict> {
-        let Some(judge) = self.judges.changed(&change.file, &change.text)? else {
+        let Built::Program(judge) = self.judges.build_with(&[(&change.file, &change.text)])? else {
             return Ok(WeakenVerdict::DoesNotCompile);
         };
         let mut trials: Vec<(Trial, &Check, &Entry)> = Vec::new();
