@@ -11,6 +11,7 @@ pub mod course;
 pub mod exercises;
 #[cfg(target_os = "linux")]
 pub mod export;
+pub mod files_below;
 #[cfg(target_os = "linux")]
 pub mod grade;
 pub mod handout;

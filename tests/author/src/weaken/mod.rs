@@ -19,6 +19,7 @@ use crate::mutants::reviewed::Reviewed;
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
 use checks::Check;
+use grader::files_below::{files_below, last_part};
 use grader::queue;
 use grader::report::bar_of_steps;
 use judges::Judge;
@@ -31,7 +32,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 /// `author weaken`.
@@ -240,21 +241,12 @@ fn drawn(root: &Path, options: &WeakenOptions) -> Result<Vec<Change>> {
 
 /// The files of the checks, with their stages; 0 for those that all stages share.
 fn files(root: &Path) -> Result<Vec<(u8, String)>> {
-    let mut folders = vec![(0, "tests/checks/src".to_owned())];
-    folders.extend(STAGES.iter().map(|(stage, _)| (*stage, format!("tests/checks/stage{stage}/src"))));
+    let of_stages = STAGES.iter().map(|(stage, _)| (*stage, format!("tests/checks/stage{stage}/src")));
     let mut files = Vec::new();
-    while let Some((stage, folder)) = folders.pop() {
-        for entry in fs::read_dir(root.join(&folder)).with_context(|| folder.clone())? {
-            let path: PathBuf = entry?.path();
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            match path.is_dir() {
-                true => folders.push((stage, format!("{folder}/{name}"))),
-                false if name.ends_with(".rs") && name != "tests.rs" => {
-                    files.push((stage, format!("{folder}/{name}")))
-                }
-                false => {}
-            }
-        }
+    for (stage, folder) in [(0, "tests/checks/src".to_owned())].into_iter().chain(of_stages) {
+        let all = files_below(root, &folder, &|_| true)?.into_iter();
+        let code = all.filter(|path| path.ends_with(".rs") && last_part(path) != "tests.rs");
+        files.extend(code.map(|path| (stage, path)));
     }
     files.sort();
     Ok(files)

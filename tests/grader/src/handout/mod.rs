@@ -7,6 +7,7 @@ mod manifests;
 pub use leaks::{CANARY, answers, leaks};
 
 use crate::course::{self, CourseFiles};
+use crate::files_below::{files_below, last_part};
 use anyhow::{Context, Result, bail, ensure};
 use raykata::course::{Course, stages_of};
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
@@ -162,7 +163,12 @@ pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
         files.insert(path.to_owned(), read(root, path)?);
     }
     for (folder, endings) in FOLDERS.into_iter().filter(|(folder, _)| root.join(folder).is_dir()) {
-        gather(root, folder, endings, &mut files)?;
+        let keeps =
+            |path: &str| !KEPT_BACK.contains(&path) && !["target", "node_modules"].contains(&last_part(path));
+        let is = |path: &&String| endings.iter().any(|ending| path.ends_with(&format!(".{ending}")));
+        for path in files_below(root, folder, &keeps)?.iter().filter(is) {
+            files.insert(path.clone(), read(root, path)?);
+        }
     }
     for (path, bytes) in
         named(root, "tests", "stage")?.into_iter().chain(named(root, "tests/golden", "stage")?)
@@ -210,25 +216,6 @@ fn name_course(files: &mut BTreeMap<String, Vec<u8>>, course: &CourseFiles) -> R
         false => lines.replacen("# Raykata\n", &format!("# {}: Raykata\n", of_course.title), 1),
     }
     .into_bytes();
-    Ok(())
-}
-
-/// Adds the files with these extensions in a folder and below it.
-fn gather(root: &Path, folder: &str, endings: &[&str], files: &mut BTreeMap<String, Vec<u8>>) -> Result<()> {
-    for entry in fs::read_dir(root.join(folder)).with_context(|| format!("there is no folder {folder}"))? {
-        let entry = entry?;
-        let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
-        let is = |ending: &&str| Path::new(&path).extension().is_some_and(|one| one == *ending);
-        if entry.file_type()?.is_dir() {
-            if !KEPT_BACK.contains(&path.as_str())
-                && !["target", "node_modules"].iter().any(|name| entry.file_name() == *name)
-            {
-                gather(root, &path, endings, files)?;
-            }
-        } else if endings.iter().any(is) {
-            files.insert(path.clone(), read(root, &path)?);
-        }
-    }
     Ok(())
 }
 

@@ -1,16 +1,10 @@
 //! A full disk is an error that names the file and loses nothing that was finished.
 
 use super::grade::{hand_in, right};
-use super::grader;
 use super::program_runs::{leaves_out_what_takes_long, printed, root, small_disk};
+use super::{grader, grader_succeeds, said_by};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
-
-fn said(output: &Output) -> String {
-    let (said, complained) = printed(output);
-    format!("{said}{complained}")
-}
 
 /// Grading takes a quarter of a minute, so this runs only with `CI_LONG=1`.
 #[test]
@@ -43,7 +37,7 @@ fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
         return println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
     };
     let output = shell.output().unwrap();
-    let text = said(&output);
+    let text = said_by(&output);
     let (said, complained) = printed(&output);
     assert!(output.status.success(), "{text}");
     let parts: Vec<&str> = said.split("---").collect();
@@ -116,7 +110,7 @@ impl FullDiskRun {
         );
         let Some(mut shell) = small_disk(&script) else { return false };
         let output = shell.output().unwrap();
-        let text = format!("{}\n{}", self.command, said(&output));
+        let text = format!("{}\n{}", self.command, said_by(&output));
         let (said, complained) = printed(&output);
         let (small, rest) = said.split_once("--- left").expect(&text);
         let (left, room) = rest.split_once("--- room").expect(&text);
@@ -147,9 +141,7 @@ fn parts_of_a_class(around: &Path) -> [String; 2] {
     let class = class.to_string_lossy();
     ["1/2", "2/2"].map(|part| {
         let out = around.join(&part[..1]).to_string_lossy().into_owned();
-        let output =
-            grader(&["grade", &class, "--stages", "1", "--seed", "5", "--shard", part, "--out", &out]);
-        assert!(output.status.success(), "{}", said(&output));
+        grader_succeeds(&["grade", &class, "--stages", "1", "--seed", "5", "--shard", part, "--out", &out]);
         out
     })
 }
