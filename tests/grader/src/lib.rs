@@ -18,6 +18,7 @@ pub mod handout;
 pub mod program;
 pub mod release;
 pub mod room;
+#[cfg(target_os = "linux")]
 pub mod sandbox;
 
 pub use raykata_cli::{kits, queue, report, worker};

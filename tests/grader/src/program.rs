@@ -1,7 +1,6 @@
 //! The command line of a program with many commands: `grader` and `author`.
 
 use crate::kits::root;
-use crate::sandbox;
 use anyhow::Result;
 use raykata_cli::args::{Given, Misuse, Read, Spec, did_you_mean, entry};
 use raykata_cli::report::say;
@@ -47,9 +46,11 @@ impl Program {
     /// The main function of the program.
     pub fn main(&self) -> ExitCode {
         // If this process was started as a launcher of untrusted code or as the syntax check, it does only that.
-        sandbox::launch_if_asked();
         #[cfg(target_os = "linux")]
-        crate::grade::lint_if_asked();
+        {
+            crate::sandbox::launch_if_asked();
+            crate::grade::lint_if_asked();
+        }
         match self.run(std::env::args_os().skip(1).collect()) {
             Ok(true) => ExitCode::SUCCESS,
             Ok(false) => ExitCode::from(1),

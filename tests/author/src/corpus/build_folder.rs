@@ -210,7 +210,7 @@ impl BuildFolder {
 }
 
 /// Returns a manifest without the sections of these names, and with these members if it is that of a workspace.
-fn cut_manifest(manifest: &str, without: &[&str], members: &[&str]) -> String {
+pub fn cut_manifest(manifest: &str, without: &[&str], members: &[&str]) -> String {
     let mut cut = String::new();
     let mut keep = true;
     for line in manifest.lines() {
@@ -235,7 +235,7 @@ fn read(file: &Path) -> Result<String> {
 }
 
 /// Writes a file only if its text differs, so that cargo rebuilds only changed files. Returns whether it was written.
-fn write_if_new(file: &Path, text: &str) -> Result<bool> {
+pub fn write_if_new(file: &Path, text: &str) -> Result<bool> {
     if fs::read_to_string(file).is_ok_and(|old| old == text) {
         return Ok(false);
     }
