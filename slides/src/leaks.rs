@@ -3,6 +3,7 @@
 use crate::pictures::{crop, job, load, magnified, panels, render, shown};
 use anyhow::Result;
 use glam::{Vec3, vec3};
+use oracle::gauntlet::meshes::icosahedron;
 use raykata::film::Film;
 use raykata::kit::{Kit, RayKind, TriangleQuery};
 use raykata::mesh::Mesh;
@@ -18,17 +19,8 @@ const POINTS: u32 = 6;
 
 /// A closed mesh of 5,120 triangles: an icosahedron after four steps of Loop subdivision.
 fn closed_mesh(kit: &dyn Kit) -> Mesh {
-    let g = 0.5 + 1.25f32.sqrt();
-    let positions = [
-        -1.0, g, 0.0, 1.0, g, 0.0, -1.0, -g, 0.0, 1.0, -g, 0.0, 0.0, -1.0, g, 0.0, 1.0, g, 0.0, -1.0, -g,
-        0.0, 1.0, -g, g, 0.0, -1.0, g, 0.0, 1.0, -g, 0.0, -1.0, -g, 0.0, 1.0,
-    ];
-    let triangles = [
-        0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6, 7, 1, 8, 3,
-        9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5, 2, 4, 11, 6, 2, 10, 8, 6, 7, 9, 8, 1,
-    ];
-    let positions = positions.as_chunks::<3>().0.iter().map(|at| Vec3::from(*at).normalize()).collect();
-    let triangles = triangles.as_chunks::<3>().0.to_vec();
+    let (corners, triangles) = icosahedron();
+    let (positions, triangles) = (corners.map(Vec3::normalize).to_vec(), triangles.to_vec());
     let mut mesh = Mesh { positions, triangles, ..Mesh::default() };
     for _ in 0..4 {
         mesh = kit.loop_subdivide(&[mesh]).remove(0);

@@ -23,17 +23,27 @@ impl Lock {
         let mut name = OsString::from(".");
         name.push(place.file_name().with_context(|| format!("{} has no name", place.display()))?);
         name.push(".lock");
-        let beside = place.with_file_name(name);
-        let file = OpenOptions::new().create(true).append(true).open(&beside);
-        let file = file.with_context(|| format!("cannot write {}", beside.display()))?;
-        match file.try_lock() {
-            Ok(()) => Ok(Lock { _file: file }),
-            Err(TryLockError::WouldBlock) => bail!(
+        Lock::file(&place.with_file_name(name), || {
+            format!(
                 "another run is writing to {}: wait until it has ended, or choose another place",
                 place.display()
-            ),
+            )
+        })
+    }
+
+    /// Locks this file, and creates it if it does not exist. `taken` is the message if the lock is taken.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Lock::on`].
+    pub fn file(path: &Path, taken: impl FnOnce() -> String) -> Result<Lock> {
+        let file = OpenOptions::new().create(true).append(true).open(path);
+        let file = file.with_context(|| format!("cannot write {}", path.display()))?;
+        match file.try_lock() {
+            Ok(()) => Ok(Lock { _file: file }),
+            Err(TryLockError::WouldBlock) => bail!(taken()),
             Err(TryLockError::Error(error)) => {
-                Err(error).with_context(|| format!("cannot lock {}", beside.display()))
+                Err(error).with_context(|| format!("cannot lock {}", path.display()))
             }
         }
     }

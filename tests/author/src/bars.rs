@@ -18,14 +18,14 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `author bars`.
-pub struct Options {
+pub struct BarsOptions {
     check: bool,
 }
 
-impl Options {
+impl BarsOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        Ok(Options { check: given.has("--check") })
+    pub fn read(given: &Given) -> Result<BarsOptions, Misuse> {
+        Ok(BarsOptions { check: given.has("--check") })
     }
 }
 
@@ -33,7 +33,7 @@ const FILE: &str = "tests/checks/stage12/rubric.toml";
 const TABLE: &str = "[stage12.bars]\n";
 
 /// Measures the bars and writes them.
-pub fn run(root: &Path, options: &Options) -> Result<()> {
+pub fn run(root: &Path, options: &BarsOptions) -> Result<()> {
     let reference = Source::prepare(root, Which::Solutions, Need::Checks)?.fresh();
     let measured = stage12_checks::bars::measured(&*reference);
     // Name what changed.

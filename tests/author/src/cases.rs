@@ -16,7 +16,7 @@ pub static SPEC: Spec = Spec {
 /// A hard case.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Case {
+pub struct HardCase {
     /// The name, with the family first.
     pub name: String,
     /// The input.
@@ -36,11 +36,11 @@ pub struct Case {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Catalogue {
-    case: Vec<Case>,
+    case: Vec<HardCase>,
 }
 
 /// Reads all cases, in the order of the catalogue: the first is number 1.
-pub fn read(root: &Path) -> Result<Vec<Case>> {
+pub fn read(root: &Path) -> Result<Vec<HardCase>> {
     let file = root.join("tests/cases.toml");
     let text = std::fs::read_to_string(&file).with_context(|| file.display().to_string())?;
     let catalogue: Catalogue = toml::from_str(&text).with_context(|| file.display().to_string())?;

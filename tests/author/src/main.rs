@@ -23,20 +23,20 @@ or files differ; 2 the command line is wrong.",
 };
 
 const COMMANDS: &[Command] = &[
-    (&sync::SPEC, |given| done(in_kit(sync::Options::read(given), sync::run))),
-    (&new_check::SPEC, |given| in_kit(new_check::Options::read(given), new_check::run)),
-    (&corpus::SPEC, |given| in_kit(corpus::Options::read(given), corpus::run)),
-    (&corpus::import::SPEC, |given| in_kit(corpus::import::Options::read(given), corpus::import::run)),
-    (&gaps::SPEC, |given| gaps::run(&gaps::Options::read(given)?)),
-    (&mutants::SPEC, |given| in_kit(mutants::Options::read(given), mutants::run)),
-    (&weaken::SPEC, |given| in_kit(weaken::Options::read(given), weaken::run)),
+    (&sync::SPEC, |given| done(in_kit(sync::SyncOptions::read(given), sync::run))),
+    (&new_check::SPEC, |given| in_kit(new_check::NewCheckOptions::read(given), new_check::run)),
+    (&corpus::SPEC, |given| in_kit(corpus::CorpusOptions::read(given), corpus::run)),
+    (&corpus::import::SPEC, |given| in_kit(corpus::import::ImportOptions::read(given), corpus::import::run)),
+    (&gaps::SPEC, |given| gaps::run(&gaps::GapsOptions::read(given)?)),
+    (&mutants::SPEC, |given| in_kit(mutants::MutantsOptions::read(given), mutants::run)),
+    (&weaken::SPEC, |given| in_kit(weaken::WeakenOptions::read(given), weaken::run)),
     #[cfg(target_os = "linux")]
-    (&run_attacks::SPEC, |given| run_attacks::run(&root()?, &run_attacks::Options::read(given)?)),
+    (&run_attacks::SPEC, |given| run_attacks::run(&root()?, &run_attacks::AttacksOptions::read(given)?)),
     #[cfg(target_os = "linux")]
-    (&rehearsal::SPEC, |given| in_kit(rehearsal::Options::read(given), rehearsal::run)),
-    (&gauntlet::SPEC, |given| done(in_kit(gauntlet::Options::read(given), gauntlet::run))),
+    (&rehearsal::SPEC, |given| in_kit(rehearsal::RehearsalOptions::read(given), rehearsal::run)),
+    (&gauntlet::SPEC, |given| done(in_kit(gauntlet::GauntletOptions::read(given), gauntlet::run))),
     (&gauntlet::COST, gauntlet::cost),
-    (&bars::SPEC, |given| done(in_kit(bars::Options::read(given), bars::run))),
+    (&bars::SPEC, |given| done(in_kit(bars::BarsOptions::read(given), bars::run))),
     (&cases::SPEC, |_| done(cases::list(&root()?))),
     (&generate::SPEC, |given| done(generate::write(&generate::folder(given)))),
 ];

@@ -11,6 +11,7 @@ use checks::Check;
 use checks::rubric;
 use checks::symmetry::Symmetries;
 use grader::exercises;
+use grader::files_below::{files_below, last_part};
 use std::cell::OnceCell;
 use std::fmt::Write as _;
 use std::fs;
@@ -38,8 +39,7 @@ pub struct Document {
 ///
 /// If a name is unknown, or if its comment follows no number. The error says file and line.
 pub fn documents(root: &Path) -> Result<Vec<Document>> {
-    let mut paths = Vec::new();
-    gather(root, &mut paths)?;
+    let mut paths = markdown(root)?;
     paths.sort();
     let values = Values { root, corpus: OnceCell::new() };
     let mut documents = Vec::new();
@@ -54,18 +54,12 @@ pub fn documents(root: &Path) -> Result<Vec<Document>> {
     Ok(documents)
 }
 
-/// Adds the Markdown files of a folder.
-fn gather(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<()> {
-    for entry in fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))? {
-        let path = entry?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        if path.is_dir() && !name.starts_with('.') && !SKIPPED.contains(&&*name) {
-            gather(&path, paths)?;
-        } else if name.ends_with(".md") {
-            paths.push(path);
-        }
-    }
-    Ok(())
+/// The Markdown files of a folder, in folders that are not hidden.
+fn markdown(folder: &Path) -> Result<Vec<PathBuf>> {
+    let keeps = |path: &str| !last_part(path).starts_with('.') && !SKIPPED.contains(&last_part(path));
+    let mut files = files_below(folder, "", &keeps)?;
+    files.retain(|path| path.ends_with(".md"));
+    Ok(files.into_iter().map(|path| folder.join(path)).collect())
 }
 
 /// Returns the text with each named number or table replaced by its value.
@@ -234,10 +228,8 @@ struct Deck {
 
 /// The decks in the folder of the slides: those of the stages in order, then the others.
 fn decks(folder: &Path) -> Result<Vec<Deck>> {
-    let mut paths = Vec::new();
-    gather(folder, &mut paths)?;
     let mut decks = Vec::new();
-    for path in paths {
+    for path in markdown(folder)? {
         let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         let Some(head) = text.strip_prefix("---\nmarp: true\n").and_then(|rest| rest.split("\n---\n").next())
         else {

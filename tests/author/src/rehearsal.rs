@@ -7,7 +7,7 @@ use crate::corpus::records::Matrix;
 use anyhow::{Context, Result, bail, ensure};
 use grader::exercises::{answer, stage_of};
 use grader::grade::result::{CheckResult, Class, Graded, Outcome};
-use grader::grade::{self, Options as GradeOptions, Store};
+use grader::grade::{self, GradeOptions, Store};
 use raykata_cli::args::{Given, Misuse, Opt, Read, Spec};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -33,7 +33,7 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `author rehearse`.
-pub struct Options {
+pub struct RehearsalOptions {
     students: usize,
     out: Option<PathBuf>,
     jobs: Option<u16>,
@@ -41,11 +41,11 @@ pub struct Options {
     resume: bool,
 }
 
-impl Options {
+impl RehearsalOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<RehearsalOptions, Misuse> {
         given.require("--resume", "--out")?;
-        Ok(Options {
+        Ok(RehearsalOptions {
             students: given.number("--students", 0..=usize::MAX)?.unwrap_or(200),
             out: given.path("--out"),
             jobs: given.number("--jobs", 1..=u16::MAX)?,
@@ -73,7 +73,7 @@ enum Role {
 }
 
 /// Grades the class. Returns `Ok(true)` if every grade is right.
-pub fn run(root: &Path, options: &Options) -> Result<bool> {
+pub fn run(root: &Path, options: &RehearsalOptions) -> Result<bool> {
     let place = tempfile::tempdir()?;
     let class = place.path().join("class");
     fs::create_dir(&class)?;
@@ -101,7 +101,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
 }
 
 /// The options of `grader grade` for this class.
-fn grade_options(class: &Path, out: &Path, options: &Options) -> Result<GradeOptions> {
+fn grade_options(class: &Path, out: &Path, options: &RehearsalOptions) -> Result<GradeOptions> {
     let mut words: Vec<OsString> = vec![class.into(), "--out".into(), out.into()];
     words.extend(["--stages".into(), STAGES_OF_CLASS.map(|stage| stage.to_string()).join(",").into()]);
     words.extend(options.jobs.iter().flat_map(|jobs| ["--jobs".into(), jobs.to_string().into()]));
@@ -115,7 +115,7 @@ fn grade_options(class: &Path, out: &Path, options: &Options) -> Result<GradeOpt
 }
 
 /// Returns the kind of each submission. The kinds alternate, so that a class of any size contains all of them.
-fn roles(root: &Path, options: &Options) -> Result<Vec<Role>> {
+fn roles(root: &Path, options: &RehearsalOptions) -> Result<Vec<Role>> {
     // The class has not written later stages, so leave out solutions that call them.
     let calls_later = |entry: &Entry| {
         ["stage5_", "stage6_", "stage7_", "stage8_", "stage9_", "stage10_", "stage11_", "stage12_"]

@@ -4,7 +4,7 @@ use crate::attacks::{self, Attack, Hasty};
 use anyhow::Result;
 use grader::course::HandedIn;
 use grader::grade::{
-    CALL_PATIENCE, COMPILER_PATIENCE, Forge, Grader, Judge, Once, Shard, SharedResults, shard,
+    CALL_PATIENCE, COMPILER_PATIENCE, Grader, Judge, Once, Shard, SharedResults, WorkerBuilder, shard,
 };
 use grader::report::bar_of_steps;
 use grader::sandbox::{self, Confinement};
@@ -21,16 +21,16 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `author attacks`.
-pub struct Options {
+pub struct AttacksOptions {
     names: Vec<String>,
     shard: Option<Shard>,
 }
 
-impl Options {
+impl AttacksOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<AttacksOptions, Misuse> {
         let names = given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned());
-        Ok(Options { names: names.collect(), shard: given.parsed("--shard", shard)? })
+        Ok(AttacksOptions { names: names.collect(), shard: given.parsed("--shard", shard)? })
     }
 }
 
@@ -44,12 +44,12 @@ const HASTE: u32 = 4;
 const SLOWEST: usize = 5;
 
 /// Grades the attacks. Returns `Ok(true)` if every attack got the expected result.
-pub fn run(root: &Path, options: &Options) -> Result<bool> {
+pub fn run(root: &Path, options: &AttacksOptions) -> Result<bool> {
     let level = sandbox::self_test()?;
     println!("sandbox: {level}");
     // Many attacks have the same files: their archives are malformed, or the syntax check refuses what is their own. These
     // files are compiled and judged once.
-    let patient = Forge::prepare(root, Confinement::Full)?.with_shared_workers();
+    let patient = WorkerBuilder::prepare(root, Confinement::Full)?.with_shared_workers();
     let hasty = Arc::new(patient.clone().with_patience(COMPILER_PATIENCE / HASTE));
     let patient = Arc::new(patient);
     let shared = Arc::<SharedResults>::default();
@@ -57,7 +57,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let judge = |stages: &[u8]| Ok(Arc::new(Judge::of(root, stages, SEED, Confinement::Full)?));
     let grade = |submission: &Path, attack: &Attack, allowed: &[String]| {
         let grader = Grader {
-            forge: if attack.hasty == Some(Hasty::Compiler) { hasty.clone() } else { patient.clone() },
+            builder: if attack.hasty == Some(Hasty::Compiler) { hasty.clone() } else { patient.clone() },
             judge: {
                 let of_stages = judges.get(attack.stages.clone(), || judge(&attack.stages))?;
                 Arc::new(of_stages.only(|stage, check| attack.is_judged(stage, check)))

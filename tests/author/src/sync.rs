@@ -22,16 +22,16 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `author sync`.
-pub struct Options {
+pub struct SyncOptions {
     check: bool,
     force: bool,
 }
 
-impl Options {
+impl SyncOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<SyncOptions, Misuse> {
         given.exclude("--force", "--check")?;
-        Ok(Options { check: given.has("--check"), force: given.has("--force") })
+        Ok(SyncOptions { check: given.has("--check"), force: given.has("--force") })
     }
 }
 
@@ -39,7 +39,7 @@ impl Options {
 const STUBS: &str = "tests/stubs.toml";
 
 /// Runs `author sync`.
-pub fn run(root: &Path, options: &Options) -> Result<()> {
+pub fn run(root: &Path, options: &SyncOptions) -> Result<()> {
     if options.check { check(root) } else { sync(root, options.force) }
 }
 

@@ -11,12 +11,14 @@ pub mod course;
 pub mod exercises;
 #[cfg(target_os = "linux")]
 pub mod export;
+pub mod files_below;
 #[cfg(target_os = "linux")]
 pub mod grade;
 pub mod handout;
 pub mod program;
 pub mod release;
 pub mod room;
+#[cfg(target_os = "linux")]
 pub mod sandbox;
 
 pub use raykata_cli::{kits, queue, report, worker};

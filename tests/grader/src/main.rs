@@ -30,22 +30,24 @@ or files differ; 2 the command line is wrong.",
 
 const COMMANDS: &[Command] = &[
     #[cfg(target_os = "linux")]
-    (&grade::SPEC, |given| in_kit(grade::Options::read(given), grade::run)),
+    (&grade::SPEC, |given| in_kit(grade::GradeOptions::read(given), grade::run)),
     #[cfg(target_os = "linux")]
-    (&grade::ONE, |given| grade::one(root, &grade::OneOptions::read(given)?)),
+    (&grade::ONE, |given| grade::one(root, &grade::GradeOneOptions::read(given)?)),
     #[cfg(target_os = "linux")]
     (&grade::MERGE, |given| grade::merge(&grade::MergeOptions::read(given)?)),
     (&course::SPEC, |given| done(course::show(&course::file(given)?))),
-    (&handout::SPEC, |given| done(in_kit(handout::Options::read(given), handout::run))),
-    (&release::SPEC, |given| done(in_kit(release::Options::read(given), release::run))),
+    (&handout::SPEC, |given| done(in_kit(handout::HandoutOptions::read(given), handout::run))),
+    (&release::SPEC, |given| done(in_kit(release::ReleaseOptions::read(given), release::run))),
     #[cfg(target_os = "linux")]
-    (&export::GRADESCOPE, |given| done(in_kit(export::Options::of_gradescope(given), export::gradescope))),
+    (&export::GRADESCOPE, |given| {
+        done(in_kit(export::ExportOptions::of_gradescope(given), export::gradescope))
+    }),
     #[cfg(target_os = "linux")]
     (&export::SLURM, |given| done(in_kit(export::SlurmOptions::read(given), export::slurm))),
     #[cfg(target_os = "linux")]
     (&export::PICTURE, |given| done(in_kit(export::PictureOptions::read(given), export::picture))),
     #[cfg(target_os = "linux")]
-    (&export::CLASSROOM, |given| done(export::classroom(&export::Options::of_classroom(given)?))),
+    (&export::CLASSROOM, |given| done(export::classroom(&export::ExportOptions::of_classroom(given)?))),
 ];
 
 /// Commands that only authors use.

@@ -1,7 +1,6 @@
 //! The command lines of `grader` and `author`.
 
 use crate::kits::root;
-use crate::sandbox;
 use anyhow::Result;
 use raykata_cli::args::Misuse;
 pub use raykata_cli::program::{Program, exit_code};
@@ -14,9 +13,11 @@ pub type Command = raykata_cli::program::Command<bool>;
 /// The main function of a program. If this process was started as a launcher of untrusted code or as the syntax check, it does
 /// only that.
 pub fn main(program: &Program<bool>) -> ExitCode {
-    sandbox::launch_if_asked();
     #[cfg(target_os = "linux")]
-    crate::grade::lint_if_asked();
+    {
+        crate::sandbox::launch_if_asked();
+        crate::grade::lint_if_asked();
+    }
     program.main()
 }
 

@@ -1,6 +1,7 @@
 //! `grader release`: the archives of a version, for students and for instructors. The same sources give the same bytes.
 
 use crate::course::{self, CourseFiles};
+use crate::files_below::{files_below, last_part};
 use crate::handout;
 use anyhow::{Context, Result, bail, ensure};
 use flate2::Compression;
@@ -35,17 +36,17 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `grader release`.
-pub struct Options {
+pub struct ReleaseOptions {
     out: PathBuf,
     course: Option<PathBuf>,
     vendor: bool,
     draft: bool,
 }
 
-impl Options {
+impl ReleaseOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        Ok(Options {
+    pub fn read(given: &Given) -> Result<ReleaseOptions, Misuse> {
+        Ok(ReleaseOptions {
             out: given.required_path("--out")?,
             course: given.path("--course"),
             vendor: given.has("--vendor"),
@@ -91,7 +92,7 @@ directory = \"vendor\"
 ";
 
 /// Writes both archives and their checksums.
-pub fn run(root: &Path, options: &Options) -> Result<()> {
+pub fn run(root: &Path, options: &ReleaseOptions) -> Result<()> {
     let version = env!("CARGO_PKG_VERSION");
     let changelog = fs::read_to_string(root.join("CHANGELOG.md")).context("cannot read CHANGELOG.md")?;
     let has_chapter = changelog.lines().any(|line| {
@@ -121,7 +122,7 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
             ensure!(found.is_empty(), "the hand-out would contain answers:\n  {}", found.join("\n  "));
         } else {
             for part in KIT {
-                copy(&root.join(part), &folder.join(part))?;
+                copy(root, part, &folder)?;
             }
             if let Some(course) = &course {
                 course.write_to(&folder.join("course"))?;
@@ -143,20 +144,13 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
     Ok(())
 }
 
-fn copy(from: &Path, to: &Path) -> Result<()> {
-    let cannot = || format!("cannot copy {}: is this the whole kit?", from.display());
-    let cannot_write = || format!("cannot write {}", to.display());
-    let kind = fs::symlink_metadata(from).with_context(cannot)?;
-    if kind.is_dir() {
-        fs::create_dir_all(to).with_context(cannot_write)?;
-        for entry in fs::read_dir(from).with_context(cannot)? {
-            let name = entry.with_context(cannot)?.file_name();
-            if !GENERATED.iter().any(|generated| name == *generated) {
-                copy(&from.join(&name), &to.join(&name))?;
-            }
-        }
-    } else if kind.is_file() {
-        fs::copy(from, to).with_context(|| format!("cannot copy {} to {}", from.display(), to.display()))?;
+/// Copies a part of the kit.
+fn copy(root: &Path, part: &str, to: &Path) -> Result<()> {
+    for path in files_below(root, part, &|path| !GENERATED.contains(&last_part(path)))? {
+        let (from, to) = (root.join(&path), to.join(&path));
+        fs::create_dir_all(to.parent().unwrap_or(&to))
+            .and_then(|()| fs::copy(&from, &to))
+            .with_context(|| format!("cannot copy {} to {}", from.display(), to.display()))?;
     }
     Ok(())
 }
@@ -181,8 +175,7 @@ fn vendor(folder: &Path) -> Result<()> {
 
 /// Packs a folder, sorted by name and without times, owners and other properties of this machine. Returns the checksum.
 fn archive(around: &Path, name: &str, file: &Path) -> Result<String> {
-    let mut paths = Vec::new();
-    gather(around, name, &mut paths)?;
+    let mut paths = files_below(around, name, &|_| true)?;
     paths.sort();
     let packed = write_atomically(file, |out| {
         let mut tar = tar::Builder::new(GzEncoder::new(out, Compression::default()));
@@ -201,20 +194,6 @@ fn archive(around: &Path, name: &str, file: &Path) -> Result<String> {
     packed.with_context(|| format!("cannot write {}", file.display()))?;
     let bytes = fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
     Ok(Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect())
-}
-
-fn gather(around: &Path, folder: &str, paths: &mut Vec<String>) -> Result<()> {
-    for entry in fs::read_dir(around.join(folder))? {
-        let entry = entry?;
-        let name = entry.file_name();
-        let name = name.to_str().with_context(|| format!("{} is not UTF-8", entry.path().display()))?;
-        let path = format!("{folder}/{name}");
-        match entry.file_type()?.is_dir() {
-            true => gather(around, &path, paths)?,
-            false => paths.push(path),
-        }
-    }
-    Ok(())
 }
 
 fn is_executable(file: &Path) -> bool {

@@ -208,34 +208,6 @@ impl Hostile {
                 let full = self.learn(queries);
                 self.reply_plain(&Request::ClosestHitBoth(full));
             }
-            Request::GridSearch(queries) => {
-                let full = self.learn_cells(queries);
-                self.forge_visits(&Request::GridSearch(full));
-            }
-            Request::OctreeSearch(queries) => {
-                let full = self.learn_cells(queries);
-                self.forge_visits(&Request::OctreeSearch(full));
-            }
-            Request::OctreeByCells(queries) => {
-                let full = self.learn_cells(queries);
-                self.forge_visits(&Request::OctreeByCells(full));
-            }
-            Request::OctreeByNeighbours(queries) => {
-                let full = self.learn_cells(queries);
-                self.forge_visits(&Request::OctreeByNeighbours(full));
-            }
-            Request::KdSearch(queries) => {
-                let full = self.learn_cells(queries);
-                self.forge_visits(&Request::KdSearch(full));
-            }
-            Request::BspSearch(queries) => {
-                let full = self.learn_cells(queries);
-                self.forge_visits(&Request::BspSearch(full));
-            }
-            Request::PolygonBspSearch(queries) => {
-                let full = self.learn_cells(queries);
-                self.forge_visits(&Request::PolygonBspSearch(full));
-            }
             Request::CachedSearch(queries) => {
                 let mut full = queries.clone();
                 for (index, query) in full.iter_mut().enumerate() {
@@ -253,8 +225,24 @@ impl Hostile {
                 }
                 self.reply_plain(&Request::PacketSearch(full));
             }
-            request => self.reply_honestly(request),
+            request => self.learn_cells_of(request),
         }
+    }
+
+    /// The same for searches through cells.
+    fn learn_cells_of(&mut self, request: &Request) {
+        macro_rules! forge_visits {
+            ($($Search:ident)*) => {
+                match request {
+                    $(Request::$Search(queries) => {
+                        let full = self.learn_cells(queries);
+                        self.forge_visits(&Request::$Search(full));
+                    })*
+                    request => self.reply_honestly(request),
+                }
+            };
+        }
+        forge_visits!(GridSearch OctreeSearch OctreeByCells OctreeByNeighbours KdSearch BspSearch PolygonBspSearch);
     }
 
     fn learn_hits(&mut self, index: usize, n_primitives: usize, ray: &Ray) -> Vec<f32> {

@@ -45,80 +45,53 @@ fn obvhs_ray(ray: &Ray) -> obvhs::ray::Ray {
     obvhs::ray::Ray::new(ray.origin.to_array().into(), ray.direction.to_array().into(), ray.t_min, ray.t_max)
 }
 
-/// `obvhs`: a binary tree.
-pub struct Obvhs2 {
-    tree: Bvh2,
-    triangles: Vec<obvhs::triangle::Triangle>,
-}
-
-impl Obvhs2 {
-    pub fn build(triangles: &[Triangle]) -> Self {
-        let triangles = obvhs_triangles(triangles);
-        let tree = obvhs::bvh2::builder::build_bvh2_from_tris(
-            &triangles,
-            BvhBuildParams::medium_build(),
-            &mut Duration::default(),
-        );
-        // In the order of the tree, as its documentation recommends.
-        let triangles = tree.primitive_indices.iter().map(|&i| triangles[i as usize]).collect();
-        Obvhs2 { tree, triangles }
-    }
-}
-
-impl Contestant for Obvhs2 {
-    fn closest(&self, rays: &[Ray], found: &mut [f32]) {
-        for (ray, found) in rays.iter().zip(found) {
-            let mut hit = RayHit::none();
-            let any =
-                self.tree.ray_traverse(obvhs_ray(ray), &mut hit, |ray, id| self.triangles[id].intersect(ray));
-            *found = if any { hit.t } else { f32::INFINITY };
+/// Makes a contestant of a tree of `obvhs`. Its trees have the same methods and no trait.
+macro_rules! obvhs_contestant {
+    ($(#[$doc:meta])* $name:ident, $Tree:ty, $build:path) => {
+        $(#[$doc])*
+        pub struct $name {
+            tree: $Tree,
+            triangles: Vec<obvhs::triangle::Triangle>,
         }
-    }
 
-    fn any(&self, rays: &[Ray], found: &mut [bool]) {
-        for (ray, found) in rays.iter().zip(found) {
-            *found =
-                !self.tree.ray_traverse_miss(obvhs_ray(ray), |ray, id| self.triangles[id].intersect(ray));
+        impl $name {
+            pub fn build(triangles: &[Triangle]) -> Self {
+                let triangles = obvhs_triangles(triangles);
+                let tree = $build(&triangles, BvhBuildParams::medium_build(), &mut Duration::default());
+                // In the order of the tree, as its documentation recommends.
+                let triangles = tree.primitive_indices.iter().map(|&i| triangles[i as usize]).collect();
+                $name { tree, triangles }
+            }
         }
-    }
-}
 
-/// `obvhs`: the compressed tree with eight children per node.
-pub struct ObvhsWide {
-    tree: CwBvh,
-    triangles: Vec<obvhs::triangle::Triangle>,
-}
+        impl Contestant for $name {
+            fn closest(&self, rays: &[Ray], found: &mut [f32]) {
+                for (ray, found) in rays.iter().zip(found) {
+                    let mut hit = RayHit::none();
+                    let test = |ray: &_, id: usize| self.triangles[id].intersect(ray);
+                    let any = self.tree.ray_traverse(obvhs_ray(ray), &mut hit, test);
+                    *found = if any { hit.t } else { f32::INFINITY };
+                }
+            }
 
-impl ObvhsWide {
-    pub fn build(triangles: &[Triangle]) -> Self {
-        let triangles = obvhs_triangles(triangles);
-        let tree = obvhs::cwbvh::builder::build_cwbvh_from_tris(
-            &triangles,
-            BvhBuildParams::medium_build(),
-            &mut Duration::default(),
-        );
-        let triangles = tree.primitive_indices.iter().map(|&i| triangles[i as usize]).collect();
-        ObvhsWide { tree, triangles }
-    }
-}
-
-impl Contestant for ObvhsWide {
-    fn closest(&self, rays: &[Ray], found: &mut [f32]) {
-        for (ray, found) in rays.iter().zip(found) {
-            let mut hit = RayHit::none();
-            let any =
-                self.tree.ray_traverse(obvhs_ray(ray), &mut hit, |ray, id| self.triangles[id].intersect(ray));
-            *found = if any { hit.t } else { f32::INFINITY };
+            fn any(&self, rays: &[Ray], found: &mut [bool]) {
+                for (ray, found) in rays.iter().zip(found) {
+                    let test = |ray: &_, id: usize| self.triangles[id].intersect(ray);
+                    *found = !self.tree.ray_traverse_miss(obvhs_ray(ray), test);
+                }
+            }
         }
-    }
-
-    fn any(&self, rays: &[Ray], found: &mut [bool]) {
-        for (ray, found) in rays.iter().zip(found) {
-            *found =
-                !self.tree.ray_traverse_miss(obvhs_ray(ray), |ray, id| self.triangles[id].intersect(ray));
-        }
-    }
+    };
 }
+
+obvhs_contestant!(
+    /// `obvhs`: a binary tree.
+    Obvhs2, Bvh2, obvhs::bvh2::builder::build_bvh2_from_tris
+);
+obvhs_contestant!(
+    /// `obvhs`: the compressed tree with eight children per node.
+    ObvhsWide, CwBvh, obvhs::cwbvh::builder::build_cwbvh_from_tris
+);
 
 /// `parry3d`.
 pub struct Parry(TriMesh);

@@ -1,6 +1,7 @@
 //! The scenes: triangles, and where the camera and the light are.
 
 use glam::{Vec2, Vec3};
+use oracle::gauntlet::meshes::icosahedron;
 use raykata::shape::Triangle;
 
 /// Triangles, and where the camera and the light are.
@@ -95,44 +96,7 @@ impl Random {
 
 /// A sphere with bumps: an icosahedron whose faces are divided into `n²` triangles each.
 fn icosphere(n: usize, center: Vec3, radius: f32) -> Vec<Triangle> {
-    let g = (1.0 + 5f32.sqrt()) / 2.0;
-    let p = [
-        [-1.0, g, 0.0],
-        [1.0, g, 0.0],
-        [-1.0, -g, 0.0],
-        [1.0, -g, 0.0],
-        [0.0, -1.0, g],
-        [0.0, 1.0, g],
-        [0.0, -1.0, -g],
-        [0.0, 1.0, -g],
-        [g, 0.0, -1.0],
-        [g, 0.0, 1.0],
-        [-g, 0.0, -1.0],
-        [-g, 0.0, 1.0],
-    ]
-    .map(Vec3::from_array);
-    let faces = [
-        [0, 11, 5],
-        [0, 5, 1],
-        [0, 1, 7],
-        [0, 7, 10],
-        [0, 10, 11],
-        [1, 5, 9],
-        [5, 11, 4],
-        [11, 10, 2],
-        [10, 7, 6],
-        [7, 1, 8],
-        [3, 9, 4],
-        [3, 4, 2],
-        [3, 2, 6],
-        [3, 6, 8],
-        [3, 8, 9],
-        [4, 9, 5],
-        [2, 4, 11],
-        [6, 2, 10],
-        [8, 6, 7],
-        [9, 8, 1],
-    ];
+    let (corners, faces) = icosahedron();
     let bump = |p: Vec3| {
         let d = p.normalize();
         let height = 1.0 + 0.03 * ((9.0 * d.x).sin() * (11.0 * d.y).sin() + (13.0 * d.z).sin());
@@ -140,7 +104,7 @@ fn icosphere(n: usize, center: Vec3, radius: f32) -> Vec<Triangle> {
     };
     let mut triangles = Vec::new();
     for [a, b, c] in faces {
-        let (a, b, c) = (p[a], p[b], p[c]);
+        let [a, b, c] = [a, b, c].map(|corner| corners[corner as usize]);
         let at =
             |i: usize, j: usize| bump(a + (b - a) * (i as f32 / n as f32) + (c - a) * (j as f32 / n as f32));
         for i in 0..n {

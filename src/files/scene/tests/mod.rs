@@ -1,6 +1,6 @@
 //! Tests of the scene reader: the scenes that valid files give, and the messages for invalid files.
 
-mod features;
+mod cases;
 mod files;
 mod materials;
 mod mutants;

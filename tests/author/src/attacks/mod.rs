@@ -73,7 +73,7 @@ pub enum Base {
     Stubs,
     /// The files of the graded stages are right.
     Solutions,
-    /// The files of the graded stages give answers that no check accepts, so that every point is forged.
+    /// The files of the graded stages give answers that no check accepts, so that every point is built.
     Wrong,
     /// There are no files.
     Nothing,

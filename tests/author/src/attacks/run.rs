@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 const ATTACKS_PER_CORE: u64 = 3;
 
 /// An attack and its result.
-pub struct Tried {
+pub struct TriedAttack {
     /// The attack.
     pub attack: Attack,
     /// Its grade with the whole syntax check, or the error if the grader failed.
@@ -34,8 +34,8 @@ pub fn run_all(
     root: &Path,
     mut attacks: Vec<Attack>,
     grade: impl Fn(&Path, &Attack, &[String]) -> Result<Graded> + Sync,
-    done: impl Fn(&Tried) + Sync,
-) -> Result<Vec<Tried>> {
+    done: impl Fn(&TriedAttack) + Sync,
+) -> Result<Vec<TriedAttack>> {
     let root = root.canonicalize().with_context(|| root.display().to_string())?;
     // Start with the longest ones, so that no long attack runs alone at the end.
     attacks.sort_by_key(|attack| Reverse(attack.most_seconds));
@@ -53,7 +53,7 @@ fn try_one(
     root: &Path,
     attack: &Attack,
     grade: &impl Fn(&Path, &Attack, &[String]) -> Result<Graded>,
-) -> Result<Tried> {
+) -> Result<TriedAttack> {
     let begun = Instant::now();
     let folder = tempfile::tempdir()?;
     let submission = make(attack, &AttackFolders { root, folder: folder.path() })?;
@@ -82,7 +82,7 @@ fn try_one(
     // Report changed files.
     let changed = changes(&before, &fingerprints(folder.path())?);
     all.extend(changed.into_iter().map(|path| format!("the attack changed {}", path.display())));
-    Ok(Tried { attack: attack.clone(), graded, complaints: all, took: begun.elapsed() })
+    Ok(TriedAttack { attack: attack.clone(), graded, complaints: all, took: begun.elapsed() })
 }
 
 /// Returns kind, size and content of everything in a folder. Links are not followed.

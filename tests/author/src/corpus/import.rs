@@ -35,20 +35,20 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `author corpus import`.
-pub struct Options {
+pub struct ImportOptions {
     folder: PathBuf,
     renames: Renames,
     check: bool,
 }
 
-impl Options {
+impl ImportOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<ImportOptions, Misuse> {
         let renames = match given.path("--renames") {
             Some(file) => Renames::read(&file).map_err(|error| Misuse::new(format!("{error:#}")))?,
             None => Renames::default(),
         };
-        Ok(Options { folder: given.required(0)?.into(), renames, check: given.has("--check") })
+        Ok(ImportOptions { folder: given.required(0)?.into(), renames, check: given.has("--check") })
     }
 }
 
@@ -92,7 +92,7 @@ impl Renames {
 }
 
 /// Adds the patches. Returns whether all of them fit.
-pub fn run(root: &Path, options: &Options) -> Result<bool> {
+pub fn run(root: &Path, options: &ImportOptions) -> Result<bool> {
     let mut files: BTreeMap<String, CorpusFile> = read_files(root)?.into_iter().collect();
     let (mut added, mut lost) = (0, 0);
     for kind in ["wrong", "right"] {

@@ -3,8 +3,9 @@
 //!
 //! `entry` (reads `tests/corpus`) · `source` (the functions of a file) · `schemata` (many entries in one file) · `program` (the
 //! program of all entries) · `plan` (which checks are tried with which entries) · `verdict` (the result of an entry) · `records` (the
-//! stored results) · `workshop` (the folder in which solutions are built) · `patch`, `import` (patches of a course)
+//! stored results) · `build_folder` (the folder in which solutions are built) · `patch`, `import` (patches of a course)
 
+pub mod build_folder;
 pub mod entry;
 pub mod import;
 pub mod patch;
@@ -14,7 +15,6 @@ pub mod records;
 pub mod schemata;
 pub mod source;
 pub mod verdict;
-pub mod workshop;
 
 use anyhow::{Result, bail};
 use checks::Inputs;
@@ -30,7 +30,7 @@ use records::{Matrix, Messages};
 use schemata::Form;
 use std::path::Path;
 use std::sync::Arc;
-use verdict::{Fate, Tried};
+use verdict::{EntryVerdict, TriedEntry};
 
 /// The folder in which entries and changes of the solutions are built. One run at a time uses it.
 pub(crate) const FOLDER: &str = "target/corpus";
@@ -74,7 +74,7 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `author corpus`.
-pub struct Options {
+pub struct CorpusOptions {
     names: Vec<String>,
     stage: Option<u8>,
     right: bool,
@@ -88,16 +88,16 @@ pub struct Options {
     seed: Option<u64>,
 }
 
-impl Options {
+impl CorpusOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<CorpusOptions, Misuse> {
         given.exclude("--bless", "--reword")?;
         given.exclude("--seed", "--bless")?;
         given.exclude("--seed", "--reword")?;
         let text = |name| given.path(name).map(|words| words.to_string_lossy().into_owned());
         let (function, check, saying) = (text("--function"), text("--check"), text("--saying"));
         let asks = function.is_some() || check.is_some() || saying.is_some();
-        Ok(Options {
+        Ok(CorpusOptions {
             names: given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned()).collect(),
             stage: given.number("--stage", 0..=u8::MAX)?,
             right: given.has("--right"),
@@ -114,7 +114,7 @@ impl Options {
 }
 
 /// Lists or tests entries and prints a report. Returns whether all results are as required.
-pub fn run(root: &Path, options: &Options) -> Result<bool> {
+pub fn run(root: &Path, options: &CorpusOptions) -> Result<bool> {
     let all = entry::read_all(root)?;
     let (matrix, messages) = (Matrix::read(root), Messages::read(root));
     let chosen = choose(&all, options, &matrix, &messages)?;
@@ -137,10 +137,15 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         _ => Vec::new(),
     };
     report(&program, &tried, &differences);
-    Ok(differences.is_empty() && tried.iter().all(|one| one.fate.is_as_it_must_be()))
+    Ok(differences.is_empty() && tried.iter().all(|one| one.verdict.is_as_it_must_be()))
 }
 
-fn choose(all: &[Entry], options: &Options, matrix: &Matrix, messages: &Messages) -> Result<Vec<Entry>> {
+fn choose(
+    all: &[Entry],
+    options: &CorpusOptions,
+    matrix: &Matrix,
+    messages: &Messages,
+) -> Result<Vec<Entry>> {
     for name in &options.names {
         if !all.iter().any(|entry| is_named(entry, name)) {
             bail!("tests/corpus has no entry `{name}`");
@@ -171,7 +176,7 @@ fn is_named(entry: &Entry, name: &str) -> bool {
 }
 
 /// Prints the entries, each with its sentence.
-fn list(chosen: &[Entry], options: &Options, matrix: &Matrix) -> bool {
+fn list(chosen: &[Entry], options: &CorpusOptions, matrix: &Matrix) -> bool {
     let mut file = "";
     for entry in chosen {
         if entry.file != file {
@@ -196,8 +201,8 @@ fn try_all(
     program: &Program,
     matrix: &Matrix,
     entries: &[Entry],
-    options: &Options,
-) -> Result<Vec<Tried>> {
+    options: &CorpusOptions,
+) -> Result<Vec<TriedEntry>> {
     let plan = match options.bless {
         true => None,
         false => Some(Plan::of(program, matrix, entries, options.jobs)?),
@@ -229,19 +234,21 @@ fn try_all(
                 }
             }
         }
-        let fate = match Fate::of(entry, &failures, missed) {
-            Fate::Unnamed(_) | Fate::Misnamed if options.seed.is_some() => Fate::Killed,
-            fate => fate,
+        let verdict = match EntryVerdict::of(entry, &failures, missed) {
+            EntryVerdict::Unnamed(_) | EntryVerdict::Misnamed if options.seed.is_some() => {
+                EntryVerdict::Killed
+            }
+            verdict => verdict,
         };
         bar.inc(1);
-        Ok(Tried { entry: entry.clone(), fate, failures })
+        Ok(TriedEntry { entry: entry.clone(), verdict, failures })
     })?;
     bar.finish_and_clear();
     Ok(tried)
 }
 
-fn report(program: &Program, tried: &[Tried], differences: &[String]) {
-    for one in tried.iter().filter(|one| !one.fate.is_as_it_must_be()) {
+fn report(program: &Program, tried: &[TriedEntry], differences: &[String]) {
+    for one in tried.iter().filter(|one| !one.verdict.is_as_it_must_be()) {
         println!("{one}\n");
     }
     for difference in differences {
@@ -251,25 +258,31 @@ fn report(program: &Program, tried: &[Tried], differences: &[String]) {
     stages.dedup();
     println!("stage  mistakes   caught  otherwise  survived  diagnosed   right  accepted");
     for stage in stages.iter().map(|stage| Some(*stage)).chain([None]) {
-        let count = |which: &dyn Fn(&Tried) -> bool| {
+        let count = |which: &dyn Fn(&TriedEntry) -> bool| {
             let of_stage = tried.iter().filter(|one| stage.is_none_or(|stage| stage == one.entry.stage));
             of_stage.filter(|one| which(one)).count()
         };
-        let fated = |fate: Fate| count(&|one| one.fate == fate);
-        let otherwise = |one: &Tried| {
-            matches!(one.fate, Fate::Unnamed(_) | Fate::Misnamed | Fate::KilledByAnother | Fate::Missed(_))
+        let with_verdict = |verdict: EntryVerdict| count(&|one| one.verdict == verdict);
+        let otherwise = |one: &TriedEntry| {
+            matches!(
+                one.verdict,
+                EntryVerdict::Unnamed(_)
+                    | EntryVerdict::Misnamed
+                    | EntryVerdict::KilledByAnother
+                    | EntryVerdict::Missed(_)
+            )
         };
-        let right = |one: &Tried| one.entry.claim == Claim::Right;
+        let right = |one: &TriedEntry| one.entry.claim == Claim::Right;
         println!(
             "{:<5}  {:>8}  {:>7}  {:>9}  {:>8}  {:>9}  {:>6}  {:>8}",
             stage.map_or("all".into(), |stage| stage.to_string()),
             count(&|one| !right(one)),
-            fated(Fate::Killed),
+            with_verdict(EntryVerdict::Killed),
             count(&otherwise),
-            fated(Fate::Survived),
-            count(&Tried::is_diagnosed),
+            with_verdict(EntryVerdict::Survived),
+            count(&TriedEntry::is_diagnosed),
             count(&right),
-            fated(Fate::Accepted),
+            with_verdict(EntryVerdict::Accepted),
         );
     }
     let names = |form: Form| -> Vec<String> {

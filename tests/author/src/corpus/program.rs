@@ -1,9 +1,9 @@
 //! Builds all entries of the corpus as one program, and starts it as one of them.
 
 use super::FOLDER;
+use super::build_folder::{BuildFolder, Built, Product};
 use super::entry::{Entry, Original, corpus_file};
 use super::schemata::{self, Form, Schema};
-use super::workshop::{Built, Workshop};
 use anyhow::{Context, Result, bail};
 use checks::Check;
 use grader::kits::{Need, Source as Kits, Which};
@@ -110,18 +110,21 @@ impl Program {
 
     /// Builds the entries that share a program.
     fn build_all(&self, root: &Path, texts: &mut Vec<(String, String)>, modules: &str) -> Result<()> {
-        let workshop = Workshop::open(root, "all", Need::Checks)?;
+        let build_folder = BuildFolder::open(root, "all", Product::Worker(Need::Checks))?;
         let library = "solutions/src/lib.rs";
-        let text = workshop.original(library)?;
+        let text = build_folder.original(library)?;
         texts.push((library.to_owned(), format!("#![allow(warnings)]\n{text}\n{modules}{SWITCH}")));
         let main = "solutions/src/worker.rs";
-        let text =
-            workshop.original(main)?.replacen("fn main() {\n", "fn main() {\n    solutions::choose();\n", 1);
+        let text = build_folder.original(main)?.replacen(
+            "fn main() {\n",
+            "fn main() {\n    solutions::choose();\n",
+            1,
+        );
         texts.push((main.to_owned(), text));
         let changes: Vec<(&str, &str)> =
             texts.iter().map(|(file, text)| (file.as_str(), text.as_str())).collect();
-        match workshop.build_with(&changes)? {
-            Built::Worker(worker) => {
+        match build_folder.build_with(&changes)? {
+            Built::Program(worker) => {
                 fs::hard_link(worker, self.path(0))?;
                 Ok(())
             }
@@ -136,10 +139,10 @@ impl Program {
         if alone.is_empty() {
             return Ok(());
         }
-        let workshop = Workshop::open(root, "alone", Need::Checks)?;
+        let build_folder = BuildFolder::open(root, "alone", Product::Worker(Need::Checks))?;
         for (entry, text) in alone {
-            match workshop.build_with(&[(&entry.file, text)])? {
-                Built::Worker(worker) => {
+            match build_folder.build_with(&[(&entry.file, text)])? {
+                Built::Program(worker) => {
                     fs::copy(worker, self.path(schemata::number(entry)))?;
                 }
                 Built::DoesNotCompile(error) => {

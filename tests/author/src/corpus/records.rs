@@ -1,7 +1,7 @@
 //! The stored results: which checks each entry fails, and the message about each mistake.
 
 use super::entry::{Entry, FOLDER};
-use super::verdict::{Failures, Tried};
+use super::verdict::{Failures, TriedEntry};
 use anyhow::{Context, Result};
 use raykata::film::write_atomically;
 use std::collections::BTreeMap;
@@ -110,7 +110,7 @@ impl Messages {
     }
 
     /// Replaces the messages about these entries.
-    pub fn set(&mut self, tried: &[Tried]) {
+    pub fn set(&mut self, tried: &[TriedEntry]) {
         for one in tried {
             match one.message() {
                 Some(message) => _ = self.0.insert(one.entry.to_string(), without_rubric(message)),
@@ -134,7 +134,7 @@ impl Messages {
 }
 
 /// Returns the differences between new and stored messages, one text each.
-pub fn differences(messages: &Messages, tried: &[Tried]) -> Vec<String> {
+pub fn differences(messages: &Messages, tried: &[TriedEntry]) -> Vec<String> {
     let mut differences = Vec::new();
     for one in tried {
         let (kept, now) = (messages.of(&one.entry), one.message().map(without_rubric));
@@ -149,7 +149,7 @@ pub fn differences(messages: &Messages, tried: &[Tried]) -> Vec<String> {
 
 /// Stores the results. With `matrix`, every check of the stage was tried. If `all` is true, every entry was tested, and the
 /// results of other entries are deleted.
-pub fn bless(root: &Path, tried: &[Tried], matrix: bool, all: bool) -> Result<()> {
+pub fn bless(root: &Path, tried: &[TriedEntry], matrix: bool, all: bool) -> Result<()> {
     let mut messages = if all { Messages::default() } else { Messages::read(root) };
     messages.set(tried);
     messages.write(root)?;

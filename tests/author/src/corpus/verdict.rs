@@ -15,7 +15,7 @@ const DIAGNOSIS: &str = "looks like:";
 
 /// How an entry ended.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Fate {
+pub enum EntryVerdict {
     /// A mistake: the named check caught it, and its message contains the words.
     Killed,
     /// A mistake: the named check caught it, and its message lacks these words.
@@ -34,24 +34,24 @@ pub enum Fate {
     Rejected,
 }
 
-impl Fate {
-    /// Returns the fate of an entry that failed these checks, and that passed those of `missed`, which must reject it.
-    pub fn of(entry: &Entry, failures: &Failures, missed: Vec<&'static str>) -> Fate {
+impl EntryVerdict {
+    /// Returns the verdict of an entry that failed these checks, and that passed those of `missed`, which must reject it.
+    pub fn of(entry: &Entry, failures: &Failures, missed: Vec<&'static str>) -> EntryVerdict {
         match &entry.claim {
-            Claim::Right if failures.is_empty() => Fate::Accepted,
-            Claim::Right => Fate::Rejected,
-            Claim::Wrong { .. } if failures.is_empty() => Fate::Survived,
+            Claim::Right if failures.is_empty() => EntryVerdict::Accepted,
+            Claim::Right => EntryVerdict::Rejected,
+            Claim::Wrong { .. } if failures.is_empty() => EntryVerdict::Survived,
             Claim::Wrong { caught_by, says, is_unknown, .. } => match failures.get(caught_by.as_str()) {
-                None => Fate::KilledByAnother,
-                Some(message) if *is_unknown && message.contains(DIAGNOSIS) => Fate::Misnamed,
+                None => EntryVerdict::KilledByAnother,
+                Some(message) if *is_unknown && message.contains(DIAGNOSIS) => EntryVerdict::Misnamed,
                 Some(message) => {
                     let message = one_line(message);
                     let missing: Vec<String> =
                         says.iter().filter(|words| !message.contains(&one_line(words))).cloned().collect();
                     match missing.is_empty() {
-                        false => Fate::Unnamed(missing),
-                        true if !missed.is_empty() => Fate::Missed(missed),
-                        true => Fate::Killed,
+                        false => EntryVerdict::Unnamed(missing),
+                        true if !missed.is_empty() => EntryVerdict::Missed(missed),
+                        true => EntryVerdict::Killed,
                     }
                 }
             },
@@ -60,7 +60,7 @@ impl Fate {
 
     /// Returns whether this is the required result.
     pub fn is_as_it_must_be(&self) -> bool {
-        matches!(self, Fate::Killed | Fate::Accepted)
+        matches!(self, EntryVerdict::Killed | EntryVerdict::Accepted)
     }
 }
 
@@ -70,16 +70,16 @@ pub(crate) fn one_line(text: &str) -> String {
 }
 
 /// An entry that was tested.
-pub struct Tried {
+pub struct TriedEntry {
     /// The entry.
     pub entry: Entry,
     /// How it ended.
-    pub fate: Fate,
+    pub verdict: EntryVerdict,
     /// The checks that it failed.
     pub failures: Failures,
 }
 
-impl Tried {
+impl TriedEntry {
     /// Returns the message of the named check, if it failed.
     pub fn message(&self) -> Option<&str> {
         self.failures.get(self.entry.caught_by()?).map(String::as_str)
@@ -91,34 +91,34 @@ impl Tried {
     }
 }
 
-impl fmt::Display for Tried {
+impl fmt::Display for TriedEntry {
     /// Describes the result and what to do, for the authors of checks.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Tried { entry, fate, failures } = self;
+        let TriedEntry { entry, verdict, failures } = self;
         let checks = || failures.keys().copied().collect::<Vec<_>>().join(", ");
         let named = entry.caught_by().unwrap_or_default();
         write!(f, "{entry}: {}\n  ", entry.title)?;
-        match fate {
-            Fate::Killed => write!(f, "killed by {named}"),
-            Fate::Accepted => write!(f, "accepted"),
-            Fate::Unnamed(words) => {
+        match verdict {
+            EntryVerdict::Killed => write!(f, "killed by {named}"),
+            EntryVerdict::Accepted => write!(f, "accepted"),
+            EntryVerdict::Unnamed(words) => {
                 write!(f, "killed by {named}, whose message does not say {}", quoted(words))?;
                 write!(f, ":\n{}", failures.get(named).map_or("", String::as_str))
             }
-            Fate::Misnamed => {
+            EntryVerdict::Misnamed => {
                 write!(f, "killed by {named}, whose message must name no mistake")?;
                 write!(f, ":\n{}", failures.get(named).map_or("", String::as_str))
             }
-            Fate::Missed(checks) => {
+            EntryVerdict::Missed(checks) => {
                 write!(
                     f,
                     "killed by {named}, but {} accepts it, and {MATRIX} says that it rejects it",
                     checks.join(", ")
                 )
             }
-            Fate::KilledByAnother => write!(f, "killed, but not by {named}: by {}", checks()),
-            Fate::Survived => write!(f, "SURVIVED: {named} accepts it"),
-            Fate::Rejected => {
+            EntryVerdict::KilledByAnother => write!(f, "killed, but not by {named}: by {}", checks()),
+            EntryVerdict::Survived => write!(f, "SURVIVED: {named} accepts it"),
+            EntryVerdict::Rejected => {
                 write!(f, "FALSE ALARM: it is right, but rejected by {}", checks())?;
                 failures.values().next().map_or(Ok(()), |message| write!(f, "\n{message}"))
             }
@@ -183,20 +183,26 @@ mod tests {
             file: "f".into(),
             changes: Vec::new(),
         };
-        let fate = |claim: &Claim, failed: &[(&'static str, &str)]| {
+        let verdict = |claim: &Claim, failed: &[(&'static str, &str)]| {
             let failures = failed.iter().map(|(name, message)| (*name, (*message).to_owned())).collect();
-            Fate::of(&entry(claim), &failures, Vec::new())
+            EntryVerdict::of(&entry(claim), &failures, Vec::new())
         };
-        assert_eq!(fate(&claim, &[]), Fate::Survived);
-        assert_eq!(fate(&claim, &[("a", "")]), Fate::KilledByAnother);
-        assert_eq!(fate(&claim, &[("b", "the near root")]), Fate::Unnamed(vec!["far root".into()]));
-        assert_eq!(fate(&claim, &[("b", "the far\n   root")]), Fate::Killed);
+        assert_eq!(verdict(&claim, &[]), EntryVerdict::Survived);
+        assert_eq!(verdict(&claim, &[("a", "")]), EntryVerdict::KilledByAnother);
+        assert_eq!(
+            verdict(&claim, &[("b", "the near root")]),
+            EntryVerdict::Unnamed(vec!["far root".into()])
+        );
+        assert_eq!(verdict(&claim, &[("b", "the far\n   root")]), EntryVerdict::Killed);
         let unknown = Claim::Wrong { caught_by: "b".into(), says: vec![], is_unknown: true };
-        assert_eq!(fate(&unknown, &[("b", "  yours 3\n")]), Fate::Killed);
-        assert_eq!(fate(&unknown, &[("b", "  yours 3\n  looks like: the far root\n")]), Fate::Misnamed);
+        assert_eq!(verdict(&unknown, &[("b", "  yours 3\n")]), EntryVerdict::Killed);
+        assert_eq!(
+            verdict(&unknown, &[("b", "  yours 3\n  looks like: the far root\n")]),
+            EntryVerdict::Misnamed
+        );
         let killed = Failures::from([("b", "the far root".to_owned())]);
-        assert_eq!(Fate::of(&entry(&claim), &killed, vec!["c"]), Fate::Missed(vec!["c"]));
-        assert_eq!(fate(&Claim::Right, &[]), Fate::Accepted);
-        assert_eq!(fate(&Claim::Right, &[("a", "")]), Fate::Rejected);
+        assert_eq!(EntryVerdict::of(&entry(&claim), &killed, vec!["c"]), EntryVerdict::Missed(vec!["c"]));
+        assert_eq!(verdict(&Claim::Right, &[]), EntryVerdict::Accepted);
+        assert_eq!(verdict(&Claim::Right, &[("a", "")]), EntryVerdict::Rejected);
     }
 }

@@ -9,8 +9,8 @@
 mod begun;
 mod switch;
 
+use crate::corpus::build_folder::{BuildFolder, Built};
 use crate::corpus::verdict::without_lines;
-use crate::corpus::workshop::{Built, Workshop};
 use crate::pictures::{Scenes, Shown};
 use anyhow::{Context, Result};
 use grader::exercises::{self, Block};
@@ -35,16 +35,16 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `author gaps`.
-pub struct Options {
+pub struct GapsOptions {
     check: bool,
     bless: bool,
 }
 
-impl Options {
+impl GapsOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<GapsOptions, Misuse> {
         given.exclude("--bless", "--check")?;
-        Ok(Options { check: given.has("--check"), bless: given.has("--bless") })
+        Ok(GapsOptions { check: given.has("--check"), bless: given.has("--bless") })
     }
 }
 
@@ -108,14 +108,14 @@ impl Gap {
 
 /// Prints what pictures lack. Returns whether that equals the stored results, and whether each picture of a kit that is
 /// written up to some stage says what it lacks.
-pub fn run(options: &Options) -> Result<bool> {
+pub fn run(options: &GapsOptions) -> Result<bool> {
     let root = root()?;
     let gaps = all(&root)?;
     let reference = Source::prepare(&root, Which::Solutions, Need::Frames)?.fresh();
     let scenes = Scenes::read(&root, &*reference)?.of_gaps();
     let whole = scenes.shown_by(&*reference);
-    let workshops = Workshop::open_all(&root, 1, Need::Frames)?;
-    let switchable = Switchable::build(&workshops[0], &root, &gaps)?;
+    let build_folders = BuildFolder::open_all(&root, 1, Need::Frames)?;
+    let switchable = Switchable::build(&build_folders[0], &root, &gaps)?;
     let says_what_it_lacks = begun::run(&switchable, &gaps, &scenes, &whole)?;
     let text = text(&switchable, &gaps, &scenes, &whole)?;
     let text: String =
@@ -156,13 +156,13 @@ fn text(switchable: &Switchable, gaps: &[Gap], scenes: &Scenes, whole: &[Shown])
 
 /// Returns how the pictures of the solutions with these changes differ from those of the unchanged solutions.
 pub fn lacks(
-    workshop: &Workshop,
+    build_folder: &BuildFolder,
     changes: &[(&str, &str)],
     scenes: &Scenes,
     whole: &[Shown],
 ) -> Result<String> {
-    Ok(match workshop.build_with(changes)? {
-        Built::Worker(worker) => differences(worker, scenes, whole),
+    Ok(match build_folder.build_with(changes)? {
+        Built::Program(worker) => differences(worker, scenes, whole),
         Built::DoesNotCompile(error) => format!("  {error}\n"),
     })
 }
@@ -195,12 +195,12 @@ fn differences(worker: PathBuf, scenes: &Scenes, whole: &[Shown]) -> String {
 /// from the stored file: if that file were from other solutions, every change would seem to show.
 pub fn that_show(
     root: &Path,
-    workshops: &[Workshop],
+    build_folders: &[BuildFolder],
     scenes: &Scenes,
     whole: &[Shown],
 ) -> Result<Vec<(Gap, String)>> {
     let gaps = all(root)?;
-    let switchable = Switchable::build(&workshops[0], root, &gaps)?;
+    let switchable = Switchable::build(&build_folders[0], root, &gaps)?;
     let text = text(&switchable, &gaps, scenes, whole)?;
     let shows = |text: &str| !text.contains(NOTHING) && !text.contains("not written yet: solutions/");
     let mut gaps: Vec<_> = gaps.into_iter().zip(text).filter(|(_, text)| shows(text)).collect();

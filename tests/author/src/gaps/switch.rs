@@ -2,7 +2,7 @@
 //! functions can be left out without another build.
 
 use super::Gap;
-use crate::corpus::workshop::{Built, Workshop};
+use crate::corpus::build_folder::{BuildFolder, Built};
 use anyhow::{Context, Result, bail};
 use grader::exercises::{self, Block};
 use std::collections::BTreeMap;
@@ -37,7 +37,7 @@ pub struct Switchable {
 
 impl Switchable {
     /// Builds the solutions with a switch in each of `gaps`, which are all functions of the exercises.
-    pub fn build(workshop: &Workshop, root: &Path, gaps: &[Gap]) -> Result<Switchable> {
+    pub fn build(build_folder: &BuildFolder, root: &Path, gaps: &[Gap]) -> Result<Switchable> {
         let mut files: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for (number, gap) in gaps.iter().enumerate() {
             files.entry(&gap.file).or_default().push(number);
@@ -48,10 +48,10 @@ impl Switchable {
             changes.push((file, with_switches(file, &text, numbers)?));
         }
         let library = "solutions/src/lib.rs";
-        changes.push((library, workshop.original(library)? + SWITCH));
+        changes.push((library, build_folder.original(library)? + SWITCH));
         let changes: Vec<(&str, &str)> = changes.iter().map(|(file, text)| (*file, text.as_str())).collect();
-        let program = match workshop.build_with(&changes)? {
-            Built::Worker(program) => program,
+        let program = match build_folder.build_with(&changes)? {
+            Built::Program(program) => program,
             Built::DoesNotCompile(error) => bail!(error),
         };
         // The links must be on the file system of the program.

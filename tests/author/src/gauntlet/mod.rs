@@ -49,17 +49,17 @@ pub static COST: Spec = Spec {
 };
 
 /// The options of `author gauntlet`.
-pub struct Options {
+pub struct GauntletOptions {
     kit: Which,
     inputs: u64,
     seed: u64,
     out: Option<PathBuf>,
 }
 
-impl Options {
+impl GauntletOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        Ok(Options {
+    pub fn read(given: &Given) -> Result<GauntletOptions, Misuse> {
+        Ok(GauntletOptions {
             kit: given.choice("--kit", &Which::NAMES)?.unwrap_or(Which::Solutions),
             inputs: given.number("--inputs", 100..=u64::MAX)?.unwrap_or(20_000),
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(1),
@@ -74,7 +74,7 @@ pub fn cost(given: &Given) -> Result<bool> {
 }
 
 /// Runs the gauntlet.
-pub fn run(root: &Path, options: &Options) -> Result<()> {
+pub fn run(root: &Path, options: &GauntletOptions) -> Result<()> {
     let source = Source::prepare(root, options.kit, Need::Checks)?;
     let kit = source.fresh();
     let mut tables = tables(rows(&*kit), options.inputs, options.seed)?;

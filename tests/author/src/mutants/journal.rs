@@ -1,6 +1,6 @@
-//! Keeps the fates of the tested changes, so that a stopped run can be continued.
+//! Keeps the verdicts of the tested changes, so that a stopped run can be continued.
 
-use super::Fate;
+use super::MutantVerdict;
 use super::list::Mutant;
 use anyhow::{Result, ensure};
 use raykata_cli::journal::Journal as Kept;
@@ -10,10 +10,10 @@ use std::path::Path;
 /// What the file keeps.
 const ABOUT: &str = "mutants";
 
-/// The fates of changes, in memory and in a file.
+/// The verdicts of changes, in memory and in a file.
 pub(super) struct Journal {
-    kept: Kept<Fate>,
-    fates: BTreeMap<String, Fate>,
+    kept: Kept<MutantVerdict>,
+    verdicts: BTreeMap<String, MutantVerdict>,
 }
 
 impl Journal {
@@ -24,25 +24,25 @@ impl Journal {
         ensure!(!keep || file.exists(), "{}: there is no earlier run", file.display());
         let kept = if keep { Kept::resume(&file, ABOUT)? } else { Kept::create(&file, ABOUT)? };
         // A change that was tested again has a second line, which counts.
-        let fates = kept.kept().cloned().collect();
-        Ok(Journal { kept, fates })
+        let verdicts = kept.kept().cloned().collect();
+        Ok(Journal { kept, verdicts })
     }
 
-    /// Returns the fate of this change, if it was tested.
-    pub(super) fn of(&self, mutant: &Mutant) -> Option<&Fate> {
-        self.fates.get(&mutant.change())
+    /// Returns the verdict of this change, if it was tested.
+    pub(super) fn of(&self, mutant: &Mutant) -> Option<&MutantVerdict> {
+        self.verdicts.get(&mutant.change())
     }
 
-    /// Deletes the fates of these changes, so that they are tested again.
+    /// Deletes the verdicts of these changes, so that they are tested again.
     pub(super) fn forget(&mut self, mutants: &[Mutant]) {
         for mutant in mutants {
-            self.fates.remove(&mutant.change());
+            self.verdicts.remove(&mutant.change());
         }
     }
 
-    pub(super) fn write(&mut self, mutant: &Mutant, fate: Fate) -> Result<()> {
-        self.kept.add(&mutant.change(), &fate)?;
-        self.fates.insert(mutant.change(), fate);
+    pub(super) fn write(&mut self, mutant: &Mutant, verdict: MutantVerdict) -> Result<()> {
+        self.kept.add(&mutant.change(), &verdict)?;
+        self.verdicts.insert(mutant.change(), verdict);
         Ok(())
     }
 }

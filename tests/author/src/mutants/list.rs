@@ -1,7 +1,7 @@
 //! Lists the changes that the tool cargo-mutants makes.
 
+use crate::corpus::build_folder::BuildFolder;
 use crate::corpus::patch;
-use crate::corpus::workshop::Workshop;
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 use std::fmt;
@@ -36,8 +36,8 @@ impl Mutant {
     }
 
     /// Returns the text of the file with the change.
-    pub fn apply(&self, workshop: &Workshop) -> Result<String> {
-        let original = workshop.original(&self.file)?;
+    pub fn apply(&self, build_folder: &BuildFolder) -> Result<String> {
+        let original = build_folder.original(&self.file)?;
         patch::apply(&self.diff, &original).with_context(|| format!("{self}\n    does not fit {}", self.file))
     }
 

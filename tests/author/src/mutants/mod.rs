@@ -1,6 +1,6 @@
 //! `author mutants`: mutation testing. Small automatic changes of the solutions, each of which the checks must notice.
 //!
-//! The tool cargo-mutants lists the changes. A workshop of the corpus builds each change, runs all checks against it and
+//! The tool cargo-mutants lists the changes. A build folder of the corpus builds each change, runs all checks against it and
 //! renders all scenes. A change that survives is either a gap in the checks or equivalent to the original. Equivalent
 //! changes are listed in tests/corpus/equivalent.toml, each with a reason.
 //!
@@ -11,7 +11,7 @@ mod list;
 pub mod reviewed;
 
 use crate::corpus::FOLDER;
-use crate::corpus::workshop::{Built, Workshop};
+use crate::corpus::build_folder::{BuildFolder, Built};
 use crate::gaps::{self, Gap};
 use crate::pictures::{Scenes, Shown};
 use ::checks::Check;
@@ -48,7 +48,7 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `author mutants`.
-pub struct Options {
+pub struct MutantsOptions {
     file: Option<String>,
     resume: bool,
     again: bool,
@@ -59,12 +59,12 @@ pub struct Options {
 /// The list of reviewed changes of the solutions.
 const REVIEWED: &str = "tests/corpus/equivalent.toml";
 
-impl Options {
+impl MutantsOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<MutantsOptions, Misuse> {
         given.exclude("--again", "--resume")?;
         given.exclude("--again", "--quick")?;
-        Ok(Options {
+        Ok(MutantsOptions {
             file: given.argument(0).map(|file| file.to_string_lossy().into_owned()),
             resume: given.has("--resume"),
             again: given.has("--again"),
@@ -76,7 +76,7 @@ impl Options {
 
 /// The result of testing a change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-enum Fate {
+enum MutantVerdict {
     /// It does not compile.
     DoesNotCompile,
     /// A check of its own stage failed.
@@ -94,7 +94,7 @@ enum Fate {
 }
 
 /// Tests the changes and prints a report. Returns whether every survivor is a reviewed one and no reviewed one was noticed.
-pub fn run(root: &Path, options: &Options) -> Result<bool> {
+pub fn run(root: &Path, options: &MutantsOptions) -> Result<bool> {
     let reviewed = Reviewed::read(root, REVIEWED)?;
     let mut mutants = list::all(root, &["solutions".to_owned()])?;
     if let Some(file) = &options.file {
@@ -105,16 +105,23 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     choose(&mut mutants, options, &mut journal)?;
     // Test them, and report what the reviews do not say.
     try_all(root, &mutants, &mut journal, options)?;
-    let tried: Vec<(&Mutant, Fate)> = mutants
+    let tried: Vec<(&Mutant, MutantVerdict)> = mutants
         .iter()
         .map(|mutant| match journal.of(mutant) {
-            // A quick run keeps no fate of a survivor, which other checks or pictures may notice.
-            None | Some(Fate::Survived) if is_equivalent(&reviewed, mutant) => (mutant, Fate::Equivalent),
-            None => (mutant, Fate::Survived),
-            Some(fate) => (mutant, fate.clone()),
+            // A quick run keeps no verdict of a survivor, which other checks or pictures may notice.
+            None | Some(MutantVerdict::Survived) if is_equivalent(&reviewed, mutant) => {
+                (mutant, MutantVerdict::Equivalent)
+            }
+            None => (mutant, MutantVerdict::Survived),
+            Some(verdict) => (mutant, verdict.clone()),
         })
         .collect();
-    let is_noticed = |fate: &Fate| !matches!(fate, Fate::Survived | Fate::Equivalent | Fate::DoesNotCompile);
+    let is_noticed = |verdict: &MutantVerdict| {
+        !matches!(
+            verdict,
+            MutantVerdict::Survived | MutantVerdict::Equivalent | MutantVerdict::DoesNotCompile
+        )
+    };
     let is_reviewed = tell_unreviewed(&tried, &reviewed, is_noticed);
     report(&tried);
     Ok(is_reviewed)
@@ -125,10 +132,10 @@ fn is_equivalent(reviewed: &Reviewed, mutant: &Mutant) -> bool {
     reviewed.has(&mutant.file, &mutant.was(), &mutant.becomes())
 }
 
-/// Keeps the changes that are to be tested. `--again` keeps those that survived the last run, and forgets their fates.
-fn choose(mutants: &mut Vec<Mutant>, options: &Options, journal: &mut Journal) -> Result<()> {
+/// Keeps the changes that are to be tested. `--again` keeps those that survived the last run, and forgets their verdicts.
+fn choose(mutants: &mut Vec<Mutant>, options: &MutantsOptions, journal: &mut Journal) -> Result<()> {
     if options.again {
-        mutants.retain(|mutant| journal.of(mutant) == Some(&Fate::Survived));
+        mutants.retain(|mutant| journal.of(mutant) == Some(&MutantVerdict::Survived));
         journal.forget(mutants);
     }
     if mutants.is_empty() {
@@ -140,16 +147,20 @@ fn choose(mutants: &mut Vec<Mutant>, options: &Options, journal: &mut Journal) -
 /// Prints the changes that survived, and those that were noticed although they are reviewed as changes that nothing can notice.
 /// Returns whether there are none.
 fn tell_unreviewed(
-    tried: &[(&Mutant, Fate)],
+    tried: &[(&Mutant, MutantVerdict)],
     reviewed: &Reviewed,
-    is_noticed: impl Fn(&Fate) -> bool,
+    is_noticed: impl Fn(&MutantVerdict) -> bool,
 ) -> bool {
-    let survivors: Vec<&Mutant> =
-        tried.iter().filter(|(_, fate)| *fate == Fate::Survived).map(|(mutant, _)| *mutant).collect();
+    let survivors: Vec<&Mutant> = tried
+        .iter()
+        .filter(|(_, verdict)| *verdict == MutantVerdict::Survived)
+        .map(|(mutant, _)| *mutant)
+        .collect();
     for mutant in &survivors {
         println!("SURVIVED  {mutant}\n");
     }
-    let noticed = tried.iter().filter(|(mutant, fate)| is_noticed(fate) && is_equivalent(reviewed, mutant));
+    let noticed =
+        tried.iter().filter(|(mutant, verdict)| is_noticed(verdict) && is_equivalent(reviewed, mutant));
     let noticed: Vec<&Mutant> = noticed.map(|(mutant, _)| *mutant).collect();
     for mutant in &noticed {
         println!("NOTICED, but reviewed as equivalent: {mutant}\n");
@@ -157,26 +168,31 @@ fn tell_unreviewed(
     survivors.is_empty() && noticed.is_empty()
 }
 
-fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, options: &Options) -> Result<()> {
+fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, options: &MutantsOptions) -> Result<()> {
     let jobs = options.jobs.clamp(1, mutants.len());
-    let workshops = Workshop::open_all(root, jobs, if options.quick { Need::Checks } else { Need::Frames })?;
+    let build_folders =
+        BuildFolder::open_all(root, jobs, if options.quick { Need::Checks } else { Need::Frames })?;
     let journal = Mutex::new(journal);
     // Test all changes by the checks of their stage first, which is quick and notices most of them.
     let bar = bar_of_steps(mutants.len());
     let latest = Latest::default();
-    queue::run(&workshops, mutants, |workshop, mutant| {
+    queue::run(&build_folders, mutants, |build_folder, mutant| {
         bar.set_message(mutant.file.clone());
         if lock(&journal).of(mutant).is_none()
-            && let Some(fate) = first_failure(workshop, mutant, &latest)?
+            && let Some(verdict) = first_failure(build_folder, mutant, &latest)?
         {
-            lock(&journal).write(mutant, fate)?;
+            lock(&journal).write(mutant, verdict)?;
         }
         bar.inc(1);
         Ok(())
     })?;
     bar.finish_and_clear();
     let others: Vec<&Mutant> = mutants.iter().filter(|mutant| lock(&journal).of(mutant).is_none()).collect();
-    if options.quick || others.is_empty() { Ok(()) } else { try_others(root, &others, &journal, &workshops) }
+    if options.quick || others.is_empty() {
+        Ok(())
+    } else {
+        try_others(root, &others, &journal, &build_folders)
+    }
 }
 
 /// Tests the changes that the checks of their stage do not notice by everything else.
@@ -184,7 +200,7 @@ fn try_others(
     root: &Path,
     others: &[&Mutant],
     journal: &Mutex<&mut Journal>,
-    workshops: &[Workshop],
+    build_folders: &[BuildFolder],
 ) -> Result<()> {
     let reference = Source::prepare(root, Which::Solutions, Need::Frames)?.fresh();
     let scenes = Scenes::read(root, &*reference)?;
@@ -194,22 +210,22 @@ fn try_others(
     let bar = bar_of_steps(others.len());
     bar.set_message("pictures of gaps");
     let gaps = if others.iter().any(|mutant| mutant.stage().is_none()) {
-        gaps::that_show(root, workshops, &of_gaps.1, &of_gaps.0)?
+        gaps::that_show(root, build_folders, &of_gaps.1, &of_gaps.0)?
     } else {
         Vec::new()
     };
-    queue::run(workshops, others, |workshop, &mutant| {
+    queue::run(build_folders, others, |build_folder, &mutant| {
         bar.set_message(mutant.file.clone());
-        let fate = match workshop.build_with(&[(&mutant.file, &mutant.apply(workshop)?)])? {
-            Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
-                Fate::Survived if mutant.stage().is_none() => {
-                    judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
+        let verdict = match build_folder.build_with(&[(&mutant.file, &mutant.apply(build_folder)?)])? {
+            Built::Program(worker) => match judge(mutant, &worker, &scenes, &expected) {
+                MutantVerdict::Survived if mutant.stage().is_none() => {
+                    judge_by_gaps(mutant, build_folder, &gaps, &of_gaps)?
                 }
-                fate => fate,
+                verdict => verdict,
             },
-            Built::DoesNotCompile(_) => Fate::DoesNotCompile,
+            Built::DoesNotCompile(_) => MutantVerdict::DoesNotCompile,
         };
-        lock(journal).write(mutant, fate)?;
+        lock(journal).write(mutant, verdict)?;
         bar.inc(1);
         Ok(())
     })?;
@@ -222,23 +238,29 @@ fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// Tests a change of an exercise by the checks of its stage. They need no frames, without which the build is much quicker.
-fn first_failure(workshop: &Workshop, mutant: &Mutant, latest: &Latest) -> Result<Option<Fate>> {
+fn first_failure(
+    build_folder: &BuildFolder,
+    mutant: &Mutant,
+    latest: &Latest,
+) -> Result<Option<MutantVerdict>> {
     let Some(own) = mutant.stage() else { return Ok(None) };
-    Ok(match workshop.with(Need::Checks).build_with(&[(&mutant.file, &mutant.apply(workshop)?)])? {
-        Built::Worker(worker) => failed_check(&worker, |stage| stage == own, latest).map(Fate::ByItsStage),
-        Built::DoesNotCompile(_) => Some(Fate::DoesNotCompile),
+    Ok(match build_folder.with(Need::Checks).build_with(&[(&mutant.file, &mutant.apply(build_folder)?)])? {
+        Built::Program(worker) => {
+            failed_check(&worker, |stage| stage == own, latest).map(MutantVerdict::ByItsStage)
+        }
+        Built::DoesNotCompile(_) => Some(MutantVerdict::DoesNotCompile),
     })
 }
 
 /// Tests a change that passes the checks of its stage by pictures, then by the other stages.
-fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) -> Fate {
+fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) -> MutantVerdict {
     let shown = Door(Worker::hasty(worker.to_owned(), CALL_PATIENCE));
     if let Some(scene) = scenes.first_difference(&shown, expected) {
-        return Fate::ByPicture(scene);
+        return MutantVerdict::ByPicture(scene);
     }
     let elsewhere =
         mutant.stage().and_then(|own| failed_check(worker, |stage| stage != own, &Latest::default()));
-    elsewhere.map_or(Fate::Survived, Fate::ByAnotherStage)
+    elsewhere.map_or(MutantVerdict::Survived, MutantVerdict::ByAnotherStage)
 }
 
 /// The checks that failed, the latest one first. The next change is often one of the same function, which they notice as well,
@@ -277,41 +299,45 @@ fn failed_check(worker: &Path, wanted: impl Fn(u8) -> bool, latest: &Latest) -> 
 /// function is not written.
 fn judge_by_gaps(
     mutant: &Mutant,
-    workshop: &Workshop,
+    build_folder: &BuildFolder,
     gaps: &[(Gap, String)],
     (whole, scenes): &(Vec<Shown>, Scenes),
-) -> Result<Fate> {
-    let changed = mutant.apply(workshop)?;
+) -> Result<MutantVerdict> {
+    let changed = mutant.apply(build_folder)?;
     for (gap, unchanged) in gaps {
         let changes = [(mutant.file.as_str(), changed.as_str()), (gap.file.as_str(), gap.text.as_str())];
-        if gaps::lacks(workshop, &changes, scenes, whole)? != *unchanged {
-            return Ok(Fate::ByGap(gap.function.clone()));
+        if gaps::lacks(build_folder, &changes, scenes, whole)? != *unchanged {
+            return Ok(MutantVerdict::ByGap(gap.function.clone()));
         }
     }
-    Ok(Fate::Survived)
+    Ok(MutantVerdict::Survived)
 }
 
-fn report(tried: &[(&Mutant, Fate)]) {
+fn report(tried: &[(&Mutant, MutantVerdict)]) {
     let mut files: Vec<&str> = tried.iter().map(|(mutant, _)| mutant.file.as_str()).collect();
     files.dedup();
     println!(
         "file                     changes  no program  own stage  others  pictures  equivalent  survived  score"
     );
     for file in files.into_iter().map(Some).chain([None]) {
-        let count = |which: fn(&Fate) -> bool| {
-            tried.iter().filter(|(m, fate)| file.is_none_or(|file| file == m.file) && which(fate)).count()
+        let count = |which: fn(&MutantVerdict) -> bool| {
+            tried
+                .iter()
+                .filter(|(m, verdict)| file.is_none_or(|file| file == m.file) && which(verdict))
+                .count()
         };
-        let own = count(|fate| matches!(fate, Fate::ByItsStage(_)));
-        let others = count(|fate| matches!(fate, Fate::ByAnotherStage(_)));
-        let pictures = count(|fate| matches!(fate, Fate::ByPicture(_) | Fate::ByGap(_)));
-        let survived = count(|fate| *fate == Fate::Survived);
+        let own = count(|verdict| matches!(verdict, MutantVerdict::ByItsStage(_)));
+        let others = count(|verdict| matches!(verdict, MutantVerdict::ByAnotherStage(_)));
+        let pictures =
+            count(|verdict| matches!(verdict, MutantVerdict::ByPicture(_) | MutantVerdict::ByGap(_)));
+        let survived = count(|verdict| *verdict == MutantVerdict::Survived);
         let noticed = own + others + pictures;
         println!(
             "{:<23}  {:>7}  {:>10}  {own:>9}  {others:>6}  {pictures:>8}  {:>10}  {survived:>8}  {:>5.1}",
             file.map_or("all", |file| file.trim_start_matches("solutions/src/")),
             count(|_| true),
-            count(|fate| *fate == Fate::DoesNotCompile),
-            count(|fate| *fate == Fate::Equivalent),
+            count(|verdict| *verdict == MutantVerdict::DoesNotCompile),
+            count(|verdict| *verdict == MutantVerdict::Equivalent),
             100.0 * noticed as f64 / ((noticed + survived).max(1)) as f64,
         );
     }

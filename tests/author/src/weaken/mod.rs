@@ -4,23 +4,25 @@
 //! A number that survives is a gap in the corpus, or decides nothing that an entry should notice. Those that were reviewed are
 //! listed in tests/corpus/harmless.toml, each with its reason.
 //!
-//! `numbers` (finds them) · `judges` (builds a judge with a change, and asks it)
+//! `numbers` (finds them) · `judges` (asks a judge with a change)
 
 mod judges;
 mod numbers;
 
 use crate::corpus::FOLDER;
+use crate::corpus::build_folder::{BuildFolder, Built, Product};
 use crate::corpus::entry::{Entry, read_all};
 use crate::corpus::plan::{Plan, Trial};
 use crate::corpus::program::Program;
 use crate::corpus::records::{Matrix, Messages, without_rubric};
 use crate::mutants::reviewed::Reviewed;
 use all_checks::STAGES;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use checks::Check;
+use grader::files_below::{files_below, last_part};
 use grader::queue;
 use grader::report::bar_of_steps;
-use judges::{Judge, Judges};
+use judges::Judge;
 use numbers::numbers;
 use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use raykata_cli::fingerprint::fingerprint;
@@ -30,7 +32,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 /// `author weaken`.
@@ -47,17 +49,17 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `author weaken`.
-pub struct Options {
+pub struct WeakenOptions {
     sample: usize,
     seed: u64,
     file: Option<String>,
     resume: bool,
 }
 
-impl Options {
+impl WeakenOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        Ok(Options {
+    pub fn read(given: &Given) -> Result<WeakenOptions, Misuse> {
+        Ok(WeakenOptions {
             sample: given.number("--sample", 1..=usize::MAX)?.unwrap_or(40),
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(1),
             file: given.path("--file").map(|file| file.to_string_lossy().into_owned()),
@@ -98,7 +100,7 @@ impl fmt::Display for Change {
 
 /// What happened to a change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-enum Fate {
+enum WeakenVerdict {
     /// It does not compile.
     DoesNotCompile,
     /// The corpus turns red, for this reason.
@@ -108,60 +110,62 @@ enum Fate {
 }
 
 /// Weakens numbers and prints a report. Returns whether each survivor was reviewed and no reviewed one was caught.
-pub fn run(root: &Path, options: &Options) -> Result<bool> {
+pub fn run(root: &Path, options: &WeakenOptions) -> Result<bool> {
     let reviewed = Reviewed::read(root, REVIEWED)?;
     let _lock = Lock::on(&root.join(FOLDER))?;
     let drawn = drawn(root, options)?;
     let journal_file = root.join(FOLDER).join("weaken.jsonl");
     let about = format!("numbers of checks, seed {}", options.seed);
-    let mut journal: Journal<Fate> = match options.resume {
+    let mut journal: Journal<WeakenVerdict> = match options.resume {
         true => Journal::resume(&journal_file, &about)?,
         false => Journal::create(&journal_file, &about)?,
     };
     let guard = Guard::open(root)?;
     let bar = bar_of_steps(options.sample);
     // Take the numbers of the stages in turn, until there are enough that compile.
-    let mut tried: Vec<(&Change, Fate)> = Vec::new();
+    let mut tried: Vec<(&Change, WeakenVerdict)> = Vec::new();
     for change in &drawn {
-        if tried.iter().filter(|(_, fate)| *fate != Fate::DoesNotCompile).count() == options.sample {
+        if tried.iter().filter(|(_, verdict)| *verdict != WeakenVerdict::DoesNotCompile).count()
+            == options.sample
+        {
             break;
         }
         bar.set_message(format!("{}:{}", change.file, change.line));
-        let known = journal.kept().find(|(key, _)| **key == change.key()).map(|(_, fate)| fate.clone());
-        let fate = match known {
-            Some(fate) => fate,
+        let known = journal.kept().find(|(key, _)| **key == change.key()).map(|(_, verdict)| verdict.clone());
+        let verdict = match known {
+            Some(verdict) => verdict,
             None => {
-                let fate = guard.judge(change)?;
-                journal.add(&change.key(), &fate)?;
-                fate
+                let verdict = guard.judge(change)?;
+                journal.add(&change.key(), &verdict)?;
+                verdict
             }
         };
         bar.suspend(|| {
             println!("{change}");
-            match &fate {
-                Fate::DoesNotCompile => println!("  does not compile, so another one is drawn\n"),
-                Fate::Caught(why) => println!("  caught: {why}\n"),
-                Fate::Survived if reviewed.has(&change.file, &change.was, &change.becomes) => {
+            match &verdict {
+                WeakenVerdict::DoesNotCompile => println!("  does not compile, so another one is drawn\n"),
+                WeakenVerdict::Caught(why) => println!("  caught: {why}\n"),
+                WeakenVerdict::Survived if reviewed.has(&change.file, &change.was, &change.becomes) => {
                     println!("  reviewed as harmless\n")
                 }
-                Fate::Survived => println!("  SURVIVED\n"),
+                WeakenVerdict::Survived => println!("  SURVIVED\n"),
             }
         });
-        bar.inc(u64::from(fate != Fate::DoesNotCompile));
-        tried.push((change, fate));
+        bar.inc(u64::from(verdict != WeakenVerdict::DoesNotCompile));
+        tried.push((change, verdict));
     }
     bar.finish_and_clear();
     Ok(report(&tried, &reviewed))
 }
 
-fn report(tried: &[(&Change, Fate)], reviewed: &Reviewed) -> bool {
+fn report(tried: &[(&Change, WeakenVerdict)], reviewed: &Reviewed) -> bool {
     let is_reviewed = |change: &Change| reviewed.has(&change.file, &change.was, &change.becomes);
     println!("stage   weakened  caught  reviewed  survived");
     let stages: Vec<u8> = (0..=STAGES.len() as u8).collect();
     for stage in stages.into_iter().map(Some).chain([None]) {
-        let count = |which: &dyn Fn(&Change, &Fate) -> bool| {
+        let count = |which: &dyn Fn(&Change, &WeakenVerdict) -> bool| {
             let of_stage = tried.iter().filter(|(change, _)| stage.is_none_or(|stage| stage == change.stage));
-            of_stage.filter(|(change, fate)| which(change, fate)).count()
+            of_stage.filter(|(change, verdict)| which(change, verdict)).count()
         };
         println!(
             "{:<6}  {:>8}  {:>6}  {:>8}  {:>8}",
@@ -170,22 +174,24 @@ fn report(tried: &[(&Change, Fate)], reviewed: &Reviewed) -> bool {
                 Some(0) => "shared".to_owned(),
                 Some(stage) => stage.to_string(),
             },
-            count(&|_, fate| *fate != Fate::DoesNotCompile),
-            count(&|_, fate| matches!(fate, Fate::Caught(_))),
-            count(&|change, fate| *fate == Fate::Survived && is_reviewed(change)),
-            count(&|change, fate| *fate == Fate::Survived && !is_reviewed(change)),
+            count(&|_, verdict| *verdict != WeakenVerdict::DoesNotCompile),
+            count(&|_, verdict| matches!(verdict, WeakenVerdict::Caught(_))),
+            count(&|change, verdict| *verdict == WeakenVerdict::Survived && is_reviewed(change)),
+            count(&|change, verdict| *verdict == WeakenVerdict::Survived && !is_reviewed(change)),
         );
     }
     let caught: Vec<&Change> = tried
         .iter()
-        .filter(|(change, fate)| matches!(fate, Fate::Caught(_)) && is_reviewed(change))
+        .filter(|(change, verdict)| matches!(verdict, WeakenVerdict::Caught(_)) && is_reviewed(change))
         .map(|(change, _)| *change)
         .collect();
     for change in &caught {
         println!("\ncaught, but {REVIEWED} says that nothing can notice it: {change}");
     }
-    let survivors =
-        tried.iter().filter(|(change, fate)| *fate == Fate::Survived && !is_reviewed(change)).count();
+    let survivors = tried
+        .iter()
+        .filter(|(change, verdict)| *verdict == WeakenVerdict::Survived && !is_reviewed(change))
+        .count();
     if survivors > 0 {
         println!(
             "\nfor each survivor add an entry to the corpus that notices it, or its reason to {REVIEWED}"
@@ -196,7 +202,7 @@ fn report(tried: &[(&Change, Fate)], reviewed: &Reviewed) -> bool {
 
 /// All numbers in the order in which they are drawn: one of each stage in turn. Every fourth turns its comparison, if it stands
 /// in one; the others are multiplied by 10.
-fn drawn(root: &Path, options: &Options) -> Result<Vec<Change>> {
+fn drawn(root: &Path, options: &WeakenOptions) -> Result<Vec<Change>> {
     let mut stages: BTreeMap<u8, Vec<(String, Change)>> = BTreeMap::new();
     for (stage, file) in files(root)? {
         if options.file.as_ref().is_some_and(|name| !file.contains(name.as_str())) {
@@ -235,21 +241,12 @@ fn drawn(root: &Path, options: &Options) -> Result<Vec<Change>> {
 
 /// The files of the checks, with their stages; 0 for those that all stages share.
 fn files(root: &Path) -> Result<Vec<(u8, String)>> {
-    let mut folders = vec![(0, "tests/checks/src".to_owned())];
-    folders.extend(STAGES.iter().map(|(stage, _)| (*stage, format!("tests/checks/stage{stage}/src"))));
+    let of_stages = STAGES.iter().map(|(stage, _)| (*stage, format!("tests/checks/stage{stage}/src")));
     let mut files = Vec::new();
-    while let Some((stage, folder)) = folders.pop() {
-        for entry in fs::read_dir(root.join(&folder)).with_context(|| folder.clone())? {
-            let path: PathBuf = entry?.path();
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            match path.is_dir() {
-                true => folders.push((stage, format!("{folder}/{name}"))),
-                false if name.ends_with(".rs") && name != "tests.rs" => {
-                    files.push((stage, format!("{folder}/{name}")))
-                }
-                false => {}
-            }
-        }
+    for (stage, folder) in [(0, "tests/checks/src".to_owned())].into_iter().chain(of_stages) {
+        let all = files_below(root, &folder, &|_| true)?.into_iter();
+        let code = all.filter(|path| path.ends_with(".rs") && last_part(path) != "tests.rs");
+        files.extend(code.map(|path| (stage, path)));
     }
     files.sort();
     Ok(files)
@@ -257,7 +254,7 @@ fn files(root: &Path) -> Result<Vec<(u8, String)>> {
 
 /// The corpus as it is kept, and the judges.
 struct Guard {
-    judges: Judges,
+    judges: BuildFolder,
     program: Program,
     entries: Vec<Entry>,
     messages: Messages,
@@ -269,12 +266,16 @@ impl Guard {
         let entries = read_all(root)?;
         let program = Program::build(root, &entries)?;
         let plan = Plan::of(&program, &Matrix::read(root), &entries, queue::cores())?;
-        Ok(Guard { judges: Judges::open(root)?, program, entries, messages: Messages::read(root), plan })
+        let judges = BuildFolder::open(root, "checks", Product::Judge)?;
+        if let Built::DoesNotCompile(error) = judges.build_with(&[])? {
+            bail!("the unchanged judge does not compile:\n{error}");
+        }
+        Ok(Guard { judges, program, entries, messages: Messages::read(root), plan })
     }
 
-    fn judge(&self, change: &Change) -> Result<Fate> {
-        let Some(judge) = self.judges.changed(&change.file, &change.text)? else {
-            return Ok(Fate::DoesNotCompile);
+    fn judge(&self, change: &Change) -> Result<WeakenVerdict> {
+        let Built::Program(judge) = self.judges.build_with(&[(&change.file, &change.text)])? else {
+            return Ok(WeakenVerdict::DoesNotCompile);
         };
         let mut trials: Vec<(Trial, &Check, &Entry)> = Vec::new();
         for (stage, checks) in STAGES.iter().filter(|(stage, _)| [0, *stage].contains(&change.stage)) {
@@ -307,7 +308,7 @@ impl Guard {
             Ok(())
         })?;
         let caught = lock(&caught).take();
-        Ok(caught.map_or(Fate::Survived, Fate::Caught))
+        Ok(caught.map_or(WeakenVerdict::Survived, WeakenVerdict::Caught))
     }
 
     /// How a check differs from what the corpus keeps of it, if it does.

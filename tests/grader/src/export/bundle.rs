@@ -2,6 +2,7 @@
 
 use super::COURSE;
 use crate::course::CourseFiles;
+use crate::files_below::files_below;
 use anyhow::{Context, Result};
 use std::fs;
 use std::io::{Cursor, Write};
@@ -39,26 +40,10 @@ pub(super) fn zip(root: &Path, scripts: &[(&str, String)], course: Option<&Cours
         zip.write_all(text.as_bytes())?;
     }
     for part in PARTS {
-        add(&mut zip, root, part)?;
+        for path in files_below(root, part, &|path| !LEFT_OUT.contains(&path))? {
+            zip.start_file(&*path, SimpleFileOptions::default().unix_permissions(0o644))?;
+            zip.write_all(&fs::read(root.join(&path)).with_context(|| format!("cannot read {path}"))?)?;
+        }
     }
     Ok(zip.finish()?.into_inner())
-}
-
-fn add(zip: &mut ZipWriter<Cursor<Vec<u8>>>, root: &Path, path: &str) -> Result<()> {
-    let file = root.join(path);
-    let kind =
-        fs::symlink_metadata(&file).with_context(|| format!("there is no {path}: is this the whole kit?"))?;
-    if kind.is_dir() && !LEFT_OUT.contains(&path) {
-        let mut names: Vec<String> = fs::read_dir(&file)?
-            .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
-            .collect::<Result<_>>()?;
-        names.sort();
-        for name in names {
-            add(zip, root, &format!("{path}/{name}"))?;
-        }
-    } else if kind.is_file() {
-        zip.start_file(path, SimpleFileOptions::default().unix_permissions(0o644))?;
-        zip.write_all(&fs::read(&file).with_context(|| format!("cannot read {path}"))?)?;
-    }
-    Ok(())
 }

@@ -44,24 +44,24 @@ pub static CLASSROOM: Spec = Spec {
 };
 
 /// The options of both commands.
-pub struct Options {
+pub struct ExportOptions {
     out: PathBuf,
     /// The number of jobs that grade a class on GitHub.
     parts: u16,
     grading: Grading,
 }
 
-impl Options {
+impl ExportOptions {
     /// Reads the options of [`GRADESCOPE`].
-    pub fn of_gradescope(given: &Given) -> Result<Options, Misuse> {
+    pub fn of_gradescope(given: &Given) -> Result<ExportOptions, Misuse> {
         let out = given.path("--out").unwrap_or_else(|| "autograder.zip".into());
-        Ok(Options { out, parts: 1, grading: Grading::read(given)? })
+        Ok(ExportOptions { out, parts: 1, grading: Grading::read(given)? })
     }
 
     /// Reads the options of [`CLASSROOM`].
-    pub fn of_classroom(given: &Given) -> Result<Options, Misuse> {
+    pub fn of_classroom(given: &Given) -> Result<ExportOptions, Misuse> {
         let parts = given.number("--parts", 1..=MOST_JOBS)?.unwrap_or(4);
-        Ok(Options { out: given.required_path("--out")?, parts, grading: Grading::read(given)? })
+        Ok(ExportOptions { out: given.required_path("--out")?, parts, grading: Grading::read(given)? })
     }
 }
 
@@ -141,7 +141,7 @@ const PARTS: &str = "{parts}";
 const NUMBERS: &str = "{numbers}";
 
 /// Writes the zip for Gradescope.
-pub fn gradescope(root: &Path, options: &Options) -> Result<()> {
+pub fn gradescope(root: &Path, options: &ExportOptions) -> Result<()> {
     let course = options.grading.course()?;
     let file = course.as_ref().map(in_folder).transpose()?;
     let scripts = [
@@ -155,7 +155,7 @@ pub fn gradescope(root: &Path, options: &Options) -> Result<()> {
 }
 
 /// Writes the workflows for GitHub.
-pub fn classroom(options: &Options) -> Result<()> {
+pub fn classroom(options: &ExportOptions) -> Result<()> {
     let folder = options.out.join(".github/workflows");
     let course = options.grading.course()?;
     let file = course.as_ref().map(in_folder).transpose()?;

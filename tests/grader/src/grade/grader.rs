@@ -1,6 +1,5 @@
 //! Grades all submissions of a folder, several at the same time.
 
-use super::forge::Forge;
 use super::judge::Judge;
 use super::lint::{self, Finding, Reading};
 use super::once::Once;
@@ -8,7 +7,8 @@ use super::report::clean::{clean, clean_line};
 use super::result::{CheckResult, Graded, Outcome, Remark};
 use super::scratch;
 use super::store::Store;
-use super::submission::{self, Submission, Taken};
+use super::submission::{self, Submission, SubmittedFiles};
+use super::worker_builder::WorkerBuilder;
 use crate::course::HandedIn;
 use crate::exercises::stage_of;
 use crate::queue;
@@ -29,7 +29,7 @@ const MAKE_ROOM: &str = "delete something, or set TMPDIR to a folder on another 
 /// Everything that grading a submission needs.
 pub struct Grader {
     /// Makes workers.
-    pub forge: Arc<Forge>,
+    pub builder: Arc<WorkerBuilder>,
     /// Runs the checks against them.
     pub judge: Arc<Judge>,
     /// The sandbox around a submission.
@@ -106,8 +106,8 @@ impl Grader {
     }
 
     /// Reads the stage files of a submission.
-    pub fn take(&self, path: &Path) -> Taken {
-        let exercises = self.forge.exercises();
+    pub fn take(&self, path: &Path) -> SubmittedFiles {
+        let exercises = self.builder.exercises();
         let graded = self.judge.stages();
         let of_stages = |name: &&String| stage_of(name).is_some_and(|stage| graded.contains(&stage));
         let expected: Vec<String> = exercises.iter().filter(of_stages).cloned().collect();
@@ -115,9 +115,9 @@ impl Grader {
     }
 
     /// Grades the files of a submission. Returns an error only if the grader itself fails.
-    pub fn grade(&self, student: &str, taken: Taken) -> Result<Graded> {
+    pub fn grade(&self, student: &str, taken: SubmittedFiles) -> Result<Graded> {
         let mut graded = self.graded(student, &taken);
-        let Taken { files, mut remarks, .. } = taken;
+        let SubmittedFiles { files, mut remarks, .. } = taken;
         if !graded.trouble.is_empty() {
             graded.checks = self.judge.all(Outcome::NotWritten, "no file of the submission could be read");
             graded.remarks = remarks.into_iter().map(cleaned).collect();
@@ -148,42 +148,33 @@ impl Grader {
         let Read { refused, may_remember } = self.read(&files, &mut remarks)?;
         let kept: BTreeMap<String, String> =
             files.into_iter().filter(|(name, _)| !refused.contains_key(name)).collect();
-        let forged = self.forge.build(scratch.path(), &kept);
+        let built = self.builder.build(scratch.path(), &kept);
         // Blame no file for a disk that has become full.
-        if forged.as_ref().map_or(true, |forged| !forged.replaced.is_empty()) {
+        if built.as_ref().map_or(true, |built| !built.replaced.is_empty()) {
             has_room(scratch.path(), MAKE_ROOM)?;
         }
-        let forged = forged?;
+        let built = built?;
         // Report the files that do not compile.
         let mut compiler = String::new();
-        for (name, (_, messages)) in &forged.replaced {
+        for (name, (_, messages)) in &built.replaced {
             let what =
                 "does not compile; the empty exercise replaces it, so that the other files can be graded";
             remarks.push(Remark { file: name.clone(), what: what.into() });
             compiler += messages;
         }
         // Run the checks.
-        let lost: Lost = refused.into_iter().chain(forged.replaced).collect();
-        let (checks, spent) = self.judge.judge(&forged.worker, &lost, may_remember, self.call_patience);
-        Ok(Judged {
-            checks,
-            remarks,
-            compiler: clean(&compiler, MOST_FROM_COMPILER),
-            cpu: forged.cpu + spent,
-        })
+        let lost: Lost = refused.into_iter().chain(built.replaced).collect();
+        let (checks, spent) = self.judge.judge(&built.worker, &lost, may_remember, self.call_patience);
+        Ok(Judged { checks, remarks, compiler: clean(&compiler, MOST_FROM_COMPILER), cpu: built.cpu + spent })
     }
 
     /// Returns a grade without checks, to be filled in.
-    fn graded(&self, student: &str, taken: &Taken) -> Graded {
+    fn graded(&self, student: &str, taken: &SubmittedFiles) -> Graded {
         Graded {
             student: student.into(),
             content: taken.content(),
-            checks: Vec::new(),
-            remarks: Vec::new(),
-            compiler: String::new(),
             trouble: taken.trouble.clone().unwrap_or_default(),
-            cpu_ms: 0,
-            handed_in: String::new(),
+            ..Graded::default()
         }
     }
 
@@ -203,7 +194,7 @@ impl Grader {
         let mut lost = Lost::new();
         // Code that is allowed by `--allow` may store data in ways that the syntax check does not know.
         let mut may_remember = !self.allowed.is_empty();
-        for (name, text) in files.iter().filter(|(name, text)| !self.forge.is_untouched(name, text)) {
+        for (name, text) in files.iter().filter(|(name, text)| !self.builder.is_untouched(name, text)) {
             let reading = match self.reading(text)? {
                 Some(reading) => reading,
                 None => {

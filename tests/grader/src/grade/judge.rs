@@ -45,7 +45,7 @@ const MOST_SAID: usize = 2048;
 /// Checks, seed and sandbox with which submissions are judged.
 pub struct Judge {
     /// The checks, in the order of the lecture.
-    checks: Vec<Put>,
+    checks: Vec<PreparedCheck>,
     /// Picks the hidden inputs.
     seed: u64,
     /// The sandbox around a worker.
@@ -59,7 +59,7 @@ pub struct Judge {
 
 /// A check, and the facts that were learned by running it against the reference.
 #[derive(Clone)]
-struct Put {
+struct PreparedCheck {
     check: &'static Check,
     /// Whether the hidden inputs differ from the public ones.
     varies: bool,
@@ -95,7 +95,7 @@ impl Judge {
         // Compare the questions of each check with the public seed and with the hidden one. This also draws all inputs, and
         // composes the expected texts and pictures, so that no submission waits for the reference or fails with it.
         let drawn = Arc::<Drawn>::default();
-        let put = |reference: &Arc<Worker>, check: &&'static Check| {
+        let prepare = |reference: &Arc<Worker>, check: &&'static Check| {
             let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(reference.clone()));
             let [(known, passes), (hidden, passes_hidden)] =
                 [0, seed].map(|seed| asked(reference, check, seed, inputs(seed, &drawn, &kit)));
@@ -111,11 +111,11 @@ impl Judge {
             let costly: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Costly(reference.clone())));
             let counts = known.has_costs && !checks::passes(check, &costly, 0);
             let varies = passes_hidden && known.questions.finalize() != hidden.questions.finalize();
-            Ok(Put { check, varies, counts, asks: known.functions })
+            Ok(PreparedCheck { check, varies, counts, asks: known.functions })
         };
         let worker = || Arc::new(Worker::new(reference.clone(), worker::CALL_PATIENCE));
         let workers: Vec<_> = (0..queue::cores()).map(|_| worker()).collect();
-        let checks = queue::run(&workers, &checks, put)?;
+        let checks = queue::run(&workers, &checks, prepare)?;
         let reference: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker()));
         Ok(Judge { checks, seed, confinement, drawn, reference })
     }
@@ -123,7 +123,7 @@ impl Judge {
     /// The same judge with these checks only.
     pub fn only(&self, is_chosen: impl Fn(u8, &str) -> bool) -> Judge {
         let mut checks = self.checks.clone();
-        checks.retain(|put| is_chosen(put.check.stage, put.check.name));
+        checks.retain(|prepared| is_chosen(prepared.check.stage, prepared.check.name));
         Judge { checks, drawn: self.drawn.clone(), reference: self.reference.clone(), ..*self }
     }
 
@@ -150,34 +150,34 @@ impl Judge {
         let judged: Vec<Answered> = self
             .checks
             .iter()
-            .map(|put| {
+            .map(|prepared| {
                 if public.spent() + hidden.spent() > BUDGET || started.elapsed() > LONGEST {
                     let message = "not tried: earlier checks used up the time of the submission";
                     return Answered::new(Outcome::NotTried, message);
                 }
                 // Use the public inputs first, so that students can reproduce the message.
-                let answered = public.answer(|worker| self.ask_public(put, worker));
+                let answered = public.answer(|worker| self.ask_public(prepared, worker));
                 // The message of an empty exercise names its file. Replace it by the reason why the file was replaced.
                 let mut lost = replaced.iter().filter(|_| answered.outcome == Outcome::NotWritten);
                 let lost = lost.find(|(file, _)| answered.message.contains(file.as_str()));
                 match (lost, answered.outcome) {
                     (Some((_, (outcome, message))), _) => Answered::new(*outcome, message),
-                    (None, Outcome::Passed) if put.varies => {
-                        hidden.answer(|worker| self.ask_hidden(put, worker))
+                    (None, Outcome::Passed) if prepared.varies => {
+                        hidden.answer(|worker| self.ask_hidden(prepared, worker))
                     }
                     (None, _) => answered,
                 }
             })
             .collect();
         let proven = self.proven(&judged);
-        let results = self.checks.iter().zip(judged).map(|(put, answered)| {
-            let others = self.missing_proofs(put, &proven);
+        let results = self.checks.iter().zip(judged).map(|(prepared, answered)| {
+            let others = self.missing_proofs(prepared, &proven);
             // Right answers to known inputs can be a table.
-            if answered.outcome == Outcome::Passed && !put.varies && !others.is_empty() {
-                let message = unproven_message(put.check, &others);
-                return result(put.check, Answered::new(Outcome::Unproven, message));
+            if answered.outcome == Outcome::Passed && !prepared.varies && !others.is_empty() {
+                let message = unproven_message(prepared.check, &others);
+                return result(prepared.check, Answered::new(Outcome::Unproven, message));
             }
-            result(put.check, answered)
+            result(prepared.check, answered)
         });
         (results.collect(), public.spent() + hidden.spent())
     }
@@ -185,39 +185,45 @@ impl Judge {
     /// The functions that a check with hidden inputs asks and that pass it.
     fn proven(&self, judged: &[Answered]) -> HashSet<Discriminant<Request>> {
         let passed = self.checks.iter().zip(judged);
-        let passed = passed.filter(|(put, answered)| put.varies && answered.outcome == Outcome::Passed);
-        passed.flat_map(|(put, _)| put.asks.iter().copied()).collect()
+        let passed =
+            passed.filter(|(prepared, answered)| prepared.varies && answered.outcome == Outcome::Passed);
+        passed.flat_map(|(prepared, _)| prepared.asks.iter().copied()).collect()
     }
 
     /// The checks with hidden inputs that ask the functions of `put` that are not `proven`.
-    fn missing_proofs(&self, put: &Put, proven: &HashSet<Discriminant<Request>>) -> Vec<&'static str> {
-        let open: HashSet<_> = put.asks.difference(proven).collect();
-        let asks_one = |other: &&Put| other.varies && other.asks.iter().any(|asked| open.contains(asked));
+    fn missing_proofs(
+        &self,
+        prepared: &PreparedCheck,
+        proven: &HashSet<Discriminant<Request>>,
+    ) -> Vec<&'static str> {
+        let open: HashSet<_> = prepared.asks.difference(proven).collect();
+        let asks_one =
+            |other: &&PreparedCheck| other.varies && other.asks.iter().any(|asked| open.contains(asked));
         self.checks.iter().filter(asks_one).map(|other| other.check.name).collect()
     }
 
     /// Returns the graded stages.
     pub fn stages(&self) -> BTreeSet<u8> {
-        self.checks.iter().map(|put| put.check.stage).collect()
+        self.checks.iter().map(|prepared| prepared.check.stage).collect()
     }
 
     /// Returns the names of the checks.
     pub fn checks(&self) -> Vec<&'static str> {
-        self.checks.iter().map(|put| put.check.name).collect()
+        self.checks.iter().map(|prepared| prepared.check.name).collect()
     }
 
     /// Gives every check the same outcome.
     pub fn all(&self, outcome: Outcome, message: &str) -> Vec<CheckResult> {
-        self.checks.iter().map(|put| result(put.check, Answered::new(outcome, message))).collect()
+        self.checks.iter().map(|prepared| result(prepared.check, Answered::new(outcome, message))).collect()
     }
 
     /// Runs one check with the public inputs.
-    fn ask_public(&self, put: &Put, worker: Arc<Worker>) -> Answered {
+    fn ask_public(&self, prepared: &PreparedCheck, worker: Arc<Worker>) -> Answered {
         // If the hidden inputs decide, count only there.
-        worker.withhold_tables(put.counts && !put.varies);
-        let known = self.examine(put, worker, 0);
+        worker.withhold_tables(prepared.counts && !prepared.varies);
+        let known = self.examine(prepared, worker, 0);
         let (outcome, picture) = (outcome(&known), picture(&known));
-        match checks::verdict(put.check, known) {
+        match checks::verdict(prepared.check, known) {
             Verdict::Passed => Answered::new(Outcome::Passed, ""),
             Verdict::Failed(message) => Answered { picture, ..Answered::new(outcome, message) },
             Verdict::NotWritten { task, place } => {
@@ -227,22 +233,27 @@ impl Judge {
     }
 
     /// Runs one check with the hidden inputs. The message quotes nothing, because the worker knows these inputs.
-    fn ask_hidden(&self, put: &Put, worker: Arc<Worker>) -> Answered {
-        worker.withhold_tables(put.counts);
-        match outcome(&self.examine(put, worker, self.seed)) {
+    fn ask_hidden(&self, prepared: &PreparedCheck, worker: Arc<Worker>) -> Answered {
+        worker.withhold_tables(prepared.counts);
+        match outcome(&self.examine(prepared, worker, self.seed)) {
             Outcome::Passed => Answered::new(Outcome::Passed, ""),
             Outcome::Wrong | Outcome::NotWritten => {
-                Answered::new(Outcome::WrongOnHidden, hidden_message(put.check))
+                Answered::new(Outcome::WrongOnHidden, hidden_message(prepared.check))
             }
             other => Answered::new(other, format!("{}\n  on hidden inputs", other.words())),
         }
     }
 
-    fn examine(&self, put: &Put, worker: Arc<Worker>, seed: u64) -> Result<checks::CheckResult, KitError> {
+    fn examine(
+        &self,
+        prepared: &PreparedCheck,
+        worker: Arc<Worker>,
+        seed: u64,
+    ) -> Result<checks::CheckResult, KitError> {
         let over = Arc::new(AtomicBool::new(false));
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(StoppableWorker { worker, over: over.clone() }));
         let inputs = inputs(seed, &self.drawn, &self.reference);
-        let examined = checks::examine_with(put.check, &kit, seed, inputs);
+        let examined = checks::examine_with(prepared.check, &kit, seed, inputs);
         // A check that hangs continues on its own thread. It ends there, because it gets no more answers.
         over.store(true, Ordering::Relaxed);
         examined
@@ -340,9 +351,9 @@ fn result(check: &Check, answered: Answered) -> CheckResult {
     CheckResult { picture, ..CheckResult::new(check.stage, check.name, outcome, message) }
 }
 
-/// What the reference heard while a check asked it.
+/// What a check asked the reference.
 #[derive(Clone, Default)]
-struct Heard {
+struct AskedQuestions {
     /// A fingerprint of the questions.
     questions: Sha256,
     /// The functions that were called.
@@ -351,34 +362,34 @@ struct Heard {
     has_costs: bool,
 }
 
-/// Runs a check against the reference. Returns what it heard, and whether it passes.
-fn asked(reference: &Arc<Worker>, check: &Check, seed: u64, inputs: Inputs) -> (Heard, bool) {
-    let heard = Arc::<Mutex<Heard>>::default();
-    let overheard = Overheard { reference: reference.clone(), heard: heard.clone() };
-    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(overheard));
+/// Runs a check against the reference. Returns what was asked, and whether it passes.
+fn asked(reference: &Arc<Worker>, check: &Check, seed: u64, inputs: Inputs) -> (AskedQuestions, bool) {
+    let record = Arc::<Mutex<AskedQuestions>>::default();
+    let recording = RecordingWorker { reference: reference.clone(), record: record.clone() };
+    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(recording));
     let passes = matches!(checks::examine_with(check, &kit, seed, inputs), Ok(Ok(())));
-    let heard = heard.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    (heard, passes)
+    let record = record.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    (record, passes)
 }
 
 /// The reference, with a record of the questions.
-struct Overheard {
+struct RecordingWorker {
     reference: Arc<Worker>,
-    heard: Arc<Mutex<Heard>>,
+    record: Arc<Mutex<AskedQuestions>>,
 }
 
-impl Transport for Overheard {
+impl Transport for RecordingWorker {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let mut message = Vec::new();
         // Writing into a vector cannot fail.
         let _ = raykata::worker::send_request(&mut message, &request);
         let function = discriminant(&request);
         let mut answer = self.reference.call(request, watch);
-        let mut heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
-        heard.questions.update(message);
-        heard.functions.insert(function);
-        heard.has_costs |= !answer.costs().is_empty();
-        drop(heard);
+        let mut record = self.record.lock().unwrap_or_else(PoisonError::into_inner);
+        record.questions.update(message);
+        record.functions.insert(function);
+        record.has_costs |= !answer.costs().is_empty();
+        drop(record);
         answer
     }
 

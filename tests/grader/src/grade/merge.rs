@@ -18,22 +18,22 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `grader merge`.
-pub struct Options {
+pub struct MergeOptions {
     pub(super) parts: Vec<PathBuf>,
     pub(super) out: PathBuf,
 }
 
-impl Options {
+impl MergeOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<MergeOptions, Misuse> {
         given.required(0)?;
         let parts = given.arguments(0).iter().map(PathBuf::from).collect();
-        Ok(Options { parts, out: given.required_path("--out")? })
+        Ok(MergeOptions { parts, out: given.required_path("--out")? })
     }
 }
 
 /// Combines the parts of a class. Returns whether every submission could be graded.
-pub fn run(Options { parts, out }: &Options) -> Result<bool> {
+pub fn run(MergeOptions { parts, out }: &MergeOptions) -> Result<bool> {
     // A folder that cannot be used is named together with the parts that are missing.
     let mut faults = Vec::new();
     let mut known = Vec::new();

@@ -1,11 +1,10 @@
 //! `grader grade`: grades each submission of a class. The verdicts are made outside of the students' processes.
 //!
 //! The steps for a submission: `submission` reads the exercise files and nothing else, `lint` refuses constructs that no
-//! exercise needs, `forge` compiles the rest in a sandbox, `judge` runs the checks against the resulting worker, `store`
+//! exercise needs, `worker_builder` compiles the rest in a sandbox, `judge` runs the checks against the resulting worker, `store`
 //! saves the grade, `report` writes the reports.
 
 mod counted;
-mod forge;
 mod grader;
 mod judge;
 mod lint;
@@ -20,16 +19,17 @@ mod scratch;
 mod shard;
 mod store;
 mod submission;
+mod worker_builder;
 
-pub use forge::{COMPILER_PATIENCE, Forge};
 pub use grader::{Grader, SharedResults, lint_if_asked};
 pub use judge::{CALL_PATIENCE, Judge};
-pub use merge::{Options as MergeOptions, SPEC as MERGE, run as merge};
+pub use merge::{MergeOptions, SPEC as MERGE, run as merge};
 pub use once::Once;
-pub use one::{Options as OneOptions, SPEC as ONE, run as one};
+pub use one::{GradeOneOptions, SPEC as ONE, run as one};
 pub(crate) use options::{draw_seed, stages};
 pub use shard::{Shard, shard};
 pub use store::Store;
+pub use worker_builder::{COMPILER_PATIENCE, WorkerBuilder};
 
 use crate::course::CourseFiles;
 use crate::queue;
@@ -89,7 +89,7 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `grader grade`.
-pub struct Options {
+pub struct GradeOptions {
     submissions: PathBuf,
     out: PathBuf,
     jobs: Option<u16>,
@@ -100,10 +100,10 @@ pub struct Options {
     grading: GradingOptions,
 }
 
-impl Options {
+impl GradeOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
-        let options = Options {
+    pub fn read(given: &Given) -> Result<GradeOptions, Misuse> {
+        let options = GradeOptions {
             submissions: given.required(0)?.into(),
             out: given.required_path("--out")?,
             jobs: given.number("--jobs", 1..=u16::MAX)?,
@@ -127,7 +127,7 @@ pub(crate) fn submissions_in(folder: &Path) -> Result<usize> {
 }
 
 /// Grades the class. Returns `Ok(true)` if every submission could be graded, with any grade.
-pub fn run(root: &Path, options: &Options) -> Result<bool> {
+pub fn run(root: &Path, options: &GradeOptions) -> Result<bool> {
     let course = options.grading.course()?;
     // Find the submissions of this part of the class.
     let (submissions, others) = submission::find(&options.submissions)

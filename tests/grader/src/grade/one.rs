@@ -33,20 +33,20 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `grader grade-one`.
-pub struct Options {
+pub struct GradeOneOptions {
     submission: PathBuf,
     gradescope: Option<PathBuf>,
     classroom: Option<PathBuf>,
     grading: GradingOptions,
 }
 
-impl Options {
+impl GradeOneOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<GradeOneOptions, Misuse> {
         if !given.has("--gradescope") && !given.has("--classroom") {
             return Err(given.misuse("at least one of `--gradescope FILE` and `--classroom FILE` is needed"));
         }
-        Ok(Options {
+        Ok(GradeOneOptions {
             submission: given.required(0)?.into(),
             gradescope: given.path("--gradescope"),
             classroom: given.path("--classroom"),
@@ -57,7 +57,7 @@ impl Options {
 
 /// Grades a submission and writes the result files, even when grading fails. Returns `Ok(true)` if the submission could be
 /// graded.
-pub fn run(root: impl FnOnce() -> Result<PathBuf>, options: &Options) -> Result<bool> {
+pub fn run(root: impl FnOnce() -> Result<PathBuf>, options: &GradeOneOptions) -> Result<bool> {
     let graded = catch_unwind(AssertUnwindSafe(|| grade(&root()?, options)));
     let (graded, session) =
         match graded.unwrap_or_else(|panic| Err(anyhow!("the grader panicked: {}", said(&*panic)))) {
@@ -78,7 +78,7 @@ pub fn run(root: impl FnOnce() -> Result<PathBuf>, options: &Options) -> Result<
     Ok(graded.trouble.is_empty())
 }
 
-fn grade(root: &Path, options: &Options) -> Result<(Graded, Session)> {
+fn grade(root: &Path, options: &GradeOneOptions) -> Result<(Graded, Session)> {
     if let Some(course) = options.grading.course()? {
         course.apply()?;
     }
@@ -88,22 +88,11 @@ fn grade(root: &Path, options: &Options) -> Result<(Graded, Session)> {
 }
 
 /// Returns the result for a failure of the grader itself: no points, and the reason.
-fn broken(options: &Options, trouble: &str) -> (Graded, Session) {
-    let graded = Graded {
-        student: "submission".into(),
-        content: String::new(),
-        checks: Vec::new(),
-        remarks: Vec::new(),
-        compiler: String::new(),
-        trouble: trouble.into(),
-        cpu_ms: 0,
-        handed_in: String::new(),
-    };
+fn broken(options: &GradeOneOptions, trouble: &str) -> (Graded, Session) {
+    let graded = Graded { student: "submission".into(), trouble: trouble.into(), ..Graded::default() };
     let session = Session {
         kit: env!("CARGO_PKG_VERSION").into(),
-        stages: Vec::new(),
         seed: options.grading.seed.unwrap_or_default(),
-        isolation: String::new(),
         ..Session::default()
     };
     (graded, session)

@@ -1,9 +1,9 @@
 //! The options of grading, and the grader that is made from them.
 
-use super::forge::{self, Forge};
 use super::grader::Grader;
 use super::judge::{CALL_PATIENCE, Judge};
 use super::result::Session;
+use super::worker_builder::{self, WorkerBuilder};
 use crate::course::{self, CourseFiles, HandedIn};
 use crate::sandbox::{self, Confinement};
 use all_checks::STAGES;
@@ -66,14 +66,14 @@ impl GradingOptions {
     /// `begun`, the earlier run, or the stages are those of the course.
     pub fn begin(&self, root: &Path, begun: Option<&Session>) -> Result<(Grader, Session)> {
         let (confinement, isolation) = self.confinement()?;
-        let forge = Forge::prepare(root, confinement)?;
+        let builder = WorkerBuilder::prepare(root, confinement)?;
         let course = rubric::course();
         let stages = self.stages.as_ref().map(|Stages(stages)| stages.clone());
         if let Some(stage) = stages.iter().flatten().find(|stage| course.leaves_out(**stage)) {
             bail!("--stages names stage {stage}, which the course file leaves out: change one of the two");
         }
         let session = Session {
-            kit: kit(root, &self.allow, &forge)?,
+            kit: kit(root, &self.allow, &builder)?,
             stages: stages.or(begun.map(|session| session.stages.clone())).unwrap_or_else(stages_of_course),
             seed: self.seed.or(begun.map(|session| session.seed)).unwrap_or_else(draw_seed),
             isolation,
@@ -84,7 +84,7 @@ impl GradingOptions {
         let judge = Judge::of(root, &session.stages, session.seed, confinement)?;
         let allowed = self.allow.clone();
         let grader = Grader {
-            forge: Arc::new(forge),
+            builder: Arc::new(builder),
             judge: Arc::new(judge),
             confinement,
             allowed,
@@ -133,9 +133,9 @@ pub(crate) fn draw_seed() -> u64 {
 }
 
 /// Returns the version of the kit, with a fingerprint of everything that decides a grade.
-fn kit(root: &Path, allow: &[String], forge: &Forge) -> Result<String> {
+fn kit(root: &Path, allow: &[String], builder: &WorkerBuilder) -> Result<String> {
     let mut hash = Sha256::new();
-    hash.update(forge.fingerprint());
+    hash.update(builder.fingerprint());
     hash.update(allow.join(","));
     // Add all files that decide a grade to the fingerprint.
     let decide = ["tests/checks", "tests/golden", "tests/oracle"];
@@ -151,7 +151,7 @@ fn kit(root: &Path, allow: &[String], forge: &Forge) -> Result<String> {
             hash.update(fs::read(&path).with_context(|| path.display().to_string())?);
         }
     }
-    Ok(format!("{} ({})", env!("CARGO_PKG_VERSION"), &forge::hex(&hash.finalize())[..12]))
+    Ok(format!("{} ({})", env!("CARGO_PKG_VERSION"), &worker_builder::hex(&hash.finalize())[..12]))
 }
 
 #[cfg(test)]

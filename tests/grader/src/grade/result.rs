@@ -107,7 +107,7 @@ pub struct Remark {
 }
 
 /// A submission, graded.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Graded {
     /// The name of the folder, or of the archive without its extension.
     pub student: String,

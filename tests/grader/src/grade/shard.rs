@@ -51,7 +51,7 @@ impl Part {
     pub(super) fn of(shard: Shard, class: &[Submission]) -> Part {
         let mut names = Sha256::new();
         class.iter().for_each(|one| names.update(format!("{}\0", one.student)));
-        let class_name = super::forge::hex(&names.finalize())[..16].to_owned();
+        let class_name = super::worker_builder::hex(&names.finalize())[..16].to_owned();
         Part { shard, submissions: class.len(), class: class_name, finished: false }
     }
 }

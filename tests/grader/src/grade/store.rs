@@ -6,10 +6,11 @@ use super::result::{Class, Graded, Session};
 use super::shard::Part;
 use crate::course::CourseFiles;
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use nix::fcntl::{Flock, FlockArg};
+use raykata_cli::lock::Lock;
 use rusqlite::{Connection, OptionalExtension, params};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::collections::HashSet;
-use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -36,21 +37,18 @@ pub struct Store {
     /// The path of the database, for errors.
     file: PathBuf,
     /// Kept until the store is dropped, if this process may write grades.
-    _lock: Option<Flock<File>>,
+    _lock: Option<Lock>,
 }
 
 impl Store {
     /// Opens or creates the database in `folder` to write grades. Returns an error if another process is writing.
     pub fn claim(folder: &Path) -> Result<Store> {
-        let path = folder.join(LOCK);
-        let file = fs::OpenOptions::new().create(true).append(true).open(&path);
-        let file = file.with_context(|| format!("cannot write {}", path.display()))?;
-        let Ok(lock) = Flock::lock(file, FlockArg::LockExclusiveNonblock) else {
-            bail!(
+        let lock = Lock::file(&folder.join(LOCK), || {
+            format!(
                 "another grader is writing to {}: wait until it is done, or choose another folder",
                 folder.display()
             )
-        };
+        })?;
         Ok(Store { _lock: Some(lock), ..Store::open(folder)? })
     }
 
@@ -76,10 +74,7 @@ impl Store {
 
     /// Returns the session, if grading was begun.
     pub fn session(&self) -> Result<Option<Session>> {
-        let json: Option<String> =
-            self.lock().query_row("SELECT json FROM session", [], |row| row.get(0)).optional()?;
-        json.map(|json| serde_json::from_str(&json).context("the session is from another version"))
-            .transpose()
+        self.one("session")
     }
 
     /// Stores the session. Returns an error if the stored grades were made in another way, and leaves them as they are.
@@ -94,25 +89,17 @@ impl Store {
                 if begun.seed == session.seed { "" } else { ", with another --seed" }
             );
         }
-        let json = serde_json::to_string(session)?;
-        self.lock().execute("INSERT OR REPLACE INTO session (id, json) VALUES (0, ?1)", [json])?;
-        Ok(())
+        self.keep_one("session", session)
     }
 
     /// Returns the course file with which the grades were made.
     pub fn course(&self) -> Result<Option<CourseFiles>> {
-        let json: Option<String> =
-            self.lock().query_row("SELECT json FROM course", [], |row| row.get(0)).optional()?;
-        json.map(|json| serde_json::from_str(&json).context("the course is from another version")).transpose()
+        self.one("course")
     }
 
     /// Stores the course file, so that later runs and merges need not be given it again.
     pub fn keep_course(&self, course: Option<&CourseFiles>) -> Result<()> {
-        if let Some(course) = course {
-            let json = serde_json::to_string(course)?;
-            self.lock().execute("INSERT OR REPLACE INTO course (id, json) VALUES (0, ?1)", [json])?;
-        }
-        Ok(())
+        course.map_or(Ok(()), |course| self.keep_one("course", course))
     }
 
     /// Returns the stored grade of a submission, if its content is unchanged.
@@ -200,9 +187,7 @@ impl Store {
 
     /// Returns which part of a class is graded here; `None` if it is the whole class.
     pub fn part(&self) -> Result<Option<Part>> {
-        let json: Option<String> =
-            self.lock().query_row("SELECT json FROM part", [], |row| row.get(0)).optional()?;
-        json.map(|json| serde_json::from_str(&json).context("the part is from another version")).transpose()
+        self.one("part")
     }
 
     /// Stores which part of the class a run begins to grade. Returns an error if grades of another part are stored.
@@ -218,16 +203,13 @@ impl Store {
                 words(part)
             ),
         }
-        let json = serde_json::to_string(&part)?;
-        self.lock().execute("INSERT OR REPLACE INTO part (id, json) VALUES (0, ?1)", [json])?;
-        Ok(())
+        self.keep_one("part", &part)
     }
 
     /// Stores that all submissions of the part are graded.
     pub fn finish_part(&self) -> Result<()> {
         if let Some(part) = self.part()? {
-            let json = serde_json::to_string(&Part { finished: true, ..part })?;
-            self.lock().execute("UPDATE part SET json = ?1", [json])?;
+            self.keep_one("part", &Part { finished: true, ..part })?;
         }
         Ok(())
     }
@@ -274,6 +256,23 @@ impl Store {
             }
             None => Ok(()),
         }
+    }
+
+    /// Returns the value in a table that holds at most one.
+    fn one<T: DeserializeOwned>(&self, table: &str) -> Result<Option<T>> {
+        let select = format!("SELECT json FROM {table}");
+        let json: Option<String> = self.lock().query_row(&select, [], |row| row.get(0)).optional()?;
+        let read = |json: String| {
+            serde_json::from_str(&json).with_context(|| format!("the {table} is from another version"))
+        };
+        json.map(read).transpose()
+    }
+
+    /// Stores the value of such a table.
+    fn keep_one(&self, table: &str, value: &impl Serialize) -> Result<()> {
+        let insert = format!("INSERT OR REPLACE INTO {table} (id, json) VALUES (0, ?1)");
+        self.lock().execute(&insert, [serde_json::to_string(value)?])?;
+        Ok(())
     }
 
     fn lock(&self) -> MutexGuard<'_, Connection> {
@@ -325,20 +324,11 @@ mod tests {
     use crate::grade::shard::Shard;
 
     fn session(seed: u64) -> Session {
-        Session { kit: "1".into(), stages: vec![1], seed, isolation: String::new(), ..Session::default() }
+        Session { kit: "1".into(), stages: vec![1], seed, ..Session::default() }
     }
 
     fn graded(student: &str, content: &str) -> Graded {
-        Graded {
-            student: student.into(),
-            content: content.into(),
-            checks: Vec::new(),
-            remarks: Vec::new(),
-            compiler: String::new(),
-            trouble: String::new(),
-            cpu_ms: 0,
-            handed_in: String::new(),
-        }
+        Graded { student: student.into(), content: content.into(), ..Graded::default() }
     }
 
     #[test]

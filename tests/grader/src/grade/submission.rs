@@ -41,7 +41,7 @@ pub struct Submission {
 
 /// The files of a submission that will be graded.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub struct Taken {
+pub struct SubmittedFiles {
     /// Texts by file name.
     pub files: BTreeMap<String, String>,
     /// Files that were ignored or changed, and why.
@@ -50,7 +50,7 @@ pub struct Taken {
     pub trouble: Option<String>,
 }
 
-impl Taken {
+impl SubmittedFiles {
     /// Returns the SHA-256 of everything that the grade depends on.
     pub fn content(&self) -> String {
         let mut hash = Sha256::new();
@@ -97,7 +97,7 @@ pub fn find(folder: &Path) -> io::Result<(Vec<Submission>, Vec<PathBuf>)> {
 
 /// Reads the files of these names, and the modules that belong to them, from a folder or an archive. The absence of a file in
 /// `expected` gets a remark.
-pub fn take(path: &Path, wanted: &[String], expected: &[String]) -> Taken {
+pub fn take(path: &Path, wanted: &[String], expected: &[String]) -> SubmittedFiles {
     let gather = |passes_over| {
         let mut gathering = Gathering { wanted, passes_over, ..Gathering::default() };
         let trouble =
@@ -109,7 +109,7 @@ pub fn take(path: &Path, wanted: &[String], expected: &[String]) -> Taken {
         (gathering, trouble) = gather(false);
     }
     // Keep the best file of each name, and the modules beside them.
-    let mut taken = Taken::default();
+    let mut taken = SubmittedFiles::default();
     let likeliest = gathering.best.values().min_by_key(|candidate| candidate.rank);
     let folder = likeliest.and_then(|candidate| Some(candidate.path.rsplit_once('/')?.0.to_owned()));
     let folder = folder.unwrap_or_default();

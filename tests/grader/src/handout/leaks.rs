@@ -2,6 +2,7 @@
 
 use super::FOLDERS;
 use crate::exercises::{self, Block};
+use crate::files_below::files_below;
 use aho_corasick::AhoCorasick;
 use anyhow::{Context, Result};
 use std::collections::{BTreeMap, BTreeSet};
@@ -92,17 +93,10 @@ fn lines(text: &str) -> impl Iterator<Item = String> {
 /// Returns all files below a folder as text, with invalid UTF-8 replaced.
 fn texts(folder: &Path) -> Result<Vec<(String, String)>> {
     let mut texts = Vec::new();
-    let mut waiting = vec![folder.to_owned()];
-    while let Some(path) = waiting.pop() {
-        if path.is_dir() {
-            for entry in fs::read_dir(&path).with_context(|| path.display().to_string())? {
-                waiting.push(entry?.path());
-            }
-        } else {
-            let bytes = fs::read(&path).with_context(|| path.display().to_string())?;
-            let name = path.strip_prefix(folder).unwrap_or(&path).display().to_string();
-            texts.push((name, String::from_utf8_lossy(&bytes).into_owned()));
-        }
+    for name in files_below(folder, "", &|_| true)? {
+        let path = folder.join(&name);
+        let bytes = fs::read(&path).with_context(|| path.display().to_string())?;
+        texts.push((name, String::from_utf8_lossy(&bytes).into_owned()));
     }
     texts.sort();
     Ok(texts)

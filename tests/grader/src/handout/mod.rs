@@ -7,6 +7,7 @@ mod manifests;
 pub use leaks::{CANARY, answers, leaks};
 
 use crate::course::{self, CourseFiles};
+use crate::files_below::{files_below, last_part};
 use anyhow::{Context, Result, bail, ensure};
 use raykata::course::{Course, stages_of};
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
@@ -32,7 +33,7 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `grader handout`.
-pub struct Options {
+pub struct HandoutOptions {
     folder: PathBuf,
     /// The course file.
     file: Option<PathBuf>,
@@ -40,7 +41,7 @@ pub struct Options {
     stages: Option<String>,
 }
 
-impl Options {
+impl HandoutOptions {
     /// Reads the course file, or makes one of the title and the stages; `None` if there is none of these.
     fn course(&self) -> Result<Option<CourseFiles>> {
         match (&self.file, &self.title, &self.stages) {
@@ -51,11 +52,11 @@ impl Options {
     }
 
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<Options, Misuse> {
+    pub fn read(given: &Given) -> Result<HandoutOptions, Misuse> {
         given.exclude("--course", "--title")?;
         given.exclude("--course", "--stages")?;
         let stages = |text: &str| stages_of(text).map(|_| text.to_owned());
-        Ok(Options {
+        Ok(HandoutOptions {
             folder: given.required(0)?.into(),
             file: given.path("--course"),
             title: given.parsed("--title", title)?,
@@ -73,7 +74,7 @@ fn title(text: &str) -> Result<String> {
 /// Folders that are handed out with their subfolders, and the extensions of the files in them. A missing folder is left
 /// out.
 const FOLDERS: [(&str, &[&str]); 10] = [
-    ("src", &["css", "html", "md", "rs", "snap", "toml"]),
+    ("src", &["css", "html", "md", "rs", "snap", "toml", "txt"]),
     ("tests/checks", &["rs", "toml"]),
     ("tests/oracle", &["rs", "toml"]),
     ("tests/judge", &["rs", "toml"]),
@@ -111,7 +112,7 @@ const LIST: &str = "tests/kit.toml";
 const README: &str = include_str!("README.md");
 
 /// Writes the student's repository, completely or not at all.
-pub fn run(root: &Path, options: &Options) -> Result<()> {
+pub fn run(root: &Path, options: &HandoutOptions) -> Result<()> {
     let folder = std::path::absolute(&options.folder)?;
     if fs::read_dir(&folder).is_ok_and(|mut inside| inside.next().is_some()) || folder.is_file() {
         bail!("{} is not empty: a hand-out needs a new or empty folder", options.folder.display());
@@ -162,7 +163,12 @@ pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
         files.insert(path.to_owned(), read(root, path)?);
     }
     for (folder, endings) in FOLDERS.into_iter().filter(|(folder, _)| root.join(folder).is_dir()) {
-        gather(root, folder, endings, &mut files)?;
+        let keeps =
+            |path: &str| !KEPT_BACK.contains(&path) && !["target", "node_modules"].contains(&last_part(path));
+        let is = |path: &&String| endings.iter().any(|ending| path.ends_with(&format!(".{ending}")));
+        for path in files_below(root, folder, &keeps)?.iter().filter(is) {
+            files.insert(path.clone(), read(root, path)?);
+        }
     }
     for (path, bytes) in
         named(root, "tests", "stage")?.into_iter().chain(named(root, "tests/golden", "stage")?)
@@ -210,25 +216,6 @@ fn name_course(files: &mut BTreeMap<String, Vec<u8>>, course: &CourseFiles) -> R
         false => lines.replacen("# Raykata\n", &format!("# {}: Raykata\n", of_course.title), 1),
     }
     .into_bytes();
-    Ok(())
-}
-
-/// Adds the files with these extensions in a folder and below it.
-fn gather(root: &Path, folder: &str, endings: &[&str], files: &mut BTreeMap<String, Vec<u8>>) -> Result<()> {
-    for entry in fs::read_dir(root.join(folder)).with_context(|| format!("there is no folder {folder}"))? {
-        let entry = entry?;
-        let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
-        let is = |ending: &&str| Path::new(&path).extension().is_some_and(|one| one == *ending);
-        if entry.file_type()?.is_dir() {
-            if !KEPT_BACK.contains(&path.as_str())
-                && !["target", "node_modules"].iter().any(|name| entry.file_name() == *name)
-            {
-                gather(root, &path, endings, files)?;
-            }
-        } else if endings.iter().any(is) {
-            files.insert(path.clone(), read(root, &path)?);
-        }
-    }
     Ok(())
 }
 

@@ -1,6 +1,8 @@
 //! How a command ended.
 
 use crate::worker::Death;
+use nix::libc;
+use std::os::unix::process::ExitStatusExt;
 use std::process::ExitStatus;
 use std::time::Duration;
 
@@ -35,10 +37,7 @@ pub enum How {
 }
 
 /// Explains the signal that ended a process with this memory limit. Returns `None` if the sandbox did not cause it.
-#[cfg(target_os = "linux")]
 pub(super) fn how_it_died(status: ExitStatus, stderr: &str, memory: u64) -> Option<Death> {
-    use nix::libc;
-    use std::os::unix::process::ExitStatusExt;
     let crashed = |how: &str| Death::Crashed(how.to_owned());
     Some(match status.signal()? {
         libc::SIGXCPU => Death::TimedOut,
@@ -54,13 +53,6 @@ pub(super) fn how_it_died(status: ExitStatus, stderr: &str, memory: u64) -> Opti
     })
 }
 
-/// Without a sandbox there is nothing to explain.
-#[cfg(not(target_os = "linux"))]
-pub(super) fn how_it_died(_: ExitStatus, _: &str, _: u64) -> Option<Death> {
-    None
-}
-
-#[cfg(target_os = "linux")]
 fn size(bytes: u64) -> String {
     if bytes.is_multiple_of(1 << 30) {
         format!("{} GiB", bytes >> 30)

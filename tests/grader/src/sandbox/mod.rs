@@ -6,20 +6,11 @@
 //! nothing.
 
 mod ended;
-#[cfg(target_os = "linux")]
 mod files;
-#[cfg(target_os = "linux")]
 mod filter;
-#[cfg(target_os = "linux")]
 mod launcher;
 mod probes;
-#[cfg(target_os = "linux")]
 pub mod processes;
-#[cfg(target_os = "linux")]
-mod run;
-
-#[cfg(not(target_os = "linux"))]
-#[path = "elsewhere.rs"]
 mod run;
 
 use ended::how_it_died;
@@ -118,7 +109,6 @@ impl Purpose {
         }
     }
 
-    #[cfg(target_os = "linux")]
     fn of_word(word: &std::ffi::OsStr) -> Option<Purpose> {
         let all = [Purpose::Worker, Purpose::Reader, Purpose::Compiler, Purpose::Linker];
         all.into_iter().find(|purpose| word == purpose.word())
@@ -143,7 +133,6 @@ impl Confinement {
         }
     }
 
-    #[cfg(target_os = "linux")]
     fn of_word(word: &std::ffi::OsStr) -> Option<Confinement> {
         [Confinement::Full, Confinement::LimitsOnly]
             .into_iter()
@@ -225,15 +214,8 @@ impl Launcher for Sandbox {
         how_it_died(status, stderr, self.limits.memory_bytes)
     }
 
-    #[cfg(target_os = "linux")]
     fn cpu_time(&self, process: u32) -> Duration {
         processes::cpu_time(process).unwrap_or_default()
-    }
-
-    /// The processor time is unknown here, so all elapsed time counts.
-    #[cfg(not(target_os = "linux"))]
-    fn cpu_time(&self, _: u32) -> Duration {
-        Duration::MAX
     }
 }
 
@@ -243,7 +225,6 @@ fn absolute(path: &Path) -> PathBuf {
 }
 
 /// The index of the processor time among the arguments of a launcher, after confinement, purpose and parent.
-#[cfg(target_os = "linux")]
 const CPU_SECONDS_AT: usize = 4;
 
 static LAUNCHER: OnceLock<PathBuf> = OnceLock::new();
@@ -285,15 +266,9 @@ pub fn launch_if_asked() {
 }
 
 /// Runs the launcher. It returns only if there is an error.
-#[cfg(target_os = "linux")]
 fn launch(arguments: Vec<OsString>) -> anyhow::Error {
     match launcher::launch(arguments) {
         Err(error) => error,
         Ok(never) => match never {},
     }
-}
-
-#[cfg(not(target_os = "linux"))]
-fn launch(_: Vec<OsString>) -> anyhow::Error {
-    anyhow::anyhow!("{}", run::ONLY_LINUX)
 }

@@ -1,11 +1,10 @@
 //! Tests the course file as instructors use it: in grades, in reports, in exports and in a hand-out.
 
 use super::grade::{graded, hand_in, right};
-use super::grader;
-use super::program_runs::{printed, root};
+use super::program_runs::root;
+use super::{grader, grader_succeeds, said_by};
 use std::fs;
 use std::path::Path;
-use std::process::Output;
 
 const COURSE: &str = "title = \"Computergrafik\"\nstages = \"1\"\nlanguage = \"german.toml\"\n\
                       [stage1]\npoints = 200\ndue = 2026-11-02\n\
@@ -19,11 +18,6 @@ fn written(folder: &Path, course: &str) -> String {
     let file = folder.join("course.toml");
     fs::write(&file, course).unwrap();
     file.to_string_lossy().into_owned()
-}
-
-fn said(output: &Output) -> String {
-    let (said, complained) = printed(output);
-    format!("{said}{complained}")
 }
 
 fn text(folder: &Path, file: &str) -> String {
@@ -47,7 +41,7 @@ fn a_course_file_decides_stages_points_and_titles_of_a_class_and_marks_what_is_l
     };
 
     let output = grade(out, &["--course", &course, "--handed-in", &times]);
-    assert!(output.status.success(), "{}", said(&output));
+    assert!(output.status.success(), "{}", said_by(&output));
     let table = text(out, "grades.csv");
     let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(rows[0][..5], ["\"name\"", "\"points\"", "\"of\"", "\"percent\"", "\"stage1\""]);
@@ -71,9 +65,9 @@ fn a_course_file_decides_stages_points_and_titles_of_a_class_and_marks_what_is_l
     let changed = written(more_points.path(), &COURSE.replace("200", "300"));
     let output = grade(out, &["--course", &changed, "--resume"]);
     assert!(
-        !output.status.success() && said(&output).contains("course file: Computergrafik ("),
+        !output.status.success() && said_by(&output).contains("course file: Computergrafik ("),
         "{}",
-        said(&output)
+        said_by(&output)
     );
     // A later date grades nothing again; a run without the option takes the stored file.
     let before = graded(out);
@@ -93,12 +87,12 @@ fn a_course_file_decides_stages_points_and_titles_of_a_class_and_marks_what_is_l
     for (other, words) in [(&later, "has other dates than"), (&changed, "the same kit, course file")] {
         assert!(grade(second, &["--course", other, "--shard", "2/2"]).status.success());
         let output = merge();
-        assert!(!output.status.success() && said(&output).contains(words), "{}", said(&output));
+        assert!(!output.status.success() && said_by(&output).contains(words), "{}", said_by(&output));
         fs::remove_dir_all(second).unwrap();
     }
     assert!(grade(second, &["--course", &course, "--shard", "2/2", "--handed-in", &times]).status.success());
     let output = merge();
-    assert!(output.status.success(), "{}", said(&output));
+    assert!(output.status.success(), "{}", said_by(&output));
     assert_eq!(text(merged, "grades.csv"), table);
     assert!(text(merged, "students/ann.html").contains("Formen"));
 }
@@ -120,22 +114,21 @@ fn a_course_file_that_is_wrong_is_refused_with_its_place() {
         let output = grader(arguments);
         assert_eq!(output.status.code(), Some(1), "{arguments:?}");
         assert!(
-            said(&output).contains("course.toml:3:1: unknown key `deu`; did you mean `due`?"),
+            said_by(&output).contains("course.toml:3:1: unknown key `deu`; did you mean `due`?"),
             "{}",
-            said(&output)
+            said_by(&output)
         );
     }
     let course = written(folder.path(), COURSE);
     let output = grader(&["grade", &submissions, "--out", &out, "--course", &course, "--stages", "2"]);
     assert!(
-        said(&output).contains("--stages names stage 2, which the course file leaves out"),
+        said_by(&output).contains("--stages names stage 2, which the course file leaves out"),
         "{}",
-        said(&output)
+        said_by(&output)
     );
-    let output = grader(&["course", &course]);
-    assert!(output.status.success(), "{}", said(&output));
+    let said = grader_succeeds(&["course", &course]);
     for words in ["Computergrafik (", "200", "2026-11-02", "Formen"] {
-        assert!(said(&output).contains(words), "{}", said(&output));
+        assert!(said.contains(words), "{}", said);
     }
 }
 
@@ -144,37 +137,38 @@ fn a_hand_out_and_exports_contain_the_course_file() {
     let folder = tempfile::tempdir().unwrap();
     let course = written(folder.path(), COURSE);
     let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
-    let output = grader(&["handout", &at("kit"), "--course", &course]);
-    assert!(output.status.success(), "{}", said(&output));
+    grader_succeeds(&["handout", &at("kit"), "--course", &course]);
     assert_eq!(text(folder.path(), "kit/tests/course.toml"), COURSE);
     assert_eq!(text(folder.path(), "kit/tests/language.toml"), GERMAN);
     let readme = text(folder.path(), "kit/README.md");
     assert!(readme.starts_with("# Computergrafik: Raykata\n"), "{readme}");
     assert!(readme.contains("\n| 1 | ") && !readme.contains("\n| 2 | "), "{readme}");
     // The title and the stages alone need no file.
-    let output = grader(&["handout", &at("plain"), "--title", "Graphics \"1\"", "--stages", "1-2"]);
-    assert!(output.status.success(), "{}", said(&output));
+    grader_succeeds(&["handout", &at("plain"), "--title", "Graphics \"1\"", "--stages", "1-2"]);
     assert_eq!(
         text(folder.path(), "plain/tests/course.toml"),
         "title = \"Graphics \\\"1\\\"\"\nstages = \"1-2\"\n"
     );
     assert_eq!(text(folder.path(), "plain/tests/language.toml"), text(&root(), "tests/language.toml"));
 
-    let output =
-        grader(&["export", "classroom", "--out", &at("classroom"), "--course", &course, "--seed", "7"]);
-    assert!(output.status.success(), "{}", said(&output));
+    grader_succeeds(&["export", "classroom", "--out", &at("classroom"), "--course", &course, "--seed", "7"]);
     let workflow = text(folder.path(), "classroom/.github/workflows/class.yml");
     assert!(workflow.contains("--course course/course.toml --seed 7"), "{workflow}");
     assert_eq!(text(folder.path(), "classroom/course/course.toml"), COURSE);
-    let output = grader(&["export", "gradescope", "--out", &at("zip"), "--course", &course]);
-    assert!(output.status.success(), "{}", said(&output));
+    grader_succeeds(&["export", "gradescope", "--out", &at("zip"), "--course", &course]);
     let mut zip = zip::ZipArchive::new(fs::File::open(at("zip")).unwrap()).unwrap();
     assert!(zip.by_name("course/course.toml").is_ok() && zip.by_name("course/german.toml").is_ok());
     let class = folder.path().join("class");
     hand_in(&class, "ann", "");
-    let output =
-        grader(&["export", "slurm", &class.to_string_lossy(), "--out", &at("jobs"), "--course", &course]);
-    assert!(output.status.success(), "{}", said(&output));
+    grader_succeeds(&[
+        "export",
+        "slurm",
+        &class.to_string_lossy(),
+        "--out",
+        &at("jobs"),
+        "--course",
+        &course,
+    ]);
     let script = text(folder.path(), "jobs/grade.sbatch");
     assert!(script.contains("/jobs/course/course.toml"), "{script}");
     assert_eq!(text(folder.path(), "jobs/course/german.toml"), GERMAN);

@@ -1,7 +1,7 @@
 //! Tests the files for Gradescope and GitHub Classroom, and that grading one submission always writes a result.
 
-use super::grader;
 use super::program_runs::{printed, root};
+use super::{grader, grader_succeeds};
 use serde_json::Value;
 use std::fs;
 use std::io::Read;
@@ -12,8 +12,7 @@ fn written(arguments: &[&str]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
     let out = out.to_string_lossy();
-    let output = grader(&[arguments, &["--out", &out, "--stages", "1-4", "--seed", "77"]].concat());
-    assert!(output.status.success(), "{}", printed(&output).1);
+    grader_succeeds(&[arguments, &["--out", &out, "--stages", "1-4", "--seed", "77"]].concat());
     folder
 }
 
@@ -83,8 +82,7 @@ fn classroom_gets_workflows_whose_steps_are_scripts() {
     }
     // Each part of the class is graded by one job, and the merge takes the parts of all jobs.
     let most = folder.path().join("most");
-    let output = grader(&["export", "classroom", "--out", &most.to_string_lossy(), "--parts", "256"]);
-    assert!(output.status.success(), "{}", printed(&output).1);
+    grader_succeeds(&["export", "classroom", "--out", &most.to_string_lossy(), "--parts", "256"]);
     let text = fs::read_to_string(most.join(".github/workflows/class.yml")).expect("a workflow");
     let list = text.split_once("part: [").and_then(|(_, rest)| rest.split_once(']')).expect("a matrix").0;
     let parts: Vec<u16> = list.split(", ").map(|part| part.parse().expect("a number")).collect();
@@ -154,7 +152,7 @@ fn one_submission_is_graded_for_both() {
     fs::write(file, grader::exercises::answer(&text, &solution).expect("marks that match")).expect("written");
     let exercises = root().join("exercises").to_string_lossy().into_owned();
     for (submission, share) in [(at("right"), 1.0), (exercises, 0.0)] {
-        let output = grader(&[
+        grader_succeeds(&[
             "grade-one",
             &submission,
             "--stages",
@@ -166,7 +164,6 @@ fn one_submission_is_graded_for_both() {
             "--classroom",
             &at("c.json"),
         ]);
-        assert!(output.status.success(), "{}", printed(&output).1);
         let (results, result) = (json(Path::new(&at("g.json"))), json(Path::new(&at("c.json"))));
         let sum = |tests: &Value, of: &str| -> f64 {
             tests.as_array().into_iter().flatten().filter_map(|test| test[of].as_f64()).sum()

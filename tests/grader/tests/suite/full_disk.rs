@@ -1,16 +1,10 @@
 //! A full disk is an error that names the file and loses nothing that was finished.
 
 use super::grade::{hand_in, right};
-use super::grader;
 use super::program_runs::{leaves_out_what_takes_long, printed, root, small_disk};
+use super::{grader, grader_succeeds, said_by};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
-
-fn said(output: &Output) -> String {
-    let (said, complained) = printed(output);
-    format!("{said}{complained}")
-}
 
 /// Grading takes a quarter of a minute, so this runs only with `CI_LONG=1`.
 #[test]
@@ -43,7 +37,7 @@ fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
         return println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
     };
     let output = shell.output().unwrap();
-    let text = said(&output);
+    let text = said_by(&output);
     let (said, complained) = printed(&output);
     assert!(output.status.success(), "{text}");
     let parts: Vec<&str> = said.split("---").collect();
@@ -68,7 +62,7 @@ fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
 }
 
 /// A command whose result is on a small disk.
-struct Case {
+struct FullDiskRun {
     program: PathBuf,
     /// The command. `DISK` is the small disk.
     command: String,
@@ -82,7 +76,7 @@ struct Case {
     result: &'static str,
 }
 
-impl Case {
+impl FullDiskRun {
     /// Runs the command on the small disk, and once more with room.
     fn holds(&self) -> bool {
         let folder = tempfile::tempdir().unwrap();
@@ -116,7 +110,7 @@ impl Case {
         );
         let Some(mut shell) = small_disk(&script) else { return false };
         let output = shell.output().unwrap();
-        let text = format!("{}\n{}", self.command, said(&output));
+        let text = format!("{}\n{}", self.command, said_by(&output));
         let (said, complained) = printed(&output);
         let (small, rest) = said.split_once("--- left").expect(&text);
         let (left, room) = rest.split_once("--- room").expect(&text);
@@ -132,8 +126,8 @@ impl Case {
     }
 }
 
-fn try_all(cases: &[Case]) {
-    if !cases.iter().all(Case::holds) {
+fn try_all(cases: &[FullDiskRun]) {
+    if !cases.iter().all(FullDiskRun::holds) {
         println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
     }
 }
@@ -147,15 +141,20 @@ fn parts_of_a_class(around: &Path) -> [String; 2] {
     let class = class.to_string_lossy();
     ["1/2", "2/2"].map(|part| {
         let out = around.join(&part[..1]).to_string_lossy().into_owned();
-        let output =
-            grader(&["grade", &class, "--stages", "1", "--seed", "5", "--shard", part, "--out", &out]);
-        assert!(output.status.success(), "{}", said(&output));
+        grader_succeeds(&["grade", &class, "--stages", "1", "--seed", "5", "--shard", part, "--out", &out]);
         out
     })
 }
 
-fn case(program: &Path, command: &str, size: &'static str, result: &'static str) -> Case {
-    Case { program: program.to_owned(), command: command.to_owned(), resume: "", size, keeps: None, result }
+fn case(program: &Path, command: &str, size: &'static str, result: &'static str) -> FullDiskRun {
+    FullDiskRun {
+        program: program.to_owned(),
+        command: command.to_owned(),
+        resume: "",
+        size,
+        keeps: None,
+        result,
+    }
 }
 
 #[test]
@@ -168,7 +167,10 @@ fn a_picture_that_does_not_fit_on_the_disk_is_rendered_when_there_is_room() {
     let gamma = root().join("scenes/gamma.toml").to_string_lossy().into_owned();
     let render = format!("render {gamma} --size 200x150 --spp 2 --out DISK/picture.hdr");
     let in_pieces = case(&raykata, &format!("{render} --pieces 6"), "160k", "picture.hdr");
-    try_all(&[case(&raykata, &render, "16k", "picture.hdr"), Case { keeps: Some(".piece"), ..in_pieces }]);
+    try_all(&[
+        case(&raykata, &render, "16k", "picture.hdr"),
+        FullDiskRun { keeps: Some(".piece"), ..in_pieces },
+    ]);
 }
 
 /// These take a third of a minute, so they run only with `CI_LONG=1`.
@@ -201,7 +203,7 @@ fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
     );
     let program = |name: &str| Path::new(env!("CARGO_BIN_EXE_grader")).with_file_name(name);
     try_all(&[
-        Case {
+        FullDiskRun {
             program: program("raykata"),
             command: cost,
             resume: "",
@@ -210,7 +212,7 @@ fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
             // All files contain measured times.
             result: "",
         },
-        Case {
+        FullDiskRun {
             program: program("author"),
             command: "rehearse --honest --students 4 --jobs 1 --out DISK/grades".into(),
             resume: "--resume",

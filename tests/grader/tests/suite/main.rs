@@ -24,3 +24,17 @@ mod slurm;
 fn grader(arguments: &[&str]) -> std::process::Output {
     program_runs::run(env!("CARGO_BIN_EXE_grader"), arguments)
 }
+
+/// Runs the grader, which must succeed. Returns what it prints.
+fn grader_succeeds(arguments: &[&str]) -> String {
+    let output = grader(arguments);
+    let said = said_by(&output);
+    assert!(output.status.success(), "{arguments:?}: {said}");
+    said
+}
+
+/// What a program printed to both of its outputs.
+fn said_by(output: &std::process::Output) -> String {
+    let (said, complained) = program_runs::printed(output);
+    format!("{said}{complained}")
+}

@@ -1,18 +1,13 @@
 //! Tests the archives of a release, and that they build where there is no network.
 
-use super::grader;
-use super::program_runs::{leaves_out_what_takes_long, printed, root};
+use super::program_runs::{leaves_out_what_takes_long, root};
+use super::{grader, grader_succeeds, said_by};
 use checks::rubric::entry;
 use flate2::read::GzDecoder;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-
-fn said(output: &Output) -> String {
-    let (said, complained) = printed(output);
-    format!("{said}{complained}")
-}
 
 fn archive(folder: &Path, kind: &str) -> PathBuf {
     folder.join(format!("raykata-{kind}-{}-draft.tar.gz", env!("CARGO_PKG_VERSION")))
@@ -35,8 +30,7 @@ fn a_release_has_the_same_bytes_each_time_and_no_answer_for_students() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     for out in ["one", "two"] {
-        let output = grader(&["release", "--draft", "--out", &at(out).to_string_lossy()]);
-        assert!(output.status.success(), "{}", said(&output));
+        grader_succeeds(&["release", "--draft", "--out", &at(out).to_string_lossy()]);
     }
     let sums = fs::read_to_string(at("one/SHA256SUMS")).unwrap();
     assert_eq!(sums, fs::read_to_string(at("two/SHA256SUMS")).unwrap());
@@ -59,8 +53,8 @@ fn a_release_has_the_same_bytes_each_time_and_no_answer_for_students() {
         .unwrap()
         .contains(&format!("\n## {}", env!("CARGO_PKG_VERSION")));
     let output = grader(&["release", "--out", &at("final").to_string_lossy()]);
-    assert_eq!(output.status.success(), has_chapter, "{}", said(&output));
-    assert!(has_chapter || said(&output).contains("CHANGELOG.md has no chapter"), "{}", said(&output));
+    assert_eq!(output.status.success(), has_chapter, "{}", said_by(&output));
+    assert!(has_chapter || said_by(&output).contains("CHANGELOG.md has no chapter"), "{}", said_by(&output));
 }
 
 /// The archives leave out no file of the repository that a build or a test reads.
@@ -72,8 +66,7 @@ fn the_grader_archive_contains_each_file_of_the_repository() {
         return println!("SKIPPED: this is no working copy of git");
     };
     let folder = tempfile::tempdir().unwrap();
-    let output = grader(&["release", "--draft", "--out", &folder.path().to_string_lossy()]);
-    assert!(output.status.success(), "{}", said(&output));
+    grader_succeeds(&["release", "--draft", "--out", &folder.path().to_string_lossy()]);
     let kit = unpacked(&archive(folder.path(), "grader"), folder.path());
     let listed = String::from_utf8(listed.stdout).unwrap();
     let missing: BTreeSet<&str> =
@@ -114,16 +107,16 @@ fn vendored_archives_build_in_an_empty_home_without_a_network() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("release");
     let output = grader(&["release", "--draft", "--vendor", "--out", &out.to_string_lossy()]);
-    if said(&output).contains("`cargo vendor` failed") {
-        return println!("SKIPPED: the packages cannot be downloaded here: {}", said(&output));
+    if said_by(&output).contains("`cargo vendor` failed") {
+        return println!("SKIPPED: the packages cannot be downloaded here: {}", said_by(&output));
     }
-    assert!(output.status.success(), "{}", said(&output));
-    println!("{}", said(&output));
+    assert!(output.status.success(), "{}", said_by(&output));
+    println!("{}", said_by(&output));
     let home = folder.path().join("home");
     fs::create_dir(&home).unwrap();
     let course = unpacked(&archive(&out, "course"), folder.path());
     let output = offline(&course, &home, &["test", "--locked", "--test", "stage1"]);
-    assert!(said(&output).contains("not written yet: exercises/src/stage1"), "{}", said(&output));
+    assert!(said_by(&output).contains("not written yet: exercises/src/stage1"), "{}", said_by(&output));
     fs::remove_dir_all(course.join("target")).unwrap();
     let kit = unpacked(&archive(&out, "grader"), folder.path());
     let exercises = kit.join("exercises").to_string_lossy().into_owned();
@@ -144,8 +137,8 @@ fn vendored_archives_build_in_an_empty_home_without_a_network() {
     let output = offline(&kit, &home, &grade);
     let of: u32 = all_checks::of_stage(1).iter().map(|check| entry(1, check.name).points).sum();
     assert!(
-        output.status.success() && said(&output).contains(&format!("0 of {of} points")),
+        output.status.success() && said_by(&output).contains(&format!("0 of {of} points")),
         "{}",
-        said(&output)
+        said_by(&output)
     );
 }

@@ -62,7 +62,7 @@ pub enum Style {
 
 /// A ray and one shape of every kind.
 #[derive(Clone, Copy, Debug)]
-pub struct Case {
+pub struct ComparedCase {
     pub ray: Ray,
     pub triangle: Triangle,
     pub plane: Plane,
@@ -74,7 +74,7 @@ pub struct Case {
 }
 
 /// Random numbers of size one, as typical scenes have: half of the rays aim at the inside of the triangle.
-pub fn typical(seed: u64, case: u64) -> Case {
+pub fn typical(seed: u64, case: u64) -> ComparedCase {
     let mut random = Random::new(seed, case);
     let [o, a, b, c, q] = [(); 5].map(|()| random.vector(Style::Unit));
     let inside = a.lerp(b, random.unit()).lerp(c, random.unit());
@@ -84,21 +84,21 @@ pub fn typical(seed: u64, case: u64) -> Case {
 
 /// Whole numbers: every ray hits its triangle exactly on an edge, unless the triangle is degenerate; other
 /// shapes have many ties as well.
-pub fn tied(seed: u64, case: u64) -> Case {
+pub fn tied(seed: u64, case: u64) -> ComparedCase {
     tied_on(Style::Lattice, seed, case)
 }
 
 /// The same on whole numbers up to a million.
-pub fn finely_tied(seed: u64, case: u64) -> Case {
+pub fn finely_tied(seed: u64, case: u64) -> ComparedCase {
     tied_on(Style::Fine, seed, case)
 }
 
 /// Numbers from `2^-100` to `2^100` in one case.
-pub fn of_all_scales(seed: u64, case: u64) -> Case {
+pub fn of_all_scales(seed: u64, case: u64) -> ComparedCase {
     make(&mut Random::new(seed, case), Style::Scales, case % 8)
 }
 
-fn tied_on(lattice: Style, seed: u64, case: u64) -> Case {
+fn tied_on(lattice: Style, seed: u64, case: u64) -> ComparedCase {
     let mut random = Random::new(seed, case);
     let [o, a, b, c, q] = [(); 5].map(|()| random.vector(lattice));
     // The middle of an edge between corners with even coordinates is on the lattice.
@@ -106,7 +106,7 @@ fn tied_on(lattice: Style, seed: u64, case: u64) -> Case {
 }
 
 /// A case of any kind.
-pub fn any(seed: u64, case: u64) -> Case {
+pub fn any(seed: u64, case: u64) -> ComparedCase {
     let mut random = Random::new(seed, case);
     let styles =
         [Style::Unit, Style::Lattice, Style::Far, Style::Tiny, Style::Scales, Style::Any, Style::Fine];
@@ -115,7 +115,7 @@ pub fn any(seed: u64, case: u64) -> Case {
     make(&mut random, style, aim)
 }
 
-fn make(random: &mut Random, style: Style, aim: u64) -> Case {
+fn make(random: &mut Random, style: Style, aim: u64) -> ComparedCase {
     let mut p = || random.vector(style);
     let (o, a, b, mut c, q) = (p(), p(), p(), p(), p());
     let clamp = |v: Vec3| v.clamp(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX));
@@ -180,9 +180,9 @@ fn make(random: &mut Random, style: Style, aim: u64) -> Case {
 }
 
 /// One shape of every kind from a few points.
-fn shapes(ray: Ray, [a, b, c]: [Vec3; 3], q: Vec3, radius: f32) -> Case {
+fn shapes(ray: Ray, [a, b, c]: [Vec3; 3], q: Vec3, radius: f32) -> ComparedCase {
     let finite = |v: Vec3| if v.is_finite() { v } else { q };
-    Case {
+    ComparedCase {
         ray,
         triangle: Triangle { a, b, c },
         plane: Plane { point: a, normal: finite(b - c) },

@@ -9,7 +9,7 @@
 mod cases;
 mod reference;
 
-use cases::Case;
+use cases::ComparedCase;
 use oracle::exact::{Body, Contact, Tier, aabb, meet, meet_with, order, triangle, verdict};
 use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
@@ -94,9 +94,9 @@ fn tiers(with_widest: bool) -> impl Iterator<Item = Tier> {
 }
 
 /// A shape, and the function that answers for it with big integers.
-type TestedBody = (Body, fn(&Case) -> reference::Answer);
+type TestedBody = (Body, fn(&ComparedCase) -> reference::Answer);
 
-fn compare(case: &Case, with_big: bool, with_widest: bool, tally: &mut Tally) -> Result<(), String> {
+fn compare(case: &ComparedCase, with_big: bool, with_widest: bool, tally: &mut Tally) -> Result<(), String> {
     let ray = &case.ray;
     let bodies: [TestedBody; 7] = [
         (Body::Triangle(case.triangle), |c| reference::triangle(&c.ray, &c.triangle)),
@@ -148,7 +148,12 @@ fn compare(case: &Case, with_big: bool, with_widest: bool, tally: &mut Tally) ->
     if with_big && with_widest { compare_surds(case, tally) } else { Ok(()) }
 }
 
-fn compare_boxes(case: &Case, with_big: bool, with_widest: bool, tally: &mut Tally) -> Result<(), String> {
+fn compare_boxes(
+    case: &ComparedCase,
+    with_big: bool,
+    with_widest: bool,
+    tally: &mut Tally,
+) -> Result<(), String> {
     let bounds = Aabb::new(case.cuboid.min, case.cuboid.max);
     let truth = aabb::verdict(&case.ray, &bounds).ok_or("no answer for a box")?;
     for tier in tiers(with_widest) {
@@ -174,7 +179,7 @@ fn compare_boxes(case: &Case, with_big: bool, with_widest: bool, tally: &mut Tal
 }
 
 /// The triangle against every other shape that is hit.
-fn compare_orders(case: &Case, tally: &mut Tally) -> Result<(), String> {
+fn compare_orders(case: &ComparedCase, tally: &mut Tally) -> Result<(), String> {
     let ray = &case.ray;
     let (_, Some(time)) = reference::triangle(ray, &case.triangle) else {
         return Ok(());
@@ -199,7 +204,7 @@ fn compare_orders(case: &Case, tally: &mut Tally) -> Result<(), String> {
 
 /// Two shapes whose hits are roots of different quadratics. It runs in few cases, because the plain
 /// comparison is slow.
-fn compare_surds(case: &Case, tally: &mut Tally) -> Result<(), String> {
+fn compare_surds(case: &ComparedCase, tally: &mut Tally) -> Result<(), String> {
     let ray = &case.ray;
     let hits = [reference::sphere(ray, &case.sphere).1, reference::cylinder(ray, &case.cylinder).1];
     let [Some(one), Some(two)] = &hits else {
@@ -222,7 +227,7 @@ fn compare_surds(case: &Case, tally: &mut Tally) -> Result<(), String> {
 }
 
 /// Makes the cases of a measurement.
-type Make = fn(u64, u64) -> Case;
+type Make = fn(u64, u64) -> ComparedCase;
 
 /// Measures the answers per second of each predicate, on numbers of size one, on lattices with many ties, and
 /// on all scales.
@@ -234,7 +239,7 @@ fn measure(seed: u64) {
         ("scales from 2^-100 to 2^100", cases::of_all_scales),
     ];
     for (name, make) in kinds {
-        let all: Vec<Case> = (0..20_000).map(|case| make(seed, case)).collect();
+        let all: Vec<ComparedCase> = (0..20_000).map(|case| make(seed, case)).collect();
         let on =
             all.iter().filter(|c| verdict(&c.ray, Body::Triangle(c.triangle)) == Some(Contact::On)).count();
         println!("{name}: {on} of {} triangles are met on an edge or corner", all.len());
@@ -256,7 +261,7 @@ fn measure(seed: u64) {
 }
 
 /// The best of five runs over all cases.
-fn rate<A>(name: &str, all: &[Case], question: impl Fn(&Case) -> A) {
+fn rate<A>(name: &str, all: &[ComparedCase], question: impl Fn(&ComparedCase) -> A) {
     let best = (0..5)
         .map(|_| {
             let start = Instant::now();

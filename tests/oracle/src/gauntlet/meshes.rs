@@ -99,26 +99,24 @@ fn tetrahedron() -> Closed {
     Closed::new("tetrahedron", positions, triangles, Vec3::ZERO, Vec3::splat(0.1))
 }
 
-/// A sphere of `20 * 4^levels` triangles.
-pub(super) fn icosphere(levels: u32) -> Closed {
+/// The corners of an icosahedron around the origin with edges of length 2, and its triangles.
+pub fn icosahedron() -> ([Vec3; 12], [[u32; 3]; 20]) {
     let g = 0.5 + 1.25f32.sqrt();
-    let mut positions: Vec<Vec3> = [
-        (-1.0, g, 0.0),
-        (1.0, g, 0.0),
-        (-1.0, -g, 0.0),
-        (1.0, -g, 0.0),
-        (0.0, -1.0, g),
-        (0.0, 1.0, g),
-        (0.0, -1.0, -g),
-        (0.0, 1.0, -g),
-        (g, 0.0, -1.0),
-        (g, 0.0, 1.0),
-        (-g, 0.0, -1.0),
-        (-g, 0.0, 1.0),
-    ]
-    .map(|(x, y, z)| vec3(x, y, z).normalize())
-    .to_vec();
-    let mut triangles: Vec<[u32; 3]> = vec![
+    let corners = [
+        [-1.0, g, 0.0],
+        [1.0, g, 0.0],
+        [-1.0, -g, 0.0],
+        [1.0, -g, 0.0],
+        [0.0, -1.0, g],
+        [0.0, 1.0, g],
+        [0.0, -1.0, -g],
+        [0.0, 1.0, -g],
+        [g, 0.0, -1.0],
+        [g, 0.0, 1.0],
+        [-g, 0.0, -1.0],
+        [-g, 0.0, 1.0],
+    ];
+    let triangles = [
         [0, 11, 5],
         [0, 5, 1],
         [0, 1, 7],
@@ -140,6 +138,14 @@ pub(super) fn icosphere(levels: u32) -> Closed {
         [8, 6, 7],
         [9, 8, 1],
     ];
+    (corners.map(Vec3::from), triangles)
+}
+
+/// A sphere of `20 * 4^levels` triangles.
+pub(super) fn icosphere(levels: u32) -> Closed {
+    let (corners, triangles) = icosahedron();
+    let mut positions = corners.map(Vec3::normalize).to_vec();
+    let mut triangles = triangles.to_vec();
     for _ in 0..levels {
         let mut middles = HashMap::new();
         let mut middle = |p: u32, q: u32| {

@@ -1,9 +1,13 @@
 //! Makes a copy of the kit in which all items are public, so that any function can answer an exercise.
 
+use author::corpus::build_folder::{cut_manifest, write_if_new};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use syn::{Item, Visibility};
+
+/// The sections of manifests that the copy does not need: targets, and dependencies of tests.
+const LEFT_OUT: [&str; 5] = ["dev-dependencies", "[test]", "[bin]", "[example]", "[bench]"];
 
 /// Copies the folders of `root` that the reference and its checks need. Makes all items in the folders `open` public.
 pub fn copy(root: &Path, to: &Path, open: &[String]) {
@@ -15,12 +19,9 @@ pub fn copy(root: &Path, to: &Path, open: &[String]) {
     }
     // The test of the reference against its checks, as a program of its own.
     write(&to.join("solutions/tests/stages.rs"), &read(&root.join("solutions/tests/suite/stages.rs")));
-    let manifest = without_sections(&read(&root.join("Cargo.toml")));
-    let members = "members = [\"solutions\", \"tests/checks\", \"tests/checks/all\", \"tests/checks/stage*\", \"tests/oracle\"]";
-    let lines = manifest.lines().filter(|line| !line.starts_with("default-members"));
-    let lines = lines.map(|line| if line.starts_with("members = ") { members } else { line });
-    write(&to.join("Cargo.toml"), &(lines.collect::<Vec<_>>().join("\n") + "\n"));
-    let mut solutions = without_sections(&read(&root.join("solutions/Cargo.toml")));
+    let members = ["solutions", "tests/checks", "tests/checks/all", "tests/checks/stage*", "tests/oracle"];
+    write(&to.join("Cargo.toml"), &cut_manifest(&read(&root.join("Cargo.toml")), &LEFT_OUT, &members));
+    let mut solutions = cut_manifest(&read(&root.join("solutions/Cargo.toml")), &LEFT_OUT, &[]);
     let mut needed = String::from("[dependencies]\n");
     for name in ["all-checks", "checks", "oracle"].map(str::to_owned).into_iter().chain(stages()) {
         needed += &format!("{name}.workspace = true\n");
@@ -101,30 +102,13 @@ fn copy_folder(root: &Path, to: &Path, folder: &str, open: &[String]) {
             let is_open = open.iter().any(|folder| path.starts_with(&format!("{folder}/")));
             write(&to.join(&path), &if is_open { public(&text) } else { text });
         } else if path.ends_with("Cargo.toml") {
-            write(&to.join(&path), &without_sections(&read(&entry.path())));
+            write(&to.join(&path), &cut_manifest(&read(&entry.path()), &LEFT_OUT, &[]));
         } else {
             let target = to.join(&path);
             fs::create_dir_all(target.parent().expect("a folder")).expect("a folder");
             fs::copy(entry.path(), target).expect("a copy");
         }
     }
-}
-
-/// Returns a manifest without targets and without dependencies of tests.
-fn without_sections(manifest: &str) -> String {
-    let mut kept = String::new();
-    let mut keep = true;
-    for line in manifest.lines() {
-        if line.starts_with('[') {
-            let name = line.trim_matches(['[', ']']);
-            keep = !["dev-dependencies", "test", "bin", "example", "bench"].contains(&name);
-        }
-        if keep {
-            kept += line;
-            kept.push('\n');
-        }
-    }
-    kept
 }
 
 /// Returns the text with all items public.
@@ -189,11 +173,6 @@ fn read(file: &Path) -> String {
     fs::read_to_string(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
 }
 
-/// Writes a file only if its text differs, so that cargo builds only changed files.
 fn write(file: &Path, text: &str) {
-    if fs::read_to_string(file).is_ok_and(|old| old == text) {
-        return;
-    }
-    fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
-    fs::write(file, text).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    write_if_new(file, text).unwrap_or_else(|error| panic!("{error:#}"));
 }

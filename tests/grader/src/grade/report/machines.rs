@@ -4,8 +4,6 @@ use super::clean::clean_line;
 use super::{Each, messages, presentable};
 use crate::grade::result::{CheckResult, Graded, Outcome, Remark, Session};
 use anyhow::Result;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD as BASE64;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::io::Write;
@@ -143,11 +141,6 @@ pub fn classroom(graded: &Graded) -> Value {
         (true, false) => "fail",
     };
     json!({ "version": 1, "status": status, "max_score": of, "tests": tests })
-}
-
-/// Returns the same in base64, as a workflow step must write it to its output `result`.
-pub fn classroom_output(graded: &Graded) -> String {
-    BASE64.encode(classroom(graded).to_string())
 }
 
 fn classroom_test(name: &str, status: &str, message: &str, score: u32) -> Value {

@@ -20,10 +20,9 @@ mod tally;
 mod tests;
 
 pub use clean::{clean, clean_line};
-pub use machines::{classroom, classroom_output, gradescope};
-pub use names::file_names;
+pub use machines::{classroom, gradescope};
 
-use super::result::{CheckResult, Class, Graded, Picture, Remark, Session};
+use super::result::{CheckResult, Graded, Picture, Remark, Session};
 use anyhow::{Context, Result};
 use line::Line;
 use raykata::film::write_atomically;
@@ -53,15 +52,6 @@ pub struct Summary {
     pub submissions: usize,
     /// The submissions that could not be graded, with the reason.
     pub troubled: Vec<(String, String)>,
-}
-
-/// Writes all reports of a class into `folder`; see [`write_from`]. The students may have any order.
-pub fn write_all(class: &Class, folder: &Path) -> Result<()> {
-    let mut students: Vec<&Graded> = class.students.iter().collect();
-    // Two submissions may have the same name. Sort these by their content.
-    students.sort_by_key(|&graded| (&graded.student, &graded.content, &graded.trouble));
-    write_from(&class.session, &|each| students.iter().try_for_each(|&graded| each(graded.clone())), folder)
-        .map(drop)
 }
 
 /// Writes all reports of a class into `folder`: `grades.csv`, `checks.csv`, `timings.csv`, `results.json`, `junit.xml`,

@@ -1,6 +1,5 @@
 //! Makes file names from the names of students, which may be any text.
 
-use crate::grade::result::Graded;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 
@@ -10,14 +9,8 @@ const LONGEST: usize = 60;
 /// Reserved names: device names of some systems, and the page of the class.
 const RESERVED: [&str; 5] = ["con", "prn", "aux", "nul", "index"];
 
-/// Returns a file name for each student, in the order of `students`. It contains only letters, digits, `-`, `_` and `.`.
-/// The names also differ on file systems that ignore case. A changed name ends in a fingerprint of the old one.
-pub fn file_names(students: &[Graded]) -> Vec<String> {
-    let mut names = FileNames::default();
-    students.iter().map(|student| names.name(&student.student)).collect()
-}
-
-/// Makes these names one by one.
+/// Makes a file name for each student. It contains only letters, digits, `-`, `_` and `.`. The names also differ on file
+/// systems that ignore case. A changed name ends in a fingerprint of the old one.
 #[derive(Default)]
 pub(super) struct FileNames {
     taken: BTreeSet<String>,
@@ -26,19 +19,14 @@ pub(super) struct FileNames {
 impl FileNames {
     /// Returns the file name for the next student.
     pub fn name(&mut self, student: &str) -> String {
-        free_name(student, &mut self.taken)
+        let plain = plain(student);
+        let marked = format!("{plain}-{}", fingerprint(student));
+        let numbered = (2..).map(|n: usize| format!("{marked}-{n}"));
+        let unchanged = (plain == student).then(|| plain.clone());
+        let mut names = unchanged.into_iter().chain([marked.clone()]).chain(numbered);
+        // There are more numbers than students, so one of these names is free.
+        names.find(|name| self.taken.insert(name.to_lowercase())).unwrap_or_default()
     }
-}
-
-fn free_name(student: &str, taken: &mut BTreeSet<String>) -> String {
-    let plain = plain(student);
-    let marked = format!("{plain}-{}", fingerprint(student));
-    let numbered = (2..).map(|n: usize| format!("{marked}-{n}"));
-    let unchanged = (plain == student).then(|| plain.clone());
-    let name = unchanged.into_iter().chain([marked.clone()]).chain(numbered);
-    // There are more numbers than students, so one of these names is free.
-    let name = name.into_iter().find(|name| taken.insert(name.to_lowercase()));
-    name.unwrap_or_default()
 }
 
 fn plain(student: &str) -> String {
@@ -70,17 +58,8 @@ mod tests {
     use proptest::prelude::*;
 
     fn names(students: &[&str]) -> Vec<String> {
-        let graded = students.iter().map(|&student| Graded {
-            student: student.to_owned(),
-            content: String::new(),
-            checks: Vec::new(),
-            remarks: Vec::new(),
-            compiler: String::new(),
-            trouble: String::new(),
-            cpu_ms: 0,
-            handed_in: String::new(),
-        });
-        file_names(&graded.collect::<Vec<_>>())
+        let mut names = FileNames::default();
+        students.iter().map(|student| names.name(student)).collect()
     }
 
     fn is_safe(name: &str) -> bool {

@@ -16,7 +16,7 @@ fn write(root: &Path, files: &[(&str, &[u8])]) {
     }
 }
 
-fn remark(taken: &Taken, file: &str) -> String {
+fn remark(taken: &SubmittedFiles, file: &str) -> String {
     let of_file = taken.remarks.iter().filter(|remark| remark.file == file);
     of_file.map(|remark| remark.what.clone()).collect::<Vec<_>>().join("; ")
 }
@@ -169,10 +169,13 @@ fn submissions_are_found_by_name_and_twins_are_distinguished() {
 
 #[test]
 fn the_fingerprint_is_of_all_texts_and_of_nothing_else() {
-    let with =
-        |name: &str, text: &str| Taken { files: [(name.into(), text.into())].into(), ..Taken::default() };
+    let with = |name: &str, text: &str| SubmittedFiles {
+        files: [(name.into(), text.into())].into(),
+        ..SubmittedFiles::default()
+    };
     let (one, other) = (with("ab", "c"), with("a", "bc"));
     assert_ne!(one.content(), other.content());
-    let remarked = Taken { remarks: vec![Remark { file: "x".into(), what: "y".into() }], ..with("ab", "c") };
+    let remarked =
+        SubmittedFiles { remarks: vec![Remark { file: "x".into(), what: "y".into() }], ..with("ab", "c") };
     assert_eq!(one.content(), remarked.content());
 }

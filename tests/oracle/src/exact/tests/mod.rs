@@ -11,7 +11,7 @@ mod reference;
 
 use super::{Body, Contact, Tier, aabb, meet_with, order_with, verdict_with};
 use crate::splitmix::Random;
-use cases::Case;
+use cases::ComparedCase;
 use raykata::aabb::Aabb;
 use raykata::ray::Ray;
 use reference::Answer;
@@ -39,7 +39,7 @@ fn agree(ray: &Ray, body: Body, answer: &Answer, context: u64) {
     }
 }
 
-fn agree_on_all(case: &Case, context: u64) {
+fn agree_on_all(case: &ComparedCase, context: u64) {
     let ray = &case.ray;
     agree(ray, Body::Triangle(case.triangle), &reference::triangle(ray, &case.triangle), context);
     agree(ray, Body::Plane(case.plane), &reference::plane(ray, &case.plane), context);

@@ -29,7 +29,7 @@ const MOST_MESSAGES: usize = 4 << 20;
 
 /// Builds workers.
 #[derive(Clone)]
-pub struct Forge {
+pub struct WorkerBuilder {
     rustc: PathBuf,
     toolchain: PathBuf,
     /// A folder with the compiled scaffold and foreign crates. It contains nothing else, because a submission can read it.
@@ -55,7 +55,7 @@ struct SharedWorker {
 }
 
 /// The result of a build.
-pub struct Forged {
+pub struct BuiltWorker {
     /// The path of the worker program.
     pub worker: PathBuf,
     /// Files that the empty exercise replaces, with the outcome of their checks and the reason.
@@ -64,14 +64,14 @@ pub struct Forged {
     pub cpu: Duration,
 }
 
-impl Forge {
+impl WorkerBuilder {
     /// Builds the libraries if necessary, and reads the untouched exercises.
-    pub fn prepare(root: &Path, confinement: Confinement) -> Result<Forge> {
+    pub fn prepare(root: &Path, confinement: Confinement) -> Result<WorkerBuilder> {
         let toolchain = PathBuf::from(said_by(Command::new("rustc").args(["--print", "sysroot"]))?);
         let rustc = toolchain.join("bin/rustc");
         ensure!(rustc.is_file(), "no compiler at {}", rustc.display());
         let pristine = crate::exercises::pristine(root)?;
-        Ok(Forge {
+        Ok(WorkerBuilder {
             libraries: libraries::build(root)?,
             rustc,
             toolchain,
@@ -83,13 +83,13 @@ impl Forge {
     }
 
     /// Ends the compiler after another time.
-    pub fn with_patience(self, patience: Duration) -> Forge {
-        Forge { patience, ..self }
+    pub fn with_patience(self, patience: Duration) -> WorkerBuilder {
+        WorkerBuilder { patience, ..self }
     }
 
     /// Compiles equal files only once.
-    pub fn with_shared_workers(self) -> Forge {
-        Forge { shared: Some(Arc::default()), ..self }
+    pub fn with_shared_workers(self) -> WorkerBuilder {
+        WorkerBuilder { shared: Some(Arc::default()), ..self }
     }
 
     /// Returns the names of the exercise files.
@@ -112,12 +112,12 @@ impl Forge {
 
     /// Compiles these files in the empty folder `scratch`. While the build fails, the empty exercise replaces the files
     /// that cause the errors.
-    pub fn build(&self, scratch: &Path, files: &BTreeMap<String, String>) -> Result<Forged> {
+    pub fn build(&self, scratch: &Path, files: &BTreeMap<String, String>) -> Result<BuiltWorker> {
         let Some(shared) = &self.shared else { return self.build_alone(scratch, files) };
         let written = files.iter().filter(|(name, text)| !self.is_untouched(name, text));
         let written = written.map(|(name, text)| (name.clone(), text.clone())).collect();
         let known = shared.get(written, || {
-            let Forged { worker, replaced, cpu } = self.build_alone(scratch, files)?;
+            let BuiltWorker { worker, replaced, cpu } = self.build_alone(scratch, files)?;
             Ok(Arc::new(SharedWorker { program: fs::read(worker)?, replaced, cpu }))
         })?;
         let worker = scratch.join("out/worker");
@@ -126,10 +126,10 @@ impl Forge {
             fs::write(&worker, &known.program)?;
             fs::set_permissions(&worker, fs::Permissions::from_mode(0o755))?;
         }
-        Ok(Forged { worker, replaced: known.replaced.clone(), cpu: known.cpu })
+        Ok(BuiltWorker { worker, replaced: known.replaced.clone(), cpu: known.cpu })
     }
 
-    fn build_alone(&self, scratch: &Path, files: &BTreeMap<String, String>) -> Result<Forged> {
+    fn build_alone(&self, scratch: &Path, files: &BTreeMap<String, String>) -> Result<BuiltWorker> {
         let mut cpu = Duration::ZERO;
         let mut replaced = BTreeMap::new();
         // Compile the exercises. Replace the files with errors until the rest compiles.
@@ -193,7 +193,7 @@ impl Forge {
             empty.cpu += cpu;
             return Ok(empty);
         }
-        Ok(Forged { worker, replaced, cpu })
+        Ok(BuiltWorker { worker, replaced, cpu })
     }
 
     fn lay_out(
