@@ -1,6 +1,6 @@
 //! What a frame does not show while exercises are not written yet: a table of its capabilities.
 
-use super::Plan;
+use super::data::Plan;
 use super::written::Written;
 use crate::kit::{Function, StudentFunctions};
 use crate::material::Emitter;

@@ -19,8 +19,6 @@ fn structures_are_compared_side_by_side() {
         "cached bvh",
         "packet bvh",
         "wide bvh",
-        "reinserted bvh",
-        "stream bvh",
         "grid",
         "octree",
         "octree by cells",
