@@ -1,7 +1,7 @@
 //! The worker: a process that contains a kit and answers requests, one after the other, until the pipe
 //! closes.
 //!
-//! Messages are bytes in the format of [`message`](crate::message) after a length of four bytes. On Unix both directions use the socket that
+//! Messages are bytes in the format of [`message`] after a length of four bytes. On Unix both directions use the socket that
 //! the other side passes as standard input, so nothing that student code prints can get between two messages;
 //! elsewhere requests come through standard input and replies leave through standard output.
 

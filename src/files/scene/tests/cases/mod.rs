@@ -25,22 +25,22 @@ use crate::scene::Scene;
 use std::fmt::Write;
 
 #[test]
-fn obj_files() {
+fn obj_files_give_what_their_cases_say() {
     check("obj", include_str!("obj.txt"));
 }
 
 #[test]
-fn material_libraries() {
+fn material_libraries_give_what_their_cases_say() {
     check("mtl", include_str!("mtl.txt"));
 }
 
 #[test]
-fn ply_files() {
+fn ply_files_give_what_their_cases_say() {
     check("ply", include_str!("ply.txt"));
 }
 
 #[test]
-fn scenes() {
+fn scenes_give_what_their_cases_say() {
     check("scene", include_str!("scene.txt"));
 }
 

@@ -30,7 +30,10 @@ pub struct Function {
 
 /// Types that are replaced by their fields: per name of a type its module, and the names and types of the fields. So
 /// `query: &SphereQuery` counts as a ray, a centre and a radius.
-pub type Bundles = BTreeMap<String, (&'static str, Vec<(String, Type)>)>;
+pub type Bundles = BTreeMap<String, Bundle>;
+
+/// The module of a type, and its fields.
+type Bundle = (&'static str, Vec<(String, Type)>);
 
 /// Returns the query types of the kit's interface, and the shapes that some exercises take whole and others as fields.
 pub fn bundles(root: &Path) -> Bundles {
@@ -55,7 +58,36 @@ pub fn bundles(root: &Path) -> Bundles {
             }
         }
     }
+    let list = fs::read_to_string(root.join("src/kit/list.rs")).expect("the list of functions");
+    bundles.extend(list.split(" fn ").filter_map(listed_query));
     bundles
+}
+
+/// The query that an entry of the list of functions defines, `name(arguments) -> Answer = file::name; [Query …`.
+fn listed_query(entry: &str) -> Option<(String, Bundle)> {
+    let (signature, rest) = entry.split_once("= stage")?;
+    let (_, how) = rest.split_once(';')?;
+    let name = how.trim_start().trim_start_matches("{ ").strip_prefix('[')?;
+    let name = name.split([' ', ']']).next()?;
+    let signature = format!("fn f{}", &signature[signature.find('(')?..]);
+    let signature: Signature = syn::parse_str(&signature).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let field = |argument: FnArg| {
+        let FnArg::Typed(argument) = argument else { return None };
+        // A borrowed argument is an owned field, and a slice is a list.
+        let owned = match *argument.ty {
+            Type::Reference(reference) => match *reference.elem {
+                Type::Slice(slice) => {
+                    let item = slice.elem;
+                    syn::parse_quote!(Vec<#item>)
+                }
+                whole => whole,
+            },
+            whole => whole,
+        };
+        let syn::Pat::Ident(name) = *argument.pat else { return None };
+        Some((name.ident.to_string(), owned))
+    };
+    Some((name.to_owned(), ("raykata::kit", signature.inputs.into_iter().map(field).collect::<Option<_>>()?)))
 }
 
 /// The types of the parameters, sorted, and the type of the result.
