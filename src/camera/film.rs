@@ -195,8 +195,8 @@ impl Film {
     }
 
     /// Writes the picture as a Radiance HDR file: linear, with eight bits per component and a common
-    /// exponent, so that the largest component of a pixel is exact to about one percent. Negative and NaN
-    /// components become 0. The format has no infinity: components above 1e38 become 1e38.
+    /// exponent, each rounded to nearest, so that the largest component of a pixel is exact to 0.4 percent. Negative and
+    /// NaN components become 0. The format has no infinity: components above 1e38 become 1e38.
     ///
     /// # Errors
     ///
@@ -206,10 +206,8 @@ impl Film {
     ///
     /// If `pixels` has fewer than `width * height` colours.
     pub fn write_hdr(&self, file: &Path) -> io::Result<()> {
-        // The largest exponent of the format is that of 1.7e38.
-        let component = |value: f32| if value > 1e38 { 1e38 } else { value };
         let pixels: Vec<image::Rgb<f32>> =
-            self.pixels.iter().map(|p| image::Rgb(p.to_array().map(component))).collect();
+            self.pixels.iter().map(|pixel| image::Rgb(nearest_rgbe(*pixel).to_array())).collect();
         write_atomically(file, |out| {
             HdrEncoder::new(out)
                 .encode(&pixels, self.width as usize, self.height as usize)
@@ -250,6 +248,22 @@ pub fn write_atomically(
         let _ = fs::remove_file(&beside);
     }
     placed
+}
+
+/// The nearest colour that a pixel of four bytes can hold: whole steps, of which the largest component has 128 to 255. The
+/// encoder rounds down, which changes such a colour no more.
+fn nearest_rgbe(color: Vec3) -> Vec3 {
+    // The largest exponent of the format is that of 1.7e38. The maximum of 0 and NaN is 0.
+    let color = Vec3::from_array(color.to_array().map(|value| value.max(0.0).min(1e38)));
+    let largest = f64::from(color.max_element());
+    if largest < 1e-38 {
+        return Vec3::ZERO;
+    }
+    let mut step = (largest.log2().floor() - 7.0).exp2();
+    if (largest / step).round() >= 256.0 {
+        step *= 2.0;
+    }
+    ((color.as_dvec3() / step).round() * step).as_vec3()
 }
 
 #[cfg(test)]
@@ -307,6 +321,28 @@ mod tests {
         let bytes = film.to_bytes(encode_srgb);
         assert_eq!(bytes.rgb, [0, 0, 0, 255, 0, 255]);
         assert_eq!(bytes.not_a_number, 1);
+    }
+
+    #[test]
+    fn hdr_files_hold_the_nearest_colours() {
+        let colors = [
+            (Vec3::new(0.8, 0.05, 0.0099), Vec3::new(205.0, 13.0, 3.0) / 256.0),
+            // 0.999 rounds to 256 steps, which the next exponent has as 128 steps of twice the size.
+            (Vec3::new(0.999, 0.4990, 0.0117), Vec3::new(128.0, 64.0, 1.0) / 128.0),
+            (Vec3::new(1.0, 255.0 / 256.0, -1.0), Vec3::new(1.0, 1.0, 0.0)),
+            (Vec3::new(4.0, f32::NAN, 0.02), Vec3::new(4.0, 0.0, 1.0 / 32.0)),
+            (Vec3::splat(1e-45), Vec3::ZERO),
+        ];
+        let folder = std::env::temp_dir().join(format!("raykata-hdr-{}", std::process::id()));
+        fs::create_dir(&folder).expect("a new folder");
+        let mut film = Film::new(colors.len() as u32, 1);
+        film.pixels = colors.map(|(color, _)| color).to_vec();
+        film.write_hdr(&folder.join("colors.hdr")).expect("a picture");
+        let back = image::open(folder.join("colors.hdr")).expect("a picture").into_rgb32f();
+        fs::remove_dir_all(&folder).expect("the folder");
+        for (pixel, (color, nearest)) in back.pixels().zip(colors) {
+            assert_eq!(Vec3::from_array(pixel.0), nearest, "{color}");
+        }
     }
 
     #[test]

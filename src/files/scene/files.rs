@@ -1,6 +1,6 @@
 //! Files that a scene names: their paths, and the messages if they are missing.
 
-use super::reader::Value;
+use super::reader::{NO_BACKSLASHES, Value};
 use super::words::{nearest, quoted};
 use crate::files::error::LoadError;
 use std::io::ErrorKind;
@@ -14,6 +14,10 @@ pub(super) fn find(value: Value) -> Result<PathBuf, LoadError> {
     let trouble = match std::fs::metadata(&path) {
         Ok(found) if found.is_dir() => value.error(format!("{} is a folder, not a file", quoted(name))),
         Ok(_) => return Ok(path),
+        // In `"C:\temp"` the escape is a tab.
+        Err(_) if name.contains(char::is_control) => value
+            .error(format!("the file name {} contains a control character", quoted(name)))
+            .help(NO_BACKSLASHES),
         Err(error) if error.kind() == ErrorKind::NotFound => {
             value.error(format!("there is no file {}", quoted(name))).help(where_it_might_be(&path))
         }

@@ -11,6 +11,7 @@ mod nodes;
 mod numbers;
 mod nurbs;
 mod polygon;
+mod radiance;
 pub(crate) mod reader;
 mod settings;
 mod shapes;

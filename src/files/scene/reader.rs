@@ -257,6 +257,10 @@ impl<'a> Value<'a> {
     }
 }
 
+/// The advice for paths with backslashes.
+pub(super) const NO_BACKSLASHES: &str =
+    "write a path with `/`, or between single quotes, as in `'meshes\\bunny.obj'`";
+
 /// The parser's `error` as a [`LoadError`]. Common mistakes get a message and advice of their own; other
 /// errors keep the message of the parser.
 fn explain(source: &Source, error: &toml::de::Error) -> LoadError {
@@ -283,6 +287,9 @@ fn explain(source: &Source, error: &toml::de::Error) -> LoadError {
         }
         message if message.starts_with("key with no value") => {
             ("a key has no value".into(), "write the key, `=` and the value")
+        }
+        message if message.contains("escape") || message.contains("unicode") => {
+            ("a backslash between double quotes begins an escape, such as `\\n`".into(), NO_BACKSLASHES)
         }
         "recursion limit" => {
             ("brackets are nested too deep".into(), "a scene needs only a few levels of brackets")

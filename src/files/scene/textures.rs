@@ -2,6 +2,7 @@
 
 use super::files;
 use super::names::Names;
+use super::radiance;
 use super::reader::Value;
 use super::words::{ENCODINGS, one_line, quoted};
 use crate::files::error::LoadError;
@@ -9,6 +10,8 @@ use crate::material::{Texture, Wrap};
 use crate::scene::Encoding;
 use glam::Vec3;
 use image::{DynamicImage, ImageReader};
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -51,6 +54,23 @@ pub(super) fn read(path: &Path, wrap: Wrap, value: Value) -> Result<(Texture, bo
             .error(format!("cannot use {name} as a texture: {}", one_line(&message)))
             .help("textures are PNG or Radiance HDR files")
     };
+    let budget = |width: u32, height: u32| {
+        if width == 0 || height == 0 {
+            return Err(trouble("the image has no pixels".into()));
+        }
+        value.source.budget.texture(|why| value.error(why), width, height)
+    };
+    let open_file = || File::open(path).map_err(|error| trouble(error.to_string()));
+    let mut signature = [0; 2];
+    if open_file()?.read_exact(&mut signature).is_ok() && signature == radiance::SIGNATURE {
+        let mut bytes = Vec::new();
+        open_file()?.read_to_end(&mut bytes).map_err(|error| trouble(error.to_string()))?;
+        let header = radiance::header(&bytes).map_err(trouble)?;
+        let (width, height) = (header.width, header.height);
+        budget(width, height)?;
+        let pixels = Arc::new(radiance::pixels(&header, &bytes).map_err(trouble)?);
+        return Ok((Texture { width, height, pixels, wrap }, false));
+    }
     let open = || ImageReader::open(path).and_then(ImageReader::with_guessed_format);
     let reader = open().map_err(|error| trouble(error.to_string()))?;
     if let Some(format) = reader.format().filter(|format| !format.reading_enabled()) {
@@ -65,11 +85,7 @@ pub(super) fn read(path: &Path, wrap: Wrap, value: Value) -> Result<(Texture, bo
             )));
     }
     let (width, height) = reader.into_dimensions().map_err(|error| trouble(error.to_string()))?;
-    if width == 0 || height == 0 {
-        return Err(trouble("the image has no pixels".into()));
-    }
-    value.source.budget.texture(|why| value.error(why), width, height)?;
-
+    budget(width, height)?;
     let mut reader = open().map_err(|error| trouble(error.to_string()))?;
     // The budget bounds the memory. The limits of the decoder are lower than what a user can allow.
     reader.no_limits();

@@ -17,6 +17,7 @@ mod pictures;
 #[path = "../../../grader/tests/suite/program_runs.rs"]
 mod program_runs;
 mod sync;
+mod weight;
 
 /// Runs the program `author`.
 fn author(arguments: &[&str]) -> std::process::Output {
