@@ -65,7 +65,7 @@ impl<S: Example> Example for CellsQuery<S> {
 examples! {
     f32 => 1.0;
     u8 => 1;
-    u32 => 1;
+    u32 => 0;
     i64 => 0;
     usize => 1;
     bool => true;
