@@ -153,9 +153,9 @@ mod tests {
     use std::sync::Mutex;
 
     #[derive(Default)]
-    struct Heard(Mutex<Vec<(u64, u64)>>);
+    struct RecordedProgress(Mutex<Vec<(u64, u64)>>);
 
-    impl Watch for Heard {
+    impl Watch for RecordedProgress {
         fn progress(&self, _: u64, _: u64) {}
 
         fn building(&self, placed: u64, total: u64) {
@@ -163,7 +163,7 @@ mod tests {
         }
     }
 
-    impl Heard {
+    impl RecordedProgress {
         fn wait_for(&self, placed: u64) {
             while !self.0.lock().unwrap().iter().any(|heard| heard.0 == placed) {
                 thread::yield_now();
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn leaves_are_reported_while_the_rest_is_built() {
-        let heard = Heard::default();
+        let heard = RecordedProgress::default();
         let total = 2 * FEWEST_REPORTED;
         watched(&heard, total, || {
             heard.wait_for(0);
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn what_is_small_is_not_worth_a_word_and_a_panic_passes() {
-        let heard = Heard::default();
+        let heard = RecordedProgress::default();
         watched(&heard, FEWEST_REPORTED - 1, || leaf_of(5));
         assert!(heard.0.lock().unwrap().is_empty());
         let panicked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {

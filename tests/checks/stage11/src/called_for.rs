@@ -56,7 +56,7 @@ type Needs = (&'static [usize], &'static [usize], bool);
 const NOTHING: Needs = (&[], &[], false);
 
 /// A scene, what its paths need, and what a mistake makes of it.
-struct Case {
+struct SceneForPaths {
     what: &'static str,
     scene: Scene,
     needs: Needs,
@@ -64,7 +64,7 @@ struct Case {
 }
 
 /// How much of a colour of the scenes is used for a hidden seed. What a scene needs does not depend on it.
-fn judge_all(trial: &Trial<'_>, cases: Vec<Case>) -> CheckResult {
+fn judge_all(trial: &Trial<'_>, cases: Vec<SceneForPaths>) -> CheckResult {
     let hidden = (0.1..1.0f32, 0.1..1.0f32, 1..9u32, 0..3usize);
     let (of_light, of_material, depth, turn) = trial.varied((1.0, 1.0, 5, 0), hidden);
     // The channels of all colours change places.
@@ -72,7 +72,7 @@ fn judge_all(trial: &Trial<'_>, cases: Vec<Case>) -> CheckResult {
         let channels = color.to_array();
         Vec3::from_array([0, 1, 2].map(|channel| channels[(channel + turn) % 3]))
     };
-    let vary = |case: Case| {
+    let vary = |case: SceneForPaths| {
         let mut scene = case.scene;
         for light in &mut scene.lights {
             light.color = of_light * turned(light.color);
@@ -93,11 +93,11 @@ fn judge_all(trial: &Trial<'_>, cases: Vec<Case>) -> CheckResult {
         if scene.quality.max_depth > 0 {
             scene.quality.max_depth = depth;
         }
-        Case { scene, ..case }
+        SceneForPaths { scene, ..case }
     };
-    let cases: Vec<Case> = cases.into_iter().map(vary).collect();
+    let cases: Vec<SceneForPaths> = cases.into_iter().map(vary).collect();
     let scenes: Vec<Scene> = cases.iter().map(|case| case.scene.clone()).collect();
-    let judge = |(case, yours): (&Case, PathEffects)| {
+    let judge = |(case, yours): (&SceneForPaths, PathEffects)| {
         let n = case.scene.materials.len();
         let flags = |indices: &[usize]| (0..n).map(|index| indices.contains(&index)).collect::<Vec<bool>>();
         let effects = |(diffuse, sampled, environment): Needs| PathEffects {
@@ -125,8 +125,8 @@ fn judge_all(trial: &Trial<'_>, cases: Vec<Case>) -> CheckResult {
     all_hold(cases.iter().zip(trial.kit.paths_called_for(&scenes)).map(judge).collect())
 }
 
-fn case(what: &'static str, scene: Scene, needs: Needs, mistakes: &[(Needs, &'static str)]) -> Case {
-    Case { what, scene, needs, mistakes: mistakes.to_vec() }
+fn case(what: &'static str, scene: Scene, needs: Needs, mistakes: &[(Needs, &'static str)]) -> SceneForPaths {
+    SceneForPaths { what, scene, needs, mistakes: mistakes.to_vec() }
 }
 
 pub(super) fn no_paths_without_indirect_light(trial: &Trial<'_>) -> CheckResult {

@@ -126,7 +126,7 @@ pub(super) fn mis_weight_survives_extreme_densities(trial: &Trial<'_>) -> CheckR
 
 /// A lobe `cosⁿ θ` around the direction to the middle of a square light of this side at distance 1. Its radiance is 1.
 #[derive(Clone, Copy, Debug)]
-struct Case {
+struct LobeAndLight {
     exponent: f64,
     side: f64,
 }
@@ -134,7 +134,7 @@ struct Case {
 /// The number of nodes along half a side.
 const NODES: usize = 48;
 
-impl Case {
+impl LobeAndLight {
     /// Points of a quarter of the light: the density of the lobe, that of uniform points of the light, and the solid angle.
     fn nodes(&self) -> Vec<(f64, f64, f64)> {
         // The nodes are dense at the middle, where a sharp lobe is: x = side / 2 · t⁴.
@@ -170,7 +170,7 @@ pub(super) fn mis_weights_keep_the_variance_low(trial: &Trial<'_>) -> CheckResul
     let factors = trial.varied((1.0f64, 1.0f64), (1.0..3.0f64, 1.0..2.0f64));
     for exponent in [1.0, 10.0, 100.0, 1000.0, 3000.0] {
         for side in [0.02, 0.2, 1.0] {
-            let case = Case { exponent: exponent * factors.0, side: side * factors.1 };
+            let case = LobeAndLight { exponent: exponent * factors.0, side: side * factors.1 };
             let nodes = case.nodes();
             let pairs: Vec<Pair> =
                 nodes.iter().map(|(lobe, light, _)| (*lobe as f32, *light as f32)).collect();

@@ -37,7 +37,7 @@ fn query(material: Material, n_lights: usize, quality: Quality) -> BoundQuery {
 }
 
 /// A scene, the counts, and the counts that mistakes give. The mistakes that are not listed give the right counts.
-struct Case<'a> {
+struct BoundedScene<'a> {
     what: &'a str,
     query: BoundQuery,
     expected: RayCounts,
@@ -51,10 +51,10 @@ const fn counts(primary: u64, shadow: u64, reflection: u64, transmission: u64) -
 
 /// Judges scenes of one pixel, and names a mistake that gives all wrong counts. For a hidden seed the scenes have more
 /// pixels, and every count is multiplied by their number.
-fn judge_pixel(trial: &Trial<'_>, cases: Vec<Case<'_>>) -> CheckResult {
+fn judge_pixel(trial: &Trial<'_>, cases: Vec<BoundedScene<'_>>) -> CheckResult {
     let (width, height) = trial.varied((1, 1), (1..=64u32, 2..=64u32));
     let times = |count: u64| count.saturating_mul(u64::from(width) * u64::from(height));
-    let of_pixels = |mut case: Case<'_>| {
+    let of_pixels = |mut case: BoundedScene<'_>| {
         case.query.scene.film = film(width, height);
         let RayCounts { primary, shadow, reflection, transmission } = case.expected;
         case.expected = counts(times(primary), times(shadow), times(reflection), times(transmission));
@@ -64,11 +64,11 @@ fn judge_pixel(trial: &Trial<'_>, cases: Vec<Case<'_>>) -> CheckResult {
 }
 
 /// Judges all scenes, and names a mistake that gives all wrong counts.
-fn judge_all(trial: &Trial<'_>, cases: Vec<Case<'_>>) -> CheckResult {
+fn judge_all(trial: &Trial<'_>, cases: Vec<BoundedScene<'_>>) -> CheckResult {
     all_hold(cases.into_iter().map(|case| judge(trial, case)).collect())
 }
 
-fn judge(trial: &Trial<'_>, Case { what, query, expected, wrong }: Case<'_>) -> CheckResult {
+fn judge(trial: &Trial<'_>, BoundedScene { what, query, expected, wrong }: BoundedScene<'_>) -> CheckResult {
     let input = format!("most_rays of {what}");
     match kit_error::catch(|| trial.kit.most_rays(&[query]).remove(0)) {
         Ok(yours) if yours == expected => Ok(()),
@@ -126,13 +126,13 @@ pub(super) fn shadow_arithmetic_of_the_lecture(trial: &Trial<'_>) -> CheckResult
     judge_all(
         trial,
         vec![
-            Case {
+            BoundedScene {
                 what: "1000 × 1000 pixels under 10 lights",
                 query: small,
                 expected: counts(m, 10 * m, 0, 0),
                 wrong: &[(counts(m, m, 0, 0), NO_SHADOW_RAYS)],
             },
-            Case {
+            BoundedScene {
                 what: "640 × 480 pixels under 10 lights",
                 query: wide,
                 expected: counts(307_200, 3_072_000, 0, 0),
@@ -142,7 +142,7 @@ pub(super) fn shadow_arithmetic_of_the_lecture(trial: &Trial<'_>) -> CheckResult
                     (counts(307_200, 307_200, 0, 0), NO_SHADOW_RAYS),
                 ],
             },
-            Case {
+            BoundedScene {
                 what: "100,000 × 100,000 pixels under 10 lights",
                 query: large,
                 expected: counts(n, 10 * n, 0, 0),
@@ -152,7 +152,7 @@ pub(super) fn shadow_arithmetic_of_the_lecture(trial: &Trial<'_>) -> CheckResult
                     (counts(n, n, 0, 0), NO_SHADOW_RAYS),
                 ],
             },
-            Case {
+            BoundedScene {
                 what: "1000 × 1000 pixels with 4 samples each, 10 lights, one of 16 samples and one without shadows",
                 query: sampled,
                 expected: counts(4 * m, 4 * m * (16 + 8), 0, 0),
@@ -185,7 +185,7 @@ pub(super) fn shadow_arithmetic_of_the_lecture(trial: &Trial<'_>) -> CheckResult
                 "{width} × {height} pixels with {samples} samples each, and {per_hit} shadow rays per hit"
             );
             let expected = counts(primary, primary * u64::from(per_hit), 0, 0);
-            judge(trial, Case { what: &what, query, expected, wrong: &[] })
+            judge(trial, BoundedScene { what: &what, query, expected, wrong: &[] })
         };
         inputs.iter().map(judge_one).collect()
     })
@@ -226,7 +226,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
     judge_pixel(
         trial,
         vec![
-            Case {
+            BoundedScene {
                 what: "one pixel, a mirror of 1/2, max_depth 3",
                 query: query(mirror.clone(), 2, parameters(3, 0.0)),
                 expected: counts(1, 8, 3, 0),
@@ -237,7 +237,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
                     (counts(1, 6, 2, 0), ONE_LESS),
                 ],
             },
-            Case {
+            BoundedScene {
                 what: "one pixel, a mirror of 1/2, max_depth 100, min_contribution 1/100",
                 query: query(mirror.clone(), 1, parameters(100, 0.01)),
                 expected: counts(1, 7, 6, 0),
@@ -248,7 +248,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
                     (counts(1, 8, 7, 0), OF_INCOMING),
                 ],
             },
-            Case {
+            BoundedScene {
                 what: "one pixel, a mirror of 1/2, max_depth 100, min_contribution 1/8",
                 query: query(mirror.clone(), 1, parameters(100, 0.125)),
                 expected: counts(1, 4, 3, 0),
@@ -260,7 +260,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
                     (counts(1, 3, 2, 0), OPEN_LIMIT),
                 ],
             },
-            Case {
+            BoundedScene {
                 what: "one pixel, half mirror and half glass, max_depth 3",
                 query: query(both, 1, parameters(3, 0.0)),
                 expected: counts(1, 15, 7, 7),
@@ -272,7 +272,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
                     (counts(1, 4, 3, 3), ONE_WAY),
                 ],
             },
-            Case {
+            BoundedScene {
                 what: "one pixel, a rough mirror of 1, glossy_samples 4, max_depth 100, min_contribution 1/100",
                 query: query(rough, 1, Quality { glossy_samples: 4, ..parameters(100, 0.01) }),
                 // Reflections weigh 1, 1/4, 1/16, 1/64, 1/256: four of them are at least 1/100, with 4, 16, 64 and 256
@@ -288,7 +288,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
                     (counts(1, 101, 100, 0), ONE_PER_HIT),
                 ],
             },
-            Case {
+            BoundedScene {
                 what: "one pixel, glass with fresnel, max_depth 2",
                 query: query(glass, 1, parameters(2, 0.001)),
                 expected: counts(1, 7, 3, 3),
@@ -300,7 +300,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
                     (counts(1, 3, 2, 2), ONE_WAY),
                 ],
             },
-            Case {
+            BoundedScene {
                 what: "one pixel, half mirror and half glass with fresnel, max_depth 2, min_contribution 3/4",
                 query: query(half, 1, parameters(2, 0.75)),
                 expected: counts(1, 7, 3, 3),
@@ -313,7 +313,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
                     (counts(1, 1, 0, 0), NO_FRESNEL),
                 ],
             },
-            Case {
+            BoundedScene {
                 what: "one pixel, a mirror under 2 lights and glass under 1, max_depth 2",
                 query: mirror_and_glass(parameters(2, 0.0)),
                 expected: counts(1, 6, 2, 2),
@@ -329,7 +329,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
                     (counts(1, 9, 2, 2), SUM_OF_LIGHTS),
                 ],
             },
-            Case {
+            BoundedScene {
                 what: "one pixel, a mirror, max_depth 0",
                 query: query(mirror, 1, parameters(0, 0.0)),
                 expected: counts(1, 1, 0, 0),
@@ -347,13 +347,13 @@ pub(super) fn bound_stays_at_the_largest_number(trial: &Trial<'_>) -> CheckResul
     judge_pixel(
         trial,
         vec![
-            Case {
+            BoundedScene {
                 what: "one pixel, a material that reflects and transmits all light, max_depth 10",
                 query: bounces(10),
                 expected: counts(1, 3 * 2047, 1023, 1023),
                 wrong: &[],
             },
-            Case {
+            BoundedScene {
                 what: "one pixel, a material that reflects and transmits all light, max_depth 1000",
                 query: bounces(1000),
                 expected: counts(1, most, most, most),

@@ -23,7 +23,7 @@ pub(super) fn plain() -> Effects {
 }
 
 /// A scene, its effects, and the mistakes in an answer, each with whether it explains that answer.
-struct Case {
+struct SceneWithEffects {
     what: &'static str,
     scene: Scene,
     expected: Effects,
@@ -47,14 +47,14 @@ pub(super) fn with_lights(mut effects: Effects, n: usize) -> Effects {
 }
 
 /// Judges all scenes, and names a mistake that explains all wrong answers.
-fn judge_all(trial: &Trial<'_>, cases: Vec<Case>) -> CheckResult {
+fn judge_all(trial: &Trial<'_>, cases: Vec<SceneWithEffects>) -> CheckResult {
     let lights = hidden_lights(trial);
-    let add_lights = |case: Case| {
+    let add_lights = |case: SceneWithEffects| {
         let lights_of_scene = [case.scene.lights, lights.clone()].concat();
         let scene = Scene { lights: lights_of_scene, ..case.scene };
-        Case { scene, expected: with_lights(case.expected, lights.len()), ..case }
+        SceneWithEffects { scene, expected: with_lights(case.expected, lights.len()), ..case }
     };
-    let cases: Vec<Case> = cases.into_iter().map(add_lights).collect();
+    let cases: Vec<SceneWithEffects> = cases.into_iter().map(add_lights).collect();
     let scenes: Vec<Scene> = cases.iter().map(|case| case.scene.clone()).collect();
     let answers = cases.iter().zip(trial.kit.effects(&scenes));
     let outcomes = answers.map(|(case, yours)| {
@@ -128,7 +128,7 @@ pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> CheckRes
     let mut of_dark = plain();
     of_dark.lights.insert(0, LightEffects::default());
     of_dark.materials[1].lights = vec![1];
-    let case = |what, scene, expected| Case { what, scene, expected, mistakes: of_plain_scenes };
+    let case = |what, scene, expected| SceneWithEffects { what, scene, expected, mistakes: of_plain_scenes };
     judge_all(
         trial,
         vec![
@@ -190,7 +190,7 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
     scene.material_names.push("mirror".into());
     let mut expected = plain();
     expected.materials.push(MaterialEffects::default());
-    let case = |what, scene: &Scene, expected: &Effects| Case {
+    let case = |what, scene: &Scene, expected: &Effects| SceneWithEffects {
         what,
         scene: scene.clone(),
         expected: expected.clone(),

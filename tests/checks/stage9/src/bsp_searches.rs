@@ -2,7 +2,7 @@
 
 use super::parts;
 use super::scenes::{Scene, Thing, sphere, wall};
-use super::searches::{Asked, Searcher, agrees, judge_visits, queries, spheres_and_rays};
+use super::searches::{Described, Searcher, agrees, judge_visits, queries, spheres_and_rays};
 use super::structures::bsp;
 use checks::Trial;
 use checks::broken::{CheckResult, all_hold};
@@ -19,7 +19,7 @@ pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResu
     let scene = Scene::new(vec![large, sphere(0.25, 0.2, 0.0, 0.125)]);
     let ray = Ray::new(vec3(-1.0, -1.0, 0.0), vec3(1.0, 1.0, 0.0));
     let tree = two_leaves(diagonal(), &[0], &[0, 1]);
-    let mut asked = Asked::new();
+    let mut asked = Described::new();
     asked.ask("BSP tree of one plane x + y = 0, both leaves list primitive 0", &tree, &scene, ray);
     // Nothing is hit before the plane, so the other side decides.
     let alone = Scene::new(vec![sphere(3.0, 3.0, 0.0, 0.5)]);
@@ -66,7 +66,7 @@ pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'
             Ray::new(vec3(-1.0, -1.0, 0.0), vec3(1.0, 1.0, 0.0)),
         ),
     ];
-    let mut asked = Asked::new();
+    let mut asked = Described::new();
     for (what, ray) in cases {
         asked.ask(format!("BSP tree of one plane x + y = 0: {what}"), &tree, &scene, ray);
     }
@@ -75,7 +75,7 @@ pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'
 
 /// Rays that run in the plane or start on it, and polygons that lie in it.
 pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResult {
-    let mut asked = Asked::new();
+    let mut asked = Described::new();
     let spheres = Scene::new(vec![
         sphere(3.0, -3.0, 0.0, 0.5),
         sphere(-3.0, 3.0, 0.0, 0.5),

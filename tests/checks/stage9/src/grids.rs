@@ -3,7 +3,7 @@
 use super::lists::{Fault, listing_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scales, Scene, Thing, rays, scales, sphere, wall};
-use super::searches::{Asked, Searcher, agrees, grid_queries, judge_visits};
+use super::searches::{Described, Searcher, agrees, grid_queries, judge_visits};
 use super::structures::{around_loosely, filled};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -62,7 +62,7 @@ pub(super) fn grid_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckRes
 
 /// A large sphere of the first cell is hit in the third cell, and a small one in the second cell is nearer.
 pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> CheckResult {
-    let mut asked = Asked::new();
+    let mut asked = Described::new();
     for axis in 0..3 {
         let turn = |v: Vec3| {
             let mut turned = Vec3::ZERO;
@@ -344,7 +344,7 @@ pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Ch
         // Leave no room around the boxes, so that walls lie exactly in the faces of the grid.
         let boxes = scene.boxes();
         let all = checks::tree::around(&boxes);
-        let mut asked = Asked::new();
+        let mut asked = Described::new();
         for query in grid_queries(&scene, &rays, (all, around_loosely(&boxes).1), resolution) {
             asked.add(format!("grid of {resolution} cells over {name}"), query);
         }
@@ -356,7 +356,7 @@ pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Ch
 /// Rays along a face between two cells, at a distance from it that is lost when the index of the cell is computed by a
 /// division; and rays whose range begins one float before a face.
 fn beside_faces(trial: &Trial<'_>) -> CheckResult {
-    let mut asked = Asked::new();
+    let mut asked = Described::new();
     for axis in 0..3 {
         let turn = |v: Vec3| {
             let mut turned = Vec3::ZERO;

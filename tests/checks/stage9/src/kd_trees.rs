@@ -3,7 +3,7 @@
 use super::lists::{Fault, ended, fact, infinite, judge_references, listing_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, closest, wall};
-use super::searches::{Asked, Searcher, agrees, judge_visits, queries, spheres_and_rays};
+use super::searches::{Described, Searcher, agrees, judge_visits, queries, spheres_and_rays};
 use super::structures::kd_tree;
 use checks::Trial;
 use checks::broken::{CheckResult, all_hold};
@@ -130,7 +130,7 @@ fn two_leaves(bounds: Aabb, (axis, at): (usize, f32), left: &[u32], right: &[u32
 
 /// The hit lies on the face at which its cell ends, and `t` and `t'` are rounded differently.
 pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> CheckResult {
-    let mut asked = Asked::new();
+    let mut asked = Described::new();
     for (axis, (size, rough)) in (0..3)
         .flat_map(|axis| [(1.0, false), (1.0, true), (100.0, true), (1e5, true)].map(|kind| (axis, kind)))
     {
@@ -169,7 +169,7 @@ fn along(axis: usize, v: Vec3) -> Vec3 {
 /// Two primitives lie in one face; that of the right cell has a `t` one float smaller than that of the
 /// left.
 pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> CheckResult {
-    let (mut trees, mut grids) = (Asked::new(), Asked::new());
+    let (mut trees, mut grids) = (Described::new(), Described::new());
     for axis in 0..3 {
         for (at, x) in [(1.0f32, -2.0f32), (0.75, -5.3), (-3.125, -7.7)] {
             let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(2.0 * at + 8.0));
@@ -214,7 +214,7 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
 }
 
 pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> CheckResult {
-    let mut asked = Asked::new();
+    let mut asked = Described::new();
     for axis in 0..3 {
         let place = |center: Vec3, radius: f32| Thing::Sphere(Sphere { center: along(axis, center), radius });
         let large = place(vec3(5.0, 2.0, 0.0), 2.25);
@@ -240,7 +240,7 @@ pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> CheckResult {
 /// A ray in the plane of a cut, or that starts on it, is on both sides.
 pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> CheckResult {
     let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
-    let mut asked = Asked::new();
+    let mut asked = Described::new();
     for axis in 0..3 {
         let place = |x: f32, y: f32, z: f32, radius: f32| {
             Thing::Sphere(Sphere { center: along(axis, vec3(x, y, z)), radius })

@@ -3,7 +3,7 @@
 use super::lists::{Fault, ended, fact, infinite, judge_references, judge_tree, listing_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, sphere};
-use super::searches::{Asked, Case, Searcher, agrees, judge_visits, queries, spheres_and_rays};
+use super::searches::{Described, SearchedScene, Searcher, agrees, judge_visits, queries, spheres_and_rays};
 use super::structures::octree;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -170,7 +170,7 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
         })
         .collect();
     let name = "26 spheres, rays along axes and diagonals".to_owned();
-    let judge = || searcher.judge(trial.kit, &[Case::new(&name, &scene, &rays)]);
+    let judge = || searcher.judge(trial.kit, &[SearchedScene::new(&name, &scene, &rays)]);
     match kit_error::catch(judge) {
         Ok(outcomes) => all_hold(outcomes),
         Err(kit_error::KitError::Panicked { message, .. }) => {
@@ -205,8 +205,8 @@ pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> CheckResu
 }
 
 /// A large sphere and a small one along each axis, in both directions, for the search of this name.
-fn overlapping_two_octants(name: &str) -> Asked<Octree> {
-    let mut asked = Asked::new();
+fn overlapping_two_octants(name: &str) -> Described<Octree> {
+    let mut asked = Described::new();
     for axis in 0..3 {
         for flipped in [false, true] {
             let turn = |v: Vec3| {

@@ -2,7 +2,7 @@
 
 use super::parts;
 use super::scenes::{Scene, Thing, sphere, wall};
-use super::searches::{Asked, Searcher, agrees, judge_visits, queries, spheres_and_rays};
+use super::searches::{Described, Searcher, agrees, judge_visits, queries, spheres_and_rays};
 use super::structures::polygon_bsp;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -39,7 +39,7 @@ pub(super) fn polygon_bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> C
     // A large sphere in the leaf of the near side is hit on the far side, behind a triangle on the plane.
     let large = Thing::Sphere(raykata::shape::Sphere { center: vec3(4.0, 4.0, 0.0), radius: 5.0 });
     let scene = Scene::new(vec![large, tile(0.0), sphere(0.25, 0.2, 0.0, 0.125)]);
-    let mut asked = Asked::new();
+    let mut asked = Described::new();
     for (origin, direction) in
         [(vec3(-3.0, -3.0, 0.0), vec3(1.0, 1.0, 0.0)), (vec3(3.0, 2.0, 0.3), vec3(-1.0, -1.0, 0.1))]
     {
@@ -79,7 +79,7 @@ pub(super) fn polygon_bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> C
         ("the ray starts on the plane", vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 0.0), (0.0, f32::INFINITY)),
         ("the ray starts on the plane", vec3(0.5, -0.5, 0.0), vec3(-1.0, -0.75, 0.0), (0.0, f32::INFINITY)),
     ];
-    let mut asked = Asked::new();
+    let mut asked = Described::new();
     for (what, origin, direction, (t_min, t_max)) in cases {
         let ray = Ray::new(origin, direction).with_range(t_min, t_max);
         for tree in [&tree, &in_front] {

@@ -232,8 +232,8 @@ pub(super) fn polygon_bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
         vec![vec3(x, y, -1.0), vec3(-x, -y, -1.0), vec3(-x, -y, 1.0), vec3(x, y, 1.0)]
     });
     let line = (0..20).map(|i| [0.0, 0.5, 0.7].map(|x| vec3(i as f32 + x, 0.0, 0.0)).to_vec());
-    type Case = (&'static str, Vec<Vec<Vec3>>, usize, usize);
-    let hulls: [Case; 4] = [
+    type HullCase = (&'static str, Vec<Vec<Vec3>>, usize, usize);
+    let hulls: [HullCase; 4] = [
         // One node lists all of them.
         ("forty squares in one plane", (1..=40).map(|i| square(i as f32)).collect(), 1, 20),
         ("thirty sheets through one line", star.collect(), MOST_REFERENCES, 20),
