@@ -253,8 +253,9 @@ pub fn write_atomically(
 /// The nearest colour that a pixel of four bytes can hold: whole steps, of which the largest component has 128 to 255. The
 /// encoder rounds down, which changes such a colour no more.
 fn nearest_rgbe(color: Vec3) -> Vec3 {
-    // The largest exponent of the format is that of 1.7e38. The maximum of 0 and NaN is 0.
-    let color = Vec3::from_array(color.to_array().map(|value| value.max(0.0).min(1e38)));
+    // The largest exponent of the format is that of 1.7e38. A NaN is not above 0.
+    let bounded = |value: f32| if value > 0.0 { value.min(1e38) } else { 0.0 };
+    let color = Vec3::from_array(color.to_array().map(bounded));
     let largest = f64::from(color.max_element());
     if largest < 1e-38 {
         return Vec3::ZERO;

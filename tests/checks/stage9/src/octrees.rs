@@ -3,7 +3,7 @@
 use super::lists::{Fault, ended, fact, infinite, judge_references, judge_tree, listing_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, sphere};
-use super::searches::{Described, SearchedScene, Searcher, agrees, judge_visits, queries, spheres_and_rays};
+use super::searches::{Described, Searched, Searcher, agrees, judge_visits, queries, spheres_and_rays};
 use super::structures::octree;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -170,7 +170,7 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
         })
         .collect();
     let name = "26 spheres, rays along axes and diagonals".to_owned();
-    let judge = || searcher.judge(trial.kit, &[SearchedScene::new(&name, &scene, &rays)]);
+    let judge = || searcher.judge(trial.kit, &[Searched::new(&name, &scene, &rays)]);
     match kit_error::catch(judge) {
         Ok(outcomes) => all_hold(outcomes),
         Err(kit_error::KitError::Panicked { message, .. }) => {

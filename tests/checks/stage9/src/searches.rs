@@ -50,13 +50,13 @@ impl Searcher {
     }
 
     /// Searches for the rays of each case, in a structure over its scene that the checks have built, and judges the answers.
-    pub(super) fn judge(self, kit: &dyn Kit, cases: &[SearchedScene<'_>]) -> Vec<CheckResult> {
+    pub(super) fn judge(self, kit: &dyn Kit, cases: &[Searched<'_>]) -> Vec<CheckResult> {
         let octrees =
             || Described::over(self, cases, |scene, depth| structures::octree(&scene.boxes(), depth));
         match self {
             Searcher::Grid => {
                 let mut asked = Described::new();
-                for SearchedScene { name, scene, rays, one_leaf } in cases {
+                for Searched { name, scene, rays, one_leaf } in cases {
                     let bounds = structures::around_loosely(&scene.boxes());
                     let resolution = if *one_leaf { UVec3::ONE } else { UVec3::new(5, 4, 3) };
                     for query in grid_queries(scene, rays, bounds, resolution) {
@@ -85,16 +85,16 @@ impl Searcher {
 }
 
 /// Rays at a scene, in a structure that is divided, or in one with one leaf.
-pub(super) struct SearchedScene<'a> {
+pub(super) struct Searched<'a> {
     name: String,
     scene: &'a Scene,
     rays: &'a [Ray],
     one_leaf: bool,
 }
 
-impl<'a> SearchedScene<'a> {
+impl<'a> Searched<'a> {
     pub(super) fn new(name: impl Into<String>, scene: &'a Scene, rays: &'a [Ray]) -> Self {
-        SearchedScene { name: name.into(), scene, rays, one_leaf: false }
+        Searched { name: name.into(), scene, rays, one_leaf: false }
     }
 }
 
@@ -110,9 +110,9 @@ impl<S: Structure + Clone> Described<S> {
     }
 
     /// The rays of each case in the structure over its scene.
-    fn over(searcher: Searcher, cases: &[SearchedScene<'_>], build: impl Fn(&Scene, usize) -> S) -> Self {
+    fn over(searcher: Searcher, cases: &[Searched<'_>], build: impl Fn(&Scene, usize) -> S) -> Self {
         let mut asked = Described::new();
-        for SearchedScene { name, scene, rays, one_leaf } in cases {
+        for Searched { name, scene, rays, one_leaf } in cases {
             let depth = if *one_leaf { 0 } else { searcher.depth() };
             for query in queries(&build(scene, depth), scene, rays) {
                 asked.add(format!("{} over {name}", searcher.name()), query);
@@ -230,9 +230,8 @@ pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
     let small = (0..8).map(|i| sphere(7.0, 0.8 * (i % 4) as f32, (i / 4) as f32, 0.25));
     let through = Scene::new([large].into_iter().chain(small).collect());
     let rays = [Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(9.0, 0.0, 0.0), Vec3::NEG_X)];
-    let in_a_row =
-        SearchedScene { one_leaf: true, ..SearchedScene::new("three spheres in a row", &row, &rays) };
-    let passing = SearchedScene::new("a large sphere and eight small ones", &through, &rays[..1]);
+    let in_a_row = Searched { one_leaf: true, ..Searched::new("three spheres in a row", &row, &rays) };
+    let passing = Searched::new("a large sphere and eight small ones", &through, &rays[..1]);
     // And rays from all directions at both scenes, which refute or confirm a mistake that one answer suggests.
     let around = |at: Vec3| {
         let look = move |forward: Vec3| Ray::new(at - 20.0 * forward, forward);
@@ -240,19 +239,19 @@ pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
     };
     let (at_row, at_small) = (around(vec3(2.0, 0.1, 0.2)), around(vec3(7.0, 0.9, 0.4)));
     let others = [
-        SearchedScene::new("three spheres in a row", &row, &at_row),
-        SearchedScene::new("nine spheres", &through, &at_small),
+        Searched::new("three spheres in a row", &row, &at_row),
+        Searched::new("nine spheres", &through, &at_small),
     ];
-    let cases: Vec<SearchedScene<'_>> = [in_a_row, passing].into_iter().chain(others).collect();
+    let cases: Vec<Searched<'_>> = [in_a_row, passing].into_iter().chain(others).collect();
     all_hold(searcher.judge(trial.kit, &cases))?;
     trial.forall(250, scenes(), |cases| {
         let name = |scene: &Scene| format!("{} primitives", scene.things.len());
-        let case = |(scene, ray)| SearchedScene::new(name(scene), scene, std::slice::from_ref(ray));
+        let case = |(scene, ray)| Searched::new(name(scene), scene, std::slice::from_ref(ray));
         searcher.judge(trial.kit, &cases.iter().map(|(scene, ray)| case((scene, ray))).collect::<Vec<_>>())
     })?;
     let odd = odd_scenes();
     odd.iter().try_for_each(|(name, scene, rays)| {
-        all_hold(searcher.judge(trial.kit, &[SearchedScene::new(*name, scene, rays)]))
+        all_hold(searcher.judge(trial.kit, &[Searched::new(*name, scene, rays)]))
     })
 }
 
