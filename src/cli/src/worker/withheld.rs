@@ -3,8 +3,9 @@
 use raykata::bvh::Probe;
 use raykata::kit::questions::{Call, Question, Response};
 use raykata::kit::{
-    Answer, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, Costs, KitError, PacketProbe, Request,
-    SearchQuery, ShadowProbe, TableProbe, WideQuery, WideTableProbe, kit_error,
+    Answer, CachedGraphQuery, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, Costs, GraphQuery, KitError,
+    PacketProbe, PacketQuery, Request, SearchQuery, ShadeQuery, ShadowProbe, TableProbe, WideQuery,
+    WideTableProbe, kit_error,
 };
 use raykata::partition::Cells;
 use raykata::wide::WideProbe;
@@ -31,105 +32,82 @@ enum ProbeOfQuery<'a> {
     Wide(WideTableProbe<'a>),
 }
 
-/// Returns the request without its tables; `None` if it has none.
-pub fn withheld(request: &Request) -> Option<Request> {
-    fn search(queries: &mut [SearchQuery]) {
-        queries.iter_mut().for_each(|query| query.table = query.table.withheld());
-    }
-    fn cells<S>(queries: &mut [CellsQuery<S>]) {
-        queries.iter_mut().for_each(|query| query.hits.fill(f32::NAN));
-    }
-    fn wide(queries: &mut [WideQuery]) {
-        for query in queries {
-            query.entries.fill([f32::NAN; 8]);
-            query.hits.fill(f32::NAN);
+/// A query with a table that the judge can keep.
+trait Tabled: Clone {
+    /// Replaces every number of the table by one that says nothing.
+    fn withhold(&mut self);
+
+    /// A probe with the table.
+    fn probe(&self) -> ProbeOfQuery<'_>;
+}
+
+macro_rules! tabled {
+    ($(($($generics:tt)*) $Query:ty: |$query:ident| $withhold:expr, $probe:expr;)*) => {
+        $(impl $($generics)* Tabled for $Query {
+            fn withhold(&mut self) {
+                let $query = self;
+                $withhold;
+            }
+
+            fn probe(&self) -> ProbeOfQuery<'_> {
+                let $query = self;
+                $probe
+            }
+        })*
+    };
+}
+
+tabled! {
+    () SearchQuery: |q| q.table = q.table.withheld(), ProbeOfQuery::Table(TableProbe::new(q));
+    () GraphQuery: |q| q.table = q.table.withheld(), ProbeOfQuery::Table(TableProbe::without_hierarchy(&q.table));
+    () CachedGraphQuery: |q| q.search.withhold(), q.search.probe();
+    (<S: Clone>) CellsQuery<S>: |q| q.hits.fill(f32::NAN), ProbeOfQuery::Cells(CellsProbe::new(&q.hits));
+    () CachedQuery: |q| (q.hits.fill(f32::NAN), q.entries.fill(f32::NAN)),
+        ProbeOfQuery::Cached(CellsProbe::new(&q.hits), q);
+    () PacketQuery: |q| q.tables.iter_mut().for_each(|table| *table = table.withheld()),
+        ProbeOfQuery::Packet(PacketProbe::new(q));
+    () ShadeQuery: |q| q.visible.fill(false), ProbeOfQuery::Shadows(ShadowProbe::new(q));
+    () WideQuery: |q| (q.entries.fill([f32::NAN; 8]), q.hits.fill(f32::NAN)),
+        ProbeOfQuery::Wide(WideTableProbe::new(q));
+}
+
+/// The requests whose queries have tables.
+macro_rules! requests {
+    ($($Message:ident)*) => {
+        /// Returns the request without its tables; `None` if it has none.
+        pub fn withheld(request: &Request) -> Option<Request> {
+            let without_tables = match request {
+                $(Request::$Message(queries) => {
+                    let mut queries = queries.clone();
+                    queries.iter_mut().for_each(Tabled::withhold);
+                    Request::$Message(queries)
+                })*
+                _ => return None,
+            };
+            Some(Request::Withheld(Box::new(without_tables)))
         }
-    }
-    // A job for a picture has no tables, and its scene may be large.
-    if request.frame().is_some() {
-        return None;
-    }
-    let mut request = request.clone();
-    match &mut request {
-        Request::BruteForce(queries)
-        | Request::ClosestHitBoth(queries)
-        | Request::ClosestHit(queries)
-        | Request::AnyHit(queries) => search(queries),
-        Request::GraphHit(queries) => {
-            queries.iter_mut().for_each(|query| query.table = query.table.withheld());
-        }
-        Request::CachedGraphHit(queries) => {
-            queries.iter_mut().for_each(|query| query.search.table = query.search.table.withheld());
-        }
-        Request::GridSearch(queries) => cells(queries),
-        Request::OctreeByCells(queries)
-        | Request::OctreeByNeighbours(queries)
-        | Request::OctreeSearch(queries) => cells(queries),
-        Request::KdSearch(queries) => cells(queries),
-        Request::BspSearch(queries) => cells(queries),
-        Request::PolygonBspSearch(queries) => cells(queries),
-        Request::CachedSearch(queries) => {
-            for query in queries {
-                query.hits.fill(f32::NAN);
-                query.entries.fill(f32::NAN);
+
+        /// A probe for each query; none for a request without tables.
+        fn probes(request: &Request) -> Vec<ProbeOfQuery<'_>> {
+            match request {
+                $(Request::$Message(queries) => queries.iter().map(Tabled::probe).collect(),)*
+                _ => Vec::new(),
             }
         }
-        Request::PacketSearch(queries) => {
-            for table in queries.iter_mut().flat_map(|query| &mut query.tables) {
-                *table = table.withheld();
-            }
-        }
-        Request::Shade(queries) => queries.iter_mut().for_each(|query| query.visible.fill(false)),
-        Request::WideClosestHit(queries) | Request::WideAnyHit(queries) => wide(queries),
-        _ => return None,
-    }
-    Some(Request::Withheld(Box::new(request)))
+    };
+}
+
+requests! {
+    BruteForce ClosestHitBoth ClosestHit AnyHit Shade GraphHit CachedGraphHit CachedSearch PacketSearch
+    GridSearch OctreeByCells OctreeByNeighbours OctreeSearch KdSearch BspSearch PolygonBspSearch
+    WideClosestHit WideAnyHit
 }
 
 impl<'a> Withheld<'a> {
     /// Keeps the tables of `request`, whose worker gets [`withheld`] tables.
     pub(super) fn of(request: &'a Request) -> Withheld<'a> {
-        fn cells<S>(queries: &[CellsQuery<S>]) -> Vec<ProbeOfQuery<'_>> {
-            queries.iter().map(|query| ProbeOfQuery::Cells(CellsProbe::new(&query.hits))).collect()
-        }
-        let probes: Vec<ProbeOfQuery<'a>> = match request {
-            Request::BruteForce(queries)
-            | Request::ClosestHitBoth(queries)
-            | Request::ClosestHit(queries)
-            | Request::AnyHit(queries) => {
-                queries.iter().map(|query| ProbeOfQuery::Table(TableProbe::new(query))).collect()
-            }
-            Request::GraphHit(queries) => {
-                let probe = |table| ProbeOfQuery::Table(TableProbe::without_hierarchy(table));
-                queries.iter().map(|query| probe(&query.table)).collect()
-            }
-            Request::CachedGraphHit(queries) => {
-                let probe = |table| ProbeOfQuery::Table(TableProbe::without_hierarchy(table));
-                queries.iter().map(|query| probe(&query.search.table)).collect()
-            }
-            Request::GridSearch(queries) => cells(queries),
-            Request::OctreeByCells(queries)
-            | Request::OctreeByNeighbours(queries)
-            | Request::OctreeSearch(queries) => cells(queries),
-            Request::KdSearch(queries) => cells(queries),
-            Request::BspSearch(queries) => cells(queries),
-            Request::PolygonBspSearch(queries) => cells(queries),
-            Request::CachedSearch(queries) => queries
-                .iter()
-                .map(|query| ProbeOfQuery::Cached(CellsProbe::new(&query.hits), query))
-                .collect(),
-            Request::PacketSearch(queries) => {
-                queries.iter().map(|query| ProbeOfQuery::Packet(PacketProbe::new(query))).collect()
-            }
-            Request::Shade(queries) => {
-                queries.iter().map(|query| ProbeOfQuery::Shadows(ShadowProbe::new(query))).collect()
-            }
-            Request::WideClosestHit(queries) | Request::WideAnyHit(queries) => {
-                queries.iter().map(|query| ProbeOfQuery::Wide(WideTableProbe::new(query))).collect()
-            }
-            _ => Vec::new(),
-        };
-        Withheld(probes.into_iter().map(|probe| QueryCalls { n_calls: 0, probe }).collect())
+        let asked = |probe| QueryCalls { n_calls: 0, probe };
+        Withheld(probes(request).into_iter().map(asked).collect())
     }
 
     /// Answers a question, and counts it. A call that the probe does not allow is refused with the message of its panic.
