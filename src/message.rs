@@ -129,11 +129,9 @@ impl Message for String {
     }
 }
 
-/// # Panics
-///
-/// If a list is longer than `u32::MAX`: four times as long as the longest message.
+/// A list of more than `u32::MAX` items makes a message that is too long to be sent.
 fn write_length(length: usize, bytes: &mut Vec<u8>) {
-    u32::try_from(length).expect("a list of at most u32::MAX items").write(bytes);
+    u32::try_from(length).unwrap_or(u32::MAX).write(bytes);
 }
 
 impl<T: Message> Message for Vec<T> {
@@ -196,11 +194,12 @@ impl<T: Message, const N: usize> Message for [T; N] {
     }
 
     fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-        let parts = std::array::from_fn(|_| T::read(bytes).ok());
-        if parts.iter().any(Option::is_none) {
-            return Err(Malformed("an array is not complete"));
+        let mut error = None;
+        let parts = std::array::from_fn(|_| T::read(bytes).map_err(|why| *error.get_or_insert(why)).ok());
+        match error {
+            Some(error) => Err(error),
+            None => Ok(parts.map(|part: Option<T>| part.expect("there was no error"))),
         }
-        Ok(parts.map(|part: Option<T>| part.expect("it was just checked")))
     }
 }
 

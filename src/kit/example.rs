@@ -148,7 +148,6 @@ examples! {
     Vec<MaterialHits> => Vec::new();
     Vec<Vec<Vec3>> => Vec::new();
     Vec<PrimitiveBox> => Vec::new();
-    Vec<SecondaryRay> => Vec::new();
 
     SphereQuery => SphereQuery { ray: example(), sphere: example() };
     PlaneQuery => PlaneQuery {

@@ -89,8 +89,7 @@ message! { enum Reply {
 ///
 /// # Errors
 ///
-/// If the message cannot be serialised, if it is longer than `u32::MAX` bytes, or if the pipe cannot be
-/// written.
+/// If the message is longer than `u32::MAX` bytes, or if the pipe cannot be written.
 pub fn send<T: Message>(pipe: &mut impl Write, message: &T) -> io::Result<()> {
     let bytes = to_bytes(message);
     let length = u32::try_from(bytes.len()).map_err(io::Error::other)?;
@@ -131,27 +130,6 @@ pub fn receive_up_to<T: Message>(pipe: &mut impl Read, longest: usize) -> io::Re
         return Err(io::ErrorKind::UnexpectedEof.into());
     }
     from_bytes(&bytes).map_err(|error| io::Error::other(format!("no message: {error}")))
-}
-
-/// Writes a request to the pipe of a worker, as [`send`] does.
-///
-/// The messages of a worker are its largest types. Code for them is compiled in this crate, whose level of optimisation is high,
-/// and not in each program that asks a worker.
-///
-/// # Errors
-///
-/// The same as those of [`send`].
-pub fn send_request(mut pipe: &mut dyn Write, request: &Request) -> io::Result<()> {
-    send(&mut pipe, request)
-}
-
-/// Reads a reply of at most `longest` bytes from the pipe of a worker, as [`receive_up_to`] does. See [`send_request`].
-///
-/// # Errors
-///
-/// The same as those of [`receive`].
-pub fn receive_reply(mut pipe: &mut dyn Read, longest: usize) -> io::Result<Reply> {
-    receive_up_to(&mut pipe, longest)
 }
 
 /// Answers requests with the functions of a crate until the pipe closes: the complete `main` of a worker.

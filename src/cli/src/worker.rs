@@ -251,10 +251,10 @@ impl Process {
         let trusted = self.launcher.is_none();
         // Start the watchdog before writing, because a worker that does not read would block the write forever.
         self.watchdog.bark_after(patience);
-        worker::send_request(&mut self.to_worker, request)?;
+        worker::send(&mut self.to_worker, request)?;
         let longest = if trusted { LONGEST_MESSAGE } else { longest_reply(request) };
         loop {
-            match worker::receive_reply(&mut self.from_worker, longest)? {
+            match worker::receive_up_to(&mut self.from_worker, longest)? {
                 Reply::Progress { .. } | Reply::Building { .. } if request.frame().is_none() => {
                     return Err(io::Error::other(
                         "it reports the progress of a frame, but no frame was requested",

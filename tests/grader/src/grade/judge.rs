@@ -382,7 +382,7 @@ impl Transport for RecordingWorker {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let mut message = Vec::new();
         // Writing into a vector cannot fail.
-        let _ = raykata::worker::send_request(&mut message, &request);
+        let _ = raykata::worker::send(&mut message, &request);
         let function = discriminant(&request);
         let mut answer = self.reference.call(request, watch);
         let mut record = self.record.lock().unwrap_or_else(PoisonError::into_inner);
