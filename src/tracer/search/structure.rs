@@ -351,8 +351,7 @@ const LARGE: usize = 16;
 fn large_leaves(structure: &Structure, leaf_size: usize) -> Option<String> {
     fn counts<N: TreeNode>(tree: &Tree<N>) -> Vec<usize> {
         // A polygon that lies in an inner node is listed by no leaf.
-        let is_leaf = |node: &&N| node.children().is_empty();
-        let leaves = tree.nodes.iter().filter(is_leaf);
+        let leaves = tree.nodes.iter().filter(|node| node.is_leaf());
         leaves.filter_map(|leaf| Some(leaf.range()?.1 as usize)).collect()
     }
     let (name, counts) = match structure {

@@ -38,8 +38,9 @@ impl TreeNode for BspNode {
         if let BspNode::Leaf { first, count } = *self { Some((first, count)) } else { None }
     }
 
-    fn children(&self) -> Vec<u32> {
-        if let BspNode::Inner { back, front, .. } = *self { vec![back, front] } else { Vec::new() }
+    fn children(&self) -> impl Iterator<Item = u32> {
+        let both = if let BspNode::Inner { back, front, .. } = *self { Some([back, front]) } else { None };
+        both.into_iter().flatten()
     }
 
     fn divide(&self, above: &Vec<(CutPlane, f64)>) -> Vec<Vec<(CutPlane, f64)>> {

@@ -82,8 +82,9 @@ impl TreeNode for KdNode {
         if let KdNode::Leaf { first, count } = *self { Some((first, count)) } else { None }
     }
 
-    fn children(&self) -> Vec<u32> {
-        if let KdNode::Inner { left, right, .. } = *self { vec![left, right] } else { Vec::new() }
+    fn children(&self) -> impl Iterator<Item = u32> {
+        let both = if let KdNode::Inner { left, right, .. } = *self { Some([left, right]) } else { None };
+        both.into_iter().flatten()
     }
 
     fn divide(&self, cell: &Cell) -> Vec<Cell> {

@@ -34,11 +34,9 @@ impl TreeNode for OctreeNode {
         if let OctreeNode::Leaf { first, count } = *self { Some((first, count)) } else { None }
     }
 
-    fn children(&self) -> Vec<u32> {
-        match *self {
-            OctreeNode::Inner { first } => (0..8).map(|octant| first.saturating_add(octant)).collect(),
-            OctreeNode::Leaf { .. } => Vec::new(),
-        }
+    fn children(&self) -> impl Iterator<Item = u32> {
+        let first = if let OctreeNode::Inner { first } = *self { Some(first) } else { None };
+        first.into_iter().flat_map(|first| (0..8).map(move |octant| first.saturating_add(octant)))
     }
 
     fn divide(&self, cell: &Cell) -> Vec<Cell> {

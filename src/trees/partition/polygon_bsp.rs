@@ -45,8 +45,10 @@ impl TreeNode for PolygonBspNode {
         Some((first, count))
     }
 
-    fn children(&self) -> Vec<u32> {
-        if let PolygonBspNode::Inner { back, front, .. } = *self { vec![back, front] } else { Vec::new() }
+    fn children(&self) -> impl Iterator<Item = u32> {
+        let both =
+            if let PolygonBspNode::Inner { back, front, .. } = *self { Some([back, front]) } else { None };
+        both.into_iter().flatten()
     }
 
     fn divide(&self, above: &Vec<(CutPlane, f64)>) -> Vec<Vec<(CutPlane, f64)>> {

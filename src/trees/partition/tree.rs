@@ -17,7 +17,12 @@ pub trait TreeNode: Copy {
     fn range(&self) -> Option<(u32, u32)>;
 
     /// The indices of the children; none for a leaf.
-    fn children(&self) -> Vec<u32>;
+    fn children(&self) -> impl Iterator<Item = u32>;
+
+    /// Whether the node has no children.
+    fn is_leaf(&self) -> bool {
+        self.children().next().is_none()
+    }
 
     /// The parts of `region` that belong to the children, in their order.
     fn divide(&self, region: &Self::Region) -> Vec<Self::Region>;
@@ -109,7 +114,7 @@ impl<N: TreeNode> Tree<N> {
     ///
     /// If a child's index is out of range.
     pub fn depth(&self) -> usize {
-        let below = |node: &N, (): &()| vec![(); node.children().len()];
+        let below = |node: &N, (): &()| vec![(); node.children().count()];
         self.visit((), usize::MAX, below, |_, (), _| {})
     }
 
@@ -141,10 +146,11 @@ impl<N: TreeNode> Tree<N> {
             each(index, &region, depth);
             levels = levels.max(depth + 1);
             if depth < most {
-                // Push the children in reverse order, because the last entry is visited first.
-                let node = &self.nodes[index as usize];
-                let children = node.children().into_iter().zip(divide(node, &region)).rev();
+                // Reverse the children, because the last entry is visited first.
+                let (node, first) = (&self.nodes[index as usize], waiting.len());
+                let children = node.children().zip(divide(node, &region));
                 waiting.extend(children.map(|(child, region)| (child, region, depth + 1)));
+                waiting[first..].reverse();
             }
         }
         levels
@@ -171,7 +177,7 @@ impl<N: TreeNode<Region = Cell>> CellTree<N> {
     pub fn cells(&self, depth: usize) -> Vec<Aabb> {
         let mut cells = Vec::new();
         self.walk(depth, |node, cell, at| {
-            let is_leaf = self.nodes[node as usize].children().is_empty();
+            let is_leaf = self.nodes[node as usize].is_leaf();
             cells.extend((at == depth || is_leaf).then(|| cell.to_box()));
         });
         cells

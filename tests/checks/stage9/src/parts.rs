@@ -87,7 +87,7 @@ impl Structure for Grid {
 fn leaves_of_cells<N: TreeNode<Region = Cell>>(tree: &CellTree<N>, ray: &Ray) -> Vec<Leaf> {
     let mut leaves = Vec::new();
     tree.walk(usize::MAX, |node, cell, _| {
-        if tree.nodes[node as usize].children().is_empty()
+        if tree.nodes[node as usize].is_leaf()
             && let Some((enter, exit)) = exactly(ray, &cell)
         {
             leaves.push(Leaf { enter, exit, ids: tree.listed(node).to_vec() });

@@ -34,7 +34,7 @@ pub fn fault(answer: &Answer) -> Option<String> {
 }
 
 fn fault_of_tree<N: TreeNode>(tree: &Tree<N>) -> Option<String> {
-    let node = |index: usize| (tree.nodes[index].children(), tree.nodes[index].range());
+    let node = |index: usize| (tree.nodes[index].children().collect(), tree.nodes[index].range());
     fault_of_nodes(tree.nodes.len(), tree.items.len(), node)
 }
 
