@@ -257,6 +257,7 @@ fn nearest_rgbe(color: Vec3) -> Vec3 {
     let bounded = |value: f32| if value > 0.0 { value.min(1e38) } else { 0.0 };
     let color = Vec3::from_array(color.to_array().map(bounded));
     let largest = f64::from(color.max_element());
+    // Numbers near the smallest of the format have fewer digits in single precision.
     if largest < 1e-38 {
         return Vec3::ZERO;
     }

@@ -31,7 +31,7 @@ fn assert_card(scene: &Scene, output: &str) {
         let pixel = 255.0 * film.pixels[(y * film.width + x) as usize];
         for yours in pixel.to_array() {
             let other = expected.next().expect("three numbers per pixel");
-            // The program rounds to whole numbers, which is half a step.
+            // The program rounds to whole numbers: half a step, and a hundredth for single precision here.
             assert!((yours - other).abs() <= 0.51, "column {x}, row {y}: {pixel}, the card has {other}");
         }
     }

@@ -2,8 +2,9 @@
 //! signature `#?RADIANCE` and rows from the top left only, and ignores the exposure.
 
 use glam::Vec3;
-use image::{ImageFormat, ImageReader};
-use std::io::Cursor;
+use image::DynamicImage;
+use image::codecs::hdr::HdrDecoder;
+use std::io::Read;
 
 /// What the header of a file says.
 pub(super) struct Header {
@@ -76,12 +77,11 @@ pub(super) fn pixels(header: &Header, bytes: &[u8]) -> Result<Vec<Vec3>, String>
     // Give the decoder the header that it knows, with scanlines as rows.
     let Header { width, height, .. } = *header;
     let (n_lines, n_along) = if header.by_columns { (width, height) } else { (height, width) };
-    let mut known = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {n_lines} +X {n_along}\n").into_bytes();
-    known.extend_from_slice(&bytes[header.pixels..]);
-    let mut reader = ImageReader::with_format(Cursor::new(known), ImageFormat::Hdr);
-    // The budget of the scene bounds the memory. The limits of the decoder are lower than what a user can allow.
-    reader.no_limits();
-    let stored = reader.decode().map_err(|error| error.to_string())?.into_rgb32f();
+    let known = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {n_lines} +X {n_along}\n");
+    let stored = HdrDecoder::new(known.as_bytes().chain(&bytes[header.pixels..]))
+        .and_then(DynamicImage::from_decoder)
+        .map_err(|error| error.to_string())?
+        .into_rgb32f();
     let at = |x: u32, y: u32| {
         let x = if header.from_right { width - 1 - x } else { x };
         let y = if header.from_below { height - 1 - y } else { y };

@@ -65,6 +65,8 @@ pub(super) fn read(path: &Path, wrap: Wrap, value: Value) -> Result<(Texture, bo
     if open_file()?.read_exact(&mut signature).is_ok() && signature == radiance::SIGNATURE {
         let mut bytes = Vec::new();
         open_file()?.read_to_end(&mut bytes).map_err(|error| trouble(error.to_string()))?;
+        let trouble =
+            |message| trouble(message).help("save it again as a Radiance HDR file in red, green and blue");
         let header = radiance::header(&bytes).map_err(trouble)?;
         let (width, height) = (header.width, header.height);
         budget(width, height)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The most lines of Rust in the repository. It may fall, and does not rise.
-const MOST_LINES: usize = 130_507;
+const MOST_LINES: usize = 130_471;
 
 #[test]
 fn what_comes_in_takes_something_out() {
