@@ -84,10 +84,10 @@ impl Mesh {
 }
 
 /// A mesh of the scene, with the settings that the scene file gives for it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneMesh {
     /// Positions, triangles and optional normals, texture coordinates and face materials, in the space of the
-    /// mesh.
+    /// mesh. Empty if nothing shows the mesh.
     pub mesh: Arc<Mesh>,
     /// Whether shading normals are interpolated over each triangle; otherwise the normal of the triangle is
     /// used.
