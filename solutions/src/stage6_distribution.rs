@@ -187,8 +187,9 @@ pub fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3 {
 /// Slides "Soft shadows" and "Area Lights".
 pub fn sample_sphere(sphere: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
     // <solution>
-    let to_center = sphere.center - from;
-    let sin_squared = sphere.radius * sphere.radius / to_center.length_squared();
+    // Measure lengths in radii, so that the square of a tiny one does not underflow.
+    let to_center = (sphere.center - from) / sphere.radius;
+    let sin_squared = to_center.length_squared().recip();
     // Compute 1 - cos θ of the rim. From inside it is 2, up to the direction away from the centre.
     let one_minus_cos_max =
         if sin_squared < 1.0 { sin_squared / (1.0 + (1.0 - sin_squared).sqrt()) } else { 2.0 };

@@ -153,8 +153,18 @@ impl Program {
     /// The program that makes the figures of the slides.
     pub const FIGURES: Program = Program { package: "figures", name: "figures", feature: None };
 
-    fn file(&self) -> String {
-        format!("{}{}", self.name, std::env::consts::EXE_SUFFIX)
+    /// The program that renders and measures.
+    pub const RAYKATA: Program = Program { package: "raykata-cli", name: "raykata", feature: None };
+
+    /// The path of this program among those that cargo has built.
+    ///
+    /// # Errors
+    ///
+    /// If it is not among them.
+    pub fn among(&self, built: &[BuiltProgram]) -> Result<PathBuf> {
+        let found = built.iter().find(|program| program.name == self.name);
+        let found = found.with_context(|| format!("cargo has not built the program {}", self.name))?;
+        Ok(found.path.clone())
     }
 }
 
@@ -171,9 +181,32 @@ pub fn build_worker(root: &Path, which: Which, need: Need) -> Result<PathBuf> {
 /// Builds programs of the workspace at `root` in the profile of this program, and returns their paths. If
 /// something has to be built, it prints a line that names `what`, followed by the output of cargo.
 pub fn build<const N: usize>(root: &Path, what: &str, programs: [Program; N]) -> Result<[PathBuf; N]> {
-    let (cargo, paths) = cargo_build(root, programs)?;
-    run_cargo(cargo, what)?;
-    Ok(paths)
+    let mut cargo = cargo_build(root, &programs)?;
+    cargo.arg("--message-format=json-render-diagnostics");
+    let messages = run_cargo(cargo, what)?;
+    let built: Vec<BuiltProgram> =
+        String::from_utf8_lossy(&messages).lines().filter_map(BuiltProgram::read).collect();
+    let path = |program: Program| program.among(&built);
+    let paths = programs.into_iter().map(path).collect::<Result<Vec<_>>>()?;
+    paths.try_into().map_err(|_| anyhow!("cargo has not built all programs"))
+}
+
+/// A program that cargo has built.
+pub struct BuiltProgram {
+    /// Its name.
+    pub name: String,
+    /// Its path. Only cargo knows it: it depends on the target, the profile, settings and environment variables.
+    pub path: PathBuf,
+}
+
+impl BuiltProgram {
+    /// Reads one line that cargo writes in the format JSON; `None` if it is about something else.
+    pub fn read(line: &str) -> Option<BuiltProgram> {
+        let message: serde_json::Value = serde_json::from_str(line).ok()?;
+        let text = |value: &serde_json::Value| value.as_str().map(str::to_owned);
+        let path = text(message.get("executable")?)?.into();
+        Some(BuiltProgram { name: text(&message["target"]["name"])?, path })
+    }
 }
 
 /// Runs a program with these words to its end, and returns its exit code; 1 if it was killed.
@@ -183,18 +216,14 @@ pub fn run_program(program: &Path, words: impl IntoIterator<Item = impl AsRef<Os
     Ok(ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)))
 }
 
-/// The command that builds programs of the workspace at `root` in the profile of this program, and their paths afterwards.
-pub fn cargo_build<const N: usize>(root: &Path, programs: [Program; N]) -> Result<(Command, [PathBuf; N])> {
-    for program in &programs {
+/// The command that builds programs of the workspace at `root` in the target folder and the profile of this program.
+pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<Command> {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(root).arg("build");
+    for program in programs {
         if program.package == Which::Solutions.package() && !has_solutions(root) {
             bail!("there are no solutions in {}: omit `--kit solutions`", root.display());
         }
-    }
-    // Build in the target folder and the profile of this program.
-    let folder = build_folder()?;
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(root).arg("build");
-    for program in &programs {
         cargo.args(["--package", program.package, "--bin", program.name]);
         if let Some(feature) = program.feature {
             // Pass the feature without the name of the package: the solutions depend on themselves in their
@@ -202,25 +231,29 @@ pub fn cargo_build<const N: usize>(root: &Path, programs: [Program; N]) -> Resul
             cargo.args(["--features", feature]);
         }
     }
-    cargo.args(profile_of(&folder));
-    if let Some(target) = folder.parent() {
-        cargo.arg("--target-dir").arg(target);
+    if let Some(profile) = profile() {
+        cargo.arg(format!("--profile={profile}"));
     }
-    Ok((cargo, programs.map(|program| folder.join(program.file()))))
+    if let Some(folder) = target_folder() {
+        cargo.arg("--target-dir").arg(folder);
+    }
+    Ok(cargo)
 }
 
-/// The option of cargo for the profile of a folder in the target folder, which has its name.
-pub(crate) fn profile_of(folder: &Path) -> Option<String> {
-    let name = folder.file_name()?.to_str().filter(|name| *name != "debug")?;
-    Some(format!("--profile={name}"))
+/// The target folder in which cargo has built this program; `None` for a copy elsewhere.
+pub fn target_folder() -> Option<PathBuf> {
+    // Cargo writes this file into each target folder.
+    let program = std::env::current_exe().ok()?;
+    program.ancestors().skip(1).find(|folder| folder.join(".rustc_info.json").is_file()).map(Path::to_owned)
 }
 
-/// The folder of this program inside of the target folder, whose name is that of its profile.
-pub fn build_folder() -> Result<PathBuf> {
-    let here = std::env::current_exe().context("the path of this program is unknown")?;
-    let folder = here.parent().context("this program is in no folder")?;
-    let folder = if folder.ends_with("deps") { folder.parent().unwrap_or(folder) } else { folder };
-    Ok(folder.to_owned())
+/// The profile in which cargo has built this program; `None` for `dev`, and for a copy elsewhere.
+pub fn profile() -> Option<String> {
+    target_folder()?;
+    let program = std::env::current_exe().ok()?;
+    // Tests lie in a folder `deps` inside of that with the name of the profile.
+    let name = program.ancestors().skip(1).find(|folder| !folder.ends_with("deps"))?.file_name()?.to_str()?;
+    (name != "debug").then(|| name.to_owned())
 }
 
 /// Runs a build by cargo and returns what it writes to standard output. If something has to be built, or if the build waits for

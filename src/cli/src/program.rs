@@ -1,7 +1,7 @@
 //! The command line of a program with many commands: `raykata`, `grader` and `author`.
 
 use crate::args::{Given, Misuse, Read, Spec, did_you_mean, entry};
-use crate::report::say;
+use crate::report::{lost, say};
 use anyhow::Result;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -53,7 +53,12 @@ fn words_of(spec: &Spec) -> &'static str {
 impl<T> Program<T> {
     /// The main function of the program.
     pub fn main(&self) -> ExitCode {
-        match self.run(std::env::args_os().skip(1).collect()) {
+        let result = self.run(std::env::args_os().skip(1).collect());
+        if let Some(error) = lost() {
+            eprintln!("error: the output cannot be written: {error}");
+            return ExitCode::from(1);
+        }
+        match result {
             Ok(code) => code,
             Err(error) => {
                 eprintln!("error: {error:#}");

@@ -10,15 +10,26 @@ use raykata::scene::Scene;
 use raykata::scene::error::{LoadError, printable};
 use raykata::scene::load::{self, Limits, Loaded};
 use std::fmt;
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+/// Why words that were to be printed are lost, if any are.
+static LOST: OnceLock<std::io::Error> = OnceLock::new();
 
 /// Prints to standard output. If the reader has closed the pipe, as `head` does, the rest of the output is
-/// lost; that is not an error, and files are still written.
+/// lost; that is not an error, and files are still written. [`lost`] knows other errors.
 pub fn say(words: fmt::Arguments<'_>) {
     let mut out = std::io::stdout().lock();
-    let _ = out.write_fmt(words).and_then(|()| out.flush());
+    match out.write_fmt(words).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => _ = LOST.set(error),
+        _ => {}
+    }
+}
+
+/// The first error of [`say`], for the end of a program.
+pub fn lost() -> Option<&'static std::io::Error> {
+    LOST.get()
 }
 
 /// A number with a comma between thousands.

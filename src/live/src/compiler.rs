@@ -2,9 +2,11 @@
 
 use crate::process::Process;
 use anyhow::{Result, bail};
+use raykata_cli::kits::{BuiltProgram, Program};
 use serde::Serialize;
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
+use std::path::PathBuf;
 use std::process::Command;
 
 /// An error: where it is, what is wrong, and the line of code.
@@ -20,23 +22,34 @@ pub struct CompilerError {
     pub notes: Vec<String>,
 }
 
-/// Runs a build of the exercises by cargo, and returns the errors of the compiler; `None` if the run is over.
+/// What a build gives.
+pub enum Compiled {
+    /// The path of the program.
+    Program(PathBuf),
+    /// The errors of the compiler.
+    Errors(Vec<CompilerError>),
+}
+
+/// Runs a build of `program` by cargo; returns `None` if the run is over.
 ///
 /// # Errors
 ///
 /// If cargo cannot be started, or fails for another reason.
-pub fn compile(process: &Process, mut cargo: Command) -> Result<Option<Vec<CompilerError>>> {
+pub fn compile(process: &Process, mut cargo: Command, program: Program) -> Result<Option<Compiled>> {
     cargo.arg("--message-format=json");
-    let mut errors = Vec::new();
+    let (mut errors, mut built) = (Vec::new(), Vec::new());
     let lines = |out: &mut BufReader<_>| {
-        errors.extend(out.lines().map_while(Result::ok).filter_map(|line| error_in(&line)));
+        for line in out.lines().map_while(Result::ok) {
+            errors.extend(error_in(&line));
+            built.extend(BuiltProgram::read(&line));
+        }
         Ok(())
     };
     let Some((compiled, words)) = process.follow(cargo, lines)? else { return Ok(None) };
     match compiled {
-        true => Ok(Some(Vec::new())),
-        false if errors.is_empty() => bail!("the exercises cannot be built:\n{}", words.trim()),
-        false => Ok(Some(errors)),
+        true => Ok(Some(Compiled::Program(program.among(&built)?))),
+        false if errors.is_empty() => bail!("the {} cannot be built:\n{}", program.package, words.trim()),
+        false => Ok(Some(Compiled::Errors(errors))),
     }
 }
 

@@ -1,4 +1,4 @@
-//! The program that `raykata watch` starts: `watch ROOT [STAGE]`. It compiles the exercises and runs the checks of a stage
+//! The program that `raykata watch` starts: `watch ROOT JUDGE RAYKATA [STAGE]`. It compiles the exercises and runs the checks of a stage
 //! whenever a file of the student changes.
 //!
 //! `run` (one run, which a save cancels) · `course` (stages, checks and verdicts) · `app` (what keys and events do) · `screen` (the text of the screen) · `pixels` (pictures
@@ -17,8 +17,8 @@ mod terminal;
 
 use anyhow::{Context, Result, bail};
 use raykata_cli::program::ended;
+use run::Paths;
 use std::io::IsTerminal;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -28,12 +28,12 @@ fn main() -> ExitCode {
 fn watch() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let (root, stage): (PathBuf, Option<u8>) = match words[..] {
-        [root] => (root.into(), None),
-        [root, stage] => (root.into(), Some(stage.parse().context("the stage is no number")?)),
-        _ => bail!("`raykata watch` starts this program. It is not started by hand"),
+    let [root, judge, raykata, ref stage @ ..] = words[..] else {
+        bail!("`raykata watch` starts this program. It is not started by hand")
     };
+    let paths = Paths { root: root.into(), judge: judge.into(), raykata: raykata.into() };
+    let stage = stage.first().map(|stage| stage.parse().context("the stage is no number")).transpose()?;
     let screen = std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
     let dumb = std::env::var_os("TERM").is_some_and(|name| name == "dumb");
-    if screen && !dumb { terminal::watch(&root, stage) } else { plain::watch(&root, stage) }
+    if screen && !dumb { terminal::watch(&paths, stage) } else { plain::watch(&paths, stage) }
 }

@@ -2,12 +2,11 @@
 //! program is interrupted.
 
 use crate::app::{Action, App, Phase};
-use crate::run::{Event, Report, Run};
+use crate::run::{Event, Paths, Report, Run};
 use anyhow::Result;
 use live::files::Files;
 use raykata_cli::report::say;
 use raykata_cli::verdicts::Verdict;
-use std::path::Path;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
@@ -15,8 +14,8 @@ use std::time::Duration;
 const PAUSE: Duration = Duration::from_millis(150);
 
 /// Follows the files until the program is interrupted.
-pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
-    let mut files = Files::new(live::exercises(root));
+pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
+    let mut files = Files::new(live::exercises(&paths.root));
     let (sender, reports) = mpsc::channel();
     let (mut app, mut action) = App::new(stage, (80, 24));
     let (mut run, mut number) = (None, 0);
@@ -25,7 +24,7 @@ pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
         if let Action::Start(task) = action {
             drop(run.take());
             number += 1;
-            run = Some(Run::start(root.to_owned(), task, number, sender.clone()));
+            run = Some(Run::start(paths.clone(), task, number, sender.clone()));
         }
         action = match reports.recv_timeout(PAUSE) {
             Ok(Report { run, event }) if run == number => {

@@ -3,11 +3,11 @@
 
 use crate::pixels::Pixels;
 use anyhow::{Context, Result, bail};
-use live::compiler::{CompilerError, compile};
+use live::compiler::{Compiled, CompilerError, compile};
 use live::process::Process;
 use live::scene_of;
 use raykata::worker::receive;
-use raykata_cli::kits::{Need, Program, Which, cargo_build};
+use raykata_cli::kits::{Need, Program, Which, cargo_build, profile};
 use raykata_cli::verdicts::CheckVerdict;
 use std::io::{BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -50,18 +50,29 @@ pub enum Task {
     Render(u8, u32, u32),
 }
 
+/// Where the kit and its programs are.
+#[derive(Clone)]
+pub struct Paths {
+    /// The folder of the kit.
+    pub root: PathBuf,
+    /// The program that runs the checks.
+    pub judge: PathBuf,
+    /// The program that renders.
+    pub raykata: PathBuf,
+}
+
 /// A run. It is cancelled when it is dropped.
 pub struct Run(Arc<Process>);
 
 impl Run {
     /// Starts a run, which reports to `reports`.
-    pub fn start(root: PathBuf, task: Task, run: u64, reports: Sender<Report>) -> Run {
+    pub fn start(paths: Paths, task: Task, run: u64, reports: Sender<Report>) -> Run {
         let process = Arc::new(Process::default());
         let own = process.clone();
         std::thread::spawn(move || {
             // The receiver is gone only when the program ends.
             let report = |event| _ = reports.send(Report { run, event });
-            if let Err(error) = work(&root, task, &own, &report) {
+            if let Err(error) = work(&paths, task, &own, &report) {
                 report(Event::Broken(format!("{error:#}")));
             }
         });
@@ -76,37 +87,36 @@ impl Drop for Run {
 }
 
 /// Does the work of a run.
-fn work(root: &Path, task: Task, process: &Process, report: &impl Fn(Event)) -> Result<()> {
+fn work(paths: &Paths, task: Task, process: &Process, report: &impl Fn(Event)) -> Result<()> {
     // Compile the exercises.
     let begin = Instant::now();
     let need = match task {
         Task::Check(_) => Need::Checks,
         Task::Render(..) => Need::Frames,
     };
-    let (mut cargo, [worker]) = cargo_build(root, [Program::worker(Which::Exercises, need)])?;
+    let worker = Program::worker(Which::Exercises, need);
+    let mut cargo = cargo_build(&paths.root, &[worker])?;
     // Compile for checks as `cargo test` does: without optimisation and incrementally, which takes a fifth of the time.
-    let in_debug = worker.parent().is_some_and(|folder| folder.ends_with("debug"));
-    if matches!(task, Task::Check(_)) && in_debug {
+    if matches!(task, Task::Check(_)) && profile().is_none() {
         cargo.args(["--profile", "test"]);
     }
-    let Some(errors) = compile(process, cargo)? else { return Ok(()) };
-    if !errors.is_empty() {
-        report(Event::Errors(errors));
-        return Ok(());
-    }
+    let worker = match compile(process, cargo, worker)? {
+        Some(Compiled::Program(worker)) => worker,
+        Some(Compiled::Errors(errors)) => return Ok(report(Event::Errors(errors))),
+        None => return Ok(()),
+    };
     report(Event::Compiled(begin.elapsed()));
     match task {
-        Task::Check(stage) => check(root, &worker, stage, process, report),
-        Task::Render(stage, width, height) => render(root, stage, (width, height), process, report),
+        Task::Check(stage) => check(paths, &worker, stage, process, report),
+        Task::Render(stage, width, height) => render(paths, stage, (width, height), process, report),
     }
 }
 
 /// Lets the judge run the checks of a stage.
-fn check(root: &Path, worker: &Path, stage: u8, process: &Process, report: &impl Fn(Event)) -> Result<()> {
+fn check(paths: &Paths, worker: &Path, stage: u8, process: &Process, report: &impl Fn(Event)) -> Result<()> {
     let begin = Instant::now();
-    let judge = worker.with_file_name(format!("judge{}", std::env::consts::EXE_SUFFIX));
-    let mut command = Command::new(judge);
-    command.arg("verdicts").arg(root).arg(worker).arg(stage.to_string());
+    let mut command = Command::new(&paths.judge);
+    command.arg("verdicts").arg(&paths.root).arg(worker).arg(stage.to_string());
     let verdicts = |out: &mut BufReader<_>| loop {
         match receive::<CheckVerdict>(out) {
             Ok(verdict) => report(Event::Verdict(verdict)),
@@ -124,17 +134,16 @@ fn check(root: &Path, worker: &Path, stage: u8, process: &Process, report: &impl
 
 /// Renders the scene of a stage in the size of the terminal.
 fn render(
-    root: &Path,
+    paths: &Paths,
     stage: u8,
     (width, height): (u32, u32),
     process: &Process,
     report: &impl Fn(Event),
 ) -> Result<()> {
+    let root = &paths.root;
     let scene = scene_of(root, stage);
     let out = root.join("out/watch.png");
-    let here = std::env::current_exe().context("the path of this program is unknown")?;
-    let raykata = here.with_file_name(format!("raykata{}", std::env::consts::EXE_SUFFIX));
-    let mut command = Command::new(raykata);
+    let mut command = Command::new(&paths.raykata);
     command.current_dir(root).arg("render").arg(&scene).arg("--out").arg(&out);
     command.args(["--kit", "exercises", "--size", &format!("{width}x{height}"), "--spp", "1"]);
     match process.follow_silently(command)? {

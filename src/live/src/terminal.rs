@@ -2,7 +2,7 @@
 
 use crate::app::{Action, App};
 use crate::editor;
-use crate::run::{Report, Run};
+use crate::run::{Paths, Report, Run};
 use crate::screen::{Look, Row, Tone, rows};
 use anyhow::Result;
 use crossterm::cursor::{Hide, MoveTo, Show};
@@ -12,7 +12,6 @@ use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlt
 use crossterm::{execute, queue};
 use live::files::Files;
 use std::io::{Write, stdout};
-use std::path::Path;
 use std::sync::mpsc;
 use std::time::Duration;
 
@@ -39,7 +38,8 @@ impl Drop for Screen {
 }
 
 /// Follows the files until the student ends it.
-pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
+pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
+    let root = &paths.root;
     let look = Look::of_environment();
     let has_colours = std::env::var_os("NO_COLOR").is_none();
     let mut files = Files::new(live::exercises(root));
@@ -57,7 +57,7 @@ pub fn watch(root: &Path, stage: Option<u8>) -> Result<()> {
                 // End the run before this one first, because both use the same files.
                 drop(run.take());
                 number += 1;
-                run = Some(Run::start(root.to_owned(), task, number, sender.clone()));
+                run = Some(Run::start(paths.clone(), task, number, sender.clone()));
             }
             Action::AskReset => app.ask_reset(root),
             Action::Reset => app.reset(root),

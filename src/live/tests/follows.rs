@@ -21,6 +21,7 @@ case "$(head -n 1 exercises/src/stage1_shapes.rs)" in
     *error*) cat error.json; exit 101 ;;
     *loop*) echo $$ > looping; exec sleep 1000 ;;
 esac
+echo '{"reason":"compiler-artifact","target":{"name":"exercises-worker"},"executable":"'"$PWD"'/target/debug/exercises-worker"}'
 "#;
 
 const ERROR: &str = r#"{"reason":"compiler-message","message":{"level":"error","message":"mismatched types","spans":[{"is_primary":true,"file_name":"exercises/src/stage1_shapes.rs","line_start":1,"column_start":4,"label":"expected f32","text":[{"text":"// error"}]}],"children":[]}}"#;
@@ -64,7 +65,13 @@ fn save(kit: &KitFolder, first: &str) {
 
 fn watch(kit: &KitFolder) -> Command {
     let mut command = Command::new(kit.path("target/debug/watch"));
-    command.arg(kit.root()).arg("1").env("CARGO", kit.path("cargo")).env("LANG", "C.UTF-8");
+    command
+        .arg(kit.root())
+        .arg(kit.path("target/debug/judge"))
+        .arg("raykata")
+        .arg("1")
+        .env("CARGO", kit.path("cargo"))
+        .env("LANG", "C.UTF-8");
     command.env("TERM", "xterm").env("COLORTERM", "").env_remove("NO_COLOR").env_remove("LC_ALL");
     command
 }

@@ -4,7 +4,7 @@
 //! does not use the workers of other commands. It writes a small workspace into the target folder, with one package per
 //! kit, which compiles the files of its folder.
 
-use crate::kits::{Which, build_folder, profile_of, run_cargo};
+use crate::kits::{BuiltProgram, Which, profile, run_cargo, target_folder};
 use anyhow::{Context, Result, bail};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -59,8 +59,7 @@ fn is_kit(folder: &Path) -> bool {
 
 /// Builds all racers with the same options, and returns their worker programs.
 pub fn build(root: &Path, racers: &[Racer]) -> Result<Vec<PathBuf>> {
-    let built = build_folder()?;
-    let target = built.parent().context("this program is in no folder")?;
+    let target = target_folder().unwrap_or_else(|| root.join("target"));
     let workspace = target.join("race");
     // Write the workspace. A file with the same text keeps its time, so that cargo builds nothing again.
     let manifest = std::fs::read_to_string(root.join("Cargo.toml")).context("cannot read Cargo.toml")?;
@@ -80,10 +79,18 @@ pub fn build(root: &Path, racers: &[Racer]) -> Result<Vec<PathBuf>> {
     }
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(&workspace).args(["build", "--workspace", "--bins", "--target-dir"]).arg(target);
-    cargo.args(profile_of(&built));
-    run_cargo(cargo, "the kits of the race")?;
-    let program = |i| built.join(format!("{}{}", package_name(i), std::env::consts::EXE_SUFFIX));
-    Ok((0..racers.len()).map(program).collect())
+    cargo.arg("--message-format=json-render-diagnostics");
+    if let Some(profile) = profile() {
+        cargo.arg(format!("--profile={profile}"));
+    }
+    let messages = run_cargo(cargo, "the kits of the race")?;
+    let built: Vec<BuiltProgram> =
+        String::from_utf8_lossy(&messages).lines().filter_map(BuiltProgram::read).collect();
+    let path = |i| {
+        let found = built.iter().find(|program| program.name == package_name(i));
+        Ok(found.with_context(|| format!("cargo has not built {}", package_name(i)))?.path.clone())
+    };
+    (0..racers.len()).map(path).collect()
 }
 
 fn package_name(racer: usize) -> String {

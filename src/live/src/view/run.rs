@@ -9,12 +9,12 @@ use super::quick_tree::quickly_built;
 use super::reference::{Origin, Reference};
 use super::studio::{Kit, PATIENCE, Pass, Studio, encoded, job, read_scene};
 use anyhow::{Context, Result, bail};
-use live::compiler::compile;
+use live::compiler::{Compiled, compile};
 use live::process::Process;
 use raykata::frame::{Tile, Watch};
 use raykata::kit::{Door, Frames, RenderJob, Rendering, View, kit_error};
 use raykata::scene::Scene;
-use raykata_cli::kits::{Need, Program, Which, cargo_build};
+use raykata_cli::kits::{Need, Program, Which, cargo_build, profile};
 use raykata_cli::report::Thousands;
 use raykata_cli::worker::Worker;
 use serde_json::json;
@@ -226,11 +226,12 @@ impl Work {
     /// Renders the reference.
     fn reference(&self, job: &RenderJob) -> Result<()> {
         let worker = Program::worker(Which::Solutions, Need::Frames);
-        let (cargo, [program]) = cargo_build(&self.studio.root, [worker])?;
-        let Some((compiled, words)) = self.builds[1].follow_silently(cargo)? else { return Ok(()) };
-        if !compiled {
-            bail!("the solutions cannot be built:\n{}", words.trim());
-        }
+        let cargo = cargo_build(&self.studio.root, &[worker])?;
+        let program = match compile(&self.builds[1], cargo, worker)? {
+            Some(Compiled::Program(program)) => program,
+            Some(Compiled::Errors(_)) => bail!("the solutions do not compile"),
+            None => return Ok(()),
+        };
         let kit = self.start_kits(&program, &|| self.is_over()).renderer;
         let rendered = kit_error::catch(|| kit.render(job, &Silent(self)));
         if self.is_over() {
@@ -249,16 +250,20 @@ impl Work {
     /// over.
     fn compile(&self, quick: bool) -> Result<Option<PathBuf>> {
         let worker = Program::worker(Which::Exercises, Need::Frames);
-        let (mut cargo, [program]) = cargo_build(&self.studio.root, [worker])?;
+        let mut cargo = cargo_build(&self.studio.root, &[worker])?;
         if quick {
-            without_optimisation(&mut cargo, &program);
+            without_optimisation(&mut cargo);
         }
-        let Some(errors) = compile(&self.builds[usize::from(!quick)], cargo)? else { return Ok(None) };
-        if !errors.is_empty() {
-            self.studio.errors(self.number, errors);
-            return Ok(None);
+        match compile(&self.builds[usize::from(!quick)], cargo, worker)? {
+            Some(Compiled::Program(program)) => {
+                Ok(Some(copied(&program, if quick { "exercises-quick" } else { "exercises-full" })?))
+            }
+            Some(Compiled::Errors(errors)) => {
+                self.studio.errors(self.number, errors);
+                Ok(None)
+            }
+            None => Ok(None),
         }
-        Ok(Some(copied(&program, if quick { "exercises-quick" } else { "exercises-full" })?))
     }
 }
 
@@ -290,9 +295,8 @@ fn remove_old_copies(folder: &Path) {
 }
 
 /// Lets cargo compile the exercises as `cargo test` does: without optimisation, and only what has changed.
-fn without_optimisation(cargo: &mut Command, program: &Path) {
-    let folder = program.parent().and_then(Path::file_name).and_then(|name| name.to_str());
-    let profile = folder.filter(|name| *name != "debug").unwrap_or("dev");
+fn without_optimisation(cargo: &mut Command) {
+    let profile = profile().unwrap_or("dev".into());
     for setting in ["opt-level=0", "incremental=true", "codegen-units=64"] {
         cargo.arg("--config").arg(format!("profile.{profile}.package.exercises.{setting}"));
     }

@@ -22,6 +22,7 @@ const CARGO: &str = r#"#!/bin/sh
 case "$(head -n 1 exercises/src/stage1_shapes.rs)" in
     *error*) cat error.json; exit 101 ;;
 esac
+echo '{"reason":"compiler-artifact","target":{"name":"exercises-frames"},"executable":"'"$PWD"'/target/debug/exercises-frames"}'
 "#;
 
 const ERROR: &str = r#"{"reason":"compiler-message","message":{"level":"error","message":"expected one of `;` or `}`, found `<b>`","spans":[{"is_primary":true,"file_name":"exercises/src/stage1_shapes.rs","line_start":7,"column_start":4,"label":"expected `;`","text":[{"text":"let x = <b>1</b>"}]}],"children":[]}}"#;

@@ -47,7 +47,7 @@ checks::stage! { ($ crate) 11 [
     weights::mis_weight_survives_extreme_densities
     weights::mis_weights_keep_the_variance_low
     roulette::roulette_keeps_the_mean
-    roulette::roulette_ends_no_bright_and_no_young_path
+    roulette::roulette_ends_no_young_path
     roulette::roulette_ends_paths_without_weight
     integrating_sphere::paths_in_an_integrating_sphere_find_its_light
     bounces::cut_off_is_the_light_beyond_the_last_bounce

@@ -76,7 +76,8 @@ fn colors(kit: &dyn Kit, rays: &[Ray], spheres: &[Sphere]) -> Vec<Vec3> {
                 continue;
             };
             let point = (way.ray.origin.as_dvec3() + t * direction.as_dvec3()).as_vec3();
-            let outwards = (point - sphere.center) / sphere.radius;
+            // Of unit length, although the point was rounded.
+            let outwards = (point - sphere.center).as_dvec3().normalize().as_vec3();
             let entering = outwards.dot(direction) < 0.0;
             let normal = if entering { outwards } else { -outwards };
             let (weight, depth, material) = (way.weight, way.depth, sphere.material.clone());

@@ -16,7 +16,7 @@ const FROM_BEFORE: &str =
 const STEP: f32 = 0.25;
 
 /// The tolerance of a weight: the difference of two sums of some numbers up to 9, each rounded to a few units of 1e-6,
-/// divided by [`STEP`]. Any two weights of the rule differ by at least 1/32.
+/// divided by [`STEP`]. Weights of a vertex and of the next number of neighbours differ by at least 1/112.
 const NEAR_WEIGHT: f64 = 1e-3;
 
 /// A mesh, the subdivided mesh, and the weights of the old vertices in the new positions.
@@ -38,17 +38,16 @@ fn moved(mesh: &Mesh) -> Vec<Mesh> {
     (0..mesh.positions.len()).map(with).collect()
 }
 
-/// The weight of each of the `n` neighbours of an inner old vertex. Recorded from the rule for the vertices of these
-/// meshes: 3/16 for 3 neighbours, and 3/(8n) otherwise.
-fn inner_share(n: usize) -> f64 {
+/// The weights that each of the `n` neighbours of an inner old vertex may have: by Warren's rule, which the contract states, or
+/// by Loop's own.
+fn inner_shares(n: usize) -> [f64; 2] {
     match n {
-        0 => 0.0,
-        2 | 3 => 0.1875,
-        4 => 0.093_75,
-        5 => 0.075,
-        6 => 0.0625,
-        7 => 0.053_571_428,
-        _ => f64::NAN,
+        0 => [0.0; 2],
+        3 => [0.1875; 2],
+        n => {
+            let cosine = (std::f64::consts::TAU / n as f64).cos();
+            [3.0 / (8.0 * n as f64), (0.625 - (0.375 + 0.25 * cosine).powi(2)) / n as f64]
+        }
     }
 }
 
@@ -151,8 +150,9 @@ impl<'a> Step<'a> {
         let index = vertex as usize;
         let (around, along) = self.neighbours(vertex);
         let others = if border { &along } else { &around };
-        let shares = shared(vertex, others, if border { 0.125 } else { inner_share(others.len()) });
-        if self.takes(index, &shares) {
+        let allowed = if border { [0.125; 2] } else { inner_shares(others.len()) };
+        let [shares, loops_own] = allowed.map(|share| shared(vertex, others, share));
+        if self.takes(index, &shares) || self.takes(index, &loops_own) {
             return Ok(());
         }
         let sum: f64 = self.weights[index].iter().sum();
@@ -174,7 +174,13 @@ impl<'a> Step<'a> {
             (around.is_empty(), "you move a vertex that belongs to no triangle: it stays"),
             (!around.is_empty() && own_only, "you do not move the old vertices: they move, too"),
             (uses_moved, FROM_BEFORE),
-            (border && self.takes(index, &shared(vertex, &around, inner_share(around.len()))), BORDER),
+            (
+                border
+                    && inner_shares(around.len())
+                        .iter()
+                        .any(|share| self.takes(index, &shared(vertex, &around, *share))),
+                BORDER,
+            ),
             (
                 border && !own_only && is_even(&along),
                 "the weights on a border are 3/4 for the vertex and 1/8 for each of its two neighbours along \

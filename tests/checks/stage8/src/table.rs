@@ -9,11 +9,11 @@ use raykata::kit::{Kit, PatchQuery};
 use raykata::mesh::Mesh;
 use raykata::shape::BezierPatch;
 
-/// An open mesh of five triangles around a vertex and beside it. Its vertices have different x, so that the new ones can be
-/// sorted.
+/// An open mesh of three triangles around a vertex and two beside them. Its vertices have different x, so that the new ones can
+/// be sorted. All rules agree about a vertex with three neighbours.
 fn mesh(shift: Vec3) -> Mesh {
     let positions = [
-        vec3(0.15, 0.2, 1.0),
+        vec3(0.15, 0.6, 1.0),
         vec3(1.3, 0.1, 0.2),
         vec3(0.4, 1.5, -0.1),
         vec3(-1.2, 0.3, 0.3),
@@ -22,7 +22,7 @@ fn mesh(shift: Vec3) -> Mesh {
     ];
     Mesh {
         positions: positions.iter().map(|position| *position + position.x * shift).collect(),
-        triangles: vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1], [1, 5, 2]],
+        triangles: vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 4], [1, 5, 2]],
         ..Mesh::default()
     }
 }

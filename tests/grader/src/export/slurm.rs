@@ -6,7 +6,7 @@ use crate::grade::submissions_in;
 use anyhow::{Context, Result, ensure};
 use raykata::rows::Rows;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
-use raykata_cli::kits::build_folder;
+use raykata_cli::kits::{Program, build};
 use raykata_cli::quality_options::{QualityOptions, ToneOptions};
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -150,7 +150,7 @@ pub fn picture(root: &Path, options: &PictureOptions) -> Result<()> {
     let file = absolute(&options.scene)?;
     let scene = options.quality.load(&file)?;
     let rows = Rows::divide(scene.film.height, options.pieces);
-    let raykata = build_folder()?.join("raykata");
+    let [raykata] = build(root, "the program that renders", [Program::RAYKATA])?;
     let folder = Folder::make(&options.out, "pieces")?;
     let name = file.file_stem().context("the scene has no name")?;
     let picture = folder.path.join(name).with_extension("png");

@@ -5,6 +5,7 @@ mod command_line;
 #[cfg(target_os = "linux")]
 mod course;
 #[cfg(target_os = "linux")]
+mod environments;
 mod export;
 #[cfg(target_os = "linux")]
 mod full_disk;
