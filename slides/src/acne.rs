@@ -156,7 +156,9 @@ fn sample(light: &Light, point: Vec3) -> LightSample {
         Emitter::Directional { direction } => {
             LightSample { direction: -direction.normalize(), distance: f32::INFINITY, radiance }
         }
-        Emitter::Area { .. } => LightSample { direction: Vec3::Y, distance: 0.0, radiance: Vec3::ZERO },
+        Emitter::Spot { .. } | Emitter::Area { .. } => {
+            LightSample { direction: Vec3::Y, distance: 0.0, radiance: Vec3::ZERO }
+        }
     }
 }
 

@@ -21,6 +21,7 @@ pub fn thin_lens(kit: &dyn Kit) -> Result<String> {
         right: Vec3::Z,
         up: Vec3::Y,
         half_height: 0.5,
+        orthographic: false,
         aspect: 1.0,
         lens: Some(lens),
         shutter: None,

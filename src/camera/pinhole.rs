@@ -40,8 +40,11 @@ pub struct Camera {
     pub right: Vec3,
     /// The direction of decreasing y on the film, of unit length.
     pub up: Vec3,
-    /// Half the height of the film at distance 1: the tangent of half the vertical field of view.
+    /// Half the height of the film at distance 1: the tangent of half the vertical field of view. Of an orthographic camera,
+    /// half the height of the film in world units.
     pub half_height: f32,
+    /// Whether all rays run along `towards` (orthographic projection), and do not start in one point.
+    pub orthographic: bool,
     /// The width of the film divided by its height, above 0.
     pub aspect: f32,
     /// The thin lens; `None` for a pinhole camera.
@@ -50,7 +53,7 @@ pub struct Camera {
     pub shutter: Option<Shutter>,
 }
 
-message! { Camera { position, towards, right, up, half_height, aspect, lens, shutter } }
+message! { Camera { position, towards, right, up, half_height, orthographic, aspect, lens, shutter } }
 
 /// Why [`Camera::new`] cannot build a camera from its arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -126,6 +129,7 @@ impl Camera {
             right: right.as_vec3(),
             up: right.cross(towards).as_vec3(),
             half_height: ((vertical_fov as f64).to_radians() / 2.0).tan() as f32,
+            orthographic: false,
             aspect,
             lens: None,
             shutter: None,
@@ -138,16 +142,31 @@ impl Camera {
     ///
     /// The direction is computed from the axes and never as the difference of two far points. So a camera a
     /// million units from the origin has as many distinct directions as one at the origin.
+    ///
+    /// The ray of an orthographic camera starts at that position of a film around `position`, and runs along `towards`.
     #[inline]
     pub fn ray(&self, x: f32, y: f32) -> Ray {
         let film = Vec2::new((2.0 * x - 1.0) * self.aspect, 1.0 - 2.0 * y) * self.half_height;
-        Ray::new(self.position, (self.towards + film.x * self.right + film.y * self.up).normalize())
+        let on_film = film.x * self.right + film.y * self.up;
+        match self.orthographic {
+            true => Ray::new(self.position + on_film, self.towards),
+            false => Ray::new(self.position, (self.towards + on_film).normalize()),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rays_of_an_orthographic_camera_are_parallel() {
+        let camera = Camera::new(Vec3::Z, Vec3::NEG_Z, Vec3::Y, 40.0, 2.0).unwrap();
+        let camera = Camera { orthographic: true, half_height: 3.0, ..camera };
+        let [corner, middle] = [camera.ray(0.0, 0.0), camera.ray(0.5, 0.5)];
+        assert_eq!((corner.origin, corner.direction), (Vec3::new(-6.0, 3.0, 1.0), Vec3::NEG_Z));
+        assert_eq!((middle.origin, middle.direction), (Vec3::Z, Vec3::NEG_Z));
+    }
 
     #[test]
     fn a_far_camera_sees_640_directions_in_640_pixels() {

@@ -35,6 +35,11 @@ pub struct Material {
     /// The radiance that the surface emits by itself, on both sides and evenly in all directions. Camera rays, reflected
     /// and refracted rays see it. It lights other surfaces only in a scene with indirect light.
     pub emission: Vec3,
+    /// Whether only the front emits light: the side to which the outward normal points.
+    pub one_sided_emission: bool,
+    /// The index of refraction of a clear coat, above 0; 1 is no coat. From outside the coat reflects the fraction of light
+    /// that Fresnel's equations give at this angle, and what lies below gets the rest.
+    pub coat: f32,
     /// The index in [`crate::scene::Scene::textures`] of an image that multiplies `diffuse` and `ambient`
     /// (stage 7).
     pub texture: Option<usize>,
@@ -42,7 +47,7 @@ pub struct Material {
 
 message! { Material {
     ambient, diffuse, specular, exponent, mirror, transmission, index_of_refraction, fresnel, roughness,
-    emission, texture
+    emission, one_sided_emission, coat, texture
 } }
 
 impl Default for Material {
@@ -59,6 +64,8 @@ impl Default for Material {
             fresnel: Fresnel::None,
             roughness: 0.0,
             emission: Vec3::ZERO,
+            one_sided_emission: false,
+            coat: 1.0,
             texture: None,
         }
     }
@@ -138,6 +145,18 @@ pub enum Emitter {
         /// How the light depends on the distance.
         falloff: Falloff,
     },
+    /// A point light that shines into a cone.
+    Spot {
+        /// The position of the light, in world units.
+        position: Vec3,
+        /// The axis of the cone, of unit length.
+        direction: Vec3,
+        /// The cosines of the angles to the axis up to which the light is full, and from which on there is none. The first
+        /// is the larger one, or both are equal.
+        cosines: (f32, f32),
+        /// How the light depends on the distance.
+        falloff: Falloff,
+    },
     /// An infinitely distant light, whose rays are all parallel.
     Directional {
         /// The direction from the light to the scene, of unit length.
@@ -152,7 +171,7 @@ pub enum Emitter {
     },
 }
 
-message! { enum Emitter { Point { position, falloff }, Directional { direction }, Area { shape, falloff } } }
+message! { enum Emitter { Point { position, falloff }, Spot { position, direction, cosines, falloff }, Directional { direction }, Area { shape, falloff } } }
 
 /// The shape of an area light, in world units.
 #[derive(Clone, Debug, PartialEq)]

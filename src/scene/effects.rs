@@ -155,7 +155,7 @@ impl Effect {
     ///
     /// - Without shadows, no light casts one.
     /// - Without area lights, each of them shines from its centre.
-    /// - Without mirrors, the weight of reflection is 0.
+    /// - Without mirrors, the weight of reflection is 0, and there are no coats.
     /// - Without transmission, the weight of refraction is 0; the Fresnel reflection of a transparent
     ///   material goes with it.
     /// - Without glossy, roughness is 0.
@@ -169,7 +169,9 @@ impl Effect {
         match self {
             Effect::Shadows => scene.lights.iter_mut().for_each(|light| light.shadows = false),
             Effect::AreaLights => scene.quality.light_samples = 0,
-            Effect::Mirrors => scene.materials.iter_mut().for_each(|m| m.mirror = Vec3::ZERO),
+            Effect::Mirrors => {
+                scene.materials.iter_mut().for_each(|m| (m.mirror, m.coat) = (Vec3::ZERO, 1.0));
+            }
             Effect::Transmission => scene.materials.iter_mut().for_each(|m| m.transmission = Vec3::ZERO),
             Effect::Glossy => scene.materials.iter_mut().for_each(|m| m.roughness = 0.0),
             Effect::Lens => scene.camera.lens = None,

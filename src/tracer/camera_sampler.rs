@@ -34,9 +34,12 @@ impl<F: StudentFunctions> CameraSampler<F> {
         let camera = camera_for(scene);
         // The samples of a pixel share its width.
         let samples = scene.quality.samples_per_pixel.max(1) as f32;
-        let spread = 2.0 * camera.half_height / scene.film.height as f32 / samples.sqrt();
+        let pixel = 2.0 * camera.half_height / scene.film.height as f32 / samples.sqrt();
         CameraSampler {
-            cone: Cone { width: 0.0, spread },
+            cone: match camera.orthographic {
+                true => Cone { width: pixel, spread: 0.0 },
+                false => Cone { width: 0.0, spread: pixel },
+            },
             camera,
             sampler: scene.quality.sampler,
             film: uvec2(scene.film.width, scene.film.height).as_vec2(),

@@ -16,6 +16,16 @@ impl Light {
     pub fn sample_center(&self, point: Vec3) -> LightSample {
         match &self.emitter {
             Emitter::Point { position, .. } => self.sample_at(*position, point),
+            Emitter::Spot { position, direction, cosines: (full, none), .. } => {
+                let sample = self.sample_at(*position, point);
+                // From full light to none the share follows a cubic without a kink at either end.
+                let share = match -sample.direction.dot(*direction) {
+                    cosine if cosine >= *full => 1.0,
+                    cosine => ((cosine - none) / (full - none)).clamp(0.0, 1.0),
+                };
+                let share = share * share * (3.0 - 2.0 * share);
+                LightSample { radiance: share * sample.radiance, ..sample }
+            }
             Emitter::Area { shape: AreaShape::Sphere(sphere), .. } => {
                 let way = (sphere.center - point).as_dvec3();
                 let direction = way.normalize_or(DVec3::Y).as_vec3();
@@ -57,7 +67,9 @@ impl Light {
     #[inline]
     fn arriving(&self, direction: Vec3, distance: f32, weakening_distance: f32) -> LightSample {
         let falloff = match &self.emitter {
-            Emitter::Point { falloff, .. } | Emitter::Area { falloff, .. } => *falloff,
+            Emitter::Point { falloff, .. }
+            | Emitter::Spot { falloff, .. }
+            | Emitter::Area { falloff, .. } => *falloff,
             Emitter::Directional { .. } => Falloff::None,
         };
         let weakened = match falloff {
@@ -91,6 +103,27 @@ mod tests {
         assert_eq!(distance_to_sphere(&sphere, Vec3::Y, Vec3::new(0.0, 4.0, 0.0)), 3.0); // from inside
         let touching = Vec3::new(2.0, 21f32.sqrt(), 0.0).normalize();
         assert!((distance_to_sphere(&sphere, touching, Vec3::ZERO) - 21f32.sqrt()).abs() < 2e-3);
+    }
+
+    #[test]
+    fn a_spot_light_is_a_point_light_in_its_cone() {
+        let cosines = (60f32.to_radians().cos(), 90f32.to_radians().cos());
+        let spot = |cosines| Emitter::Spot {
+            position: 4.0 * Vec3::Y,
+            direction: Vec3::NEG_Y,
+            cosines,
+            falloff: Falloff::InverseSquare,
+        };
+        let light = |emitter| Light { emitter, color: Vec3::ONE, intensity: 8.0, shadows: true };
+        let radiance = |cosines, point| light(spot(cosines)).sample_center(point).radiance.x;
+        assert_eq!(radiance(cosines, Vec3::ZERO), 0.5);
+        assert_eq!(radiance(cosines, Vec3::new(0.0, 4.5, 0.0)), 0.0);
+        // Halfway between the cosines 0.5 and 0 half of the light arrives.
+        let halfway = Vec3::new(4.0 * 15f32.sqrt(), 0.0, 0.0);
+        assert!((radiance(cosines, halfway) - 0.5 * 8.0 / 256.0).abs() < 1e-6);
+        // A sharp cone, and one that is the whole sphere.
+        assert_eq!(radiance((0.5, 0.5), halfway), 0.0);
+        assert_eq!(radiance((-1.0, -1.0), Vec3::new(0.0, 5.0, 0.0)), 8.0);
     }
 
     #[test]

@@ -240,20 +240,25 @@ pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<Command> {
     Ok(cargo)
 }
 
+/// The folder of a profile inside of the target folder, in which cargo has built this program; `None` for a copy elsewhere.
+fn profile_folder() -> Option<PathBuf> {
+    let program = std::env::current_exe().ok()?;
+    // Tests lie in a folder `deps` inside of that with the name of the profile, in which cargo keeps its fingerprints.
+    let folder = program.ancestors().skip(1).find(|folder| !folder.ends_with("deps"))?;
+    folder.join(".fingerprint").is_dir().then(|| folder.to_owned())
+}
+
 /// The target folder in which cargo has built this program; `None` for a copy elsewhere.
 pub fn target_folder() -> Option<PathBuf> {
     // Cargo writes this file into each target folder.
-    let program = std::env::current_exe().ok()?;
-    program.ancestors().skip(1).find(|folder| folder.join(".rustc_info.json").is_file()).map(Path::to_owned)
+    let folder = profile_folder()?;
+    folder.ancestors().skip(1).find(|folder| folder.join(".rustc_info.json").is_file()).map(Path::to_owned)
 }
 
 /// The profile in which cargo has built this program; `None` for `dev`, and for a copy elsewhere.
 pub fn profile() -> Option<String> {
-    target_folder()?;
-    let program = std::env::current_exe().ok()?;
-    // Tests lie in a folder `deps` inside of that with the name of the profile.
-    let name = program.ancestors().skip(1).find(|folder| !folder.ends_with("deps"))?.file_name()?.to_str()?;
-    (name != "debug").then(|| name.to_owned())
+    let name = profile_folder()?.file_name()?.to_str()?.to_owned();
+    (name != "debug").then_some(name)
 }
 
 /// Runs a build by cargo and returns what it writes to standard output. If something has to be built, or if the build waits for

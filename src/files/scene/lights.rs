@@ -1,4 +1,4 @@
-//! Reads `[[lights]]`: point lights, directional lights and area lights.
+//! Reads `[[lights]]`: point lights, spot lights, directional lights and area lights.
 
 use super::reader::Value;
 use super::shapes::{disk, sphere};
@@ -7,7 +7,7 @@ use crate::material::{AreaShape, Emitter, Falloff, Light, Material};
 use crate::scene::{ColorPlace, Node, Scene, VisibleLight};
 use glam::Vec3;
 
-const KEYS: [&str; 7] = ["point", "directional", "area", "color", "intensity", "shadows", "visible"];
+const KEYS: [&str; 8] = ["point", "spot", "directional", "area", "color", "intensity", "shadows", "visible"];
 
 /// The lights of a scene.
 #[derive(Default)]
@@ -59,10 +59,11 @@ pub(super) fn show(scene: &mut Scene, lights: &Lights) {
 /// A light, and whether it is visible.
 fn light(value: Value, index: usize, camera: Vec3) -> Result<(Light, bool), LoadError> {
     let table = value.table(&KEYS)?;
-    let emitter = table.one_of(&["point", "directional", "area"])?;
+    let emitter = table.one_of(&["point", "spot", "directional", "area"])?;
     let light = Light {
         emitter: match emitter.key {
             "point" => point(emitter)?,
+            "spot" => spot(emitter)?,
             "directional" => {
                 let table = emitter.table(&["direction"])?;
                 Emitter::Directional { direction: table.need("direction", "[0, -1, 0]")?.direction()? }
@@ -111,6 +112,24 @@ fn point(value: Value) -> Result<Emitter, LoadError> {
     let table = value.table(&["position", "falloff"])?;
     Ok(Emitter::Point {
         position: table.need("position", "[0, 5, 0]")?.vector()?,
+        falloff: falloff(table.get("falloff"))?,
+    })
+}
+
+/// A point light that shines into a cone. Its light is full up to `angle - edge` from the axis, and ends at `angle`.
+fn spot(value: Value) -> Result<Emitter, LoadError> {
+    let table = value.table(&["position", "direction", "angle", "edge", "falloff"])?;
+    let angle = table.need("angle", "30")?;
+    let degrees = angle.number_that("above 0, up to 180 degrees", |angle| 0.0 < angle && angle <= 180.0)?;
+    let edge = table.get("edge").map_or(Ok(0.0), |edge| {
+        edge.number_that(&format!("from 0 to `angle`, {degrees}"), |edge| (0.0..=degrees).contains(&edge))
+    })?;
+    // At 180 degrees the cone is the whole sphere, also for a cosine that is rounded to less than -1.
+    let cosine = |degrees: f32| if degrees == 180.0 { f32::MIN } else { degrees.to_radians().cos() };
+    Ok(Emitter::Spot {
+        position: table.need("position", "[0, 5, 0]")?.vector()?,
+        direction: table.need("direction", "[0, -1, 0]")?.direction()?,
+        cosines: (cosine(degrees - edge), cosine(degrees)),
         falloff: falloff(table.get("falloff"))?,
     })
 }

@@ -11,7 +11,7 @@ use glam::Vec3;
 const FRESNEL: [(&str, Fresnel); 3] =
     [("none", Fresnel::None), ("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 13] = [
     "ambient",
     "diffuse",
     "specular",
@@ -22,6 +22,8 @@ const KEYS: [&str; 11] = [
     "fresnel",
     "roughness",
     "emission",
+    "one_sided_emission",
+    "coat",
     "texture",
 ];
 
@@ -82,9 +84,16 @@ fn material(value: Value, index: usize, textures: &Names) -> Result<Material, Lo
             "roughness" => {
                 material.roughness = value.or_nothing(value.share()?, 1.0, "the material is smooth");
             }
+            "one_sided_emission" => material.one_sided_emission = value.truth()?,
+            "coat" => material.coat = value.positive()?,
             "emission" => material.emission = value.color(at(MaterialColor::Emission))?,
             _ => material.texture = Some(textures.find(value)?),
         }
+    }
+    if let Some(coat) = table.get("coat").filter(|_| material.transmission != Vec3::ZERO) {
+        return Err(coat
+            .error("a material that transmits light has no coat")
+            .help("write `fresnel = \"exact\"`: glass reflects by itself"));
     }
     if table.get("ambient").is_none() {
         material.ambient = match table.get("diffuse") {

@@ -7,9 +7,13 @@ use super::words::quoted;
 use super::{graph, transform};
 use crate::files::error::LoadError;
 use crate::scene::{Node, SceneMesh};
+use glam::Affine3A;
 use std::collections::BTreeSet;
 
-const KEYS: [&str; 6] = ["name", "material", "shape", "children", "transform", "transform_end"];
+const KEYS: [&str; 7] = ["name", "material", "shape", "children", "transform", "transform_end", "repeat"];
+
+/// The most places that a repeated node has.
+const MOST_PLACES: u32 = 65_536;
 
 /// All nodes of `[[nodes]]` in the order of the file, and the indices of those without a parent. Fails if a
 /// name is unknown or given twice, if a shape or transform is degenerate, or if the graph is refused by
@@ -43,9 +47,36 @@ pub(super) fn nodes(
         });
         children_values.push(listed);
     }
+    for (index, table) in tables.iter().enumerate() {
+        if let Some(value) = table.get("repeat") {
+            let n_places = repeat(value, index, &mut nodes)?;
+            let own = std::mem::replace(&mut children_values[index], vec![value; n_places]);
+            children_values.extend(vec![vec![value]; n_places]);
+            children_values.push(own);
+        }
+    }
     graph::check(&nodes, &children_values)?;
     let roots = graph::roots(&nodes);
     Ok((nodes, roots))
+}
+
+/// Repeats the node with this index: it becomes a group of places, each with one more step of the transform than the one before,
+/// of a new node at the end of the list that has what the node had. Returns the number of places.
+fn repeat(value: Value, index: usize, nodes: &mut Vec<Node>) -> Result<usize, LoadError> {
+    let table = value.table(&["count", "step"])?;
+    let count = table.need("count", "10")?.whole(1..=MOST_PLACES)?;
+    let step = table.need("step", "[{ translate = [1, 0, 0] }]")?;
+    let places = transform::powers(step, count)?;
+    let group = Node { name: nodes[index].name.clone(), transform: Affine3A::IDENTITY, ..Node::default() };
+    let repeated = std::mem::replace(&mut nodes[index], group);
+    let (first, last) = (nodes.len(), nodes.len() + places.len());
+    nodes[index].children = (first..last).collect();
+    for (place, transform) in (1..).zip(&places) {
+        let name = format!("place {place} of {}", repeated.name);
+        nodes.push(Node { name, transform: *transform, children: vec![last], ..Node::default() });
+    }
+    nodes.push(repeated);
+    Ok(places.len())
 }
 
 /// The table of one node. A shape outside of `shape` is a common mistake, so it gets advice of its own.

@@ -56,6 +56,7 @@ pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
         "up",
         "vertical_fov",
         "horizontal_fov",
+        "orthographic_height",
         "lens",
         "shutter",
     ])?;
@@ -80,11 +81,19 @@ pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
         let other = if direction.y.abs() > 0.5 { "[0, 0, -1]" } else { "[0, 1, 0]" };
         up_value.unwrap_or(aim).error(error.to_string()).help(format!("write, for example, `up = {other}`"))
     })?;
-    Ok(Camera {
+    let camera = Camera {
         lens: table.get("lens").map(lens).transpose()?,
         shutter: table.get("shutter").map(shutter).transpose()?,
         ..camera
-    })
+    };
+    let Some(height) = table.get("orthographic_height") else { return Ok(camera) };
+    if let Some(other) = ["vertical_fov", "horizontal_fov", "lens"].iter().find_map(|key| table.get(key)) {
+        let message = format!("`camera` has both `orthographic_height` and `{}`", other.key);
+        return Err(other
+            .error(message)
+            .help("delete one of the two: parallel rays have no angle and no focus"));
+    }
+    Ok(Camera { orthographic: true, half_height: 0.5 * height.positive()?, ..camera })
 }
 
 /// The vertical field of view in degrees: `vertical_fov`, or the one that follows from `horizontal_fov` and the

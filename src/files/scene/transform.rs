@@ -19,6 +19,18 @@ pub(super) fn of_node(table: &Table) -> Result<(Affine3A, Option<Affine3A>), Loa
     }
 }
 
+/// The transforms that `value` gives when it is applied 0 times, once, twice and so on, `count` in all. Fails if the last of
+/// them cannot be inverted in single precision.
+pub(super) fn powers(value: Value, count: u32) -> Result<Vec<Affine3A>, LoadError> {
+    let step = steps(value)?;
+    let powers = std::iter::successors(Some(DAffine3::IDENTITY), |before| Some(step * *before));
+    let powers: Vec<Affine3A> = powers.take(count as usize).map(single).collect();
+    match powers.iter().all(|power| power.is_finite() && power.inverse().is_finite()) {
+        true => Ok(powers),
+        false => Err(value.error(format!("{} cannot be inverted after {count} times", value.name()))),
+    }
+}
+
 /// The product of all steps of `value`; the first one in the list is applied to the shape first.
 fn steps(value: Value) -> Result<DAffine3, LoadError> {
     let mut all = DAffine3::IDENTITY;

@@ -5,6 +5,7 @@
 
 use crate::emitter::{AreaEmitter, EmitterShape};
 use crate::light_path::ChosenEmitter;
+use crate::material::Material;
 use crate::shape::{Cuboid, Triangle};
 use crate::tracer::search::hit::Target;
 use crate::world::{Geometry, Primitive, Solid, SolidShape, World};
@@ -39,8 +40,9 @@ impl Emitters {
     pub fn new(world: &World, is_sampled: impl Fn(usize) -> bool) -> Emitters {
         let mut emitters = Emitters::default();
         let radiance = |material: u32| {
-            let emission = world.materials[material as usize].emission;
-            (is_sampled(material as usize) && emission != Vec3::ZERO).then_some(emission)
+            let Material { emission, one_sided_emission, .. } = world.materials[material as usize];
+            (is_sampled(material as usize) && emission != Vec3::ZERO)
+                .then_some((emission, !one_sided_emission))
         };
         for (index, primitive) in (0..).zip(&world.primitives) {
             // An emitter that moves has no one place.
@@ -65,8 +67,14 @@ impl Emitters {
         emitters
     }
 
-    /// Adds the shapes of one surface, each with whether it emits light on both sides.
-    fn add(&mut self, surface: (u32, u32), shapes: Vec<(EmitterShape, bool)>, radiance: Vec3) {
+    /// Adds the shapes of one surface, each with whether rays hit both of its sides. The radiance comes with whether the
+    /// material emits light on both sides.
+    fn add(
+        &mut self,
+        surface: (u32, u32),
+        shapes: Vec<(EmitterShape, bool)>,
+        (radiance, both_sides): (Vec3, bool),
+    ) {
         let first = self.emitters.len();
         if first + shapes.len() > MOST_EMITTERS {
             return;
@@ -74,7 +82,7 @@ impl Emitters {
         for (shape, two_sided) in shapes {
             let power = f64::from(radiance.element_sum()) * area(&shape);
             let before = self.cumulative.last().copied().unwrap_or(0.0);
-            self.emitters.push(AreaEmitter { shape, radiance, two_sided });
+            self.emitters.push(AreaEmitter { shape, radiance, two_sided: two_sided && both_sides });
             self.cumulative.push(before + if power.is_finite() { power } else { 0.0 });
         }
         self.of_surface.insert(surface, first..self.emitters.len());
@@ -143,14 +151,17 @@ fn placed(geometry: &Geometry, to_world: &Affine3A) -> Vec<(EmitterShape, bool)>
     let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(|corner| to_world.transform_point3(corner));
     // A reflection exchanges front and back: exchange two corners, which exchanges them again.
     let is_reflection = to_world.matrix3.determinant() < 0.0;
-    let triangle = if is_reflection { Triangle { a, b: c, c: b } } else { Triangle { a, b, c } };
-    vec![(EmitterShape::Triangle(triangle), matches!(geometry, Geometry::Triangle(_)))]
+    let shape = EmitterShape::Triangle(Triangle { a, b, c });
+    let shape = if is_reflection { turned(shape) } else { shape };
+    vec![(shape, matches!(geometry, Geometry::Triangle(_)))]
 }
 
 /// The faces of a box as parallelograms, or a polygon as triangles around its first corner. Both stay so under every
 /// transform.
 fn of_solid(solid: &Solid) -> Vec<(EmitterShape, bool)> {
     let point = |point: Vec3| solid.placement.to_world.transform_point3(point);
+    // A reflection exchanges front and back.
+    let is_reflection = solid.placement.to_world.matrix3.determinant() < 0.0;
     let shapes: Vec<EmitterShape> = match &solid.shape {
         SolidShape::Cuboid(cuboid) => faces(cuboid)
             .map(|[corner, end, other]| {
@@ -175,10 +186,21 @@ fn of_solid(solid: &Solid) -> Vec<(EmitterShape, bool)> {
             Vec::new()
         }
     };
-    shapes.into_iter().map(|shape| (shape, true)).collect()
+    shapes.into_iter().map(|shape| (if is_reflection { turned(shape) } else { shape }, true)).collect()
 }
 
-/// For each face of a box a corner and the ends of the two edges from there.
+/// The same shape with front and back exchanged.
+fn turned(shape: EmitterShape) -> EmitterShape {
+    match shape {
+        EmitterShape::Sphere(_) => shape,
+        EmitterShape::Triangle(Triangle { a, b, c }) => EmitterShape::Triangle(Triangle { a, b: c, c: b }),
+        EmitterShape::Parallelogram { corner, edges: (u, v) } => {
+            EmitterShape::Parallelogram { corner, edges: (v, u) }
+        }
+    }
+}
+
+/// For each face of a box a corner and the ends of the two edges from there, in the order that makes the outside the front.
 fn faces(&Cuboid { min, max }: &Cuboid) -> [[Vec3; 3]; 6] {
     let [near, far] = [min, max].map(|corner| {
         let other = min + max - corner;
@@ -189,6 +211,7 @@ fn faces(&Cuboid { min, max }: &Cuboid) -> [[Vec3; 3]; 6] {
         ];
         [[corner, ends[0], ends[1]], [corner, ends[1], ends[2]], [corner, ends[2], ends[0]]]
     });
+    let near = near.map(|[corner, end, other]| [corner, other, end]);
     [near[0], near[1], near[2], far[0], far[1], far[2]]
 }
 

@@ -3,6 +3,7 @@
 
 use crate::graph::Placement;
 use crate::kit::{StudentFunctions, Surface};
+use crate::material::Material;
 use crate::ray::Ray;
 use crate::rounding::{UNIT_ROUNDOFF, gamma};
 use crate::shape::{Plane, Sphere, Triangle, around_sphere};
@@ -46,6 +47,15 @@ struct Point {
 }
 
 impl SurfaceInteraction {
+    /// The radiance that the surface emits towards the ray.
+    #[inline(always)]
+    pub fn emission(&self, material: &Material) -> Vec3 {
+        match material.one_sided_emission && !self.entering {
+            true => Vec3::ZERO,
+            false => material.emission,
+        }
+    }
+
     /// The interaction of `ray` with the surface that it hits at `hit`. Panics if `hit` does not belong to
     /// `world`.
     ///

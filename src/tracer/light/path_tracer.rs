@@ -121,7 +121,7 @@ fn counted_light<F: StudentFunctions>(
     sampled: Option<LightCandidate>,
 ) -> CountedLight {
     let is_seen = !(indirect.is_light[at.material] && start.is_diffuse);
-    let emission = if is_seen { material.emission } else { Vec3::ZERO };
+    let emission = if is_seen { at.emission(material) } else { Vec3::ZERO };
     let own = match emission == Vec3::ZERO {
         true => None,
         false => indirect.emitter_at(hit, at.surface.point),

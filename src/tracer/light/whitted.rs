@@ -138,7 +138,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let mut color = self.direct_light(path, number, &at, &material, scratch, record);
         // Add the light that the surface emits by itself. The plan knows whether any surface does.
         if self.plan.emission {
-            color += material.emission;
+            color += at.emission(&material);
         }
         // Queue the secondary rays.
         self.scatter(path, hit, number, &at, &material, scratch);
@@ -176,9 +176,25 @@ impl<F: StudentFunctions> Frame<'_, F> {
         self.shade(path, at, material, scratch, |ray, blocked| record.shadow(path, number, ray, blocked))
     }
 
-    /// The material of the surface, with `ambient` and `diffuse` multiplied by its image.
+    /// The material of the surface as it is seen along the path: with `ambient` and `diffuse` multiplied by its image, and
+    /// under its coat.
     #[inline(always)]
     pub(super) fn material<T: Tally>(
+        &self,
+        path: &Path,
+        hit: &Hit,
+        at: &SurfaceInteraction,
+        tally: &mut T,
+    ) -> Cow<'_, Material> {
+        let material = self.uncoated_material(path, hit, at, tally);
+        match self.plan.coats && material.coat != 1.0 && at.entering {
+            true => Cow::Owned(self.coated(path.ray.direction, at, &material)),
+            false => material,
+        }
+    }
+
+    #[inline(always)]
+    fn uncoated_material<T: Tally>(
         &self,
         path: &Path,
         hit: &Hit,
@@ -203,6 +219,20 @@ impl<F: StudentFunctions> Frame<'_, F> {
         };
         let (ambient, diffuse) = (color * material.ambient, color * material.diffuse);
         Cow::Owned(Material { ambient, diffuse, ..material.clone() })
+    }
+
+    /// The material under its coat: what the coat reflects is added to `mirror`, and what lies below gets the rest.
+    #[cold]
+    fn coated(&self, direction: Vec3, at: &SurfaceInteraction, material: &Material) -> Material {
+        let cosine = self.unit(direction).dot(at.surface.shading_normal).abs().min(1.0);
+        let reflected = F::fresnel_exact(cosine, 1.0, material.coat);
+        let below = 1.0 - reflected;
+        Material {
+            ambient: below * material.ambient,
+            diffuse: below * material.diffuse,
+            mirror: Vec3::splat(reflected) + below * material.mirror,
+            ..material.clone()
+        }
     }
 
     /// The mean colour of the image `texture` around `uv`, over the part of the surface that the cone of `path` covers.

@@ -90,7 +90,7 @@ fn triangle_functions(test: TriangleTest) -> &'static [Function] {
 }
 
 /// All capabilities, in the order of their notes. What a row leaves out counts for the rows below it.
-pub(super) fn capabilities(tests: ShapeTests) -> [Capability; 24] {
+pub(super) fn capabilities(tests: ShapeTests) -> [Capability; 25] {
     use Function as F;
     use Shape::{Bezier, Cone, Cylinder, Disk, Mesh, Nurbs, Plane, PlaneEquation, Sphere, Triangle};
     const NORMALS: &[F] = &[F::shading_normal, F::interpolate];
@@ -148,6 +148,8 @@ pub(super) fn capabilities(tests: ShapeTests) -> [Capability; 24] {
                 (material.mirror, material.transmission, material.glossy) = (false, false, false);
             }
         }),
+        lacks(&[F::fresnel_exact], "clear coats are left out: {} is", |plan, _| plan.coats)
+            .instead(|plan| plan.coats = false),
         lacks(&[F::pixel_position], "the samples of a pixel lie anywhere in it: {} is", |_, scene| {
             let sampler = scene.quality.sampler;
             sampler.spreads(scene.quality.samples_per_pixel) && sampler != Sampler::LowDiscrepancy

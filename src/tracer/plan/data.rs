@@ -43,6 +43,8 @@ pub struct Plan {
     pub images: bool,
     /// Whether images are filtered, because the scene asks for it and a surface that is shown has an image.
     pub mipmaps: bool,
+    /// Whether coats reflect light.
+    pub coats: bool,
     /// Whether a material that is shown emits light. Without any, no emission is added at a hit.
     pub emission: bool,
     /// The ambient light that surfaces reflect: that of the scene, or none where indirect light is computed, for which it

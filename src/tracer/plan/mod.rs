@@ -49,6 +49,7 @@ impl Plan {
                 .collect(),
             images: written.has(Function::texture_color),
             mipmaps: false,
+            coats: scene.materials.iter().any(|material| material.coat != 1.0),
             emission: !scene.emitters().is_empty(),
             ambient: scene.ambient,
             paths: None,

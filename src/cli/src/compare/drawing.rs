@@ -98,8 +98,9 @@ pub fn projected(camera: &Camera, (width, height): (u32, u32), ends: [Vec3; 2]) 
         return None;
     }
     let flat = [cut(seen[0], seen[1]), cut(seen[1], seen[0])].map(|end| {
-        let x = 0.5 + end.x / (2.0 * end.z * camera.half_height * camera.aspect);
-        let y = 0.5 - end.y / (2.0 * end.z * camera.half_height);
+        let depth = if camera.orthographic { 1.0 } else { end.z };
+        let x = 0.5 + end.x / (2.0 * depth * camera.half_height * camera.aspect);
+        let y = 0.5 - end.y / (2.0 * depth * camera.half_height);
         Vec2::new(x * width as f32, y * height as f32)
     });
     let limit = 16.0 * width.max(height) as f32;

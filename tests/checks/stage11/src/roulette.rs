@@ -30,7 +30,8 @@ const STRATA: u32 = 4096;
 
 pub(super) fn roulette_keeps_the_mean(trial: &Trial<'_>) -> CheckResult {
     // The largest channel is at least 1/64, so that at least 64 of the random numbers survive.
-    let largest = prop_oneof![6 => (1..64i32).prop_map(|n| n as f32 / 64.0), 2 => 0.02..0.99f32, 1 => 1.0..8.0f32];
+    let largest =
+        prop_oneof![6 => (1..64i32).prop_map(|n| n as f32 / 64.0), 2 => 0.02..0.99f32, 1 => 1.0..8.0f32];
     // Roulette begins at bounce 3.
     let first =
         [(Vec3::new(0.25, 0.5, 0.125), 3), (Vec3::new(0.75, 0.5, 0.875), 3), (Vec3::new(1.5, 0.5, 1.0), 3)];
@@ -146,7 +147,8 @@ pub(super) fn roulette_ends_paths_without_weight(trial: &Trial<'_>) -> CheckResu
     let number = || (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0);
     // Every fourth path has weight in one channel, and lives: it is young.
     let cases = (0..12i32, 0..20u32, number()).prop_map(|(which, bounce, u)| {
-        let (weight, bounce) = if which < 3 { (Vec3::AXES[which as usize], bounce % 3) } else { (Vec3::ZERO, bounce) };
+        let (weight, bounce) =
+            if which < 3 { (Vec3::AXES[which as usize], bounce % 3) } else { (Vec3::ZERO, bounce) };
         RouletteQuery { weight, bounce, u: if which == 5 { 0.0 } else { u } }
     });
     trial.forall(300, cases, |queries| {
