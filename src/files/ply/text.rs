@@ -68,6 +68,15 @@ pub(crate) fn words(line: &str, start: usize) -> Vec<Word<'_>> {
         .collect()
 }
 
+/// The number that `word` spells, if it spells one. It is NaN for the spellings of C libraries as well: `-nan(ind)`,
+/// `1.#QNAN`, and infinities such as `-1.#INF`.
+pub(crate) fn number(word: &str) -> Option<f64> {
+    word.parse().ok().or_else(|| {
+        let word = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
+        (word.starts_with("nan(") || word.starts_with("1.#")).then_some(f64::NAN)
+    })
+}
+
 /// The word between backticks, for messages: at most 24 of its characters, special characters escaped.
 pub(crate) fn quote(word: &str) -> String {
     const LONGEST: usize = 24;

@@ -10,10 +10,8 @@ use crate::files::error::LoadError;
 use crate::files::obj::{self, ObjFile, ObjMaterial};
 use crate::files::ply::{self, PlyFile};
 use crate::material::{Texture, Wrap};
-use crate::mesh::Mesh;
 use crate::scene::SceneMesh;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// All `[meshes.NAME]` in the order of the file, with their names. Materials and textures that come with them
 /// are added to those of the scene. Fails if a file is missing or malformed, or if the triangles need more memory than the
@@ -35,16 +33,18 @@ pub(super) fn meshes<'a>(
         let indices = match own_materials {
             true => {
                 MaterialFinder { mesh: entry, described, undefined, materials, textures, images: Vec::new() }
-                    .indices(&mesh.material_names)?
+                    .indices(&mesh.mesh.material_names)?
             }
             false => Vec::new(),
         };
         names.insert(entry.key, meshes.len());
         let subdivisions = table.get("subdivide").map_or(Ok(0), |steps| steps.whole(0..=12))?;
-        let triangles = (mesh.triangles.len() as u64) << (2 * subdivisions);
+        let triangles = (mesh.mesh.triangles.len() as u64) << (2 * subdivisions);
         let place = table.get("subdivide").unwrap_or(entry);
         value.source.budget.triangles(|why| place.error(why), triangles)?;
-        meshes.push(SceneMesh { mesh: Arc::new(mesh), smooth, one_sided, subdivisions, materials: indices });
+        // A surface that is subdivided is smooth, also where the file asks for flat faces.
+        let smooth = smooth && (mesh.smooth || subdivisions > 0);
+        meshes.push(SceneMesh { smooth, one_sided, subdivisions, materials: indices, ..mesh });
     }
     Ok((meshes, names))
 }
@@ -54,24 +54,18 @@ pub(super) fn meshes<'a>(
 fn read(table: &Table, with_materials: bool) -> Result<ObjFile, LoadError> {
     let value = table.need("file", "\"bunny.ply\"")?;
     let file = files::find(value)?;
-    let read = match files::extension(&file).as_str() {
+    match files::extension(&file).as_str() {
         "ply" => {
             let PlyFile { mesh, warnings } = ply::read(&file)?;
-            ObjFile { mesh, materials: Vec::new(), undefined: Vec::new(), warnings }
+            Ok(ObjFile { mesh, materials: Vec::new(), undefined: Vec::new(), warnings })
         }
-        "obj" if with_materials => obj::read(&file)?,
-        "obj" => obj::read_without_libraries(&file)?,
+        "obj" if with_materials => obj::read(&file),
+        "obj" => obj::read_without_libraries(&file),
         _ => {
             let message = format!("{} is not a mesh that can be read", value.spelled());
-            return Err(value.error(message).help("meshes are `.ply` or `.obj` files"));
+            Err(value.error(message).help("meshes are `.ply` or `.obj` files"))
         }
-    };
-    check(value, &read.mesh)?;
-    Ok(read)
-}
-
-fn check(value: Value, mesh: &Mesh) -> Result<(), LoadError> {
-    mesh.validate().map_err(|message| value.error(format!("cannot use {}: {message}", value.spelled())))
+    }
 }
 
 /// Finds the scene's materials for the names that one mesh uses.
@@ -134,7 +128,7 @@ impl MaterialFinder<'_, '_> {
             return Ok(*index);
         }
         let index = match image.is_file() {
-            true => match textures::read(image, Wrap::Repeat, self.mesh) {
+            true => match textures::read(image, Wrap::Repeat, None, self.mesh) {
                 Ok((texture, _)) => {
                     self.textures.push(texture);
                     Some(self.textures.len() - 1)

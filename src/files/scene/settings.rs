@@ -182,7 +182,7 @@ fn background(value: Value, textures: &mut Vec<Texture>) -> Result<Background, L
     let file = table.need("file", "\"sky.hdr\"")?;
     let rotation = table.get("rotation").map_or(Ok(0.0), |degrees| degrees.number())?.to_radians();
     let scale = table.get("scale").map_or(Ok(1.0), |scale| scale.not_negative())?;
-    let (image, _) = textures::read(&files::find(file)?, Wrap::Repeat, file)?;
+    let (image, _) = textures::read(&files::find(file)?, Wrap::Repeat, None, file)?;
     textures.push(image);
     Ok(Background::Map(EnvironmentMap { texture: textures.len() - 1, rotation, scale }))
 }

@@ -30,10 +30,7 @@ pub fn scene(screen: (u32, u32), sides: (u32, u32)) -> Result<Scene> {
     let mesh = Arc::new(landscape(sides));
     scene.meshes.push(SceneMesh {
         mesh,
-        smooth: false,
-        one_sided: false,
-        subdivisions: 0,
-        materials: Vec::new(),
+        ..SceneMesh::default()
     });
     scene.nodes.push(Node {
         name: "landscape".into(),

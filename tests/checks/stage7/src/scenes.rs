@@ -63,9 +63,7 @@ pub(super) fn everything() -> Scene {
     scene.meshes.push(SceneMesh {
         mesh: Arc::new(one_triangle()),
         smooth: true,
-        one_sided: false,
-        subdivisions: 0,
-        materials: Vec::new(),
+        ..SceneMesh::default()
     });
     scene.nodes.push(Node { shape: Some(Shape::Mesh(0)), ..Node::default() });
     scene.roots = vec![0, 1, 2];
