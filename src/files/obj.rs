@@ -25,7 +25,6 @@ use crate::files::error::{LoadError, Warnings};
 use crate::files::ply::text::{LOOKS_LIKE_OBJ, guess, quote, read_bytes, readable};
 use crate::mesh::{Mesh, SceneMesh};
 use glam::{Vec2, Vec3};
-use lines::Lines;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -149,7 +148,7 @@ fn parse_with(file: &Path, bytes: &[u8], with_libraries: bool) -> Result<ObjFile
 }
 
 /// The mesh of all faces. Its vertices, places and materials are numbered in order of first use.
-fn mesh_of(lines: &Lines) -> SceneMesh {
+fn mesh_of(lines: &lines::Lines) -> SceneMesh {
     let corners = || lines.triangles.iter().flat_map(|triangle| &triangle.corners);
     let has_normals = corners().any(|corner| corner.normal.is_some());
     let has_uvs = corners().any(|corner| corner.uv.is_some());

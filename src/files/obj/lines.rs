@@ -150,8 +150,7 @@ impl<'a> Reader<'a> {
                 let uv = self.numbers(&keyword, values, 2)?.truncate().as_vec2();
                 if !uv.is_finite() {
                     let help = "write a finite number";
-                    let message = "a texture coordinate that is not finite is ignored: its corners show the \
-                                   middle of the image";
+                    let message = "a texture coordinate that is not finite is ignored";
                     self.warn(keyword.span, message, help);
                 }
                 self.lines.uvs.push(uv);
@@ -160,8 +159,7 @@ impl<'a> Reader<'a> {
                 let unit = self.numbers(&keyword, values, 3)?.try_normalize();
                 if unit.is_none() {
                     let help = "export the mesh with normals of unit length, or without normals";
-                    let message = "a normal without a direction is ignored: its corners have the normal of \
-                                   their face";
+                    let message = "a normal without a direction is ignored, as if its corners had none";
                     self.warn(keyword.span, message, help);
                 }
                 self.lines.normals.push(unit.unwrap_or_default().as_vec3());
@@ -318,7 +316,7 @@ impl<'a> Reader<'a> {
             self.leave_out(corner.span.clone(), message, "replace it by numbers below 3e38");
             return Ok(None);
         }
-        if normal.is_none() {
+        if !corner.text.split('/').nth(2).is_some_and(|normal| !normal.is_empty()) {
             self.bare_corner.get_or_insert(corner.span.clone());
         }
         let uv = uv.filter(|&uv| self.lines.uvs[uv as usize].is_finite());

@@ -141,8 +141,11 @@ impl Layout {
             let position = DVec3::new(x, y, z);
             if !position.as_vec3().is_finite() {
                 tables.infinite_vertex.get_or_insert_with(|| {
-                    body.trouble(place, format!("vertex {number} is at {position}, which is not finite"))
-                        .help("export the mesh again: each x, y and z has to be a number below 3e38")
+                    body.trouble(
+                        place,
+                        format!("vertex {number} is at {}, which is not finite", position.as_vec3()),
+                    )
+                    .help("export the mesh again: each x, y and z has to be a number below 3e38")
                 });
             }
             tables.positions.push(position);

@@ -113,14 +113,26 @@ fn vertices_may_have_normals_and_texture_coordinates() {
 }
 
 #[test]
-fn one_normal_without_a_direction_costs_them_all() {
+fn a_normal_without_a_direction_is_that_of_the_face() {
     let more = "property float nx\nproperty float ny\nproperty float nz\nelement face";
-    for bad in ["0 0 0", "nan 0 1", "inf 0 0"] {
+    for bad in ["0 0 0", "nan 0 1", "-nan(ind) 0 0", "inf 0 0"] {
         let text = PLAIN.replace("element face", more);
-        let mesh = mesh(format!("{text}0 0 0 0 0 1\n1 0 0 {bad}\n0 1 0 0 0 1\n3 0 1 2"));
-        assert!(mesh.normals.is_empty(), "{bad}");
-        assert_eq!(mesh.positions.len(), 3);
+        let mesh = mesh(format!("{text}0 0 0 0 1 0\n1 0 0 {bad}\n0 1 0 0 1 0\n3 0 1 2"));
+        assert_eq!(mesh.normals, [Vec3::Y, Vec3::Z, Vec3::Y], "{bad}");
     }
+}
+
+/// A file repeats a vertex where its texture coordinates or normals differ.
+#[test]
+fn vertices_at_one_position_share_a_place() {
+    let places = |more: &str, row: &str| {
+        let header =
+            PLAIN.replace("element face", &format!("{more}element face")).replace("vertex 3", "vertex 4");
+        let text = format!("{header}0 0 0{row}\n1 0 0{row}\n0 1 0{row}\n-0 0 0{row}\n3 0 1 2");
+        super::parse(std::path::Path::new("a.ply"), text.as_bytes()).unwrap().mesh.places
+    };
+    assert_eq!(places("property float u\nproperty float v\n", " 0 1"), [0, 1, 2, 0]);
+    assert_eq!(places("", ""), []);
 }
 
 #[test]
@@ -129,8 +141,6 @@ fn two_components_make_no_normal() {
         PLAIN.replace("element face", "property float nx\nproperty float nz\nproperty float u\nelement face");
     let mesh = mesh(format!("{text}0 0 0 0 1 0\n1 0 0 0 1 0\n0 1 0 0 1 0\n3 0 1 2"));
     assert!(mesh.normals.is_empty() && mesh.uvs.is_empty());
-    let text = PLAIN.replace("element face", "property float u\nproperty float v\nelement face");
-    assert!(super::mesh(format!("{text}0 0 0 nan 0\n1 0 0 1 0\n0 1 0 0 0\n3 0 1 2")).uvs.is_empty());
 }
 
 /// Bytes of an integer in the given type and order.

@@ -121,8 +121,8 @@ fn a_mesh_comes_with_its_materials_unless_the_scene_knows_better() {
     assert_eq!((&scene.meshes[0].materials, &scene.meshes[1].materials), (&vec![], &vec![1]));
     assert_eq!(scene.material_names, ["default", "o/red"]);
     let red = Material {
-        ambient: Vec3::X,
-        diffuse: Vec3::X,
+        ambient: 0.25 * Vec3::X,
+        diffuse: 0.25 * Vec3::X,
         transmission: Vec3::splat(0.75),
         ..Material::default()
     };
