@@ -16,6 +16,7 @@ mod instances;
 mod kept;
 mod leaks;
 mod light;
+mod mesh_files;
 mod methods;
 mod partitions;
 mod pieces;
