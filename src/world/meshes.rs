@@ -341,3 +341,63 @@ impl PreparedMesh {
         Facet { corners: self.mesh.corners(face), normals: self.normals.get(face).copied(), uvs }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f32::consts::FRAC_PI_2;
+
+    /// The normals of an eighth of a sphere are its points, also at the pole, where all points of an edge are one. The bounds
+    /// are the errors of the differences, and one step away from the pole.
+    #[test]
+    fn a_surface_has_its_own_normals() {
+        let point = |uv: Vec2| {
+            let (longitude, latitude) = (FRAC_PI_2 * uv.x, FRAC_PI_2 * uv.y);
+            let around = Vec3::new(longitude.cos(), 0.0, -longitude.sin());
+            latitude.cos() * around + latitude.sin() * Vec3::Y
+        };
+        let parameters = spread(&[[0.0, 1.0]], 8);
+        let (mesh, normals) = surface_mesh([&parameters, &parameters], point, point);
+        for (point, normal) in mesh.positions.iter().zip(normals) {
+            let bound = if point.y > 0.9999 { 1.01 * FRAC_PI_2 / 128.0 } else { 3e-4 };
+            assert!((*point - normal).length() < bound, "{normal} at {point}");
+        }
+    }
+
+    /// A square with a seam of texture coordinates along its diagonal, and a function that divides it without moving it.
+    #[test]
+    fn texture_coordinates_follow_the_triangles() {
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::ZERO, Vec3::X + Vec3::Y, Vec3::Y];
+        // The second triangle has its own part of the image: one unit further.
+        let uvs = positions.iter().enumerate().map(|(i, p)| p.truncate() + (i / 3) as f32).collect();
+        let mesh = Mesh { positions, uvs, triangles: vec![[0, 1, 2], [3, 4, 5]], ..Mesh::default() };
+        let source = SceneMesh {
+            mesh: Arc::new(mesh),
+            places: vec![0, 1, 2, 0, 2, 3],
+            subdivisions: 2,
+            ..SceneMesh::default()
+        };
+        // Each edge gets a vertex of its own per triangle, and the triangles come in another order.
+        let divide = |mesh: &Mesh| {
+            let (mut positions, mut triangles, mut parents) =
+                (mesh.positions.clone(), Vec::new(), Vec::new());
+            for (&[a, b, c], &parent) in mesh.triangles.iter().zip(&mesh.face_materials).rev() {
+                let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| {
+                    positions.push(0.5 * (mesh.positions[p as usize] + mesh.positions[q as usize]));
+                    positions.len() as u32 - 1
+                });
+                triangles.extend([[bc, ca, ab], [b, bc, ab], [a, ab, ca], [bc, c, ca]]);
+                parents.extend([parent; 4]);
+            }
+            Mesh { positions, triangles, face_materials: parents, ..Mesh::default() }
+        };
+        let (shape, shown) = subdivided(&source, divide);
+        let shown = shown.expect("a mesh with texture coordinates");
+        assert_eq!((shape.triangles.len(), shown.triangles.len()), (32, 32));
+        for triangle in &shown.triangles {
+            let at = |vertex: u32| shown.uvs[vertex as usize] - shown.positions[vertex as usize].truncate();
+            let [a, b, c] = triangle.map(at);
+            assert!(a == b && b == c && (a == Vec2::ZERO || a == Vec2::ONE), "{a} {b} {c}");
+        }
+    }
+}

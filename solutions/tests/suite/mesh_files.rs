@@ -10,10 +10,12 @@ use std::path::PathBuf;
 struct Folder(PathBuf);
 
 impl Folder {
-    fn with(name: &str, files: &[(&str, &str)]) -> Folder {
+    fn with<T: AsRef<[u8]>>(name: &str, files: &[(&str, T)]) -> Folder {
         let folder = std::env::temp_dir().join(format!("raykata-mesh-files-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder");
-        files.iter().for_each(|(name, text)| std::fs::write(folder.join(name), text).expect("a file"));
+        files
+            .iter()
+            .for_each(|(name, text)| std::fs::write(folder.join(name), text.as_ref()).expect("a file"));
         Folder(folder)
     }
 
@@ -178,7 +180,7 @@ fn materials_of_libraries_make_no_light() {
         }
     }
     let folder =
-        Folder::with("furnace", &[("m.mtl", &library), ("m.obj", &format!("mtllib m.mtl\n{faces_of_all}"))]);
+        Folder::with("furnace", &[("m.mtl", library), ("m.obj", &format!("mtllib m.mtl\n{faces_of_all}"))]);
     for (light, most) in [("ambient = 1", 1.0), ("indirect_light = true", 1.0)] {
         let pixels = folder.picture(&format!(
             "[film]\nwidth = 80\nheight = 60\n[camera]\nposition = [9.5, 7, 30]\nlook_at = [9.5, 7, 0]\nvertical_fov = 30\n\
@@ -189,5 +191,28 @@ fn materials_of_libraries_make_no_light() {
         println!("{light}: {brightest}");
         assert!(brightest <= most + 1e-5, "{light}: {brightest}"); // rounding of up to 6 weights
         assert!(pixels.iter().any(|pixel| pixel.max_element() < 0.5));
+    }
+}
+
+/// At its poles, a sphere shows the upper and the lower row of its image alone.
+#[test]
+fn the_image_of_a_sphere_does_not_repeat_across_the_poles() {
+    let row = |pixel: [u8; 4]| pixel.repeat(4);
+    let header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n";
+    let [red, blue] = [row([128, 0, 0, 129]), row([0, 0, 128, 129])];
+    let folder = Folder::with("poles", &[("sky.hdr", [&header[..], &red, &blue].concat())]);
+    for filter in ["bilinear", "mipmap"] {
+        for (height, other) in [(4, Vec3::Z), (-4, Vec3::X)] {
+            let pixels = folder.picture(&format!(
+                "[film]\nwidth = 9\nheight = 9\n[camera]\nposition = [0, {height}, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, 1]\n\
+                 vertical_fov = 4\n[environment]\nambient = 1\n[quality]\ntexture_filter = '{filter}'\n\
+                 [textures.sky]\nfile = 'sky.hdr'\n[materials.sky]\ndiffuse = 1\ntexture = 'sky'\n\
+                 [[nodes]]\nmaterial = 'sky'\nshape = {{ sphere = {{ center = [0, 0, 0], radius = 1 }} }}\n"
+            ));
+            assert!(
+                pixels.iter().all(|pixel| pixel.dot(other) == 0.0 && pixel.max_element() > 0.9),
+                "{filter}"
+            );
+        }
     }
 }

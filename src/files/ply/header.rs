@@ -98,7 +98,7 @@ pub(super) fn read(file: &Path, bytes: &[u8], warnings: &mut Warnings) -> Result
                 let encoding = draft.encoding.ok_or_else(|| draft.without_format(keyword))?;
                 return Ok(Header { encoding, elements: draft.elements, end: lines.at });
             }
-            _ => return Err(draft.unknown_keyword(keyword, &text)),
+            _ => draft.unknown_keyword(keyword, &text)?,
         }
     }
     Err(draft.trouble(bytes.len()..bytes.len(), "the file ends before its header does").help(END_HEADER))
@@ -254,20 +254,26 @@ impl Draft<'_> {
             .help(format!("write it with {} words, as in `{example}`", example.split(' ').count()))
     }
 
-    fn unknown_keyword(&self, keyword: &Word, line: &str) -> LoadError {
+    /// A line that begins with no keyword, perhaps a comment without `comment`, is left out with a warning. Fails if it
+    /// looks like a misspelt keyword or like data.
+    fn unknown_keyword(&mut self, keyword: &Word, line: &str) -> Result<(), LoadError> {
         // A number in the header is probably the first number of the data.
         if keyword.text.parse::<f64>().is_ok() {
-            return self
-                .trouble(keyword.span.clone(), "numbers before the end of the header")
-                .help(END_HEADER);
+            let error = self.trouble(keyword.span.clone(), "numbers before the end of the header");
+            return Err(error.help(END_HEADER));
         }
-        let message = format!("{} is not a keyword of PLY headers", quote(keyword.text));
+        let error = self.trouble(
+            keyword.span.clone(),
+            format!("{} is not a keyword of PLY headers", quote(keyword.text)),
+        );
+        let all = "the keywords are format, comment, obj_info, element, property and end_header";
         // Compare the whole line as well, because `end header` is `end_header` without its underscore.
-        let meant = nearest(line.trim(), KEYWORDS).or_else(|| nearest(keyword.text, KEYWORDS));
-        self.trouble(keyword.span.clone(), message).help(did_you_mean(
-            meant,
-            "the keywords are format, comment, obj_info, element, property and end_header",
-        ))
+        if let Some(meant) = nearest(line.trim(), KEYWORDS).or_else(|| nearest(keyword.text, KEYWORDS)) {
+            return Err(error.help(did_you_mean(Some(meant), all)));
+        }
+        let message = format!("{}; the line is ignored", error.message);
+        self.warnings.add(all, || LoadError { message, ..error });
+        Ok(())
     }
 
     fn without_format(&self, end_header: &Word) -> LoadError {

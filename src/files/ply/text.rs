@@ -108,7 +108,9 @@ pub(crate) const LOOKS_LIKE_OBJ: &str = "it looks like an OBJ file: give it the 
 /// Advice for a file that is not a mesh of the expected format, judged by its first bytes; `None` if they are
 /// not recognised. Leading blanks and comments are ignored.
 pub(crate) fn guess(bytes: &[u8]) -> Option<&'static str> {
-    const SIGNS: [(&[u8], &str); 15] = [
+    const SIGNS: [(&[u8], &str); 17] = [
+        (b"\xff\xfe", "it is text in UTF-16: save it as UTF-8"),
+        (b"\xfe\xff", "it is text in UTF-16: save it as UTF-8"),
         (b"ply", "it looks like a PLY file: give it the ending `.ply`"),
         (b"PLY", "the first line has to be `ply` in small letters"),
         (b"solid", "it looks like an STL file: export the mesh as PLY or OBJ"),
