@@ -23,10 +23,7 @@ pub fn job(triangles: &[Triangle], quality: Quality) -> RenderJob {
                 .collect(),
             ..Mesh::default()
         };
-        scene.meshes = vec![SceneMesh {
-            mesh: Arc::new(mesh),
-            ..SceneMesh::default()
-        }];
+        scene.meshes = vec![SceneMesh { mesh: Arc::new(mesh), ..SceneMesh::default() }];
         scene.nodes = vec![Node { shape: Some(Shape::Mesh(0)), ..Node::default() }];
         scene.roots = vec![0];
     }
