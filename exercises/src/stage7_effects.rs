@@ -49,8 +49,12 @@ pub fn material_effects(material: &Material, lights: &[Light], quality: &Quality
 /// - `indirect_light`: as in the scene.
 /// - `lights`: [`light_effects`] for each light of the scene, in order, also for lights that emit nothing.
 /// - `materials`: [`material_effects`] for each material that some shown shape has, and `MaterialEffects::default()` for
-///   all others, in the order of the scene.
+///   all others, in the order of the scene. But `texture` is `false` where nothing lights the image: `scene.ambient`
+///   times `ambient` is 0, each light's radiance times `diffuse` is 0, and so is `diffuse` or there is no indirect light.
 /// - `smooth_meshes`: for each mesh of the scene whether it is smooth and shown.
+/// - If nothing shines, the picture is black: everything except `lights` is `false`, and each material has the default.
+///   Nothing shines if the background [`is_black`](raykata::scene::Background::is_black), and each shown material has no
+///   `emission`, lists no light, and `scene.ambient` times `ambient` is 0.
 ///
 /// Pitfall: a mesh can have several materials, and a node that no root reaches is not shown.
 pub fn effects(scene: &Scene) -> Effects {

@@ -77,8 +77,12 @@ pub fn material_effects(material: &Material, lights: &[Light], quality: &Quality
 /// - `indirect_light`: as in the scene.
 /// - `lights`: [`light_effects`] for each light of the scene, in order, also for lights that emit nothing.
 /// - `materials`: [`material_effects`] for each material that some shown shape has, and `MaterialEffects::default()` for
-///   all others, in the order of the scene.
+///   all others, in the order of the scene. But `texture` is `false` where nothing lights the image: `scene.ambient`
+///   times `ambient` is 0, each light's radiance times `diffuse` is 0, and so is `diffuse` or there is no indirect light.
 /// - `smooth_meshes`: for each mesh of the scene whether it is smooth and shown.
+/// - If nothing shines, the picture is black: everything except `lights` is `false`, and each material has the default.
+///   Nothing shines if the background [`is_black`](raykata::scene::Background::is_black), and each shown material has no
+///   `emission`, lists no light, and `scene.ambient` times `ambient` is 0.
 ///
 /// Pitfall: a mesh can have several materials, and a node that no root reaches is not shown.
 pub fn effects(scene: &Scene) -> Effects {
@@ -92,7 +96,7 @@ pub fn effects(scene: &Scene) -> Effects {
     };
     // Combine the effects of camera, lights, materials and meshes.
     let shutter_moves = scene.camera.shutter.is_some_and(|shutter| shutter.close > shutter.open);
-    Effects {
+    let mut effects = Effects {
         lens: scene.camera.lens.is_some_and(|lens| lens.aperture > 0.0),
         motion: shutter_moves && shown.iter().any(|shape| shape.moves),
         indirect_light: scene.indirect_light,
@@ -101,10 +105,38 @@ pub fn effects(scene: &Scene) -> Effects {
         smooth_meshes: (0..scene.meshes.len())
             .map(|mesh| scene.meshes[mesh].smooth && shown.iter().any(|shape| shape.mesh == Some(mesh)))
             .collect(),
+    };
+    // Leave out images that nothing lights.
+    for (needs, material) in effects.materials.iter_mut().zip(&scene.materials) {
+        needs.texture &= is_lit(material, scene);
+    }
+    // Find out whether any light can reach the camera.
+    let shines = |(index, material): (usize, &Material)| {
+        let is_bright = material.emission != Vec3::ZERO || scene.ambient * material.ambient != Vec3::ZERO;
+        let shown = shown.iter().any(|shape| shape.materials.contains(&index));
+        shown && (is_bright || !effects.materials[index].lights.is_empty())
+    };
+    match scene.background.is_black() && !scene.materials.iter().enumerate().any(shines) {
+        true => Effects {
+            lights: effects.lights,
+            materials: vec![MaterialEffects::default(); scene.materials.len()],
+            smooth_meshes: vec![false; scene.meshes.len()],
+            ..Effects::default()
+        },
+        false => effects,
     }
     // <stub> todo!("list the shown shapes; then combine the effects of camera, lights, materials and meshes")
     // </solution>
 }
+
+// <solution>
+/// Whether anything can light the colours that an image multiplies.
+fn is_lit(material: &Material, scene: &Scene) -> bool {
+    scene.lights.iter().any(|light| light.radiance() * material.diffuse != Vec3::ZERO)
+        || scene.ambient * material.ambient != Vec3::ZERO
+        || (scene.indirect_light && material.diffuse != Vec3::ZERO)
+}
+// </solution>
 
 /// Computes an upper bound on the number of rays of each kind, as if every ray hit the most expensive material.
 ///

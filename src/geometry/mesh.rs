@@ -87,7 +87,7 @@ impl Mesh {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneMesh {
     /// Positions, triangles and optional normals, texture coordinates and face materials, in the space of the
-    /// mesh, relative to [`SceneMesh::origin`].
+    /// mesh, relative to [`SceneMesh::origin`]. Empty if nothing shows the mesh.
     pub mesh: Arc<Mesh>,
     /// The point of the space of the mesh from which its positions are counted. It is not 0 only for a mesh that is far
     /// away for its size, such as one in map coordinates: a position there would lose its last digits in single precision.

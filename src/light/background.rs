@@ -18,6 +18,19 @@ pub enum Background {
 
 message! { enum Background { Color(a), Gradient(a), Map(a) } }
 
+impl Background {
+    /// Whether the radiance is 0 in all directions. An environment map is not black: one without light is read as a colour.
+    pub fn is_black(&self) -> bool {
+        match self {
+            Background::Color(color) => *color == Vec3::ZERO,
+            Background::Gradient(Gradient { zenith, horizon, nadir }) => {
+                [zenith, horizon, nadir].iter().all(|color| **color == Vec3::ZERO)
+            }
+            Background::Map(_) => false,
+        }
+    }
+}
+
 /// A vertical gradient, for example a sky. Up is +y. All colours are linear radiance, at least 0 in each channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gradient {

@@ -126,6 +126,15 @@ impl Scene {
             max_primitives: MOST_PRIMITIVES,
         }
     }
+
+    /// Whether any light of the scene can be reflected by the diffuse or the ambient colour of `material`, which an image
+    /// multiplies. Without an analysis of where the light goes, the answer may be yes where none arrives.
+    pub(crate) fn is_lit(&self, material: &Material) -> bool {
+        let by_light = |light: &Light| light.radiance() * material.diffuse != Vec3::ZERO;
+        self.lights.iter().any(by_light)
+            || self.ambient * material.ambient != Vec3::ZERO
+            || self.indirect_light && material.diffuse != Vec3::ZERO
+    }
 }
 
 impl Node {
@@ -176,7 +185,8 @@ pub struct Scene {
     /// The name of each material by index, for messages. A material that comes with the mesh `box` is called
     /// `box/NAME`.
     pub material_names: Vec<String>,
-    /// All images in linear light; [`Material::texture`] is an index into this list.
+    /// All images in linear light; [`Material::texture`] is an index into this list. The file of an image that no surface
+    /// shows is not read: it is one black pixel.
     pub textures: Vec<Texture>,
     /// All meshes, each in its own space; [`Shape::Mesh`] holds an index into this list.
     pub meshes: Vec<SceneMesh>,

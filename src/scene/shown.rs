@@ -2,7 +2,7 @@
 
 use super::{Node, Scene};
 use crate::shape::Shape;
-use glam::Vec3;
+use glam::{Affine3A, DAffine3, Vec3};
 use std::collections::BTreeSet;
 
 /// A shape that the scene shows, with the materials and the motion that it has there.
@@ -14,7 +14,8 @@ pub struct Shown {
     pub mesh: Option<usize>,
     /// Indices into [`Scene::materials`] of the materials of the shape, in ascending order, each once.
     pub materials: Vec<usize>,
-    /// Whether the transform of the node, or of a node above it, differs between shutter times 0 and 1.
+    /// Whether the product of the transforms from the root to the node differs between shutter times 0 and 1. Motions that
+    /// cancel each other, up to rounding, are no motion.
     pub moves: bool,
 }
 
@@ -30,9 +31,15 @@ impl Scene {
     /// If an index of the scene into its nodes or meshes is out of range. A scene that [`crate::files::scene`]
     /// has read has no such index.
     pub fn shown(&self) -> Vec<Shown> {
-        let mut walk = Walk { scene: self, seen: BTreeSet::new(), shown: Vec::new() };
+        let mut walk = Walk {
+            scene: self,
+            moves_below: vec![None; self.nodes.len()],
+            seen: BTreeSet::new(),
+            listed: BTreeSet::new(),
+            shown: Vec::new(),
+        };
         for &root in &self.roots {
-            walk.node(root, 0, false);
+            walk.node(root, 0, &Motion::None);
         }
         walk.shown
     }
@@ -65,28 +72,115 @@ impl Scene {
 
 struct Walk<'a> {
     scene: &'a Scene,
-    /// The nodes that were visited, each with the material that it inherits and whether a node above it
-    /// moves. So a node with a million places is visited a few times only.
-    seen: BTreeSet<(usize, usize, bool)>,
+    /// For each node that was asked for, whether a node below it has two transforms.
+    moves_below: Vec<Option<bool>>,
+    /// The nodes that were visited, each with the material that it inherits and the motion above it. So a node with a
+    /// million places is visited a few times only.
+    seen: BTreeSet<(usize, usize, Vec<u64>)>,
+    /// The nodes that were listed, each with its material and whether it moves.
+    listed: BTreeSet<(usize, usize, bool)>,
     shown: Vec<Shown>,
 }
 
 impl Walk<'_> {
-    fn node(&mut self, index: usize, material: usize, moves: bool) {
-        if !self.seen.insert((index, material, moves)) {
+    fn node(&mut self, index: usize, material: usize, above: &Motion) {
+        if !self.seen.insert((index, material, above.key())) {
             return;
         }
         let node: &Node = &self.scene.nodes[index];
         let material = node.material.unwrap_or(material);
-        let moves = moves || node.transform_end.is_some_and(|end| end != node.transform);
-        if let Some(shape) = &node.shape {
+        let motion = self.motion(index, above);
+        let moves = !matches!(motion, Motion::None);
+        if let Some(shape) = &node.shape
+            && self.listed.insert((index, material, moves))
+        {
             let mesh = if let Shape::Mesh(mesh) = shape { Some(*mesh) } else { None };
             let materials = self.scene.materials_of(shape, material);
             self.shown.push(Shown { node: index, mesh, materials, moves });
         }
         for &child in &node.children {
-            self.node(child, material, moves);
+            self.node(child, material, &motion);
         }
+    }
+
+    /// The motion of the space of a node, whose parent has the motion `above`.
+    fn motion(&mut self, index: usize, above: &Motion) -> Motion {
+        let node: &Node = &self.scene.nodes[index];
+        let moves = node.transform_end.is_some_and(|end| end != node.transform);
+        let product = match above {
+            Motion::Any => return Motion::Any,
+            Motion::None if !moves => return Motion::None,
+            Motion::None => Product::of(node),
+            Motion::Product(above) => match above.times(&Product::of(node)) {
+                None => return Motion::None,
+                Some(product) => product,
+            },
+        };
+        // Only a node below that moves as well can undo the motion.
+        match self.moves_below(index) && self.seen.len() < MOST_VISITS {
+            true => Motion::Product(Box::new(product)),
+            false => Motion::Any,
+        }
+    }
+
+    fn moves_below(&mut self, index: usize) -> bool {
+        if let Some(known) = self.moves_below[index] {
+            return known;
+        }
+        let scene = self.scene;
+        let moves = |child: &usize| scene.nodes[*child].transform_end.is_some() || self.moves_below(*child);
+        let below = scene.nodes[index].children.iter().any(moves);
+        self.moves_below[index] = Some(below);
+        below
+    }
+}
+
+/// After so many visits, a motion that a node below could undo counts as motion: the picture is the same and costs more.
+const MOST_VISITS: usize = 10_000;
+
+/// How the space of a node moves while the shutter is open.
+enum Motion {
+    /// It stands still.
+    None,
+    /// It moves, and nodes below it may undo that.
+    Product(Box<Product>),
+    /// It moves, and so does everything below it.
+    Any,
+}
+
+impl Motion {
+    /// Numbers that differ between different motions.
+    fn key(&self) -> Vec<u64> {
+        match self {
+            Motion::None => Vec::new(),
+            Motion::Any => vec![0],
+            Motion::Product(product) => {
+                [product.0, product.1].iter().flat_map(|at| at.to_cols_array().map(f64::to_bits)).collect()
+            }
+        }
+    }
+}
+
+/// The product of the transforms of several nodes at shutter times 0 and 1. A frame blends these two.
+struct Product(DAffine3, DAffine3);
+
+impl Product {
+    fn of(node: &Node) -> Product {
+        let double = |at: &Affine3A| DAffine3::from_cols_array(&at.to_cols_array().map(f64::from));
+        Product(double(&node.transform), double(node.transform_end.as_ref().unwrap_or(&node.transform)))
+    }
+
+    /// The product of these transforms and those of a node below; `None` if both are equal up to the error of transforms
+    /// in single precision.
+    fn times(&self, below: &Product) -> Option<Product> {
+        let (start, end) = (self.0 * below.0, self.1 * below.1);
+        let error = f64::from(f32::EPSILON);
+        let size = self.1.translation.length() + (self.1.matrix3 * below.1.translation).length();
+        let turned = start.matrix3 - end.matrix3;
+        let is_still = (start.translation - end.translation).length()
+            <= error * (size + start.translation.length())
+            && (0..3).all(|axis| turned.col(axis).length() <= error * start.matrix3.col(axis).length());
+        (!is_still).then_some(Product(start, end))
     }
 }
 
@@ -118,5 +212,24 @@ children = ["sphere"]
         let scene = parse(Path::new("test.toml"), text).expect("a scene");
         let shown: Vec<_> = scene.shown().into_iter().map(|s| (s.node, s.materials, s.moves)).collect();
         assert_eq!(shown, [(0, vec![1], true), (0, vec![0], false)]);
+    }
+
+    #[test]
+    fn motions_are_compared_as_products() {
+        let moves = |parent: &str, child: &str| {
+            let text = format!(
+                "camera = {{ position = [0, 0, 5], look_at = [0, 0, 0] }}\n\
+                 [[nodes]]\nname = 'sphere'\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\ntransform_end = [{child}]\n\
+                 [[nodes]]\nname = 'between'\nchildren = ['sphere']\ntransform = [{{ scale = 3 }}]\n\
+                 [[nodes]]\nchildren = ['between']\ntransform_end = [{parent}]\n"
+            );
+            parse(Path::new("test.toml"), &text).expect("a scene").shown()[0].moves
+        };
+        let turn = "{ rotate = { axis = [1, 2, 3], degrees = 360 } }";
+        assert!(moves("{ translate = [1, 0, 0] }", "{ translate = [-1, 0, 0] }"));
+        assert!(!moves("{ translate = [1, 0, 0] }", "{ translate = [-0.333333333, 0, 0] }"));
+        assert!(!moves("{ scale = 2 }", "{ scale = 0.5 }"));
+        assert!(!moves(turn, "") && !moves("", turn));
+        assert!(moves("{ scale = 2 }", "") && moves("", "{ translate = [0, 1e-30, 0] }"));
     }
 }

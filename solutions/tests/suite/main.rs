@@ -5,6 +5,7 @@ mod agreement;
 mod bars;
 mod bounds;
 mod calibration;
+mod called_for;
 mod coarse_structures;
 mod digits;
 mod distribution;

@@ -18,13 +18,13 @@ pub(super) struct Lights {
     visible: Vec<usize>,
 }
 
-/// The lights of `[[lights]]`; fails if a value is missing or out of range, if a rectangle has no area, or if a light
+/// The lights of `[[lights]]`, seen by a camera at this position; fails if a value is missing or out of range, if a rectangle has no area, or if a light
 /// without an area is to be visible.
-pub(super) fn lights(value: Option<Value>) -> Result<Lights, LoadError> {
+pub(super) fn lights(value: Option<Value>, camera: Vec3) -> Result<Lights, LoadError> {
     let mut lights = Lights::default();
     let Some(value) = value else { return Ok(lights) };
     for (index, value) in value.list("a list of tables, each under `[[lights]]`")?.into_iter().enumerate() {
-        let (light, visible) = light(value, index)?;
+        let (light, visible) = light(value, index, camera)?;
         lights.list.push(light);
         lights.visible.extend(visible.then_some(index));
     }
@@ -57,7 +57,7 @@ pub(super) fn show(scene: &mut Scene, lights: &Lights) {
 }
 
 /// A light, and whether it is visible.
-fn light(value: Value, index: usize) -> Result<(Light, bool), LoadError> {
+fn light(value: Value, index: usize, camera: Vec3) -> Result<(Light, bool), LoadError> {
     let table = value.table(&KEYS)?;
     let emitter = table.one_of(&["point", "directional", "area"])?;
     let light = Light {
@@ -73,10 +73,10 @@ fn light(value: Value, index: usize) -> Result<(Light, bool), LoadError> {
         intensity: table.get("intensity").map_or(Ok(1.0), |intensity| intensity.not_negative())?,
         shadows: table.get("shadows").map_or(Ok(true), |shadows| shadows.truth())?,
     };
-    let Some(visible) = table.get("visible") else { return Ok((light, false)) };
-    if !visible.truth()? {
-        return Ok((light, false));
-    }
+    let visible = match table.get("visible") {
+        Some(visible) if visible.truth()? => visible,
+        _ => return Ok((or_point(light, emitter, camera), false)),
+    };
     let Emitter::Area { shape, .. } = &light.emitter else {
         let message = format!("a {} light has no surface that a ray could hit", emitter.key);
         return Err(visible.error(message).help("only area lights can be visible: delete the key"));
@@ -89,6 +89,21 @@ fn light(value: Value, index: usize) -> Result<(Light, bool), LoadError> {
         false => Err(visible
             .error("the light is so small or so strong that its radiance exceeds the largest number, 3.4e38")
             .help("make it larger, or its intensity lower")),
+    }
+}
+
+/// The light, or a point light at its centre if its extent is nothing beside its distance from the camera.
+fn or_point(light: Light, value: Value, camera: Vec3) -> Light {
+    let Emitter::Area { shape, falloff } = &light.emitter else { return light };
+    let position = shape.center();
+    let extent = match shape {
+        AreaShape::Rectangle { edges: (u, v), .. } => u.length().max(v.length()),
+        AreaShape::Disk(disk) => disk.radius,
+        AreaShape::Sphere(sphere) => sphere.radius,
+    };
+    match value.or_nothing(extent, position.distance(camera), "the light shines from one point") {
+        0.0 => Light { emitter: Emitter::Point { position, falloff: *falloff }, ..light },
+        _ => light,
     }
 }
 

@@ -79,7 +79,9 @@ fn material(value: Value, index: usize, textures: &Names) -> Result<Material, Lo
             "transmission" => material.transmission = value.color(at(MaterialColor::Transmission))?,
             "index_of_refraction" => material.index_of_refraction = value.positive()?,
             "fresnel" => material.fresnel = value.choice(&FRESNEL)?,
-            "roughness" => material.roughness = value.share()?,
+            "roughness" => {
+                material.roughness = value.or_nothing(value.share()?, 1.0, "the material is smooth");
+            }
             "emission" => material.emission = value.color(at(MaterialColor::Emission))?,
             _ => material.texture = Some(textures.find(value)?),
         }

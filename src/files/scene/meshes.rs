@@ -3,86 +3,119 @@
 use super::files;
 use super::materials::{Materials, from_obj};
 use super::names::Names;
-use super::reader::{Table, Value};
-use super::textures;
+use super::reader::Value;
+use super::textures::Images;
 use super::words::quoted;
 use crate::files::error::LoadError;
 use crate::files::obj::{self, ObjFile, ObjMaterial};
 use crate::files::ply::{self, PlyFile};
-use crate::material::{Texture, Wrap};
-use crate::scene::SceneMesh;
+use crate::scene::{Node, SceneMesh};
+use crate::shape::Shape;
 use std::path::{Path, PathBuf};
 
-/// All `[meshes.NAME]` in the order of the file, with their names. Materials and textures that come with them
-/// are added to those of the scene. Fails if a file is missing or malformed, or if the triangles need more memory than the
-/// limit.
-pub(super) fn meshes<'a>(
-    value: Option<Value<'a>>,
-    materials: &mut Materials,
-    textures: &mut Vec<Texture>,
-) -> Result<(Vec<SceneMesh>, Names<'a>), LoadError> {
-    let (mut meshes, mut names) = (Vec::new(), Names::new("mesh"));
+/// The meshes of `[meshes.NAME]`. Their files are read by [`Meshes::read`].
+#[derive(Default)]
+pub(super) struct Meshes<'a> {
+    /// All meshes by index. One whose file is not read has no triangles.
+    pub list: Vec<SceneMesh>,
+    /// The entry in the scene and the file of each.
+    entries: Vec<(Value<'a>, PathBuf)>,
+}
+
+const KEYS: [&str; 5] = ["file", "smooth", "one_sided", "materials", "subdivide"];
+
+/// All `[meshes.NAME]` in the order of the file, with their names, and their files unread. Fails if a file is missing or
+/// is not a mesh by its name.
+pub(super) fn meshes<'a>(value: Option<Value<'a>>) -> Result<(Meshes<'a>, Names<'a>), LoadError> {
+    let (mut meshes, mut names) = (Meshes::default(), Names::new("mesh"));
     let Some(value) = value else { return Ok((meshes, names)) };
     for entry in value.any_table()?.values() {
-        let table = entry.table(&["file", "smooth", "one_sided", "materials", "subdivide"])?;
+        let table = entry.table(&KEYS)?;
         let smooth = table.get("smooth").map_or(Ok(true), |smooth| smooth.truth())?;
         let one_sided = table.get("one_sided").map_or(Ok(false), |wanted| wanted.truth())?;
-        let own_materials = table.get("materials").map_or(Ok(true), |wanted| wanted.truth())?;
-        let ObjFile { mesh, materials: described, undefined, warnings } = read(&table, own_materials)?;
-        value.source.warnings.borrow_mut().extend(warnings);
-        let indices = match own_materials {
-            true => {
-                MaterialFinder { mesh: entry, described, undefined, materials, textures, images: Vec::new() }
-                    .indices(&mesh.mesh.material_names)?
-            }
-            false => Vec::new(),
-        };
-        names.insert(entry.key, meshes.len());
+        table.get("materials").map_or(Ok(true), |wanted| wanted.truth())?;
         let subdivisions = table.get("subdivide").map_or(Ok(0), |steps| steps.whole(0..=12))?;
-        let triangles = (mesh.mesh.triangles.len() as u64) << (2 * subdivisions);
-        let place = table.get("subdivide").unwrap_or(entry);
-        value.source.budget.triangles(|why| place.error(why), triangles)?;
-        // A surface that is subdivided is smooth, also where the file asks for flat faces.
-        let smooth = smooth && (mesh.smooth || subdivisions > 0);
-        meshes.push(SceneMesh { smooth, one_sided, subdivisions, materials: indices, ..mesh });
+        let file = table.need("file", "\"bunny.ply\"")?;
+        let path = files::find(file)?;
+        if !["ply", "obj"].contains(&files::extension(&path).as_str()) {
+            let message = format!("{} is not a mesh that can be read", file.spelled());
+            return Err(file.error(message).help("meshes are `.ply` or `.obj` files"));
+        }
+        names.insert(entry.key, meshes.list.len());
+        meshes.entries.push((entry, path));
+        meshes.list.push(SceneMesh { smooth, one_sided, subdivisions, ..SceneMesh::default() });
     }
     Ok((meshes, names))
 }
 
-/// Reads the mesh file that `table` names, with its material libraries only if its materials are wanted. A PLY file is
-/// treated like an OBJ file without materials.
-fn read(table: &Table, with_materials: bool) -> Result<ObjFile, LoadError> {
-    let value = table.need("file", "\"bunny.ply\"")?;
-    let file = files::find(value)?;
-    match files::extension(&file).as_str() {
-        "ply" => {
-            let PlyFile { mesh, warnings } = ply::read(&file)?;
-            Ok(ObjFile { mesh, materials: Vec::new(), undefined: Vec::new(), warnings })
+impl<'a> Meshes<'a> {
+    /// Reads the files of those meshes that a node shows. Materials and images that come with them are added to those of
+    /// the scene. Fails if a file is malformed, or if the triangles need more memory than the limit.
+    pub fn read(
+        &mut self,
+        nodes: &[Node],
+        materials: &mut Materials,
+        images: &mut Images<'a>,
+    ) -> Result<(), LoadError> {
+        for (index, (entry, path)) in self.entries.iter().enumerate() {
+            // All nodes are reached from a root.
+            if nodes.iter().any(|node| matches!(node.shape, Some(Shape::Mesh(shown)) if shown == index)) {
+                read(&mut self.list[index], *entry, path, materials, images)?;
+            }
         }
-        "obj" if with_materials => obj::read(&file),
-        "obj" => obj::read_without_libraries(&file),
-        _ => {
-            let message = format!("{} is not a mesh that can be read", value.spelled());
-            Err(value.error(message).help("meshes are `.ply` or `.obj` files"))
-        }
+        Ok(())
     }
 }
 
+/// Reads the file `path` of the mesh `entry`, with its material libraries only if its materials are wanted. A PLY file is
+/// treated like an OBJ file without materials.
+fn read<'a>(
+    into: &mut SceneMesh,
+    entry: Value<'a>,
+    path: &Path,
+    materials: &mut Materials,
+    images: &mut Images<'a>,
+) -> Result<(), LoadError> {
+    let table = entry.table(&KEYS)?;
+    let own_materials = table.get("materials").map_or(Ok(true), |wanted| wanted.truth())?;
+    let ObjFile { mesh, materials: described, undefined, warnings } = match files::extension(path).as_str() {
+        "ply" => {
+            let PlyFile { mesh, warnings } = ply::read(path)?;
+            ObjFile { mesh, materials: Vec::new(), undefined: Vec::new(), warnings }
+        }
+        _ if own_materials => obj::read(path)?,
+        _ => obj::read_without_libraries(path)?,
+    };
+    entry.source.warnings.borrow_mut().extend(warnings);
+    if own_materials {
+        into.materials =
+            MaterialFinder { mesh: entry, described, undefined, materials, images, found: Vec::new() }
+                .indices(&mesh.mesh.material_names)?;
+    }
+    let triangles = (mesh.mesh.triangles.len() as u64) << (2 * into.subdivisions);
+    let place = table.get("subdivide").unwrap_or(entry);
+    entry.source.budget.triangles(|why| place.error(why), triangles)?;
+    // A surface that is subdivided is smooth, also where the file asks for flat faces.
+    into.smooth &= mesh.smooth || into.subdivisions > 0;
+    (into.mesh, into.origin, into.places, into.groups) = (mesh.mesh, mesh.origin, mesh.places, mesh.groups);
+    Ok(())
+}
+
 /// Finds the scene's materials for the names that one mesh uses.
-struct MaterialFinder<'m, 's> {
+struct MaterialFinder<'m, 'n, 's> {
     /// The entry of the mesh in the scene.
-    mesh: Value<'m>,
+    mesh: Value<'s>,
     /// The materials that came with it.
     described: Vec<ObjMaterial>,
     /// The names that its files do not define, each with a warning.
     undefined: Vec<(String, LoadError)>,
-    materials: &'m mut Materials<'s>,
-    textures: &'m mut Vec<Texture>,
-    /// Images that were read already, each with its index among the textures; `None` if it cannot be used.
-    images: Vec<(PathBuf, Option<usize>)>,
+    materials: &'m mut Materials<'n>,
+    images: &'m mut Images<'s>,
+    /// Image files that were looked for already, each with its index among the images; `None` if there is none.
+    found: Vec<(PathBuf, Option<usize>)>,
 }
 
-impl MaterialFinder<'_, '_> {
+impl MaterialFinder<'_, '_, '_> {
     /// The index of the material for each of `names`, or none if no name is defined: the mesh then has the material of
     /// its node. A `[materials.NAME]` has precedence over a material that came with the mesh.
     fn indices(&mut self, names: &[String]) -> Result<Vec<usize>, LoadError> {
@@ -115,39 +148,27 @@ impl MaterialFinder<'_, '_> {
             return Ok(None);
         };
         let mut material = from_obj(&described);
-        if let Some(image) = &described.diffuse_texture {
-            material.texture = self.texture(image)?;
-        }
+        material.texture = described.diffuse_texture.as_deref().and_then(|path| self.image(path));
         Ok(Some(self.materials.push(format!("{}/{name}", self.mesh.key), material)))
     }
 
-    /// The index of the texture in the file `image`, which is read once. If it cannot be used, a warning says so, and the
-    /// material has no texture.
-    fn texture(&mut self, image: &Path) -> Result<Option<usize>, LoadError> {
-        if let Some((_, index)) = self.images.iter().find(|(path, _)| path == image) {
-            return Ok(*index);
+    /// The index of the image in the file `path`. If there is no such file, a warning says so, and the material has no
+    /// image.
+    fn image(&mut self, path: &Path) -> Option<usize> {
+        if let Some((_, index)) = self.found.iter().find(|(found, _)| found == path) {
+            return *index;
         }
-        let index = match image.is_file() {
-            true => match textures::read(image, Wrap::Repeat, None, self.mesh) {
-                Ok((texture, _)) => {
-                    self.textures.push(texture);
-                    Some(self.textures.len() - 1)
-                }
-                Err(warning) => {
-                    let message = format!("{}; it is left out", warning.message);
-                    self.mesh.warn(LoadError { message, ..warning });
-                    None
-                }
-            },
+        let index = match path.is_file() {
+            true => Some(self.images.add_optional(path.into(), self.mesh)),
             false => {
-                let name = quoted(&image.file_name().unwrap_or_default().to_string_lossy());
+                let name = quoted(&path.file_name().unwrap_or_default().to_string_lossy());
                 let message =
                     format!("there is no texture {name} for mesh {}; it is left out", quoted(self.mesh.key));
-                self.mesh.warn(self.mesh.error(message).help(files::where_it_might_be(image)));
+                self.mesh.warn(self.mesh.error(message).help(files::where_it_might_be(path)));
                 None
             }
         };
-        self.images.push((image.into(), index));
-        Ok(index)
+        self.found.push((path.into(), index));
+        index
     }
 }

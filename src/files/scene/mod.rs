@@ -22,10 +22,11 @@ mod transform;
 mod words;
 
 use super::error::LoadError;
-use crate::scene::Scene;
+use crate::scene::{Gamma2, Scene};
 pub use limits::Limits;
 use reader::{Source, Table};
 pub use settings::set;
+use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -120,12 +121,14 @@ pub fn parse_within(file: &Path, text: &str, limits: Limits) -> Result<Loaded, L
     };
     let quality = settings::quality(root.get("quality"))?;
 
-    let (mut textures, texture_names) = textures::textures(root.get("textures"))?;
-    let environment = settings::environment(root.get("environment"), &mut textures)?;
-    let mut materials = materials::materials(root.get("materials"), &texture_names)?;
-    let (mut meshes, mesh_names) = meshes::meshes(root.get("meshes"), &mut materials, &mut textures)?;
-    let lights = lights::lights(root.get("lights"))?;
-    let (nodes, roots) = nodes::nodes(root.get("nodes"), &materials.names, &mesh_names, &mut meshes)?;
+    let (mut images, image_names) = textures::textures(root.get("textures"))?;
+    let environment = settings::environment(root.get("environment"), &mut images)?;
+    let mut materials = materials::materials(root.get("materials"), &image_names)?;
+    let (mut meshes, mesh_names) = meshes::meshes(root.get("meshes"))?;
+    let lights = lights::lights(root.get("lights"), camera.position)?;
+    let (nodes, roots) = nodes::nodes(root.get("nodes"), &materials.names, &mesh_names, &mut meshes.list)?;
+    // Files are read last, when it is known which of them the picture shows.
+    meshes.read(&nodes, &mut materials, &mut images)?;
     let mut scene = Scene {
         film,
         camera,
@@ -136,14 +139,24 @@ pub fn parse_within(file: &Path, text: &str, limits: Limits) -> Result<Loaded, L
         visible_lights: Vec::new(),
         materials: materials.list,
         material_names: materials.list_names,
-        textures,
-        meshes,
+        textures: Vec::new(),
+        meshes: meshes.list,
         nodes,
         roots,
-        gamma2: source.gamma2.take(),
+        gamma2: Gamma2::default(),
         quality,
         max_primitives: limits.triangles(),
     };
+    for material in scene.shown().into_iter().flat_map(|shape| shape.materials).collect::<BTreeSet<_>>() {
+        if let Some(image) = scene.materials[material].texture
+            && scene.is_lit(&scene.materials[material])
+            && !images.read(image)?
+        {
+            scene.materials[material].texture = None;
+        }
+    }
+    scene.textures = images.list;
+    scene.gamma2 = source.gamma2.take();
     lights::show(&mut scene, &lights);
     Ok(Loaded { scene, warnings: source.warnings.take() })
 }

@@ -71,6 +71,18 @@ impl<'a> Value<'a> {
         self.number_that("from 0 to 1", |number| (0.0..=1.0).contains(&number))
     }
 
+    /// The number, which is this value or follows from it; 0, with a warning, if single precision cannot tell it from 0
+    /// beside `whole`, so that it would cost time and change nothing. `what` is what the scene has then.
+    pub fn or_nothing(&self, number: f32, whole: f32, what: &str) -> f32 {
+        let negligible = f32::EPSILON / 2.0 * whole;
+        if number == 0.0 || number > negligible {
+            return number;
+        }
+        let message = format!("{} is too small to change the picture; {what}", self.spelled());
+        self.warn(self.error(message).help("write 0, or a larger number"));
+        0.0
+    }
+
     /// The value as a point or an offset; fails if it is not a list of three finite numbers.
     pub fn vector(&self) -> Result<Vec3, LoadError> {
         Ok(Vec3::from_array(self.numbers("three numbers")?))

@@ -1,13 +1,14 @@
 //! The tables that occur at most once in a scene: `film`, `camera`, `environment` and `quality`.
 
+use super::files;
 use super::limits::Limits;
 use super::reader::{Source, Table, Value};
+use super::textures::Images;
 use super::words::ENCODINGS;
-use super::{files, textures};
 use crate::camera::{Camera, Lens, Shutter};
 use crate::files::error::LoadError;
 use crate::film::ToneCurve;
-use crate::material::{Texture, Wrap};
+use crate::material::Wrap;
 use crate::scene::{
     Background, ColorPlace, EnvironmentMap, Field, FilmSettings, Gradient, GradientColor, Quality,
 };
@@ -115,10 +116,10 @@ fn field_of_view(table: &Table, aspect: f32) -> Result<f32, LoadError> {
 
 fn lens(value: Value) -> Result<Lens, LoadError> {
     let table = value.table(&["aperture", "focal_distance"])?;
-    Ok(Lens {
-        aperture: table.need("aperture", "0.1")?.not_negative()?,
-        focal_distance: table.need("focal_distance", "5.0")?.positive()?,
-    })
+    let (aperture, focal_distance) = (table.need("aperture", "0.1")?, table.need("focal_distance", "5.0")?);
+    let (radius, focal_distance) = (aperture.not_negative()?, focal_distance.positive()?);
+    let radius = aperture.or_nothing(radius, focal_distance, "the camera is a pinhole");
+    Ok(Lens { aperture: radius, focal_distance })
 }
 
 fn shutter(value: Value) -> Result<Shutter, LoadError> {
@@ -142,17 +143,17 @@ pub(super) struct Environment {
 
 /// The values of `[environment]`, black and `false` where nothing else is given; fails if one is of the wrong
 /// type or below 0, or if the file of a background is missing or is not an image. The image of an environment map is
-/// added to `textures`.
-pub(super) fn environment(
-    value: Option<Value>,
-    textures: &mut Vec<Texture>,
+/// added to `images`, unless it is the same in all directions.
+pub(super) fn environment<'a>(
+    value: Option<Value<'a>>,
+    images: &mut Images<'a>,
 ) -> Result<Environment, LoadError> {
     let mut environment =
         Environment { background: Background::Color(Vec3::ZERO), ambient: Vec3::ZERO, indirect_light: false };
     let Some(value) = value else { return Ok(environment) };
     for value in value.table(&["background", "ambient", "indirect_light"])?.values() {
         match value.key {
-            "background" => environment.background = background(value, textures)?,
+            "background" => environment.background = background(value, images)?,
             "ambient" => environment.ambient = value.color(ColorPlace::AmbientLight)?,
             _ => environment.indirect_light = value.truth()?,
         }
@@ -161,7 +162,7 @@ pub(super) fn environment(
 }
 
 /// A background: a colour, or a table with the colours of a gradient or with the file of an environment map.
-fn background(value: Value, textures: &mut Vec<Texture>) -> Result<Background, LoadError> {
+fn background<'a>(value: Value<'a>, images: &mut Images<'a>) -> Result<Background, LoadError> {
     let Ok(table) = value.any_table() else {
         return Ok(Background::Color(value.color(ColorPlace::Background)?));
     };
@@ -182,9 +183,17 @@ fn background(value: Value, textures: &mut Vec<Texture>) -> Result<Background, L
     let file = table.need("file", "\"sky.hdr\"")?;
     let rotation = table.get("rotation").map_or(Ok(0.0), |degrees| degrees.number())?.to_radians();
     let scale = table.get("scale").map_or(Ok(1.0), |scale| scale.not_negative())?;
-    let (image, _) = textures::read(&files::find(file)?, Wrap::Repeat, None, file)?;
-    textures.push(image);
-    Ok(Background::Map(EnvironmentMap { texture: textures.len() - 1, rotation, scale }))
+    let path = files::find(file)?;
+    if scale == 0.0 {
+        return Ok(Background::Color(Vec3::ZERO));
+    }
+    let texture = images.add(path, Wrap::Repeat, file);
+    images.read(texture)?;
+    let pixels = &images.list[texture].pixels;
+    match pixels.iter().all(|pixel| *pixel == pixels[0]) {
+        true => Ok(Background::Color(scale * pixels[0])),
+        false => Ok(Background::Map(EnvironmentMap { texture, rotation, scale })),
+    }
 }
 
 /// The settings of `[quality]`, with `Quality::default()` for keys that are missing; fails if a value is out

@@ -11,14 +11,14 @@ use glam::Vec3;
 use image::{DynamicImage, ImageReader};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 const WRAPS: [(&str, Wrap); 3] = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
 
 /// The curve that decodes the numbers of an image, which are in `0..=1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Curve {
+enum Curve {
     /// The inverse of the sRGB curve.
     Srgb,
     /// This power: 1 for numbers that are linear light.
@@ -29,41 +29,92 @@ pub(super) enum Curve {
 const CURVES: [(&str, Option<Curve>); 3] =
     [("srgb", Some(Curve::Srgb)), ("linear", Some(Curve::Power(1.0))), ("gamma2", None)];
 
-/// All `[textures.NAME]` in the order of the file, with their names. Fails if a file is missing or is not an
-/// image.
-pub(super) fn textures<'a>(value: Option<Value<'a>>) -> Result<(Vec<Texture>, Names<'a>), LoadError> {
-    let (mut textures, mut names) = (Vec::new(), Names::new("texture"));
-    let Some(value) = value else { return Ok((textures, names)) };
-    for entry in value.any_table()?.values() {
-        let table = entry.table(&["file", "wrap", "encoding"])?;
-        let wrap = table.get("wrap").map_or(Ok(Wrap::Repeat), |wrap| wrap.choice(&WRAPS))?;
-        let file = table.need("file", "\"wood.png\"")?;
-        let path = files::find(file)?;
-        names.insert(entry.key, textures.len());
-        let encoding = table.get("encoding");
-        let curve = encoding.map(|one| one.choice(&CURVES)).transpose()?;
-        let (texture, has_bytes) = read(&path, wrap, curve.flatten(), file)?;
-        if let Some(encoding) = encoding.filter(|_| curve == Some(None)) {
+/// The images of a scene. An image is read when [`Images::read`] is asked for it; until then it is one black pixel.
+#[derive(Default)]
+pub(super) struct Images<'a> {
+    /// All images by index.
+    pub list: Vec<Texture>,
+    /// Where each image that is not read yet is found.
+    unread: Vec<Option<Unread<'a>>>,
+    /// The images that cannot be used and that the scene can do without.
+    left_out: Vec<usize>,
+}
+
+struct Unread<'a> {
+    path: PathBuf,
+    /// The value of the scene that leads to the file.
+    named_by: Value<'a>,
+    /// The value of the scene that says how its bytes are encoded.
+    encoding: Option<(Value<'a>, Option<Curve>)>,
+    /// Whether the scene can do without the image, if it cannot be used.
+    optional: bool,
+}
+
+impl<'a> Images<'a> {
+    /// Adds the image in the file `path`, to which `named_by` leads, and returns its index.
+    pub fn add(&mut self, path: PathBuf, wrap: Wrap, named_by: Value<'a>) -> usize {
+        self.list.push(Texture { width: 1, height: 1, pixels: Arc::new(vec![Vec3::ZERO]), wrap });
+        self.unread.push(Some(Unread { path, named_by, encoding: None, optional: false }));
+        self.list.len() - 1
+    }
+
+    /// Adds an image, as [`Images::add`] does, that adds a warning if it cannot be used.
+    pub fn add_optional(&mut self, path: PathBuf, named_by: Value<'a>) -> usize {
+        let index = self.add(path, Wrap::Repeat, named_by);
+        self.unread[index].iter_mut().for_each(|unread| unread.optional = true);
+        index
+    }
+
+    /// Reads the image with this index, unless that was done before, and returns whether it can be used. Fails as
+    /// [`read`] does, and if the encoding of bytes is given for an image without bytes.
+    pub fn read(&mut self, index: usize) -> Result<bool, LoadError> {
+        let Some(Unread { path, named_by, encoding, optional }) = self.unread[index].take() else {
+            return Ok(!self.left_out.contains(&index));
+        };
+        let curve = encoding.and_then(|(_, curve)| curve);
+        let (texture, has_bytes) = match read(&path, self.list[index].wrap, curve, named_by) {
+            Err(warning) if optional => {
+                let message = format!("{}; it is left out", warning.message);
+                named_by.warn(LoadError { message, ..warning });
+                self.left_out.push(index);
+                return Ok(false);
+            }
+            read => read?,
+        };
+        self.list[index] = texture;
+        if let Some((encoding, None)) = encoding {
             if !has_bytes {
                 let message = "only images with 8 bits per component are encoded with gamma 2";
                 return Err(encoding.error(message).help("delete the key, or convert the image to 8 bits"));
             }
-            value.source.gamma2.borrow_mut().textures.push(textures.len());
+            named_by.source.gamma2.borrow_mut().textures.push(index);
         }
-        textures.push(texture);
+        Ok(true)
     }
-    Ok((textures, names))
+}
+
+/// All `[textures.NAME]` in the order of the file, with their names. Fails if a file is missing.
+pub(super) fn textures<'a>(value: Option<Value<'a>>) -> Result<(Images<'a>, Names<'a>), LoadError> {
+    let (mut images, mut names) = (Images::default(), Names::new("texture"));
+    let Some(value) = value else { return Ok((images, names)) };
+    for entry in value.any_table()?.values() {
+        let table = entry.table(&["file", "wrap", "encoding"])?;
+        let wrap = table.get("wrap").map_or(Ok(Wrap::Repeat), |wrap| wrap.choice(&WRAPS))?;
+        let file = table.need("file", "\"wood.png\"")?;
+        let index = images.add(files::find(file)?, wrap, file);
+        names.insert(entry.key, index);
+        if let Some(encoding) = table.get("encoding") {
+            let curve = encoding.choice(&CURVES)?;
+            images.unread[index].iter_mut().for_each(|unread| unread.encoding = Some((encoding, curve)));
+        }
+    }
+    Ok((images, names))
 }
 
 /// Reads an image file and decodes it to linear light, by `curve` or else by what a PNG file says of itself, which is sRGB if it
 /// says nothing; formats with floating-point pixels are linear already. Also says whether its components have 8 bits. Fails at `value`, which names the image, if the file cannot be read, has no pixels, or needs more memory
 /// than the limit; this is known from its header.
-pub(super) fn read(
-    path: &Path,
-    wrap: Wrap,
-    curve: Option<Curve>,
-    value: Value,
-) -> Result<(Texture, bool), LoadError> {
+fn read(path: &Path, wrap: Wrap, curve: Option<Curve>, value: Value) -> Result<(Texture, bool), LoadError> {
     let name = quoted(&path.file_name().unwrap_or_default().to_string_lossy());
     let trouble = |message: String| {
         value

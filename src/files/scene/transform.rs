@@ -45,7 +45,8 @@ fn step(value: Value) -> Result<DAffine3, LoadError> {
         "rotate" => {
             let table = kind.table(&["axis", "degrees"])?;
             let axis = table.need("axis", "[0, 1, 0]")?.direction_f64()?;
-            let degrees = f64::from(table.need("degrees", "30")?.number()?);
+            // Without whole turns, so that one turn is exactly none.
+            let degrees = f64::from(table.need("degrees", "30")?.number()?) % 360.0;
             DAffine3::from_axis_angle(axis, degrees.to_radians())
         }
         _ => matrix(kind)?,

@@ -23,7 +23,7 @@ pub fn asked(explained: &Explained<'_>) {
             if scene.quality.next_event != NextEvent::Off { materials(&paths.sampled) } else { Vec::new() };
         let samples_map = scene.quality.next_event != NextEvent::Off && paths.environment;
         if samples_map && matches!(scene.background, Background::Map(_)) {
-            sampled.push("environment map".into());
+            sampled.push("environment map (a shadow ray per diffuse hit, also where walls hide it)".into());
         }
         let line = |what: &str, parts: &[String], none: &str| {
             let parts = if parts.is_empty() { none.to_owned() } else { list(parts) };

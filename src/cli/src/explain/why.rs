@@ -93,7 +93,9 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
         (!idle.is_empty()).then(|| format!("{} {what}", list(&idle)))
     };
     let area = |light: &Light| matches!(light.emitter, Emitter::Area { .. });
-    let unused = "could, but no shape has this material, or max_depth is 0";
+    let unused = "could, but no shape has this material, max_depth is 0, or nothing shines";
+    const DARK: &str =
+        "nothing shines: there is no light, no emission, no ambient light, and the background is black";
     match effect {
         Effect::Shadows if scene.lights.is_empty() => "there is no light".into(),
         Effect::Shadows => "no light that reaches a surface casts shadows".into(),
@@ -110,14 +112,24 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
             has(&|m| m.roughness > 0.0, "is rough, but no shape of this material reflects or transmits light")
                 .unwrap_or_else(|| "no material is rough".into())
         }
+        Effect::Lens if scene.camera.lens.is_some_and(|lens| lens.aperture > 0.0) => DARK.into(),
         Effect::Lens if scene.camera.lens.is_some() => "the aperture of the lens is 0".into(),
         Effect::Lens => "the camera is a pinhole".into(),
         Effect::Motion if !shown.iter().any(|shape| shape.moves) => "nothing moves".into(),
+        Effect::Motion if scene.camera.shutter.is_some_and(|shutter| shutter.close > shutter.open) => {
+            DARK.into()
+        }
         Effect::Motion => "the shutter opens and closes at the same time".into(),
         Effect::SmoothNormals if scene.meshes.is_empty() => "there is no mesh".into(),
+        Effect::SmoothNormals
+            if shown.iter().any(|shape| shape.mesh.is_some_and(|m| scene.meshes[m].smooth)) =>
+        {
+            DARK.into()
+        }
         Effect::SmoothNormals => "no mesh that is shown is smooth".into(),
-        Effect::Textures => has(&|m| m.texture.is_some(), "has an image, but no shape shows it")
+        Effect::Textures => has(&|m| m.texture.is_some(), "has an image, but no shape shows it, or no light")
             .unwrap_or_else(|| "no material has an image".into()),
+        Effect::IndirectLight if scene.indirect_light => DARK.into(),
         Effect::IndirectLight => "[environment] does not request it".into(),
     }
 }

@@ -1,6 +1,6 @@
 //! Textures and meshes, which need a second file.
 
-use super::CAMERA;
+use super::{CAMERA, showing_all};
 use crate::files::error::LoadError;
 use crate::files::scene::{Limits, parse, parse_within};
 use crate::material::{Material, Wrap};
@@ -26,9 +26,9 @@ impl Folder {
         std::fs::write(self.path(name), bytes).expect("a file for the test");
     }
 
-    /// Reads `text` behind a camera as if it lay in this folder.
+    /// Reads `text` behind a camera, and shows all of its meshes and textures, as if it lay in this folder.
     fn parse(&self, text: &str) -> Result<Scene, LoadError> {
-        parse(&self.path("s.toml"), &format!("{CAMERA}{text}"))
+        parse(&self.path("s.toml"), &showing_all(&format!("{CAMERA}{text}")))
     }
 }
 
@@ -80,14 +80,19 @@ fn finer_images_keep_their_fineness() {
 #[test]
 fn an_environment_map_is_an_image_around_the_scene() {
     let folder = Folder::new("environment");
-    let bright = image::Rgb32FImage::from_pixel(2, 1, image::Rgb([4.0, 0.5, 0.0]));
+    let mut bright = image::Rgb32FImage::from_pixel(2, 1, image::Rgb([4.0, 0.5, 0.0]));
+    bright.save(folder.path("even.hdr")).expect("an image");
+    bright.put_pixel(1, 0, image::Rgb([0.0; 3]));
     bright.save(folder.path("sky.hdr")).expect("an image");
-    let scene = folder
-        .parse("[environment]\nbackground = { file = 'sky.hdr', rotation = 180, scale = 2 }")
-        .expect("a scene");
+    let parse = |map: &str| folder.parse(&format!("environment.background = {{ {map} }}")).expect("a scene");
+    let scene = parse("file = 'sky.hdr', rotation = 180, scale = 2");
     let map = EnvironmentMap { texture: 0, rotation: std::f32::consts::PI, scale: 2.0 };
     assert_eq!(scene.background, Background::Map(map));
-    assert_eq!(scene.textures[0].pixels[..], [Vec3::new(4.0, 0.5, 0.0); 2]);
+    assert_eq!(scene.textures[0].pixels[..], [Vec3::new(4.0, 0.5, 0.0), Vec3::ZERO]);
+    // A map that is the same in all directions is a colour.
+    assert_eq!(parse("file = 'sky.hdr', scale = 0").background, Background::Color(Vec3::ZERO));
+    let even = parse("file = 'even.hdr', scale = 2").background;
+    assert_eq!(even, Background::Color(Vec3::new(8.0, 1.0, 0.0)));
 
     // The size of the image is known from its header; 4 GB are enough for 100 million pixels.
     folder.write("large.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20000 +X 40000\n");
@@ -145,7 +150,7 @@ fn memory_is_bounded_before_it_is_allocated() {
     image::GrayImage::new(1000, 1000).save(folder.path("large.png")).expect("a texture");
     let limits = Limits { memory: 30_000_000 };
     let refused = |text: &str| {
-        let text = format!("{CAMERA}film = {{ width = 10, height = 10 }}\n{text}");
+        let text = showing_all(&format!("{CAMERA}film = {{ width = 10, height = 10 }}\n{text}"));
         let error = parse_within(&folder.path("s.toml"), &text, limits).expect_err("a limit");
         (error.place, error.message, error.help.unwrap_or_default())
     };

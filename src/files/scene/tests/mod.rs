@@ -40,3 +40,24 @@ fn check_refused(text: &str, message: &str) {
 fn check_refused_with(text: &str, message: &str) {
     check_refused(&format!("{CAMERA}{text}"), message);
 }
+
+/// The text with nodes and a light behind it that show each mesh and each texture, because the files of others are not read.
+fn showing_all(text: &str) -> String {
+    let mut shown = text.to_owned();
+    let Ok(scene) = text.parse::<toml::Table>() else { return shown };
+    let names =
+        |key: &str| scene.get(key).and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::keys);
+    for name in names("meshes") {
+        shown += &format!("\n[[nodes]]\nshape = {{ mesh = '{name}' }}\n");
+    }
+    for name in names("textures") {
+        shown += &format!("\n[materials.showing-{name}]\ntexture = '{name}'\n");
+        shown += &format!(
+            "\n[[nodes]]\nmaterial = 'showing-{name}'\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n"
+        );
+    }
+    match shown.len() == text.len() {
+        true => shown,
+        false => shown + "\n[[lights]]\npoint.position = [0, 5, 0]\n",
+    }
+}

@@ -1,9 +1,11 @@
 //! Checks of stage 7: effects.
 //!
-//! `lights` · `materials` · `whole` (scenes) · `filmed` (lens and shutter) · `rays` (the bound on rays) · `hits` (rays of
+//! `lights` · `materials` · `whole` (scenes) · `dark` (scenes without light) ·
+//! `filmed` (lens and shutter) · `rays` (the bound on rays) · `hits` (rays of
 //! known hits, number of samples) · `texels` · `images` (textures) · `scenes` (test scenes) ·
 //! `table` · `picture`
 
+mod dark;
 mod filmed;
 mod hits;
 mod images;
@@ -21,6 +23,7 @@ checks::stage! { ($ crate) 7 [
     materials::materials_take_what_they_show
     whole::a_plain_scene_takes_nothing_special
     whole::what_is_not_shown_takes_nothing
+    dark::what_nothing_lights_needs_nothing
     filmed::lens_and_time_matter_only_where_they_are_seen
     whole::every_subset_of_effects_is_recognised
     rays::shadow_arithmetic_of_the_lecture

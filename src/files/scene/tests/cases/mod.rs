@@ -17,8 +17,8 @@
 //! `3v 1t` stands for three vertices and a triangle; `n`, `uv` and `m` count normals, texture coordinates and material names,
 //! `flat` a mesh that asks for flat faces, `groups` its smoothing groups, and `area` is that of all triangles. `diffuse 1 0 0` is a value of the first material of the file that is not the default.
 
-use super::CAMERA;
 use super::files::Folder;
+use super::{CAMERA, showing_all};
 use crate::files::scene::{Limits, Loaded, parse_within};
 use crate::material::Material;
 use crate::scene::{Scene, SceneMesh};
@@ -96,7 +96,7 @@ fn changed(text: &str, changes: &[&str]) -> String {
 fn result(folder: &Folder, name: &str, text: &str, with_area: bool) -> String {
     let shown = format!("{CAMERA}meshes.m.file = 'm.{}'\n", if name == "m.ply" { "ply" } else { "obj" });
     folder.write(name, text);
-    let scene = if name == "s.toml" { text } else { &shown };
+    let scene = &showing_all(if name == "s.toml" { text } else { &shown });
     let (mut lines, messages) = match parse_within(&folder.path("s.toml"), scene, Limits::default()) {
         Ok(Loaded { scene, warnings }) => {
             (format!("= {}", facts(&scene, with_area)).trim_end().to_owned(), warnings)
