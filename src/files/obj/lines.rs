@@ -316,7 +316,7 @@ impl<'a> Reader<'a> {
             self.leave_out(corner.span.clone(), message, "replace it by numbers below 3e38");
             return Ok(None);
         }
-        if !corner.text.split('/').nth(2).is_some_and(|normal| !normal.is_empty()) {
+        if corner.text.split('/').nth(2).is_none_or(str::is_empty) {
             self.bare_corner.get_or_insert(corner.span.clone());
         }
         let uv = uv.filter(|&uv| self.lines.uvs[uv as usize].is_finite());

@@ -129,13 +129,6 @@ fn positions_far_away_are_counted_from_an_origin() {
 }
 
 #[test]
-fn objects_and_groups_become_one_mesh() {
-    let mesh = mesh(format!("o one\n{SQUARE}f 1 2 3\no two\nv 5 5 5\ng part\nf 5 1 2\nf -1 -2 -3"));
-    assert_eq!(mesh.triangles.len(), 3);
-    assert_eq!(mesh.positions.len(), 5);
-}
-
-#[test]
 fn materials_are_numbered_in_order_of_first_use() {
     let named = mesh(format!(
         "{SQUARE}usemtl unused\nusemtl dark red\nf 1 2 3 4\no more\nf 1 2 3\nusemtl blue\nf 1 2 3\nusemtl dark red\nf 1 2 3"
@@ -149,18 +142,6 @@ fn materials_are_numbered_in_order_of_first_use() {
         (vec!["default".into(), "red".into()], vec![0, 1])
     );
     assert!(mesh(format!("{SQUARE}f 1 2 3\nusemtl red\n")).material_names.is_empty());
-}
-
-#[test]
-fn a_file_without_faces_shows_nothing() {
-    let help = "help: export the mesh with faces: lines that start with `f` and name three vertices or more";
-    for text in ["", "# nothing\n", SQUARE, "o thing\nl 1 2 3\n"] {
-        assert_eq!(parsed(text).unwrap_err().to_string(), format!("a.obj: the file has no faces\n{help}"));
-    }
-    assert_eq!(
-        parsed("ply\nformat ascii 1.0\n").unwrap_err().to_string(),
-        "a.obj: this is not an OBJ file\nhelp: it looks like a PLY file: give it the ending `.ply`"
-    );
 }
 
 /// For any bytes, the result is a valid mesh or an error.

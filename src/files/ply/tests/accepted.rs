@@ -8,14 +8,6 @@ fn plain() -> crate::mesh::Mesh {
 }
 
 #[test]
-fn a_triangle_is_three_vertices_and_a_face() {
-    let mesh = plain();
-    assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
-    assert_eq!(mesh.triangles, [[0, 1, 2]]);
-    assert!(mesh.normals.is_empty() && mesh.uvs.is_empty() && mesh.material_names.is_empty());
-}
-
-#[test]
 fn line_ends_and_blanks_carry_no_meaning() {
     let text = format!("{PLAIN}{CORNERS}3 0 1 2\n");
     for variant in [
@@ -66,12 +58,6 @@ fn unknown_properties_and_elements_are_passed_over() {
                 property int flags\nelement edge 2\nproperty int a\nproperty int b\nend_header\n\
                 inf 2 .1 .2\nnan 0 2 7 8 0 0 1\n1 1 0 0 0 2\nwhat 0 1 9 1 0 3\n2 255 0 3 0 1 2 -1\n0 1\n1 2\n";
     assert_eq!(mesh(text), plain());
-}
-
-#[test]
-fn polygons_become_fans() {
-    let text = plain_with("vertex 3", "vertex 5").replace("3 0 1 2", "-1 1 0 -1 .5 0 5 4 3 2 1 0");
-    assert_eq!(mesh(text).triangles, [[4, 3, 2], [4, 2, 1], [4, 1, 0]]);
 }
 
 #[test]
@@ -215,23 +201,4 @@ fn bytes_after_a_binary_mesh_are_padding() {
     }
     bytes.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0]);
     assert_eq!(mesh(bytes), plain());
-}
-
-/// A mesh of the size of the bunny in the lecture.
-#[test]
-fn a_large_binary_mesh_is_read_whole() {
-    let (vertices, faces) = (35_947_u32, 69_451_u32);
-    let header = PLAIN.replace("ascii", "binary_little_endian");
-    let header = header.replace("vertex 3", &format!("vertex {vertices}"));
-    let mut bytes = header.replace("face 1", &format!("face {faces}")).into_bytes();
-    for vertex in 0..vertices {
-        [vertex as f32, 1.0, 2.0].iter().for_each(|value| bytes.extend(value.to_le_bytes()));
-    }
-    for face in 0..faces {
-        bytes.push(3);
-        [face, face + 1, face + 2].iter().for_each(|index| bytes.extend((index % vertices).to_le_bytes()));
-    }
-    let mesh = mesh(bytes);
-    assert_eq!((mesh.positions.len(), mesh.triangles.len()), (35_947, 69_451));
-    assert_eq!(mesh.triangles[36_000], [53, 54, 55]);
 }
