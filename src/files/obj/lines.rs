@@ -79,7 +79,7 @@ pub(super) fn read(file: &Path, text: &str, warnings: &mut Warnings) -> Result<L
 }
 
 /// The byte ranges of the lines of a file. A line that ends in a backslash continues in the next one, unless
-/// it is a comment: comments often end in the name of a Windows directory.
+/// it is a comment or a name: these may end in the name of a Windows directory.
 fn logical_lines(text: &str) -> impl Iterator<Item = Range<usize>> {
     let mut start = if text.starts_with('\u{feff}') { 3 } else { 0 };
     std::iter::from_fn(move || {
@@ -92,7 +92,8 @@ fn logical_lines(text: &str) -> impl Iterator<Item = Range<usize>> {
             end = text[end..].find('\n').map_or(text.len(), |length| end + length);
             start = end + 1;
             let line = text[from..end].trim_ascii();
-            if end == text.len() || line.starts_with('#') || !line.ends_with('\\') {
+            let is_name = ["#", "o ", "g ", "usemtl "].iter().any(|start| line.starts_with(start));
+            if end == text.len() || is_name || !line.ends_with('\\') {
                 return Some(from..end);
             }
             end += 1;
@@ -326,7 +327,7 @@ impl<'a> Reader<'a> {
 
     fn use_material(&mut self, keyword: &Word, end: usize) {
         let (name, span) = match name(self.text, keyword.span.end..end) {
-            Some(span) => (one_line(&self.text[span.clone()]), span),
+            Some(span) => (self.text[span.clone()].to_owned(), span),
             None => {
                 let message = "`usemtl` without a name; the faces below it get the material `default`";
                 self.warn(keyword.span.clone(), message, "name a material, as in `usemtl red`");
@@ -392,9 +393,4 @@ pub(super) fn name(text: &str, place: Range<usize>) -> Option<Range<usize>> {
     let n_words = words.iter().position(is_comment).unwrap_or(words.len());
     let (first, last) = (words[..n_words].first()?, words[..n_words].last()?);
     Some(first.span.start..last.span.end)
-}
-
-/// A name without line breaks, which only a backslash can bring in.
-fn one_line(name: &str) -> String {
-    name.replace(['\n', '\r'], " ")
 }

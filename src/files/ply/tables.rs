@@ -83,7 +83,8 @@ impl Layout {
         ];
         for (name, message, help) in IGNORED {
             let mut properties = vertex.properties.iter().chain(&face.properties);
-            if let Some(property) = properties.find(|property| property.name == name) {
+            // Some tools write `diffuse_red`.
+            if let Some(property) = properties.find(|property| property.name.ends_with(name)) {
                 warnings.add(help, || missing.trouble(property.span.clone(), message.into()));
             }
         }
