@@ -104,19 +104,16 @@ impl Flattener<'_> {
                 }
                 None => Motion::still(motion.start),
             };
-            match shape {
-                // The positions of a mesh are counted from its origin.
-                Shape::Mesh(mesh) if self.scene.meshes[*mesh].origin != Vec3::ZERO => {
-                    let origin = self.scene.meshes[*mesh].origin;
-                    self.path.push(Affine3A::from_translation(origin));
-                    let motion = motion.counted_from(origin);
-                    self.shape(shape, meshes.of_scene.get_mut(*mesh), &motion, material as u32);
-                    self.path.pop();
-                }
-                Shape::Mesh(mesh) => {
-                    self.shape(shape, meshes.of_scene.get_mut(*mesh), &motion, material as u32)
-                }
-                _ => self.shape(shape, meshes.of_nodes.get_mut(&index), &motion, material as u32),
+            let (origin, ready) = match shape {
+                Shape::Mesh(mesh) => (self.scene.meshes[*mesh].origin, meshes.of_scene.get_mut(*mesh)),
+                _ => (Vec3::ZERO, meshes.of_nodes.get_mut(&index)),
+            };
+            if origin == Vec3::ZERO {
+                self.shape(shape, ready, &motion, material as u32);
+            } else {
+                self.path.push(Affine3A::from_translation(origin));
+                self.shape(shape, ready, &motion.counted_from(origin), material as u32);
+                self.path.pop();
             }
         }
         let here = self.in_graph(first..self.world.primitives.len() as u32, above);

@@ -27,36 +27,23 @@ pub(super) fn find(
         return vec![path];
     }
     let mut paths = Vec::new();
-    for name in between_quotes_or_blanks(&text[names.clone()], names.start) {
-        let path = path_of(name.text);
-        if path.is_file() {
-            paths.push(path);
-            continue;
+    for (index, part) in text[names.clone()].split('"').enumerate() {
+        let start = part.as_ptr() as usize - text.as_ptr() as usize;
+        let quoted = Word { text: part, span: start..start + part.len() };
+        for name in if index % 2 == 1 { vec![quoted] } else { words(part, start) } {
+            let path = path_of(name.text);
+            if path.is_file() {
+                paths.push(path);
+                continue;
+            }
+            let message = format!("there is no material library {}", quote(name.text));
+            warnings.push(LoadError::at(file, text, name.span, message).help(format!(
+                "looked for {}: put the library there, or remove the `mtllib` line",
+                path.display()
+            )));
         }
-        let message = format!("there is no material library {}", quote(name.text.trim_matches('"')));
-        warnings.push(LoadError::at(file, text, name.span, message).help(format!(
-            "looked for {}: put the library there, or remove the `mtllib` line",
-            path.display()
-        )));
     }
     paths
-}
-
-/// The parts of `text` between quotes, with the quotes, and the words between them.
-fn between_quotes_or_blanks(text: &str, start: usize) -> Vec<Word<'_>> {
-    let mut names = Vec::new();
-    let mut rest = text;
-    while !rest.trim_start().is_empty() {
-        rest = rest.trim_start();
-        let end = match rest.strip_prefix('"').and_then(|quoted| quoted.find('"')) {
-            Some(length) => length + 2,
-            None => rest.find(|c: char| c.is_ascii_whitespace()).unwrap_or(rest.len()),
-        };
-        let at = start + text.len() - rest.len();
-        names.push(Word { text: &rest[..end], span: at..at + end });
-        rest = &rest[end..];
-    }
-    names
 }
 
 /// Reads all materials of the library `file`, in the order of the file. A library that cannot be read has none, and

@@ -21,7 +21,7 @@
 //! ```
 //!
 //! Only numbers follow `end_header`. `header` reads the lines down to there, `body` reads the numbers one by
-//! one, and `tables` puts them into a [`Mesh`].
+//! one, and `tables` puts them into a [`Mesh`](crate::mesh::Mesh).
 
 mod body;
 mod header;

@@ -1,6 +1,6 @@
 //! Tests of accepted PLY files.
 
-use super::{CORNERS, PLAIN, mesh, plain_with};
+use super::{CORNERS, PLAIN, mesh};
 use glam::{Vec2, Vec3};
 
 fn plain() -> crate::mesh::Mesh {
