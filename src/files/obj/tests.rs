@@ -25,22 +25,6 @@ fn corners(mesh: &Mesh) -> Vec<[Vec3; 3]> {
 }
 
 #[test]
-fn a_triangle_names_three_vertices_counted_from_1() {
-    let mesh = mesh(format!("{SQUARE}f 1 2 3\n"));
-    assert_eq!(corners(&mesh), [[Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0)]]);
-    assert!(mesh.normals.is_empty() && mesh.uvs.is_empty());
-    assert!(mesh.material_names.is_empty() && mesh.face_materials.is_empty());
-}
-
-#[test]
-fn polygons_become_fans() {
-    let pentagon = mesh(format!("{SQUARE}v -1 .5 0\nf 1 2 3 4 5"));
-    let [a, b, c, d, e] = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, Vec3::new(-1.0, 0.5, 0.0)];
-    assert_eq!(corners(&pentagon), [[a, b, c], [a, c, d], [a, d, e]]);
-    assert_eq!(corners(&mesh(format!("{SQUARE}f 1 2 3 4"))), [[a, b, c], [a, c, d]]);
-}
-
-#[test]
 fn spelling_carries_no_meaning() {
     let plain = mesh(format!("{SQUARE}f 1 2 3 4\n"));
     for variant in [
