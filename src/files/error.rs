@@ -48,6 +48,33 @@ impl LoadError {
     }
 }
 
+/// The warnings about one file. Of a kind that may occur on every line only the first is kept, with the number of all.
+#[derive(Debug, Default)]
+pub(crate) struct Warnings(Vec<(LoadError, usize)>);
+
+impl Warnings {
+    /// Adds a warning with the advice `help`, which also stands for its kind. `warning` is not called for a kind that is
+    /// known, because to count the lines above a place takes time.
+    pub fn add(&mut self, help: &str, warning: impl FnOnce() -> LoadError) {
+        match self.0.iter_mut().find(|(known, _)| known.help.as_deref() == Some(help)) {
+            Some((_, count)) => *count += 1,
+            None => self.0.push((warning().help(help), 1)),
+        }
+    }
+
+    /// One warning of each kind, in the order in which they were found.
+    pub fn list(self) -> Vec<LoadError> {
+        let counted = |(warning, count): (LoadError, usize)| match count {
+            1 => warning,
+            _ => {
+                let message = format!("{} (here first, {count} times in the file)", warning.message);
+                LoadError { message, ..warning }
+            }
+        };
+        self.0.into_iter().map(counted).collect()
+    }
+}
+
 /// `text` with its control characters escaped, except line ends. A message may quote a file that the user did not write, and
 /// an escape sequence must not reach the terminal.
 pub fn printable(text: &str) -> String {

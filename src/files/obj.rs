@@ -13,28 +13,27 @@
 //!
 //! A corner of a face has up to three indices, counted from 1: into the positions `v`, the texture
 //! coordinates `vt` and the normals `vn`. Our [`Mesh`] has one index per corner, so each combination that
-//! occurs becomes a vertex of its own. `tobj` makes these vertices and cuts polygons into triangles. Its
-//! errors name no line, however, and some malformed files make it panic. Therefore `lines` first reads the
-//! file line by line, reports every error with its place, and hands on only the lines that are correct.
+//! occurs becomes a vertex of its own, and [`SceneMesh::places`] says which of them share a position. `lines` reads the file
+//! line by line, reports every error with its place, and cuts faces into triangles; `library` reads the materials.
 
 mod library;
 mod lines;
 #[cfg(test)]
 mod tests;
 
-use crate::files::error::LoadError;
+use crate::files::error::{LoadError, Warnings};
 use crate::files::ply::text::{LOOKS_LIKE_OBJ, guess, quote, read_bytes, readable};
-use crate::files::ply::unit_normals;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, SceneMesh};
 use glam::{Vec2, Vec3};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// The content of an OBJ file and of its material libraries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjFile {
     /// All objects and groups of the file as one mesh, because all triangles become one set of primitives in
-    /// the end.
-    pub mesh: Mesh,
+    /// the end. [`SceneMesh::smooth`] is false if the file has no normals and asks for flat faces.
+    pub mesh: SceneMesh,
     /// All materials of the libraries, used or not; of two with the same name only the last. A name in
     /// [`Mesh::material_names`] may be missing here.
     pub materials: Vec<ObjMaterial>,
@@ -94,17 +93,15 @@ pub fn read_without_libraries(file: &Path) -> Result<ObjFile, LoadError> {
 /// folder of `file`, which need not exist itself.
 ///
 /// Positions and texture coordinates are finite. Concave faces are cut into triangles that cover them; convex faces become
-/// fans around their first corner. Normals are of unit length; if any corner has no normal, or
-/// a normal without direction, the mesh has none at all. Where only some materials of the file have texture
-/// coordinates, those of the others are `(0.5, 0.5)`.
+/// fans around their first corner. Normals are of unit length; if some corners have a normal, the others have that of their
+/// face. Where only some corners have texture coordinates, those of the others are `(0.5, 0.5)`.
 ///
-/// A warning is added if a library is missing or one of its lines cannot be used, if a face names texture coordinates or
-/// normals and the file has none above it, if `usemtl` or `mtllib` has no name, and if the outline of a face crosses itself.
+/// A warning is added for everything that is ignored, guessed or replaced, once for each kind: faces and indices that cannot be
+/// used, normals without a direction, a missing library, and lines of a library.
 ///
 /// # Errors
 ///
-/// If a line of the file is malformed, if an index names no vertex, texture coordinate or normal above its face, if a
-/// position or a texture coordinate is not finite, or if there are no faces. An error at a place in a file names its line
+/// If a line of the file is malformed, if a face names vertex 0, or if no face is left. An error at a place in a file names its line
 /// and column.
 pub fn parse(file: &Path, bytes: &[u8]) -> Result<ObjFile, LoadError> {
     parse_with(file, bytes, true)
@@ -112,17 +109,20 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ObjFile, LoadError> {
 
 fn parse_with(file: &Path, bytes: &[u8], with_libraries: bool) -> Result<ObjFile, LoadError> {
     let text = readable(bytes);
-    let mut lines = lines::read(file, &text)?;
-    if lines.faces == 0 {
+    let mut warnings = Warnings::default();
+    let lines = lines::read(file, &text, &mut warnings)?;
+    if lines.triangles.is_empty() {
         return Err(match guess(bytes).filter(|help| *help != LOOKS_LIKE_OBJ) {
-            Some(help) if lines.vertices == 0 => LoadError::new(file, "this is not an OBJ file").help(help),
+            Some(help) if lines.positions.is_empty() => {
+                LoadError::new(file, "this is not an OBJ file").help(help)
+            }
             _ => LoadError::new(file, "the file has no faces").help(
                 "export the mesh with faces: lines that start with `f` and name three vertices or more",
             ),
         });
     }
 
-    let mut warnings = std::mem::take(&mut lines.warnings);
+    let mut warnings = warnings.list();
     let mut materials: Vec<ObjMaterial> = Vec::new();
     let names = if with_libraries { &lines.libraries[..] } else { &[] };
     for library in names {
@@ -135,10 +135,10 @@ fn parse_with(file: &Path, bytes: &[u8], with_libraries: bool) -> Result<ObjFile
         }
     }
 
-    let mesh = merge(load(file, &lines)?, &lines.material_names);
-    mesh.validate().map_err(|message| LoadError::new(file, message).help("export the mesh again"))?;
+    let mesh = mesh_of(&lines);
+    mesh.mesh.validate().map_err(|message| LoadError::new(file, message).help("export the mesh again"))?;
     let undefined = lines.material_names.iter().zip(&lines.material_spans).filter(|(name, _)| {
-        mesh.material_names.contains(name) && materials.iter().all(|material| material.name != **name)
+        mesh.mesh.material_names.contains(name) && materials.iter().all(|material| material.name != **name)
     });
     let undefined = undefined.map(|(name, span)| {
         let message = format!("material {} is not defined", quote(name));
@@ -147,54 +147,44 @@ fn parse_with(file: &Path, bytes: &[u8], with_libraries: bool) -> Result<ObjFile
     Ok(ObjFile { undefined: undefined.collect(), mesh, materials, warnings })
 }
 
-/// Reads one mesh for each run of faces with the same material.
-fn load(file: &Path, lines: &lines::Lines) -> Result<Vec<tobj::Mesh>, LoadError> {
-    let options = tobj::LoadOptions { single_index: true, triangulate: true, ..Default::default() };
-    // `tobj` drops names that no library defines, but a scene may define them. So pass each name to it as a material;
-    // only the numbers of the materials are used.
-    let numbers = || lines.material_names.iter().enumerate().map(|(number, name)| (name.clone(), number));
-    let all_materials = |_: &Path| Ok((Vec::new(), numbers().collect()));
-    match tobj::load_obj_buf(&mut lines.clean.as_bytes(), &options, all_materials) {
-        Ok((models, _)) => Ok(models.into_iter().map(|model| model.mesh).collect()),
-        Err(error) => Err(LoadError::new(file, format!("the mesh cannot be read: {error}"))
-            .help("export the mesh again, or as PLY")),
-    }
-}
-
-/// All parts as one mesh. Normals are kept only if every corner has one: a mesh has one per vertex or none at
-/// all, and an invented one would be visible in the picture. A part without texture coordinates shows the
-/// middle of its image.
-fn merge(parts: Vec<tobj::Mesh>, names: &[String]) -> Mesh {
-    let vec3s = |numbers: &[f32]| -> Vec<Vec3> { numbers.chunks_exact(3).map(Vec3::from_slice).collect() };
+/// The mesh of all faces. Its vertices, places and materials are numbered in order of first use.
+fn mesh_of(lines: &lines::Lines) -> SceneMesh {
+    let corners = || lines.triangles.iter().flat_map(|triangle| &triangle.corners);
+    let has_normals = corners().any(|corner| corner.normal.is_some());
+    let has_uvs = corners().any(|corner| corner.uv.is_some());
+    let has_materials = lines.triangles.iter().any(|triangle| triangle.material.is_some());
     let mut mesh = Mesh::default();
-    let has_materials = parts.iter().any(|part| part.material_id.is_some() && !part.indices.is_empty());
-    for part in parts.iter().filter(|part| !part.indices.is_empty()) {
-        let first = mesh.positions.len() as u32;
-        let material = material_number(&mut mesh, part.material_id.map_or(DEFAULT_MATERIAL, |id| &names[id]));
-        mesh.positions.extend(vec3s(&part.positions));
-        mesh.normals.extend(vec3s(&part.normals));
-        mesh.uvs.extend(part.texcoords.chunks_exact(2).map(Vec2::from_slice));
-        if mesh.uvs.len() != mesh.positions.len() {
-            mesh.uvs.resize(mesh.positions.len(), Vec2::splat(0.5));
-        }
-        for corners in part.indices.chunks_exact(3) {
-            mesh.triangles.push([first + corners[0], first + corners[1], first + corners[2]]);
+    let (mut positions, mut places) = (Vec::new(), Vec::new());
+    let (mut vertices, mut place_numbers) = (HashMap::new(), HashMap::new());
+    for triangle in &lines.triangles {
+        mesh.triangles.push(triangle.corners.map(|corner| {
+            *vertices.entry(corner).or_insert_with(|| {
+                let n_places = place_numbers.len() as u32;
+                places.push(*place_numbers.entry(corner.position).or_insert(n_places));
+                positions.push(lines.positions[corner.position as usize]);
+                if has_normals {
+                    let normal = corner.normal.map_or(Vec3::ZERO, |normal| lines.normals[normal as usize]);
+                    mesh.normals.push(normal);
+                }
+                if has_uvs {
+                    // A corner without texture coordinates shows the middle of its image.
+                    mesh.uvs.push(corner.uv.map_or(Vec2::splat(0.5), |uv| lines.uvs[uv as usize]));
+                }
+                positions.len() as u32 - 1
+            })
+        }));
+        if has_materials {
+            let name = triangle.material.map_or(DEFAULT_MATERIAL, |id| &lines.material_names[id as usize]);
+            let material = material_number(&mut mesh, name);
             mesh.face_materials.push(material);
         }
     }
-
-    if mesh.normals.len() != mesh.positions.len() {
-        mesh.normals.clear();
+    let mut groups: Vec<u32> = lines.triangles.iter().map(|triangle| triangle.group).collect();
+    let smooth = has_normals || groups.iter().any(|&group| group != 0);
+    if has_normals || groups.iter().all(|&group| group == groups[0]) {
+        groups.clear();
     }
-    if parts.iter().all(|part| part.texcoords.is_empty()) {
-        mesh.uvs.clear();
-    }
-    if !has_materials {
-        mesh.material_names.clear();
-        mesh.face_materials.clear();
-    }
-    mesh.normals = unit_normals(mesh.normals);
-    mesh
+    SceneMesh { groups, smooth, ..SceneMesh::new(mesh, positions, places) }
 }
 
 /// The index of a material in the mesh, in order of first use; a new name is added.

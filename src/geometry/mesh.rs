@@ -2,7 +2,7 @@
 
 use crate::aabb::{Aabb, bounds_of_points};
 use crate::message;
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::sync::Arc;
 
 /// A triangle mesh. Triangles refer to their vertices by index, so a vertex is stored once however many
@@ -83,12 +83,21 @@ impl Mesh {
     }
 }
 
-/// A mesh of the scene, with the settings that the scene file gives for it.
+/// A mesh of the scene: what its file says beyond the tables of a [`Mesh`], and the settings that the scene gives for it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneMesh {
     /// Positions, triangles and optional normals, texture coordinates and face materials, in the space of the
-    /// mesh. Empty if nothing shows the mesh.
+    /// mesh, relative to [`SceneMesh::origin`]. Empty if nothing shows the mesh.
     pub mesh: Arc<Mesh>,
+    /// The point of the space of the mesh from which its positions are counted. It is not 0 only for a mesh that is far
+    /// away for its size, such as one in map coordinates: a position there would lose its last digits in single precision.
+    pub origin: Vec3,
+    /// For each vertex the number of its position, below the number of vertices; empty if each vertex has its own. A file
+    /// has several vertices at a position where texture coordinates or normals differ (a seam); they are one vertex of the shape.
+    pub places: Vec<u32>,
+    /// For each triangle its smoothing group: averaged normals are shared only within a group, and 0 stands for flat.
+    /// Empty if all triangles are in one group.
+    pub groups: Vec<u32>,
     /// Whether shading normals are interpolated over each triangle; otherwise the normal of the triangle is
     /// used.
     pub smooth: bool,
@@ -103,4 +112,77 @@ pub struct SceneMesh {
     pub materials: Vec<usize>,
 }
 
-message! { SceneMesh { mesh, smooth, one_sided, subdivisions, materials } }
+message! { SceneMesh { mesh, origin, places, groups, smooth, one_sided, subdivisions, materials } }
+
+impl SceneMesh {
+    /// A mesh with `positions` in double precision, one per vertex, which replace those of `mesh`; `places` is as in
+    /// [`SceneMesh::places`]. Normals that are zero are mended: at such a corner the face has its own normal. If all
+    /// are zero, the mesh has none.
+    ///
+    /// The positions are counted from the middle of the mesh if that is farther away than 16 times its size, because then
+    /// 4 of the 24 bits of a coordinate would be lost. A position that no triangle names counts as the first one that is
+    /// named, so that its value does not matter.
+    pub fn new(mut mesh: Mesh, mut positions: Vec<DVec3>, mut places: Vec<u32>) -> SceneMesh {
+        if mesh.normals.iter().all(|normal| *normal == Vec3::ZERO) {
+            mesh.normals.clear();
+        }
+        mend_normals(&mut mesh, &mut positions, &mut places);
+        if places.iter().enumerate().all(|(vertex, &place)| vertex == place as usize) {
+            places.clear();
+        }
+
+        let mut used = vec![false; positions.len()];
+        mesh.triangles.as_flattened().iter().for_each(|&vertex| used[vertex as usize] = true);
+        let first = used.iter().position(|&used| used).unwrap_or(0);
+        let at = |vertex: usize| positions[if used[vertex] { vertex } else { first }];
+        let [mut low, mut high] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        for vertex in 0..positions.len() {
+            (low, high) = (low.min(at(vertex)), high.max(at(vertex)));
+        }
+        let (middle, size) = (0.5 * (low + high), 0.5 * (high - low).max_element());
+        // Take a multiple of a power of two, so that the origin and its sums with translations are exact in single precision.
+        let distance = middle.abs().max_element();
+        let unit = size.max(distance / f64::from(1 << 20)).log2().ceil().exp2();
+        let is_far = distance > 16.0 * size && unit.is_normal();
+        let origin = if is_far { (middle / unit).round() * unit } else { DVec3::ZERO };
+        mesh.positions = (0..positions.len()).map(|vertex| (at(vertex) - origin).as_vec3()).collect();
+        let mesh = Arc::new(mesh);
+        SceneMesh { mesh, origin: origin.as_vec3(), places, smooth: true, ..SceneMesh::default() }
+    }
+}
+
+/// Gives each corner with a normal of zero the normal of its face. The first face of a vertex sets the normal of the vertex,
+/// and each other one gets a vertex of its own at the same place.
+fn mend_normals(mesh: &mut Mesh, positions: &mut Vec<DVec3>, places: &mut Vec<u32>) {
+    let is_zero: Vec<bool> = mesh.normals.iter().map(|normal| *normal == Vec3::ZERO).collect();
+    if !is_zero.contains(&true) {
+        return;
+    }
+    if places.is_empty() {
+        *places = (0..positions.len() as u32).collect();
+    }
+    for triangle in &mut mesh.triangles {
+        let [a, b, c] = triangle.map(|vertex| positions[vertex as usize]);
+        // A face without an area is not seen, and has any normal.
+        let normal = (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Z).as_vec3();
+        for corner in triangle {
+            let vertex = *corner as usize;
+            if !is_zero[vertex] {
+                continue;
+            }
+            if mesh.normals[vertex] == Vec3::ZERO {
+                mesh.normals[vertex] = normal;
+            } else if mesh.normals[vertex] != normal {
+                *corner = positions.len() as u32;
+                positions.push(positions[vertex]);
+                places.push(places[vertex]);
+                mesh.normals.push(normal);
+                if let Some(&uv) = mesh.uvs.get(vertex) {
+                    mesh.uvs.push(uv);
+                }
+            }
+        }
+    }
+    // No triangle names the vertices that are left.
+    mesh.normals.iter_mut().filter(|normal| **normal == Vec3::ZERO).for_each(|normal| *normal = Vec3::Z);
+}

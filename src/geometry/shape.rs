@@ -256,6 +256,13 @@ pub fn around_sphere(direction: Vec3) -> Vec2 {
     vec2(0.5 + own.x.atan2(own.z) / TAU, 0.5 + own.y.clamp(-1.0, 1.0).asin() / PI)
 }
 
+/// Coordinates of [`around_sphere`] kept half a pixel away from the lower and the upper edge of an image with `rows` rows:
+/// interpolation beyond an edge of an image that repeats would show the other pole.
+pub fn between_poles(uv: Vec2, rows: u32) -> Vec2 {
+    let half = 0.5 / rows as f32;
+    vec2(uv.x, uv.y.clamp(half, 1.0 - half))
+}
+
 /// Half the extent of a disk along each axis: `r sin` of the angle between normal and axis.
 fn disk_reach(normal: Vec3, radius: f32) -> Vec3 {
     let n = normal.as_dvec3().normalize_or_zero().as_vec3();

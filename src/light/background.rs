@@ -1,7 +1,7 @@
 //! What rays see that hit nothing: one colour, a gradient, or an environment map.
 
 use crate::message;
-use crate::shape::around_sphere;
+use crate::shape::{around_sphere, between_poles};
 use glam::{Quat, Vec2, Vec3};
 
 /// The radiance of rays that hit nothing. Camera rays, reflected and refracted rays see it, and diffuse rays in a scene
@@ -72,14 +72,12 @@ impl EnvironmentMap {
     /// The texture coordinates in `direction`, which may have any length, for an image with `rows` rows.
     ///
     /// Without rotation, the middle of the image lies at -z, so that a camera that looks along -z sees it upright and not
-    /// mirrored: +x at u = 0.75, and +y at the upper edge. The image repeats along u. Along v the result stays half a pixel
-    /// away from both edges, because interpolation beyond them would show the other pole.
+    /// mirrored: +x at u = 0.75, and +y at the upper edge. The image repeats along u, and not along v, see
+    /// [`between_poles`].
     pub fn texture_coordinates(&self, direction: Vec3, rows: u32) -> Vec2 {
         // Turn the direction back instead of the map. A sphere shows its image to a viewer outside, who sees it mirrored.
         let own = Quat::from_rotation_y(-self.rotation) * direction;
-        let uv = around_sphere(own.with_z(-own.z));
-        let half = 0.5 / rows as f32;
-        Vec2::new(uv.x, uv.y.clamp(half, 1.0 - half))
+        between_poles(around_sphere(own.with_z(-own.z)), rows)
     }
 }
 

@@ -12,7 +12,7 @@ use crate::effects::Effects;
 use crate::graph::{Graph, GraphNode, Placement};
 use crate::scene::{Accelerator, Node, Scene, blend};
 use crate::shape::{Plane, PlaneEquation, Shape, Sphere, Triangle};
-use glam::{Affine3A, Mat3, Vec2};
+use glam::{Affine3A, Mat3, Vec2, Vec3};
 use std::ops::Range;
 
 /// Traverses `scene` from its roots and returns its primitives in world space; see [`World::new`].
@@ -62,6 +62,17 @@ impl Motion {
         let end = || self.end.unwrap_or(self.start) * node.transform_end.unwrap_or(node.transform);
         Motion { start: self.start * node.transform, end: moves.then(end), blended: false }
     }
+
+    /// The same transform for positions that are counted from `origin`. It is computed in double precision, because the
+    /// translations often cancel.
+    fn counted_from(&self, origin: Vec3) -> Motion {
+        let moved = |transform: Affine3A| {
+            let shift = transform.matrix3.as_dmat3() * origin.as_dvec3();
+            let translation = (transform.translation.as_dvec3() + shift).as_vec3a();
+            Affine3A { translation, ..transform }
+        };
+        Motion { start: moved(self.start), end: self.end.map(moved), blended: self.blended }
+    }
 }
 
 struct Flattener<'a> {
@@ -93,11 +104,17 @@ impl Flattener<'_> {
                 }
                 None => Motion::still(motion.start),
             };
-            let ready = match shape {
-                Shape::Mesh(mesh) => meshes.of_scene.get_mut(*mesh),
-                _ => meshes.of_nodes.get_mut(&index),
+            let (origin, ready) = match shape {
+                Shape::Mesh(mesh) => (self.scene.meshes[*mesh].origin, meshes.of_scene.get_mut(*mesh)),
+                _ => (Vec3::ZERO, meshes.of_nodes.get_mut(&index)),
             };
-            self.shape(shape, ready, &motion, material as u32);
+            if origin == Vec3::ZERO {
+                self.shape(shape, ready, &motion, material as u32);
+            } else {
+                self.path.push(Affine3A::from_translation(origin));
+                self.shape(shape, ready, &motion.counted_from(origin), material as u32);
+                self.path.pop();
+            }
         }
         let here = self.in_graph(first..self.world.primitives.len() as u32, above);
         for &child in &node.children {

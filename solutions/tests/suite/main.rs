@@ -17,6 +17,7 @@ mod instances;
 mod kept;
 mod leaks;
 mod light;
+mod mesh_files;
 mod methods;
 mod partitions;
 mod pieces;

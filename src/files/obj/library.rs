@@ -1,7 +1,7 @@
 //! Material libraries of OBJ files: files with the extension `.mtl`.
 
-use super::ObjMaterial;
-use crate::files::error::LoadError;
+use super::{ObjMaterial, lines};
+use crate::files::error::{LoadError, Warnings};
 use crate::files::ply::text::{Word, quote, read_bytes, readable, words};
 use glam::Vec3;
 use std::ops::{Range, RangeInclusive};
@@ -16,25 +16,32 @@ pub(super) fn find(
     warnings: &mut Vec<LoadError>,
 ) -> Vec<PathBuf> {
     let directory = file.parent().unwrap_or(Path::new(""));
-    let names = &text[span.clone()];
-    // The format separates names by blanks, but many tools write one name that contains blanks, and some put it
+    let path_of = |name: &str| directory.join(name.trim_matches('"').replace('\\', "/"));
+    // The format separates names by blanks, but many tools write one name that contains blanks, and some put names
     // between quotes.
-    let whole = directory.join(names.trim_matches('"').replace('\\', "/"));
-    if whole.is_file() {
-        return vec![whole];
+    let whole = span.start..span.start + text[span.clone()].trim_end().len();
+    let Some(names) = lines::name(text, span.clone()) else { return Vec::new() };
+    if let Some(path) =
+        [whole, names.clone()].map(|place| path_of(&text[place])).into_iter().find(|p| p.is_file())
+    {
+        return vec![path];
     }
     let mut paths = Vec::new();
-    for name in words(names, span.start) {
-        let path = directory.join(name.text.replace('\\', "/"));
-        if path.is_file() {
-            paths.push(path);
-            continue;
+    for (index, part) in text[names.clone()].split('"').enumerate() {
+        let start = part.as_ptr() as usize - text.as_ptr() as usize;
+        let quoted = Word { text: part, span: start..start + part.len() };
+        for name in if index % 2 == 1 { vec![quoted] } else { words(part, start) } {
+            let path = path_of(name.text);
+            if path.is_file() {
+                paths.push(path);
+                continue;
+            }
+            let message = format!("there is no material library {}", quote(name.text));
+            warnings.push(LoadError::at(file, text, name.span, message).help(format!(
+                "looked for {}: put the library there, or remove the `mtllib` line",
+                path.display()
+            )));
         }
-        let message = format!("there is no material library {}", quote(name.text));
-        warnings.push(LoadError::at(file, text, name.span, message).help(format!(
-            "looked for {}: put the library there, or remove the `mtllib` line",
-            path.display()
-        )));
     }
     paths
 }
@@ -64,11 +71,8 @@ pub(super) fn parse(file: &Path, bytes: &[u8], warnings: &mut Vec<LoadError>) ->
         text: &text,
         clean: String::new(),
         named: false,
-        opacity_given: false,
-        illumination: None,
-        highlight: false,
-        illumination_warned: false,
-        warnings,
+        current: Current::default(),
+        warnings: Warnings::default(),
     };
     let mut start = if text.starts_with('\u{feff}') { 3 } else { 0 };
     for line in text[start..].split('\n') {
@@ -76,6 +80,7 @@ pub(super) fn parse(file: &Path, bytes: &[u8], warnings: &mut Vec<LoadError>) ->
         start += line.len() + 1;
     }
     reader.end_material();
+    warnings.extend(reader.warnings.list());
 
     let directory = file.parent().unwrap_or(Path::new(""));
     match tobj::load_mtl_buf(&mut reader.clean.as_bytes()) {
@@ -109,20 +114,34 @@ struct Reader<'a> {
     clean: String,
     /// Whether a `newmtl` line has been seen.
     named: bool,
-    /// Whether the current material has a line `d`, which has precedence over `Tr`.
+    current: Current,
+    warnings: Warnings,
+}
+
+/// What is known of the material that is being read, because its values depend on each other.
+#[derive(Default)]
+struct Current {
+    /// Whether it has a line `d`, which has precedence over `Tr`.
     opacity_given: bool,
-    /// The number after `illum` of the current material, and its place.
-    illumination: Option<(u32, Range<usize>)>,
-    /// Whether the current material has a specular colour that is not black.
+    /// Whether light passes through it, by `d` or `Tr`.
+    transparent: bool,
+    /// Whether its index of refraction is not 1.
+    refracts: bool,
+    /// Whether its specular colour is not black.
     highlight: bool,
-    /// Whether a warning about `illum` was given. One is enough for a library: exporters write the same in all materials.
-    illumination_warned: bool,
-    warnings: &'a mut Vec<LoadError>,
+    /// The number after `Ns`, and its place.
+    exponent: Option<(f32, Range<usize>)>,
+    /// The number after `illum`, and its place.
+    illumination: Option<(u32, Range<usize>)>,
 }
 
 impl Reader<'_> {
     fn trouble(&self, span: Range<usize>, message: impl Into<String>) -> LoadError {
         LoadError::at(self.file, self.text, span, message)
+    }
+
+    fn warn(&mut self, span: Range<usize>, message: &str, help: &str) {
+        self.warnings.add(help, || LoadError::at(self.file, self.text, span, message));
     }
 
     /// Copies a line that can be used, or adds a warning.
@@ -133,61 +152,69 @@ impl Reader<'_> {
             Ok(Some(clean)) if self.named => self.clean.push_str(&format!("{clean}\n")),
             Ok(Some(_)) => {
                 let message = format!("`{}` before the first `newmtl`; the line is ignored", keyword.text);
-                let warning = self
-                    .trouble(keyword.span.clone(), message)
-                    .help("put `newmtl` and a name above the values of each material");
-                self.warnings.push(warning);
+                let help = "put `newmtl` and a name above the values of each material";
+                self.warn(keyword.span.clone(), &message, help);
             }
             Ok(None) => {}
             Err(error) => {
+                let help = error.help.clone().unwrap_or_default();
                 let message = format!("{}; the line is ignored", error.message);
-                self.warnings.push(LoadError { message, ..error });
+                self.warnings.add(&help, || LoadError { message, ..error });
             }
         }
     }
 
-    /// The line as `tobj` gets it, or `None` if it is not needed.
+    /// The line as `tobj` gets it, or `None` if it is not needed. Some exporters write keywords in small letters.
     fn checked(&mut self, keyword: &Word, rest: &[Word]) -> Result<Option<String>, LoadError> {
         let comment = rest.iter().position(|word| word.text.starts_with('#')).unwrap_or(rest.len());
         let values = &rest[..comment];
-        Ok(Some(match keyword.text {
+        Ok(Some(match &*keyword.text.to_ascii_lowercase() {
             "newmtl" => {
                 let name = self.name(keyword, rest, "give it one, as in `newmtl red`")?;
                 self.end_material();
                 self.named = true;
                 format!("newmtl {name}")
             }
-            "Ka" | "Kd" | "Ks" | "Ke" => {
-                let [r, g, b] = self.colour(keyword, values)?;
-                self.highlight |= keyword.text == "Ks" && (r, g, b) != (0.0, 0.0, 0.0);
-                format!("{} {r:?} {g:?} {b:?}", keyword.text)
+            "ka" => self.color("Ka", keyword, values, 1.0)?,
+            "kd" => self.color("Kd", keyword, values, 1.0)?,
+            "ke" => self.color("Ke", keyword, values, f32::MAX)?,
+            "ks" => {
+                let clean = self.color("Ks", keyword, values, 1.0)?;
+                self.current.highlight = clean != "Ks 0.0 0.0 0.0";
+                clean
             }
-            "Ns" => format!("Ns {:?}", self.in_range(keyword, values, 0.0..=f32::MAX)?),
+            "ns" => {
+                let exponent = self.in_range(keyword, values, 0.0..=f32::MAX)?;
+                self.current.exponent = Some((exponent, values[0].span.clone()));
+                format!("Ns {exponent:?}")
+            }
             // No real material has such an index: the bounds only exclude values that cannot be an index of refraction.
             // Exporters write 0 for "none".
-            "Ni" => {
-                let [index] = self.numbers(keyword, values)?;
-                if (0.001..=1000.0).contains(&index) {
-                    format!("Ni {index:?}")
-                } else {
+            "ni" => {
+                let [mut index] = self.numbers(keyword, values)?;
+                if !(0.001..=1000.0).contains(&index) {
                     let message = format!("`Ni` is {index}, which is no index of refraction; 1 is used");
                     let help = "write `Ni 1.5` for glass, or `Ni 1` for an opaque material";
-                    self.warnings.push(self.trouble(values[0].span.clone(), message).help(help));
-                    "Ni 1.0".into()
+                    self.warn(values[0].span.clone(), &message, help);
+                    index = 1.0;
                 }
+                self.current.refracts = index != 1.0;
+                format!("Ni {index:?}")
             }
             "d" => {
                 // `d -halo 0.5` makes the opacity depend on the angle; only its number is used.
                 let halo = values.first().is_some_and(|word| word.text == "-halo");
                 let opacity = self.in_range(keyword, &values[usize::from(halo)..], 0.0..=1.0)?;
-                self.opacity_given = true;
+                self.current.opacity_given = true;
+                self.current.transparent = opacity < 1.0;
                 format!("d {opacity:?}")
             }
-            "Tr" => {
+            "tr" => {
                 let transparency = self.in_range(keyword, values, 0.0..=1.0)?;
-                if self.opacity_given {
+                if self.current.opacity_given {
                     return Ok(None);
                 }
+                self.current.transparent = transparency > 0.0;
                 format!("d {:?}", 1.0 - transparency)
             }
             "illum" => {
@@ -195,14 +222,23 @@ impl Reader<'_> {
                 if let Some(word) = values.first()
                     && let Ok(model) = word.text.parse()
                 {
-                    self.illumination = Some((model, word.span.clone()));
+                    self.current.illumination = Some((model, word.span.clone()));
                 }
                 return Ok(None);
             }
-            "map_Kd" => {
-                let name =
-                    self.name(keyword, after_options(rest), "name an image, as in `map_Kd wood.png`")?;
-                format!("map_Kd {}", name.replace('\\', "/"))
+            "map_kd" => {
+                let image = after_options(rest);
+                let name = self.name(keyword, image, "name an image, as in `map_Kd wood.png`")?;
+                if image.len() < rest.len() {
+                    let help = "scale or move the texture coordinates of the mesh instead";
+                    self.warn(rest[0].span.clone(), "the options of `map_Kd` are ignored", help);
+                }
+                format!("map_Kd {}", name.trim_matches('"').replace('\\', "/"))
+            }
+            "map_d" => {
+                let help = "cut the holes out of the mesh";
+                self.warn(keyword.span.clone(), "`map_d` is ignored: an image gives no opacity", help);
+                return Ok(None);
             }
             _ => return Ok(None),
         }))
@@ -211,41 +247,44 @@ impl Reader<'_> {
     /// Warns if the material that ends here asks for an illumination model that differs from what is rendered, which is
     /// the Phong model (`illum 2`) with transmission by `d`.
     fn end_material(&mut self) {
-        self.opacity_given = false;
-        let highlight = std::mem::take(&mut self.highlight);
-        let Some((model, span)) = self.illumination.take() else { return };
+        let Current { transparent, refracts, highlight, exponent, illumination, .. } =
+            std::mem::take(&mut self.current);
+        // With such an exponent the highlight would cover all that is lit. Exporters write it for materials without one.
+        if let Some((exponent, span)) = exponent.filter(|(exponent, _)| highlight && *exponent < 1.0) {
+            let message =
+                format!("`Ns` is {exponent}, so the highlight of `Ks` has no edge; none is rendered");
+            self.warn(span, &message, "write an exponent of at least 1, for example `Ns 30`");
+            self.clean.push_str("Ks 0 0 0\n");
+        }
+        let Some((model, span)) = illumination else { return };
         let asks = match model {
             0 => "asks for a constant colour, but the material is shaded",
             1 if highlight => "asks for no highlight, but `Ks` gives the material one",
             1 | 2 => return,
             3 | 5 | 8 => "asks for reflections, which MTL files have no value for; none are rendered",
-            4 | 6 | 7 | 9 => {
-                "asks for glass with reflections, which MTL files have no value for; only `d` is rendered"
-            }
+            4 | 6 | 7 | 9 if transparent && refracts => return,
+            4 | 6 | 7 | 9 => "asks for glass, but only `d` below 1 and `Ni` other than 1 give glass",
             _ => "is not a model that is rendered; the Phong model is used",
         };
-        if !std::mem::replace(&mut self.illumination_warned, true) {
-            let warning = self
-                .trouble(span, format!("`illum {model}` {asks}"))
-                .help("define a material of the same name in the scene, for example with `mirror`");
-            self.warnings.push(warning);
-        }
+        let help = "define a material of the same name in the scene, for example with `mirror`";
+        self.warn(span, &format!("`illum {model}` {asks}"), help);
     }
 
-    /// A name, which may contain blanks.
+    /// A name, which may contain blanks and ends at a comment.
     fn name(&self, keyword: &Word, rest: &[Word], help: &str) -> Result<String, LoadError> {
-        match rest {
-            [first, .., last] => Ok(self.text[first.span.start..last.span.end].into()),
-            [only] => Ok(only.text.into()),
-            [] => {
+        let place = rest.first().zip(rest.last()).map(|(first, last)| first.span.start..last.span.end);
+        match place.and_then(|place| lines::name(self.text, place)) {
+            Some(place) => Ok(self.text[place].into()),
+            None => {
                 let message = format!("`{}` without a name", keyword.text);
                 Err(self.trouble(keyword.span.clone(), message).help(help))
             }
         }
     }
 
-    /// Three numbers, or one for a grey; each is at least 0.
-    fn colour(&mut self, keyword: &Word, values: &[Word]) -> Result<[f32; 3], LoadError> {
+    /// The line of a colour: three numbers, or one for a grey. Each is at least 0 and at most `most`: a surface that
+    /// reflects more than all light would make light.
+    fn color(&mut self, name: &str, keyword: &Word, values: &[Word], most: f32) -> Result<String, LoadError> {
         if let [word, ..] = values
             && ["spectral", "xyz"].contains(&word.text)
         {
@@ -257,12 +296,18 @@ impl Reader<'_> {
             1 => [self.numbers::<1>(keyword, values)?[0]; 3],
             _ => self.numbers::<3>(keyword, values)?,
         };
-        if let Some(below) = colour.iter().position(|&component| component < 0.0) {
-            let span = values[below.min(values.len() - 1)].span.clone();
-            let message = format!("`{}` has the component {}; 0 is used", keyword.text, colour[below]);
-            self.warnings.push(self.trouble(span, message).help("write a number of at least 0"));
+        let [r, g, b] = colour.map(|component| component.clamp(0.0, most));
+        if let Some(outside) = colour.iter().position(|component| !(0.0..=most).contains(component)) {
+            let span = values[outside.min(values.len() - 1)].span.clone();
+            let nearest = [r, g, b][outside];
+            let message = format!("`{name}` has the component {}; {nearest} is used", colour[outside]);
+            let help = match most {
+                f32::MAX => "write a number of at least 0",
+                _ => "write a number from 0 to 1: the fraction of light that is reflected",
+            };
+            self.warn(span, &message, help);
         }
-        Ok(colour.map(|component| component.max(0.0)))
+        Ok(format!("{name} {r:?} {g:?} {b:?}"))
     }
 
     /// One number; the nearest number in `range` if it is outside.
@@ -280,7 +325,7 @@ impl Reader<'_> {
                 f32::MAX => format!("write a number of at least {}", range.start()),
                 end => format!("write a number from {} to {end}", range.start()),
             };
-            self.warnings.push(self.trouble(values[0].span.clone(), message).help(help));
+            self.warn(values[0].span.clone(), &message, &help);
         }
         Ok(nearest)
     }

@@ -1,77 +1,85 @@
 //! The lines of an OBJ file, checked one by one.
 
 use super::DEFAULT_MATERIAL;
-use crate::files::error::LoadError;
-use crate::files::ply::text::{Word, nearest, quote, words};
+use crate::files::error::{LoadError, Warnings};
+use crate::files::ply::text::{Word, nearest, number, quote, words};
 use crate::geometry::triangulate::{self, Cut};
-use glam::Vec3;
-use std::collections::HashSet;
+use glam::{DVec3, Vec2, Vec3};
+use std::collections::HashMap;
 use std::ops::Range;
 use std::path::Path;
 
-/// The content of an OBJ file, all of whose lines are correct.
+/// The content of an OBJ file, without the lines that were left out.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    /// The lines that `tobj` needs, each in a form that it reads correctly.
-    pub clean: String,
-    /// Number of `v` lines in the file.
-    pub vertices: usize,
-    /// Number of `f` lines in the file, before polygons are cut into triangles.
-    pub faces: usize,
+    /// All `v` lines. A position that is not finite is named by no triangle.
+    pub positions: Vec<DVec3>,
+    /// All `vt` lines, without a third number. Those that are not finite are named by no triangle.
+    pub uvs: Vec<Vec2>,
+    /// All `vn` lines, of unit length. Zeros stand for normals without a direction, which are named by no triangle.
+    pub normals: Vec<Vec3>,
+    /// All faces, cut into triangles.
+    pub triangles: Vec<Triangle>,
     /// The names after `usemtl`, each once and in order of first use.
     pub material_names: Vec<String>,
     /// The byte range of each of these names, where it stands first.
     pub material_spans: Vec<Range<usize>>,
-    /// Byte ranges of the text after each `mtllib`, which is one file name or several.
+    /// Byte ranges of the text after each `mtllib`: file names, and perhaps a comment.
     pub libraries: Vec<Range<usize>>,
-    /// What was ignored or guessed, each kind once with its first place.
-    pub warnings: Vec<LoadError>,
-    texture_coordinates: usize,
-    normals: usize,
+}
+
+/// A triangle of a face.
+#[derive(Clone, Debug)]
+pub(super) struct Triangle {
+    /// The corners in the order of the face.
+    pub corners: [Corner; 3],
+    /// The index of its material in [`Lines::material_names`], if a `usemtl` line stands above it.
+    pub material: Option<u32>,
+    /// The number of its smoothing group: 0 for a flat face, 1 if no `s` line stands above it, and from 2 the groups of the
+    /// file in order of first use.
+    pub group: u32,
+}
+
+/// Indices into the tables of [`Lines`], counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Corner {
+    pub position: u32,
+    pub uv: Option<u32>,
+    pub normal: Option<u32>,
 }
 
 /// The keywords that are long enough to be misspelt, and the similar keywords of the format.
 const LONG_KEYWORDS: [&str; 4] = ["usemtl", "mtllib", "usemap", "maplib"];
 
-/// Checks all lines of `text` and returns their content; fails at the first line that is malformed or that
-/// names a vertex, texture coordinate or normal that is not above it.
-pub(super) fn read(file: &Path, text: &str) -> Result<Lines, LoadError> {
+/// Checks all lines of `text` and returns their content. What cannot be used and is not needed is left out, with a
+/// warning. Fails at the first line that is malformed, and if no face is left.
+pub(super) fn read(file: &Path, text: &str, warnings: &mut Warnings) -> Result<Lines, LoadError> {
     let mut reader = Reader {
         file,
         text,
         lines: Lines::default(),
-        names: HashSet::new(),
-        without_uv: Repeated::default(),
-        without_normal: Repeated::default(),
-        unnamed: Repeated::default(),
-        crossed: Repeated::default(),
-        positions: Vec::new(),
+        warnings,
+        names: HashMap::new(),
+        groups: HashMap::new(),
+        material: None,
+        group: 1,
+        bare_corner: None,
+        refused: None,
     };
-    // `tobj` gets one library, which stands for all names of materials.
-    reader.lines.clean.push_str("mtllib all\n");
     for line in logical_lines(text) {
         reader.line(line)?;
     }
-    reader.warn_of_repeated();
+    if reader.lines.triangles.is_empty()
+        && let Some(error) = reader.refused
+    {
+        return Err(error);
+    }
+    reader.warn_of_bare_corners();
     Ok(reader.lines)
 }
 
-/// Something that may be wrong on every line: one warning at its first place says how often.
-#[derive(Default)]
-struct Repeated {
-    first: Option<Range<usize>>,
-    count: usize,
-}
-
-impl Repeated {
-    fn add(&mut self, span: Range<usize>) {
-        self.first.get_or_insert(span);
-        self.count += 1;
-    }
-}
-
 /// The byte ranges of the lines of a file. A line that ends in a backslash continues in the next one, unless
-/// it is a comment: comments often end in the name of a Windows directory.
+/// it is a comment or a name: these may end in the name of a Windows directory.
 fn logical_lines(text: &str) -> impl Iterator<Item = Range<usize>> {
     let mut start = if text.starts_with('\u{feff}') { 3 } else { 0 };
     std::iter::from_fn(move || {
@@ -84,7 +92,8 @@ fn logical_lines(text: &str) -> impl Iterator<Item = Range<usize>> {
             end = text[end..].find('\n').map_or(text.len(), |length| end + length);
             start = end + 1;
             let line = text[from..end].trim_ascii();
-            if end == text.len() || line.starts_with('#') || !line.ends_with('\\') {
+            let is_name = ["#", "o ", "g ", "usemtl "].iter().any(|start| line.starts_with(start));
+            if end == text.len() || is_name || !line.ends_with('\\') {
                 return Some(from..end);
             }
             end += 1;
@@ -96,17 +105,27 @@ struct Reader<'a> {
     file: &'a Path,
     text: &'a str,
     lines: Lines,
-    names: HashSet<&'a str>,
-    without_uv: Repeated,
-    without_normal: Repeated,
-    unnamed: Repeated,
-    crossed: Repeated,
-    positions: Vec<Vec3>,
+    warnings: &'a mut Warnings,
+    /// The number of each name after `usemtl`.
+    names: HashMap<String, u32>,
+    /// The number of each name after `s`.
+    groups: HashMap<&'a str, u32>,
+    /// The material and the smoothing group of the faces below.
+    material: Option<u32>,
+    group: u32,
+    /// The first corner that names no normal.
+    bare_corner: Option<Range<usize>>,
+    /// Why the first face that was left out cannot be used.
+    refused: Option<LoadError>,
 }
 
 impl<'a> Reader<'a> {
     fn trouble(&self, span: Range<usize>, message: impl Into<String>) -> LoadError {
         LoadError::at(self.file, self.text, span, message)
+    }
+
+    fn warn(&mut self, span: Range<usize>, message: &str, help: &str) {
+        self.warnings.add(help, || LoadError::at(self.file, self.text, span, message));
     }
 
     fn line(&mut self, line: Range<usize>) -> Result<(), LoadError> {
@@ -119,123 +138,135 @@ impl<'a> Reader<'a> {
         let comment = words.iter().position(|word| word.text.starts_with('#'));
         let values = &words[1..comment.unwrap_or(words.len()).max(1)];
         match keyword.text {
-            // A fourth number is the weight for free-form surfaces, and more numbers are a colour; a mesh has
-            // neither.
+            // A fourth number is the weight for free-form surfaces.
             "v" => {
                 let position = self.numbers(&keyword, values, 3)?;
-                self.positions.push(position);
-                self.lines.vertices += 1;
+                if values.len() >= 6 {
+                    let help = "give the faces a material with a `map_Kd` image, which is shown";
+                    self.warn(values[3].span.clone(), "the colours of vertices are ignored", help);
+                }
+                self.lines.positions.push(position);
             }
             "vt" => {
-                self.numbers(&keyword, values, 2)?;
-                self.lines.texture_coordinates += 1;
+                let uv = self.numbers(&keyword, values, 2)?.truncate().as_vec2();
+                if !uv.is_finite() {
+                    let help = "write a finite number";
+                    let message = "a texture coordinate that is not finite is ignored";
+                    self.warn(keyword.span, message, help);
+                }
+                self.lines.uvs.push(uv);
             }
             "vn" => {
-                self.numbers(&keyword, values, 3)?;
-                self.lines.normals += 1;
+                let unit = self.numbers(&keyword, values, 3)?.try_normalize();
+                if unit.is_none() {
+                    let help = "export the mesh with normals of unit length, or without normals";
+                    let message = "a normal without a direction is ignored, as if its corners had none";
+                    self.warn(keyword.span, message, help);
+                }
+                self.lines.normals.push(unit.unwrap_or_default().as_vec3());
             }
             "f" => self.face(&keyword, values)?,
+            "s" => self.group = values.first().map_or(self.group, |name| self.smoothing_group(name)),
             "usemtl" => self.use_material(&keyword, line.end),
-            "mtllib" => match self.rest(&keyword, line.end) {
-                Some(names) => self.lines.libraries.push(names),
-                None => {
-                    let warning = self
-                        .trouble(keyword.span.clone(), "`mtllib` without a name; the line is ignored")
-                        .help("name a file, as in `mtllib box.mtl`");
-                    self.lines.warnings.push(warning);
-                }
+            "mtllib" => match name(self.text, keyword.span.end..line.end) {
+                Some(name) => self.lines.libraries.push(name.start..line.end),
+                None => self.warn(
+                    keyword.span,
+                    "`mtllib` without a name; the line is ignored",
+                    "name a file, as in `mtllib box.mtl`",
+                ),
             },
-            // Points and lines have no surface; objects, groups and smoothing do not affect one set of triangles.
+            // Points and lines have no surface; objects and groups do not affect one set of triangles.
             _ => self.check_keyword(&keyword)?,
         }
         Ok(())
     }
 
-    /// Copies and returns the numbers of a `v`, `vt` or `vn` line, at most three.
-    fn numbers(&mut self, keyword: &Word, values: &[Word], count: usize) -> Result<Vec3, LoadError> {
-        let mut numbers = Vec3::ZERO;
-        self.lines.clean.push_str(keyword.text);
-        for index in 0..count {
-            let number = match values.get(index) {
-                Some(word) => self.number(keyword, word)?,
-                // The second texture coordinate may be left out.
-                None if keyword.text == "vt" && index == 1 => 0.0,
-                None => {
-                    let message =
-                        format!("`{}` needs {count} numbers, but has {}", keyword.text, values.len());
-                    return Err(self
-                        .trouble(keyword.span.clone(), message)
-                        .help(format!("write them on the same line, as in `{} 0 0.5 1`", keyword.text)));
-                }
-            };
-            self.lines.clean.push_str(&format!(" {number:?}"));
-            numbers[index] = number;
+    /// The numbers of a `v`, `vt` or `vn` line, at most three; they may be NaN or infinite.
+    fn numbers(&self, keyword: &Word, values: &[Word], count: usize) -> Result<DVec3, LoadError> {
+        // The second texture coordinate may be left out.
+        if values.len() < count && (keyword.text, values.len()) != ("vt", 1) {
+            let message = format!("`{}` needs {count} numbers, but has {}", keyword.text, values.len());
+            return Err(self
+                .trouble(keyword.span.clone(), message)
+                .help(format!("write them on the same line, as in `{} 0 0.5 1`", keyword.text)));
         }
-        self.lines.clean.push('\n');
+        let mut numbers = DVec3::ZERO;
+        for (index, word) in values.iter().take(count).enumerate() {
+            numbers[index] = number(word.text).ok_or_else(|| {
+                let error = self.trouble(word.span.clone(), format!("{} is not a number", quote(word.text)));
+                error.help(if word.text.contains(',') {
+                    "write a decimal point, not a comma, and blanks between numbers"
+                } else {
+                    "replace it by a number below 3e38"
+                })
+            })?;
+        }
         Ok(numbers)
     }
 
-    fn number(&self, keyword: &Word, word: &Word) -> Result<f32, LoadError> {
-        let number = word.text.parse::<f32>();
-        // Accept a normal without a direction: all normals of the mesh are dropped later.
-        if let Ok(number) = number
-            && (number.is_finite() || keyword.text == "vn")
-        {
-            return Ok(number);
+    /// The number of a smoothing group: 0 for `off` and `0`.
+    fn smoothing_group(&mut self, name: &Word<'a>) -> u32 {
+        let next = self.groups.len() as u32 + 2;
+        match name.text {
+            "off" | "0" => 0,
+            name => *self.groups.entry(name).or_insert(next),
         }
-        let message = match number {
-            Ok(_) => format!("{} is not a finite number", quote(word.text)),
-            Err(_) => format!("{} is not a number", quote(word.text)),
-        };
-        Err(self.trouble(word.span.clone(), message).help(if word.text.contains(',') {
-            "write a decimal point, not a comma, and blanks between numbers"
-        } else {
-            "replace it by a number below 3e38"
-        }))
     }
 
-    /// Checks and copies `f 1/1/1 2/2/1 3/3/1`.
-    fn face(&mut self, keyword: &Word, corners: &[Word]) -> Result<(), LoadError> {
-        if corners.len() < 3 {
-            let noun = if corners.len() == 1 { "corner" } else { "corners" };
-            return Err(self
-                .trouble(keyword.span.clone(), format!("a face with {} {noun}", corners.len()))
-                .help("name at least three vertices, as in `f 1 2 3`, or remove the line"));
+    /// Checks `f 1/1/1 2/2/1 3/3/1` and cuts it into triangles. A face that cannot be used is left out.
+    fn face(&mut self, keyword: &Word, words: &[Word]) -> Result<(), LoadError> {
+        if words.len() < 3 {
+            let noun = if words.len() == 1 { "corner" } else { "corners" };
+            self.leave_out(
+                keyword.span.clone(),
+                format!("a face with {} {noun}", words.len()),
+                "name at least three vertices, as in `f 1 2 3`, or remove the line",
+            );
+            return Ok(());
         }
-        let checked: Vec<(usize, String)> =
-            corners.iter().map(|corner| self.corner(corner)).collect::<Result<_, _>>()?;
-        // Cut the polygon here, because `tobj` cuts concave ones into a fan as well.
-        let outline: Vec<Vec3> = checked.iter().map(|(vertex, _)| self.positions[*vertex]).collect();
-        match triangulate::cut(&outline) {
-            Cut::Triangles(triangles) => {
-                triangles.iter().for_each(|triangle| self.push_face(triangle.iter().map(|&i| &checked[i])));
+        let mut corners = Vec::with_capacity(words.len());
+        for word in words {
+            match self.corner(word)? {
+                Some(corner) => corners.push(corner),
+                None => return Ok(()),
             }
-            Cut::Fan => self.push_face(checked.iter()),
+        }
+        // Compute from the first corner, because positions may be far away.
+        let positions = corners.iter().map(|corner| self.lines.positions[corner.position as usize]);
+        let first = self.lines.positions[corners[0].position as usize];
+        let outline: Vec<Vec3> = positions.map(|position| (position - first).as_vec3()).collect();
+        let triangles = match triangulate::cut(&outline) {
+            Cut::Triangles(triangles) => triangles,
+            Cut::Fan => triangulate::fan(corners.len()).collect(),
             Cut::Crossed => {
-                self.crossed.add(keyword.span.clone());
-                self.push_face(checked.iter());
+                let help = "list the corners of each face in order around it, or export triangles";
+                let message = "the outline of a face crosses itself, so its triangles are a guess";
+                self.warn(keyword.span.clone(), message, help);
+                triangulate::fan(corners.len()).collect()
             }
-        }
-        self.lines.faces += 1;
+        };
+        let (material, group) = (self.material, self.group);
+        let triangle =
+            |indices: [usize; 3]| Triangle { corners: indices.map(|i| corners[i]), material, group };
+        self.lines.triangles.extend(triangles.into_iter().map(triangle));
         Ok(())
     }
 
-    fn push_face<'c>(&mut self, corners: impl Iterator<Item = &'c (usize, String)>) {
-        self.lines.clean.push('f');
-        for (_, corner) in corners {
-            self.lines.clean.push(' ');
-            self.lines.clean.push_str(corner);
-        }
-        self.lines.clean.push('\n');
+    /// Leaves out a face, with a warning.
+    fn leave_out(&mut self, span: Range<usize>, message: String, help: &str) {
+        self.refused.get_or_insert_with(|| {
+            LoadError::at(self.file, self.text, span.clone(), message.clone()).help(help)
+        });
+        self.warn(span, &format!("{message}; the face is left out"), help);
     }
 
-    /// Checks `1`, `1/2`, `1//3` or `1/2/3`. Returns the index of the vertex, counted from 0, and the corner without
-    /// indices into tables that the file does not have.
-    fn corner(&mut self, corner: &Word) -> Result<(usize, String), LoadError> {
+    /// Checks `1`, `1/2`, `1//3` or `1/2/3`. `None` if the face has to be left out, because there is no such position.
+    fn corner(&mut self, corner: &Word) -> Result<Option<Corner>, LoadError> {
         let tables = [
-            ("vertex", "vertices", self.lines.vertices),
-            ("texture coordinate", "texture coordinates", self.lines.texture_coordinates),
-            ("normal", "normals", self.lines.normals),
+            ("vertex", "vertices", self.lines.positions.len()),
+            ("texture coordinate", "texture coordinates", self.lines.uvs.len()),
+            ("normal", "normals", self.lines.normals.len()),
         ];
         let malformed = |reader: &Self| {
             reader
@@ -249,102 +280,82 @@ impl<'a> Reader<'a> {
             return Err(malformed(self));
         }
 
-        let (mut vertex, mut clean) = (0, String::with_capacity(corner.text.len()));
+        let mut indices = [None; 3];
         let mut start = corner.span.start;
         for (place, (part, (one, many, count))) in parts.into_iter().zip(tables).enumerate() {
             let span = start..start + part.len();
             start = span.end + 1;
-            if place > 0 {
-                clean.push('/');
-            }
             if part.is_empty() {
                 continue;
             }
             let index: i64 = part.parse().map_err(|_| malformed(self))?;
             let count = count as i64;
             // Negative indices count back from the line of the face: -1 is the last vertex above it.
-            if (1..=count).contains(&index) || (-count..=-1).contains(&index) {
-                clean.push_str(part);
-                if place == 0 {
-                    vertex = if index > 0 { index - 1 } else { count + index } as usize;
+            match index {
+                _ if (1..=count).contains(&index) => indices[place] = Some((index - 1) as u32),
+                _ if (-count..=-1).contains(&index) => indices[place] = Some((count + index) as u32),
+                _ if place > 0 => {
+                    let help = format!("export the mesh with {many}, or without their indices");
+                    let message = format!("{}; the index is ignored", no_such_index(index, count, one, many));
+                    self.warn(span, &message, &help);
                 }
-                continue;
-            }
-            match place {
-                1 if count == 0 => self.without_uv.add(span),
-                2 if count == 0 => self.without_normal.add(span),
-                _ => return Err(self.no_such_index(span, index, count, one, many)),
+                // All other indices of such a file are off by one as well, so nothing can be shown.
+                0 => {
+                    let help = "indices count from 1 here: add 1 to each if they were counted from 0";
+                    return Err(self.trouble(span, no_such_index(index, count, one, many)).help(help));
+                }
+                _ => {
+                    let help = "correct the index, or move the vertices above the faces that name them";
+                    self.leave_out(span, no_such_index(index, count, one, many), help);
+                    return Ok(None);
+                }
             }
         }
-        Ok((vertex, clean))
-    }
-
-    fn no_such_index(&self, span: Range<usize>, index: i64, count: i64, one: &str, many: &str) -> LoadError {
-        let message = match count {
-            0 => format!("the face names {one} {index}, but there are no {many} above it"),
-            1 => format!("the face names {one} {index}, but there is only {one} 1 above it"),
-            _ => format!("the face names {one} {index}, but the {many} above it are 1 to {count}"),
-        };
-        self.trouble(span, message).help(match index {
-            0 => "indices count from 1 here: add 1 to each if they were counted from 0".into(),
-            _ => format!("correct the index, or move the {many} above the faces that name them"),
-        })
+        let [Some(position), uv, normal] = indices else { return Err(malformed(self)) };
+        if !self.lines.positions[position as usize].as_vec3().is_finite() {
+            let message = format!("the position of vertex {} is not finite", position + 1);
+            self.leave_out(corner.span.clone(), message, "replace it by numbers below 3e38");
+            return Ok(None);
+        }
+        if corner.text.split('/').nth(2).is_none_or(str::is_empty) {
+            self.bare_corner.get_or_insert(corner.span.clone());
+        }
+        let uv = uv.filter(|&uv| self.lines.uvs[uv as usize].is_finite());
+        let normal = normal.filter(|&normal| self.lines.normals[normal as usize] != Vec3::ZERO);
+        Ok(Some(Corner { position, uv, normal }))
     }
 
     fn use_material(&mut self, keyword: &Word, end: usize) {
-        let (name, span) = match self.rest(keyword, end) {
-            Some(span) => (&self.text[span.clone()], span),
+        let (name, span) = match name(self.text, keyword.span.end..end) {
+            Some(span) => (self.text[span.clone()].to_owned(), span),
             None => {
-                self.unnamed.add(keyword.span.clone());
+                let message = "`usemtl` without a name; the faces below it get the material `default`";
+                self.warn(keyword.span.clone(), message, "name a material, as in `usemtl red`");
                 // Above the first name, the faces have no material anyway.
                 if self.lines.material_names.is_empty() {
                     return;
                 }
-                (DEFAULT_MATERIAL, keyword.span.clone())
+                (DEFAULT_MATERIAL.to_owned(), keyword.span.clone())
             }
         };
-        if self.names.insert(name) {
-            self.lines.material_names.push(one_line(name));
+        let next = self.lines.material_names.len() as u32;
+        let number = *self.names.entry(name.clone()).or_insert(next);
+        if number == next {
+            self.lines.material_names.push(name);
             self.lines.material_spans.push(span);
         }
-        self.lines.clean.push_str(&format!("usemtl {}\n", one_line(name)));
+        self.material = Some(number);
     }
 
-    /// Turns what was counted into one warning of each kind.
-    fn warn_of_repeated(&mut self) {
-        let indices = |what: &str| {
-            (
-                format!("a face names a {what}, but there are no {what}s above it; the index is ignored"),
-                format!("export the mesh with {what}s, or without their indices"),
-            )
-        };
-        let crossed = "the outline of a face crosses itself, so its triangles are a guess".to_owned();
-        let crossed_help = "list the corners of each face in order around it, or export triangles".to_owned();
-        let (uv, uv_help) = indices("texture coordinate");
-        let (normal, normal_help) = indices("normal");
-        let unnamed = "`usemtl` without a name; the faces below it get the material `default`".to_owned();
-        let unnamed_help = "name a material, as in `usemtl red`".to_owned();
-        for (repeated, message, help) in [
-            (std::mem::take(&mut self.without_uv), uv, uv_help),
-            (std::mem::take(&mut self.without_normal), normal, normal_help),
-            (std::mem::take(&mut self.unnamed), unnamed, unnamed_help),
-            (std::mem::take(&mut self.crossed), crossed, crossed_help),
-        ] {
-            let Some(first) = repeated.first else { continue };
-            let more = match repeated.count {
-                1 => String::new(),
-                count => format!(" (here first, {count} times in the file)"),
-            };
-            let warning = self.trouble(first, format!("{message}{more}")).help(help);
-            self.lines.warnings.push(warning);
+    /// Warns if some corners have normals and others name none.
+    fn warn_of_bare_corners(&mut self) {
+        let mut corners = self.lines.triangles.iter().flat_map(|triangle| triangle.corners);
+        if let Some(first) = self.bare_corner.take()
+            && corners.any(|corner| corner.normal.is_some())
+        {
+            let message = "this corner has no normal, but others have; it has the normal of its face";
+            self.warn(first, message, "export the mesh with normals for all faces, or without normals");
         }
-    }
-
-    /// The byte range of everything after a keyword, if there is anything. Names may contain blanks.
-    fn rest(&self, keyword: &Word, end: usize) -> Option<Range<usize>> {
-        let rest = &self.text[keyword.span.end..end];
-        let start = keyword.span.end + (rest.len() - rest.trim_start().len());
-        (!rest.trim().is_empty()).then(|| start..start + rest.trim().len())
     }
 
     /// Fails only if a keyword looks like a misspelt one, because the format has many keywords that a mesh
@@ -362,7 +373,24 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A name without line breaks, which only a backslash can bring in and which would end its line for `tobj`.
-fn one_line(name: &str) -> String {
-    name.replace(['\n', '\r'], " ")
+fn no_such_index(index: i64, count: i64, one: &str, many: &str) -> String {
+    match count {
+        0 => format!("the face names {one} {index}, but there are no {many} above it"),
+        1 => format!("the face names {one} {index}, but there is only {one} 1 above it"),
+        _ => format!("the face names {one} {index}, but the {many} above it are 1 to {count}"),
+    }
+}
+
+/// The place of a name, which may contain blanks and ends at a comment. `None` if there is none.
+///
+/// `#` begins a comment at the start of a word, except before digits: 3ds Max calls materials `Material #25`.
+pub(super) fn name(text: &str, place: Range<usize>) -> Option<Range<usize>> {
+    let is_comment = |word: &Word| {
+        let number = word.text.strip_prefix('#');
+        number.is_some_and(|number| number.is_empty() || !number.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    let words = words(&text[place.clone()], place.start);
+    let n_words = words.iter().position(is_comment).unwrap_or(words.len());
+    let (first, last) = (words[..n_words].first()?, words[..n_words].last()?);
+    Some(first.span.start..last.span.end)
 }

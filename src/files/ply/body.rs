@@ -137,6 +137,14 @@ impl<'a> Body<'a> {
         }
     }
 
+    /// An error at a byte of the file: by line and column in an ASCII file.
+    pub fn trouble_at(&self, byte: usize, message: String) -> LoadError {
+        match self.encoding {
+            Encoding::Ascii => trouble_at(self.file, self.bytes, byte..byte + 1, message),
+            Encoding::Binary(_) => LoadError::new(self.file, format!("{message} (byte {byte} of the file)")),
+        }
+    }
+
     /// Skips the next number and remembers its byte range.
     fn advance(&mut self, scalar: Scalar, place: NumberLocation) -> Result<(), LoadError> {
         match self.encoding {

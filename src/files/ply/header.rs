@@ -2,7 +2,7 @@
 
 use super::scalar::{ByteOrder, Scalar};
 use super::text::{Word, guess, nearest, quote, readable, trouble_at, words};
-use crate::files::error::LoadError;
+use crate::files::error::{LoadError, Warnings};
 use std::ops::Range;
 use std::path::Path;
 
@@ -70,9 +70,9 @@ const TYPES: &str = "the types are char, uchar, short, ushort, int, uint, float 
 
 /// Reads the header at the start of `bytes`; fails at the first line that is malformed, and if `ply`,
 /// `format` or `end_header` is missing.
-pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Header, LoadError> {
+pub(super) fn read(file: &Path, bytes: &[u8], warnings: &mut Warnings) -> Result<Header, LoadError> {
     let mut lines = Lines::new(bytes);
-    let mut draft = Draft { file, bytes, encoding: None, elements: Vec::new() };
+    let mut draft = Draft { file, bytes, encoding: None, elements: Vec::new(), warnings };
     let first = lines.next().unwrap_or(0..0);
     if bytes[first.clone()].trim_ascii_end() != b"ply" {
         return Err(draft.not_a_ply(first));
@@ -83,6 +83,13 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Header, LoadError> {
         let words = words(&text, line.start);
         let Some(keyword) = words.first() else { continue };
         match keyword.text {
+            "comment" if words.get(1).is_some_and(|word| word.text == "TextureFile") => {
+                let help = "name the image as `texture` of a material in the scene";
+                let span = words[1].span.clone();
+                draft
+                    .warnings
+                    .add(help, || trouble_at(file, bytes, span, "the image of the file is ignored"));
+            }
             "comment" | "obj_info" => {}
             "format" => draft.format(&words)?,
             "element" => draft.element(&words)?,
@@ -91,7 +98,7 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Header, LoadError> {
                 let encoding = draft.encoding.ok_or_else(|| draft.without_format(keyword))?;
                 return Ok(Header { encoding, elements: draft.elements, end: lines.at });
             }
-            _ => return Err(draft.unknown_keyword(keyword, &text)),
+            _ => draft.unknown_keyword(keyword, &text)?,
         }
     }
     Err(draft.trouble(bytes.len()..bytes.len(), "the file ends before its header does").help(END_HEADER))
@@ -139,6 +146,7 @@ struct Draft<'a> {
     bytes: &'a [u8],
     encoding: Option<Encoding>,
     elements: Vec<Element>,
+    warnings: &'a mut Warnings,
 }
 
 impl Draft<'_> {
@@ -224,11 +232,20 @@ impl Draft<'_> {
         Ok(())
     }
 
-    fn scalar(&self, word: &Word) -> Result<Scalar, LoadError> {
-        Scalar::named(word.text).ok_or_else(|| {
-            self.trouble(word.span.clone(), format!("{} is not a type of PLY files", quote(word.text)))
-                .help(did_you_mean(nearest(word.text, Scalar::NAMES.map(|(name, _)| name)), TYPES))
-        })
+    /// The type with this name. The numbers of an ASCII file can be read whatever their type is.
+    fn scalar(&mut self, word: &Word) -> Result<Scalar, LoadError> {
+        if let Some(scalar) = Scalar::named(word.text) {
+            return Ok(scalar);
+        }
+        let error =
+            self.trouble(word.span.clone(), format!("{} is not a type of PLY files", quote(word.text)));
+        let help = did_you_mean(nearest(word.text, Scalar::NAMES.map(|(name, _)| name)), TYPES);
+        if self.encoding != Some(Encoding::Ascii) {
+            return Err(error.help(help));
+        }
+        let message = format!("{}; the numbers are read as `double`", error.message);
+        self.warnings.add(&help, || LoadError { message, ..error });
+        Ok(Scalar::Float64)
     }
 
     fn malformed(&self, words: &[Word], example: &str) -> LoadError {
@@ -237,20 +254,26 @@ impl Draft<'_> {
             .help(format!("write it with {} words, as in `{example}`", example.split(' ').count()))
     }
 
-    fn unknown_keyword(&self, keyword: &Word, line: &str) -> LoadError {
+    /// A line that begins with no keyword, perhaps a comment without `comment`, is left out with a warning. Fails if it
+    /// looks like a misspelt keyword or like data.
+    fn unknown_keyword(&mut self, keyword: &Word, line: &str) -> Result<(), LoadError> {
         // A number in the header is probably the first number of the data.
         if keyword.text.parse::<f64>().is_ok() {
-            return self
-                .trouble(keyword.span.clone(), "numbers before the end of the header")
-                .help(END_HEADER);
+            let error = self.trouble(keyword.span.clone(), "numbers before the end of the header");
+            return Err(error.help(END_HEADER));
         }
-        let message = format!("{} is not a keyword of PLY headers", quote(keyword.text));
+        let error = self.trouble(
+            keyword.span.clone(),
+            format!("{} is not a keyword of PLY headers", quote(keyword.text)),
+        );
+        let all = "the keywords are format, comment, obj_info, element, property and end_header";
         // Compare the whole line as well, because `end header` is `end_header` without its underscore.
-        let meant = nearest(line.trim(), KEYWORDS).or_else(|| nearest(keyword.text, KEYWORDS));
-        self.trouble(keyword.span.clone(), message).help(did_you_mean(
-            meant,
-            "the keywords are format, comment, obj_info, element, property and end_header",
-        ))
+        if let Some(meant) = nearest(line.trim(), KEYWORDS).or_else(|| nearest(keyword.text, KEYWORDS)) {
+            return Err(error.help(did_you_mean(Some(meant), all)));
+        }
+        let message = format!("{}; the line is ignored", error.message);
+        self.warnings.add(all, || LoadError { message, ..error });
+        Ok(())
     }
 
     fn without_format(&self, end_header: &Word) -> LoadError {

@@ -21,7 +21,7 @@
 //! ```
 //!
 //! Only numbers follow `end_header`. `header` reads the lines down to there, `body` reads the numbers one by
-//! one, and `tables` puts them into a [`Mesh`].
+//! one, and `tables` puts them into a [`Mesh`](crate::mesh::Mesh).
 
 mod body;
 mod header;
@@ -31,19 +31,18 @@ mod tables;
 mod tests;
 pub(crate) mod text;
 
-use crate::files::error::LoadError;
-use crate::mesh::Mesh;
+use crate::files::error::{LoadError, Warnings};
+use crate::mesh::SceneMesh;
 use body::Body;
-use glam::{Vec2, Vec3};
 use std::path::Path;
-use tables::Layout;
+use tables::{Layout, Tables};
 
 /// The content of a PLY file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlyFile {
     /// The vertices and faces of the file.
-    pub mesh: Mesh,
-    /// What was guessed, with file, line and column.
+    pub mesh: SceneMesh,
+    /// What was ignored or guessed, once for each kind, with file, line and column.
     pub warnings: Vec<LoadError>,
 }
 
@@ -60,54 +59,45 @@ pub fn read(file: &Path) -> Result<PlyFile, LoadError> {
 /// messages.
 ///
 /// Positions are finite. Concave faces are cut into triangles that cover them; convex faces become fans around their
-/// first corner. A face whose outline crosses itself adds a warning. Normals are scaled to unit length, and dropped all together if one of them has no direction.
-/// Texture coordinates are dropped all together if one of them is not finite.
+/// first corner. Normals are scaled to unit length; where one has no direction, faces have their own normal. Texture
+/// coordinates that are not finite are replaced by (0.5, 0.5). Each such repair adds a warning, and so do faces that are left
+/// out because they have fewer than three corners or name a vertex that does not exist or is not at a finite position.
+///
+/// A vertex of this format has one normal and one pair of texture coordinates, so a file that has them repeats vertices
+/// where they differ: then vertices at the same position are one vertex of the shape.
 ///
 /// # Errors
 ///
 /// If the header is malformed or declares no vertices or no faces, if a number or the length of a list is
-/// malformed, if the file ends early, if an ASCII file goes on after its last element, if a face has fewer
-/// than three corners or names a vertex that does not exist, if a position is not finite, or if there are no
+/// malformed, if the file ends early, if an ASCII file goes on after its last element, or if there are no
 /// triangles. An error at a place in an ASCII file names its line and column.
 pub fn parse(file: &Path, bytes: &[u8]) -> Result<PlyFile, LoadError> {
-    let header = header::read(file, bytes)?;
-    let layout = Layout::of(file, bytes, &header)?;
+    let mut warnings = Warnings::default();
+    let header = header::read(file, bytes, &mut warnings)?;
+    let layout = Layout::of(file, bytes, &header, &mut warnings)?;
 
     // Elements come in the order of the header, which may put faces before vertices.
     let mut body = Body::new(file, bytes, &header);
-    let (mut mesh, mut polygons) = (Mesh::default(), Vec::new());
+    let mut tables = Tables::default();
+    tables.warnings = warnings;
     for element in &header.elements {
         match element.name.as_str() {
-            "vertex" => layout.vertices(&mut body, element, &mut mesh)?,
-            "face" => layout.faces(&mut body, element, &mut mesh, &mut polygons)?,
+            "vertex" => layout.vertices(&mut body, element, &mut tables)?,
+            "face" => layout.faces(&mut body, element, &mut tables)?,
             _ => body.skip_element(element)?,
         }
     }
     body.finish()?;
-    let warnings = tables::cut_polygons(file, bytes, &header, &mut mesh, &polygons);
-
-    mesh.normals = unit_normals(mesh.normals);
-    mesh.uvs = finite_uvs(mesh.uvs);
-    mesh.validate().map_err(|message| {
-        LoadError::new(file, message).help(if mesh.triangles.is_empty() {
-            "export the mesh with faces: without faces there is nothing to render"
-        } else {
-            "export the mesh again: each x, y and z has to be a number below 3e38"
-        })
-    })?;
-    Ok(PlyFile { mesh, warnings })
-}
-
-/// The normals scaled to unit length, or none at all if one of them has no direction (zero, infinite or NaN).
-///
-/// Some writers leave zeros for vertices whose normal they do not know. A mesh has a normal for each vertex
-/// or for none, and an invented one would be visible as a dark spot. Without the table, normals are computed
-/// from the triangles, which is correct everywhere.
-pub(crate) fn unit_normals(normals: Vec<Vec3>) -> Vec<Vec3> {
-    normals.into_iter().map(Vec3::try_normalize).collect::<Option<_>>().unwrap_or_default()
-}
-
-/// The texture coordinates, or none at all if one of them is not finite.
-fn finite_uvs(uvs: Vec<Vec2>) -> Vec<Vec2> {
-    if uvs.iter().all(|uv| uv.is_finite()) { uvs } else { Vec::new() }
+    tables.cut_polygons(&body);
+    tables.leave_out_infinite_faces();
+    if tables.mesh.triangles.is_empty() {
+        return Err(tables.refused.unwrap_or_else(|| {
+            LoadError::new(file, "the mesh has no triangles")
+                .help("export the mesh with faces: without faces there is nothing to render")
+        }));
+    }
+    let places = tables.places();
+    let mesh = SceneMesh::new(tables.mesh, tables.positions, places);
+    mesh.mesh.validate().map_err(|message| LoadError::new(file, message).help("export the mesh again"))?;
+    Ok(PlyFile { mesh, warnings: tables.warnings.list() })
 }

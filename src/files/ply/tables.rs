@@ -1,14 +1,31 @@
 //! From the elements `vertex` and `face` to the tables of a mesh.
 
 use super::body::{Body, NumberLocation};
-use super::header::{Element, Encoding, Header, Kind, Property};
+use super::header::{Element, Header, Kind, Property};
 use super::scalar::Scalar;
 use super::text::{nearest, trouble_at};
-use crate::files::error::LoadError;
+use crate::files::error::{LoadError, Warnings};
 use crate::geometry::triangulate::{self, Cut};
 use crate::mesh::Mesh;
-use glam::{Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
+use std::collections::HashMap;
 use std::path::Path;
+
+/// What has been read of a mesh.
+#[derive(Default)]
+pub(super) struct Tables {
+    /// Triangles, normals and texture coordinates. A normal of zero stands for one without a direction.
+    pub mesh: Mesh,
+    /// The position of each vertex; it may be NaN or infinite.
+    pub positions: Vec<DVec3>,
+    /// The faces with more than three corners, which were read as fans.
+    polygons: Vec<Polygon>,
+    pub warnings: Warnings,
+    /// Why the first face or vertex that is left out cannot be used.
+    pub refused: Option<LoadError>,
+    /// The same for the first vertex that is not at a finite position.
+    infinite_vertex: Option<LoadError>,
+}
 
 /// The positions in the file of the numbers that make a mesh. All other numbers are skipped.
 pub(super) struct Layout {
@@ -30,7 +47,14 @@ const CORNER_NAMES: [&str; 2] = ["vertex_indices", "vertex_index"];
 impl Layout {
     /// Finds the properties of vertices and faces in the header; fails if an element, a coordinate or the
     /// list of vertex indices is missing, or if there are more vertices than `u32::MAX`.
-    pub fn of(file: &Path, bytes: &[u8], header: &Header) -> Result<Layout, LoadError> {
+    ///
+    /// Warns of colours and of texture coordinates of faces, which are ignored.
+    pub fn of(
+        file: &Path,
+        bytes: &[u8],
+        header: &Header,
+        warnings: &mut Warnings,
+    ) -> Result<Layout, LoadError> {
         let missing = Missing { file, bytes, header };
         let vertex =
             missing.element("vertex", "a mesh needs a line `element vertex` with its number of vertices")?;
@@ -47,6 +71,22 @@ impl Layout {
             return Err(missing
                 .trouble(vertex.span.clone(), message)
                 .help("divide the mesh into several files"));
+        }
+
+        const IGNORED: [(&str, &str, &str); 2] = [
+            ("red", "colours are ignored", "give the shape a material with a `texture`, which is shown"),
+            (
+                "texcoord",
+                "the texture coordinates of faces are ignored",
+                "export the mesh with texture coordinates of vertices, `s` and `t`",
+            ),
+        ];
+        for (name, message, help) in IGNORED {
+            let mut properties = vertex.properties.iter().chain(&face.properties);
+            // Some tools write `diffuse_red`.
+            if let Some(property) = properties.find(|property| property.name.ends_with(name)) {
+                warnings.add(help, || missing.trouble(property.span.clone(), message.into()));
+            }
         }
 
         let names_number = |name: &str| {
@@ -78,58 +118,73 @@ impl Layout {
         })
     }
 
-    /// Reads all vertices of `element` into the positions, normals and texture coordinates of `mesh`, rounded
-    /// to `f32`; fails if a number is missing or malformed.
-    pub fn vertices(&self, body: &mut Body, element: &Element, mesh: &mut Mesh) -> Result<(), LoadError> {
+    /// Reads all vertices of `element` into the positions, normals and texture coordinates of `tables`; fails if a number
+    /// is missing or malformed.
+    pub fn vertices(&self, body: &mut Body, element: &Element, tables: &mut Tables) -> Result<(), LoadError> {
         let expected = body.at_most(element.count, element.properties.len());
-        mesh.positions.reserve(expected);
-        mesh.normals.reserve(if self.has_normals { expected } else { 0 });
-        mesh.uvs.reserve(if self.has_uvs { expected } else { 0 });
+        tables.positions.reserve(expected);
+        tables.mesh.normals.reserve(if self.has_normals { expected } else { 0 });
+        tables.mesh.uvs.reserve(if self.has_uvs { expected } else { 0 });
 
+        let Some(property) = element.properties.last() else { return Ok(()) };
         let mut row = [0.0; 8];
         for number in 0..element.count {
             for (property, column) in element.properties.iter().zip(&self.row) {
                 let place = NumberLocation { element, number, property };
                 match (*column, property.kind) {
-                    (Some(column), Kind::One(scalar)) => row[column] = body.value(scalar, place)? as f32,
+                    (Some(column), Kind::One(scalar)) => row[column] = body.value(scalar, place)?,
                     _ => body.skip(place)?,
                 }
             }
 
             let [x, y, z, nx, ny, nz, u, v] = row;
-            mesh.positions.push(Vec3::new(x, y, z));
+            let place = NumberLocation { element, number, property };
+            let position = DVec3::new(x, y, z);
+            if !position.as_vec3().is_finite() {
+                tables.infinite_vertex.get_or_insert_with(|| {
+                    body.trouble(
+                        place,
+                        format!("vertex {number} is at {}, which is not finite", position.as_vec3()),
+                    )
+                    .help("export the mesh again: each x, y and z has to be a number below 3e38")
+                });
+            }
+            tables.positions.push(position);
             if self.has_normals {
-                mesh.normals.push(Vec3::new(nx, ny, nz));
+                let unit = DVec3::new(nx, ny, nz).try_normalize();
+                if unit.is_none() {
+                    let help = "export the mesh with normals of unit length, or without normals";
+                    let message =
+                        format!("the normal of vertex {number} has no direction; faces have their own");
+                    tables.warnings.add(help, || body.trouble(place, message));
+                }
+                tables.mesh.normals.push(unit.unwrap_or_default().as_vec3());
             }
             if self.has_uvs {
-                mesh.uvs.push(Vec2::new(u, v));
+                let uv = DVec2::new(u, v).as_vec2();
+                if !uv.is_finite() {
+                    let help = "write finite numbers for the texture coordinates";
+                    let message =
+                        format!("vertex {number} has texture coordinates that are not finite; 0.5 is used");
+                    tables.warnings.add(help, || body.trouble(place, message));
+                }
+                tables.mesh.uvs.push(if uv.is_finite() { uv } else { Vec2::splat(0.5) });
             }
         }
         Ok(())
     }
 
-    /// Reads all faces of `element` into the triangles of `mesh`; a face with more than three corners becomes
-    /// a fan of triangles around its first corner, and is added to `polygons`. Fails if a face has fewer than three
-    /// corners or an index names no vertex.
-    pub fn faces(
-        &self,
-        body: &mut Body,
-        element: &Element,
-        mesh: &mut Mesh,
-        polygons: &mut Vec<Polygon>,
-    ) -> Result<(), LoadError> {
-        mesh.triangles.reserve(body.at_most(element.count, 4 * element.properties.len()));
+    /// Reads all faces of `element` into the triangles of `tables`; a face with more than three corners becomes
+    /// a fan of triangles around its first corner. A face with fewer than three corners, or with an index that names no
+    /// vertex, is left out.
+    pub fn faces(&self, body: &mut Body, element: &Element, tables: &mut Tables) -> Result<(), LoadError> {
+        tables.mesh.triangles.reserve(body.at_most(element.count, 4 * element.properties.len()));
         for number in 0..element.count {
             for (index, property) in element.properties.iter().enumerate() {
                 let place = NumberLocation { element, number, property };
                 match property.kind {
                     Kind::List { length, item } if index == self.corners => {
-                        let first = mesh.triangles.len();
-                        let byte = self.face(body, place, length, item, mesh)?;
-                        let triangles = mesh.triangles.len() - first;
-                        if triangles > 1 {
-                            polygons.push(Polygon { first, triangles, number, byte });
-                        }
+                        self.face(body, place, length, item, tables)?;
                     }
                     _ => body.skip(place)?,
                 }
@@ -138,58 +193,82 @@ impl Layout {
         Ok(())
     }
 
-    /// Reads one face as a fan, and returns the byte of the file at which it starts.
+    /// Reads one face as a fan.
     fn face(
         &self,
         body: &mut Body,
         place: NumberLocation,
         length: Scalar,
         item: Scalar,
-        mesh: &mut Mesh,
-    ) -> Result<usize, LoadError> {
+        tables: &mut Tables,
+    ) -> Result<(), LoadError> {
         let corners = body.length(length, place)?;
         let byte = body.last_byte();
         if corners < 3 {
             let noun = if corners == 1 { "corner" } else { "corners" };
             let message = format!("face {} has {corners} {noun}", place.number);
-            return Err(body.trouble(place, message).help("give it at least three corners, or remove it"));
+            tables.leave_out("give it at least three corners, or remove it", || body.trouble(place, message));
         }
         body.check_left(corners, item, place)?;
 
         // Cut the face into a fan: the first corner makes a triangle with each edge that does not touch it.
-        let first = self.corner(body, place, item)?;
-        let mut previous = self.corner(body, place, item)?;
-        for _ in 2..corners {
-            let next = self.corner(body, place, item)?;
-            mesh.triangles.push([first, previous, next]);
+        let first = tables.mesh.triangles.len();
+        let (mut start, mut previous, mut is_whole) = (0, 0, true);
+        for corner in 0..corners {
+            let Some(next) = self.corner(body, place, item, tables)? else {
+                is_whole = false;
+                continue;
+            };
+            match corner {
+                0 => start = next,
+                1 => {}
+                _ => tables.mesh.triangles.push([start, previous, next]),
+            }
             previous = next;
         }
-        Ok(byte)
+        if !is_whole {
+            tables.mesh.triangles.truncate(first);
+        }
+        let triangles = tables.mesh.triangles.len() - first;
+        if triangles > 1 {
+            tables.polygons.push(Polygon { first, triangles, number: place.number, byte });
+        }
+        Ok(())
     }
 
-    /// One index of a vertex; fails if there is no such vertex.
-    fn corner(&self, body: &mut Body, place: NumberLocation, item: Scalar) -> Result<u32, LoadError> {
+    /// One index of a vertex; `None` if there is no such vertex, so that the face is left out.
+    fn corner(
+        &self,
+        body: &mut Body,
+        place: NumberLocation,
+        item: Scalar,
+        tables: &mut Tables,
+    ) -> Result<Option<u32>, LoadError> {
         let index = body.value(item, place)?;
         // Accept indices that are written as floats, if they are whole numbers in range. The test is false for NaN.
         if 0.0 <= index && index < self.vertex_count as f64 && index.fract() == 0.0 {
-            return Ok(index as u32);
+            return Ok(Some(index as u32));
         }
-        let there_are = match self.vertex_count {
-            0 => "there are no vertices".into(),
-            1 => "there is only vertex 0".into(),
-            count => format!("the vertices are 0 to {}", count - 1),
+        let error = || {
+            let there_are = match self.vertex_count {
+                0 => "there are no vertices".into(),
+                1 => "there is only vertex 0".into(),
+                count => format!("the vertices are 0 to {}", count - 1),
+            };
+            body.trouble(place, format!("face {} names vertex {index}, but {there_are}", place.number))
         };
-        let message = format!("face {} names vertex {index}, but {there_are}", place.number);
-        Err(body.trouble(place, message).help(if index == self.vertex_count as f64 {
+        let help = if index == self.vertex_count as f64 {
             "vertices count from 0 here; if the face was written by hand, subtract 1 from each of its indices"
         } else {
             "correct the index, or look above it for a row with a number too few or too many"
-        }))
+        };
+        tables.leave_out(help, error);
+        Ok(None)
     }
 }
 
 /// A face with more than three corners, which was read as a fan.
-pub(super) struct Polygon {
+struct Polygon {
     /// The index of its first triangle in the mesh.
     first: usize,
     /// The number of its triangles.
@@ -200,50 +279,72 @@ pub(super) struct Polygon {
     byte: usize,
 }
 
-/// Replaces the fans of concave polygons by triangles that cover the polygon, now that all vertices are known: faces may
-/// come before vertices. Returns a warning if the outline of a polygon crosses itself.
-pub(super) fn cut_polygons(
-    file: &Path,
-    bytes: &[u8],
-    header: &Header,
-    mesh: &mut Mesh,
-    polygons: &[Polygon],
-) -> Vec<LoadError> {
-    let mut crossed: Vec<&Polygon> = Vec::new();
-    for polygon in polygons {
-        let fan = &mut mesh.triangles[polygon.first..][..polygon.triangles];
-        let outline: Vec<u32> = fan
-            .first()
-            .into_iter()
-            .flatten()
-            .copied()
-            .chain(fan.iter().skip(1).map(|last| last[2]))
-            .collect();
-        let positions: Option<Vec<Vec3>> =
-            outline.iter().map(|&vertex| mesh.positions.get(vertex as usize).copied()).collect();
-        match triangulate::cut(&positions.unwrap_or_default()) {
-            Cut::Triangles(triangles) => {
-                for (old, new) in fan.iter_mut().zip(triangles) {
-                    *old = new.map(|corner| outline[corner]);
+impl Tables {
+    /// Adds a warning that a face is left out.
+    fn leave_out(&mut self, help: &str, error: impl FnOnce() -> LoadError) {
+        let refused = &mut self.refused;
+        self.warnings.add(help, || {
+            let error = error();
+            refused.get_or_insert_with(|| error.clone().help(help));
+            LoadError { message: format!("{}; the face is left out", error.message), ..error }
+        });
+    }
+
+    /// Replaces the fans of concave polygons by triangles that cover the polygon, now that all vertices are known: faces may
+    /// come before vertices. Warns if the outline of a polygon crosses itself.
+    pub fn cut_polygons(&mut self, body: &Body) {
+        for polygon in &self.polygons {
+            let fan = &mut self.mesh.triangles[polygon.first..][..polygon.triangles];
+            let last_corners = fan.iter().skip(1).map(|last| last[2]);
+            let outline: Vec<u32> = fan[0].into_iter().chain(last_corners).collect();
+            // Compute from the first corner, because positions may be far away.
+            let first = self.positions[outline[0] as usize];
+            let positions: Vec<Vec3> =
+                outline.iter().map(|&vertex| (self.positions[vertex as usize] - first).as_vec3()).collect();
+            match triangulate::cut(&positions) {
+                Cut::Triangles(triangles) => {
+                    for (old, new) in fan.iter_mut().zip(triangles) {
+                        *old = new.map(|corner| outline[corner]);
+                    }
+                }
+                Cut::Fan => {}
+                Cut::Crossed => {
+                    let number = polygon.number;
+                    let message =
+                        format!("the outline of face {number} crosses itself, so its triangles are a guess");
+                    let help = "list the corners of each face in order around it, or export triangles";
+                    self.warnings.add(help, || body.trouble_at(polygon.byte, message));
                 }
             }
-            Cut::Fan => {}
-            Cut::Crossed => crossed.push(polygon),
         }
     }
 
-    let Some(first) = crossed.first() else { return Vec::new() };
-    let more = match crossed.len() {
-        1 => String::new(),
-        count => format!(" (this one first, {count} faces in the file)"),
-    };
-    let message =
-        format!("the outline of face {} crosses itself, so its triangles are a guess{more}", first.number);
-    let warning = match header.encoding {
-        Encoding::Ascii => trouble_at(file, bytes, first.byte..first.byte + 1, message),
-        Encoding::Binary(_) => LoadError::new(file, format!("{message} (byte {} of the file)", first.byte)),
-    };
-    vec![warning.help("list the corners of each face in order around it, or export triangles")]
+    /// Leaves out triangles with a corner that is not at a finite position, with a warning.
+    pub fn leave_out_infinite_faces(&mut self) {
+        let Some(error) = self.infinite_vertex.take() else { return };
+        let before = self.mesh.triangles.len();
+        let is_finite = |vertex: &u32| self.positions[*vertex as usize].as_vec3().is_finite();
+        self.mesh.triangles.retain(|triangle| triangle.iter().all(is_finite));
+        if self.mesh.triangles.len() < before {
+            let message = format!("{}; its faces are left out", error.message);
+            let help = error.help.clone().unwrap_or_default();
+            self.warnings.add(&help, || LoadError { message, ..error.clone() });
+            self.refused.get_or_insert(error);
+        }
+    }
+
+    /// For each vertex the number of its position, if the file has normals or texture coordinates: then vertices at the
+    /// same position are repeated because of them.
+    pub fn places(&self) -> Vec<u32> {
+        if self.mesh.normals.is_empty() && self.mesh.uvs.is_empty() {
+            return Vec::new();
+        }
+        let mut numbers = HashMap::new();
+        // The sum turns -0 into 0.
+        let key = |position: &DVec3| (*position + 0.0).to_array().map(f64::to_bits);
+        let place = |(vertex, position)| *numbers.entry(key(position)).or_insert(vertex as u32);
+        self.positions.iter().enumerate().map(place).collect()
+    }
 }
 
 /// Makes the errors for a header that lacks something.

@@ -14,7 +14,7 @@ const PLAIN: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n
 const CORNERS: &str = "0 0 0\n1 0 0\n0 1 0\n";
 
 fn parsed(bytes: impl AsRef<[u8]>) -> Result<Mesh, LoadError> {
-    parse(Path::new("a.ply"), bytes.as_ref()).map(|file| file.mesh)
+    parse(Path::new("a.ply"), bytes.as_ref()).map(|file| file.mesh.mesh.as_ref().clone())
 }
 
 #[track_caller]

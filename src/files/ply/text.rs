@@ -68,6 +68,15 @@ pub(crate) fn words(line: &str, start: usize) -> Vec<Word<'_>> {
         .collect()
 }
 
+/// The number that `word` spells, if it spells one. It is NaN for the spellings of C libraries as well: `-nan(ind)`,
+/// `1.#QNAN`, and infinities such as `-1.#INF`.
+pub(crate) fn number(word: &str) -> Option<f64> {
+    word.parse().ok().or_else(|| {
+        let word = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
+        (word.starts_with("nan(") || word.starts_with("1.#")).then_some(f64::NAN)
+    })
+}
+
 /// The word between backticks, for messages: at most 24 of its characters, special characters escaped.
 pub(crate) fn quote(word: &str) -> String {
     const LONGEST: usize = 24;
@@ -99,7 +108,9 @@ pub(crate) const LOOKS_LIKE_OBJ: &str = "it looks like an OBJ file: give it the 
 /// Advice for a file that is not a mesh of the expected format, judged by its first bytes; `None` if they are
 /// not recognised. Leading blanks and comments are ignored.
 pub(crate) fn guess(bytes: &[u8]) -> Option<&'static str> {
-    const SIGNS: [(&[u8], &str); 15] = [
+    const SIGNS: [(&[u8], &str); 17] = [
+        (b"\xff\xfe", "it is text in UTF-16: save it as UTF-8"),
+        (b"\xfe\xff", "it is text in UTF-16: save it as UTF-8"),
         (b"ply", "it looks like a PLY file: give it the ending `.ply`"),
         (b"PLY", "the first line has to be `ply` in small letters"),
         (b"solid", "it looks like an STL file: export the mesh as PLY or OBJ"),

@@ -104,17 +104,22 @@ fn material(value: Value, index: usize, textures: &Names) -> Result<Material, Lo
     Ok(material)
 }
 
-/// The material that an MTL file describes, without its texture.
+/// The material that an MTL file describes, without its texture. The fraction 1 - `d` of the light passes through, so only
+/// the fraction `d` is reflected diffusely: a material that did both would make light. What passes through a medium with an
+/// index of refraction is divided by Fresnel's equations, which reflect all light beyond the critical angle.
 pub(super) fn from_obj(obj: &ObjMaterial) -> Material {
     let default = Material::default();
     let diffuse = obj.diffuse.unwrap_or(default.diffuse);
+    let opacity = obj.dissolve.unwrap_or(1.0);
+    let index_of_refraction = obj.index_of_refraction.unwrap_or(default.index_of_refraction);
     Material {
-        ambient: obj.ambient.unwrap_or(diffuse),
-        diffuse,
-        specular: obj.specular.unwrap_or(default.specular),
+        ambient: opacity * obj.ambient.unwrap_or(diffuse),
+        diffuse: opacity * diffuse,
+        specular: opacity * obj.specular.unwrap_or(default.specular),
         exponent: obj.shininess.unwrap_or(default.exponent),
-        transmission: Vec3::splat(1.0 - obj.dissolve.unwrap_or(1.0)),
-        index_of_refraction: obj.index_of_refraction.unwrap_or(default.index_of_refraction),
+        transmission: Vec3::splat(1.0 - opacity),
+        index_of_refraction,
+        fresnel: if opacity < 1.0 && index_of_refraction != 1.0 { Fresnel::Exact } else { Fresnel::None },
         emission: obj.emission.unwrap_or(default.emission),
         ..default
     }

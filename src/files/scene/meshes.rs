@@ -9,11 +9,9 @@ use super::words::quoted;
 use crate::files::error::LoadError;
 use crate::files::obj::{self, ObjFile, ObjMaterial};
 use crate::files::ply::{self, PlyFile};
-use crate::mesh::Mesh;
 use crate::scene::{Node, SceneMesh};
 use crate::shape::Shape;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// The meshes of `[meshes.NAME]`. Their files are read by [`Meshes::read`].
 #[derive(Default)]
@@ -88,22 +86,19 @@ fn read<'a>(
         _ if own_materials => obj::read(path)?,
         _ => obj::read_without_libraries(path)?,
     };
-    check(table.need("file", "")?, &mesh)?;
     entry.source.warnings.borrow_mut().extend(warnings);
     if own_materials {
         into.materials =
             MaterialFinder { mesh: entry, described, undefined, materials, images, found: Vec::new() }
-                .indices(&mesh.material_names)?;
+                .indices(&mesh.mesh.material_names)?;
     }
-    let triangles = (mesh.triangles.len() as u64) << (2 * into.subdivisions);
+    let triangles = (mesh.mesh.triangles.len() as u64) << (2 * into.subdivisions);
     let place = table.get("subdivide").unwrap_or(entry);
     entry.source.budget.triangles(|why| place.error(why), triangles)?;
-    into.mesh = Arc::new(mesh);
+    // A surface that is subdivided is smooth, also where the file asks for flat faces.
+    into.smooth &= mesh.smooth || into.subdivisions > 0;
+    (into.mesh, into.origin, into.places, into.groups) = (mesh.mesh, mesh.origin, mesh.places, mesh.groups);
     Ok(())
-}
-
-fn check(value: Value, mesh: &Mesh) -> Result<(), LoadError> {
-    mesh.validate().map_err(|message| value.error(format!("cannot use {}: {message}", value.spelled())))
 }
 
 /// Finds the scene's materials for the names that one mesh uses.

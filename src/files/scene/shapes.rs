@@ -171,13 +171,7 @@ fn polygon(value: Value, meshes: &mut Vec<SceneMesh>) -> Result<Shape, LoadError
     value.source.budget.triangles(|why| value.error(why), triangles.len() as u64)?;
     let triangles = triangles.into_iter().map(|triangle| triangle.map(|corner| corner as u32)).collect();
     let mesh = Mesh { positions: corners, triangles, ..Mesh::default() };
-    meshes.push(SceneMesh {
-        mesh: Arc::new(mesh),
-        smooth: false,
-        one_sided: false,
-        subdivisions: 0,
-        materials: Vec::new(),
-    });
+    meshes.push(SceneMesh { mesh: Arc::new(mesh), ..SceneMesh::default() });
     Ok(Shape::Mesh(meshes.len() - 1))
 }
 

@@ -4,18 +4,30 @@ use super::files;
 use super::names::Names;
 use super::radiance;
 use super::reader::Value;
-use super::words::{ENCODINGS, one_line, quoted};
+use super::words::{one_line, quoted};
 use crate::files::error::LoadError;
 use crate::material::{Texture, Wrap};
-use crate::scene::Encoding;
 use glam::Vec3;
 use image::{DynamicImage, ImageReader};
 use std::fs::File;
-use std::io::Read;
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 const WRAPS: [(&str, Wrap); 3] = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
+
+/// The curve that decodes the numbers of an image, which are in `0..=1`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Curve {
+    /// The inverse of the sRGB curve.
+    Srgb,
+    /// This power: 1 for numbers that are linear light.
+    Power(f32),
+}
+
+/// The values of `encoding`. A frame decodes gamma 2, see [`Gamma2`](crate::scene::Gamma2), so the loader has no curve for it.
+const CURVES: [(&str, Option<Curve>); 3] =
+    [("srgb", Some(Curve::Srgb)), ("linear", Some(Curve::Power(1.0))), ("gamma2", None)];
 
 /// The images of a scene. An image is read when [`Images::read`] is asked for it; until then it is one black pixel.
 #[derive(Default)]
@@ -33,7 +45,7 @@ struct Unread<'a> {
     /// The value of the scene that leads to the file.
     named_by: Value<'a>,
     /// The value of the scene that says how its bytes are encoded.
-    encoding: Option<Value<'a>>,
+    encoding: Option<(Value<'a>, Option<Curve>)>,
     /// Whether the scene can do without the image, if it cannot be used.
     optional: bool,
 }
@@ -59,7 +71,8 @@ impl<'a> Images<'a> {
         let Some(Unread { path, named_by, encoding, optional }) = self.unread[index].take() else {
             return Ok(!self.left_out.contains(&index));
         };
-        let (texture, has_bytes) = match read(&path, self.list[index].wrap, named_by) {
+        let curve = encoding.and_then(|(_, curve)| curve);
+        let (texture, has_bytes) = match read(&path, self.list[index].wrap, curve, named_by) {
             Err(warning) if optional => {
                 let message = format!("{}; it is left out", warning.message);
                 named_by.warn(LoadError { message, ..warning });
@@ -69,8 +82,7 @@ impl<'a> Images<'a> {
             read => read?,
         };
         self.list[index] = texture;
-        let Some(encoding) = encoding else { return Ok(true) };
-        if encoding.choice(&ENCODINGS)? == Encoding::Gamma2 {
+        if let Some((encoding, None)) = encoding {
             if !has_bytes {
                 let message = "only images with 8 bits per component are encoded with gamma 2";
                 return Err(encoding.error(message).help("delete the key, or convert the image to 8 bits"));
@@ -92,17 +104,17 @@ pub(super) fn textures<'a>(value: Option<Value<'a>>) -> Result<(Images<'a>, Name
         let index = images.add(files::find(file)?, wrap, file);
         names.insert(entry.key, index);
         if let Some(encoding) = table.get("encoding") {
-            encoding.choice(&ENCODINGS)?;
-            images.unread[index].iter_mut().for_each(|unread| unread.encoding = Some(encoding));
+            let curve = encoding.choice(&CURVES)?;
+            images.unread[index].iter_mut().for_each(|unread| unread.encoding = Some((encoding, curve)));
         }
     }
     Ok((images, names))
 }
 
-/// Reads an image file and decodes it from sRGB to linear light; formats with floating-point pixels are
-/// linear already. Also says whether its components have 8 bits. Fails at `value`, which names the image, if the file cannot be read, has no pixels, or needs more memory
+/// Reads an image file and decodes it to linear light, by `curve` or else by what a PNG file says of itself, which is sRGB if it
+/// says nothing; formats with floating-point pixels are linear already. Also says whether its components have 8 bits. Fails at `value`, which names the image, if the file cannot be read, has no pixels, or needs more memory
 /// than the limit; this is known from its header.
-fn read(path: &Path, wrap: Wrap, value: Value) -> Result<(Texture, bool), LoadError> {
+fn read(path: &Path, wrap: Wrap, curve: Option<Curve>, value: Value) -> Result<(Texture, bool), LoadError> {
     let name = quoted(&path.file_name().unwrap_or_default().to_string_lossy());
     let trouble = |message: String| {
         value
@@ -154,11 +166,43 @@ fn read(path: &Path, wrap: Wrap, value: Value) -> Result<(Texture, bool), LoadEr
             | DynamicImage::ImageRgb8(_)
             | DynamicImage::ImageRgba8(_)
     );
-    Ok((Texture { width, height, pixels: Arc::new(linear_pixels(image)), wrap }, has_bytes))
+    let curve = match curve {
+        Some(curve) => curve,
+        None => curve_of_png(BufReader::new(open_file()?)).unwrap_or(Curve::Srgb),
+    };
+    Ok((Texture { width, height, pixels: Arc::new(linear_pixels(image, curve)), wrap }, has_bytes))
+}
+
+/// The curve that a PNG file states before its pixels: the chunk `gAMA` has the exponent with which light was encoded, times
+/// 100,000, and a chunk `sRGB` has precedence over it. `None` if there is neither.
+fn curve_of_png(mut file: impl Read + Seek) -> Option<Curve> {
+    file.seek(SeekFrom::Start(8)).ok()?; // behind the signature
+    let mut gamma = None;
+    loop {
+        let mut head = [0; 12]; // length and name of the chunk, and the first four bytes of its data or checksum
+        file.read_exact(&mut head).ok()?;
+        let number = |at: usize| u32::from_be_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]);
+        match &head[4..8] {
+            b"sRGB" => return Some(Curve::Srgb),
+            b"gAMA" => gamma = Some(number(8)).filter(|&gamma| gamma > 0),
+            b"IDAT" => break,
+            _ => {}
+        }
+        file.seek_relative(i64::from(number(0))).ok()?; // the rest of the data, and the checksum
+    }
+    // Files for screens state 1/2.2, which stands for sRGB; 1 % is the rounding of common writers.
+    gamma.map(|gamma| match (45_000..=46_000).contains(&gamma) {
+        true => Curve::Srgb,
+        false => Curve::Power(100_000.0 / gamma as f32),
+    })
 }
 
 /// The pixels row by row from the top, in linear light; transparency is ignored.
-fn linear_pixels(image: DynamicImage) -> Vec<Vec3> {
+fn linear_pixels(image: DynamicImage, curve: Curve) -> Vec<Vec3> {
+    let to_linear = |encoded: f32| match curve {
+        Curve::Srgb => srgb_to_linear(encoded),
+        Curve::Power(power) => encoded.powf(power),
+    };
     match image {
         // High dynamic range files already store linear light.
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
@@ -168,12 +212,12 @@ fn linear_pixels(image: DynamicImage) -> Vec<Vec3> {
         | DynamicImage::ImageLumaA16(_)
         | DynamicImage::ImageRgb16(_)
         | DynamicImage::ImageRgba16(_) => {
-            let decode = |code: u16| srgb_to_linear(f32::from(code) / 65_535.0);
+            let decode = |code: u16| to_linear(f32::from(code) / 65_535.0);
             image.to_rgb16().pixels().map(|pixel| Vec3::from_array(pixel.0.map(decode))).collect()
         }
         // Compute the power once for each of the 256 codes, instead of three times per pixel.
         _ => {
-            let table: [f32; 256] = std::array::from_fn(|code| srgb_to_linear(code as f32 / 255.0));
+            let table: [f32; 256] = std::array::from_fn(|code| to_linear(code as f32 / 255.0));
             let decode = |code: u8| table[usize::from(code)];
             image.to_rgb8().pixels().map(|pixel| Vec3::from_array(pixel.0.map(decode))).collect()
         }

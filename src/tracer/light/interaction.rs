@@ -341,6 +341,16 @@ pub fn texture_coordinates<F: StudentFunctions>(
     }
 }
 
+/// Whether the texture coordinates of the hit are longitude and latitude.
+pub fn is_sphere(world: &World, hit: &Hit) -> bool {
+    let Target::Primitive(index) = hit.target else { return false };
+    match world.primitives[index as usize].geometry {
+        Geometry::Sphere(_) => true,
+        Geometry::Solid(index) => matches!(world.solids[index as usize].shape, SolidShape::Sphere(_)),
+        _ => false,
+    }
+}
+
 fn uv_on_triangle(world: &World, image: usize, weights: Vec3) -> Vec2 {
     let [a, b, c] = world.uvs[image];
     weights.x * a + weights.y * b + weights.z * c

@@ -16,7 +16,7 @@ use crate::effects::Effects;
 use crate::kit::StudentFunctions;
 use crate::material::Texture;
 use crate::ray::Ray;
-use crate::shape::{Triangle, around_sphere};
+use crate::shape::{Triangle, around_sphere, between_poles};
 use crate::tracer::search::hit::{Hit, Target};
 use crate::tracer::search::motion::{geometry_at, plane_at};
 use crate::world::{Geometry, World};
@@ -69,11 +69,12 @@ impl Pyramids {
     }
 
     /// The mean colour of the image `index` of `world` over a parallelogram around `uv` with the sides `axes`, in texture
-    /// coordinates: a single read where it is smaller than a pixel of the image.
+    /// coordinates: a single read where it is smaller than a pixel of the image. If the image is that of a sphere, it does not
+    /// repeat at the poles.
     pub fn color<F: StudentFunctions, T: Tally>(
         &self,
         world: &World,
-        index: usize,
+        (index, on_sphere): (usize, bool),
         uv: Vec2,
         axes: [Vec2; 2],
         tally: &mut T,
@@ -81,7 +82,8 @@ impl Pyramids {
         let (image, smaller) = (&world.textures[index], &self.0[index]);
         let mut read = |level: usize, uv: Vec2| {
             tally.note(Event::TextureRead);
-            F::texture_color(if level == 0 { image } else { &smaller[level - 1] }, uv)
+            let image = if level == 0 { image } else { &smaller[level - 1] };
+            F::texture_color(image, if on_sphere { between_poles(uv, image.height) } else { uv })
         };
         // Measure the sides in pixels of the image.
         let size = vec2(image.width as f32, image.height as f32);

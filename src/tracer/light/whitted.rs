@@ -1,7 +1,7 @@
 //! The light along one ray, through the tree of its secondary rays: Whitted's algorithm with a list of
 //! waiting rays instead of recursion.
 
-use super::interaction::{SurfaceInteraction, texture_coordinates};
+use super::interaction::{SurfaceInteraction, is_sphere, texture_coordinates};
 use super::path::Path;
 use super::random_choices::{area_of, sample_area_light, sample_rough_surface, shortened_to_surface};
 use super::record::Record;
@@ -12,6 +12,7 @@ use crate::kit::{Bounce, LightSample, RayKind, StudentFunctions, Surface};
 use crate::material::Material;
 use crate::ray::Ray;
 use crate::scene::{Background, EnvironmentMap};
+use crate::shape::between_poles;
 use crate::tracer::frame::Frame;
 use crate::tracer::search::Cache;
 use crate::tracer::search::hit::Hit;
@@ -214,7 +215,9 @@ impl<F: StudentFunctions> Frame<'_, F> {
             Some(pyramids) => self.filtered_color(pyramids, (texture, uv), path, hit, at, tally),
             None => {
                 tally.note(Event::TextureRead);
-                F::texture_color(&world.textures[texture], uv)
+                let image = &world.textures[texture];
+                let uv = if is_sphere(world, hit) { between_poles(uv, image.height) } else { uv };
+                F::texture_color(image, uv)
             }
         };
         let (ambient, diffuse) = (color * material.ambient, color * material.diffuse);
@@ -250,7 +253,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let width = path.cone.width_at(hit.t * path.ray.direction.length());
         let axes = footprint(path.ray.direction, at.surface.geometric_normal, width);
         let axes = axes.map(|axis| uv_change::<F>(world, &path.ray, hit, at, axis));
-        pyramids.color::<F, T>(world, texture, uv, axes, tally)
+        pyramids.color::<F, T>(world, (texture, is_sphere(world, hit)), uv, axes, tally)
     }
 
     /// The cone of a secondary ray, if images are filtered.

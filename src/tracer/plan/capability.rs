@@ -90,7 +90,7 @@ fn triangle_functions(test: TriangleTest) -> &'static [Function] {
 }
 
 /// All capabilities, in the order of their notes. What a row leaves out counts for the rows below it.
-pub(super) fn capabilities(tests: ShapeTests) -> [Capability; 25] {
+pub(super) fn capabilities(tests: ShapeTests) -> [Capability; 24] {
     use Function as F;
     use Shape::{Bezier, Cone, Cylinder, Disk, Mesh, Nurbs, Plane, PlaneEquation, Sphere, Triangle};
     const NORMALS: &[F] = &[F::shading_normal, F::interpolate];
@@ -131,11 +131,13 @@ pub(super) fn capabilities(tests: ShapeTests) -> [Capability; 25] {
         lacks(
             &[F::vertex_normals],
             "smooth meshes whose files have no normals are flat: {} is",
-            |plan, scene| plan.smooth && has_mesh(scene, |mesh| mesh.smooth && mesh.mesh.normals.is_empty()),
+            |plan, scene| {
+                plan.smooth
+                    && has_mesh(scene, |mesh| {
+                        mesh.smooth && (mesh.mesh.normals.is_empty() || mesh.subdivisions > 0)
+                    })
+            },
         ),
-        lacks(&[F::vertex_normals], "curved surfaces have flat parts: {} is", |plan, scene| {
-            plan.smooth && has_curve(scene)
-        }),
         lacks(NORMALS, "smooth meshes are flat: {} is", |_, scene| has_mesh(scene, |mesh| mesh.smooth)),
         lacks(NORMALS, "curved surfaces have flat parts: {} is", |_, scene| has_curve(scene)),
         lacks(

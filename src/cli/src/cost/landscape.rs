@@ -28,13 +28,7 @@ pub fn scene(screen: (u32, u32), sides: (u32, u32)) -> Result<Scene> {
     let camera = Camera::new(eye, vec3(0.0, -0.42, -1.0), Vec3::Y, 45.0, aspect)?;
     let mut scene = Scene::empty(camera);
     let mesh = Arc::new(landscape(sides));
-    scene.meshes.push(SceneMesh {
-        mesh,
-        smooth: false,
-        one_sided: false,
-        subdivisions: 0,
-        materials: Vec::new(),
-    });
+    scene.meshes.push(SceneMesh { mesh, ..SceneMesh::default() });
     scene.nodes.push(Node {
         name: "landscape".into(),
         transform: Affine3A::IDENTITY,

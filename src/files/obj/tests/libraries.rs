@@ -32,27 +32,6 @@ impl Drop for Directory {
 }
 
 #[test]
-fn a_material_has_colours_and_numbers() {
-    let text = "# a comment\nnewmtl dark red\n\tKa 0.1 0.1 0.1\nKd .5 0 0 # red\nKs 0.25\nKe 1 2 3\nNs 32\nNi 1.5\n\
-                d 0.5\nillum two\nTf xyz 1\nmap_Kd -clamp on -s 2 2 my textures\\wood.png\nnewmtl plain\r\nd -halo 1\r\n";
-    let (materials, warnings) = parsed(text);
-    assert_eq!(warnings, []);
-    let red = ObjMaterial {
-        name: "dark red".into(),
-        ambient: Some(Vec3::splat(0.1)),
-        diffuse: Some(Vec3::new(0.5, 0.0, 0.0)),
-        specular: Some(Vec3::splat(0.25)),
-        shininess: Some(32.0),
-        index_of_refraction: Some(1.5),
-        dissolve: Some(0.5),
-        diffuse_texture: Some("models/my textures/wood.png".into()),
-        emission: Some(Vec3::new(1.0, 2.0, 3.0)),
-    };
-    let plain = ObjMaterial { name: "plain".into(), dissolve: Some(1.0), ..Default::default() };
-    assert_eq!(materials, [red, plain]);
-}
-
-#[test]
 fn libraries_lie_next_to_the_file_that_names_them() {
     let directory = Directory::with(
         "libraries",
@@ -67,8 +46,8 @@ fn libraries_lie_next_to_the_file_that_names_them() {
         ],
     );
     let file = read(&directory.0.join("a.obj")).unwrap();
-    assert_eq!(file.mesh.material_names, ["b"]);
-    assert_eq!(file.mesh.face_materials, [0]);
+    assert_eq!(file.mesh.mesh.material_names, ["b"]);
+    assert_eq!(file.mesh.mesh.face_materials, [0]);
     let names: Vec<&str> = file.materials.iter().map(|material| &*material.name).collect();
     assert_eq!(names, ["a", "b", "c"]);
     assert_eq!(file.materials[1].diffuse, Some(Vec3::Y), "the last definition counts");

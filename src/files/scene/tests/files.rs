@@ -126,8 +126,8 @@ fn a_mesh_comes_with_its_materials_unless_the_scene_knows_better() {
     assert_eq!((&scene.meshes[0].materials, &scene.meshes[1].materials), (&vec![], &vec![1]));
     assert_eq!(scene.material_names, ["default", "o/red"]);
     let red = Material {
-        ambient: Vec3::X,
-        diffuse: Vec3::X,
+        ambient: 0.25 * Vec3::X,
+        diffuse: 0.25 * Vec3::X,
         transmission: Vec3::splat(0.75),
         ..Material::default()
     };
@@ -185,4 +185,34 @@ fn a_mesh_has_triangles() {
     folder.write("m.ply", PLY.replace("element face 1", "element face 0").replace("3 0 1 2\n", ""));
     let error = folder.parse("[meshes.p]\nfile = 'm.ply'\n").expect_err("an empty mesh");
     assert!(error.message.contains("no triangles"), "{error}");
+}
+
+/// A PNG file may say how its numbers are encoded, and the scene knows better.
+#[test]
+fn an_image_is_decoded_by_the_curve_that_it_states() {
+    let folder = Folder::new("curves");
+    let file = folder.path("grey.png");
+    image::GrayImage::from_pixel(1, 1, image::Luma([51])).save(&file).expect("an image");
+    let plain = std::fs::read(&file).expect("the image");
+    // The exponent times 100,000, and the checksum of the chunk.
+    let with_gamma = |gamma: u32, checksum: [u8; 4]| {
+        let chunk = [&[0, 0, 0, 4], &b"gAMA"[..], &gamma.to_be_bytes(), &checksum].concat();
+        let after_header = 33;
+        [&plain[..after_header], &chunk, &plain[after_header..]].concat()
+    };
+    let srgb = ((51.0 / 255.0 + 0.055) / 1.055f32).powf(2.4);
+    for (bytes, encoding, expected) in [
+        (plain.clone(), "", srgb),
+        (plain.clone(), "encoding = 'linear'", 0.2),
+        (with_gamma(100_000, [49, 232, 150, 95]), "", 0.2),
+        (with_gamma(45_455, [11, 252, 97, 5]), "", srgb),
+        (with_gamma(50_000, [0, 153, 181, 52]), "", 0.04),
+        (with_gamma(100_000, [49, 232, 150, 95]), "encoding = 'srgb'", srgb),
+    ] {
+        folder.write("grey.png", bytes);
+        let scene =
+            folder.parse(&format!("[textures.grey]\nfile = 'grey.png'\n{encoding}\n")).expect("a scene");
+        let grey = scene.textures[0].pixels[0].x;
+        assert!((grey - expected).abs() < 1e-6, "{grey} for {expected}, {encoding}"); // a few roundings of a power
+    }
 }

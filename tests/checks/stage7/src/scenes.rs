@@ -60,13 +60,7 @@ pub(super) fn everything() -> Scene {
     scene.camera.shutter = Some(Shutter { open: 0.0, close: 1.0 });
     let transform_end = Some(Affine3A::from_translation(Vec3::X));
     scene.nodes.push(Node { transform_end, ..sphere(2) });
-    scene.meshes.push(SceneMesh {
-        mesh: Arc::new(one_triangle()),
-        smooth: true,
-        one_sided: false,
-        subdivisions: 0,
-        materials: Vec::new(),
-    });
+    scene.meshes.push(SceneMesh { mesh: Arc::new(one_triangle()), smooth: true, ..SceneMesh::default() });
     scene.nodes.push(Node { shape: Some(Shape::Mesh(0)), ..Node::default() });
     scene.roots = vec![0, 1, 2];
     scene

@@ -203,13 +203,7 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
     scene.nodes.push(super::scenes::sphere(2));
     cases.push(case("a diffuse sphere, and a mirror sphere that no root reaches", &scene, &expected));
 
-    scene.meshes.push(SceneMesh {
-        mesh: Arc::new(one_triangle()),
-        smooth: true,
-        one_sided: false,
-        subdivisions: 0,
-        materials: Vec::new(),
-    });
+    scene.meshes.push(SceneMesh { mesh: Arc::new(one_triangle()), smooth: true, ..SceneMesh::default() });
     expected.smooth_meshes = vec![false];
     cases.push(case("a diffuse sphere, and a smooth mesh that no node holds", &scene, &expected));
 
@@ -218,13 +212,7 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
     scene.materials.extend([glass, Material::default()]);
     scene.material_names.extend(["glass".into(), "paint".into()]);
     let mesh = Mesh { triangles: vec![[0, 1, 2]; 3], face_materials: vec![0, 1, 2], ..one_triangle() };
-    scene.meshes = vec![SceneMesh {
-        mesh: Arc::new(mesh),
-        smooth: false,
-        one_sided: false,
-        subdivisions: 0,
-        materials: vec![2, 3, 4],
-    }];
+    scene.meshes = vec![SceneMesh { mesh: Arc::new(mesh), materials: vec![2, 3, 4], ..SceneMesh::default() }];
     scene.nodes.push(Node { shape: Some(Shape::Mesh(0)), ..Node::default() });
     scene.roots.push(scene.nodes.len() - 1);
     let lit = expected.materials[1].clone();

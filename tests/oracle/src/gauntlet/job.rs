@@ -23,13 +23,7 @@ pub fn job(triangles: &[Triangle], quality: Quality) -> RenderJob {
                 .collect(),
             ..Mesh::default()
         };
-        scene.meshes = vec![SceneMesh {
-            mesh: Arc::new(mesh),
-            smooth: false,
-            one_sided: false,
-            subdivisions: 0,
-            materials: Vec::new(),
-        }];
+        scene.meshes = vec![SceneMesh { mesh: Arc::new(mesh), ..SceneMesh::default() }];
         scene.nodes = vec![Node { shape: Some(Shape::Mesh(0)), ..Node::default() }];
         scene.roots = vec![0];
     }

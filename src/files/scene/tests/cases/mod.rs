@@ -15,13 +15,13 @@
 //! ```
 //!
 //! `3v 1t` stands for three vertices and a triangle; `n`, `uv` and `m` count normals, texture coordinates and material names,
-//! and `area` is that of all triangles. `diffuse 1 0 0` is a value of the first material of the file that is not the default.
+//! `flat` a mesh that asks for flat faces, `groups` its smoothing groups, and `area` is that of all triangles. `diffuse 1 0 0` is a value of the first material of the file that is not the default.
 
 use super::files::Folder;
 use super::{CAMERA, showing_all};
 use crate::files::scene::{Limits, Loaded, parse_within};
 use crate::material::Material;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneMesh};
 use std::fmt::Write;
 
 #[test]
@@ -117,8 +117,7 @@ fn result(folder: &Folder, name: &str, text: &str, with_area: bool) -> String {
 /// The facts of a scene.
 fn facts(scene: &Scene, with_area: bool) -> String {
     let mut facts: Vec<String> = Vec::new();
-    for mesh in &scene.meshes {
-        let mesh = &mesh.mesh;
+    for SceneMesh { mesh, smooth, groups, .. } in &scene.meshes {
         let counts = [
             (mesh.positions.len(), "v"),
             (mesh.triangles.len(), "t"),
@@ -129,6 +128,8 @@ fn facts(scene: &Scene, with_area: bool) -> String {
         facts.extend(
             counts.iter().filter(|(count, _)| *count > 0).map(|(count, unit)| format!("{count}{unit}")),
         );
+        facts.extend((!smooth).then(|| "flat".into()));
+        facts.extend((!groups.is_empty()).then(|| format!("groups {groups:?}")));
         if with_area {
             let corners = (0..mesh.triangles.len()).map(|index| mesh.corners(index));
             let area: f32 = corners.map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0).sum();
@@ -163,6 +164,7 @@ fn described(material: &Material) -> String {
             words.push(format!("{name} {value}"));
         }
     }
+    words.extend((material.fresnel != default.fresnel).then(|| "fresnel".into()));
     words.extend(material.texture.map(|_| "texture".into()));
     words.join(" ")
 }
