@@ -111,6 +111,7 @@ mod tests {
             bytes_of_parts: 0,
             build_seconds: 0.25,
             render_seconds: 1.0 / 3.0,
+            processor_seconds: None,
             notes: vec!["x".into()],
         };
         let kept = KeptPictures::open(folder.path(), "a").unwrap();

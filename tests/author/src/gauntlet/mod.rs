@@ -95,7 +95,7 @@ fn rows(kit: &dyn Kit) -> Vec<Row<'_>> {
         let hit = method.hit;
         let answer =
             move |inputs: &[Input]| inputs.iter().map(|(ray, triangle)| hit(ray, triangle)).collect();
-        Row { name: method.name.into(), answer: Box::new(answer), method: Some(hit) }
+        Row { name: method.name.into(), answer: Box::new(answer), method: Some(hit), seconds: None }
     });
     methods.chain(rows_of_kit(kit)).collect()
 }
