@@ -6,6 +6,7 @@ use super::plot::{Line, Plot, svg};
 use super::slope::theory;
 use super::{Report, Summary};
 use crate::html::csv_line;
+use crate::race::statistics::Median;
 use crate::report::write_file;
 use anyhow::Result;
 use std::path::Path;
@@ -22,53 +23,74 @@ pub fn write(out: &Path, report: &Report<'_>) -> Result<()> {
 
 /// All points as CSV, one per line.
 fn table(report: &Report<'_>) -> String {
-    const HEADS: [&str; 17] = [
+    const HEADS: [&str; 23] = [
         "parameter",
         "ladder",
         "value",
+        "kit",
         "rmse",
         "relative_mse",
         "similarity",
         "bias",
         "bias_error",
         "seconds",
-        "spread",
+        "ratio",
+        "ratio_low",
+        "ratio_high",
         "rays",
         "box_tests",
         "primitive_tests",
+        "shadow_acne",
+        "light_leaks",
         "rays_judged",
         "wrong_hits",
         "leaks",
-        "unbeaten",
+        "on_front",
+        "too_noisy",
     ];
     let mut table = csv_line(&HEADS.map(str::to_owned));
     for series in &report.measured.series {
         for (value, index) in &series.levels {
-            let point = &report.measured.points[*index];
-            let pixels = f64::from(report.width) * f64::from(report.height);
-            let (bias, bias_error) = point.bias(report.reference_error, pixels);
-            let judged = |number: fn(&Verdicts) -> u64| {
-                point.hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
-            };
-            table += &csv_line(&[
-                series.parameter.name(),
-                series.name.clone(),
-                value.clone(),
-                point.error().to_string(),
-                point.errors.relative_mse.to_string(),
-                point.errors.similarity.to_string(),
-                bias.to_string(),
-                bias_error.to_string(),
-                point.seconds.to_string(),
-                point.spread.to_string(),
-                point.counts.rays().to_string(),
-                point.counts.box_tests.to_string(),
-                point.counts.primitive_tests.to_string(),
-                judged(|hits| hits.rays),
-                judged(|hits| hits.wrong),
-                judged(|hits| hits.leaks),
-                report.pareto_front.contains(index).to_string(),
-            ]);
+            let own = &report.measured.points[*index];
+            let rows = [(report.kit, own, &report.measured.points[series.base])];
+            let reference = own.reference.as_ref().map(|reference| ("reference", &**reference, own));
+            for (kit, point, base) in rows.into_iter().chain(reference) {
+                let pixels = f64::from(report.width) * f64::from(report.height);
+                let (bias, bias_error) = point.bias(report.reference_error, pixels);
+                let judged = |number: fn(&Verdicts) -> u64| {
+                    point.hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
+                };
+                let ratio = point.time_ratio(base);
+                let ratio = |of: fn(&Median) -> f64| {
+                    ratio.as_ref().map_or(String::new(), |ratio| of(ratio).to_string())
+                };
+                let counts = &point.counts;
+                table += &csv_line(&[
+                    series.parameter.name().to_owned(),
+                    series.name.clone(),
+                    value.clone(),
+                    kit.to_owned(),
+                    point.error().to_string(),
+                    point.errors.relative_mse.to_string(),
+                    point.errors.similarity.to_string(),
+                    bias.to_string(),
+                    bias_error.to_string(),
+                    point.seconds.to_string(),
+                    ratio(|ratio| ratio.value),
+                    ratio(|ratio| ratio.low),
+                    ratio(|ratio| ratio.high),
+                    counts.rays().to_string(),
+                    counts.box_tests.to_string(),
+                    counts.primitive_tests.to_string(),
+                    counts.shadow_acne.to_string(),
+                    counts.light_leaks.to_string(),
+                    judged(|hits| hits.rays),
+                    judged(|hits| hits.wrong),
+                    judged(|hits| hits.leaks),
+                    (kit == report.kit && report.pareto_front.contains(index)).to_string(),
+                    (kit == report.kit && report.unclear.contains(index)).to_string(),
+                ]);
+            }
         }
     }
     table
@@ -84,7 +106,7 @@ pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
     let samplers: Vec<&Series> = series.iter().filter(|one| one.parameter == Parameter::Sampler).collect();
     let mut plots = Vec::new();
     if !parameters.is_empty() {
-        let title = format!("{}: error over time, one parameter changed at a time", report.scene);
+        let title = format!("{}: error over time, one parameter at a time", report.scene);
         plots.push(("cost.svg", draw(report, &title, &parameters, Vec::new())));
     }
     if !samplers.is_empty() {
@@ -119,14 +141,23 @@ fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, 
         };
         Line { name, points: one.levels.iter().map(place).collect() }
     };
+    // The same levels by the reference, where it was measured beside the kit.
+    let by_reference = |one: &&Series| {
+        let place = |(_, index): &(String, usize)| {
+            let point = points[*index].reference.as_ref()?;
+            Some([point.seconds, point.error(), point.error(), point.error()])
+        };
+        let points: Option<Vec<_>> = one.levels.iter().map(place).collect();
+        points.map(|points| Line { name: format!("{}, the reference", one.name), points })
+    };
     let samplers_only = series.iter().all(|one| one.parameter == Parameter::Sampler);
     let pareto_front =
         report.pareto_front.iter().map(|&index| (points[index].seconds, points[index].error()));
     svg(&Plot {
         title,
-        x_axis: "seconds per picture, logarithmic",
-        y_axis: "root mean square error in linear light, logarithmic",
-        lines: series.iter().map(line).collect(),
+        x_axis: "seconds of processor time per picture",
+        y_axis: "root mean square error in linear light",
+        lines: series.iter().map(line).chain(series.iter().filter_map(by_reference)).collect(),
         guides,
         pareto_front: if samplers_only { Vec::new() } else { pareto_front.collect() },
         // Below this line the error of the reference itself dominates.
@@ -148,8 +179,8 @@ fn numerics(all: &[Summary]) -> String {
     }
     svg(&Plot {
         title: "ray/triangle tests: from single to double precision",
-        x_axis: "nanoseconds per test, logarithmic",
-        y_axis: "wrong hits per million hard inputs, logarithmic",
+        x_axis: "nanoseconds per test",
+        y_axis: "wrong hits per million hard inputs",
         lines,
         guides: Vec::new(),
         pareto_front: Vec::new(),

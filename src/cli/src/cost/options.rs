@@ -48,8 +48,8 @@ pub static SPEC: Spec = Spec {
             Opt::value(
                 "--rounds",
                 "N",
-                "How often each picture is rendered, all in turn and with other random numbers; medians and \
-                 means count [default: 3; with `--full` 5].",
+                "How often each picture is rendered, all in turn and with other random numbers; intervals need 6 rounds \
+                 [default: 6; with `--full` 9].",
             ),
             Opt::flag(
                 "--full",
@@ -146,7 +146,7 @@ impl CostOptions {
             budget: given.parsed("--budget", parse_seconds)?,
             error: given.parsed("--error", parse_error)?,
             reference: given.number("--reference", 128..=1_048_576)?.unwrap_or(if full { 1024 } else { 256 }),
-            rounds: given.number("--rounds", 1..=1000)?.unwrap_or(if full { 5 } else { 3 }),
+            rounds: given.number("--rounds", 1..=1000)?.unwrap_or(if full { 9 } else { 6 }),
             full,
             equal_time,
             light_sizes,

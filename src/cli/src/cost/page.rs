@@ -3,10 +3,10 @@
 use super::Report;
 use super::error::{heat, shown};
 use super::files::{expected_slope, plots};
-use super::measured::Series;
+use super::measured::{Point, Series};
 use super::parameter::Parameter;
 use super::search::Advice;
-use super::table::{about_hits, about_kit_times, bias, goal, named, verdict, waste};
+use super::table::{about_hits, cells, goal, heading, heads as special_heads, named, ratio, verdict, waste};
 use crate::html::{around, base64, element, escape};
 use crate::report::write_file;
 use anyhow::{Context, Result};
@@ -21,16 +21,21 @@ pub fn write(file: &Path, report: &Report<'_>) -> Result<()> {
 fn page(report: &Report<'_>) -> Result<String> {
     let title = format!("What accuracy costs: {}", report.scene);
     let mut body = element("h1", &title);
+    let rounds = match report.measured.rounds {
+        1 => "1 round".to_owned(),
+        n => format!("{n} rounds with other random numbers each"),
+    };
     let about = format!(
-        "{} × {} pixels by {}, {} rounds with other random numbers each, all pictures in turn. Errors are \
-         root mean squares in linear light against a reference of {} samples per pixel, whose own error is \
-         {:.1e}. Times are medians. Made by {} in {:.0} s.",
+        "{} × {} pixels by {}, {rounds}, all pictures in turn. Errors are \
+         root mean squares in linear light against a picture of {} samples per pixel, whose own error is \
+         {:.1e}. Times are medians of the {}; a ratio is the median over the rounds, to the line marked =, with its 95 % \
+         interval. Made by {} in {:.0} s.",
         report.width,
         report.height,
         report.kit,
-        report.measured.rounds,
         report.reference_samples,
         report.reference_error,
+        report.about_times(),
         element("code", &report.command),
         report.took
     );
@@ -45,10 +50,13 @@ fn page(report: &Report<'_>) -> Result<String> {
     for (_, plot) in plots(report) {
         body += &around("figure", "class=\"plot\"", &plot);
     }
+    let mut words = report.about_marks();
     if !report.pareto_front.is_empty() {
-        let words = "The broad yellow line is the Pareto front: no measured setting is both faster and more \
-                     accurate. Settings that leak are left out of it.";
-        body += &around("p", "class=\"about\"", words);
+        words += ". The dashed black line in the plot is the Pareto front; a vertical line is the range of errors over the rounds";
+    }
+    body += &around("p", "class=\"about\"", &escape(words + "."));
+    if !report.beside.is_empty() {
+        body += &around("p", "class=\"about\"", &escape(format!("{}.", capitalised(&report.beside))));
     }
     for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
         body += &ladder(report, series)?;
@@ -119,12 +127,7 @@ fn proposal(report: &Report<'_>, advice: &Advice) -> String {
 
 fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     let geometric = series.parameter.is_geometric();
-    let name = if series.parameter == Parameter::Sampler {
-        format!("sampler: {}", series.name)
-    } else {
-        series.name.clone()
-    };
-    let mut text = element("h2", name);
+    let mut text = element("h2", heading(series)) + &element("p", series.parameter.trade());
     if let Some((name, slope)) = report.slopes.iter().find(|(name, _)| *name == series.name) {
         let theory = expected_slope(report, name)
             .map_or(String::new(), |theory| format!(" (in theory {theory} where pictures have edges)"));
@@ -135,19 +138,31 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
             &format!("The error is proportional to the number of samples to the power {slope}{theory}"),
         );
     }
-    let mut columns = vec!["", "RMSE"];
-    columns.extend(if geometric { &[][..] } else { &["relative MSE", "similarity"] });
-    columns.extend(report.has_bias.then_some("bias"));
-    columns.extend(["ms", "rays per pixel", "tests per ray"]);
-    columns.extend(if geometric { &["wrong hits", "leaks"][..] } else { &[] });
-    let levels = series.levels.iter().map(|(value, index)| level(report, value, *index, geometric));
-    let table = heads(&columns) + &levels.collect::<String>();
+    let special = special_heads(report, series);
+    let columns = ["", "RMSE", special[0], special[1], "ms", "ratio", special[2]];
+    let mut levels = Vec::new();
+    for (value, index) in &series.levels {
+        let point = &report.measured.points[*index];
+        let is_front = report.pareto_front.contains(index);
+        let name = format!("{} {}", named(report, value, *index), report.mark(*index));
+        levels.push(level(
+            report,
+            series,
+            [point, &report.measured.points[series.base]],
+            name.trim_end(),
+            is_front,
+        ));
+        if let Some(reference) = &point.reference {
+            levels.push(level(report, series, [reference, point], "the reference", false));
+        }
+    }
+    let table = heads(&columns) + &levels.concat();
     text += &around("div", "class=\"wide\"", &around("table", "", &table));
     if let Some(waste) = waste(report, series) {
         text += &around("p", "class=\"waste\"", &escape(waste));
     }
     if let (true, Some(hits)) = (geometric, about_hits(report)) {
-        text += &around("p", "class=\"about\"", &escape(format!("Wrong hits and leaks {hits}.")));
+        text += &around("p", "class=\"about\"", &escape(format!("Wrong hits and leaks: {hits}.")));
     }
     if !geometric && series.parameter != Parameter::Sampler {
         text += &pictures(report, series)?;
@@ -155,36 +170,35 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     Ok(around("section", "", &text))
 }
 
-fn level(report: &Report<'_>, value: &str, index: usize, is_geometric: bool) -> String {
-    let point = &report.measured.points[index];
-    let rays = point.counts.rays();
-    let tests = (point.counts.box_tests + point.counts.primitive_tests) as f64 / rays.max(1) as f64;
-    let unbeaten = report.pareto_front.contains(&index);
-    let mark = if unbeaten { " •" } else { "" };
-    let mut cells = vec![format!("{:.5}", point.error())];
-    if !is_geometric {
-        cells.push(format!("{:.2e}", point.errors.relative_mse));
-        cells.push(format!("{:.4}", point.errors.similarity));
-    }
-    if report.has_bias {
-        cells.push(bias(report, index));
-    }
-    cells.push(format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread));
-    cells.push(format!("{:.2}", rays as f64 / (f64::from(report.width) * f64::from(report.height))));
-    cells.push(format!("{tests:.1}"));
-    if is_geometric {
-        cells.push(point.hits.map_or(String::new(), |hits| hits.wrong.to_string()));
-        cells.push(point.hits.map_or(String::new(), |hits| hits.leaks.to_string()));
-    }
-    let head = head_of_row(&format!("{}{mark}", named(report, value, index)));
+/// The row of a point, whose time is compared with that of `base`.
+fn level(
+    report: &Report<'_>,
+    series: &Series,
+    [point, base]: [&Point; 2],
+    name: &str,
+    is_front: bool,
+) -> String {
+    let [one, two, three] = cells(report, series, point);
+    let ms = format!("{:.2}", 1e3 * point.seconds);
+    let cells = [format!("{:.5}", point.error()), one, two, ms, ratio(point, base), three];
     let cells: String = cells.iter().map(|cell| element("td", cell)).collect();
-    around("tr", if unbeaten { "class=\"front\"" } else { "" }, &(head + &cells))
+    around("tr", if is_front { "class=\"front\"" } else { "" }, &(head_of_row(name) + &cells))
 }
 
-/// The pictures of the cheapest, the middle and the most expensive level, and their error images on one scale.
+/// The words as the beginning of a sentence.
+fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// The pictures of the first, the middle and the last level, and their error images on one scale.
 fn pictures(report: &Report<'_>, series: &Series) -> Result<String> {
     let last = series.levels.len() - 1;
-    let mut shown_levels = vec![0, last / 2, last];
+    // Of a ray offset every level is shown: it is judged by the eye.
+    let mut shown_levels = match series.parameter {
+        Parameter::RayOffset => (0..=last).collect(),
+        _ => vec![0, last / 2, last],
+    };
     shown_levels.dedup();
     let worst = &report.measured.points[series.levels[0].1];
     // White stands for three times the mean error of the cheapest level.
@@ -227,8 +241,5 @@ fn numerics(report: &Report<'_>) -> String {
                  closed mesh from inside.";
     let mut text = element("h2", "What precision costs") + &around("p", "class=\"about\"", words);
     text += &around("div", "class=\"wide\"", &around("table", "", &table));
-    if let Some(warning) = about_kit_times(report) {
-        text += &around("p", "class=\"about\"", warning);
-    }
     around("section", "", &text)
 }

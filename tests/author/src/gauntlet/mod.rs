@@ -70,7 +70,7 @@ impl GauntletOptions {
 
 /// Measures the same as `raykata cost`, and the intersection methods. Returns whether it succeeded.
 pub fn cost(given: &Given) -> Result<bool> {
-    cost::run(given, "cargo run --release -p author --", Some(&summary))
+    cost::run(given, Some("author"), Some(&summary))
 }
 
 /// Runs the gauntlet.
