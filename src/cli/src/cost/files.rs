@@ -121,8 +121,10 @@ pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
     plots
 }
 
+/// The largest number of samples.
 fn most(samplers: &[&Series]) -> String {
-    samplers.first().and_then(|series| series.levels.last()).map_or(String::new(), |(name, _)| name.clone())
+    let last = samplers.iter().filter_map(|series| series.levels.last()?.0.parse::<u32>().ok());
+    last.max().map_or(String::new(), |most| most.to_string())
 }
 
 fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, String)>) -> String {
@@ -151,8 +153,11 @@ fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, 
         points.map(|points| Line { name: format!("{}, the reference", one.name), points })
     };
     let samplers_only = series.iter().all(|one| one.parameter == Parameter::Sampler);
-    let pareto_front =
-        report.pareto_front.iter().map(|&index| (points[index].seconds, points[index].error()));
+    // Of the front, the points that are drawn here.
+    let is_drawn =
+        |index: &&usize| series.iter().any(|one| one.levels.iter().any(|(_, level)| level == *index));
+    let pareto_front = report.pareto_front.iter().filter(is_drawn);
+    let pareto_front = pareto_front.map(|&index| (points[index].seconds, points[index].error()));
     svg(&Plot {
         title,
         x_axis: "seconds of processor time per picture",

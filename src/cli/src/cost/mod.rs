@@ -31,6 +31,7 @@ use crate::args::{Given, wrapped};
 use crate::kits::{Need, Source, Which, build_folder, has_solutions, profile_of, root};
 use crate::lock::Lock;
 use crate::quality_options::arguments;
+use crate::race::racers::build_both;
 use crate::race::statistics::FEWEST;
 use crate::report::{FrameBar, load_scene, make_folder, name_of, with_at_most};
 use anyhow::{Context, Result, bail};
@@ -101,6 +102,9 @@ type NotOffered = Vec<(Parameter, String)>;
 impl Report<'_> {
     /// The mark of a point: on the Pareto front, perhaps, or not.
     fn mark(&self, index: usize) -> &'static str {
+        if !self.has_intervals() {
+            return "";
+        }
         match (self.pareto_front.contains(&index), self.unclear.contains(&index)) {
             (true, _) => "•",
             (_, true) => "?",
@@ -121,7 +125,7 @@ impl Report<'_> {
         };
         format!(
             "• no other value is both as fast and as accurate, and better in one of them (Pareto front): its 95 % intervals \
-             say so; values that leak more rays than the tightest are left out{unclear}"
+             say so; values that leak more rays than the tightest, and fixed ray offsets, are left out{unclear}"
         )
     }
 
@@ -165,15 +169,16 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
     let began = Instant::now();
     let root = root()?;
     let which = options.kit.or_reference(&root);
-    let source = Source::prepare(&root, which, Need::Frames)?;
-    let kit = &*source.fresh();
-    // The reference stands beside a student's kit, where it is.
-    let beside = match which {
+    // The reference stands beside a student's kit, where it is, built with the same options as in a race.
+    let (source, beside) = match which {
         Which::Exercises if has_solutions(&root) => {
-            Some(Source::prepare(&root, Which::Solutions, Need::Frames)?)
+            let [reference, own] = build_both(&root)?;
+            let of = |which, program| Source { which, program };
+            (of(which, own), Some(of(Which::Solutions, reference)))
         }
-        _ => None,
+        _ => (Source::prepare(&root, which, Need::Frames)?, None),
     };
+    let kit = &*source.fresh();
     let reference = beside.as_ref().map(Source::fresh);
     let about_reference = match (which, &beside) {
         (Which::Exercises, None) => NO_REFERENCE,
@@ -365,9 +370,14 @@ fn ladders(
         most_samples: options.most_samples(),
         shares_meshes: scene.quality.copies || look.is_some_and(|look| look.bytes_of_parts > 0),
     };
+    let searches = look.is_none_or(|look| look.accelerator.is_some());
     let (mut ladders, mut not_offered) = (Vec::new(), Vec::new());
     for (_, parameter) in Parameter::NAMES {
-        match parameter.ladders(&called) {
+        let ladders_of = match !searches && parameter.is_geometric() {
+            true => Err("no search for hits is written yet".into()),
+            false => parameter.ladders(&called),
+        };
+        match ladders_of {
             Ok(_) if options.equal_time && !parameter.has_equal_time(turned) => {}
             Ok(these) if turned.is_empty() || turned.contains(&parameter) => ladders.extend(these),
             Ok(_) => {}

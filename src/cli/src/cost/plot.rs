@@ -1,6 +1,6 @@
 //! A plot of error over time on logarithmic axes, with the names of its lines below. The same numbers give the same SVG file.
 
-use crate::svg::{self, Axis, Drawing, End, Ink, Middle, Point, SMALL, Start, TEXT};
+use crate::svg::{self, Axis, Drawing, End, Ink, Middle, Pen, Point, SMALL, Start, TEXT};
 
 /// The contents of a plot.
 pub struct Plot<'a> {
@@ -37,10 +37,10 @@ const RIGHT: f64 = 980.0;
 const TOP: f64 = 104.0;
 const BOTTOM: f64 = 450.0;
 /// The first line of names, and the distance of two lines: a quarter more than the height of their letters.
-const NAMES: f64 = 576.0;
+const NAMES: f64 = 590.0;
 const APART: f64 = 40.0;
-/// The width of a letter of size 1, more than the mean of sans-serif fonts, so that estimates of widths are on the safe side.
-const LETTER: f64 = 0.6;
+/// The width of a letter of size 1: digits have 0.556 in Helvetica and Arial, and text has less.
+const LETTER: f64 = 0.55;
 
 /// A logarithmic axis over these values, which ends at whole or half powers of ten.
 fn axis_over(values: impl Iterator<Item = f64>) -> Axis {
@@ -74,15 +74,21 @@ pub fn svg(plot: &Plot<'_>) -> String {
     let y = axis_over(points().flat_map(|point| [floored(point[1]), floored(point[3])]));
     let field =
         Field { axes: svg::Plot::new(x, y, [LEFT, BOTTOM], [RIGHT - LEFT, BOTTOM - TOP]), floor: plot.floor };
-    // The names below, the front among them: as many side by side as fit.
-    let mut names: Vec<&str> = plot.lines.iter().map(|line| line.name.as_str()).collect();
-    if !plot.pareto_front.is_empty() {
-        names.push(FRONT);
+    // The names below, those of the dashed lines among them: in as many columns as fit.
+    let mut names: Vec<(&str, Option<Pen>)> =
+        plot.lines.iter().map(|line| (line.name.as_str(), None)).collect();
+    let guides = plot.guides.iter().map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(" and ");
+    if !guides.is_empty() {
+        names.push((&guides, Some(GUIDE)));
     }
-    let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or_default();
-    let column = MARK + LETTER * SMALL * (longest + 1) as f64;
-    let n_columns = (((WIDTH - 20.0) / column) as usize).clamp(1, names.len().max(1));
-    let height = NAMES + APART * names.len().div_ceil(n_columns) as f64 - APART / 2.0;
+    if !plot.pareto_front.is_empty() {
+        names.push(("Pareto front", Some(FRONT)));
+    }
+    let columns = |n: usize| names.chunks(names.len().div_ceil(n).max(1)).map(width_of).collect::<Vec<f64>>();
+    let fits = |n: &usize| columns(*n).iter().sum::<f64>() <= WIDTH - 20.0;
+    let n_columns = [3, 2].into_iter().find(fits).unwrap_or(1);
+    let n_rows = names.len().div_ceil(n_columns).max(1);
+    let height = NAMES + APART * n_rows as f64 - APART / 2.0;
     let mut drawing = Drawing::new(plot.title, WIDTH, height);
     drawing.text(
         [20.0, 36.0],
@@ -97,23 +103,29 @@ pub fn svg(plot: &Plot<'_>) -> String {
     for (index, line) in plot.lines.iter().enumerate() {
         draw_line(&mut drawing, line, index, &field);
     }
-    for (index, name) in names.into_iter().enumerate() {
-        let at = [20.0 + column * (index % n_columns) as f64, NAMES + APART * (index / n_columns) as f64];
+    let widths = columns(n_columns);
+    for (index, (name, pen)) in names.iter().enumerate() {
+        let left = 20.0 + widths[..index / n_rows].iter().sum::<f64>();
+        let at = [left, NAMES + APART * (index % n_rows) as f64];
         let (from, to) = ([at[0], at[1] - 10.0], [at[0] + MARK - 14.0, at[1] - 10.0]);
-        match plot.lines.get(index) {
-            Some(_) => {
-                drawing.line(from, to, Ink::Color(index).pen(2.5));
-                draw_marker(&mut drawing, [(from[0] + to[0]) / 2.0, from[1]], index);
-            }
-            None => drawing.line(from, to, Ink::Text.pen(2.0).dashed()),
+        drawing.line(from, to, pen.unwrap_or(Ink::Color(index).pen(2.5)));
+        if pen.is_none() {
+            draw_marker(&mut drawing, [(from[0] + to[0]) / 2.0, from[1]], index);
         }
         drawing.text([at[0] + MARK, at[1]], Start, SMALL, Ink::Text, name);
     }
     drawing.svg()
 }
 
-/// The name of the dashed line.
-const FRONT: &str = "Pareto front";
+/// The lines of the front and of slopes to compare with.
+const FRONT: Pen = Ink::Text.pen(2.0).dashed();
+const GUIDE: Pen = Ink::Faint.pen(2.0).dashed();
+
+/// The width of a column of names, with the piece of a line before each of them and a space behind.
+fn width_of(names: &[(&str, Option<Pen>)]) -> f64 {
+    let longest = names.iter().map(|(name, _)| name.chars().count()).max().unwrap_or_default();
+    MARK + LETTER * SMALL * (longest + 1) as f64
+}
 
 /// The width of a piece of a line before its name.
 const MARK: f64 = 64.0;
@@ -141,7 +153,7 @@ fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, field: &Field) {
         let half = LETTER * SMALL * name.chars().count() as f64 / 2.0;
         if is_named && at - half >= free && at + half <= WIDTH {
             free = at + half + 12.0;
-            drawing.text([at, BOTTOM + 36.0], Middle, SMALL, Ink::Text, &name);
+            drawing.text([at, BOTTOM + 48.0], Middle, SMALL, Ink::Text, &name);
         }
     }
     let mut free = f64::INFINITY;
@@ -153,10 +165,10 @@ fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, field: &Field) {
             // Everything below the floor is drawn there, for example 0, which has no place on a logarithmic axis.
             let below = if plot.holds_less() && value <= plot.floor { "≤ " } else { "" };
             let name = format!("{below}{}", number(value));
-            drawing.text([LEFT - 10.0, at + 10.0], End, SMALL, Ink::Text, &name);
+            drawing.text([LEFT - 10.0, at + 8.0], End, SMALL, Ink::Text, &name);
         }
     }
-    drawing.text([RIGHT, BOTTOM + 76.0], End, SMALL, Ink::Text, plot.x_axis);
+    drawing.text([RIGHT, BOTTOM + 88.0], End, SMALL, Ink::Text, plot.x_axis);
     drawing.text([20.0, TOP - 24.0], Start, SMALL, Ink::Text, plot.y_axis);
 }
 
@@ -171,27 +183,19 @@ fn draw_pareto_front(drawing: &mut Drawing, points: &[(f64, f64)], field: &Field
         steps.push(corner);
     }
     if !steps.is_empty() {
-        drawing.polyline(&steps, Ink::Text.pen(2.0).dashed());
+        drawing.polyline(&steps, FRONT);
     }
 }
 
 fn draw_guides(drawing: &mut Drawing, plot: &Plot<'_>, field: &Field) {
     let Some(&[x0, y0, ..]) = plot.lines.first().and_then(|line| line.points.first()) else { return };
     let (x, y, y0) = (&field.axes.x, &field.axes.y, y0.max(field.floor));
-    for (index, (slope, name)) in plot.guides.iter().enumerate() {
+    for (slope, _) in &plot.guides {
         // Draw to the right end, or to where the line leaves the plot at the bottom.
         let to_bottom = if *slope < 0.0 { (y.low.log10() - y0.log10()) / slope } else { f64::INFINITY };
         let length = (x.high.log10() - x0.log10()).min(to_bottom);
         let to = field.axes.at(x0 * 10f64.powf(length), y0 * 10f64.powf(slope * length));
-        drawing.line(field.at(x0, y0), to, Ink::Faint.pen(2.0).dashed());
-        // The names stand one below the other in the upper right corner, which falling lines leave free; a line leads to each.
-        let at = [RIGHT - 12.0, TOP + 36.0 + APART * index as f64];
-        drawing.line(
-            [at[0] - LETTER * SMALL * name.chars().count() as f64, at[1] + 4.0],
-            to,
-            Ink::Faint.pen(0.7),
-        );
-        drawing.text(at, End, SMALL, Ink::Faint, name);
+        drawing.line(field.at(x0, y0), to, GUIDE);
     }
 }
 

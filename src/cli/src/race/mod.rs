@@ -7,7 +7,7 @@
 
 mod pictures;
 mod processor_time;
-mod racers;
+pub mod racers;
 pub mod statistics;
 mod table;
 
