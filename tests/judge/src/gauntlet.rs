@@ -20,6 +20,9 @@ pub type Answers = Vec<Option<f32>>;
 /// Answers a batch of inputs.
 type Ask<'a> = Box<dyn Fn(&[Input]) -> Answers + Sync + 'a>;
 
+/// Measures a batch of inputs, in seconds.
+type Stopwatch<'a> = Box<dyn Fn(&[Input]) -> Option<f64> + Sync + 'a>;
+
 /// A method, or a function of the kit.
 pub struct Row<'a> {
     /// The name of the method.
@@ -29,7 +32,7 @@ pub struct Row<'a> {
     /// The method itself, if a call is cheap. Then triangles are tested one by one, and none after the first hit.
     pub method: Option<fn(&Ray, &Triangle) -> Option<f32>>,
     /// The seconds for a batch, measured in the process of the functions, if that is another one.
-    pub seconds: Option<Box<dyn Fn(&[Input]) -> Option<f64> + Sync + 'a>>,
+    pub seconds: Option<Stopwatch<'a>>,
 }
 
 impl Row<'_> {

@@ -1,6 +1,6 @@
 //! The report as files for programs and slides: JSON, CSV and plots.
 
-use super::measured::{Series, Verdicts};
+use super::measured::{Point, Series, Verdicts};
 use super::parameter::Parameter;
 use super::plot::{Line, Plot, svg};
 use super::slope::theory;
@@ -23,77 +23,68 @@ pub fn write(out: &Path, report: &Report<'_>) -> Result<()> {
 
 /// All points as CSV, one per line.
 fn table(report: &Report<'_>) -> String {
-    const HEADS: [&str; 23] = [
-        "parameter",
-        "ladder",
-        "value",
-        "kit",
-        "rmse",
-        "relative_mse",
-        "similarity",
-        "bias",
-        "bias_error",
-        "seconds",
-        "ratio",
-        "ratio_low",
-        "ratio_high",
-        "rays",
-        "box_tests",
-        "primitive_tests",
-        "shadow_acne",
-        "light_leaks",
-        "rays_judged",
-        "wrong_hits",
-        "leaks",
-        "on_front",
-        "too_noisy",
-    ];
-    let mut table = csv_line(&HEADS.map(str::to_owned));
+    let mut table = String::new();
     for series in &report.measured.series {
         for (value, index) in &series.levels {
             let own = &report.measured.points[*index];
             let rows = [(report.kit, own, &report.measured.points[series.base])];
             let reference = own.reference.as_ref().map(|reference| ("reference", &**reference, own));
             for (kit, point, base) in rows.into_iter().chain(reference) {
-                let pixels = f64::from(report.width) * f64::from(report.height);
-                let (bias, bias_error) = point.bias(report.reference_error, pixels);
-                let judged = |number: fn(&Verdicts) -> u64| {
-                    point.hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
-                };
-                let ratio = point.time_ratio(base);
-                let ratio = |of: fn(&Median) -> f64| {
-                    ratio.as_ref().map_or(String::new(), |ratio| of(ratio).to_string())
-                };
-                let counts = &point.counts;
-                table += &csv_line(&[
-                    series.parameter.name().to_owned(),
-                    series.name.clone(),
-                    value.clone(),
-                    kit.to_owned(),
-                    point.error().to_string(),
-                    point.errors.relative_mse.to_string(),
-                    point.errors.similarity.to_string(),
-                    bias.to_string(),
-                    bias_error.to_string(),
-                    point.seconds.to_string(),
-                    ratio(|ratio| ratio.value),
-                    ratio(|ratio| ratio.low),
-                    ratio(|ratio| ratio.high),
-                    counts.rays().to_string(),
-                    counts.box_tests.to_string(),
-                    counts.primitive_tests.to_string(),
-                    counts.shadow_acne.to_string(),
-                    counts.light_leaks.to_string(),
-                    judged(|hits| hits.rays),
-                    judged(|hits| hits.wrong),
-                    judged(|hits| hits.leaks),
-                    (kit == report.kit && report.pareto_front.contains(index)).to_string(),
-                    (kit == report.kit && report.unclear.contains(index)).to_string(),
-                ]);
+                let is_own = kit == report.kit;
+                let marks = [&report.pareto_front, &report.unclear].map(|of| is_own && of.contains(index));
+                let cells = cells(report, point, base, marks);
+                let named = [
+                    ("parameter", series.parameter.name().to_owned()),
+                    ("ladder", series.name.clone()),
+                    ("value", value.clone()),
+                    ("kit", kit.to_owned()),
+                ];
+                let (heads, cells): (Vec<_>, Vec<_>) = named.into_iter().chain(cells).unzip();
+                if table.is_empty() {
+                    table = csv_line(&heads.into_iter().map(str::to_owned).collect::<Vec<_>>());
+                }
+                table += &csv_line(&cells);
             }
         }
     }
     table
+}
+
+/// The numbers of a point, each with the head of its column. What was not measured is empty.
+fn cells(
+    report: &Report<'_>,
+    point: &Point,
+    base: &Point,
+    [on_front, too_noisy]: [bool; 2],
+) -> [(&'static str, String); 19] {
+    let pixels = f64::from(report.width) * f64::from(report.height);
+    let (bias, bias_error) = point.bias(report.reference_error, pixels);
+    let time = point.time_ratio(base);
+    let ratio = |of: fn(&Median) -> f64| time.as_ref().map_or(String::new(), |time| of(time).to_string());
+    let judged =
+        |of: fn(&Verdicts) -> u64| point.hits.as_ref().map_or(String::new(), |hits| of(hits).to_string());
+    let counts = &point.counts;
+    [
+        ("rmse", point.error().to_string()),
+        ("relative_mse", point.errors.relative_mse.to_string()),
+        ("similarity", point.errors.similarity.to_string()),
+        ("bias", bias.to_string()),
+        ("bias_error", bias_error.to_string()),
+        ("seconds", point.seconds.to_string()),
+        ("ratio", ratio(|time| time.value)),
+        ("ratio_low", ratio(|time| time.low)),
+        ("ratio_high", ratio(|time| time.high)),
+        ("rays", counts.rays().to_string()),
+        ("box_tests", counts.box_tests.to_string()),
+        ("primitive_tests", counts.primitive_tests.to_string()),
+        ("shadow_acne", counts.shadow_acne.to_string()),
+        ("light_leaks", counts.light_leaks.to_string()),
+        ("rays_judged", judged(|hits| hits.rays)),
+        ("wrong_hits", judged(|hits| hits.wrong)),
+        ("leaks", judged(|hits| hits.leaks)),
+        ("on_front", on_front.to_string()),
+        ("too_noisy", too_noisy.to_string()),
+    ]
 }
 
 /// The names and contents of the plots: all parameters, and the samplers if they were compared.

@@ -103,9 +103,8 @@ fn head_of_row(words: &str) -> String {
 
 fn proposal(report: &Report<'_>, advice: &Advice) -> String {
     let values = advice.values.iter();
-    let values: String = values
-        .map(|(parameter, value)| row([head_of_row(&parameter.name()), element("td", value)]))
-        .collect();
+    let values: String =
+        values.map(|(parameter, value)| row([head_of_row(parameter.name()), element("td", value)])).collect();
     let mut text = element("h2", goal(report, advice)) + &around("table", "class=\"values\"", &values);
     text.extend(verdict(advice).iter().map(|line| element("p", line)));
     if !advice.steps.is_empty() {

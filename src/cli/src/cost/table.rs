@@ -29,7 +29,7 @@ pub fn print(report: &Report<'_>) {
     let mut above = None;
     for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
         // The samplers have one ladder each.
-        let is_first = std::mem::replace(&mut above, Some(series.parameter)) != Some(series.parameter);
+        let is_first = above.replace(series.parameter) != Some(series.parameter);
         let trade = if is_first { format!(": {}", series.parameter.trade()) } else { String::new() };
         println!("\n{}", wrapped(&format!("{}{trade}", heading(series)), 2));
         if let Some(slope) = slope(report, series) {
