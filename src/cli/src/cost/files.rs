@@ -102,8 +102,7 @@ pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
     }
     if !samplers.is_empty() {
         let title = format!("{}: samplers, 1 to {} samples per pixel", report.scene, most(&samplers));
-        let guides =
-            [(-0.5, "slope −1/2"), (-0.75, "slope −3/4")].map(|(slope, name)| (slope, name.to_owned()));
+        let guides = [(-0.5, "−1/2"), (-0.75, "−3/4")].map(|(slope, name)| (slope, name.to_owned()));
         plots.push(("samplers.svg", draw(report, &title, &samplers, guides.to_vec())));
     }
     if !report.numerics.is_empty() {
@@ -123,7 +122,7 @@ fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, 
     let line = |one: &&Series| {
         let slope = report.slopes.iter().find(|(name, _)| *name == one.name);
         let name = match slope {
-            Some((name, slope)) => format!("{name} ({:.2} ± {:.2})", slope.mean, slope.half_interval),
+            Some((name, slope)) => format!("{name} ({:.2})", slope.mean),
             None => one.name.clone(),
         };
         let place = |(_, index): &(String, usize)| {

@@ -158,7 +158,7 @@ impl CostOptions {
     }
 
     /// The most pixels of a measured picture, unless a size is given, because some hundred pictures are rendered. Without
-    /// `--full` the scene of the README then takes less than 20 s on two cores.
+    /// `--full` the scene of the README then takes about half a minute.
     pub fn pixels(&self) -> f64 {
         if self.full { 10_000.0 } else { 2_500.0 }
     }

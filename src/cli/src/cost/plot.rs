@@ -8,7 +8,7 @@ pub struct Plot<'a> {
     pub x_axis: &'a str,
     pub y_axis: &'a str,
     pub lines: Vec<Line>,
-    /// Slopes to compare with, drawn from the first point of the first line on, and their names.
+    /// Slopes to compare with, drawn from the first point of the first line on, as numbers and in writing.
     pub guides: Vec<(f64, String)>,
     /// The points of the Pareto front, from left to right.
     pub pareto_front: Vec<(f64, f64)>,
@@ -34,10 +34,10 @@ const WIDTH: f64 = 1000.0;
 const LEFT: f64 = 120.0;
 /// The field takes 86 % of the width; the rest is for the numbers of the axis on its left, and for half a number on its right.
 const RIGHT: f64 = 980.0;
-const TOP: f64 = 104.0;
-const BOTTOM: f64 = 450.0;
+const TOP: f64 = 116.0;
+const BOTTOM: f64 = 460.0;
 /// The first line of names, and the distance of two lines: a quarter more than the height of their letters.
-const NAMES: f64 = 590.0;
+const NAMES: f64 = 600.0;
 const APART: f64 = 40.0;
 /// The width of a letter of size 1: digits have 0.556 in Helvetica and Arial, and text has less.
 const LETTER: f64 = 0.55;
@@ -60,7 +60,7 @@ fn ticks(axis: &Axis) -> impl Iterator<Item = (f64, bool)> {
     let (low, high) = (axis.low.log10(), axis.high.log10());
     let powers = (low - 1.0) as i32..=high.ceil() as i32;
     let ticks = powers.flat_map(|power| [1.0, 2.0, 5.0].map(|digit| (digit, power)));
-    let named = move |digit: f64| digit == 1.0 || high - low < 2.1;
+    let named = move |digit: f64| digit == 1.0 || high - low < 3.1;
     ticks
         .map(move |(digit, power)| (digit * 10f64.powi(power), named(digit)))
         .filter(move |(value, _)| (low - 1e-9..=high + 1e-9).contains(&value.log10()))
@@ -77,8 +77,9 @@ pub fn svg(plot: &Plot<'_>) -> String {
     // The names below, those of the dashed lines among them: in as many columns as fit.
     let mut names: Vec<(&str, Option<Pen>)> =
         plot.lines.iter().map(|line| (line.name.as_str(), None)).collect();
-    let guides = plot.guides.iter().map(|(_, name)| name.as_str()).collect::<Vec<_>>().join(" and ");
-    if !guides.is_empty() {
+    let guides: Vec<&str> = plot.guides.iter().map(|(_, name)| name.as_str()).collect();
+    let guides = format!("slopes {}", guides.join(" and "));
+    if !plot.guides.is_empty() {
         names.push((&guides, Some(GUIDE)));
     }
     if !plot.pareto_front.is_empty() {
@@ -169,7 +170,7 @@ fn draw_axes(drawing: &mut Drawing, plot: &Plot<'_>, field: &Field) {
         }
     }
     drawing.text([RIGHT, BOTTOM + 88.0], End, SMALL, Ink::Text, plot.x_axis);
-    drawing.text([20.0, TOP - 24.0], Start, SMALL, Ink::Text, plot.y_axis);
+    drawing.text([20.0, TOP - 36.0], Start, SMALL, Ink::Text, plot.y_axis);
 }
 
 /// Draws the Pareto front as a dashed step line: every setting above it is slower or less accurate than one on it.
@@ -240,7 +241,7 @@ mod tests {
     use super::*;
 
     fn plot(lines: Vec<Line>) -> String {
-        let guides = vec![(-0.5, "slope −1/2".to_owned())];
+        let guides = vec![(-0.5, "−1/2".to_owned())];
         let pareto_front = vec![(0.001, 0.1), (0.004, 0.05)];
         svg(&Plot {
             title: "a < b",

@@ -133,9 +133,9 @@ fn row(report: &Report<'_>, series: &Series, name: &str, marks: &str, point: &Po
     println!("{}", line.trim_end());
 }
 
-/// A ratio with three digits and its interval.
+/// A ratio and its interval, with as many digits as three need at its upper end.
 fn interval(ratio: &Median) -> String {
-    let places = match ratio.value {
+    let places = match ratio.high {
         value if value < 9.995 => 2,
         value if value < 99.95 => 1,
         _ => 0,
@@ -234,7 +234,7 @@ fn print_advice(report: &Report<'_>, advice: &Advice) {
         println!("  {:<22}{value}", parameter.name());
     }
     for line in verdict(advice) {
-        println!("  {line}");
+        println!("  {}", wrapped(&line, 2));
     }
 }
 
