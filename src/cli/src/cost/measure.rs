@@ -280,13 +280,11 @@ pub enum Rank {
 /// The rank of each point. Settings that let more rays through closed surfaces than the tightest are beaten, because the error
 /// of a picture hardly shows a leak, and so are fixed ray offsets.
 pub fn ranks(points: &[Point]) -> Vec<Rank> {
-    // A fixed ray offset is safe at the size of one scene at most, so it counts as a leak.
-    let leaks = |point: &Point| match point.setting.quality.ray_offset {
-        0.0 => point.hits.map(|hits| hits.leaks),
-        _ => Some(u64::MAX),
-    };
+    let leaks = |point: &Point| point.hits.map(|hits| hits.leaks);
     let fewest = points.iter().filter_map(leaks).min();
-    let is_tight = |point: &Point| leaks(point).is_none_or(|leaks| Some(leaks) == fewest);
+    // A fixed ray offset is safe at the size of one scene at most.
+    let is_fixed = |point: &Point| point.setting.quality.ray_offset > 0.0;
+    let is_tight = |point: &Point| !is_fixed(point) && leaks(point).is_none_or(|leaks| Some(leaks) == fewest);
     let rank = |point: &Point| {
         if !is_tight(point) {
             return Rank::Beaten;

@@ -138,7 +138,10 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
         );
     }
     let special = special_heads(report, series);
-    let columns = ["", "RMSE", special[0], special[1], "ms", "ratio", special[2]];
+    let mut columns = vec!["", "RMSE", special[0], special[1], "ms", "ratio", special[2]];
+    if special[1].is_empty() {
+        columns.remove(3);
+    }
     let mut levels = Vec::new();
     for (value, index) in &series.levels {
         let point = &report.measured.points[*index];
@@ -180,7 +183,11 @@ fn level(
     let [one, two, three] = cells(report, series, point);
     let ms = format!("{:.2}", 1e3 * point.seconds);
     let cells = [format!("{:.5}", point.error()), one, two, ms, ratio(point, base), three];
-    let cells: String = cells.iter().map(|cell| element("td", cell)).collect();
+    // A bias takes the place of two numbers.
+    let is_shown =
+        |(place, _): &(usize, &String)| *place != 2 || !special_heads(report, series)[1].is_empty();
+    let cells = cells.iter().enumerate().filter(is_shown).map(|(_, cell)| element("td", cell));
+    let cells: String = cells.collect();
     around("tr", if is_front { "class=\"front\"" } else { "" }, &(head_of_row(name) + &cells))
 }
 
@@ -200,20 +207,28 @@ fn pictures(report: &Report<'_>, series: &Series) -> Result<String> {
     };
     shown_levels.dedup();
     let worst = &report.measured.points[series.levels[0].1];
-    // White stands for three times the mean error of the cheapest level.
-    let most = 3.0 * worst.error();
+    // Errors are shown against the converged picture, on a scale whose white is three times the mean error of the first level. A
+    // ray offset is shown against the error bound, with the same samples, so that only acne and leaks are left; white is a
+    // tenth of full light.
+    let of_offsets = series.levels.last().filter(|_| series.parameter == Parameter::RayOffset);
+    let (right, most, what) = match of_offsets {
+        Some((_, bound)) => {
+            (&report.measured.points[*bound].film, 0.1, "its differences from the error bound")
+        }
+        None => (&report.right.film, 3.0 * worst.error(), "its errors"),
+    };
     let mut figures = String::new();
     for level in shown_levels {
         let (value, index) = &series.levels[level];
         let film = &report.measured.points[*index].film;
         let picture = embedded(&shown(film)?)?;
-        let heat = embedded(&heat(film, &report.right.film, most))?;
+        let heat = embedded(&heat(film, right, most))?;
         let about = escape(format!("the picture with {} {value}", series.name));
-        let images =
-            format!("<img src=\"{picture}\" alt=\"{about}\"><img src=\"{heat}\" alt=\"its errors\">");
+        let images = format!("<img src=\"{picture}\" alt=\"{about}\"><img src=\"{heat}\" alt=\"{what}\">");
         figures += &around("figure", "", &(images + &element("figcaption", value)));
     }
-    Ok(around("div", "class=\"pictures\"", &figures))
+    let below = element("p", format!("Below each picture: {what}."));
+    Ok(around("div", "class=\"pictures\"", &figures) + &below)
 }
 
 fn embedded(picture: &RgbImage) -> Result<String> {

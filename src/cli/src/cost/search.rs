@@ -80,7 +80,7 @@ const CHOSEN_ONCE: [Parameter; 10] = [
 ];
 
 /// Parameters that the proposal leaves at the scene's own value: another one shows another scene, or lets light leak.
-const KEPT: [Parameter; 4] =
+pub const KEPT: [Parameter; 4] =
     [Parameter::IndirectLight, Parameter::Fresnel, Parameter::Tessellation, Parameter::RayOffset];
 
 /// The factor up to which a larger error counts as the same.

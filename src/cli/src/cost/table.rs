@@ -4,7 +4,7 @@ use super::Report;
 use super::files::expected_slope;
 use super::measured::{Point, Series, Verdicts};
 use super::parameter::Parameter;
-use super::search::{Advice, Goal};
+use super::search::{Advice, Goal, KEPT};
 use crate::args::wrapped;
 use crate::columns::Columns;
 use crate::race::statistics::Median;
@@ -12,6 +12,9 @@ use crate::report::Thousands;
 
 /// The columns of a ladder: name and marks, error, two that depend on the parameter, time with its ratio, and one more.
 const COLUMNS: Columns = Columns("", &[-24, -2, 8, 8, 7, 8, 17, 6]);
+
+/// The same with a bias and its standard error in place of two numbers.
+const BIASED: Columns = Columns("", &[-24, -2, 8, 15, 0, 8, 17, 6]);
 
 /// Prints the report.
 pub fn print(report: &Report<'_>) {
@@ -38,7 +41,9 @@ pub fn print(report: &Report<'_>) {
         let heads = heads(report, series);
         println!(
             "{}",
-            COLUMNS.row(&[&"", &"", &"RMSE", &heads[0], &heads[1], &"ms", &"ratio", &heads[2]]).trim_end()
+            columns(&heads)
+                .row(&[&"", &"", &"RMSE", &heads[0], &heads[1], &"ms", &"ratio", &heads[2]])
+                .trim_end()
         );
         for (name, index) in &series.levels {
             let point = &report.measured.points[*index];
@@ -95,12 +100,16 @@ fn short(most: usize, value: f64) -> String {
     format!("{value:.*}", decimals(most, value))
 }
 
+fn columns(heads: &[&str; 3]) -> &'static Columns {
+    if heads[1].is_empty() { &BIASED } else { &COLUMNS }
+}
+
 /// The heads of the columns that depend on the parameter.
 pub fn heads(report: &Report<'_>, series: &Series) -> [&'static str; 3] {
     match series.parameter {
         Parameter::RayOffset => ["acne", "leaks", "rays"],
         one if one.is_geometric() => ["wrong", "leaks", "tests"],
-        _ if report.has_bias => ["", "bias", "rays"],
+        _ if report.has_bias => ["bias", "", "rays"],
         _ => ["similar", "tests", "rays"],
     }
 }
@@ -121,7 +130,7 @@ pub fn cells(report: &Report<'_>, series: &Series, point: &Point) -> [String; 3]
             [counted(counts.shadow_acne.to_string()), counted(counts.light_leaks.to_string()), per_pixel]
         }
         one if one.is_geometric() => [judged(|hits| hits.wrong), judged(|hits| hits.leaks), tests],
-        _ if report.has_bias => [String::new(), bias(report, point), per_pixel],
+        _ if report.has_bias => [bias(report, point), String::new(), per_pixel],
         _ => [format!("{:.4}", point.errors.similarity), tests, per_pixel],
     }
 }
@@ -129,7 +138,16 @@ pub fn cells(report: &Report<'_>, series: &Series, point: &Point) -> [String; 3]
 fn row(report: &Report<'_>, series: &Series, name: &str, marks: &str, point: &Point, base: &Point) {
     let [one, two, three] = cells(report, series, point);
     let (error, ms) = (format!("{:.5}", point.error()), short(2, 1e3 * point.seconds));
-    let line = COLUMNS.row(&[&name, &marks, &error, &one, &two, &ms, &ratio(point, base), &three]);
+    let line = columns(&heads(report, series)).row(&[
+        &name,
+        &marks,
+        &error,
+        &one,
+        &two,
+        &ms,
+        &ratio(point, base),
+        &three,
+    ]);
     println!("{}", line.trim_end());
 }
 
@@ -194,7 +212,8 @@ const SAME: f64 = 0.02;
 
 /// A sentence that says above which value a parameter costs time without lowering the error.
 pub fn waste(report: &Report<'_>, series: &Series) -> Option<String> {
-    if series.parameter.is_geometric() {
+    // Other formulas and other scenes are no steps of a scale.
+    if series.parameter.is_geometric() || KEPT.contains(&series.parameter) {
         return None;
     }
     let point = |index: usize| &report.measured.points[series.levels[index].1];
