@@ -329,12 +329,12 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
 }
 
 /// Said where a student's kit is measured and the solutions are there.
-const BESIDE: &str = "each value is measured with your code and with the reference (solutions), in the same rounds; errors are \
-                      against pictures of the reference";
+const BESIDE: &str = "Each value is measured with your code and with the reference (solutions), in the same rounds; errors are \
+                      against pictures of the reference.";
 
 /// Said where a student's kit is measured alone.
-const NO_REFERENCE: &str = "there is no reference here, because a hand-out has no solutions: errors are against converged pictures of \
-                            your own code, so they show its noise and not its mistakes";
+const NO_REFERENCE: &str = "There is no reference here, because a hand-out has no solutions: errors are against converged pictures of \
+                            your own code, so they show its noise and not its mistakes.";
 
 /// A picture of one pixel, which says how the renderer plans the scene; `None` if the program is being stopped.
 fn look(bench: &Bench<'_>, scene: &Scene) -> Result<Option<Rendering>> {

@@ -56,7 +56,7 @@ fn page(report: &Report<'_>) -> Result<String> {
     }
     body += &around("p", "class=\"about\"", &escape(words + "."));
     if !report.beside.is_empty() {
-        body += &around("p", "class=\"about\"", &escape(format!("{}.", capitalised(&report.beside))));
+        body += &around("p", "class=\"about\"", &escape(&report.beside));
     }
     for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
         body += &ladder(report, series)?;
@@ -189,12 +189,6 @@ fn level(
     let cells = cells.iter().enumerate().filter(is_shown).map(|(_, cell)| element("td", cell));
     let cells: String = cells.collect();
     around("tr", if is_front { "class=\"front\"" } else { "" }, &(head_of_row(name) + &cells))
-}
-
-/// The words as the beginning of a sentence.
-fn capitalised(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The pictures of the first, the middle and the last level, and their error images on one scale.

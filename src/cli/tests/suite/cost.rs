@@ -177,6 +177,30 @@ fn hits_are_judged_exactly() {
 }
 
 #[test]
+fn a_fixed_ray_offset_leaks_or_makes_acne_and_the_error_bound_does_neither() {
+    let folder = tempfile::tempdir().unwrap();
+    let line =
+        "scenes/plain.toml --parameter ray_offset --reference 128 --rounds 1 --size 63x39 --out offsets";
+    let output = cost(folder.path(), line);
+    assert!(output.status.success(), "{}", said(&output));
+    let json = fs::read(folder.path().join("offsets/cost.json")).unwrap();
+    let json: Value = serde_json::from_slice(&json).unwrap();
+    let counts = |name: &str| -> Vec<u64> {
+        json["points"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|point| point["counts"][name].as_u64().unwrap())
+            .collect()
+    };
+    let (acne, leaks) = (counts("shadow_acne"), counts("light_leaks"));
+    // From 1e-2 down to 1e-7, and the bound.
+    assert!(leaks[0] > 50 && leaks[4..] == [0, 0, 0], "{leaks:?}");
+    assert!(acne[3..5] == [0, 0] && acne[5] > 0 && acne[6] == 0, "{acne:?}");
+    assert!(said(&output).contains("one round: no interval"), "{}", said(&output));
+}
+
+#[test]
 fn what_buys_nothing_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let output = cost(folder.path(), "scenes/stage1.toml --parameter max_depth");
@@ -273,7 +297,7 @@ fn a_student_sees_the_reference_beside_their_code() {
     let output = cost(folder.path(), &line.replace("samples_per_pixel,accelerator", "samples_per_pixel"));
     let text = said(&output);
     assert!(output.status.success(), "{text}");
-    assert!(text.contains("each value is measured with your code and with the reference"), "{text}");
+    assert!(text.contains("Each value is measured with your code and with the reference"), "{text}");
     assert!(text.contains("    the reference ") && text.contains("note: spheres are left out"), "{text}");
     // Without a search there is no structure to compare.
     let output = cost(folder.path(), &line);
