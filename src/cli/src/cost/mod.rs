@@ -28,7 +28,7 @@ mod slope;
 mod table;
 
 use crate::args::{Given, wrapped};
-use crate::kits::{Need, Source, Which, build_folder, has_solutions, profile_of, root};
+use crate::kits::{Need, Source, Which, has_solutions, root};
 use crate::lock::Lock;
 use crate::quality_options::arguments;
 use crate::race::racers::build_both;
@@ -451,11 +451,7 @@ fn command(package: Option<&str>) -> String {
 
 /// The command by which cargo runs a program of this workspace, in the profile of this one.
 fn cargo_run(package: Option<&str>) -> String {
-    let profile = build_folder().ok().and_then(|folder| profile_of(&folder));
-    let profile = profile.map_or(String::new(), |profile| match profile.as_str() {
-        "--profile=release" => " --release".into(),
-        other => format!(" {other}"),
-    });
+    let profile = if cfg!(debug_assertions) { "" } else { " --release" };
     let package = package.map_or(String::new(), |package| format!(" -p {package}"));
     format!("cargo run{profile}{package} --")
 }

@@ -5,7 +5,7 @@
 //! kit, which compiles the files of its folder.
 
 use crate::kits::{Which, build_folder, profile_of, run_cargo};
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -57,13 +57,6 @@ fn is_kit(folder: &Path) -> bool {
     folder.join("src/lib.rs").is_file()
 }
 
-/// Builds both kits of this repository with the same options, and returns their worker programs: those of the reference and of
-/// the exercises.
-pub fn build_both(root: &Path) -> Result<[PathBuf; 2]> {
-    let both = [of_kit(root, Which::Solutions)?, of_kit(root, Which::Exercises)?];
-    <[PathBuf; 2]>::try_from(build(root, &both)?).map_err(|_| anyhow!("a kit has no program"))
-}
-
 /// Builds all racers with the same options, and returns their worker programs.
 pub fn build(root: &Path, racers: &[Racer]) -> Result<Vec<PathBuf>> {
     let built = build_folder()?;
@@ -88,9 +81,17 @@ pub fn build(root: &Path, racers: &[Racer]) -> Result<Vec<PathBuf>> {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(&workspace).args(["build", "--workspace", "--bins", "--target-dir"]).arg(target);
     cargo.args(profile_of(&built));
-    run_cargo(cargo, "the kits that are compared")?;
+    run_cargo(cargo, "the kits of the race")?;
     let program = |i| built.join(format!("{}{}", package_name(i), std::env::consts::EXE_SUFFIX));
     Ok((0..racers.len()).map(program).collect())
+}
+
+/// Builds both kits of this repository with the same options, and returns their worker programs: those of the reference and of
+/// the exercises.
+pub fn build_both(root: &Path) -> Result<[PathBuf; 2]> {
+    let programs = build(root, &[of_kit(root, Which::Solutions)?, of_kit(root, Which::Exercises)?])?;
+    let [reference, own] = programs.as_slice() else { bail!("a kit has no program") };
+    Ok([reference.clone(), own.clone()])
 }
 
 fn package_name(racer: usize) -> String {
