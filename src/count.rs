@@ -35,6 +35,10 @@ pub enum Event {
     RandomNumber,
     /// One colour was read from an image.
     TextureRead,
+    /// With a fixed ray offset: a shadow ray hit something that it misses from the point at the error bound.
+    ShadowAcne,
+    /// With a fixed ray offset: a shadow ray missed what blocks it from the point at the error bound.
+    LightLeak,
 }
 
 /// How often each [`Event`] happened. The sum of two counts is the sum of each field.
@@ -64,11 +68,17 @@ pub struct Counts {
     pub random_numbers: u64,
     /// The number of colours that were read from images.
     pub texture_reads: u64,
+    /// With a fixed `ray_offset`: the number of shadow rays that hit something, mostly their own surface, which they miss
+    /// when they start at the error bound (shadow acne).
+    pub shadow_acne: u64,
+    /// With a fixed `ray_offset`: the number of shadow rays that reach the light although something blocks them when they
+    /// start at the error bound, because they start beyond it (light leaks).
+    pub light_leaks: u64,
 }
 
 message! { Counts {
     primary, shadow, reflection, transmission, indirect, absorbed, hits, node_visits, box_tests,
-    primitive_tests, random_numbers, texture_reads
+    primitive_tests, random_numbers, texture_reads, shadow_acne, light_leaks
 } }
 
 impl Counts {
@@ -92,6 +102,8 @@ impl AddAssign for Counts {
         self.primitive_tests += other.primitive_tests;
         self.random_numbers += other.random_numbers;
         self.texture_reads += other.texture_reads;
+        self.shadow_acne += other.shadow_acne;
+        self.light_leaks += other.light_leaks;
     }
 }
 
@@ -142,6 +154,8 @@ impl Tally for Counts {
             Event::PrimitiveTest => &mut self.primitive_tests,
             Event::RandomNumber => &mut self.random_numbers,
             Event::TextureRead => &mut self.texture_reads,
+            Event::ShadowAcne => &mut self.shadow_acne,
+            Event::LightLeak => &mut self.light_leaks,
         } += 1;
     }
 

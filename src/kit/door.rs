@@ -20,8 +20,9 @@ use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 use crate::wide::{BinSplit, Bins, Entered, FlatTree, ForkedTree, WideTree};
 use glam::{Affine3A, UVec3, Vec2, Vec3};
 use std::fmt::Debug;
+use std::hint::black_box;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Carries a request to the process that contains the student's code, and brings back the answer.
 ///
@@ -100,6 +101,22 @@ pub trait Hosted {
     fn waited(&self) -> Duration {
         Duration::ZERO
     }
+
+    /// The seconds that the functions take to answer `request`, measured in their process, without messages. `None` if that is
+    /// the caller's own process.
+    fn seconds_of(&self, _request: Request) -> Option<f64> {
+        None
+    }
+}
+
+/// The seconds that `work` takes, the least of five times: other programs only add to it.
+pub fn least_seconds(mut work: impl FnMut()) -> f64 {
+    let seconds = |_| {
+        let started = Instant::now();
+        work();
+        started.elapsed().as_secs_f64()
+    };
+    (0..5).map(seconds).fold(f64::INFINITY, f64::min)
 }
 
 /// Whole frames, rendered in the process that contains the student's code, so that no single ray crosses a
@@ -168,6 +185,8 @@ macro_rules! door {
             /// The request in the box, whose tables stay with the judge: its probes ask
             /// [questions](crate::kit::questions).
             Withheld(Box<Request>),
+            /// Asks how long the answer to the request in the box takes.
+            Timed(Box<Request>),
         }
 
         /// The answer to a [`Request`] as a message: one answer per query, in the same order.
@@ -184,17 +203,19 @@ macro_rules! door {
             Outlines(Vec<[Vec3; 2]>),
             /// The first hit of each ray in a scene.
             FirstHits(Vec<Option<PrimitiveHit>>),
+            /// Seconds for all queries of a request.
+            Timed(f64),
         }
 
         message! { enum Request {
             $($($Message(queries),)*)*
             Render(job), RenderInTiles(job), Trace(job, x, y), Visits(job, x, y), Outlines(job, depth),
-            FirstHits(job, rays), Withheld(request)
+            FirstHits(job, rays), Withheld(request), Timed(request)
         } }
 
         message! { enum Answer {
             $($($Message(answers),)*)*
-            Render(rendering), Trace(rays), Visits(rays), Outlines(edges), FirstHits(hits)
+            Render(rendering), Trace(rays), Visits(rays), Outlines(edges), FirstHits(hits), Timed(seconds)
         } }
 
         impl Request {
@@ -231,6 +252,9 @@ macro_rules! door {
                     Request::Outlines(job, depth) => Answer::Outlines(kit.outlines(job, *depth)),
                     Request::FirstHits(job, rays) => Answer::FirstHits(kit.first_hits(job, rays)),
                     Request::Withheld(request) => request.answer(kit, watch),
+                    Request::Timed(request) => Answer::Timed(least_seconds(|| {
+                        black_box(request.answer(kit, watch));
+                    })),
                 }
             }
         }
@@ -280,6 +304,13 @@ impl dyn Kit + '_ {
 impl<T: Transport> Hosted for Door<T> {
     fn waited(&self) -> Duration {
         self.0.waited()
+    }
+
+    fn seconds_of(&self, request: Request) -> Option<f64> {
+        match self.0.call(Request::Timed(Box::new(request)), &crate::progress::Unwatched) {
+            Answer::Timed(seconds) => Some(seconds),
+            answer => kit_error::wrong_answer(&answer),
+        }
     }
 }
 

@@ -86,11 +86,15 @@ pub struct Rendering {
     pub build_seconds: f64,
     /// The time to render the pixels, in seconds.
     pub render_seconds: f64,
+    /// The processor time that the thread of this request spent on the pixels, in seconds: of all work on them if the job asks
+    /// for one thread. `None` where the operating system does not say it.
+    pub processor_seconds: Option<f64>,
     /// What is missing in the picture and why, and which structure is coarser than the scene asks for, one
     /// sentence each.
     pub notes: Vec<String>,
 }
 
 message! { Rendering {
-    film, counts, primitives, accelerator, structure, bytes_of_parts, build_seconds, render_seconds, notes
+    film, counts, primitives, accelerator, structure, bytes_of_parts, build_seconds, render_seconds,
+    processor_seconds, notes
 } }

@@ -33,6 +33,7 @@ pub use costs::Costs;
 pub use door::{
     Answer, Distribution, Door, EffectsAnalysis, Frames, Hierarchies, Hosted, Kit, LightTransport,
     Partitions, Recursion, Request, SceneGraph, Shading, Shapes, Speed, Stability, Transport, Triangles,
+    least_seconds,
 };
 pub use effects_analysis::{MaterialHits, RayCounts};
 pub use function_names::Function;

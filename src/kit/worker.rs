@@ -36,14 +36,30 @@ impl Thread {
     /// The time for which the thread has been ready to compute but had no processor, because others used them. It is 0 after
     /// the end of the thread, and on other systems.
     pub fn waited(&self) -> Duration {
-        let text = self.0.as_ref().and_then(|folder| std::fs::read_to_string(folder.join("schedstat")).ok());
-        text.and_then(|text| waiting(&text)).unwrap_or_default()
+        self.schedstat(1).unwrap_or_default()
+    }
+
+    /// The time that the thread has spent on a processor, at its last switch: for a thread that computes, up to a tick of
+    /// the kernel (4 ms) ago. `None` after the end of the thread, and on other systems.
+    pub fn ran(&self) -> Option<Duration> {
+        self.schedstat(0)
+    }
+
+    /// The exact time that the calling thread has spent on a processor. It sleeps for a moment, which is such a switch.
+    pub fn processor_time() -> Option<Duration> {
+        std::thread::sleep(Duration::from_nanos(1));
+        Thread::current().ran()
+    }
+
+    fn schedstat(&self, place: usize) -> Option<Duration> {
+        let text = std::fs::read_to_string(self.0.as_ref()?.join("schedstat")).ok()?;
+        nanoseconds(&text, place)
     }
 }
 
-/// The second of three numbers: nanoseconds on a processor, nanoseconds of waiting for one, and the number of turns.
-fn waiting(schedstat: &str) -> Option<Duration> {
-    Some(Duration::from_nanos(schedstat.split_whitespace().nth(1)?.parse().ok()?))
+/// One of three numbers: nanoseconds on a processor, nanoseconds of waiting for one, and the number of turns.
+fn nanoseconds(schedstat: &str, place: usize) -> Option<Duration> {
+    Some(Duration::from_nanos(schedstat.split_whitespace().nth(place)?.parse().ok()?))
 }
 
 /// The longest message that [`receive`] accepts, in bytes (1 GiB).
@@ -261,10 +277,26 @@ mod tests {
     }
 
     #[test]
-    fn the_time_without_a_processor_is_the_second_number() {
-        assert_eq!(waiting("123456789 42 7\n"), Some(Duration::from_nanos(42)));
-        assert_eq!(waiting(""), None);
-        assert_eq!(Thread::at("no/such/folder".into()).waited(), Duration::ZERO);
+    fn the_times_with_and_without_a_processor_are_the_first_two_numbers() {
+        let numbers = [0, 1].map(|place| nanoseconds("123456789 42 7\n", place));
+        assert_eq!(numbers, [123_456_789, 42].map(|n| Some(Duration::from_nanos(n))));
+        assert_eq!(nanoseconds("", 0), None);
+        let ended = Thread::at("no/such/folder".into());
+        assert_eq!((ended.waited(), ended.ran()), (Duration::ZERO, None));
+    }
+
+    /// A tick of the kernel is 1 to 10 ms, so without the switch a millisecond of work would mostly count as none.
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn the_processor_time_of_a_millisecond_is_not_that_of_a_tick() {
+        let computed = |n: u32| {
+            let (started, before) = (std::time::Instant::now(), Thread::processor_time().expect("Linux"));
+            while started.elapsed() < Duration::from_millis(n.into()) {}
+            Thread::processor_time().expect("Linux") - before
+        };
+        // A busy machine takes the processor away, so that the loop runs for less than its time; the longest of many does not.
+        let longest = (0..100).map(|_| computed(1)).max().expect("many");
+        assert!(longest >= Duration::from_micros(900), "{longest:?}");
     }
 
     #[test]

@@ -26,6 +26,7 @@ use crate::kit::{
 };
 use crate::progress::{Unwatched, Watch};
 use crate::ray::Ray;
+use crate::worker::Thread;
 use crate::world::World;
 use counter::Counter;
 use driver::CameraSample;
@@ -121,9 +122,11 @@ fn render<F: StudentFunctions>(
     let frame = Frame::new(job, written, watch);
     let build_seconds = started.elapsed().as_secs_f64() + frame.earlier_seconds;
     // Render the pixels, with or without counts.
-    let started = Instant::now();
+    let (started, ran_before) = (Instant::now(), Thread::processor_time());
     let (film, counts) =
         if job.count { pixels::<F, Counter>(&frame, watch)? } else { pixels::<F, Uncounted>(&frame, watch)? };
+    let render_seconds = started.elapsed().as_secs_f64();
+    let processor_time = ran_before.and_then(|before| Some(Thread::processor_time()? - before));
     let scene = &frame.intersector.scene;
     Some(Rendering {
         film,
@@ -133,7 +136,8 @@ fn render<F: StudentFunctions>(
         structure: scene.structure.size(),
         bytes_of_parts: frame.intersector.bytes_of_parts(),
         build_seconds,
-        render_seconds: started.elapsed().as_secs_f64(),
+        render_seconds,
+        processor_seconds: processor_time.map(|time| time.as_secs_f64()),
         notes: [&frame.plan.notes, &frame.intersector.notes, &scene.world.notes].map(Vec::as_slice).concat(),
     })
 }

@@ -53,6 +53,7 @@ fn a_structure_that_is_used_again_changes_no_pixel_and_no_count() {
         first.clone(),
         changed(&|scene| scene.quality.samples_per_pixel = 2),
         changed(&|scene| scene.quality.max_depth = 0),
+        changed(&|scene| scene.quality.ray_offset = 1e-3),
         changed(&|scene| scene.quality.split = Split::ObjectMedian),
         changed(&|scene| scene.quality.leaf_size = 1),
         changed(&|scene| scene.quality.accelerator = Accelerator::Octree),

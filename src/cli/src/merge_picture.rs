@@ -195,6 +195,7 @@ mod tests {
             bytes_of_parts: 0,
             build_seconds: 0.0,
             render_seconds: 0.0,
+            processor_seconds: None,
             notes: Vec::new(),
         };
         (name.to_owned(), Piece { settings, rows: Rows { start, end }, rendering })

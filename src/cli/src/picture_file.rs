@@ -158,7 +158,9 @@ impl Summary<'_> {
                 ("primitive tests", counts.primitive_tests),
             ];
             let indirect = if *indirect_light { &indirect[..] } else { &[] };
-            for (name, number) in numbers.iter().chain(indirect).chain(&others) {
+            let offset = [("shadow acne", counts.shadow_acne), ("light leaks", counts.light_leaks)];
+            let offset = if quality.ray_offset > 0.0 { &offset[..] } else { &[] };
+            for (name, number) in numbers.iter().chain(indirect).chain(&others).chain(offset) {
                 println!("  {name:<15}  {}", Thousands(*number));
             }
             let rays = counts.rays().max(1) as f64;

@@ -7,7 +7,7 @@ use super::random_choices::{area_of, sample_area_light, sample_rough_surface, sh
 use super::record::Record;
 use super::texture_filter::{Cone, Pyramids, curvature, footprint, uv_change};
 use crate::aabb::Aabb;
-use crate::count::{Counts, Event, Tally};
+use crate::count::{Counts, Event, Tally, Uncounted};
 use crate::kit::{Bounce, LightSample, RayKind, StudentFunctions, Surface};
 use crate::material::Material;
 use crate::ray::Ray;
@@ -342,9 +342,19 @@ impl<F: StudentFunctions> Frame<'_, F> {
         record: &mut impl FnMut(&Ray, bool),
     ) -> bool {
         tally.note(Event::Shadow);
-        let ray = self.off_surface(at, Ray { time: path.ray.time, ..*ray });
+        let own = Ray { time: path.ray.time, ..*ray };
+        let ray = self.off_surface(at, own);
         let blocked = self.intersector.any_hit(&ray, tally);
         record(&ray, blocked);
+        // Compare a fixed offset with the error bound, without counting the work of this comparison.
+        if T::COUNTS && self.quality().ray_offset > 0.0 {
+            let bound = self.at_the_error_bound(at, own);
+            match (blocked, self.intersector.any_hit(&bound, &mut Uncounted)) {
+                (true, false) => tally.note(Event::ShadowAcne),
+                (false, true) => tally.note(Event::LightLeak),
+                _ => {}
+            }
+        }
         blocked
     }
 
@@ -405,10 +415,21 @@ impl<F: StudentFunctions> Frame<'_, F> {
         }
     }
 
-    /// `ray`, which leaves the surface, with the origin that `offset_origin` of stage 10 gives if it is written;
-    /// otherwise with its own.
+    /// `ray`, which leaves the surface, with the origin at the fixed `ray_offset` of the scene along the normal, on the side
+    /// of the ray; if that is 0, at the error bound.
     #[inline(always)]
     pub(super) fn off_surface(&self, at: &SurfaceInteraction, ray: Ray) -> Ray {
+        let (offset, normal) = (self.quality().ray_offset, at.surface.geometric_normal);
+        if offset > 0.0 {
+            let offset = offset.copysign(normal.dot(ray.direction));
+            return Ray { origin: at.surface.point + offset * normal, ..ray };
+        }
+        self.at_the_error_bound(at, ray)
+    }
+
+    /// `ray` with the origin that `offset_origin` of stage 10 gives if it is written; otherwise with its own.
+    #[inline(always)]
+    fn at_the_error_bound(&self, at: &SurfaceInteraction, ray: Ray) -> Ray {
         let Surface { point, error, geometric_normal, .. } = at.surface;
         match self.plan.offsets {
             true => Ray { origin: F::offset_origin(point, error, geometric_normal, ray.direction), ..ray },

@@ -110,6 +110,7 @@ fn without_sampling(scene: &Scene) -> Scene {
             min_contribution: default.min_contribution,
             next_event: default.next_event,
             clamp: default.clamp,
+            ray_offset: default.ray_offset,
             ..scene.quality
         },
         ..scene.clone()

@@ -6,7 +6,7 @@ use anyhow::Result;
 use glam::Vec3;
 use oracle::gauntlet::distributions::{DISTRIBUTIONS, Distribution};
 use oracle::gauntlet::table::{Cell, Judged, compare, judge, nanoseconds};
-use raykata::kit::{Kit, TriangleHit, TriangleQuery, kit_error};
+use raykata::kit::{Kit, Request, TriangleHit, TriangleQuery, kit_error};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 use raykata_cli::cost::Summary;
@@ -20,6 +20,9 @@ pub type Answers = Vec<Option<f32>>;
 /// Answers a batch of inputs.
 type Ask<'a> = Box<dyn Fn(&[Input]) -> Answers + Sync + 'a>;
 
+/// Measures a batch of inputs, in seconds.
+type Stopwatch<'a> = Box<dyn Fn(&[Input]) -> Option<f64> + Sync + 'a>;
+
 /// A method, or a function of the kit.
 pub struct Row<'a> {
     /// The name of the method.
@@ -28,27 +31,45 @@ pub struct Row<'a> {
     pub answer: Ask<'a>,
     /// The method itself, if a call is cheap. Then triangles are tested one by one, and none after the first hit.
     pub method: Option<fn(&Ray, &Triangle) -> Option<f32>>,
+    /// The seconds for a batch, measured in the process of the functions, if that is another one.
+    pub seconds: Option<Stopwatch<'a>>,
+}
+
+impl Row<'_> {
+    /// Nanoseconds per call, with the answer stored.
+    fn nanoseconds(&self, judged: &Judged) -> f64 {
+        match self.seconds.as_ref().and_then(|seconds| seconds(&judged.inputs)) {
+            Some(seconds) => 1e9 * seconds / judged.inputs.len() as f64,
+            None => nanoseconds(judged, |inputs| {
+                black_box((self.answer)(black_box(inputs)));
+            }),
+        }
+    }
 }
 
 /// The functions of the kit that are written.
 pub fn rows_of_kit(kit: &dyn Kit) -> Vec<Row<'_>> {
     let example = (Ray::new(Vec3::Z, Vec3::NEG_Z), Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y });
     type Function = fn(&dyn Kit, &[TriangleQuery]) -> Vec<Option<TriangleHit>>;
-    let asked: [(&str, Function); 4] = [
-        ("kit: triangle_cramer", |kit, queries| kit.triangle_cramer(queries)),
-        ("kit: triangle_gram", |kit, queries| kit.triangle_gram(queries)),
-        ("kit: triangle_choice", |kit, queries| kit.triangle_choice(queries)),
-        ("kit: watertight", |kit, queries| kit.watertight(queries)),
+    type Message = fn(Vec<TriangleQuery>) -> Request;
+    let asked: [(&str, Function, Message); 4] = [
+        ("kit: triangle_cramer", |kit, queries| kit.triangle_cramer(queries), Request::TriangleCramer),
+        ("kit: triangle_gram", |kit, queries| kit.triangle_gram(queries), Request::TriangleGram),
+        ("kit: triangle_choice", |kit, queries| kit.triangle_choice(queries), Request::TriangleChoice),
+        ("kit: watertight", |kit, queries| kit.watertight(queries), Request::Watertight),
     ];
+    let queries = |inputs: &[Input]| -> Vec<TriangleQuery> {
+        inputs.iter().map(|&(ray, triangle)| TriangleQuery { ray, triangle }).collect()
+    };
     let mut rows = Vec::new();
-    for (name, ask) in asked {
+    for (name, ask, message) in asked {
         let answer = move |inputs: &[Input]| {
-            let queries: Vec<TriangleQuery> =
-                inputs.iter().map(|&(ray, triangle)| TriangleQuery { ray, triangle }).collect();
-            ask(kit, &queries).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
+            ask(kit, &queries(inputs)).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
         };
+        let seconds = move |inputs: &[Input]| kit.seconds_of(message(queries(inputs)));
         if is_written(name, || answer(&[example])) {
-            rows.push(Row { name: name.into(), answer: Box::new(answer), method: None });
+            let (answer, seconds) = (Box::new(answer), Some(Box::new(seconds) as _));
+            rows.push(Row { name: name.into(), answer, method: None, seconds });
         }
     }
     rows
@@ -76,9 +97,7 @@ pub fn summary(rows: Vec<Row<'_>>) -> Vec<Summary> {
     let summaries = rows.into_iter().map(|row| {
         let wrong = judged.iter().map(|judged| compare(judged, &(row.answer)(&judged.inputs)).wrong);
         let summary = Summary {
-            nanoseconds: nanoseconds(&judged[0], |inputs| {
-                black_box((row.answer)(black_box(inputs)));
-            }),
+            nanoseconds: row.nanoseconds(&judged[0]),
             wrong_per_million: 1e4 * wrong.sum::<f64>() / judged.len() as f64,
             leaks_per_million: leak_table::per_million(&row, SEED, INPUTS_OF_SUMMARY as u64),
             name: row.name,
@@ -105,9 +124,7 @@ pub fn tables(rows: Vec<Row<'_>>, n_inputs: u64, seed: u64) -> Result<Vec<Table>
     let mut times = Vec::new();
     for row in &rows {
         cells.push(judged.iter().map(|judged| compare(judged, &(row.answer)(&judged.inputs))).collect());
-        times.push(nanoseconds(&judged[0], |inputs| {
-            black_box((row.answer)(black_box(inputs)));
-        }));
+        times.push(row.nanoseconds(&judged[0]));
         bar.inc(1);
     }
     bar.finish_and_clear();

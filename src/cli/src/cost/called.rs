@@ -1,7 +1,7 @@
 //! The effects and shapes of a scene, which decide which parameters are useful.
 
 use raykata::effects::{Effect, Effects};
-use raykata::scene::Scene;
+use raykata::scene::{Accelerator, Scene};
 use raykata::shape::Shape;
 
 /// A scene and its effects.
@@ -12,6 +12,8 @@ pub struct Called<'a> {
     pub primitives: u64,
     /// The number of samples that ladders reach at least.
     pub most_samples: u32,
+    /// Whether instances share a mesh.
+    pub shares_meshes: bool,
 }
 
 impl Called<'_> {
@@ -30,9 +32,29 @@ impl Called<'_> {
         self.shows(|shape, _| matches!(shape, Shape::Sphere(_)))
     }
 
+    /// Whether the structure is the scene graph itself.
+    pub fn searches_the_graph(&self) -> bool {
+        use Accelerator::{BoundingBoxes, BoundingSpheres, CachedBoundingBoxes};
+        matches!(self.scene.quality.accelerator, BoundingBoxes | BoundingSpheres | CachedBoundingBoxes)
+    }
+
+    /// How often the finest curved surface or subdivided mesh can be made half as fine; 0 without one.
+    pub fn tessellation(&self) -> u32 {
+        let mut halvings = 0;
+        self.shows(|shape, _| {
+            halvings = halvings.max(match shape {
+                Shape::Bezier { steps, .. } | Shape::Nurbs { steps, .. } => steps.ilog2(),
+                Shape::Mesh(index) => self.scene.meshes[*index].subdivisions,
+                _ => 0,
+            });
+            false
+        });
+        halvings
+    }
+
     /// Whether `is_so` holds for a shape that is shown; its second argument is whether the shape moves while
     /// the shutter is open.
-    fn shows(&self, is_so: impl Fn(&Shape, bool) -> bool) -> bool {
+    fn shows(&self, mut is_so: impl FnMut(&Shape, bool) -> bool) -> bool {
         let motion = self.effects.calls_for(Effect::Motion);
         self.scene.shown().iter().any(|shown| {
             let shape = self.scene.nodes[shown.node].shape.as_ref();
@@ -58,7 +80,13 @@ mod tests {
         let scene = parse(Path::new("test.toml"), &text).unwrap_or_else(|error| panic!("{error}"));
         for (motion, expected) in [(false, still), (true, moving)] {
             let effects = Effects { motion, ..Effects::default() };
-            let called = Called { scene: &scene, effects: &effects, primitives: 1, most_samples: 64 };
+            let called = Called {
+                scene: &scene,
+                effects: &effects,
+                primitives: 1,
+                most_samples: 64,
+                shares_meshes: false,
+            };
             assert_eq!((called.shows_triangles(), called.shows_spheres()), expected, "{shape}");
         }
     }

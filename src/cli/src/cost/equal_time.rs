@@ -3,7 +3,7 @@
 
 use super::ladder::Ladder;
 use super::measure::Bench;
-use super::measured::Reference;
+use super::measured::{Point, Reference};
 use super::plot::{Line, Plot, svg};
 use super::setting::Setting;
 use crate::columns::Columns;
@@ -26,15 +26,16 @@ struct Row {
     /// The factor of the size of the lights.
     size: f32,
     value: String,
-    samples: u32,
-    seconds: f64,
-    rays: u64,
-    error: f64,
+    point: Point,
 }
 
 impl Row {
+    fn samples(&self) -> u32 {
+        self.point.setting.quality.samples_per_pixel
+    }
+
     fn rays_per_second(&self) -> f64 {
-        self.rays as f64 / self.seconds
+        self.point.counts.rays() as f64 / self.point.seconds
     }
 }
 
@@ -44,6 +45,7 @@ pub fn run(
     bench: &Bench<'_>,
     scene: &Scene,
     ladders: &[Ladder],
+    own_notes: &[String],
     sizes: &[f32],
     out: &Path,
     reference: impl Fn(&Scene) -> Result<Option<Reference>>,
@@ -54,17 +56,14 @@ pub fn run(
         let Some(right) = reference(&sized)? else { return Ok(false) };
         for ladder in ladders {
             let Some(timed) = with_equal_times(bench, &sized, ladder)? else { return Ok(false) };
-            let measured = bench.measure(&sized, vec![timed], &right)?;
+            let measured = bench.measure(&sized, vec![timed], &right, own_notes)?;
             if bench.stopped() {
                 return Ok(false);
             }
             let levels = measured.series.iter().flat_map(|series| &series.levels);
             rows.extend(levels.map(|(value, index)| {
-                let point = &measured.points[*index];
-                let samples = point.setting.quality.samples_per_pixel;
                 let value = format!("{}, {value}", ladder.name);
-                let (seconds, rays) = (point.seconds, point.counts.rays());
-                Row { size, value, samples, seconds, rays, error: point.error() }
+                Row { size, value, point: measured.points[*index].clone() }
             }));
         }
     }
@@ -83,10 +82,10 @@ fn with_equal_times(bench: &Bench<'_>, scene: &Scene, ladder: &Ladder) -> Result
     for (_, setting) in &ladder.levels {
         let mut fastest = f64::INFINITY;
         for trial in 0..TRIALS {
-            let Some(frame) = bench.frame(&setting.apply(scene), bench.seed + trial, false)? else {
+            let Some((_, seconds)) = bench.timed(&setting.apply(scene), bench.seed + trial)? else {
                 return Ok(None);
             };
-            fastest = fastest.min(frame.render_seconds);
+            fastest = fastest.min(seconds);
         }
         times.push(fastest);
     }
@@ -135,7 +134,9 @@ fn with_lights_of(scene: &Scene, size: f32) -> Result<Scene> {
 
 fn print(scene: &Scene, sizes: &[f32], rows: &[Row]) {
     let (width, height) = (scene.film.width, scene.film.height);
-    println!("at equal time, {width} × {height} pixels; samples are per pixel, rays in millions per second");
+    println!(
+        "at equal processor time of one thread, {width} × {height} pixels; samples are per pixel,\nrays in millions per second"
+    );
     const COLUMNS: Columns = Columns("", &[-43, -1, 8, 9, 8, 10]);
     println!("{}", COLUMNS.row(&[&"", &"", &"samples", &"ms", &"rays", &"RMSE"]));
     for &size in sizes {
@@ -143,15 +144,23 @@ fn print(scene: &Scene, sizes: &[f32], rows: &[Row]) {
             println!("lights {size} times as large, of the same power");
         }
         let of_size = || rows.iter().filter(move |row| row.size == size);
-        let best = of_size().map(|row| row.error).fold(f64::INFINITY, f64::min);
+        let is_best = |row: &Row| {
+            of_size().all(|other| std::ptr::eq(other, row) || row.point.is_more_accurate(&other.point))
+        };
         for row in of_size() {
-            let mark = if row.error == best { "•" } else { "" };
-            let [ms, rays] = [1e3 * row.seconds, 1e-6 * row.rays_per_second()].map(|x| format!("{x:.1}"));
-            let (value, error) = (format!("  {}", row.value), format!("{:.5}", row.error));
-            println!("{}", COLUMNS.row(&[&value, &mark, &row.samples, &ms, &rays, &error]));
+            let mark = if is_best(row) { "•" } else { "" };
+            let [ms, rays] =
+                [1e3 * row.point.seconds, 1e-6 * row.rays_per_second()].map(|x| format!("{x:.1}"));
+            let (value, error) = (format!("  {}", row.value), format!("{:.5}", row.point.error()));
+            println!("{}", COLUMNS.row(&[&value, &mark, &row.samples(), &ms, &rays, &error]));
+        }
+        if !of_size().any(is_best) {
+            println!("  no value is the best with 95 % confidence: too noisy to rank");
         }
     }
-    println!("• the smallest error");
+    println!(
+        "• a smaller error than each other value, in rounds with the same random numbers, with 95 %\n  confidence"
+    );
 }
 
 fn table(rows: &[Row]) -> String {
@@ -161,10 +170,10 @@ fn table(rows: &[Row]) -> String {
         table += &csv_line(&[
             row.size.to_string(),
             row.value.clone(),
-            row.samples.to_string(),
-            row.seconds.to_string(),
-            row.rays.to_string(),
-            row.error.to_string(),
+            row.samples().to_string(),
+            row.point.seconds.to_string(),
+            row.point.counts.rays().to_string(),
+            row.point.error().to_string(),
         ]);
     }
     table
@@ -175,7 +184,8 @@ fn plot(rows: &[Row], sizes: &[f32]) -> String {
     let mut lines: Vec<Line> = Vec::new();
     for row in rows {
         let x = if sizes.len() > 1 { f64::from(row.size) } else { 1e-6 * row.rays_per_second() };
-        let point = [x, row.error, row.error, row.error];
+        let error = row.point.error();
+        let point = [x, error, error, error];
         match lines.iter_mut().find(|line| line.name == row.value) {
             Some(line) => line.points.push(point),
             None => lines.push(Line { name: row.value.clone(), points: vec![point] }),
@@ -187,10 +197,10 @@ fn plot(rows: &[Row], sizes: &[f32]) -> String {
     svg(&Plot {
         title: "error at equal time",
         x_axis: match sizes.len() {
-            0 | 1 => "million rays per second, logarithmic",
-            _ => "size of the lights, logarithmic",
+            0 | 1 => "million rays per second",
+            _ => "size of the lights",
         },
-        y_axis: "root mean square error in linear light, logarithmic",
+        y_axis: "root mean square error in linear light",
         lines,
         guides: Vec::new(),
         pareto_front: Vec::new(),

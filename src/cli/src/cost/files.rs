@@ -1,11 +1,12 @@
 //! The report as files for programs and slides: JSON, CSV and plots.
 
-use super::measured::{Series, Verdicts};
+use super::measured::{Point, Series, Verdicts};
 use super::parameter::Parameter;
 use super::plot::{Line, Plot, svg};
 use super::slope::theory;
 use super::{Report, Summary};
 use crate::html::csv_line;
+use crate::race::statistics::Median;
 use crate::report::write_file;
 use anyhow::Result;
 use std::path::Path;
@@ -22,56 +23,68 @@ pub fn write(out: &Path, report: &Report<'_>) -> Result<()> {
 
 /// All points as CSV, one per line.
 fn table(report: &Report<'_>) -> String {
-    const HEADS: [&str; 17] = [
-        "parameter",
-        "ladder",
-        "value",
-        "rmse",
-        "relative_mse",
-        "similarity",
-        "bias",
-        "bias_error",
-        "seconds",
-        "spread",
-        "rays",
-        "box_tests",
-        "primitive_tests",
-        "rays_judged",
-        "wrong_hits",
-        "leaks",
-        "unbeaten",
-    ];
-    let mut table = csv_line(&HEADS.map(str::to_owned));
+    let mut table = String::new();
     for series in &report.measured.series {
         for (value, index) in &series.levels {
-            let point = &report.measured.points[*index];
-            let pixels = f64::from(report.width) * f64::from(report.height);
-            let (bias, bias_error) = point.bias(report.reference_error, pixels);
-            let judged = |number: fn(&Verdicts) -> u64| {
-                point.hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
-            };
-            table += &csv_line(&[
-                series.parameter.name(),
-                series.name.clone(),
-                value.clone(),
-                point.error().to_string(),
-                point.errors.relative_mse.to_string(),
-                point.errors.similarity.to_string(),
-                bias.to_string(),
-                bias_error.to_string(),
-                point.seconds.to_string(),
-                point.spread.to_string(),
-                point.counts.rays().to_string(),
-                point.counts.box_tests.to_string(),
-                point.counts.primitive_tests.to_string(),
-                judged(|hits| hits.rays),
-                judged(|hits| hits.wrong),
-                judged(|hits| hits.leaks),
-                report.pareto_front.contains(index).to_string(),
-            ]);
+            let own = &report.measured.points[*index];
+            let rows = [(report.kit, own, &report.measured.points[series.base])];
+            let reference = own.reference.as_ref().map(|reference| ("reference", &**reference, own));
+            for (kit, point, base) in rows.into_iter().chain(reference) {
+                let is_own = kit == report.kit;
+                let marks = [&report.pareto_front, &report.unclear].map(|of| is_own && of.contains(index));
+                let cells = cells(report, point, base, marks);
+                let named = [
+                    ("parameter", series.parameter.name().to_owned()),
+                    ("ladder", series.name.clone()),
+                    ("value", value.clone()),
+                    ("kit", kit.to_owned()),
+                ];
+                let (heads, cells): (Vec<_>, Vec<_>) = named.into_iter().chain(cells).unzip();
+                if table.is_empty() {
+                    table = csv_line(&heads.into_iter().map(str::to_owned).collect::<Vec<_>>());
+                }
+                table += &csv_line(&cells);
+            }
         }
     }
     table
+}
+
+/// The numbers of a point, each with the head of its column. What was not measured is empty.
+fn cells(
+    report: &Report<'_>,
+    point: &Point,
+    base: &Point,
+    [on_front, too_noisy]: [bool; 2],
+) -> [(&'static str, String); 19] {
+    let pixels = f64::from(report.width) * f64::from(report.height);
+    let (bias, bias_error) = point.bias(report.reference_error, pixels);
+    let time = point.time_ratio(base);
+    let ratio = |of: fn(&Median) -> f64| time.as_ref().map_or(String::new(), |time| of(time).to_string());
+    let judged =
+        |of: fn(&Verdicts) -> u64| point.hits.as_ref().map_or(String::new(), |hits| of(hits).to_string());
+    let counts = &point.counts;
+    [
+        ("rmse", point.error().to_string()),
+        ("relative_mse", point.errors.relative_mse.to_string()),
+        ("similarity", point.errors.similarity.to_string()),
+        ("bias", bias.to_string()),
+        ("bias_error", bias_error.to_string()),
+        ("seconds", point.seconds.to_string()),
+        ("ratio", ratio(|time| time.value)),
+        ("ratio_low", ratio(|time| time.low)),
+        ("ratio_high", ratio(|time| time.high)),
+        ("rays", counts.rays().to_string()),
+        ("box_tests", counts.box_tests.to_string()),
+        ("primitive_tests", counts.primitive_tests.to_string()),
+        ("shadow_acne", counts.shadow_acne.to_string()),
+        ("light_leaks", counts.light_leaks.to_string()),
+        ("rays_judged", judged(|hits| hits.rays)),
+        ("wrong_hits", judged(|hits| hits.wrong)),
+        ("leaks", judged(|hits| hits.leaks)),
+        ("on_front", on_front.to_string()),
+        ("too_noisy", too_noisy.to_string()),
+    ]
 }
 
 /// The names and contents of the plots: all parameters, and the samplers if they were compared.
@@ -84,13 +97,12 @@ pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
     let samplers: Vec<&Series> = series.iter().filter(|one| one.parameter == Parameter::Sampler).collect();
     let mut plots = Vec::new();
     if !parameters.is_empty() {
-        let title = format!("{}: error over time, one parameter changed at a time", report.scene);
+        let title = format!("{}: error over time, one parameter at a time", report.scene);
         plots.push(("cost.svg", draw(report, &title, &parameters, Vec::new())));
     }
     if !samplers.is_empty() {
         let title = format!("{}: samplers, 1 to {} samples per pixel", report.scene, most(&samplers));
-        let guides =
-            [(-0.5, "slope −1/2"), (-0.75, "slope −3/4")].map(|(slope, name)| (slope, name.to_owned()));
+        let guides = [(-0.5, "−1/2"), (-0.75, "−3/4")].map(|(slope, name)| (slope, name.to_owned()));
         plots.push(("samplers.svg", draw(report, &title, &samplers, guides.to_vec())));
     }
     if !report.numerics.is_empty() {
@@ -99,8 +111,10 @@ pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
     plots
 }
 
+/// The largest number of samples.
 fn most(samplers: &[&Series]) -> String {
-    samplers.first().and_then(|series| series.levels.last()).map_or(String::new(), |(name, _)| name.clone())
+    let last = samplers.iter().filter_map(|series| series.levels.last()?.0.parse::<u32>().ok());
+    last.max().map_or(String::new(), |most| most.to_string())
 }
 
 fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, String)>) -> String {
@@ -108,7 +122,7 @@ fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, 
     let line = |one: &&Series| {
         let slope = report.slopes.iter().find(|(name, _)| *name == one.name);
         let name = match slope {
-            Some((name, slope)) => format!("{name} ({:.2} ± {:.2})", slope.mean, slope.half_interval),
+            Some((name, slope)) => format!("{name} ({:.2})", slope.mean),
             None => one.name.clone(),
         };
         let place = |(_, index): &(String, usize)| {
@@ -119,14 +133,26 @@ fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, 
         };
         Line { name, points: one.levels.iter().map(place).collect() }
     };
+    // The same levels by the reference, where it was measured beside the kit.
+    let by_reference = |one: &&Series| {
+        let place = |(_, index): &(String, usize)| {
+            let point = points[*index].reference.as_ref()?;
+            Some([point.seconds, point.error(), point.error(), point.error()])
+        };
+        let points: Option<Vec<_>> = one.levels.iter().map(place).collect();
+        points.map(|points| Line { name: format!("{}, the reference", one.name), points })
+    };
     let samplers_only = series.iter().all(|one| one.parameter == Parameter::Sampler);
-    let pareto_front =
-        report.pareto_front.iter().map(|&index| (points[index].seconds, points[index].error()));
+    // Of the front, the points that are drawn here.
+    let is_drawn =
+        |index: &&usize| series.iter().any(|one| one.levels.iter().any(|(_, level)| level == *index));
+    let pareto_front = report.pareto_front.iter().filter(is_drawn);
+    let pareto_front = pareto_front.map(|&index| (points[index].seconds, points[index].error()));
     svg(&Plot {
         title,
-        x_axis: "seconds per picture, logarithmic",
-        y_axis: "root mean square error in linear light, logarithmic",
-        lines: series.iter().map(line).collect(),
+        x_axis: "seconds of processor time per picture",
+        y_axis: "root mean square error in linear light",
+        lines: series.iter().map(line).chain(series.iter().filter_map(by_reference)).collect(),
         guides,
         pareto_front: if samplers_only { Vec::new() } else { pareto_front.collect() },
         // Below this line the error of the reference itself dominates.
@@ -148,8 +174,8 @@ fn numerics(all: &[Summary]) -> String {
     }
     svg(&Plot {
         title: "ray/triangle tests: from single to double precision",
-        x_axis: "nanoseconds per test, logarithmic",
-        y_axis: "wrong hits per million hard inputs, logarithmic",
+        x_axis: "nanoseconds per test",
+        y_axis: "wrong hits per million hard inputs",
         lines,
         guides: Vec::new(),
         pareto_front: Vec::new(),

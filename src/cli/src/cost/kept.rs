@@ -44,10 +44,10 @@ impl KeptPictures {
         Ok(KeptPictures { journal: Mutex::new(journal), scene: Mutex::default() })
     }
 
-    /// A name for a job: jobs that differ in anything have different names.
-    pub fn name(&self, job: &RenderJob) -> Result<String> {
+    /// A name for a job: jobs that differ in anything have different names, and so have those of the kit and of the reference.
+    pub fn name(&self, job: &RenderJob, is_reference: bool) -> Result<String> {
         let RenderJob { scene, view, seed, threads, count, reuse } = job;
-        let settings = (scene.film, &scene.quality, view, seed, threads, count, reuse);
+        let settings = (scene.film, &scene.quality, view, seed, threads, count, reuse, is_reference);
         let settings = serde_json::to_vec(&settings).context("the settings cannot be serialised")?;
         Ok(fingerprint([self.fingerprint_of(scene)?.as_bytes(), &settings]))
     }
@@ -111,6 +111,7 @@ mod tests {
             bytes_of_parts: 0,
             build_seconds: 0.25,
             render_seconds: 1.0 / 3.0,
+            processor_seconds: None,
             notes: vec!["x".into()],
         };
         let kept = KeptPictures::open(folder.path(), "a").unwrap();

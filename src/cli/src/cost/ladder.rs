@@ -2,12 +2,13 @@
 
 use super::called::Called;
 use super::parameter::Parameter;
-use super::setting::Setting;
+use super::setting::{Change, Setting};
 use crate::report::Thousands;
 use raykata::effects::Effect;
+use raykata::material::{Emitter, Fresnel, Light};
 use raykata::scene::load::set;
 use raykata::scene::{
-    Accelerator, NextEvent, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter,
+    Accelerator, Field, NextEvent, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter,
     TriangleMethod,
 };
 
@@ -37,17 +38,31 @@ pub fn least_depth(scene: &Scene) -> u32 {
 }
 
 impl Parameter {
-    /// The ladders of the parameter for this scene, or the reason why it changes nothing there.
+    /// The ladders of the parameter for this scene, or the reason why it changes nothing there. The scene names a structure,
+    /// not [`Accelerator::Auto`], which would choose another one for another split or leaf size. So the levels of a ladder
+    /// differ in this parameter alone.
     pub fn ladders(self, called: &Called<'_>) -> Result<Vec<Ladder>, String> {
-        let Called { scene, effects, primitives, most_samples } = called;
-        let quality = scene.quality;
+        let Called { scene, effects, primitives, most_samples, shares_meshes } = called;
+        let mut quality = scene.quality;
         let mirrors = effects.calls_for(Effect::Mirrors) || effects.calls_for(Effect::Transmission);
         let indirect = effects.calls_for(Effect::IndirectLight);
-        let hierarchy = quality.accelerator.is_hierarchy();
         let needs = |called_for: bool, why: &str| if called_for { Ok(()) } else { Err(why.to_owned()) };
+        let mut name = self.name().to_owned();
+        if matches!(self, Parameter::Split | Parameter::LeafSize) {
+            needs(
+                quality.accelerator.is_hierarchy() || quality.accelerator.is_wide(),
+                "the accelerator is not a hierarchy",
+            )?;
+            // A wide tree is built by stage 12, which has neither.
+            if quality.accelerator.is_wide() {
+                quality.accelerator = Accelerator::Bvh;
+                name += ", in a bvh";
+            }
+        }
         let ladder = |levels: Vec<(String, Quality)>| {
-            let levels = levels.into_iter().map(|(name, quality)| (name, Setting { quality, smooth: true }));
-            Ladder { parameter: self, name: self.name(), levels: levels.collect(), left_out: Vec::new() }
+            let setting = |quality| Setting { quality, ..Setting::of(scene) };
+            let levels = levels.into_iter().map(|(name, quality)| (name, setting(quality))).collect();
+            Ladder { parameter: self, name: name.clone(), levels, left_out: Vec::new() }
         };
         // A level per value of the setting, read as the command line reads it.
         let levels = |values: &[String]| {
@@ -59,36 +74,48 @@ impl Parameter {
             Ok::<_, String>(vec![ladder(values.iter().map(level).collect::<Result<_, String>>()?)])
         };
         let numbers = |values: Vec<u32>| levels(&values.iter().map(u32::to_string).collect::<Vec<_>>());
-        let ladders = match self {
-            Parameter::Samples => numbers(doubling(quality.samples_per_pixel, *most_samples))?,
+        // A level per change of the scene; the scene itself is one of them.
+        let changed = |changes: Vec<(String, Option<Change>)>| {
+            let level = |(name, change): (String, Option<Change>)| {
+                let changes = change.map(|change| (self, change)).into_iter().collect();
+                (name, Setting { changes, ..Setting::of(scene) })
+            };
+            Ok(vec![Ladder { levels: changes.into_iter().map(level).collect(), ..ladder(Vec::new()) }])
+        };
+        match self {
+            Parameter::Samples => numbers(doubling(quality.samples_per_pixel, *most_samples)),
             Parameter::Sampler => {
                 let of = |(name, sampler): (&str, Sampler)| {
                     let with = |samples_per_pixel: u32| {
                         (samples_per_pixel.to_string(), Quality { sampler, samples_per_pixel, ..quality })
                     };
-                    let counts = doubling(quality.samples_per_pixel, *most_samples);
+                    // Samples in the centre never spread, so one of them shows what more show.
+                    let counts = match sampler {
+                        Sampler::Center => vec![1],
+                        _ => doubling(quality.samples_per_pixel, *most_samples),
+                    };
                     Ladder { name: name.replace('_', " "), ..ladder(counts.into_iter().map(with).collect()) }
                 };
-                // Without samples in the centre, which never spread.
-                Sampler::NAMES.into_iter().filter(|(_, one)| *one != Sampler::Center).map(of).collect()
+                Ok(Sampler::NAMES.into_iter().map(of).collect())
             }
             Parameter::LightSamples => {
-                needs(effects.lights.iter().any(|light| light.area), "no light has an area")?;
-                numbers(doubling(quality.light_samples, 16))?
+                let is_area = |light: &Light| matches!(light.emitter, Emitter::Area { .. });
+                let is_off = quality.light_samples == 0 && scene.lights.iter().any(is_area);
+                needs(is_off || effects.lights.iter().any(|light| light.area), "no light has an area")?;
+                numbers([vec![0], doubling(quality.light_samples, 16)].concat())
             }
             Parameter::GlossySamples => {
                 needs(effects.calls_for(Effect::Glossy), "no rough surface reflects or transmits light")?;
                 needs(!indirect, "a path of indirect light continues with one ray per hit")?;
-                numbers(doubling(quality.glossy_samples, 16))?
+                numbers(doubling(quality.glossy_samples, 16))
             }
             Parameter::Depth => {
                 needs(mirrors || indirect, "no surface reflects or transmits light")?;
                 let mut depths = if indirect { vec![1, 2, 4, 8, 16] } else { vec![0, 1, 2, 3, 5] };
-                depths.push(least_depth(scene));
-                depths.push(quality.max_depth);
+                depths.extend([least_depth(scene), quality.max_depth]);
                 depths.sort_unstable();
                 depths.dedup();
-                numbers(depths)?
+                numbers(depths)
             }
             Parameter::NextEvent => {
                 needs(indirect, "the scene has no indirect light")?;
@@ -99,7 +126,7 @@ impl Parameter {
                 ];
                 let with =
                     |(name, next_event): (&str, _)| (name.to_owned(), Quality { next_event, ..quality });
-                vec![ladder(all.into_iter().map(with).collect())]
+                Ok(vec![ladder(all.into_iter().map(with).collect())])
             }
             Parameter::Clamp => {
                 needs(indirect, "the scene has no indirect light")?;
@@ -112,7 +139,30 @@ impl Parameter {
                     let name = if clamp == 0.0 { "none".to_owned() } else { clamp.to_string() };
                     (name, Quality { clamp, ..quality })
                 };
-                vec![ladder(limits.into_iter().map(with).collect())]
+                Ok(vec![ladder(limits.into_iter().map(with).collect())])
+            }
+            Parameter::IndirectLight => {
+                needs(indirect, "the scene has no indirect light")?;
+                let ambient = |light: f32| (format!("ambient {light}"), Some(Change::Ambient(light)));
+                let without = [0.0, 0.05, 0.2].map(ambient);
+                changed(without.into_iter().chain([("paths".to_owned(), None)]).collect())
+            }
+            Parameter::Fresnel => {
+                let own = |formula| Setting {
+                    changes: [(self, Change::Fresnel(formula))].into(),
+                    ..Setting::of(scene)
+                };
+                let is_own = |formula| own(formula).apply(scene).materials == scene.materials;
+                let has_one = !(is_own(Fresnel::None) && is_own(Fresnel::Exact));
+                needs(has_one && effects.calls_for(Effect::Transmission), "no surface transmits light")?;
+                let formulas =
+                    [("none", Fresnel::None), ("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
+                let level = |(name, formula): (&str, Fresnel)| {
+                    (name.to_owned(), (!is_own(formula)).then_some(Change::Fresnel(formula)))
+                };
+                let mixed = formulas.iter().all(|(_, formula)| !is_own(*formula));
+                let mixed = mixed.then(|| ("as in the scene".to_owned(), None));
+                changed(formulas.map(level).into_iter().chain(mixed).collect())
             }
             Parameter::MinContribution => {
                 needs(!indirect, "Russian roulette ends the paths of indirect light")?;
@@ -121,37 +171,52 @@ impl Parameter {
                 least.push(quality.min_contribution);
                 least.sort_by(|a: &f32, b| b.total_cmp(a));
                 least.dedup();
-                levels(&least.iter().map(f32::to_string).collect::<Vec<_>>())?
+                levels(&least.iter().map(f32::to_string).collect::<Vec<_>>())
             }
             Parameter::TextureFilter => {
                 needs(effects.calls_for(Effect::Textures), "no surface shows an image")?;
-                levels(&TextureFilter::NAMES.map(|(name, _)| name.to_owned()))?
+                levels(&TextureFilter::NAMES.map(|(name, _)| name.to_owned()))
             }
             Parameter::SmoothNormals => {
                 needs(effects.calls_for(Effect::SmoothNormals), "no mesh has smooth normals")?;
-                let levels = [("flat", false), ("smooth", true)]
-                    .map(|(name, smooth)| (name.to_owned(), Setting { quality, smooth }));
-                vec![Ladder { levels: levels.to_vec(), ..ladder(Vec::new()) }]
+                changed(vec![("flat".to_owned(), Some(Change::Flat)), ("smooth".to_owned(), None)])
+            }
+            Parameter::Tessellation => {
+                let halvings = called.tessellation();
+                needs(halvings > 0, "there is no curved surface of several steps and no subdivided mesh")?;
+                let level = |k: u32| match k {
+                    0 => ("the scene's steps".to_owned(), None),
+                    _ => (format!("1/{} of the steps", 1 << k), Some(Change::Coarser(k))),
+                };
+                changed((0..=halvings.min(4)).rev().map(level).collect())
+            }
+            Parameter::RayOffset => {
+                needs(mirrors || indirect || effects.calls_for(Effect::Shadows), "no ray leaves a surface")?;
+                let mut offsets: Vec<f32> = (2..=7).map(|power| 10f32.powi(-power)).collect();
+                offsets.extend(Some(quality.ray_offset).filter(|own| *own > 0.0));
+                offsets.sort_by(|a, b| b.total_cmp(a));
+                offsets.dedup();
+                let with = |ray_offset| (format!("{ray_offset:e}"), Quality { ray_offset, ..quality });
+                let bound = ("error bound".to_owned(), Quality { ray_offset: 0.0, ..quality });
+                Ok(vec![ladder(offsets.into_iter().map(with).chain([bound]).collect())])
             }
             Parameter::Intersection => {
                 needs(called.shows_triangles(), "there are no triangles")?;
+                needs(quality.precision == Precision::Single, DOUBLE)?;
                 // With the watertight test last: it is the default, and it takes longest.
-                levels(&TriangleMethod::NAMES.map(|(name, _)| name.to_owned()))?
+                levels(&TriangleMethod::NAMES.map(|(name, _)| name.to_owned()))
             }
             Parameter::SphereTest => {
                 needs(called.shows_spheres(), "there are no spheres")?;
-                needs(
-                    quality.precision == Precision::Single,
-                    "the precision is double, which has one sphere test",
-                )?;
-                levels(&SphereMethod::NAMES.map(|(name, _)| name.to_owned()))?
+                needs(quality.precision == Precision::Single, DOUBLE)?;
+                levels(&SphereMethod::NAMES.map(|(name, _)| name.to_owned()))
             }
             Parameter::Precision => {
                 needs(
                     called.shows_triangles() || called.shows_spheres(),
                     "there are no triangles and no spheres, and other shapes have one test each",
                 )?;
-                levels(&Precision::NAMES.map(|(name, _)| name.to_owned()))?
+                levels(&Precision::NAMES.map(|(name, _)| name.to_owned()))
             }
             Parameter::Accelerator => {
                 let most = |one: Accelerator| match one {
@@ -165,9 +230,6 @@ impl Parameter {
                 let name = |one: Accelerator| one.name().replace('_', " ");
                 let (offered, dear): (Vec<_>, Vec<_>) =
                     Accelerator::ALL.into_iter().partition(|&one| *primitives <= most(one));
-                // The structure that the kit chooses is a value of its own, because it may be the scene's.
-                let auto = (quality.accelerator == Accelerator::Auto).then_some(Accelerator::Auto);
-                let offered = auto.into_iter().chain(offered);
                 let with = |accelerator| (name(accelerator), Quality { accelerator, ..quality });
                 let why = |one: Accelerator| {
                     let (name, most) = (name(one), Thousands(most(one)));
@@ -177,26 +239,61 @@ impl Parameter {
                     )
                 };
                 let left_out = dear.into_iter().map(why).collect();
-                vec![Ladder { left_out, ..ladder(offered.map(with).collect()) }]
+                Ok(vec![Ladder { left_out, ..ladder(offered.into_iter().map(with).collect()) }])
             }
-            Parameter::Split => {
-                needs(hierarchy, "the accelerator is not a hierarchy")?;
-                levels(&Split::NAMES.map(|(name, _)| name.to_owned()))?
-            }
-            Parameter::LeafSize => {
-                needs(hierarchy, "the accelerator is not a hierarchy")?;
-                numbers(doubling(quality.leaf_size, 16))?
-            }
+            Parameter::Split => levels(&Split::NAMES.map(|(name, _)| name.to_owned())),
+            Parameter::LeafSize => numbers(doubling(quality.leaf_size, 16)),
             Parameter::GridResolution => {
                 needs(
                     quality.accelerator == Accelerator::Grid,
                     "the accelerator is not a grid (`--accelerator grid` selects one)",
                 )?;
-                numbers(vec![8, 16, 32, 64, 128])?
+                let mut cells = vec![0, 8, 16, 32, 64, 128, quality.grid_resolution];
+                cells.sort_unstable();
+                cells.dedup();
+                let name = |n: u32| if n == 0 { "formula".to_owned() } else { n.to_string() };
+                let with = |grid_resolution| (name(grid_resolution), Quality { grid_resolution, ..quality });
+                Ok(vec![ladder(cells.into_iter().map(with).collect())])
             }
-        };
-        Ok(ladders)
+            Parameter::KdHeuristics => {
+                needs(
+                    quality.accelerator == Accelerator::KdTree,
+                    "the accelerator is not a kd-tree (`--accelerator kd_tree` selects one)",
+                )?;
+                Ok(vec![ladder(switched(&quality, self.key()))])
+            }
+            Parameter::Savings => {
+                needs(
+                    called.searches_the_graph(),
+                    "the scene graph is not searched (`--accelerator bounding_boxes` searches it)",
+                )?;
+                Ok(vec![ladder(switched(&quality, self.key()))])
+            }
+            Parameter::Copies => {
+                needs(*shares_meshes, "no mesh has several instances")?;
+                let with = |(name, copies): (&str, bool)| (name.to_owned(), Quality { copies, ..quality });
+                Ok(vec![ladder([("instances", false), ("copies", true)].map(with).to_vec())])
+            }
+        }
     }
+}
+
+/// Why a parameter of single precision is not offered.
+const DOUBLE: &str = "the precision is double, which has one test per shape";
+
+/// A level with all switches as they are, and one per switch in which it is turned.
+fn switched(own: &Quality, key: &str) -> Vec<(String, Quality)> {
+    let mut levels = vec![("as in the scene".to_owned(), *own)];
+    for index in 0.. {
+        let mut quality = *own;
+        let Some(Field::Switches(switches)) = quality.field(key) else { break };
+        let Some((name, is_on)) = switches.switches().into_iter().nth(index) else { break };
+        *is_on = !*is_on;
+        let with = if *is_on { "with" } else { "without" };
+        let name = format!("{with} {}", name.replace('_', " "));
+        levels.push((name, quality));
+    }
+    levels
 }
 
 /// The numbers 1, 2, 4 … up to `most`, or up to the scene's own value if that is larger, with the scene's own value.
@@ -212,7 +309,13 @@ fn doubling(own: u32, most: u32) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kits::{Need, Source, Which, root};
+    use crate::report::load_scene;
     use raykata::effects::Effects;
+    use raykata::kit::Kit;
+    use raykata::scene::load::Limits;
+    use std::collections::HashMap;
+    use std::sync::Arc;
 
     #[test]
     fn the_scenes_own_value_is_a_level() {
@@ -226,14 +329,102 @@ mod tests {
     fn a_parameter_that_buys_nothing_says_why() {
         let scene = crate::report::scene_of_kit("stage1");
         let effects = Effects::default();
-        let called = Called { scene: &scene, effects: &effects, primitives: 1, most_samples: 64 };
         use Parameter::*;
-        for parameter in [Samples, Sampler, Precision, Accelerator, Split] {
-            assert!(parameter.ladders(&called).is_ok(), "{parameter:?}");
+        for parameter in [Samples, Sampler, Precision, Accelerator] {
+            assert!(parameter.ladders(&called(&scene, &effects)).is_ok(), "{parameter:?}");
         }
-        for parameter in [LightSamples, GlossySamples, Depth, Intersection, GridResolution, NextEvent, Clamp]
-        {
-            assert!(parameter.ladders(&called).is_err(), "{parameter:?}");
+        for parameter in [
+            LightSamples,
+            GlossySamples,
+            Depth,
+            Intersection,
+            GridResolution,
+            NextEvent,
+            Clamp,
+            RayOffset,
+            Copies,
+        ] {
+            assert!(parameter.ladders(&called(&scene, &effects)).is_err(), "{parameter:?}");
         }
+    }
+
+    fn called<'a>(scene: &'a Scene, effects: &'a Effects) -> Called<'a> {
+        Called { scene, effects, primitives: 1, most_samples: 64, shares_meshes: effects.indirect_light }
+    }
+
+    /// The structure by which the reference renders with each setting that decides it.
+    struct Plans {
+        kit: Arc<dyn Kit + Send + Sync>,
+        known: HashMap<(&'static str, Split, u32), Accelerator>,
+    }
+
+    impl Plans {
+        fn accelerator(&mut self, quality: &Quality) -> Accelerator {
+            let Quality { accelerator, split, leaf_size, .. } = *quality;
+            *self.known.entry((accelerator.name(), split, leaf_size)).or_insert_with(|| {
+                let mut scene = crate::report::scene_of_kit("stage2");
+                (scene.film.width, scene.film.height) = (1, 1);
+                scene.quality = Quality { accelerator, split, leaf_size, ..scene.quality };
+                let frame = crate::report::render(&*self.kit, &crate::report::job(scene)).expect("renders");
+                frame.accelerator.expect("the reference has a structure")
+            })
+        }
+    }
+
+    /// The levels of each ladder of each scene, in the scene's own structure and in those that have ladders of their own, differ
+    /// in the plan in the parameter of the ladder and in nothing else.
+    #[test]
+    fn levels_of_a_ladder_differ_in_one_parameter_of_the_plan() {
+        let root = root().expect("the kit");
+        let source = Source::prepare(&root, Which::Solutions, Need::Frames).expect("the solutions");
+        let mut plans = Plans { kit: source.fresh(), known: HashMap::new() };
+        let mut seen = std::collections::BTreeSet::new();
+        for file in std::fs::read_dir(root.join("scenes")).expect("scenes").flatten() {
+            let path = file.path();
+            if path.extension().is_none_or(|extension| extension != "toml") {
+                continue;
+            }
+            let scene = load_scene(&path, Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+            let own = plans.accelerator(&scene.quality);
+            // Some ladders are for scenes with indirect light and some for those without.
+            for (accelerator, indirect_light) in [
+                (own, false),
+                (own, true),
+                (Accelerator::Grid, false),
+                (Accelerator::KdTree, false),
+                (Accelerator::BoundingBoxes, false),
+            ] {
+                let mut scene = scene.clone();
+                scene.quality.accelerator = accelerator;
+                let effects = Effects { indirect_light, ..Effects::everything(&scene) };
+                for (_, parameter) in Parameter::NAMES {
+                    let Ok(ladders) = parameter.ladders(&called(&scene, &effects)) else { continue };
+                    seen.insert(parameter);
+                    // Each sampler has a ladder of samples.
+                    let key =
+                        if parameter == Parameter::Sampler { "samples_per_pixel" } else { parameter.key() };
+                    for ladder in ladders {
+                        let plan = |(name, setting): &(String, Setting)| {
+                            let mut setting = setting.clone();
+                            let used = plans.accelerator(&setting.quality);
+                            // Only the builder of stage 3 has splits and leaf sizes.
+                            let has_both = used.is_hierarchy() && used != Accelerator::Auto;
+                            assert!(has_both || !["split", "leaf_size"].contains(&key), "{}", ladder.name);
+                            setting.quality.accelerator = used;
+                            (name.clone(), setting)
+                        };
+                        let levels: Vec<_> = ladder.levels.iter().map(plan).collect();
+                        for (i, (one, plan)) in levels.iter().enumerate() {
+                            for (other, second) in &levels[i + 1..] {
+                                let place = format!("{}: {} {one} and {other}", path.display(), ladder.name);
+                                assert_eq!(plan.differences(second), [key], "{place}");
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let never: Vec<_> = Parameter::NAMES.iter().filter(|(_, one)| !seen.contains(one)).collect();
+        assert!(never.is_empty(), "no scene has a ladder of {never:?}");
     }
 }

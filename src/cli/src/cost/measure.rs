@@ -5,12 +5,14 @@ use super::kept::KeptPictures;
 use super::ladder::Ladder;
 use super::measured::{Measured, Point, Reference, Series};
 use super::setting::Setting;
-use crate::report::{FrameBar, bar_of_steps, job, quartiles};
+use crate::race::statistics::Median;
+use crate::report::{FrameBar, bar_of_steps, job};
 use anyhow::Result;
 use raykata::frame::Watch;
 use raykata::kit::{Kit, RenderJob, Rendering, kit_error};
 use raykata::scene::Scene;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::cmp::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 /// The longest time for a small picture. One that takes longer is left out, because in all rounds together it
@@ -19,8 +21,11 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The kit that is measured, and how.
+#[derive(Clone, Copy)]
 pub struct Bench<'a> {
     pub kit: &'a dyn Kit,
+    /// The reference, if it is measured beside the kit.
+    pub reference: Option<&'a dyn Kit>,
     pub rounds: u32,
     pub threads: usize,
     /// The seed of the first round; each round has another one.
@@ -52,13 +57,29 @@ impl Watch for Patience<'_> {
     }
 
     fn cancelled(&self) -> bool {
-        self.stop.load(Ordering::Relaxed) || self.until.is_some_and(|until| Instant::now() > until)
+        self.stop.load(Relaxed) || self.until.is_some_and(|until| Instant::now() > until)
     }
 }
 
 impl Bench<'_> {
     pub fn stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
+        self.stop.load(Relaxed)
+    }
+
+    /// The same with the reference as the kit, which is always the source of converged pictures.
+    pub fn of_reference(&self) -> Bench<'_> {
+        Bench { kit: self.reference.unwrap_or(self.kit), ..*self }
+    }
+
+    /// Renders a picture on one thread without a time limit, and returns its processor time, or the elapsed time where the
+    /// operating system does not say that. `None` if the program is being stopped.
+    pub fn timed(&self, scene: &Scene, seed: u64) -> Result<Option<(Rendering, f64)>> {
+        let job = RenderJob { threads: 1, ..self.job(scene, seed, false) };
+        let frame = self.render(&job, None, None)?;
+        Ok(frame.map(|frame| {
+            let seconds = frame.processor_seconds.unwrap_or(frame.render_seconds);
+            (frame, seconds)
+        }))
     }
 
     /// Renders a picture without a time limit; `None` if the program is being stopped.
@@ -78,7 +99,11 @@ impl Bench<'_> {
         bar: Option<&FrameBar>,
     ) -> Result<Option<Rendering>> {
         let name = match self.kept {
-            Some(kept) => Some((kept, kept.name(job)?)),
+            Some(kept) => {
+                let is_reference =
+                    self.reference.is_some_and(|reference| std::ptr::addr_eq(reference, self.kit));
+                Some((kept, kept.name(job, is_reference)?))
+            }
             None => None,
         };
         if let Some(known) = name.as_ref().and_then(|(kept, name)| kept.take(name)) {
@@ -91,8 +116,8 @@ impl Bench<'_> {
         Ok(frame)
     }
 
-    /// Measures one setting: errors, one time, and counts if `count` is set, which takes longer. `None` if it
-    /// takes too long.
+    /// Measures one setting: errors, elapsed time, and counts if `count` is set, which takes longer. `None` if it
+    /// takes too long. The reference is measured beside it if there is one and counts are wanted.
     pub fn point(
         &self,
         scene: &Scene,
@@ -106,6 +131,14 @@ impl Bench<'_> {
             return Ok(None);
         };
         let errors = errors(&frame.film, &right.film)?;
+        let reference = match self.reference {
+            Some(reference) if count => {
+                let alone = Bench { kit: reference, ..*self };
+                // Without a count the reference of the reference is not measured; its counts are not shown.
+                alone.point(scene, setting, right, false)?.map(Box::new)
+            }
+            _ => None,
+        };
         Ok(Some(Point {
             setting: setting.clone(),
             rmse: vec![errors.rmse],
@@ -114,20 +147,29 @@ impl Bench<'_> {
             counts: frame.counts,
             hits: None,
             seconds: frame.render_seconds,
-            build_seconds: frame.build_seconds,
-            spread: 0.0,
-            film: frame.film,
             times: Vec::new(),
+            build_seconds: frame.build_seconds,
+            reference,
+            film: frame.film,
+            accelerator: frame.accelerator,
             notes: frame.notes,
         }))
     }
 
     /// Measures all ladders: each setting once with counts, then all in turn, with other random numbers in
-    /// each round.
-    pub fn measure(&self, scene: &Scene, ladders: Vec<Ladder>, right: &Reference) -> Result<Measured> {
+    /// each round. `own_notes` says what the picture of the scene's own setting lacks. A level that lacks more is left out, because
+    /// it would compare something else under its name.
+    pub fn measure(
+        &self,
+        scene: &Scene,
+        ladders: Vec<Ladder>,
+        right: &Reference,
+        own_notes: &[String],
+    ) -> Result<Measured> {
         let n_levels: usize = ladders.iter().map(|ladder| ladder.levels.len()).sum();
         let bar = bar_of_steps(n_levels * (1 + self.rounds as usize));
-        let mut measured = Measured::default();
+        let mut measured =
+            Measured { processor_time: true, lacking: own_notes.to_vec(), ..Measured::default() };
         for ladder in ladders {
             bar.set_message(format!("{}: counting", ladder.name));
             let mut levels = Vec::new();
@@ -139,15 +181,13 @@ impl Bench<'_> {
                 };
                 match (known, point) {
                     (Some(known), _) => levels.push((name, known)),
-                    (None, Some(point)) => {
-                        for note in &point.notes {
-                            if !measured.lacking.contains(note) {
-                                measured.lacking.push(note.clone());
-                            }
+                    (None, Some(point)) => match missing(&point, own_notes) {
+                        Some(why) => measured.left_out.push(format!("{} {name}: {why}", ladder.name)),
+                        None => {
+                            levels.push((name, measured.points.len()));
+                            measured.points.push(point);
                         }
-                        levels.push((name, measured.points.len()));
-                        measured.points.push(point);
-                    }
+                    },
                     (None, None) if self.stopped() => {}
                     (None, None) => measured.left_out.push(format!(
                         "{} {name}: a small picture takes longer than {} s",
@@ -158,21 +198,20 @@ impl Bench<'_> {
                 bar.inc(1);
             }
             measured.left_out.extend(ladder.left_out);
-            measured.series.push(Series { parameter: ladder.parameter, name: ladder.name, levels });
+            let own = Setting::of(scene);
+            let n_differences = |index: &usize| measured.points[*index].setting.differences(&own).len();
+            let base = levels.iter().map(|(_, index)| *index).min_by_key(n_differences).unwrap_or_default();
+            measured.series.push(Series { parameter: ladder.parameter, name: ladder.name, levels, base });
         }
         bar.set_length((n_levels + measured.points.len() * self.rounds as usize) as u64);
         for round in 0..self.rounds {
             bar.set_message(format!("times, round {} of {}", round + 1, self.rounds));
             for point in &mut measured.points {
-                let seed = self.seed + u64::from(round);
-                // A frame is `None` only if the program is being stopped; then this round is incomplete and
-                // not counted.
-                let Some(frame) = self.frame(&point.setting.apply(scene), seed, false)? else { break };
-                point.times.push(frame.render_seconds);
-                if round > 0 {
-                    let errors = errors(&frame.film, &right.film)?;
-                    point.rmse.push(errors.rmse);
-                    point.biases.push((errors.bias, errors.bias_error));
+                // A frame is missing only if the program is being stopped; then this round is incomplete and not counted.
+                let Some(of_processor) = self.round(scene, round, point, right)? else { break };
+                measured.processor_time &= of_processor;
+                if let (Some(kit), Some(reference)) = (self.reference, &mut point.reference) {
+                    Bench { kit, ..*self }.round(scene, round, reference, right)?;
                 }
                 bar.inc(1);
             }
@@ -183,58 +222,133 @@ impl Bench<'_> {
         }
         bar.finish_and_clear();
         for point in &mut measured.points {
-            // The times of an incomplete round are used for the points that have one.
-            if !point.times.is_empty() {
-                let [low, median, high] = quartiles(std::mem::take(&mut point.times));
-                (point.seconds, point.spread) = (median, (high - low) / 2.0);
-            }
-            point.rmse.truncate(measured.rounds.max(1) as usize);
-            point.biases.truncate(measured.rounds.max(1) as usize);
+            point.close(measured.rounds);
         }
         Ok(measured)
     }
+
+    /// Measures a point in a round; `None` if the program is being stopped, else whether the time is processor time.
+    fn round(&self, scene: &Scene, round: u32, point: &mut Point, right: &Reference) -> Result<Option<bool>> {
+        let seed = self.seed + u64::from(round);
+        let Some((frame, seconds)) = self.timed(&point.setting.apply(scene), seed)? else { return Ok(None) };
+        point.times.push(seconds);
+        if round > 0 {
+            let errors = errors(&frame.film, &right.film)?;
+            point.rmse.push(errors.rmse);
+            point.biases.push((errors.bias, errors.bias_error));
+        }
+        Ok(Some(frame.processor_seconds.is_some()))
+    }
 }
 
-/// The factor above which two errors count as equal, because they differ by rounding only.
-const DIFFERENT: f64 = 0.999;
+/// Why a picture is not what its level says: what it lacks beside the scene's own picture, or another structure.
+fn missing(point: &Point, own_notes: &[String]) -> Option<String> {
+    let unwritten = |note: &&String| note.contains("not written") || note.contains("not finished");
+    let more: Vec<&str> = point
+        .notes
+        .iter()
+        .filter(unwritten)
+        .filter(|note| !own_notes.contains(note))
+        .map(String::as_str)
+        .collect();
+    let asked = point.setting.quality.accelerator;
+    match point.accelerator {
+        _ if !more.is_empty() => Some(more.join("; ")),
+        Some(used) if used != asked => Some(format!("the renderer uses {} instead", used.name())),
+        _ => None,
+    }
+}
 
-/// The Pareto front, from the fastest to the most accurate point: no other point is both faster and more
-/// accurate. Settings that let rays through closed surfaces are left out, because the error of a picture
-/// hardly shows a leak.
-pub fn pareto_front(points: &[Point]) -> Vec<usize> {
+/// An interval around 1 that ends within a tenth of it counts as equal where points are ranked: such a difference changes
+/// nobody's choice, and without this bound two equally fast values could never be told to be equal.
+const SAME: f64 = 1.1;
+
+/// Errors that differ by less come from rounding only, and count as equal.
+const ROUNDING: f64 = 1.001;
+
+/// How a value compares with others in time and error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rank {
+    /// No other value is both as fast and as accurate, and better in one of them: it is on the Pareto front.
+    Front,
+    /// Another value is, with 95 % confidence for each comparison.
+    Beaten,
+    /// The intervals do not say.
+    Unclear,
+}
+
+/// The rank of each point. Settings that let more rays through closed surfaces than the tightest are beaten, because the error
+/// of a picture hardly shows a leak, and so are fixed ray offsets.
+pub fn ranks(points: &[Point]) -> Vec<Rank> {
     let leaks = |point: &Point| point.hits.map(|hits| hits.leaks);
     let fewest = points.iter().filter_map(leaks).min();
-    let is_tight = |index: &usize| leaks(&points[*index]).is_none_or(|leaks| Some(leaks) == fewest);
-    let mut order: Vec<usize> = (0..points.len()).filter(is_tight).collect();
-    order.sort_by(|&a, &b| {
-        let (a, b) = (&points[a], &points[b]);
-        a.seconds.total_cmp(&b.seconds).then(a.error().total_cmp(&b.error()))
-    });
-    let mut least = f64::INFINITY;
-    order.retain(|&index| {
-        let error = points[index].error();
-        let better = error < DIFFERENT * least;
-        least = least.min(error);
-        better
-    });
-    order
+    // A fixed ray offset is safe at the size of one scene at most.
+    let is_fixed = |point: &Point| point.setting.quality.ray_offset > 0.0;
+    let is_tight = |point: &Point| !is_fixed(point) && leaks(point).is_none_or(|leaks| Some(leaks) == fewest);
+    let rank = |point: &Point| {
+        if !is_tight(point) {
+            return Rank::Beaten;
+        }
+        let others = || points.iter().filter(|other| is_tight(other) && other.setting != point.setting);
+        let beats: Vec<Option<bool>> = others().map(|other| beats(other, point)).collect();
+        if beats.contains(&Some(true)) {
+            Rank::Beaten
+        } else if beats.contains(&None) {
+            Rank::Unclear
+        } else {
+            Rank::Front
+        }
+    };
+    points.iter().map(rank).collect()
+}
+
+/// Whether `one` is at least as fast and as accurate as `other`, and better in one of them; `None` if it may be.
+fn beats(one: &Point, other: &Point) -> Option<bool> {
+    // Less, equal or more, if the interval says so.
+    let order = |ratio: Option<Median>| match ratio? {
+        ratio if ratio.low > 1.0 / ROUNDING && ratio.high < ROUNDING => Some(Ordering::Equal),
+        ratio if ratio.high < 1.0 => Some(Ordering::Less),
+        ratio if ratio.low > 1.0 => Some(Ordering::Greater),
+        ratio if ratio.low > 1.0 / SAME && ratio.high < SAME => Some(Ordering::Equal),
+        _ => None,
+    };
+    match (order(one.time_ratio(other)), order(one.error_ratio(other))) {
+        (Some(Ordering::Greater), _) | (_, Some(Ordering::Greater)) => Some(false),
+        (None, _) | (_, None) => None,
+        (time, error) => Some(time == Some(Ordering::Less) || error == Some(Ordering::Less)),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use raykata::scene::Quality;
 
     #[test]
-    fn the_front_holds_what_nothing_beats_and_nothing_that_leaks() {
+    fn the_front_holds_what_nothing_beats_and_nothing_that_leaks_more_than_the_least() {
         let scene = crate::report::scene_of_kit("stage1");
-        let point = |error, seconds, leaks| Point::made_up(Setting::of(&scene), error, seconds, leaks);
-        let points = [
+        let mut samples = 0;
+        let mut point = |error, seconds, leaks| {
+            samples += 1;
+            let quality = Quality { samples_per_pixel: samples, ..scene.quality };
+            Point::made_up(Setting { quality, ..Setting::of(&scene) }, error, seconds, leaks)
+        };
+        let mut points = vec![
             point(0.1, 1.0, 0),
             point(0.05, 0.5, 7),    // leaks
-            point(0.09999, 1.5, 0), // hardly more accurate
+            point(0.09999, 1.5, 0), // slower, and more accurate by rounding only
             point(0.02, 4.0, 0),
             point(0.03, 5.0, 0), // slower and less accurate
         ];
-        assert_eq!(pareto_front(&points), [0, 3]);
+        use Rank::{Beaten, Front, Unclear};
+        assert_eq!(ranks(&points), [Front, Beaten, Beaten, Front, Beaten]);
+        // One noisy point may be faster than all others.
+        points[4].times = vec![0.1, 30.0, 0.1, 30.0, 0.1, 30.0];
+        assert_eq!(ranks(&points)[4], Unclear);
+        // Too few rounds have no interval, and so no rank.
+        for point in &mut points {
+            point.close(1);
+        }
+        assert_eq!(ranks(&points), [Unclear, Beaten, Unclear, Unclear, Unclear]);
     }
 }

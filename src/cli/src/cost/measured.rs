@@ -3,9 +3,14 @@
 use super::error::Errors;
 use super::parameter::Parameter;
 use super::setting::Setting;
+#[cfg(test)]
+use crate::race::statistics::FEWEST;
+use crate::race::statistics::{Median, paired_ratio};
+use crate::report::quartiles;
 use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::message;
+use raykata::scene::Accelerator;
 use serde::{Deserialize, Serialize};
 
 /// The measurements of one setting.
@@ -22,25 +27,61 @@ pub struct Point {
     pub counts: Counts,
     /// The oracle's verdicts on the hits, for parameters that decide only how they are found.
     pub hits: Option<Verdicts>,
-    /// Seconds to render the pixels, the median over all rounds.
+    /// Seconds for the pixels: elapsed, on all threads, until the rounds have measured the processor time of one thread; then
+    /// its median over them.
     pub seconds: f64,
+    /// The processor time of each round, in seconds.
+    pub times: Vec<f64>,
     /// Seconds to build the acceleration structure.
     pub build_seconds: f64,
-    /// Half the distance between the quartiles of the seconds for the pixels.
-    pub spread: f64,
+    /// The same setting by the reference, in the same rounds, if another kit is measured beside it.
+    pub reference: Option<Box<Point>>,
     /// The picture of the first round.
     #[serde(skip)]
     pub film: Film,
+    /// The structure that the renderer used.
     #[serde(skip)]
-    pub(super) times: Vec<f64>,
+    pub accelerator: Option<Accelerator>,
     #[serde(skip)]
-    pub(super) notes: Vec<String>,
+    pub notes: Vec<String>,
 }
 
 impl Point {
     /// The mean error over all rounds.
     pub fn error(&self) -> f64 {
         self.rmse.iter().sum::<f64>() / self.rmse.len().max(1) as f64
+    }
+
+    /// The processor time as a multiple of that of `base`, paired by rounds. `None` for fewer rounds than an interval needs.
+    pub fn time_ratio(&self, base: &Point) -> Option<Median> {
+        paired_ratio(&self.times, &base.times)
+    }
+
+    /// The error as a multiple of that of `base`, in the same way.
+    pub fn error_ratio(&self, base: &Point) -> Option<Median> {
+        paired_ratio(&self.rmse, &base.rmse)
+    }
+
+    /// Whether the point takes less processor time than `base`, with 95 % confidence.
+    pub fn is_faster(&self, base: &Point) -> bool {
+        self.time_ratio(base).is_some_and(|ratio| ratio.high < 1.0)
+    }
+
+    /// Whether its error is smaller than that of `base`, with 95 % confidence.
+    pub fn is_more_accurate(&self, base: &Point) -> bool {
+        self.error_ratio(base).is_some_and(|ratio| ratio.high < 1.0)
+    }
+
+    /// Takes the median of the times, after this many complete rounds; what an incomplete one has measured is not paired.
+    pub fn close(&mut self, rounds: u32) {
+        let complete = rounds.max(1) as usize;
+        self.times.truncate(complete);
+        self.rmse.truncate(complete);
+        self.biases.truncate(complete);
+        if !self.times.is_empty() {
+            self.seconds = quartiles(self.times.clone())[1];
+        }
+        self.reference.iter_mut().for_each(|reference| reference.close(rounds));
     }
 
     /// The mean bias over all rounds, and its standard error. `of_reference` is the error of the reference per channel of a
@@ -58,15 +99,16 @@ impl Point {
         Point {
             setting,
             errors: Errors { rmse: error, similarity: 1.0, ..Errors::default() },
-            rmse: vec![error],
-            biases: vec![(0.0, 0.0)],
+            rmse: vec![error; FEWEST],
+            biases: vec![(0.0, 0.0); FEWEST],
             counts: Counts::default(),
             hits: Some(Verdicts { rays: 1000, wrong: leaks, leaks }),
             seconds,
+            times: vec![seconds; FEWEST],
             build_seconds: 0.0,
-            spread: 0.0,
+            reference: None,
             film: Film { width: 0, height: 0, pixels: Vec::new() },
-            times: Vec::new(),
+            accelerator: None,
             notes: Vec::new(),
         }
     }
@@ -79,6 +121,8 @@ pub struct Series {
     pub name: String,
     /// The name of each value, and the index of its point.
     pub levels: Vec<(String, usize)>,
+    /// The index of the point that its times are compared with: the level nearest to the scene's own setting.
+    pub base: usize,
 }
 
 /// All measurements.
@@ -92,6 +136,8 @@ pub struct Measured {
     pub lacking: Vec<String>,
     /// The number of complete rounds.
     pub rounds: u32,
+    /// Whether the operating system gave processor times; otherwise times are elapsed ones.
+    pub processor_time: bool,
 }
 
 /// The oracle's counts for one setting.

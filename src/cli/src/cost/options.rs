@@ -48,8 +48,8 @@ pub static SPEC: Spec = Spec {
             Opt::value(
                 "--rounds",
                 "N",
-                "How often each picture is rendered, all in turn and with other random numbers; medians and \
-                 means count [default: 3; with `--full` 5].",
+                "How often each picture is rendered, all in turn and with other random numbers; intervals need 6 rounds \
+                 [default: 6; with `--full` 9].",
             ),
             Opt::flag(
                 "--full",
@@ -146,7 +146,7 @@ impl CostOptions {
             budget: given.parsed("--budget", parse_seconds)?,
             error: given.parsed("--error", parse_error)?,
             reference: given.number("--reference", 128..=1_048_576)?.unwrap_or(if full { 1024 } else { 256 }),
-            rounds: given.number("--rounds", 1..=1000)?.unwrap_or(if full { 5 } else { 3 }),
+            rounds: given.number("--rounds", 1..=1000)?.unwrap_or(if full { 9 } else { 6 }),
             full,
             equal_time,
             light_sizes,
@@ -158,7 +158,7 @@ impl CostOptions {
     }
 
     /// The most pixels of a measured picture, unless a size is given, because some hundred pictures are rendered. Without
-    /// `--full` the scene of the README then takes less than 20 s on two cores.
+    /// `--full` the scene of the README then takes about half a minute.
     pub fn pixels(&self) -> f64 {
         if self.full { 10_000.0 } else { 2_500.0 }
     }

@@ -3,10 +3,10 @@
 use super::Report;
 use super::error::{heat, shown};
 use super::files::{expected_slope, plots};
-use super::measured::Series;
+use super::measured::{Point, Series};
 use super::parameter::Parameter;
 use super::search::Advice;
-use super::table::{about_hits, about_kit_times, bias, goal, named, verdict, waste};
+use super::table::{about_hits, cells, goal, heading, heads as special_heads, named, ratio, verdict, waste};
 use crate::html::{around, base64, element, escape};
 use crate::report::write_file;
 use anyhow::{Context, Result};
@@ -21,16 +21,21 @@ pub fn write(file: &Path, report: &Report<'_>) -> Result<()> {
 fn page(report: &Report<'_>) -> Result<String> {
     let title = format!("What accuracy costs: {}", report.scene);
     let mut body = element("h1", &title);
+    let rounds = match report.measured.rounds {
+        1 => "1 round".to_owned(),
+        n => format!("{n} rounds with other random numbers each"),
+    };
     let about = format!(
-        "{} × {} pixels by {}, {} rounds with other random numbers each, all pictures in turn. Errors are \
-         root mean squares in linear light against a reference of {} samples per pixel, whose own error is \
-         {:.1e}. Times are medians. Made by {} in {:.0} s.",
+        "{} × {} pixels by {}, {rounds}, all pictures in turn. Errors are \
+         root mean squares in linear light against a picture of {} samples per pixel, whose own error is \
+         {:.1e}. Times are medians of the {}; a ratio is the median over the rounds, to the line marked =, with its 95 % \
+         interval. Made by {} in {:.0} s.",
         report.width,
         report.height,
         report.kit,
-        report.measured.rounds,
         report.reference_samples,
         report.reference_error,
+        report.about_times(),
         element("code", &report.command),
         report.took
     );
@@ -45,10 +50,13 @@ fn page(report: &Report<'_>) -> Result<String> {
     for (_, plot) in plots(report) {
         body += &around("figure", "class=\"plot\"", &plot);
     }
+    let mut words = report.about_marks();
     if !report.pareto_front.is_empty() {
-        let words = "The broad yellow line is the Pareto front: no measured setting is both faster and more \
-                     accurate. Settings that leak are left out of it.";
-        body += &around("p", "class=\"about\"", words);
+        words += ". The dashed black line in the plot is the Pareto front; a vertical line is the range of errors over the rounds";
+    }
+    body += &around("p", "class=\"about\"", &escape(words + "."));
+    if !report.beside.is_empty() {
+        body += &around("p", "class=\"about\"", &escape(&report.beside));
     }
     for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
         body += &ladder(report, series)?;
@@ -95,9 +103,8 @@ fn head_of_row(words: &str) -> String {
 
 fn proposal(report: &Report<'_>, advice: &Advice) -> String {
     let values = advice.values.iter();
-    let values: String = values
-        .map(|(parameter, value)| row([head_of_row(&parameter.name()), element("td", value)]))
-        .collect();
+    let values: String =
+        values.map(|(parameter, value)| row([head_of_row(parameter.name()), element("td", value)])).collect();
     let mut text = element("h2", goal(report, advice)) + &around("table", "class=\"values\"", &values);
     text.extend(verdict(advice).iter().map(|line| element("p", line)));
     if !advice.steps.is_empty() {
@@ -119,12 +126,7 @@ fn proposal(report: &Report<'_>, advice: &Advice) -> String {
 
 fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     let geometric = series.parameter.is_geometric();
-    let name = if series.parameter == Parameter::Sampler {
-        format!("sampler: {}", series.name)
-    } else {
-        series.name.clone()
-    };
-    let mut text = element("h2", name);
+    let mut text = element("h2", heading(series)) + &element("p", series.parameter.trade());
     if let Some((name, slope)) = report.slopes.iter().find(|(name, _)| *name == series.name) {
         let theory = expected_slope(report, name)
             .map_or(String::new(), |theory| format!(" (in theory {theory} where pictures have edges)"));
@@ -135,19 +137,34 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
             &format!("The error is proportional to the number of samples to the power {slope}{theory}"),
         );
     }
-    let mut columns = vec!["", "RMSE"];
-    columns.extend(if geometric { &[][..] } else { &["relative MSE", "similarity"] });
-    columns.extend(report.has_bias.then_some("bias"));
-    columns.extend(["ms", "rays per pixel", "tests per ray"]);
-    columns.extend(if geometric { &["wrong hits", "leaks"][..] } else { &[] });
-    let levels = series.levels.iter().map(|(value, index)| level(report, value, *index, geometric));
-    let table = heads(&columns) + &levels.collect::<String>();
+    let special = special_heads(report, series);
+    let mut columns = vec!["", "RMSE", special[0], special[1], "ms", "ratio", special[2]];
+    if special[1].is_empty() {
+        columns.remove(3);
+    }
+    let mut levels = Vec::new();
+    for (value, index) in &series.levels {
+        let point = &report.measured.points[*index];
+        let is_front = report.pareto_front.contains(index);
+        let name = format!("{} {}", named(report, value, *index), report.mark(*index));
+        levels.push(level(
+            report,
+            series,
+            [point, &report.measured.points[series.base]],
+            name.trim_end(),
+            is_front,
+        ));
+        if let Some(reference) = &point.reference {
+            levels.push(level(report, series, [reference, point], "the reference", false));
+        }
+    }
+    let table = heads(&columns) + &levels.concat();
     text += &around("div", "class=\"wide\"", &around("table", "", &table));
     if let Some(waste) = waste(report, series) {
         text += &around("p", "class=\"waste\"", &escape(waste));
     }
     if let (true, Some(hits)) = (geometric, about_hits(report)) {
-        text += &around("p", "class=\"about\"", &escape(format!("Wrong hits and leaks {hits}.")));
+        text += &around("p", "class=\"about\"", &escape(format!("Wrong hits and leaks: {hits}.")));
     }
     if !geometric && series.parameter != Parameter::Sampler {
         text += &pictures(report, series)?;
@@ -155,52 +172,57 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     Ok(around("section", "", &text))
 }
 
-fn level(report: &Report<'_>, value: &str, index: usize, is_geometric: bool) -> String {
-    let point = &report.measured.points[index];
-    let rays = point.counts.rays();
-    let tests = (point.counts.box_tests + point.counts.primitive_tests) as f64 / rays.max(1) as f64;
-    let unbeaten = report.pareto_front.contains(&index);
-    let mark = if unbeaten { " •" } else { "" };
-    let mut cells = vec![format!("{:.5}", point.error())];
-    if !is_geometric {
-        cells.push(format!("{:.2e}", point.errors.relative_mse));
-        cells.push(format!("{:.4}", point.errors.similarity));
-    }
-    if report.has_bias {
-        cells.push(bias(report, index));
-    }
-    cells.push(format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread));
-    cells.push(format!("{:.2}", rays as f64 / (f64::from(report.width) * f64::from(report.height))));
-    cells.push(format!("{tests:.1}"));
-    if is_geometric {
-        cells.push(point.hits.map_or(String::new(), |hits| hits.wrong.to_string()));
-        cells.push(point.hits.map_or(String::new(), |hits| hits.leaks.to_string()));
-    }
-    let head = head_of_row(&format!("{}{mark}", named(report, value, index)));
-    let cells: String = cells.iter().map(|cell| element("td", cell)).collect();
-    around("tr", if unbeaten { "class=\"front\"" } else { "" }, &(head + &cells))
+/// The row of a point, whose time is compared with that of `base`.
+fn level(
+    report: &Report<'_>,
+    series: &Series,
+    [point, base]: [&Point; 2],
+    name: &str,
+    is_front: bool,
+) -> String {
+    let [one, two, three] = cells(report, series, point);
+    let ms = format!("{:.2}", 1e3 * point.seconds);
+    let cells = [format!("{:.5}", point.error()), one, two, ms, ratio(point, base), three];
+    // A bias takes the place of two numbers.
+    let is_shown =
+        |(place, _): &(usize, &String)| *place != 2 || !special_heads(report, series)[1].is_empty();
+    let cells = cells.iter().enumerate().filter(is_shown).map(|(_, cell)| element("td", cell));
+    let cells: String = cells.collect();
+    around("tr", if is_front { "class=\"front\"" } else { "" }, &(head_of_row(name) + &cells))
 }
 
-/// The pictures of the cheapest, the middle and the most expensive level, and their error images on one scale.
+/// The pictures of the first, the middle and the last level, and their error images on one scale.
 fn pictures(report: &Report<'_>, series: &Series) -> Result<String> {
     let last = series.levels.len() - 1;
-    let mut shown_levels = vec![0, last / 2, last];
+    // Of a ray offset every level is shown: it is judged by the eye.
+    let mut shown_levels = match series.parameter {
+        Parameter::RayOffset => (0..=last).collect(),
+        _ => vec![0, last / 2, last],
+    };
     shown_levels.dedup();
     let worst = &report.measured.points[series.levels[0].1];
-    // White stands for three times the mean error of the cheapest level.
-    let most = 3.0 * worst.error();
+    // Errors are shown against the converged picture, on a scale whose white is three times the mean error of the first level. A
+    // ray offset is shown against the error bound, with the same samples, so that only acne and leaks are left; white is a
+    // tenth of full light.
+    let of_offsets = series.levels.last().filter(|_| series.parameter == Parameter::RayOffset);
+    let (right, most, what) = match of_offsets {
+        Some((_, bound)) => {
+            (&report.measured.points[*bound].film, 0.1, "its differences from the error bound")
+        }
+        None => (&report.right.film, 3.0 * worst.error(), "its errors"),
+    };
     let mut figures = String::new();
     for level in shown_levels {
         let (value, index) = &series.levels[level];
         let film = &report.measured.points[*index].film;
         let picture = embedded(&shown(film)?)?;
-        let heat = embedded(&heat(film, &report.right.film, most))?;
+        let heat = embedded(&heat(film, right, most))?;
         let about = escape(format!("the picture with {} {value}", series.name));
-        let images =
-            format!("<img src=\"{picture}\" alt=\"{about}\"><img src=\"{heat}\" alt=\"its errors\">");
+        let images = format!("<img src=\"{picture}\" alt=\"{about}\"><img src=\"{heat}\" alt=\"{what}\">");
         figures += &around("figure", "", &(images + &element("figcaption", value)));
     }
-    Ok(around("div", "class=\"pictures\"", &figures))
+    let below = element("p", format!("Below each picture: {what}."));
+    Ok(around("div", "class=\"pictures\"", &figures) + &below)
 }
 
 fn embedded(picture: &RgbImage) -> Result<String> {
@@ -227,8 +249,5 @@ fn numerics(report: &Report<'_>) -> String {
                  closed mesh from inside.";
     let mut text = element("h2", "What precision costs") + &around("p", "class=\"about\"", words);
     text += &around("div", "class=\"wide\"", &around("table", "", &table));
-    if let Some(warning) = about_kit_times(report) {
-        text += &around("p", "class=\"about\"", warning);
-    }
     around("section", "", &text)
 }

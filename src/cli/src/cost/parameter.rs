@@ -2,49 +2,41 @@
 
 use serde::Serialize;
 
-/// A parameter that trades accuracy for time.
+/// A parameter that trades accuracy for time. Those that change the picture come first. `parameters.txt` has their names and what
+/// they trade, in the same order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Parameter {
-    /// Samples per pixel; lens and time are sampled with them.
     Samples,
-    /// The positions of the samples in the pixel.
     Sampler,
-    /// Samples per area light and hit.
     LightSamples,
-    /// Secondary rays per glossy reflection or refraction.
     GlossySamples,
-    /// The most reflections and refractions on a path.
     Depth,
-    /// The weight below which rays are not traced.
     MinContribution,
-    /// How paths find emitters.
     NextEvent,
-    /// The largest channel of the light of a sample.
     Clamp,
-    /// How images are read.
+    IndirectLight,
+    Fresnel,
     TextureFilter,
-    /// Whether normals are interpolated over triangles.
     SmoothNormals,
-    /// The ray/triangle test.
+    Tessellation,
+    RayOffset,
     Intersection,
-    /// The ray/sphere test.
     SphereTest,
-    /// The precision of ray/shape tests.
     Precision,
-    /// The acceleration structure.
     Accelerator,
-    /// The split strategy of a hierarchy.
     Split,
-    /// The most primitives in a leaf.
     LeafSize,
-    /// Cells of a grid along its longest side.
     GridResolution,
+    KdHeuristics,
+    Savings,
+    Copies,
 }
 
 impl Parameter {
-    /// All parameters by their names on the command line: the keys of their settings.
-    pub const NAMES: [(&str, Parameter); 17] = [
+    /// All parameters by their names on the command line: the keys of their settings. Four have none and change the scene:
+    /// `indirect_light`, `fresnel`, `smooth_normals` and `tessellation`.
+    pub const NAMES: [(&str, Parameter); 24] = [
         ("samples_per_pixel", Parameter::Samples),
         ("sampler", Parameter::Sampler),
         ("light_samples", Parameter::LightSamples),
@@ -53,8 +45,12 @@ impl Parameter {
         ("min_contribution", Parameter::MinContribution),
         ("next_event", Parameter::NextEvent),
         ("clamp", Parameter::Clamp),
+        ("indirect_light", Parameter::IndirectLight),
+        ("fresnel", Parameter::Fresnel),
         ("texture_filter", Parameter::TextureFilter),
         ("smooth_normals", Parameter::SmoothNormals),
+        ("tessellation", Parameter::Tessellation),
+        ("ray_offset", Parameter::RayOffset),
         ("triangle_method", Parameter::Intersection),
         ("sphere_method", Parameter::SphereTest),
         ("precision", Parameter::Precision),
@@ -62,24 +58,29 @@ impl Parameter {
         ("split", Parameter::Split),
         ("leaf_size", Parameter::LeafSize),
         ("grid_resolution", Parameter::GridResolution),
+        ("kd_heuristics", Parameter::KdHeuristics),
+        ("savings", Parameter::Savings),
+        ("copies", Parameter::Copies),
     ];
 
-    /// The key of the setting; `smooth_normals`, which the meshes of a scene have, is none.
+    /// The name on the command line, which is the key of the setting if there is one.
     pub fn key(self) -> &'static str {
-        Parameter::NAMES.iter().find(|(_, one)| *one == self).map_or("", |(key, _)| key)
+        Parameter::NAMES[self as usize].0
     }
 
     /// The name in reports.
-    pub fn name(self) -> String {
-        match self {
-            Parameter::Depth => "depth".into(),
-            Parameter::MinContribution => "minimum contribution".into(),
-            Parameter::NextEvent => "next-event estimation".into(),
-            Parameter::Clamp => "clamp of samples".into(),
-            Parameter::Intersection => "intersection".into(),
-            Parameter::SphereTest => "sphere test".into(),
-            other => other.key().replace('_', " "),
-        }
+    pub fn name(self) -> &'static str {
+        self.words().0
+    }
+
+    /// What the parameter trades, in a sentence.
+    pub fn trade(self) -> &'static str {
+        self.words().1
+    }
+
+    fn words(self) -> (&'static str, &'static str) {
+        let line = include_str!("parameters.txt").lines().nth(self as usize);
+        line.and_then(|line| line.split_once(": ")).unwrap_or_default()
     }
 
     /// Whether the parameter decides only how hits are found: if all tests are right, all values make the
@@ -93,5 +94,19 @@ impl Parameter {
     pub fn has_equal_time(self, turned: &[Parameter]) -> bool {
         let is_about_samples = matches!(self, Parameter::Samples | Parameter::Sampler);
         !is_about_samples && (!self.is_geometric() || turned.contains(&self))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Parameter;
+
+    #[test]
+    fn every_parameter_has_a_name_and_a_trade() {
+        for (place, (key, parameter)) in Parameter::NAMES.into_iter().enumerate() {
+            assert_eq!(parameter as usize, place, "{key}");
+            assert!(!parameter.name().is_empty() && parameter.trade().ends_with('.'), "{key}");
+        }
+        assert_eq!(Parameter::Copies.name(), "copies");
     }
 }

@@ -48,6 +48,7 @@ pub fn converged(scene: &Scene) -> Scene {
         clamp: 0.0,
         accelerator: Accelerator::Auto,
         split: Split::SurfaceArea,
+        ray_offset: 0.0,
         ..scene.quality
     };
     scene
@@ -64,7 +65,7 @@ pub fn reference(
     code: &str,
 ) -> Result<Option<Reference>> {
     // The sums are kept in a file of their own.
-    let bench = &Bench { kept: None, ..*bench };
+    let bench = &Bench { kept: None, ..bench.of_reference() };
     let scene = converged(scene);
     let file = file_of(&scene, cache, code)?;
     let pixels = scene.film.width as usize * scene.film.height as usize;

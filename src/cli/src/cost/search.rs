@@ -7,7 +7,7 @@ use super::parameter::Parameter;
 use super::setting::Setting;
 use crate::report::{FrameBar, bar_of_steps};
 use anyhow::Result;
-use raykata::scene::Scene;
+use raykata::scene::{Sampler, Scene};
 use serde::Serialize;
 
 /// The goal of the search.
@@ -66,7 +66,7 @@ pub struct Advice {
 }
 
 /// Parameters with a best value that does not depend on the others: the fastest of the equally accurate values.
-const CHOSEN_ONCE: [Parameter; 7] = [
+const CHOSEN_ONCE: [Parameter; 10] = [
     Parameter::Accelerator,
     Parameter::Split,
     Parameter::LeafSize,
@@ -74,7 +74,14 @@ const CHOSEN_ONCE: [Parameter; 7] = [
     Parameter::Intersection,
     Parameter::SphereTest,
     Parameter::Precision,
+    Parameter::KdHeuristics,
+    Parameter::Savings,
+    Parameter::Copies,
 ];
+
+/// Parameters that the proposal leaves at the scene's own value: another one shows another scene, or lets light leak.
+pub const KEPT: [Parameter; 4] =
+    [Parameter::IndirectLight, Parameter::Fresnel, Parameter::Tessellation, Parameter::RayOffset];
 
 /// The factor up to which a larger error counts as the same.
 const AS_GOOD: f64 = 1.02;
@@ -187,7 +194,11 @@ impl Search<'_> {
     /// no step helps. `None` if even the start takes too long, or if the program is being stopped.
     fn run(&mut self, start: Setting) -> Result<Option<Point>> {
         let measured = self.measured;
-        let turned = |series: &&Series| !series.levels.is_empty() && !is_chosen_once(series.parameter);
+        let turned = |series: &&Series| {
+            !(series.levels.is_empty()
+                || is_chosen_once(series.parameter)
+                || KEPT.contains(&series.parameter))
+        };
         self.ladders = measured.series.iter().filter(turned).map(|series| (series, 0)).collect();
         let foot = self.ladders.iter().fold(start, |setting, (series, _)| {
             setting.turned(series.parameter, &measured.points[series.levels[0].1].setting)
@@ -320,11 +331,6 @@ fn is_chosen_once(parameter: Parameter) -> bool {
     CHOSEN_ONCE.contains(&parameter) || parameter == Parameter::Sampler
 }
 
-/// Whether `one` is faster than `other` by more than the spread of their times.
-fn is_faster(one: &Point, other: &Point) -> bool {
-    one.seconds + one.spread + other.spread < other.seconds
-}
-
 /// The setting with the best value of every parameter that is chosen once, and a sentence for each faster
 /// value that leaks.
 fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String>) {
@@ -332,6 +338,11 @@ fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String
     let leaks = |point: &Point| point.hits.map_or(0, |hits| hits.leaks);
     for series in measured.series.iter().filter(|series| CHOSEN_ONCE.contains(&series.parameter)) {
         let levels = || series.levels.iter().map(|(name, index)| (name, &measured.points[*index]));
+        // A ladder of another structure than the chosen one says nothing about it.
+        let is_other = |point: &Point| point.setting.quality.accelerator != setting.quality.accelerator;
+        if series.parameter != Parameter::Accelerator && levels().all(|(_, point)| is_other(point)) {
+            continue;
+        }
         let least = levels().map(|(_, point)| point.error()).fold(f64::INFINITY, f64::min);
         let good = || levels().filter(|(_, point)| point.error() <= AS_GOOD * least);
         // Leave out values that leak: this picture may not show it, but another scene may.
@@ -339,11 +350,11 @@ fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String
         let tight = good().filter(|(_, point)| leaks(point) == fewest);
         let tight: Vec<_> = tight.map(|(_, point)| point).collect();
         let Some(fastest) = tight.iter().min_by(|a, b| a.seconds.total_cmp(&b.seconds)) else { continue };
-        // Keep the scene's own value unless another is faster by more than the spread of the times.
-        let stays = tight.iter().find(|point| point.setting == *own && !is_faster(fastest, point));
+        // Keep the scene's own value unless another is faster with 95 % confidence.
+        let stays = tight.iter().find(|point| point.setting == *own && !fastest.is_faster(point));
         let best = stays.unwrap_or(fastest);
         setting = setting.turned(series.parameter, &best.setting);
-        let faster = good().filter(|(_, point)| leaks(point) > fewest && is_faster(point, best));
+        let faster = good().filter(|(_, point)| leaks(point) > fewest && point.is_faster(best));
         passed_over.extend(faster.map(|(name, point)| {
             let rays = point.hits.map_or(0, |hits| hits.rays);
             format!("{} {name} is faster, but {} of {rays} rays leak", series.parameter.name(), leaks(point))
@@ -359,7 +370,9 @@ fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String
 fn best_sampler(measured: &Measured) -> Option<&Point> {
     let samplers = measured.series.iter().filter(|series| series.parameter == Parameter::Sampler);
     let last = samplers.filter_map(|series| series.levels.last()).map(|(_, index)| &measured.points[*index]);
-    last.min_by(|a, b| a.error().total_cmp(&b.error()))
+    // One sample in the centre is not compared with many elsewhere.
+    let spreads = |point: &&Point| point.setting.quality.sampler != Sampler::Center;
+    last.filter(spreads).min_by(|a, b| a.error().total_cmp(&b.error()))
 }
 
 fn names_of_chosen(measured: &Measured, setting: &Setting) -> Vec<(Parameter, String)> {
@@ -398,11 +411,16 @@ mod tests {
             Point::made_up(by(Watertight), 0.02, 2.0, 0),
         ];
         let levels = ["gram", "cramer", "watertight"].map(str::to_owned).into_iter().zip(0..).collect();
-        let series = vec![Series { parameter: Parameter::Intersection, name: "intersection".into(), levels }];
+        let series = vec![Series {
+            parameter: Parameter::Intersection,
+            name: "triangle test".into(),
+            levels,
+            base: 0,
+        }];
         let measured = Measured { points, series, ..Measured::default() };
         let (best, passed_over) = with_what_is_best(&measured, &by(Gram));
         assert_eq!(best.quality.triangle_method, Watertight);
-        assert_eq!(passed_over, ["intersection gram is faster, but 239 of 1000 rays leak"]);
+        assert_eq!(passed_over, ["triangle test gram is faster, but 239 of 1000 rays leak"]);
     }
 
     #[test]
@@ -410,17 +428,19 @@ mod tests {
         let scene = scene_of_kit("stage2");
         let own = Setting::of(&scene);
         let with = |leaf_size| Setting { quality: Quality { leaf_size, ..own.quality }, ..own.clone() };
-        let chosen = |fastest: f64| {
+        let chosen = |fastest: f64, slowest: f64| {
             let mut points = vec![
                 Point::made_up(with(2), 0.02, fastest, 0),
                 Point::made_up(own.clone(), 0.02, 1.0, 0),
                 Point::made_up(with(8), 0.02, 1.2, 0),
             ];
-            points.iter_mut().for_each(|point| point.spread = 0.1);
+            // One round in six is slower than the scene's own value.
+            points[0].times[5] = slowest;
             let levels = ["2", "4", "8"].map(str::to_owned).into_iter().zip(0..).collect();
-            let series = vec![Series { parameter: Parameter::LeafSize, name: "leaf size".into(), levels }];
+            let series =
+                vec![Series { parameter: Parameter::LeafSize, name: "leaf size".into(), levels, base: 1 }];
             with_what_is_best(&Measured { points, series, ..Measured::default() }, &own).0.quality.leaf_size
         };
-        assert_eq!((own.quality.leaf_size, chosen(0.9), chosen(0.7)), (4, 4, 2));
+        assert_eq!((own.quality.leaf_size, chosen(0.7, 1.1), chosen(0.7, 0.9)), (4, 4, 2));
     }
 }

@@ -2,77 +2,76 @@
 
 use super::Report;
 use super::files::expected_slope;
-use super::measured::{Series, Verdicts};
+use super::measured::{Point, Series, Verdicts};
 use super::parameter::Parameter;
-use super::search::{Advice, Goal};
+use super::search::{Advice, Goal, KEPT};
 use crate::args::wrapped;
 use crate::columns::Columns;
+use crate::race::statistics::Median;
 use crate::report::Thousands;
-use std::fmt::Display;
+
+/// The columns of a ladder: name and marks, error, two that depend on the parameter, time with its ratio, and one more.
+const COLUMNS: Columns = Columns("", &[-24, -2, 8, 8, 7, 8, 17, 6]);
+
+/// The same with a bias and its standard error in place of two numbers.
+const BIASED: Columns = Columns("", &[-24, -2, 8, 15, 0, 8, 17, 6]);
 
 /// Prints the report.
 pub fn print(report: &Report<'_>) {
     let rounds = if report.measured.rounds == 1 { "round" } else { "rounds" };
-    println!(
-        "{}: {} × {} pixels, {} {rounds}; times are medians in milliseconds ±\nhalf the distance between the \
-         quartiles; rays are per pixel, tests per ray\n",
-        report.scene, report.width, report.height, report.measured.rounds,
+    let about = format!(
+        "{}: {} × {} pixels, {} {rounds}; ms: {}, the median; ratio: to the line marked =, the median of the rounds and its 95 % \
+         interval; rays are per pixel, tests per ray",
+        report.scene,
+        report.width,
+        report.height,
+        report.measured.rounds,
+        report.about_times()
     );
-    // A table of 80 columns has room for the bias in place of two other columns.
-    let (columns, similar, tests) = match report.has_bias {
-        true => (Columns("", &[-23, -1, -1, 8, 15, 14, 6, 0, 6, 6]), "bias", ""),
-        false => (Columns("", &[-23, -1, -1, 8, 8, 14, 6, 7, 6, 6]), "similar", "tests"),
-    };
-    let heads: [&dyn Display; 10] =
-        [&"", &"", &"", &"RMSE", &similar, &"ms", &"rays", &tests, &"wrong", &"leaks"];
-    println!("{}", columns.row(&heads));
+    println!("{}", wrapped(&about, 0));
+    let mut above = None;
     for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
-        println!("{}", heading(series));
+        // The samplers have one ladder each.
+        let is_first = above.replace(series.parameter) != Some(series.parameter);
+        let trade = if is_first { format!(": {}", series.parameter.trade()) } else { String::new() };
+        println!("\n{}", wrapped(&format!("{}{trade}", heading(series)), 2));
         if let Some(slope) = slope(report, series) {
             println!("  {slope}");
         }
+        let heads = heads(report, series);
+        println!(
+            "{}",
+            columns(&heads)
+                .row(&[&"", &"", &"RMSE", &heads[0], &heads[1], &"ms", &"ratio", &heads[2]])
+                .trim_end()
+        );
         for (name, index) in &series.levels {
             let point = &report.measured.points[*index];
-            let rays = point.counts.rays();
-            let tests = point.counts.box_tests + point.counts.primitive_tests;
-            let hits = point.hits.filter(|_| series.parameter.is_geometric());
-            let [similar, tests] = match report.has_bias {
-                true => [bias(report, *index), String::new()],
-                false => {
-                    [format!("{:.4}", point.errors.similarity), short(1, tests as f64 / rays.max(1) as f64)]
-                }
-            };
-            let of_hits = |number: fn(&Verdicts) -> u64| {
-                hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
-            };
-            let cells: [&dyn Display; 10] = [
-                &format!("  {name}"),
-                if report.own == Some(*index) { &"*" } else { &"" },
-                if report.pareto_front.contains(index) { &"•" } else { &"" },
-                &format!("{:.5}", point.error()),
-                &similar,
-                &time(point.seconds, point.spread),
-                &short(2, rays as f64 / (f64::from(report.width) * f64::from(report.height))),
-                &tests,
-                &of_hits(|hits| hits.wrong),
-                &of_hits(|hits| hits.leaks),
-            ];
-            println!("{}", columns.row(&cells));
+            let own = if report.own == Some(*index) { "*" } else { "" };
+            let marks = format!("{own}{}", report.mark(*index));
+            row(report, series, &format!("  {name}"), &marks, point, &report.measured.points[series.base]);
+            if let Some(reference) = &point.reference {
+                row(report, series, "    the reference", "", reference, point);
+            }
         }
         if let Some(waste) = waste(report, series) {
             println!("  {}", wrapped(&waste, 2));
         }
     }
     println!("\n* the scene's own value");
+    if report.measured.points.iter().any(|point| point.reference.is_some()) {
+        println!(
+            "{}",
+            wrapped("the reference: the same value with the solutions; its ratio is to your line above", 2)
+        );
+    }
     if report.has_bias {
         println!(
             "bias: the mean signed difference from the reference, and its standard error.\n  It stays when samples are \
              added: error² = bias² + variance / samples"
         );
     }
-    println!(
-        "• no other value is both faster and more accurate (Pareto front); values that\n  leak are left out"
-    );
+    println!("{}", wrapped(&report.about_marks(), 2));
     if let Some(hits) = about_hits(report) {
         println!("{}", wrapped(&format!("wrong and leaks: {hits}"), 2));
     }
@@ -101,16 +100,80 @@ fn short(most: usize, value: f64) -> String {
     format!("{value:.*}", decimals(most, value))
 }
 
-/// A median and its spread in milliseconds, with the same number of decimals.
-fn time(seconds: f64, spread: f64) -> String {
-    let places = decimals(2, 1e3 * seconds.max(spread));
-    format!("{:.places$} ± {:.places$}", 1e3 * seconds, 1e3 * spread)
+fn columns(heads: &[&str; 3]) -> &'static Columns {
+    if heads[1].is_empty() { &BIASED } else { &COLUMNS }
+}
+
+/// The heads of the columns that depend on the parameter.
+pub fn heads(report: &Report<'_>, series: &Series) -> [&'static str; 3] {
+    match series.parameter {
+        Parameter::RayOffset => ["acne", "leaks", "rays"],
+        one if one.is_geometric() => ["wrong", "leaks", "tests"],
+        _ if report.has_bias => ["bias", "", "rays"],
+        _ => ["similar", "tests", "rays"],
+    }
+}
+
+/// The cells below these heads.
+pub fn cells(report: &Report<'_>, series: &Series, point: &Point) -> [String; 3] {
+    let counts = &point.counts;
+    // Only pictures of the kit are counted, and not those of the reference beside it.
+    let counted = |text: String| if counts.primary == 0 { String::new() } else { text };
+    let rays = counts.rays().max(1) as f64;
+    let tests = counted(short(1, (counts.box_tests + counts.primitive_tests) as f64 / rays));
+    let per_pixel = counted(short(1, rays / (f64::from(report.width) * f64::from(report.height))));
+    let judged = |number: fn(&Verdicts) -> u64| {
+        point.hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
+    };
+    match series.parameter {
+        Parameter::RayOffset => {
+            [counted(counts.shadow_acne.to_string()), counted(counts.light_leaks.to_string()), per_pixel]
+        }
+        one if one.is_geometric() => [judged(|hits| hits.wrong), judged(|hits| hits.leaks), tests],
+        _ if report.has_bias => [bias(report, point), String::new(), per_pixel],
+        _ => [format!("{:.4}", point.errors.similarity), tests, per_pixel],
+    }
+}
+
+fn row(report: &Report<'_>, series: &Series, name: &str, marks: &str, point: &Point, base: &Point) {
+    let [one, two, three] = cells(report, series, point);
+    let (error, ms) = (format!("{:.5}", point.error()), short(2, 1e3 * point.seconds));
+    let line = columns(&heads(report, series)).row(&[
+        &name,
+        &marks,
+        &error,
+        &one,
+        &two,
+        &ms,
+        &ratio(point, base),
+        &three,
+    ]);
+    println!("{}", line.trim_end());
+}
+
+/// A ratio and its interval, with as many digits as three need at its upper end.
+fn interval(ratio: &Median) -> String {
+    let places = match ratio.high {
+        value if value < 9.995 => 2,
+        value if value < 99.95 => 1,
+        _ => 0,
+    };
+    format!("{:.places$} ({:.places$}–{:.places$})", ratio.value, ratio.low, ratio.high)
+}
+
+/// The processor time of a point as a multiple of that of `base`, with its 95 % interval; `=` for the base itself.
+pub fn ratio(point: &Point, base: &Point) -> String {
+    let Some(ratio) = point.time_ratio(base) else { return String::new() };
+    if std::ptr::eq(point, base) {
+        return "=".into();
+    }
+    interval(&ratio)
 }
 
 /// The bias of a point with its standard error.
-pub fn bias(report: &Report<'_>, index: usize) -> String {
+pub fn bias(report: &Report<'_>, point: &Point) -> String {
     let pixels = f64::from(report.width) * f64::from(report.height);
-    let (bias, error) = report.measured.points[index].bias(report.reference_error, pixels);
+    let (bias, error) = point.bias(report.reference_error, pixels);
     format!("{bias:+.4}±{error:.4}")
 }
 
@@ -130,10 +193,11 @@ pub fn named(report: &Report<'_>, name: &str, index: usize) -> String {
     if report.own == Some(index) { format!("{name} (the scene's)") } else { name.to_owned() }
 }
 
-fn heading(series: &Series) -> String {
+/// The name of a ladder.
+pub fn heading(series: &Series) -> String {
     match series.parameter {
-        Parameter::Sampler => format!("sampler: {}, samples per pixel", series.name),
-        parameter => parameter.name(),
+        Parameter::Sampler => format!("sampler {}, samples per pixel", series.name),
+        _ => series.name.clone(),
     }
 }
 
@@ -148,23 +212,22 @@ const SAME: f64 = 0.02;
 
 /// A sentence that says above which value a parameter costs time without lowering the error.
 pub fn waste(report: &Report<'_>, series: &Series) -> Option<String> {
-    if series.parameter.is_geometric() {
+    // Other formulas and other scenes are no steps of a scale.
+    if series.parameter.is_geometric() || KEPT.contains(&series.parameter) {
         return None;
     }
     let point = |index: usize| &report.measured.points[series.levels[index].1];
     let last = series.levels.len().checked_sub(1)?;
     let end = point(last);
-    let enough = (0..last).find(|&index| point(index).error() <= (1.0 + SAME) * end.error())?;
-    let less = point(enough);
-    let times = end.seconds / less.seconds;
-    // Times vary by about a fiftieth, and on a busy machine by more. Three times the half distance between the quartiles is
-    // two standard deviations of a normal distribution.
-    let varies = (SAME * less.seconds).max(3.0 * end.spread.max(less.spread));
-    let takes = match end.seconds - less.seconds {
-        more if more <= varies => "and takes no measurable extra time".into(),
-        _ => format!("and takes up to {times:.2} times as long"),
-    };
+    // The intervals say that the error of the last value is not below that of this one by more than this share.
+    let as_good =
+        |index: &usize| end.error_ratio(point(*index)).is_some_and(|ratio| ratio.low > 1.0 / (1.0 + SAME));
+    let enough = (0..last).find(as_good)?;
     let (level, same) = (&series.levels[enough].0, 100.0 * SAME);
+    let takes = match end.time_ratio(point(enough))? {
+        ratio if ratio.low > 1.0 => format!("and takes {} times as long", interval(&ratio)),
+        _ => "and takes no measurable extra time".into(),
+    };
     Some(format!("above {level} it lowers the error by less than {same:.0} %, {takes}"))
 }
 
@@ -182,17 +245,6 @@ fn numerics(report: &Report<'_>) {
         let (name, ns) = (format!("  {}", one.name), format!("{:.1}", one.nanoseconds));
         println!("{}", COLUMNS.row(&[&name, &ns, &wrong, &leaks]));
     }
-    if let Some(warning) = about_kit_times(report) {
-        println!("  {}", wrapped(warning, 2));
-    }
-}
-
-/// A note about the times of a kit in a separate process.
-pub fn about_kit_times(report: &Report<'_>) -> Option<&'static str> {
-    report.numerics.iter().any(|one| one.name.starts_with("kit")).then_some(
-        "kit: its ns include the messages to and from a separate process; wrong hits and \
-         leaks do not depend on that",
-    )
 }
 
 fn print_advice(report: &Report<'_>, advice: &Advice) {
@@ -201,7 +253,7 @@ fn print_advice(report: &Report<'_>, advice: &Advice) {
         println!("  {:<22}{value}", parameter.name());
     }
     for line in verdict(advice) {
-        println!("  {line}");
+        println!("  {}", wrapped(&line, 2));
     }
 }
 
@@ -237,7 +289,7 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
         }
         _ => {}
     }
-    let spent: Vec<String> =
+    let spent: Vec<&str> =
         advice.steps.iter().map(|step| step.parameter.name()).fold(Vec::new(), |mut names, name| {
             if !names.contains(&name) {
                 names.push(name);
@@ -263,7 +315,8 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{short, time};
+    use super::*;
+    use crate::cost::setting::Setting;
 
     #[test]
     fn numbers_leave_a_space_between_columns() {
@@ -271,10 +324,11 @@ mod tests {
         assert_eq!(short(2, 99.5), "99.50");
         assert_eq!(short(2, 233.07), "233.1");
         assert_eq!(short(2, 1165.42), "1165");
-        assert_eq!(time(0.0077, 0.00058), "7.70 ± 0.58");
-        assert_eq!(time(0.13389, 0.03471), "133.9 ± 34.7");
-        for seconds in [1e-6, 0.0099, 0.0999, 0.999, 9.99, 99.9] {
-            assert!(time(seconds, seconds).chars().count() < 14, "{}", time(seconds, seconds));
-        }
+        let scene = crate::report::scene_of_kit("stage1");
+        let point = |seconds| Point::made_up(Setting::of(&scene), 0.1, seconds, 0);
+        let base = point(1.0);
+        let written = [0.031, 1.0, 12.34, 123.4].map(|seconds| ratio(&point(seconds), &base));
+        assert_eq!(written, ["0.03 (0.03–0.03)", "1.00 (1.00–1.00)", "12.3 (12.3–12.3)", "123 (123–123)"]);
+        assert_eq!(ratio(&base, &base), "=");
     }
 }

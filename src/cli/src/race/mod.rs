@@ -7,8 +7,8 @@
 
 mod pictures;
 mod processor_time;
-mod racers;
-mod statistics;
+pub mod racers;
+pub mod statistics;
 mod table;
 
 use crate::args::{Argument, Given, Opt, Spec};

@@ -1,5 +1,7 @@
 //! The processor time of another process, as the operating system counts it. What the process itself says does not matter.
 
+#[cfg(target_os = "linux")]
+use raykata::worker::Thread;
 use std::time::Duration;
 
 /// The time that the threads of a process have spent on a processor; `None` where this is not available.
@@ -12,19 +14,12 @@ pub fn processor_time(process: u32) -> Option<Duration> {
     let mut exact = Duration::ZERO;
     for task in std::fs::read_dir(format!("/proc/{process}/task")).ok()?.flatten() {
         // A thread may end while it is read.
-        let text = std::fs::read_to_string(task.path().join("schedstat")).unwrap_or_default();
-        exact += running(&text).unwrap_or_default();
+        exact += Thread::at(task.path()).ran().unwrap_or_default();
     }
     let coarse = ticks(&std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?)?;
     // Two numbers are rounded down in `stat`, and read a moment later.
     let at_least = (10 * Duration::from_millis(coarse)).saturating_sub(Duration::from_millis(20));
     Some(exact.max(at_least)).filter(|time| !time.is_zero())
-}
-
-/// The time on a processor in the text of a file `schedstat`, which is its first number.
-#[cfg(target_os = "linux")]
-fn running(schedstat: &str) -> Option<Duration> {
-    schedstat.split_whitespace().next()?.parse().ok().map(Duration::from_nanos)
 }
 
 /// User time and system time in the text of a file `stat`, in hundredths of a second.
@@ -49,8 +44,6 @@ mod tests {
 
     #[test]
     fn files_of_the_kernel_are_read() {
-        assert_eq!(running("123456789 42 7\n"), Some(Duration::from_nanos(123_456_789)));
-        assert_eq!(running(""), None);
         let stat = "7 (a) b (c) S 1 7 7 0 -1 4194560 182 0 0 0 31 11 0 0 20 0 1 0 433 1 2";
         assert_eq!(ticks(stat), Some(42));
         assert_eq!(ticks("7 (a"), None);

@@ -93,6 +93,14 @@ pub fn build(root: &Path, racers: &[Racer]) -> Result<Vec<PathBuf>> {
     (0..racers.len()).map(path).collect()
 }
 
+/// Builds both kits of this repository with the same options, and returns their worker programs: those of the reference and of
+/// the exercises.
+pub fn build_both(root: &Path) -> Result<[PathBuf; 2]> {
+    let programs = build(root, &[of_kit(root, Which::Solutions)?, of_kit(root, Which::Exercises)?])?;
+    let [reference, own] = programs.as_slice() else { bail!("a kit has no program") };
+    Ok([reference.clone(), own.clone()])
+}
+
 fn package_name(racer: usize) -> String {
     format!("racer-{racer}")
 }

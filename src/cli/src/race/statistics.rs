@@ -1,7 +1,9 @@
 //! The median of ratios, and its confidence interval by order statistics.
 
+use serde::Serialize;
+
 /// A median with a confidence interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Median {
     /// The median.
     pub value: f64,
@@ -39,6 +41,13 @@ pub fn median(values: &[f64]) -> Option<Median> {
     }
     let value = 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
     Some(Median { value, low: sorted[k - 1], high: sorted[n - k], confidence: 1.0 - 2.0 * missed })
+}
+
+/// The median of the ratios of `values` to those of `base` in the same rounds, with its interval: what a round has in common,
+/// such as a slow machine, cancels. Equal values have the ratio 1, also if they are 0.
+pub fn paired_ratio(values: &[f64], base: &[f64]) -> Option<Median> {
+    let ratio = |(value, base): (&f64, &f64)| if value == base { 1.0 } else { value / base };
+    median(&values.iter().zip(base).map(ratio).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

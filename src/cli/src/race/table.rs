@@ -1,7 +1,7 @@
 //! The table of a race, in 80 columns.
 
 use super::pictures::is_tolerable;
-use super::statistics::{Median, median};
+use super::statistics::{Median, paired_ratio};
 use crate::args::wrapped;
 use crate::report::Thousands;
 use std::fmt::Write;
@@ -58,9 +58,7 @@ impl Race {
     /// a round were rendered within moments of each other. `None` for a wrong picture.
     fn speed(&self, lane: &Lane) -> Option<Median> {
         let baseline = self.lanes.first().filter(|_| self.is_right(lane))?;
-        let ratios: Vec<f64> =
-            baseline.seconds.iter().zip(&lane.seconds).map(|(one, own)| one / own).collect();
-        median(&ratios)
+        paired_ratio(&baseline.seconds, &lane.seconds)
     }
 
     /// The report.

@@ -94,6 +94,7 @@ fn one_color(job: &RenderJob, color: Vec3, watch: &dyn Watch) -> Option<Renderin
         bytes_of_parts: 0,
         build_seconds: 0.0,
         render_seconds: 0.0,
+        processor_seconds: None,
         notes: vec!["a note about the picture".into()],
     })
 }

@@ -70,7 +70,7 @@ impl GauntletOptions {
 
 /// Measures the same as `raykata cost`, and the intersection methods. Returns whether it succeeded.
 pub fn cost(given: &Given) -> Result<bool> {
-    cost::run(given, "cargo run --release -p author --", Some(&summary))
+    cost::run(given, Some("author"), Some(&summary))
 }
 
 /// Runs the gauntlet.
@@ -95,7 +95,7 @@ fn rows(kit: &dyn Kit) -> Vec<Row<'_>> {
         let hit = method.hit;
         let answer =
             move |inputs: &[Input]| inputs.iter().map(|(ray, triangle)| hit(ray, triangle)).collect();
-        Row { name: method.name.into(), answer: Box::new(answer), method: Some(hit) }
+        Row { name: method.name.into(), answer: Box::new(answer), method: Some(hit), seconds: None }
     });
     methods.chain(rows_of_kit(kit)).collect()
 }

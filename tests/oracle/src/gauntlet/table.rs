@@ -4,9 +4,9 @@
 use super::distributions::Distribution;
 use crate::exact::{Body, meet, t_error_in_ulps, triangle};
 use crate::splitmix::Random;
+use raykata::kit::least_seconds;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
-use std::time::Instant;
 
 /// Inputs of a distribution with their exact answers.
 pub struct Judged {
@@ -58,11 +58,5 @@ pub fn compare(judged: &Judged, answers: &[Option<f32>]) -> Cell {
 
 /// Nanoseconds of one call, the best of five rounds over all inputs.
 pub fn nanoseconds(judged: &Judged, mut answer_all: impl FnMut(&[(Ray, Triangle)])) -> f64 {
-    let mut best = f64::INFINITY;
-    for _ in 0..5 {
-        let started = Instant::now();
-        answer_all(&judged.inputs);
-        best = best.min(started.elapsed().as_secs_f64() * 1e9 / judged.inputs.len() as f64);
-    }
-    best
+    1e9 * least_seconds(|| answer_all(&judged.inputs)) / judged.inputs.len() as f64
 }
