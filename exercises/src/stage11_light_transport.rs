@@ -94,10 +94,10 @@ pub fn mis_weight(own: f32, other: f32) -> f32 {
 /// channel of `weight`.
 ///
 /// - If w is 0, the factor is 0: the path can add nothing.
-/// - If w is 1 or more, or `bounce` is below 3, the factor is 1.
-/// - Otherwise the path survives with a probability q, at least w and at most `(1 + w) / 2`, and the factor is `1 / q`; with
-///   probability `1 - q` it is 0. q = w passes, and so does any other rule in this range. So the mean of the factor is 1,
-///   and no channel of the new weight is above 1, up to rounding.
+/// - If w is above 0 and `bounce` is below 3, the factor is 1.
+/// - Otherwise the path survives with a probability q, and the factor is `1 / q`; with probability `1 - q` it is 0. So the
+///   mean of the factor is 1. q is at least `min(w, 0.95)`, and at most `(1 + w) / 2` and 1. `q = min(w, 1)` and
+///   `q = min(w, 0.95)` pass, and so does any other rule in this range.
 ///
 /// Pitfall: without the division by q the picture is too dark. With q = 1/2 for all paths bright ones are ended, and noise is
 /// added where there was none.

@@ -12,8 +12,8 @@
 //! from the front and from the back, so the order of the corners does not matter. `t` counts lengths of `direction`,
 //! which need not be a unit vector. A hit counts if `ray.contains(t)`: the range is open. The triangle may have any
 //! size, so no fixed epsilon is right. The result is `None` for a ray along the plane of the triangle, a triangle
-//! without area, a direction of 0, and a NaN anywhere. If the sizes overflow single precision, a hit and a miss are
-//! both right, but no part of a hit is NaN or infinite.
+//! without area, a direction of 0, and a NaN anywhere. If products of the sizes overflow or underflow single precision, as
+//! those of edges above 1e12 or below 1e-15 do, a hit and a miss are both right, but no part of a hit is NaN or infinite.
 
 use glam::Vec3;
 use raykata::bvh::{PrimitiveHit, Probe};
@@ -27,7 +27,7 @@ use raykata::shape::Triangle;
 ///
 /// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
 /// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
-/// No size is too small. The full contract is at the top of this file.
+/// No fixed epsilon is right. The full contract is at the top of this file.
 ///
 /// Pitfall: the determinant `D` on the slide is wrong, because it repeats terms of the numerator of x. It is right
 /// for triangles along the axes and loses more than half of the hits of all others. The method itself has a weakness,
@@ -55,7 +55,7 @@ pub fn gram_scalars(triangle: &Triangle) -> GramScalars {
 ///
 /// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
 /// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
-/// No size is too small. The full contract is at the top of this file.
+/// No fixed epsilon is right. The full contract is at the top of this file.
 ///
 /// Pitfall: "0 ≤ s + t ≤ 1" alone accepts points with a negative coordinate. Test `s ≥ 0` and `t ≥ 0` as well. The
 /// method itself has a weakness, too: it rounds the point before the test, so far from the origin that error decides.
@@ -68,7 +68,7 @@ pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> O
 ///
 /// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
 /// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
-/// No size is too small. The full contract is at the top of this file.
+/// No fixed epsilon is right. The full contract is at the top of this file.
 ///
 /// Pitfall: many published versions compare the determinant with an epsilon, which loses small triangles, or reject a
 /// negative determinant, which loses all hits from behind.

@@ -31,7 +31,7 @@ pub fn light_effects(light: &Light, quality: &Quality) -> LightEffects {
 ///   [`Light::radiance`] is not 0 and `diffuse` or `specular` is not 0.
 /// - `transmission`: whether `material.transmission` is not 0 in some channel, for every index of refraction.
 /// - `mirror`: whether `material.mirror` is not 0 in some channel, or rays are refracted and `fresnel` is not
-///   [`Fresnel::None`], because then the surface also reflects a part of this light.
+///   [`Fresnel::None`], because then the surface also reflects a part of this light, or `coat` is not 1.
 /// - Both are `false` if `quality.max_depth` is 0.
 /// - `glossy`: whether `roughness` is above 0 and `mirror` or `transmission` is set.
 /// - `texture`: whether there is an image and `diffuse` or `ambient`, which the image multiplies, is not 0.
@@ -71,7 +71,7 @@ pub fn effects(scene: &Scene) -> Effects {
 ///   reflection or refraction is above 0 and at least `quality.min_contribution`.
 /// - A camera ray has the weight 1. A reflection weighs the largest channel of `mirror` (with `fresnel`, of
 ///   `mirror + transmission`), a refraction the largest channel of `transmission`, times the weight of the ray that hits.
-///   The largest weight over all materials counts. Each of the `glossy_samples` rays has an equal part of that weight.
+///   A coat, which is not 1, can reflect all light. The largest weight over all materials counts. Each of the `glossy_samples` rays has an equal part of that weight.
 /// - `shadow`: each hit, also one of the last bounce, needs one shadow ray per sample of each light that matters to its
 ///   material and casts shadows. The material with the largest sum counts.
 ///

@@ -27,7 +27,7 @@ pub fn bezier_point(patch: &BezierPatch, uv: Vec2) -> Vec3 {
 /// - New vertex of an edge `p q` between two triangles with the third corners `r` and `s`: `3/8 (p + q) + 1/8 (r + s)`.
 /// - New vertex of a border edge, which has one triangle only: its midpoint `1/2 (p + q)`.
 /// - Old vertex `p` with `n` neighbours `pᵢ`: `(1 - n β) p + β Σ pᵢ` with `β = 3/16` for `n = 3` and `3 / (8 n)`
-///   otherwise. On a border, with the neighbours `p₁` and `p₂` along it: `3/4 p + 1/8 (p₁ + p₂)`. A vertex that belongs
+///   otherwise (Warren), or with Loop's own `β = (5/8 - (3/8 + cos(2π/n)/4)²) / n`. On a border, with the neighbours `p₁` and `p₂` along it: `3/4 p + 1/8 (p₁ + p₂)`. A vertex that belongs
 ///   to no triangle stays.
 /// - The four triangles have their corners in the order of the old triangle, and its material. The new vertices and the
 ///   triangles may come in any order.
@@ -37,7 +37,7 @@ pub fn bezier_point(patch: &BezierPatch, uv: Vec2) -> Vec3 {
 /// Pitfall: all formulas use positions from before the step. A border may depend only on its own vertices, or a gap opens
 /// between two meshes that share it.
 ///
-/// Source: Loop 1987; Hoppe et al. 1994 for the border.
+/// Source: Loop 1987; Warren 1995 for the simpler β; Hoppe et al. 1994 for the border.
 pub fn loop_subdivide(mesh: &Mesh) -> Mesh {
     todo!("find the edges, place a vertex on each, move the old vertices, make four triangles of each")
 }
