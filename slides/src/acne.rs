@@ -156,9 +156,7 @@ fn sample(light: &Light, point: Vec3) -> LightSample {
         Emitter::Directional { direction } => {
             LightSample { direction: -direction.normalize(), distance: f32::INFINITY, radiance }
         }
-        Emitter::Spot { .. } | Emitter::Area { .. } => {
-            LightSample { direction: Vec3::Y, distance: 0.0, radiance: Vec3::ZERO }
-        }
+        Emitter::Area { .. } => LightSample { direction: Vec3::Y, distance: 0.0, radiance: Vec3::ZERO },
     }
 }
 
@@ -243,7 +241,7 @@ pub fn offset_strip(kit: &dyn Kit, _root: &Path) -> Result<Vec<u8>> {
             let sphere = Sphere { center: size * vec3(0.0, 0.7, 0.0), radius: size * 0.6 };
             let emitter =
                 Emitter::Point { position: size * vec3(1.9, 3.1, 1.7), falloff: Default::default() };
-            let light = Light { emitter, color: Vec3::ONE, intensity: 0.85, shadows: true };
+            let light = Light { emitter, color: Vec3::ONE, intensity: 0.85, shadows: true, cone: None };
             let place = Place {
                 spheres: vec![(sphere, material(vec3(0.85, 0.45, 0.15)))],
                 floor: material(vec3(0.55, 0.62, 0.70)),

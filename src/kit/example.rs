@@ -129,6 +129,7 @@ examples! {
         color: Vec3::ONE,
         intensity: 1.0,
         shadows: true,
+        cone: None,
     };
     LightSample => LightSample { direction: Vec3::Z, distance: 1.0, radiance: Vec3::ONE };
     Texture => Texture { width: 1, height: 1, pixels: Arc::new(vec![Vec3::ONE]), wrap: Wrap::Repeat };

@@ -145,18 +145,6 @@ pub enum Emitter {
         /// How the light depends on the distance.
         falloff: Falloff,
     },
-    /// A point light that shines into a cone.
-    Spot {
-        /// The position of the light, in world units.
-        position: Vec3,
-        /// The axis of the cone, of unit length.
-        direction: Vec3,
-        /// The cosines of the angles to the axis up to which the light is full, and from which on there is none. The first
-        /// is the larger one, or both are equal.
-        cosines: (f32, f32),
-        /// How the light depends on the distance.
-        falloff: Falloff,
-    },
     /// An infinitely distant light, whose rays are all parallel.
     Directional {
         /// The direction from the light to the scene, of unit length.
@@ -171,7 +159,7 @@ pub enum Emitter {
     },
 }
 
-message! { enum Emitter { Point { position, falloff }, Spot { position, direction, cosines, falloff }, Directional { direction }, Area { shape, falloff } } }
+message! { enum Emitter { Point { position, falloff }, Directional { direction }, Area { shape, falloff } } }
 
 /// The shape of an area light, in world units.
 #[derive(Clone, Debug, PartialEq)]
@@ -224,6 +212,31 @@ impl AreaShape {
     }
 }
 
+/// The cone of a spot light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// The axis, of unit length.
+    pub axis: Vec3,
+    /// The cosine of the angle to the axis up to which the light is full.
+    pub full: f32,
+    /// The cosine of the angle from which on there is no light, at most `full`.
+    pub none: f32,
+}
+
+message! { Cone { axis, full, none } }
+
+impl Cone {
+    /// The share of the light that is sent in the unit vector `direction`, `0..=1`. Between the two angles it follows a cubic
+    /// without a kink at either end.
+    pub fn share(&self, direction: Vec3) -> f32 {
+        let share = match direction.dot(self.axis) {
+            cosine if cosine >= self.full => 1.0,
+            cosine => ((cosine - self.none) / (self.full - self.none)).clamp(0.0, 1.0),
+        };
+        share * share * (3.0 - 2.0 * share)
+    }
+}
+
 /// A light. Its colour is `intensity * color`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
@@ -235,9 +248,11 @@ pub struct Light {
     pub intensity: f32,
     /// Whether the light casts shadows. Without, it reaches every surface that faces it.
     pub shadows: bool,
+    /// The cone into which a point light shines; `None` for a light that shines in all directions.
+    pub cone: Option<Cone>,
 }
 
-message! { Light { emitter, color, intensity, shadows } }
+message! { Light { emitter, color, intensity, shadows, cone } }
 
 impl Light {
     /// `intensity * color`, in linear light. With [`Falloff::InverseSquare`] that is the light that arrives
@@ -276,7 +291,13 @@ mod tests {
     use crate::shape::{Disk, Sphere};
 
     fn light(shape: AreaShape, falloff: Falloff) -> Light {
-        Light { emitter: Emitter::Area { shape, falloff }, color: Vec3::X, intensity: 8.0, shadows: true }
+        Light {
+            emitter: Emitter::Area { shape, falloff },
+            color: Vec3::X,
+            intensity: 8.0,
+            shadows: true,
+            cone: None,
+        }
     }
 
     #[test]

@@ -15,15 +15,9 @@ impl Light {
     #[inline]
     pub fn sample_center(&self, point: Vec3) -> LightSample {
         match &self.emitter {
-            Emitter::Point { position, .. } => self.sample_at(*position, point),
-            Emitter::Spot { position, direction, cosines: (full, none), .. } => {
+            Emitter::Point { position, .. } => {
                 let sample = self.sample_at(*position, point);
-                // From full light to none the share follows a cubic without a kink at either end.
-                let share = match -sample.direction.dot(*direction) {
-                    cosine if cosine >= *full => 1.0,
-                    cosine => ((cosine - none) / (full - none)).clamp(0.0, 1.0),
-                };
-                let share = share * share * (3.0 - 2.0 * share);
+                let share = self.cone.map_or(1.0, |cone| cone.share(-sample.direction));
                 LightSample { radiance: share * sample.radiance, ..sample }
             }
             Emitter::Area { shape: AreaShape::Sphere(sphere), .. } => {
@@ -67,9 +61,7 @@ impl Light {
     #[inline]
     fn arriving(&self, direction: Vec3, distance: f32, weakening_distance: f32) -> LightSample {
         let falloff = match &self.emitter {
-            Emitter::Point { falloff, .. }
-            | Emitter::Spot { falloff, .. }
-            | Emitter::Area { falloff, .. } => *falloff,
+            Emitter::Point { falloff, .. } | Emitter::Area { falloff, .. } => *falloff,
             Emitter::Directional { .. } => Falloff::None,
         };
         let weakened = match falloff {
@@ -95,6 +87,7 @@ fn distance_to_sphere(sphere: &Sphere, direction: Vec3, point: Vec3) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::Cone;
 
     #[test]
     fn the_way_to_a_sphere_ends_at_its_surface() {
@@ -107,23 +100,22 @@ mod tests {
 
     #[test]
     fn a_spot_light_is_a_point_light_in_its_cone() {
-        let cosines = (60f32.to_radians().cos(), 90f32.to_radians().cos());
-        let spot = |cosines| Emitter::Spot {
-            position: 4.0 * Vec3::Y,
-            direction: Vec3::NEG_Y,
-            cosines,
-            falloff: Falloff::InverseSquare,
+        let emitter = Emitter::Point { position: 4.0 * Vec3::Y, falloff: Falloff::InverseSquare };
+        let radiance = |(full, none), point| {
+            let cone = Some(Cone { axis: Vec3::NEG_Y, full, none });
+            let light =
+                Light { emitter: emitter.clone(), color: Vec3::ONE, intensity: 8.0, shadows: true, cone };
+            light.sample_center(point).radiance.x
         };
-        let light = |emitter| Light { emitter, color: Vec3::ONE, intensity: 8.0, shadows: true };
-        let radiance = |cosines, point| light(spot(cosines)).sample_center(point).radiance.x;
-        assert_eq!(radiance(cosines, Vec3::ZERO), 0.5);
-        assert_eq!(radiance(cosines, Vec3::new(0.0, 4.5, 0.0)), 0.0);
+        let half = 60f32.to_radians().cos();
+        assert_eq!(radiance((half, 0.0), Vec3::ZERO), 0.5);
+        assert_eq!(radiance((half, 0.0), Vec3::new(0.0, 4.5, 0.0)), 0.0);
         // Halfway between the cosines 0.5 and 0 half of the light arrives.
         let halfway = Vec3::new(4.0 * 15f32.sqrt(), 0.0, 0.0);
-        assert!((radiance(cosines, halfway) - 0.5 * 8.0 / 256.0).abs() < 1e-6);
+        assert!((radiance((half, 0.0), halfway) - 0.5 * 8.0 / 256.0).abs() < 1e-6);
         // A sharp cone, and one that is the whole sphere.
-        assert_eq!(radiance((0.5, 0.5), halfway), 0.0);
-        assert_eq!(radiance((-1.0, -1.0), Vec3::new(0.0, 5.0, 0.0)), 8.0);
+        assert_eq!(radiance((half, half), halfway), 0.0);
+        assert_eq!(radiance((f32::MIN, f32::MIN), Vec3::new(0.0, 5.0, 0.0)), 8.0);
     }
 
     #[test]
@@ -133,6 +125,7 @@ mod tests {
             color: Vec3::ONE,
             intensity: 8.0,
             shadows: true,
+            cone: None,
         };
         assert_eq!(light.sample_center(Vec3::ZERO).radiance, Vec3::splat(0.5));
         assert_eq!(light.sample_at(2.0 * Vec3::Y, Vec3::ZERO).radiance, Vec3::splat(2.0));

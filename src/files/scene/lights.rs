@@ -3,7 +3,7 @@
 use super::reader::Value;
 use super::shapes::{disk, sphere};
 use crate::files::error::LoadError;
-use crate::material::{AreaShape, Emitter, Falloff, Light, Material};
+use crate::material::{AreaShape, Cone, Emitter, Falloff, Light, Material};
 use crate::scene::{ColorPlace, Node, Scene, VisibleLight};
 use glam::Vec3;
 
@@ -61,9 +61,10 @@ fn light(value: Value, index: usize, camera: Vec3) -> Result<(Light, bool), Load
     let table = value.table(&KEYS)?;
     let emitter = table.one_of(&["point", "spot", "directional", "area"])?;
     let light = Light {
+        cone: if emitter.key == "spot" { Some(cone(emitter)?) } else { None },
         emitter: match emitter.key {
-            "point" => point(emitter)?,
-            "spot" => spot(emitter)?,
+            "point" => point(emitter, &["position", "falloff"])?,
+            "spot" => point(emitter, &SPOT_KEYS)?,
             "directional" => {
                 let table = emitter.table(&["direction"])?;
                 Emitter::Directional { direction: table.need("direction", "[0, -1, 0]")?.direction()? }
@@ -108,17 +109,19 @@ fn or_point(light: Light, value: Value, camera: Vec3) -> Light {
     }
 }
 
-fn point(value: Value) -> Result<Emitter, LoadError> {
-    let table = value.table(&["position", "falloff"])?;
+fn point(value: Value, keys: &[&str]) -> Result<Emitter, LoadError> {
+    let table = value.table(keys)?;
     Ok(Emitter::Point {
         position: table.need("position", "[0, 5, 0]")?.vector()?,
         falloff: falloff(table.get("falloff"))?,
     })
 }
 
-/// A point light that shines into a cone. Its light is full up to `angle - edge` from the axis, and ends at `angle`.
-fn spot(value: Value) -> Result<Emitter, LoadError> {
-    let table = value.table(&["position", "direction", "angle", "edge", "falloff"])?;
+const SPOT_KEYS: [&str; 5] = ["position", "direction", "angle", "edge", "falloff"];
+
+/// The cone of a spot light. Its light is full up to `angle - edge` from the axis, and ends at `angle`.
+fn cone(value: Value) -> Result<Cone, LoadError> {
+    let table = value.table(&SPOT_KEYS)?;
     let angle = table.need("angle", "30")?;
     let degrees = angle.number_that("above 0, up to 180 degrees", |angle| 0.0 < angle && angle <= 180.0)?;
     let edge = table.get("edge").map_or(Ok(0.0), |edge| {
@@ -126,11 +129,10 @@ fn spot(value: Value) -> Result<Emitter, LoadError> {
     })?;
     // At 180 degrees the cone is the whole sphere, also for a cosine that is rounded to less than -1.
     let cosine = |degrees: f32| if degrees == 180.0 { f32::MIN } else { degrees.to_radians().cos() };
-    Ok(Emitter::Spot {
-        position: table.need("position", "[0, 5, 0]")?.vector()?,
-        direction: table.need("direction", "[0, -1, 0]")?.direction()?,
-        cosines: (cosine(degrees - edge), cosine(degrees)),
-        falloff: falloff(table.get("falloff"))?,
+    Ok(Cone {
+        axis: table.need("direction", "[0, -1, 0]")?.direction()?,
+        full: cosine(degrees - edge),
+        none: cosine(degrees),
     })
 }
 

@@ -71,7 +71,7 @@ fn distance_before_plane(normal: DVec3, direction: Vec3, distance: f32, point: V
 pub fn area_of(light: &Light) -> Option<&AreaShape> {
     match &light.emitter {
         Emitter::Area { shape, .. } => Some(shape),
-        Emitter::Point { .. } | Emitter::Spot { .. } | Emitter::Directional { .. } => None,
+        Emitter::Point { .. } | Emitter::Directional { .. } => None,
     }
 }
 

@@ -136,8 +136,8 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
 
 fn light_name(scene: &Scene, light: usize) -> String {
     let kind = match &scene.lights[light].emitter {
+        Emitter::Point { .. } if scene.lights[light].cone.is_some() => "spot",
         Emitter::Point { .. } => "point",
-        Emitter::Spot { .. } => "spot",
         Emitter::Directional { .. } => "directional",
         Emitter::Area { shape: AreaShape::Rectangle { .. }, .. } => "rectangle",
         Emitter::Area { shape: AreaShape::Disk(_), .. } => "disk",

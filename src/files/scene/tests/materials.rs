@@ -45,7 +45,7 @@ fn lights_arrive_as_written() {
          [[lights]]\narea = { disk = { center = [0, 1, 0], normal = [0, 0, 2], radius = 3 } }\n\
          [[lights]]\narea = { sphere = { center = [0, 1, 0], radius = 3 }, falloff = 'inverse_square' }\n",
     );
-    let light = |emitter| Light { emitter, color: Vec3::ONE, intensity: 1.0, shadows: true };
+    let light = |emitter| Light { emitter, color: Vec3::ONE, intensity: 1.0, shadows: true, cone: None };
     let (center, radius, none, square) = (Vec3::Y, 3.0, Falloff::None, Falloff::InverseSquare);
     let point = Emitter::Point { position: Vec3::new(1.0, 2.0, 3.0), falloff: square };
     assert_eq!(scene.lights[0], Light { intensity: 2.0, ..light(point) });

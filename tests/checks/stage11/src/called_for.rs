@@ -22,7 +22,7 @@ fn plane() -> Shape {
 
 fn light(color: Vec3) -> Light {
     let emitter = Emitter::Point { position: vec3(0.0, 5.0, 0.0), falloff: Falloff::None };
-    Light { emitter, color, intensity: 1.0, shadows: true }
+    Light { emitter, color, intensity: 1.0, shadows: true, cone: None }
 }
 
 fn diffuse(color: Vec3) -> Material {

@@ -200,7 +200,7 @@ fn drawn_lights() -> impl Strategy<Value = (LightQuery, LightEffects)> + 'static
                 Dark::Black => (Vec3::ZERO, intensity, LightEffects::default()),
                 Dark::WithoutIntensity => (color, 0.0, LightEffects::default()),
             };
-            let light = Light { emitter, color, intensity, shadows };
+            let light = Light { emitter, color, intensity, shadows, cone: None };
             let quality = Quality { light_samples, ..Quality::default() };
             (LightQuery { light, quality }, expected)
         },

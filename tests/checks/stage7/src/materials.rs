@@ -75,6 +75,14 @@ fn recorded() -> Vec<(MaterialQuery, MaterialEffects)> {
         (Material { mirror: red, ..glass(blue, exact) }, 0, nothing()),
         (glass(Vec3::ZERO, schlick), 1, nothing()),
         (glass(Vec3::ZERO, exact), 1, nothing()),
+        (Material { coat: 1.5, ..black() }, 1, mirrors()),
+        (Material { coat: 0.75, ..black() }, 2, mirrors()),
+        (Material { coat: 1.5, ..black() }, 0, nothing()),
+        (
+            Material { coat: 1.5, roughness: rough, ..diffuse(red) },
+            1,
+            MaterialEffects { lights: vec![0, 3], ..blurs(mirrors()) },
+        ),
         (Material { roughness: rough, ..black() }, 1, nothing()),
         (Material { roughness: rough, ..diffuse(red) }, 1, lit(&[0, 3])),
         (Material { roughness: rough, ..mirror(red) }, 1, blurs(mirrors())),
@@ -238,6 +246,7 @@ fn material_mistakes(
              faint light",
         ),
         (!shown && (mirror || transmission), "with max_depth 0 a surface spawns no secondary rays"),
+        (mirror && !transmission && material.coat != 1.0 && shown, "a coat, which is not 1, reflects rays"),
         (
             mirror && !transmission && material.mirror == Vec3::ZERO && shown,
             "with fresnel, a material reflects if its transmission is not 0, and only then",
@@ -319,7 +328,7 @@ fn describe(query: &MaterialQuery) -> String {
     let lights: Vec<String> = query.lights.iter().map(|light| light.radiance().paste()).collect();
     format!(
         "material_effects of ambient {}, diffuse {}, specular {}, mirror {}, transmission {}, index \
-         {},\nfresnel {:?}, roughness {}, texture {:?}, max_depth {},\nunder lights of radiance [{}]",
+         {},\nfresnel {:?}, roughness {}, coat {}, texture {:?}, max_depth {},\nunder lights of radiance [{}]",
         m.ambient,
         m.diffuse,
         m.specular,
@@ -328,6 +337,7 @@ fn describe(query: &MaterialQuery) -> String {
         m.index_of_refraction,
         m.fresnel,
         m.roughness,
+        m.coat,
         m.texture,
         query.quality.max_depth,
         lights.join(", ")

@@ -20,7 +20,9 @@ fn query(material: Material, n_lights: usize, quality: Quality) -> BoundQuery {
     scene.lights = vec![light(Vec3::ONE, 1.0); n_lights];
     let material = &scene.materials[1];
     let through = material.transmission != Vec3::ZERO;
-    let mirror = material.mirror != Vec3::ZERO || (through && material.fresnel != Fresnel::None);
+    let mirror = material.mirror != Vec3::ZERO
+        || (through && material.fresnel != Fresnel::None)
+        || material.coat != 1.0;
     let takes = MaterialEffects {
         lights: (0..n_lights).collect(),
         mirror,
@@ -209,6 +211,7 @@ const OF_ONE_RAY: &str = "you compare the weight of a single ray with min_contri
 const NOT_DIVIDED: &str =
     "each of the four rays has a quarter of the weight: divide the weight by glossy_samples at each level";
 const NO_FRESNEL: &str = "with fresnel, the reflection weighs up to mirror + transmission, which is 1 here";
+const NO_COAT: &str = "a coat can reflect all light: its reflection weighs up to 1";
 const LAST_MATERIAL: &str =
     "you use the last material: a hit has one material, so take the maximum over the materials";
 const SUM_OF_RAYS: &str = "you add up the rays of all materials: a hit has one material, so take the maximum";
@@ -223,6 +226,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
     let rough = Material { roughness: 0.5, mirror: Vec3::ONE, ..Material::default() };
     let glass = Material { transmission: Vec3::ONE, fresnel: Fresnel::Exact, ..Material::default() };
     let half = Material { mirror: grey, transmission: grey, fresnel: Fresnel::Exact, ..Material::default() };
+    let coated = Material { coat: 1.5, ..Material::default() };
     judge_pixel(
         trial,
         vec![
@@ -287,6 +291,12 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
                     (counts(1, 85, 84, 0), OF_ONE_RAY),
                     (counts(1, 101, 100, 0), ONE_PER_HIT),
                 ],
+            },
+            BoundedScene {
+                what: "one pixel, a coat over paint, max_depth 2, min_contribution 3/4",
+                query: query(coated, 1, parameters(2, 0.75)),
+                expected: counts(1, 3, 2, 0),
+                wrong: &[(counts(1, 1, 0, 0), NO_COAT)],
             },
             BoundedScene {
                 what: "one pixel, glass with fresnel, max_depth 2",

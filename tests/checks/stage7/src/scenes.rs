@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 pub(super) fn light(color: Vec3, intensity: f32) -> Light {
     let emitter = Emitter::Point { position: vec3(0.0, 5.0, 0.0), falloff: Falloff::None };
-    Light { emitter, color, intensity, shadows: true }
+    Light { emitter, color, intensity, shadows: true, cone: None }
 }
 
 pub(super) fn sphere_light(color: Vec3) -> Light {
