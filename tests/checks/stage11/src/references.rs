@@ -3,7 +3,7 @@
 //! E is the mean radiance that arrives over directions with density `cos θ / π`: the irradiance divided by π. A surface of
 //! diffuse reflectance kd sends kd E back.
 
-use crate::rooms::{Form, Found, Paint, Room, Wall, follow};
+use crate::rooms::{Form, Found, Paint, Room, Wall, follow, follow_alive};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::nasty;
@@ -61,7 +61,7 @@ pub(super) fn paths_in_a_furnace_count_every_bounce(trial: &Trial<'_>) -> CheckR
         nasty::directions().iter().map(|to| (DVec3::ZERO, to.as_dvec3().normalize())).collect();
     let mut outcomes = Vec::new();
     for depth in [0, 1, 2, 3, 5, 12] {
-        let found = follow(trial.kit, trial.seed, &room, &starts, depth)?;
+        let found = follow_alive(trial.kit, trial.seed, &room, &starts, depth)?;
         for light in &found.light {
             let sum = |n: u32| {
                 DVec3::from_array(albedo.as_dvec3().to_array().map(|albedo| powers(albedo, n)))
@@ -154,7 +154,8 @@ pub(super) fn paths_of_a_white_corner_lose_nothing(trial: &Trial<'_>) -> CheckRe
             Wall::new(Form::Plane(DVec3::ZERO, second), paint),
         ];
         let room = Room { walls, sky: Vec3::ONE };
-        let found = follow(trial.kit, trial.seed, &room, &[(corner_eye(angle), DVec3::NEG_Y); 256], 500)?;
+        let found =
+            follow_alive(trial.kit, trial.seed, &room, &[(corner_eye(angle), DVec3::NEG_Y); 256], 500)?;
         for light in &found.light {
             // The roundings of a weight per bounce.
             if (*light - 1.0).abs().max_element() <= 1e-4 {

@@ -4,7 +4,7 @@ use checks::broken::Broken;
 use checks::statistics::pairs;
 use glam::{DVec3, Vec3};
 use raykata::emitter::{AreaEmitter, EmitterShape};
-use raykata::kit::{Bounce, Kit, SecondaryRay, StepQuery, Surface};
+use raykata::kit::{Bounce, Kit, RouletteQuery, SecondaryRay, StepQuery, Surface};
 use raykata::light_path::{
     ChosenEmitter, LightCandidate, PathState, PathStep, PathVertex, Scattering, StepNumbers,
 };
@@ -219,6 +219,29 @@ pub(super) fn follow(
     starts: &[(DVec3, DVec3)],
     max_depth: u32,
 ) -> Result<Found, Broken> {
+    follow_with(kit, seed, room, starts, max_depth, false)
+}
+
+/// The same for rooms with a channel that loses no light, as if no roulette were played: a path whose weight is 1 survives the
+/// number 1/2 by every rule that is allowed, and the factor is taken out of its weight.
+pub(super) fn follow_alive(
+    kit: &dyn Kit,
+    seed: u64,
+    room: &Room,
+    starts: &[(DVec3, DVec3)],
+    max_depth: u32,
+) -> Result<Found, Broken> {
+    follow_with(kit, seed, room, starts, max_depth, true)
+}
+
+fn follow_with(
+    kit: &dyn Kit,
+    seed: u64,
+    room: &Room,
+    starts: &[(DVec3, DVec3)],
+    max_depth: u32,
+    stays_alive: bool,
+) -> Result<Found, Broken> {
     let start = |(index, (origin, direction)): (usize, &(DVec3, DVec3))| {
         let state = PathState {
             origin: origin.as_vec3(),
@@ -257,12 +280,26 @@ pub(super) fn follow(
                 path: path.state,
                 vertex: room.vertex(wall, point, path.direction, u[3].x),
                 max_depth,
-                numbers: StepNumbers { light: u[0], bsdf: u[1].extend(u[2].x), roulette: u[2].y },
+                numbers: StepNumbers {
+                    light: u[0],
+                    bsdf: u[1].extend(u[2].x),
+                    roulette: if stays_alive { 0.5 } else { u[2].y },
+                },
             });
             met.push((path, point));
         }
         // Take one step with each path.
-        let steps = kit.step(&queries);
+        let mut steps = kit.step(&queries);
+        if stays_alive {
+            let weights = |(step, query): (&PathStep, &StepQuery)| {
+                let weight = step.next.as_ref().map_or(Vec3::ONE, |next| next.weight);
+                RouletteQuery { weight, bounce: query.path.bounces + 1, u: 0.5 }
+            };
+            let factors = kit.survives(&steps.iter().zip(&queries).map(weights).collect::<Vec<_>>());
+            for (step, factor) in steps.iter_mut().zip(factors).filter(|(_, factor)| *factor > 0.0) {
+                step.next.iter_mut().for_each(|next| next.weight /= factor);
+            }
+        }
         found.steps += queries.len();
         paths = Vec::with_capacity(met.len());
         for (((path, point), query), step) in met.into_iter().zip(&queries).zip(steps) {

@@ -83,10 +83,6 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[f32]) -> CheckResult {
     Err(Broken::with_texts(input, yours, expected, "the mean over u").explained_by([
         (factors.iter().any(|factor| factor.is_nan()), "you return NaN"),
         (
-            largest > LEAST_CAP && share < least - slack && near(mean, 1.0),
-            "of paths whose weight is 0.95 or more, at most one in twenty may end",
-        ),
-        (
             share == 1.0 && near(mean, 1.0) && bounce == 3,
             "your roulette begins too late: it begins at bounce 3",
         ),
@@ -110,6 +106,10 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[f32]) -> CheckResult {
         (near(share, green), "you compare u with the luminance of the weight: take the largest channel"),
         (is_one_factor && near(factor * largest * largest, 1.0), "you divide by the probability twice"),
         (is_one_factor && near(factor, largest), "you multiply by the probability to survive: divide by it"),
+        (
+            is_one_factor && near(mean, 1.0) && 0.75 < share && share < least - slack,
+            "too many bright paths end: of those whose weight is 0.95 or more, at most one in twenty may end",
+        ),
     ]))
 }
 

@@ -215,6 +215,7 @@ pub(super) fn steps_end_at_the_greatest_depth(trial: &Trial<'_>) -> CheckResult 
     let strategy =
         (nasty::unit(), 0..8u32, 0..8u32, numbers()).prop_map(|(normal, bounces, max_depth, numbers)| {
             let vertex = vertex(Vec3::ONE, normal, normal, Vec3::ONE);
+            let numbers = StepNumbers { roulette: 0.5, ..numbers };
             StepQuery { path: path(Vec3::ONE, bounces, f32::INFINITY, &vertex), vertex, max_depth, numbers }
         });
     trial.forall(300, strategy, |queries| {

@@ -296,7 +296,13 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
                 what: "one pixel, a coat over paint, max_depth 2, min_contribution 3/4",
                 query: query(coated, 1, parameters(2, 0.75)),
                 expected: counts(1, 3, 2, 0),
-                wrong: &[(counts(1, 1, 0, 0), NO_COAT)],
+                wrong: &[
+                    (counts(1, 1, 0, 0), NO_COAT),
+                    (counts(1, 1, 2, 0), FIRST_HITS),
+                    (counts(1, 2, 2, 0), LAST_HITS),
+                    (counts(1, 4, 3, 0), ONE_MORE),
+                    (counts(1, 2, 1, 0), ONE_LESS),
+                ],
             },
             BoundedScene {
                 what: "one pixel, glass with fresnel, max_depth 2",
