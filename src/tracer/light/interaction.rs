@@ -156,7 +156,7 @@ fn on_sphere<F: StudentFunctions>(ray: &Ray, t: f32, sphere: &Sphere) -> Point {
 
 /// The hit at `t`, counted from the centre of the sphere. Single precision has rounded `t` by up to half a unit in its last
 /// place. Where that hides the root of the sphere's equation, this takes the root; a `t` that is wrong by more stays wrong.
-fn from_center(ray: &Ray, t: f32, sphere: &Sphere) -> Vec3 {
+pub(super) fn from_center(ray: &Ray, t: f32, sphere: &Sphere) -> Vec3 {
     let (origin, direction) = (ray.origin.as_dvec3() - sphere.center.as_dvec3(), ray.direction.as_dvec3());
     // Find the middle of the chord, and half of the chord, both in lengths of the direction.
     let length_squared = direction.length_squared();
@@ -377,7 +377,9 @@ pub fn texture_coordinates<F: StudentFunctions>(
             }
             let Some(image) = primitive.image.get() else { return middle };
             match geometry_at::<F>(world, primitive, ray.time) {
-                Geometry::Sphere(sphere) => around_sphere(world.sphere_axes[image] * (point - sphere.center)),
+                Geometry::Sphere(sphere) => {
+                    around_sphere(world.sphere_axes[image] * from_center(ray, hit.t, &sphere))
+                }
                 Geometry::Triangle(triangle) | Geometry::OneSided(triangle) => {
                     uv_on_triangle(world, image, barycentric::<F>(tests, ray, &triangle, hit.detail))
                 }
