@@ -26,7 +26,7 @@ pub struct Material {
     pub mirror: Vec3,
     /// `Kr`, the weight of the light along the refracted ray (stage 5).
     pub transmission: Vec3,
-    /// The index of refraction inside, above 0; with 1 light is not bent (stage 5). Outside it is 1.
+    /// The index of refraction inside, divided by the one outside, above 0; with 1 light is not bent (stage 5).
     pub index_of_refraction: f32,
     /// How reflection and transmission depend on the angle (stage 5).
     pub fresnel: Fresnel,

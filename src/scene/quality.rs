@@ -409,5 +409,6 @@ settings! {
     precision: Precision = Precision::Single, Name, "Precision of tests against triangles and spheres";
     grid_resolution: u32 = 0, Whole(0..=MAX_GRID), "Cells of a grid along its longest side; 0 takes the number of the formula";
     ray_offset: f32 = 0.0, Number(0.0..=f32::MAX), "How far above a surface its rays start; 0 takes the error bound of the point";
+    lift_shadow_rays: bool = false, Truth, "Whether shadow rays of smooth meshes start on the curved surface that the normals describe";
     kd_heuristics: KdHeuristics = KdHeuristics::default(), Switches, "Heuristics that the builder of a kd-tree follows";
 }

@@ -53,7 +53,12 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
         let pyramids = plan.mipmaps.then(|| Pyramids::new(world, &plan.effects));
         let indirect = plan.paths.as_ref().map(|paths| IndirectLight::new(scene, world, paths));
         let camera = CameraSampler::new(scene, &plan);
-        let surface_options = SurfaceOptions { tests: plan.tests, smooth: plan.smooth, facing: plan.facing };
+        let surface_options = SurfaceOptions {
+            tests: plan.tests,
+            smooth: plan.smooth,
+            facing: plan.facing,
+            lift: job.scene.quality.lift_shadow_rays,
+        };
         let limits = Limits { max_depth: quality.max_depth, min_contribution: quality.min_contribution };
         Frame { job, plan, camera, intersector, earlier_seconds, surface_options, pyramids, indirect, limits }
     }

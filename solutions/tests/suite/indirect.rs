@@ -53,22 +53,28 @@ fn furnace() -> Scene {
 
 #[test]
 fn a_furnace_has_the_light_of_all_bounces() {
-    for (depth, next_event) in [
-        (0, NextEvent::On),
-        (1, NextEvent::On),
-        (2, NextEvent::Off),
-        (3, NextEvent::On),
-        (3, NextEvent::Only),
-        (6, NextEvent::Off),
-        (12, NextEvent::On),
+    for (depth, next_event, brightness) in [
+        (0, NextEvent::On, 1.0),
+        (1, NextEvent::On, 1.0),
+        (2, NextEvent::Off, 1.0),
+        (3, NextEvent::On, 1.0),
+        (3, NextEvent::Only, 1.0),
+        // Light of any brightness that single precision holds, with room for sums and for the ratio of densities.
+        (3, NextEvent::Only, 1e35),
+        (3, NextEvent::Only, 1e-25),
+        (3, NextEvent::On, 1e35),
+        (3, NextEvent::On, 1e-30),
+        (6, NextEvent::Off, 1.0),
+        (12, NextEvent::On, 1.0),
     ] {
         let mut scene = furnace();
         let quality = &mut scene.quality;
         (quality.max_depth, quality.next_event) = (depth, next_event);
+        scene.materials[0].emission *= brightness;
         let rendering = render(&scene);
         let expected = 0.5 * (1.0 - 0.5f64.powi(depth as i32 + 1));
-        let (mean, error) = mean(channels(&rendering.film));
-        let case = format!("{mean} ± {error} and not {expected}: {:?}", (depth, next_event));
+        let (mean, error) = mean(channels(&rendering.film).map(|light| light / f64::from(brightness)));
+        let case = format!("{mean} ± {error} and not {expected}: {:?}", (depth, next_event, brightness));
         // A rounding of each of the bounces can add up where there is no noise.
         assert!((mean - expected).abs() <= LARGEST_SCORE * error + 1e-6, "{case}");
         let counts = rendering.counts;

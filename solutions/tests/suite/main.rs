@@ -11,6 +11,7 @@ mod digits;
 mod distribution;
 mod edges;
 mod frames;
+mod hard_cases;
 mod heckbert;
 mod indirect;
 mod instances;

@@ -11,7 +11,7 @@ use glam::Vec3;
 const FRESNEL: [(&str, Fresnel); 3] =
     [("none", Fresnel::None), ("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
 
-const KEYS: [&str; 13] = [
+const KEYS: [&str; 14] = [
     "ambient",
     "diffuse",
     "specular",
@@ -19,6 +19,7 @@ const KEYS: [&str; 13] = [
     "mirror",
     "transmission",
     "index_of_refraction",
+    "outside",
     "fresnel",
     "roughness",
     "emission",
@@ -80,6 +81,8 @@ fn material(value: Value, index: usize, textures: &Names) -> Result<Material, Lo
             "mirror" => material.mirror = value.color(at(MaterialColor::Mirror))?,
             "transmission" => material.transmission = value.color(at(MaterialColor::Transmission))?,
             "index_of_refraction" => material.index_of_refraction = value.positive()?,
+            // Divided out below, once all keys are read.
+            "outside" => {}
             "fresnel" => material.fresnel = value.choice(&FRESNEL)?,
             "roughness" => {
                 material.roughness = value.or_nothing(value.share()?, 1.0, "the material is smooth");
@@ -88,6 +91,15 @@ fn material(value: Value, index: usize, textures: &Names) -> Result<Material, Lo
             "coat" => material.coat = value.positive()?,
             "emission" => material.emission = value.color(at(MaterialColor::Emission))?,
             _ => material.texture = Some(textures.find(value)?),
+        }
+    }
+    // Snell's law and Fresnel's equations depend only on the ratio of the indices, so the ratio is all that the tracer needs.
+    if let Some(outside) = table.get("outside") {
+        material.index_of_refraction /= outside.positive()?;
+        if !(f32::MIN_POSITIVE..f32::INFINITY).contains(&material.index_of_refraction) {
+            return Err(outside
+                .error("`index_of_refraction` divided by `outside` does not fit into 32 bits")
+                .help("indices of refraction of real media lie between 1 and 5"));
         }
     }
     if let Some(coat) = table.get("coat").filter(|_| material.transmission != Vec3::ZERO) {

@@ -22,6 +22,8 @@ pub struct SurfaceInteraction {
     pub entering: bool,
     /// Index of the material at the point in `World::materials`.
     pub material: usize,
+    /// From the point to the curved surface of a smooth mesh, if shadow rays start there.
+    lift: Option<Vec3>,
 }
 
 /// How hits become surface interactions: which tests and which normals are used.
@@ -33,6 +35,8 @@ pub struct SurfaceOptions {
     pub smooth: bool,
     /// Whether normals are turned to the side from which the ray comes.
     pub facing: bool,
+    /// Whether shadow rays of smooth meshes start on the curved surface that the normals describe.
+    pub lift: bool,
 }
 
 /// A point of a shape, before it is known from which side it is seen.
@@ -44,9 +48,25 @@ struct Point {
     normal: Vec3,
     /// The interpolated normal of a smooth mesh.
     smooth: Option<Vec3>,
+    /// From the point to the curved surface of a smooth mesh, if shadow rays start there.
+    lift: Option<Vec3>,
 }
 
 impl SurfaceInteraction {
+    /// The interaction as light from `[[lights]]` meets it: on the curved surface of a smooth mesh, with the shading normal for both
+    /// normals, if shadow rays start there. Otherwise `None`, for the interaction itself.
+    ///
+    /// The triangle of a smooth mesh faces away from a low light, or lies in the shadow of its neighbours, where the curved
+    /// surface is still lit: the border of the light (the shadow terminator) follows the edges of the triangles.
+    #[inline(always)]
+    pub fn lifted(&self) -> Option<SurfaceInteraction> {
+        let Surface { point, error, shading_normal, .. } = self.surface;
+        let point = point + self.lift?;
+        let error = error + UNIT_ROUNDOFF * point.abs();
+        let surface = Surface { point, error, geometric_normal: shading_normal, shading_normal };
+        Some(SurfaceInteraction { surface, lift: None, ..*self })
+    }
+
     /// The radiance that the surface emits towards the ray.
     #[inline(always)]
     pub fn emission(&self, material: &Material) -> Vec3 {
@@ -86,14 +106,15 @@ impl SurfaceInteraction {
             }
             Target::Instance(outer, inner) => in_instance::<F>(world, options, ray, outer, inner, hit.detail),
         };
-        let Point { point, error, normal, smooth } = point;
+        let Point { point, error, normal, smooth, lift } = point;
         let geometric_normal = if options.facing { F::face_forward(normal, ray.direction) } else { normal };
         let shading_normal = match smooth {
             Some(_) => F::shading_normal(geometric_normal, smooth, ray.direction),
             None => geometric_normal,
         };
         let surface = Surface { point, error, geometric_normal, shading_normal };
-        SurfaceInteraction { surface, entering: normal.dot(ray.direction) < 0.0, material: material as usize }
+        let entering = normal.dot(ray.direction) < 0.0;
+        SurfaceInteraction { surface, entering, material: material as usize, lift }
     }
 }
 
@@ -125,11 +146,28 @@ pub fn inside(world: &World, outer: u32, inner: u32) -> (&Instance, &Primitive, 
 }
 
 fn on_sphere<F: StudentFunctions>(ray: &Ray, t: f32, sphere: &Sphere) -> Point {
-    // Project the hit onto the sphere, with five roundings of the offset from the centre and one of the sum.
-    let normal = F::sphere_normal(sphere.center, ray.at(t));
+    // Project the hit onto the sphere, with five roundings of the offset from the centre and one of the sum. In the sphere's
+    // own frame the offset has all its digits, however far away the sphere is.
+    let normal = F::sphere_normal(Vec3::ZERO, from_center(ray, t, sphere));
     let point = sphere.center + sphere.radius * normal;
     let error = gamma(5) * (sphere.radius * normal).abs() + gamma(1) * point.abs();
-    Point { point, error, normal, smooth: None }
+    Point { point, error, normal, smooth: None, lift: None }
+}
+
+/// The hit at `t`, counted from the centre of the sphere. Single precision has rounded `t` by up to half a unit in its last
+/// place. Where that hides the root of the sphere's equation, this takes the root; a `t` that is wrong by more stays wrong.
+pub(super) fn from_center(ray: &Ray, t: f32, sphere: &Sphere) -> Vec3 {
+    let (origin, direction) = (ray.origin.as_dvec3() - sphere.center.as_dvec3(), ray.direction.as_dvec3());
+    // Find the middle of the chord, and half of the chord, both in lengths of the direction.
+    let length_squared = direction.length_squared();
+    let middle = -origin.dot(direction) / length_squared;
+    let beside = (origin + middle * direction).length_squared();
+    let half = ((f64::from(sphere.radius).powi(2) - beside).max(0.0) / length_squared).sqrt();
+    // Take the first root that is not before `t`, up to the rounding.
+    let rounding = f64::from(UNIT_ROUNDOFF) * f64::from(t).abs();
+    let (least, most) = (f64::from(t) - rounding, f64::from(t) + rounding);
+    let root = if middle - half >= least { middle - half } else { middle + half };
+    (origin + root.max(least).min(most) * direction).as_vec3()
 }
 
 #[inline(always)]
@@ -155,14 +193,31 @@ fn on_triangle<F: StudentFunctions>(
     }
     let normal = normal_of(triangle);
     // Interpolate the vertex normals, in a moving triangle between times 0 and 1 as well.
-    let smooth = primitive.normals.get().filter(|_| options.smooth).map(|index| {
-        let at = |index: usize| F::interpolate(weights, world.normals[index]);
-        match primitive.end.get() {
-            None => at(index),
-            Some(_) => at(index).lerp(at(index + 1), ray.time),
-        }
-    });
-    Point { point, error, normal, smooth }
+    let corner_normals =
+        primitive.normals.get().filter(|_| options.smooth).map(|index| match primitive.end.get() {
+            None => world.normals[index],
+            Some(_) => [0, 1, 2].map(|i| world.normals[index][i].lerp(world.normals[index + 1][i], ray.time)),
+        });
+    let smooth = corner_normals.map(|normals| F::interpolate(weights, normals));
+    let side = if normal.dot(ray.direction) > 0.0 { -normal } else { normal };
+    let lift =
+        corner_normals.filter(|_| options.lift).map(|normals| lift(point, weights, triangle, normals, side));
+    Point { point, error, normal, smooth, lift }
+}
+
+/// From `point` of a triangle with the unit vectors `normals` at its corners to the curved surface that they describe, on the side
+/// of `side`: the mean of the projections of `point` onto the planes through the corners, each along its normal. Only planes
+/// above the point count, so a surface that is hollow on this side stays where it is.
+///
+/// Source: Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021.
+#[cold]
+fn lift(point: Vec3, weights: Vec3, triangle: &Triangle, normals: [Vec3; 3], side: Vec3) -> Vec3 {
+    let corners = [triangle.a, triangle.b, triangle.c];
+    let onto_plane = |corner: usize| {
+        let normal = normals[corner] * normals[corner].dot(side).signum();
+        weights[corner] * (corners[corner] - point).dot(normal).max(0.0) * normal
+    };
+    onto_plane(0) + onto_plane(1) + onto_plane(2)
 }
 
 /// A hit with a smaller barycentric coordinate may lie on an edge up to rounding.
@@ -237,7 +292,7 @@ fn on_plane(ray: &Ray, t: f32, plane: &Plane) -> Point {
     let offset = rough - plane.point;
     let point = rough - offset.dot(normal) * normal;
     let error = gamma(8) * (point.abs() + plane.point.abs() + Vec3::splat(offset.abs().max_element()));
-    Point { point, error, normal: plane.normal, smooth: None }
+    Point { point, error, normal: plane.normal, smooth: None, lift: None }
 }
 
 #[cold]
@@ -254,7 +309,7 @@ fn on_solid<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, hit: &Hit, solid:
     let error = 4.0 * UNIT_ROUNDOFF * (hit.t * own.direction).abs() + 2.0 * UNIT_ROUNDOFF * point.abs();
     // Keep away from the edges, as on a triangle.
     let point = point + 4.0 * error.length() * solid.shape.off_the_edges(point, normal);
-    to_world::<F>(Point { point, error, normal, smooth: None }, placement)
+    to_world::<F>(Point { point, error, normal, smooth: None, lift: None }, placement)
 }
 
 /// The normal that the test of the solid found, in the space of the solid.
@@ -291,6 +346,7 @@ fn to_world<F: StudentFunctions>(own: Point, placement: &Placement) -> Point {
         error: in_world.as_vec3() + UNIT_ROUNDOFF * point.abs(),
         normal: F::normal_to_world(own.normal, &placement.to_object),
         smooth: own.smooth.map(|normal| F::normal_to_world(normal, &placement.to_object)),
+        lift: own.lift.map(|lift| placement.to_world.transform_vector3(lift)),
     }
 }
 
@@ -321,7 +377,9 @@ pub fn texture_coordinates<F: StudentFunctions>(
             }
             let Some(image) = primitive.image.get() else { return middle };
             match geometry_at::<F>(world, primitive, ray.time) {
-                Geometry::Sphere(sphere) => around_sphere(world.sphere_axes[image] * (point - sphere.center)),
+                Geometry::Sphere(sphere) => {
+                    around_sphere(world.sphere_axes[image] * from_center(ray, hit.t, &sphere))
+                }
                 Geometry::Triangle(triangle) | Geometry::OneSided(triangle) => {
                     uv_on_triangle(world, image, barycentric::<F>(tests, ray, &triangle, hit.detail))
                 }

@@ -9,7 +9,7 @@ use super::record::Record;
 use super::rough_lobe::RoughLobe;
 use super::whitted::Scratch;
 use crate::count::{Event, Tally};
-use crate::emitter::{AreaEmitter, EmitterSample};
+use crate::emitter::EmitterSample;
 use crate::kit::{Bounce, LightSample, Limits, RayKind, SecondaryRay, StudentFunctions};
 use crate::light_path::{
     ChosenEmitter, LightCandidate, Lobe, NextRay, PathState, PathVertex, Scattering, ShadowQuestion,
@@ -26,25 +26,27 @@ use std::borrow::Cow;
 /// The limits of `scatter` for a path, whose length `step` limits.
 const UNLIMITED: Limits = Limits { max_depth: u32::MAX, min_contribution: 0.0 };
 
-/// The factor by which light that is only sampled is scaled, with its density, a power of two. So one sample adds what it adds
-/// otherwise, and its weight in multiple importance sampling is 1, as if the density of diffuse rays were 0.
+/// The factor, a power of two, by which the density of light that is only sampled is scaled. So its weight in multiple
+/// importance sampling is 1, as if the density of diffuse rays were 0. The light of its samples is scaled back by the same
+/// factor. The radiance cannot be scaled in its place: that of bright emitters would be infinite.
+///
+/// A scaled density is infinite, and its light is lost, if the emitter covers less than 1e-29 steradians: directions in single
+/// precision, 6e-8 apart, do not tell such an emitter from a point.
 const DENSITY_SCALE: f32 = 4_294_967_296.0;
 
 /// The number of bounces at which the student's `survives` begins to end paths.
 const ROULETTE_BEGINS: u32 = 3;
 
-/// The same light with a density and a radiance that are [`DENSITY_SCALE`] times as large.
+/// The same light with a density that is [`DENSITY_SCALE`] times as large.
 fn scaled_up(light: LightCandidate) -> LightCandidate {
     match light {
-        LightCandidate::Environment(sample) => LightCandidate::Environment(EmitterSample {
-            radiance: DENSITY_SCALE * sample.radiance,
-            pdf: DENSITY_SCALE * sample.pdf,
-            ..sample
-        }),
-        LightCandidate::Emitter(ChosenEmitter { emitter, probability }) => {
-            let emitter = AreaEmitter { radiance: DENSITY_SCALE * emitter.radiance, ..emitter };
-            LightCandidate::Emitter(ChosenEmitter { emitter, probability: DENSITY_SCALE * probability })
+        LightCandidate::Environment(sample) => {
+            LightCandidate::Environment(EmitterSample { pdf: DENSITY_SCALE * sample.pdf, ..sample })
         }
+        LightCandidate::Emitter(chosen) => LightCandidate::Emitter(ChosenEmitter {
+            probability: DENSITY_SCALE * chosen.probability,
+            ..chosen
+        }),
     }
 }
 
@@ -192,7 +194,10 @@ impl<F: StudentFunctions> Frame<'_, F> {
             color += step.light;
             // Trace the shadow ray to the light that was sampled, which the diffuse and the rough lobe share.
             let in_lobe = self.light_in_lobe(indirect, &here);
-            for question in merge_shadow_rays(step.shadow, in_lobe).into_iter().flatten() {
+            for mut question in merge_shadow_rays(step.shadow, in_lobe).into_iter().flatten() {
+                if indirect.samples_only {
+                    question.light *= DENSITY_SCALE;
+                }
                 color += self.unoccluded(&question, &path, &here, scratch, |ray, blocked| {
                     record.shadow(&path, here.number, ray, blocked);
                 });

@@ -10,7 +10,7 @@
 //! Akenine-Möller et al., "Texture level of detail strategies for real-time ray tracing", Ray Tracing Gems, 2019 (ray cones);
 //! McCormack et al., "Feline: fast elliptical lines for anisotropic texture mapping", 1999 (several reads along the longer axis).
 
-use super::interaction::{SurfaceInteraction, inside};
+use super::interaction::{SurfaceInteraction, from_center, inside};
 use crate::count::{Event, Tally};
 use crate::effects::Effects;
 use crate::kit::StudentFunctions;
@@ -198,8 +198,9 @@ pub fn uv_change<F: StudentFunctions>(
             let Some(image) = primitive.image.get() else { return Vec2::ZERO };
             match geometry_at::<F>(world, primitive, ray.time) {
                 Geometry::Sphere(sphere) => {
-                    let uv = |point: Vec3| around_sphere(world.sphere_axes[image] * (point - sphere.center));
-                    around_the_seam(uv(point + 0.5 * offset) - uv(point - 0.5 * offset))
+                    let own = from_center(ray, hit.t, &sphere);
+                    let uv = |own: Vec3| around_sphere(world.sphere_axes[image] * own);
+                    around_the_seam(uv(own + 0.5 * offset) - uv(own - 0.5 * offset))
                 }
                 Geometry::Triangle(triangle) | Geometry::OneSided(triangle) => {
                     on_triangle(&triangle, world.uvs[image], offset)

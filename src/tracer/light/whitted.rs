@@ -173,6 +173,8 @@ impl<F: StudentFunctions> Frame<'_, F> {
         scratch: &mut Scratch<T>,
         record: &mut impl Record,
     ) -> Vec3 {
+        let lifted = at.lifted();
+        let at = lifted.as_ref().unwrap_or(at);
         self.sample_lights(path, at, scratch);
         self.shade(path, at, material, scratch, |ray, blocked| record.shadow(path, number, ray, blocked))
     }

@@ -111,6 +111,7 @@ fn without_sampling(scene: &Scene) -> Scene {
             next_event: default.next_event,
             clamp: default.clamp,
             ray_offset: default.ray_offset,
+            lift_shadow_rays: default.lift_shadow_rays,
             ..scene.quality
         },
         ..scene.clone()

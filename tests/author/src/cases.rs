@@ -29,8 +29,8 @@ pub struct HardCase {
     /// The kit's own tests that cover it, by the names of their functions.
     #[serde(default)]
     pub tests: Vec<String>,
-    /// The later stage in which it can first occur, if that stage does not exist yet.
-    pub awaits: Option<u8>,
+    /// Why no check and no test covers it.
+    pub uncovered: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -56,11 +56,11 @@ pub fn list(root: &Path) -> Result<()> {
         for name in case.checks.iter().chain(&case.tests) {
             println!("      {name}");
         }
-        if let Some(stage) = case.awaits {
-            println!("      waits for stage {stage}");
+        if let Some(reason) = &case.uncovered {
+            println!("      not covered: {reason}");
         }
     }
-    let waiting = cases.iter().filter(|case| case.awaits.is_some()).count();
-    println!("\n{} cases, {waiting} of which wait for later stages", cases.len());
+    let uncovered = cases.iter().filter(|case| case.uncovered.is_some()).count();
+    println!("\n{} cases, {uncovered} of which are not covered", cases.len());
     Ok(())
 }

@@ -40,7 +40,7 @@ fn every_setting_arrives() {
          [environment]\nbackground = [0, 0.5, 2]\nambient = 0.25\nindirect_light = true\n\
          [quality]\nsamples_per_pixel = 9\nlight_samples = 8\nglossy_samples = 7\ntexture_filter = 'mipmap'\nmax_depth = 0\n\
          min_contribution = 0\nnext_event = 'only'\nclamp = 10\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\ncopies = true\nsavings = { skip = false }\nkd_heuristics = { stop_at_overlap = false }\n\
-         triangle_method = 'inside_by_areas'\nsphere_method = 'geometric'\ngrid_resolution = 3\nray_offset = 0.5\n\
+         triangle_method = 'inside_by_areas'\nsphere_method = 'geometric'\ngrid_resolution = 3\nray_offset = 0.5\nlift_shadow_rays = true\n\
          sampler = 'jittered'\nprecision = 'double'\n",
     );
     let tone = Tone { exposure: -1.5, curve: ToneCurve::Aces };
@@ -75,6 +75,7 @@ fn every_setting_arrives() {
         precision: Precision::Double,
         grid_resolution: 3,
         ray_offset: 0.5,
+        lift_shadow_rays: true,
         kd_heuristics: KdHeuristics { stop_at_overlap: false, ..KdHeuristics::default() },
     };
     assert_eq!(scene.quality, expected);
