@@ -220,7 +220,9 @@ fn parts(line: &str) -> Vec<Part> {
         match parts.last_mut() {
             _ if word.is_empty() => {}
             Some(last)
-                if last.end + 1 == start && !(begins_number(word) && last.text.ends_with(is_end_of_cell)) =>
+                if last.end + 1 == start
+                    && !(begins_number(word.trim_start_matches('('))
+                        && last.text.ends_with(is_end_of_cell)) =>
             {
                 last.text += &format!(" {word}");
                 last.end = end;
@@ -288,8 +290,11 @@ fn without_times(text: &str) -> String {
         let words: Vec<&str> = line.split(' ').collect();
         for (index, word) in words.iter().enumerate() {
             let end = at + word.chars().count();
-            let unit = words.get(index + 1).map_or("", |unit| unit.trim_end_matches([',', '.', ';']));
-            if begins_number(word) && UNITS.contains(&unit) && !times.contains(&(end + 1 + unit.len())) {
+            let unit = words.get(index + 1).map_or("", |unit| unit.trim_end_matches([',', '.', ';', ')']));
+            if begins_number(word.trim_start_matches('('))
+                && UNITS.contains(&unit)
+                && !times.contains(&(end + 1 + unit.len()))
+            {
                 blank(at, end);
             }
             at = end + 1;
