@@ -220,9 +220,7 @@ fn parts(line: &str) -> Vec<Part> {
         match parts.last_mut() {
             _ if word.is_empty() => {}
             Some(last)
-                if last.end + 1 == start
-                    && !(begins_number(word.trim_start_matches('('))
-                        && last.text.ends_with(is_end_of_cell)) =>
+                if last.end + 1 == start && !(begins_number(word) && last.text.ends_with(is_end_of_cell)) =>
             {
                 last.text += &format!(" {word}");
                 last.end = end;
