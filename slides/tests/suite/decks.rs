@@ -281,25 +281,3 @@ fn lines_of_rubric() -> String {
     }
     text
 }
-
-/// Runs every command that a slide quotes. This takes minutes, so it runs only with `CI_LONG=1`.
-#[test]
-fn quoted_outputs_are_those_of_their_commands() {
-    if std::env::var_os("CI_LONG").is_none() {
-        return println!("run only with CI_LONG=1");
-    }
-    let mut missing = Vec::new();
-    for (deck, source, quote) in quotes() {
-        let Some(words) = source.strip_prefix("cargo ") else { continue };
-        let output = std::process::Command::new(env!("CARGO"))
-            .current_dir(root())
-            .args(words.split_whitespace())
-            .output()
-            .expect("cargo starts");
-        let said = String::from_utf8_lossy(&output.stdout);
-        if let Some(line) = missing_line(&quote, &said) {
-            missing.push(format!("{deck}: `{source}` prints no such line: {line}"));
-        }
-    }
-    assert_eq!(missing, Vec::<String>::new());
-}

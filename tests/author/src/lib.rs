@@ -19,6 +19,7 @@ pub mod mutants;
 pub mod new_check;
 pub mod numbers;
 pub mod pictures;
+pub mod printed;
 #[cfg(target_os = "linux")]
 pub mod rehearsal;
 #[cfg(target_os = "linux")]

@@ -2,9 +2,10 @@
 //!
 //! A comment directly after a number gives it a name, and no reader of the page sees it: `417<!--=checks-->`. With numbers of
 //! stages, `105<!--=points 1-->` or `605<!--=points 1-6-->`, only these stages count. A comment on a line of its own names the
-//! table below it, up to the next blank line.
+//! table below it, up to the next blank line. A name with a colon is a number that a command [prints](printed).
 
 use crate::corpus::entry::{self, Claim, Entry};
+use crate::printed::{self, Printed};
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail, ensure};
 use checks::Check;
@@ -19,6 +20,34 @@ use std::path::{Path, PathBuf};
 
 /// The beginning of a comment that names a number or a table.
 const MARK: &str = "<!--=";
+
+impl Document {
+    /// A line for each line of the document whose numbers are stale: file, line, what stands there and what should.
+    pub fn stale(&self) -> Vec<String> {
+        let mut stale = Vec::new();
+        for ((yours, expected), line) in self.present.lines().zip(self.synced.lines()).zip(1..) {
+            if yours == expected {
+                continue;
+            }
+            // The words that differ are those between the common beginning and the common end.
+            let (yours, expected): (Vec<&str>, Vec<&str>) =
+                (yours.split(' ').collect(), expected.split(' ').collect());
+            let same = yours.iter().zip(&expected).take_while(|(yours, expected)| yours == expected).count();
+            let word = |words: &[&str]| {
+                words.get(same).map_or("", |word| word.split("<!--").next().unwrap_or(word)).to_owned()
+            };
+            let [yours, expected] = [word(&yours), word(&expected)];
+            stale.push(format!("  {}:{line}: yours `{yours}`, expected `{expected}`", self.path.display()));
+        }
+        if stale.is_empty() && self.present != self.synced {
+            stale.push(format!("  {}", self.path.display()));
+        }
+        stale
+    }
+}
+
+/// The beginning of a comment that names the command of a quotation.
+const QUOTE: &str = "<!-- from: cargo ";
 
 /// Folders without documents that name numbers.
 const SKIPPED: [&str; 4] = ["corpus", "node_modules", "out", "target"];
@@ -41,13 +70,15 @@ pub struct Document {
 pub fn documents(root: &Path) -> Result<Vec<Document>> {
     let mut paths = markdown(root)?;
     paths.sort();
-    let values = Values { root, corpus: OnceCell::new() };
+    let values = Values { root, corpus: OnceCell::new(), printed: printed::read_all(root)? };
     let mut documents = Vec::new();
     for path in paths {
         let present = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         let path = path.strip_prefix(root).unwrap_or(&path).to_owned();
-        if present.contains(MARK) {
-            let synced = rewrite(&path.display().to_string(), &present, |name| values.get(name))?;
+        if present.contains(MARK) || present.contains(QUOTE) {
+            let name = path.display().to_string();
+            let synced = rewrite(&name, &present, |name| values.get(name))?;
+            let synced = printed::quote(&name, &synced, &values.printed)?;
             documents.push(Document { path, present, synced });
         }
     }
@@ -80,9 +111,11 @@ fn rewrite(path: &str, text: &str, value: impl Fn(&str) -> Result<String>) -> Re
             write!(synced, "{before}{mark}\n{}", value.trim_end())?;
             rest = &after[old..];
         } else {
-            // Replace the digits before the comment.
-            let words = before.trim_end_matches(|letter: char| letter.is_ascii_digit() || letter == ',');
+            // Replace the number before the comment.
+            let words = before
+                .trim_end_matches(|letter: char| letter.is_ascii_digit() || letter == ',' || letter == '.');
             ensure!(words.len() < before.len(), "{}: {mark} must directly follow a number", place());
+            let words = words.strip_suffix('−').unwrap_or(words);
             write!(synced, "{words}{value}{mark}")?;
             rest = after;
         }
@@ -94,6 +127,7 @@ fn rewrite(path: &str, text: &str, value: impl Fn(&str) -> Result<String>) -> Re
 struct Values<'a> {
     root: &'a Path,
     corpus: OnceCell<Vec<Entry>>,
+    printed: Vec<Printed>,
 }
 
 impl Values<'_> {
@@ -101,6 +135,9 @@ impl Values<'_> {
     fn get(&self, name: &str) -> Result<String> {
         if name == "decks" {
             return self.decks();
+        }
+        if let Some((file, words)) = name.split_once(": ") {
+            return printed::number(&self.printed, file, words);
         }
         // Divide `points 1-6` into its words and its stages.
         let numbered =
@@ -290,7 +327,7 @@ mod tests {
     #[test]
     fn numbers_of_stages_add_up() {
         let root = grader::kits::root().unwrap();
-        let values = Values { root: &root, corpus: OnceCell::new() };
+        let values = Values { root: &root, corpus: OnceCell::new(), printed: Vec::new() };
         let get = |name: &str| -> usize { values.get(name).unwrap().replace(',', "").parse().unwrap() };
         for name in [
             "checks",

@@ -2,7 +2,7 @@
 //!
 //! [exercises]: grader::exercises
 
-use crate::numbers;
+use crate::{numbers, printed};
 use anyhow::{Result, bail};
 use grader::exercises::{Exercise, RECORD, exercises, fingerprint, stage_of, write};
 use raykata_cli::args::{Given, Misuse, Opt, Spec};
@@ -18,6 +18,7 @@ pub static SPEC: Spec = Spec {
     options: &[&[
         Opt::flag("--check", "Only report differences, and write nothing."),
         Opt::flag("--force", "Overwrite exercises that have been begun."),
+        Opt::flag("--printed", "First run the commands whose numbers documents print (minutes)."),
     ]],
 };
 
@@ -25,13 +26,18 @@ pub static SPEC: Spec = Spec {
 pub struct SyncOptions {
     check: bool,
     force: bool,
+    printed: bool,
 }
 
 impl SyncOptions {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<SyncOptions, Misuse> {
         given.exclude("--force", "--check")?;
-        Ok(SyncOptions { check: given.has("--check"), force: given.has("--force") })
+        Ok(SyncOptions {
+            check: given.has("--check"),
+            force: given.has("--force"),
+            printed: given.has("--printed"),
+        })
     }
 }
 
@@ -40,6 +46,16 @@ const STUBS: &str = "tests/stubs.toml";
 
 /// Runs `author sync`.
 pub fn run(root: &Path, options: &SyncOptions) -> Result<()> {
+    if options.printed {
+        let different = printed::run_all(root, options.check)?;
+        match options.check && !different.is_empty() {
+            true => bail!(
+                "commands print something else; `author sync --printed` writes it:\n{}",
+                different.join("\n")
+            ),
+            false => different.iter().for_each(|line| println!("{}", line.trim_start())),
+        }
+    }
     if options.check { check(root) } else { sync(root, options.force) }
 }
 
@@ -54,8 +70,7 @@ pub fn check(root: &Path) -> Result<()> {
     if fs::read_to_string(root.join(STUBS)).ok() != Some(stubs(&exercises)) {
         different.push(format!("  {STUBS}"));
     }
-    let stale = numbers::documents(root)?.into_iter().filter(|document| document.present != document.synced);
-    different.extend(stale.map(|document| format!("  {}", document.path.display())));
+    different.extend(numbers::documents(root)?.iter().flat_map(numbers::Document::stale));
     if different.is_empty() {
         println!("exercises/ is up to date with solutions/, and documents have the right numbers");
         return Ok(());
@@ -159,6 +174,11 @@ mod tests {
         assert_eq!(fs::read_to_string(at("README.md")).unwrap(), "There are 12<!--=stages--> stages.\n");
         check(root.path()).unwrap();
         fs::write(at("README.md"), "There are 13<!--=stages--> stages.\n").unwrap();
-        assert!(check(root.path()).unwrap_err().to_string().ends_with("\n  README.md"));
+        assert!(
+            check(root.path())
+                .unwrap_err()
+                .to_string()
+                .ends_with("\n  README.md:1: yours `13`, expected `12`")
+        );
     }
 }

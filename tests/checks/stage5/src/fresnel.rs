@@ -184,3 +184,28 @@ pub(super) fn fresnel_exact_agrees_with_double_precision(trial: &Trial<'_>) -> C
         judge("fresnel_exact", queries, trial.kit.fresnel_exact(queries), exact, exact_mistakes)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two published values that need no Fresnel formula: at normal incidence ((n1 - n2) / (n1 + n2))², and at Brewster's angle,
+    /// tan θ = n2 / n1, half of ((n2² - n1²) / (n2² + n1²))², because only one polarisation is reflected (Born and Wolf, 1.5.3).
+    #[test]
+    fn exact_has_the_published_values_at_normal_incidence_and_at_brewsters_angle() {
+        for (n1, n2) in [(1.0f32, 1.5f32), (1.5, 1.0), (1.0, 2.5), (1.25, 1.5)] {
+            let [m1, m2] = [f64::from(n1), f64::from(n2)];
+            let normal = ((m1 - m2) / (m1 + m2)).powi(2);
+            let brewster = ((m2 * m2 - m1 * m1) / (m2 * m2 + m1 * m1)).powi(2) / 2.0;
+            let cosine = (m1 / m1.hypot(m2)) as f32;
+            for (cos_theta, expected) in [(1.0, normal), (cosine, brewster)] {
+                let found = exact(&FresnelQuery { cos_theta, n1, n2 });
+                // The cosine is rounded to single precision, and the slope stays below 4 there.
+                assert!(
+                    (found - expected).abs() < 4.0 * f64::from(f32::EPSILON),
+                    "{n1} {n2}: {found} {expected}"
+                );
+            }
+        }
+    }
+}
