@@ -102,7 +102,10 @@ fn work(paths: &Paths, task: Task, process: &Process, report: &impl Fn(Event)) -
     }
     let worker = match compile(process, cargo, worker)? {
         Some(Compiled::Program(worker)) => worker,
-        Some(Compiled::Errors(errors)) => return Ok(report(Event::Errors(errors))),
+        Some(Compiled::Errors(errors)) => {
+            report(Event::Errors(errors));
+            return Ok(());
+        }
         None => return Ok(()),
     };
     report(Event::Compiled(begin.elapsed()));
