@@ -9,6 +9,7 @@
 use anyhow::{Context, Result, bail, ensure};
 use grader::exercises::write;
 use grader::files_below::files_below;
+use grader::grade::Shard;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -51,9 +52,13 @@ pub fn read_all(root: &Path) -> Result<Vec<Printed>> {
 /// # Errors
 ///
 /// If a command fails.
-pub fn run_all(root: &Path, keep: bool) -> Result<Vec<String>> {
+pub fn run_all(root: &Path, keep: bool, shard: Option<Shard>) -> Result<Vec<String>> {
     let mut different = Vec::new();
-    for Printed { name, command, text } in read_all(root)? {
+    // With a part, run each command whose number belongs to it.
+    for (number, Printed { name, command, text }) in read_all(root)?.into_iter().enumerate() {
+        if shard.is_some_and(|shard| number % shard.of as usize + 1 != shard.index as usize) {
+            continue;
+        }
         let words = command.strip_prefix("cargo run ");
         let words = words
             .with_context(|| format!("{FOLDER}/{name}.txt: the first line is no `cargo run` command"))?;

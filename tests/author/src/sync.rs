@@ -5,6 +5,7 @@
 use crate::{numbers, printed};
 use anyhow::{Result, bail};
 use grader::exercises::{Exercise, RECORD, exercises, fingerprint, stage_of, write};
+use grader::grade::{Shard, shard};
 use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use std::collections::BTreeMap;
 use std::fs;
@@ -19,6 +20,7 @@ pub static SPEC: Spec = Spec {
         Opt::flag("--check", "Only report differences, and write nothing."),
         Opt::flag("--force", "Overwrite exercises that have been begun."),
         Opt::flag("--printed", "First run the commands whose numbers documents print (minutes)."),
+        Opt::value("--shard", "I/N", "Of these commands, run only part I of N, such as 2/5."),
     ]],
 };
 
@@ -27,6 +29,7 @@ pub struct SyncOptions {
     check: bool,
     force: bool,
     printed: bool,
+    shard: Option<Shard>,
 }
 
 impl SyncOptions {
@@ -37,6 +40,7 @@ impl SyncOptions {
             check: given.has("--check"),
             force: given.has("--force"),
             printed: given.has("--printed"),
+            shard: given.parsed("--shard", shard)?,
         })
     }
 }
@@ -47,7 +51,7 @@ const STUBS: &str = "tests/stubs.toml";
 /// Runs `author sync`.
 pub fn run(root: &Path, options: &SyncOptions) -> Result<()> {
     if options.printed {
-        let different = printed::run_all(root, options.check)?;
+        let different = printed::run_all(root, options.check, options.shard)?;
         match options.check && !different.is_empty() {
             true => bail!(
                 "commands print something else; `author sync --printed` writes it:\n{}",
