@@ -19,25 +19,26 @@ pub fn bezier_point(patch: &BezierPatch, uv: Vec2) -> Vec3 {
     todo!("interpolate three times along each row with u, then the four results with v")
 }
 
-/// Computes one step of Loop subdivision, which replaces each triangle by four. The old vertices keep their numbers and
-/// move; after them comes one new vertex per edge, which the triangles of the edge share.
+/// One step of Loop subdivision: each triangle becomes four, and the vertices move towards their neighbours, so that the mesh
+/// becomes smoother with each step. What happens where the mesh ends?
 ///
-/// Each edge belongs to one triangle (a border) or to two, and two borders meet at each vertex of a border.
+/// Exactly:
 ///
-/// - New vertex of an edge `p q` between two triangles with the third corners `r` and `s`: `3/8 (p + q) + 1/8 (r + s)`.
-/// - New vertex of a border edge, which has one triangle only: its midpoint `1/2 (p + q)`.
-/// - Old vertex `p` with `n` neighbours `pᵢ`: `(1 - n β) p + β Σ pᵢ` with `β = 3/16` for `n = 3` and `3 / (8 n)`
-///   otherwise (Warren), or with Loop's own `β = (5/8 - (3/8 + cos(2π/n)/4)²) / n`. On a border, with the neighbours `p₁` and `p₂` along it: `3/4 p + 1/8 (p₁ + p₂)`. A vertex that belongs
-///   to no triangle stays.
-/// - The four triangles have their corners in the order of the old triangle, and its material. The new vertices and the
-///   triangles may come in any order.
-/// - The texture coordinates of an old vertex stay; those of a new vertex are the mean of the ends of its edge. A mesh
-///   without texture coordinates or materials gets none. Normals are dropped, because the surface changes.
+/// - An edge `p q` between two triangles, whose third corners are `r` and `s`, gets the vertex `3/8 (p + q) + 1/8 (r + s)`. An
+///   edge with one triangle (a border) gets `1/2 (p + q)`.
+/// - An old vertex `p` with `n` neighbours `pᵢ` moves to `(1 - n β) p + β Σ pᵢ`. β is `3/16` for `n = 3` and else
+///   `3 / (8 n)` (Warren), or Loop's own `(5/8 - (3/8 + cos(2π/n)/4)²) / n`.
+/// - On a border, whose two neighbours along it are `p₁` and `p₂`, it moves to `3/4 p + 1/8 (p₁ + p₂)`. A vertex of no
+///   triangle stays.
+/// - All formulas use the old positions.
+/// - Old vertices keep their numbers. The new ones follow, one per edge, in any order.
+/// - The triangles, in any order, have the order of corners and the material of the old one.
+/// - Texture coordinates of an old vertex stay; a new vertex has the mean of the ends of its edge. Without them, or without
+///   materials, the result has none. It has no normals.
 ///
-/// Pitfall: all formulas use positions from before the step. A border may depend only on its own vertices, or a gap opens
-/// between two meshes that share it.
+/// No edge has more than two triangles, and no vertex more than two borders.
 ///
-/// Source: Loop 1987; Warren 1995 for the simpler β; Hoppe et al. 1994 for the border.
+/// Loop 1987; Warren 1995; Hoppe et al. 1994 (borders).
 pub fn loop_subdivide(mesh: &Mesh) -> Mesh {
     todo!("find the edges, place a vertex on each, move the old vertices, make four triangles of each")
 }

@@ -139,23 +139,22 @@ fn is_lit(material: &Material, scene: &Scene) -> bool {
 }
 // </solution>
 
-/// Computes an upper bound on the number of rays of each kind, as if every ray hit the most expensive material.
+/// An upper bound on the number of rays of each kind, as if every ray hit the most expensive material: what is the most that
+/// a picture can cost? A hit has one material.
 ///
-/// - `primary`: one ray from the camera per sample of each pixel.
-/// - `reflection`: each hit spawns as many reflected rays as the material with most of them: `quality.glossy_samples` if
-///   that is glossy, else 1. `transmission` counts the refracted rays in the same way. The next level has as many rays
-///   per hit as the material with the largest sum of both.
-/// - There are at most `quality.max_depth` bounces. Another bounce is traced only while the weight of the whole
-///   reflection or refraction is above 0 and at least `quality.min_contribution`.
-/// - A camera ray has the weight 1. A reflection weighs the largest channel of `mirror` (with `fresnel`, of
-///   `mirror + transmission`), a refraction the largest channel of `transmission`, times the weight of the ray that hits.
-///   A coat, which is not 1, can reflect all light. The largest weight over all materials counts. Each of the `glossy_samples` rays has an equal part of that weight.
-/// - `shadow`: each hit, also one of the last bounce, needs one shadow ray per sample of each light that matters to its
-///   material and casts shadows. The material with the largest sum counts.
+/// Exactly:
 ///
-/// A product or sum that does not fit `u64` is `u64::MAX`.
-///
-/// Pitfall: a hit has one material. Take the maximum over the materials, for each kind of ray separately, not the sum.
+/// - `primary`: one ray per sample of each pixel.
+/// - `reflection`: each hit spawns `quality.glossy_samples` rays if its material is glossy, else 1; `transmission` alike. The
+///   largest number over all materials counts, for the next level that of both kinds together.
+/// - A bounce is traced if it is one of the first `quality.max_depth`, and the weight of its whole reflection or refraction is
+///   above 0 and at least `quality.min_contribution`.
+/// - A camera ray weighs 1. A reflection weighs the largest channel of `mirror` (with `fresnel`, of `mirror + transmission`;
+///   with a `coat` other than 1, at least 1), a refraction that of `transmission`, times the weight of the ray. The largest
+///   weight over all materials counts; each of the `glossy_samples` rays has an equal part of it.
+/// - `shadow`: each hit, also of the last bounce, needs a ray per sample of each light that its material lists and that casts
+///   shadows. The material with the largest sum counts.
+/// - What does not fit `u64` is `u64::MAX`.
 pub fn most_rays(scene: &Scene, effects: &Effects) -> RayCounts {
     // <solution>
     // Count the camera rays.

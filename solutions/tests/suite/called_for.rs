@@ -3,8 +3,12 @@
 //! changes the scene above it, `- LINE` removes a line, `+ LINE` adds one in its place, and other lines follow at the end.
 //! Behind `~~~` are the changes for the scene without it, if it is not the scene above.
 
+#[path = "../../../src/files/scene/tests/changed.rs"]
+mod changed;
+
 use crate::frames::render;
 use crate::scene::scene;
+use changed::changed;
 use std::fmt::Write;
 
 #[test]
@@ -15,12 +19,13 @@ fn what_changes_nothing_costs_nothing() {
     for section in include_str!("called_for.txt").split("=== ").skip(1) {
         let mut parts = section.split("\n## ");
         let base = parts.next().unwrap_or_default();
-        let base: Vec<&str> = base.lines().skip(1).collect();
+        let base = base.split_once('\n').map_or("", |(_, base)| base);
         for case in parts {
             let (title, case) = case.split_once('\n').expect("a case has lines");
             let (with, without) = case.split_once("~~~\n").unwrap_or((case, ""));
             let [with, without] = [with, without].map(|changes| {
-                let text = changed(&base, changes).replace("WHITE.png", &white.display().to_string());
+                let changes: Vec<&str> = changes.lines().collect();
+                let text = changed(base, &changes).replace("WHITE.png", &white.display().to_string());
                 render(&scene(&text))
             });
             if with.counts != without.counts {
@@ -33,22 +38,4 @@ fn what_changes_nothing_costs_nothing() {
     }
     let _ = std::fs::remove_file(white);
     assert!(wrong.is_empty(), "{wrong}");
-}
-
-/// The text with the changes of a case.
-fn changed(base: &[&str], changes: &str) -> String {
-    let mut lines = base.to_vec();
-    let mut place = 0;
-    for change in changes.lines() {
-        if let Some(line) = change.strip_prefix("- ") {
-            place = lines.iter().position(|known| *known == line).expect(change);
-            lines.remove(place);
-        } else if let Some(line) = change.strip_prefix("+ ") {
-            lines.insert(place, line);
-            place += 1;
-        } else {
-            lines.push(change);
-        }
-    }
-    lines.join("\n")
 }

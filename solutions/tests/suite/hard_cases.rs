@@ -27,7 +27,7 @@ fn normals_of(scene: &Scene) -> (RenderJob, Film) {
     (job, film)
 }
 
-/// A lamp of radiance 1 behind the walls of a glass of water, seen along the normal. `max_depth` leaves only the path
+/// An emitter of radiance 1 behind the walls of a glass of water, seen along the normal. `max_depth` leaves only the path
 /// without reflections, so the light is the product of the transmittances by Fresnel's equations along the normal,
 /// 1 - ((n1 - n2) / (n1 + n2))² (Born and Wolf, "Principles of Optics", section 1.5.3).
 #[test]
@@ -36,13 +36,13 @@ fn touching_media_transmit_what_fresnels_equations_say() {
         let scene = scene(&format!(
             "film = {{ width = 1, height = 1 }}\ncamera = {{ position = [0, 0, 9], look_at = [0, 0, 0] }}\n\
              [quality]\nmax_depth = 4\nmin_contribution = 0\n\
-             [materials.lamp]\ndiffuse = 0\nemission = 1\n\
+             [materials.emitter]\ndiffuse = 0\nemission = 1\n\
              [materials.glass]\ndiffuse = 0\ntransmission = 1\nfresnel = 'exact'\nindex_of_refraction = 1.5\n\
              [materials.inside]\ndiffuse = 0\ntransmission = 1\nfresnel = 'exact'\n\
              index_of_refraction = {inside}\noutside = 1.5\n\
              [[nodes]]\nmaterial = 'glass'\nshape = {{ box = {{ min = [-9, -9, -3], max = [9, 9, 3] }} }}\n\
              [[nodes]]\nmaterial = 'inside'\nshape = {{ box = {{ min = [-8, -8, -2], max = [8, 8, 2] }} }}\n\
-             [[nodes]]\nmaterial = 'lamp'\nshape = {{ plane = {{ point = [0, 0, -5], normal = [0, 0, 1] }} }}\n"
+             [[nodes]]\nmaterial = 'emitter'\nshape = {{ plane = {{ point = [0, 0, -5], normal = [0, 0, 1] }} }}\n"
         ));
         let through = |n1: f64, n2: f64| 1.0 - ((n1 - n2) / (n1 + n2)).powi(2);
         let expected = (through(1.0, 1.5) * through(1.5, inside)).powi(2);

@@ -6,7 +6,7 @@ use crate::scene::scene;
 use glam::{DVec3, Vec3};
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{RayKind, RenderJob, TracedRay, View};
+use raykata::kit::{RayKind, RenderJob, Rendering, TracedRay, View};
 use raykata::material::{Texture, Wrap};
 use raykata::scene::{Background, EnvironmentMap, NextEvent, Scene};
 use std::sync::Arc;
@@ -86,19 +86,24 @@ fn a_furnace_has_the_light_of_all_bounces() {
 
 #[test]
 fn a_white_thing_under_a_white_sky_cannot_be_seen() {
-    // Every path is exactly 1: a weight of 1 never plays roulette. Two spheres and a box make a concave thing.
-    let mut scene = indirect(
-        "background = 1",
-        "[materials.default]\ndiffuse = 1\n\
-         [[nodes]]\nshape = { sphere = { center = [-0.5, 0, 0], radius = 0.8 } }\n\
-         [[nodes]]\nshape = { sphere = { center = [0.7, 0, 0.3], radius = 0.8 } }\n\
-         [[nodes]]\nshape = { box = { min = [-2, -1.2, -1], max = [2, -0.8, 1] } }\n",
-    );
-    scene.quality.max_depth = 1000;
-    let rendering = render(&scene);
-    assert!(rendering.counts.indirect > rendering.counts.primary / 4 && rendering.counts.absorbed == 0);
-    for pixel in rendering.film.pixels {
-        assert!((pixel - 1.0).abs().max_element() < 1e-5, "{pixel}");
+    // Every path is exactly 1: a weight of 1 never plays roulette. Two spheres and a box make a concave thing. A coat
+    // reflects a part of the light, and the paint below it the rest.
+    for coat in [1.0, 1.5] {
+        let mut scene = indirect(
+            "background = 1",
+            "[materials.default]\ndiffuse = 1\n\
+             [[nodes]]\nshape = { sphere = { center = [-0.5, 0, 0], radius = 0.8 } }\n\
+             [[nodes]]\nshape = { sphere = { center = [0.7, 0, 0.3], radius = 0.8 } }\n\
+             [[nodes]]\nshape = { box = { min = [-2, -1.2, -1], max = [2, -0.8, 1] } }\n",
+        );
+        scene.materials[0].coat = coat;
+        scene.quality.max_depth = 1000;
+        let Rendering { counts, film, .. } = render(&scene);
+        assert!(counts.indirect > counts.primary / 4 && counts.absorbed == 0);
+        assert_eq!(counts.reflection > counts.primary / 100, coat != 1.0);
+        for pixel in film.pixels {
+            assert!((pixel - 1.0).abs().max_element() < 1e-5, "{pixel}, coat {coat}");
+        }
     }
 }
 

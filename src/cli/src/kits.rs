@@ -156,17 +156,6 @@ impl Program {
 
     /// The program that renders and measures.
     pub const RAYKATA: Program = Program { package: "raykata-cli", name: "raykata", feature: None };
-
-    /// The path of this program among those that cargo has built.
-    ///
-    /// # Errors
-    ///
-    /// If it is not among them.
-    pub fn among(&self, built: &[BuiltProgram]) -> Result<PathBuf> {
-        let found = built.iter().find(|program| program.name == self.name);
-        let found = found.with_context(|| format!("cargo has not built the program {}", self.name))?;
-        Ok(found.path.clone())
-    }
 }
 
 /// Builds the worker of a kit in the profile of this program, and returns its path.
@@ -182,31 +171,40 @@ pub fn build_worker(root: &Path, which: Which, need: Need) -> Result<PathBuf> {
 /// Builds programs of the workspace at `root` in the profile of this program, and returns their paths. If
 /// something has to be built, it prints a line that names `what`, followed by the output of cargo.
 pub fn build<const N: usize>(root: &Path, what: &str, programs: [Program; N]) -> Result<[PathBuf; N]> {
-    let mut cargo = cargo_build(root, &programs)?;
-    cargo.arg("--message-format=json-render-diagnostics");
-    let messages = run_cargo(cargo, what)?;
-    let built: Vec<BuiltProgram> =
-        String::from_utf8_lossy(&messages).lines().filter_map(BuiltProgram::read).collect();
-    let path = |program: Program| program.among(&built);
-    let paths = programs.into_iter().map(path).collect::<Result<Vec<_>>>()?;
+    let built = run_build(cargo_build(root, &programs)?, what)?;
+    let path = |program: &Program| built.path(program.name);
+    let paths = programs.iter().map(path).collect::<Result<Vec<_>>>()?;
     paths.try_into().map_err(|_| anyhow!("cargo has not built all programs"))
 }
 
-/// A program that cargo has built.
-pub struct BuiltProgram {
-    /// Its name.
-    pub name: String,
-    /// Its path. Only cargo knows it: it depends on the target, the profile, settings and environment variables.
-    pub path: PathBuf,
+/// Runs a build by cargo in the profile of this program, as [`run_cargo`] does.
+pub fn run_build(mut cargo: Command, what: &str) -> Result<BuiltPrograms> {
+    cargo.arg("--message-format=json-render-diagnostics");
+    let messages = run_cargo(cargo, what)?;
+    let mut built = BuiltPrograms::default();
+    String::from_utf8_lossy(&messages).lines().for_each(|line| built.add(line));
+    Ok(built)
 }
 
-impl BuiltProgram {
-    /// Reads one line that cargo writes in the format JSON; `None` if it is about something else.
-    pub fn read(line: &str) -> Option<BuiltProgram> {
-        let message: serde_json::Value = serde_json::from_str(line).ok()?;
-        let text = |value: &serde_json::Value| value.as_str().map(str::to_owned);
-        let path = text(message.get("executable")?)?.into();
-        Some(BuiltProgram { name: text(&message["target"]["name"])?, path })
+/// The programs that cargo has built, with their names. Only cargo knows their paths: they depend on the target, the profile,
+/// settings and environment variables.
+#[derive(Default)]
+pub struct BuiltPrograms(Vec<(String, PathBuf)>);
+
+impl BuiltPrograms {
+    /// Adds the program of a line that cargo writes in the format JSON, if the line is about one.
+    pub fn add(&mut self, line: &str) {
+        let Ok(message) = serde_json::from_str::<serde_json::Value>(line) else { return };
+        if let (Some(name), Some(path)) = (message["target"]["name"].as_str(), message["executable"].as_str())
+        {
+            self.0.push((name.to_owned(), path.into()));
+        }
+    }
+
+    /// The path of the program with this name; fails if it was not built.
+    pub fn path(&self, name: &str) -> Result<PathBuf> {
+        let found = self.0.iter().find(|(built, _)| built == name);
+        Ok(found.with_context(|| format!("cargo has not built the program {name}"))?.1.clone())
     }
 }
 

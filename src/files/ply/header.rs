@@ -232,7 +232,7 @@ impl Draft<'_> {
         Ok(())
     }
 
-    /// The type with this name. The numbers of an ASCII file can be read whatever their type is.
+    /// The type with this name. The numbers of an ASCII file are read without their types.
     fn scalar(&mut self, word: &Word) -> Result<Scalar, LoadError> {
         if let Some(scalar) = Scalar::named(word.text) {
             return Ok(scalar);

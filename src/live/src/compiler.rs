@@ -2,7 +2,7 @@
 
 use crate::process::Process;
 use anyhow::{Result, bail};
-use raykata_cli::kits::{BuiltProgram, Program};
+use raykata_cli::kits::{BuiltPrograms, Program};
 use serde::Serialize;
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
@@ -37,17 +37,17 @@ pub enum Compiled {
 /// If cargo cannot be started, or fails for another reason.
 pub fn compile(process: &Process, mut cargo: Command, program: Program) -> Result<Option<Compiled>> {
     cargo.arg("--message-format=json");
-    let (mut errors, mut built) = (Vec::new(), Vec::new());
+    let (mut errors, mut built) = (Vec::new(), BuiltPrograms::default());
     let lines = |out: &mut BufReader<_>| {
         for line in out.lines().map_while(Result::ok) {
             errors.extend(error_in(&line));
-            built.extend(BuiltProgram::read(&line));
+            built.add(&line);
         }
         Ok(())
     };
     let Some((compiled, words)) = process.follow(cargo, lines)? else { return Ok(None) };
     match compiled {
-        true => Ok(Some(Compiled::Program(program.among(&built)?))),
+        true => Ok(Some(Compiled::Program(built.path(program.name)?))),
         false if errors.is_empty() => bail!("the {} cannot be built:\n{}", program.package, words.trim()),
         false => Ok(Some(Compiled::Errors(errors))),
     }

@@ -19,7 +19,7 @@ pub(crate) fn is_sealed() -> bool {
     SEALED.load(Ordering::Relaxed)
 }
 
-/// Whether insta may write golden texts. Whatever it is set to, only the tests of the reference may: a student's run
+/// Whether insta may write golden texts. Only the tests of the reference may, with any setting of insta: a student's run
 /// compares.
 fn may_write() -> bool {
     !is_sealed() && std::env::var("CARGO_PKG_NAME").is_ok_and(|package| package == "solutions")

@@ -259,8 +259,8 @@ fn missing(point: &Point, own_notes: &[String]) -> Option<String> {
     }
 }
 
-/// An interval around 1 that ends within a tenth of it counts as equal where points are ranked: such a difference changes
-/// nobody's choice, and without this bound two equally fast values could never be told to be equal.
+/// An interval around 1 that ends within a tenth of it counts as equal where points are ranked: such a difference
+/// is too small to choose a setting by, and without this bound two values of the same speed could never count as equal.
 const SAME: f64 = 1.1;
 
 /// Errors that differ by less come from rounding only, and count as equal.

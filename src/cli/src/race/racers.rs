@@ -4,7 +4,7 @@
 //! does not use the workers of other commands. It writes a small workspace into the target folder, with one package per
 //! kit, which compiles the files of its folder.
 
-use crate::kits::{BuiltProgram, Which, profile, run_cargo, target_folder};
+use crate::kits::{Which, profile, run_build, target_folder};
 use anyhow::{Context, Result, bail};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -79,18 +79,11 @@ pub fn build(root: &Path, racers: &[Racer]) -> Result<Vec<PathBuf>> {
     }
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(&workspace).args(["build", "--workspace", "--bins", "--target-dir"]).arg(target);
-    cargo.arg("--message-format=json-render-diagnostics");
     if let Some(profile) = profile() {
         cargo.arg(format!("--profile={profile}"));
     }
-    let messages = run_cargo(cargo, "the kits of the race")?;
-    let built: Vec<BuiltProgram> =
-        String::from_utf8_lossy(&messages).lines().filter_map(BuiltProgram::read).collect();
-    let path = |i| {
-        let found = built.iter().find(|program| program.name == package_name(i));
-        Ok(found.with_context(|| format!("cargo has not built {}", package_name(i)))?.path.clone())
-    };
-    (0..racers.len()).map(path).collect()
+    let built = run_build(cargo, "the kits of the race")?;
+    (0..racers.len()).map(|i| built.path(&package_name(i))).collect()
 }
 
 /// Builds both kits of this repository with the same options, and returns their worker programs: those of the reference and of

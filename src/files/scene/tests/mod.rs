@@ -1,6 +1,7 @@
 //! Tests of the scene reader: the scenes that valid files give, and the messages for invalid files.
 
 mod cases;
+mod changed;
 mod files;
 mod materials;
 mod mutants;

@@ -3,7 +3,7 @@
 //! E is the mean radiance that arrives over directions with density `cos θ / π`: the irradiance divided by π. A surface of
 //! diffuse reflectance kd sends kd E back.
 
-use crate::rooms::{Form, Found, Paint, Room, Wall, follow, follow_alive};
+use crate::rooms::{Form, Found, Paint, Room, Roulette, Wall, follow};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::nasty;
@@ -61,7 +61,7 @@ pub(super) fn paths_in_a_furnace_count_every_bounce(trial: &Trial<'_>) -> CheckR
         nasty::directions().iter().map(|to| (DVec3::ZERO, to.as_dvec3().normalize())).collect();
     let mut outcomes = Vec::new();
     for depth in [0, 1, 2, 3, 5, 12] {
-        let found = follow_alive(trial.kit, trial.seed, &room, &starts, depth)?;
+        let found = follow(trial.kit, trial.seed, &room, &starts, depth, Roulette::LeftOut)?;
         for light in &found.light {
             let sum = |n: u32| {
                 DVec3::from_array(albedo.as_dvec3().to_array().map(|albedo| powers(albedo, n)))
@@ -115,7 +115,7 @@ pub(super) fn paths_in_a_furnace_find_all_light(trial: &Trial<'_>) -> CheckResul
     let starts: Vec<_> = (0..SAMPLES)
         .map(|index| (DVec3::splat(0.5), nasty::tilted(Vec3::Y, 0.2, index as f64 / 16.0).as_dvec3()))
         .collect();
-    let found = follow(trial.kit, trial.seed, &room, &starts, DEEP)?;
+    let found = follow(trial.kit, trial.seed, &room, &starts, DEEP, Roulette::Played)?;
     let expected = 1.0 / (1.0 - albedo);
     channel_has_mean(
         "a closed box whose walls all emit light and are sampled",
@@ -135,7 +135,7 @@ pub(super) fn paths_in_a_furnace_find_all_light(trial: &Trial<'_>) -> CheckResul
     // Without samples, rays find all light by chance.
     let walls = room.walls.iter().map(|wall| Wall { emitter: None, ..wall.clone() }).collect();
     let room = Room { walls, ..room };
-    let found = follow(trial.kit, trial.seed ^ (1 << 39), &room, &starts, DEEP)?;
+    let found = follow(trial.kit, trial.seed ^ (1 << 39), &room, &starts, DEEP, Roulette::Played)?;
     channel_has_mean("a closed box whose walls all emit light, without samples", &found, 0, expected, |_| {
         Vec::new()
     })
@@ -154,8 +154,14 @@ pub(super) fn paths_of_a_white_corner_lose_nothing(trial: &Trial<'_>) -> CheckRe
             Wall::new(Form::Plane(DVec3::ZERO, second), paint),
         ];
         let room = Room { walls, sky: Vec3::ONE };
-        let found =
-            follow_alive(trial.kit, trial.seed, &room, &[(corner_eye(angle), DVec3::NEG_Y); 256], 500)?;
+        let found = follow(
+            trial.kit,
+            trial.seed,
+            &room,
+            &[(corner_eye(angle), DVec3::NEG_Y); 256],
+            500,
+            Roulette::LeftOut,
+        )?;
         for light in &found.light {
             // The roundings of a weight per bounce.
             if (*light - 1.0).abs().max_element() <= 1e-4 {
@@ -198,7 +204,8 @@ pub(super) fn paths_in_a_corner_find_its_sky(trial: &Trial<'_>) -> CheckResult {
         ];
         let room = Room { walls, sky: Vec3::ONE };
         let starts = vec![(corner_eye(angle), DVec3::NEG_Y); SAMPLES];
-        let found = follow(trial.kit, trial.seed ^ ((index as u64) << 39), &room, &starts, DEEP)?;
+        let found =
+            follow(trial.kit, trial.seed ^ ((index as u64) << 39), &room, &starts, DEEP, Roulette::Played)?;
         // Each plane sees the other in this share of its view, because nothing in the scene has a size.
         let share = (1.0 + angle.cos()) / 2.0;
         for channel in [0, 1] {
@@ -237,7 +244,7 @@ pub(super) fn steps_in_an_integrating_sphere_find_its_light(trial: &Trial<'_>) -
     let starts: Vec<_> = (0..2 * SAMPLES)
         .map(|index| (DVec3::ZERO, nasty::tilted((-axis).as_vec3(), 0.15, index as f64 / 16.0).as_dvec3()))
         .collect();
-    let found = follow(trial.kit, trial.seed, &room, &starts, DEEP)?;
+    let found = follow(trial.kit, trial.seed, &room, &starts, DEEP, Roulette::Played)?;
     let expected = bright * first / (1.0 - reflected);
     channel_has_mean("an integrating sphere", &found, 0, expected, |_| Vec::new())
 }
@@ -267,7 +274,7 @@ pub(super) fn steps_count_sampled_light_once(trial: &Trial<'_>) -> CheckResult {
         Wall::light(Form::Sphere(center, radius), vec3(0.0, 20.0, 0.0), 0.6),
     ];
     let room = Room { walls, sky: Vec3::ZERO };
-    let found = follow(trial.kit, trial.seed, &room, &vec![DOWN; SAMPLES], 1)?;
+    let found = follow(trial.kit, trial.seed, &room, &vec![DOWN; SAMPLES], 1, Roulette::Played)?;
     let kd = f64::from(kd as f32);
     let of_sphere = 20.0 * radius * radius / center.length_squared() * center.y / center.length();
     for (channel, light, expected) in [
@@ -302,7 +309,7 @@ pub(super) fn steps_find_light_in_a_mirror(trial: &Trial<'_>) -> CheckResult {
     ];
     let room = Room { walls, sky: Vec3::ZERO };
     // With two bounces: the floor, the mirror, the light. Light from the floor to the mirror and back needs three.
-    let found = follow(trial.kit, trial.seed, &room, &vec![DOWN; SAMPLES], 2)?;
+    let found = follow(trial.kit, trial.seed, &room, &vec![DOWN; SAMPLES], 2, Roulette::Played)?;
     let kd = f64::from(kd as f32);
     let direct = 4.0 * kd * from_parallelogram(corner, first, second);
     // The mirror is at x = 1.5, so its image of x is 3 - x.
@@ -356,7 +363,7 @@ pub(super) fn steps_in_an_empty_cornell_box_agree_with_radiosity(trial: &Trial<'
     let room = Room { walls, sky: Vec3::ZERO };
     let middle = dvec3(0.5, 0.0, 0.5);
     let starts = vec![(middle + 0.5 * DVec3::Y, DVec3::NEG_Y); SAMPLES];
-    let found = follow(trial.kit, trial.seed, &room, &starts, DEEP)?;
+    let found = follow(trial.kit, trial.seed, &room, &starts, DEEP, Roulette::Played)?;
     for channel in [0, 2] {
         let albedo = [0, 1, 2, 3, 4, 5].map(|face| f64::from(colors(face)[channel]));
         let empty = EmptyBox { albedo, light_albedo: albedo[3], emission: 1.0 };

@@ -5,7 +5,7 @@
 //! errors. The walls and emitters are dim, and multiple importance sampling limits what one sample can add, so that the mean
 //! of the 384 samples of a block is close to normally distributed.
 
-use super::rooms::{Form, Paint, Room, Wall, follow};
+use super::rooms::{Form, Paint, Room, Roulette, Wall, follow};
 use checks::broken::CheckResult;
 use checks::picture::{Sampled, Size};
 use checks::{Trial, picture, statistics};
@@ -62,7 +62,7 @@ fn samples(kit: &dyn Kit, camera: &Camera, pixels: &[(u32, u32)], room: &Room) -
             (ray.origin.as_dvec3(), ray.direction.as_dvec3().normalize())
         })
         .collect();
-    let light = match follow(kit, 13, room, &starts, MAX_DEPTH) {
+    let light = match follow(kit, 13, room, &starts, MAX_DEPTH, Roulette::Played) {
         Ok(found) => found.light,
         Err(_) => vec![DVec3::NAN; starts.len()],
     };

@@ -210,6 +210,15 @@ pub(super) fn are_endless(paths: usize, steps: usize) -> bool {
     steps > 40 * paths + 200_000
 }
 
+/// Whether Russian roulette is played in a room.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Roulette {
+    Played,
+    /// As if it were not, in a room with a channel that loses no light: a path whose weight is 1 survives the number 1/2 by
+    /// every rule that is allowed, and the factor is taken out of its weight.
+    LeftOut,
+}
+
 /// Follows paths that start with these rays, all at once: each call of `step` gets the next surface of every path. Random
 /// numbers depend on `seed`.
 pub(super) fn follow(
@@ -218,29 +227,7 @@ pub(super) fn follow(
     room: &Room,
     starts: &[(DVec3, DVec3)],
     max_depth: u32,
-) -> Result<Found, Broken> {
-    follow_with(kit, seed, room, starts, max_depth, false)
-}
-
-/// The same for rooms with a channel that loses no light, as if no roulette were played: a path whose weight is 1 survives the
-/// number 1/2 by every rule that is allowed, and the factor is taken out of its weight.
-pub(super) fn follow_alive(
-    kit: &dyn Kit,
-    seed: u64,
-    room: &Room,
-    starts: &[(DVec3, DVec3)],
-    max_depth: u32,
-) -> Result<Found, Broken> {
-    follow_with(kit, seed, room, starts, max_depth, true)
-}
-
-fn follow_with(
-    kit: &dyn Kit,
-    seed: u64,
-    room: &Room,
-    starts: &[(DVec3, DVec3)],
-    max_depth: u32,
-    stays_alive: bool,
+    roulette: Roulette,
 ) -> Result<Found, Broken> {
     let start = |(index, (origin, direction)): (usize, &(DVec3, DVec3))| {
         let state = PathState {
@@ -283,14 +270,14 @@ fn follow_with(
                 numbers: StepNumbers {
                     light: u[0],
                     bsdf: u[1].extend(u[2].x),
-                    roulette: if stays_alive { 0.5 } else { u[2].y },
+                    roulette: if roulette == Roulette::Played { u[2].y } else { 0.5 },
                 },
             });
             met.push((path, point));
         }
         // Take one step with each path.
         let mut steps = kit.step(&queries);
-        if stays_alive {
+        if roulette == Roulette::LeftOut {
             let weights = |(step, query): (&PathStep, &StepQuery)| {
                 let weight = step.next.as_ref().map_or(Vec3::ONE, |next| next.weight);
                 RouletteQuery { weight, bounce: query.path.bounces + 1, u: 0.5 }

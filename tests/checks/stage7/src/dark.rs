@@ -110,20 +110,20 @@ pub(super) fn what_nothing_lights_needs_nothing(trial: &Trial<'_>) -> CheckResul
         Dark { what, scene, shines, lit }
     };
     let sky = |scene: &mut Scene| scene.background = Background::Color(brightness * grey);
-    let lamp = |scene: &mut Scene, node: Option<usize>| {
+    let add_emitter = |scene: &mut Scene, node: Option<usize>| {
         scene.materials.push(raykata::material::Material {
             diffuse: Vec3::ZERO,
             ambient: Vec3::ZERO,
             emission: brightness * grey,
             ..Default::default()
         });
-        scene.material_names.push("lamp".into());
+        scene.material_names.push("emitter".into());
         node.into_iter().for_each(|node| scene.nodes[node].material = Some(2));
     };
     let cases = [
         case("a mirror with an image, and nothing that shines", false, false, &|_| {}),
         case("the same, and indirect light", false, true, &|scene| scene.indirect_light = true),
-        case("the same, and an emitter that no shape has", false, false, &|scene| lamp(scene, None)),
+        case("the same, and an emitter that no shape has", false, false, &|scene| add_emitter(scene, None)),
         case("the same, and red ambient light on green", false, false, &|scene| {
             scene.ambient = brightness * Vec3::X;
         }),
@@ -131,7 +131,7 @@ pub(super) fn what_nothing_lights_needs_nothing(trial: &Trial<'_>) -> CheckResul
             scene.lights.push(light(Vec3::X, brightness));
         }),
         case("the same before a bright background", true, false, &sky),
-        case("the same beside an emitter", true, false, &|scene| lamp(scene, Some(1))),
+        case("the same beside an emitter", true, false, &|scene| add_emitter(scene, Some(1))),
         case("the same under a white light", true, true, &|scene| {
             scene.lights.push(light(Vec3::ONE, brightness));
         }),

@@ -14,7 +14,7 @@ fn host() -> String {
     printed.lines().find_map(|line| line.strip_prefix("host: ")).expect("a host").to_owned()
 }
 
-/// Renders and checks as a student does: neither is written yet, and nobody is blamed for anything else.
+/// Renders and checks as a student does. The only message is that functions are not written yet.
 fn works(what: &str, kit: &Path, run: &dyn Fn(&[&str]) -> Output) {
     let rendered = run(&["render", "scenes/stage1.toml", "--size", "16x12"]);
     assert!(rendered.status.success(), "{what}: {}", printed(&rendered).1);

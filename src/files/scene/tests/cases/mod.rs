@@ -17,6 +17,7 @@
 //! `3v 1t` stands for three vertices and a triangle; `n`, `uv` and `m` count normals, texture coordinates and material names,
 //! `flat` a mesh that asks for flat faces, `groups` its smoothing groups, and `area` is that of all triangles. `diffuse 1 0 0` is a value of the first material of the file that is not the default.
 
+use super::changed::changed;
 use super::files::Folder;
 use super::{CAMERA, showing_all};
 use crate::files::scene::{Limits, Loaded, parse_within};
@@ -72,24 +73,6 @@ fn check(name: &str, cases: &str) {
         }
     }
     assert!(wrong.is_empty(), "{wrong}");
-}
-
-/// The text with lines removed, added in their place or, without a sign, added at the end.
-fn changed(text: &str, changes: &[&str]) -> String {
-    let mut lines: Vec<&str> = text.lines().collect();
-    let mut place = 0;
-    for change in changes {
-        if let Some(line) = change.strip_prefix("- ") {
-            place += lines[place..].iter().position(|known| *known == line).expect(change);
-            lines.remove(place);
-        } else if let Some(line) = change.strip_prefix("+ ") {
-            lines.insert(place, line);
-            place += 1;
-        } else {
-            lines.push(change);
-        }
-    }
-    lines.iter().map(|line| format!("{line}\n")).collect()
 }
 
 /// The facts and messages of a scene, or of a scene that shows the mesh in this file.
