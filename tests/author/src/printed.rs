@@ -1,6 +1,7 @@
 //! What commands print, kept in `slides/printed` for the numbers and quotations in documents.
 //!
-//! The first line of a file is its command, as one types it; the other lines are what the command prints, without times.
+//! The first line of a file is its command, as one types it, perhaps with ` | head -8` for its first lines; the other lines are
+//! what it prints, without times.
 //! `author sync --printed` runs all commands again. A comment names a number of a file: `3.5<!--=stage3: per ray #2-->` is the
 //! second number of the first line that begins with `per ray` or else contains these words, and
 //! `9,721<!--=cells_stage9: octree / nodes-->` stands in the row `octree` of the column `nodes`. A block of text below
@@ -18,10 +19,11 @@ use std::process::{Command, Stdio};
 const FOLDER: &str = "slides/printed";
 
 /// Headings of columns that hold times, which differ from run to run.
-const TIMES: [&str; 6] = ["build s", "ns/ray", "ns", "share of time", "seconds", "ms"];
+const TIMES: [&str; 10] =
+    ["build s", "ns/ray", "ns", "share of time", "seconds", "ms", "times", "build", "frame", "brute force"];
 
 /// Units of times.
-const UNITS: [&str; 5] = ["ns", "µs", "ms", "s", "min"];
+const UNITS: [&str; 7] = ["ns", "µs", "ms", "s", "min", "h", "days"];
 
 /// What a command printed.
 pub struct Printed {
@@ -59,7 +61,14 @@ pub fn run_all(root: &Path, keep: bool, shard: Option<Shard>) -> Result<Vec<Stri
         if shard.is_some_and(|shard| number % shard.of as usize + 1 != shard.index as usize) {
             continue;
         }
-        let words = command.strip_prefix("cargo run ");
+        // Keep the first lines only, if the command ends so.
+        let (run, most_lines) = match command.split_once(" | head -") {
+            Some((run, most)) => {
+                (run, most.parse().with_context(|| format!("{FOLDER}/{name}.txt: `head -{most}`"))?)
+            }
+            None => (command.as_str(), usize::MAX),
+        };
+        let words = run.strip_prefix("cargo run ");
         let words = words
             .with_context(|| format!("{FOLDER}/{name}.txt: the first line is no `cargo run` command"))?;
         let output = Command::new(env!("CARGO"))
@@ -71,7 +80,8 @@ pub fn run_all(root: &Path, keep: bool, shard: Option<Shard>) -> Result<Vec<Stri
             .context("cargo cannot be started")?;
         let said = String::from_utf8_lossy(&output.stderr);
         ensure!(output.status.success(), "{FOLDER}/{name}.txt: `{command}` fails:\n{}", said.trim_end());
-        let now = without_times(&String::from_utf8_lossy(&output.stdout));
+        let now = String::from_utf8_lossy(&output.stdout);
+        let now = without_times(&now.lines().take(most_lines).collect::<Vec<_>>().join("\n"));
         // Widths of columns depend on times as well.
         if squeezed(&now) == squeezed(&text) {
             continue;
@@ -287,7 +297,9 @@ fn without_times(text: &str) -> String {
         for cell in cells.iter().filter(|cell| times.contains(&cell.end) && begins_number(&cell.text)) {
             blank(cell.start, cell.end);
         }
-        times.extend(cells.iter().filter(|cell| TIMES.contains(&cell.text.as_str())).map(|cell| cell.end));
+        if !line.split(' ').any(begins_number) {
+            times.extend(TIMES.iter().flat_map(|heading| ends(line, heading)));
+        }
         // A number before a unit of time.
         let mut at = 0;
         let words: Vec<&str> = line.split(' ').collect();
@@ -306,6 +318,15 @@ fn without_times(text: &str) -> String {
         clean.push('\n');
     }
     clean
+}
+
+/// The columns behind `words` in a line.
+fn ends(line: &str, words: &str) -> Vec<usize> {
+    let is_edge = |letter: Option<char>| letter.is_none_or(|letter| letter == ' ');
+    let found = line.match_indices(words).map(|(at, _)| (&line[..at], &line[at + words.len()..]));
+    let whole =
+        found.filter(|(before, behind)| is_edge(before.chars().last()) && is_edge(behind.chars().next()));
+    whole.map(|(before, _)| before.chars().count() + words.chars().count()).collect()
 }
 
 /// A text with single spaces between its words.
