@@ -20,7 +20,7 @@ use glam::DVec3;
 /// A line meets a sphere at two values of `t`, and a ray sees the smaller one in its range. Which
 /// one is that if it starts inside? And is 2 smaller than NaN?
 ///
-/// Returns the smaller one of the roots that count, or `None`.
+/// Returns the smaller one of the roots that count, or `None` if neither does.
 ///
 /// Exactly:
 ///
@@ -38,7 +38,7 @@ pub fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32> {
     // </solution>
 }
 
-/// A point of the ray, `o + t d`, lies on the sphere where `|o + t d - center|² = r²`. That is a
+/// A point `o + t d` of the ray lies on the sphere where `|o + t d - center|² = r²`. That is a
 /// quadratic:
 ///
 /// ```text
@@ -147,16 +147,16 @@ pub fn sphere_normal(center: Vec3, point: Vec3) -> Vec3 {
 }
 
 /// A point p lies in the plane if `n·(p - p₀) = 0`, where p₀ is `point`. Put `o + t d` for p and
-/// solve for `t`. What is `n·d` for a ray along the plane? How large are `n·o` and `n·p₀` far from
-/// the origin?
+/// solve for `t`. What if the ray runs along the plane? How large are `n·o` and `n·p₀` far from the
+/// origin?
 ///
 /// Returns `t` if it counts.
 ///
 /// Exactly:
 ///
 /// - The plane is infinite and is hit from both sides. `normal` need not be a unit vector.
-/// - `None` for a ray parallel to the plane (`n·d = 0` exactly), a ray that starts in it, a normal
-///   of 0, and a NaN anywhere.
+/// - `None` for a ray parallel to the plane (`n·d = 0` exactly) or starting in it, a normal of 0,
+///   and a NaN anywhere.
 /// - `t` keeps its digits far from the origin.
 pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     // <solution>
@@ -169,9 +169,8 @@ pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     // </solution>
 }
 
-/// The plane is an equation, `A x + B y + C z + D = 0`. Put `o + t v` into it, with the ray's
-/// direction v and n = (A, B, C): `t = (-D - n·o) / (n·v)`. How many digits are left where D and
-/// `n·o` are large?
+/// Put `o + t v`, with the ray's direction v, into the plane `A x + B y + C z + D = 0`: with n =
+/// (A, B, C), `t = (-D - n·o) / (n·v)`. How many digits are left where D and `n·o` are large?
 ///
 /// `normal` is n, and `d` is D. Returns `t` if it counts.
 ///
@@ -195,8 +194,7 @@ pub fn plane_by_coefficients(ray: &Ray, normal: Vec3, d: f32) -> Option<f32> {
     // </solution>
 }
 
-/// A ray that goes to the side to which the normal points, `n·d > 0`, comes from behind. Which
-/// normal does it see?
+/// A ray with `n·d > 0` goes to the side to which the normal points, so it comes from behind.
 ///
 /// Returns `normal` or `-normal`: the one with `n·d ≤ 0`, either if `n·d` is 0. Neither vector need
 /// be a unit vector, and the length of the normal does not change.

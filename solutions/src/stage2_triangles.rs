@@ -38,8 +38,8 @@ use raykata::shape::Triangle;
 /// β (a - b) + γ (a - c) + t d = a - o
 /// ```
 ///
-/// Cramer's rule solves them. The determinant `D` on the slide contains `a - o`, where the ray
-/// starts. Can that be?
+/// Cramer's rule solves them. The determinant `D` on the slide contains `a - o`, so it depends on
+/// where the ray starts. Can that be right?
 ///
 /// The contract is at the top of this file.
 pub fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
@@ -159,11 +159,11 @@ pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // </solution>
 }
 
-/// Inside test I: the ray's origin o and each side of the triangle span a plane. A point inside
-/// lies on the same side of all three, which the sign of `n₁·(P - o)` tells, with
-/// `n₁ = (T₂ - o) × (T₁ - o)`. Which sign means inside?
+/// Inside test I: the ray's origin o and each side of the triangle span a plane. A point P inside
+/// lies on the same side of all three. For the side from T₁ to T₂ that is the sign of `n₁·(P - o)`
+/// with `n₁ = (T₂ - o) × (T₁ - o)`. Which sign means inside?
 ///
-/// `point` lies in the plane of the triangle, up to rounding.
+/// P = `point` lies in the plane of the triangle, up to rounding.
 ///
 /// Exactly:
 ///
@@ -181,9 +181,9 @@ pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // </solution>
 }
 
-/// Inside test II: seen along the ray, `point` is inside if it lies on the same side of all three
-/// edges. For the edge from T₁ to T₂ that is the sign of `d·((T₂ - P) × (T₁ - P))`. Which sign is
-/// that from behind?
+/// Inside test II: seen along the ray, P = `point` is inside if it lies on the same side of all
+/// three edges. For the edge from T₁ to T₂ that is the sign of `d·((T₂ - P) × (T₁ - P))`. Which
+/// sign is that from behind?
 ///
 /// `point` lies in the plane of the triangle, up to rounding. The corners may have either order.
 /// Points on an edge are inside. A NaN gives `false`.
@@ -202,10 +202,9 @@ fn same_side(sides: [f32; 3]) -> bool {
 }
 // </solution>
 
-/// Inside test III: P divides the triangle into three, whose areas are its barycentric coordinates:
-/// `α = Area(P b c) / Area(a b c)`, β with c and a, γ with a and b.
-///
-/// Which areas has a point outside?
+/// Inside test III: P = `point` divides the triangle into three, whose areas give its barycentric
+/// coordinates: `α = Area(P b c) / Area(a b c)`, and so on for β (P c a) and γ (P a b). Which areas
+/// has a point outside?
 ///
 /// Returns `(α, β, γ)`, or `None` for a point outside, a triangle without area, or a NaN. `point`
 /// lies in the plane of the triangle, up to rounding. Points on an edge are inside.
@@ -281,7 +280,7 @@ pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
 /// Exactly:
 ///
 /// - Each triangle counts once, whatever its area. A triangle without area does not count.
-/// - If the normals cancel, the result is that of one of the triangles.
+/// - If the normals cancel, the vertex gets the normal of one of the triangles.
 /// - A vertex without such a triangle gets any unit vector.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     // <solution>

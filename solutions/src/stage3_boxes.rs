@@ -73,8 +73,7 @@ pub fn surface_area(bounds: &Aabb) -> f32 {
 }
 
 /// A ray is inside a box while it is between the two planes of each axis, from `(b⁻ - o) / d` to
-/// `(b⁺ - o) / d`: `t_b = t_x ∩ t_y ∩ t_z`. What if it starts inside? If `d` is 0, or -0.0? If it
-/// runs within a face?
+/// `(b⁺ - o) / d`: `t_b = t_x ∩ t_y ∩ t_z`. What if it starts inside? What if d is 0 or -0.0?
 ///
 /// Returns the `t` of entry and exit. `inverse_direction` is `1 / ray.direction`, infinite where d
 /// is 0 (with the sign of the zero) and where `1/d` overflows (below 2.9e-39).
@@ -83,11 +82,11 @@ pub fn surface_area(bounds: &Aabb) -> f32 {
 ///
 /// - Both lie in `ray.t_min..=ray.t_max`, whose ends count here. A ray that starts inside enters at
 ///   `t_min`.
-/// - The box is closed: a ray that touches a face, an edge or a corner or runs within a face hits
-///   it. A box without thickness can be hit.
+/// - The box is closed: a ray that touches a face, an edge or a corner, or runs within a face, hits
+///   it. A box may have no thickness.
 /// - For `ray.t_min >= 0`, a ray aimed exactly at a corner does not miss by rounding. The interval
 ///   may be a few roundings too wide.
-/// - `None` if the ray misses the box within its range, and always for [`Aabb::EMPTY`].
+/// - `None` if the ray misses the box within its range, or for [`Aabb::EMPTY`].
 #[inline]
 pub fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>

@@ -75,10 +75,10 @@ pub fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize {
     // </solution>
 }
 
-/// Surface area heuristic: a ray that enters the box of the parent P enters a child with
-/// probability `A(child) / A(P)`, the ratio of their surface areas. Sort by centroid along each
-/// axis, try all n - 1 cuts, and take the one with the smallest `A(L) n(L) + A(R) n(R)`. What is
-/// the ratio for primitives in a line?
+/// Surface area heuristic: a ray that enters the parent P enters a child with probability
+/// `A(child) / A(P)`, the ratio of their surface areas. Sort by centroid along each axis, try all
+/// `n - 1` cuts, and take the one with the smallest `A(L) n(L) + A(R) n(R)`. What is the ratio for
+/// primitives in a line?
 ///
 /// Input and index are as for [`split_object_median`]. The result is `None`, a leaf, if for the
 /// best cut
@@ -158,9 +158,9 @@ fn sort_along(primitives: &mut [PrimitiveRef], axis: usize) {
 }
 // </solution>
 
-/// A hierarchy is built from the top down: a node gets the box around its primitives and becomes a
-/// leaf, or they are split in two and both parts are built alike. Does that end for a single
-/// primitive? How deep does it go if each split takes one primitive away?
+/// From the top down, a node gets the box around its primitives. It becomes a leaf, or they are
+/// split in two and both parts are built alike. Does that end for one primitive? How deep is it if
+/// each split takes one away?
 ///
 /// Primitive `i` has the box `bounds[i]`.
 ///
@@ -168,9 +168,10 @@ fn sort_along(primitives: &mut [PrimitiveRef], axis: usize) {
 ///
 /// - Each primitive is in exactly one leaf, and each box contains everything below it. Without
 ///   primitives there is no node.
-/// - A leaf holds 1 to `leaf_size` primitives. With both medians so few always become a leaf.
-/// - With [`Split::SurfaceArea`] so few are still split if that is cheaper, and more, for which no
-///   cut is cheaper, are split by the object median.
+/// - A leaf holds 1 to `leaf_size` primitives. With both medians, `leaf_size` or fewer become a
+///   leaf.
+/// - With [`Split::SurfaceArea`] such a group is still split if that is cheaper. A larger group for
+///   which no cut is cheaper is split by the object median.
 /// - From depth [`DEEPEST_SPLIT`] on (the root has 0) every split is an object median. So there are
 ///   at most `DEEPEST_SPLIT + ⌈log₂ n⌉ + 1` levels, for any boxes.
 /// - A box of NaN goes into some leaf and does not change the boxes of other primitives.

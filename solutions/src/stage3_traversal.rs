@@ -69,15 +69,14 @@ pub fn keep_closest(closest: &mut Option<PrimitiveHit>, ray: &mut Ray, hit: Prim
 // </solution>
 
 /// Search the nearer child first, and skip every box that begins beyond the best hit so far. Boxes
-/// overlap: when is the hit in the nearer child not the closest? And does a hit at exactly `t_max`
-/// count?
+/// overlap: is a hit in the nearer child the closest? Does a hit at exactly `t_max` count?
 ///
 /// Returns the same hit as [`closest_hit_both`], also of two hits at the same `t`.
 ///
 /// Exactly:
 ///
 /// - `t_max` is lowered at each hit.
-/// - The farther child's entry is compared with `t_max` again after the search of the nearer child.
+/// - After the nearer child, the farther child's entry is compared with `t_max` again.
 /// - If the ray enters both children at the same `t`, either may be searched first.
 pub fn closest_hit(bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>

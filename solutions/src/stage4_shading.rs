@@ -13,16 +13,15 @@ use raykata::material::Material;
 use raykata::ray::Ray;
 
 /// A smooth surface is shaded with its `interpolated` normal, a flat one with its `geometric`
-/// normal, on the viewer's side. Near a silhouette the two may disagree: which one says where the
-/// viewer is? What is the direction of (0, 0, 0)?
+/// normal, on the viewer's side. Near a silhouette the two may disagree: which one tells this side?
 ///
 /// Returns a unit normal. `direction` is that of the ray from the viewer.
 ///
 /// Exactly:
 ///
 /// - `geometric`, of unit length, is negated if its dot product with `direction` is above 0.
-/// - `interpolated`, of any length from 1e-18 to 1e18, is normalized, and negated if its dot
-///   product with the turned geometric normal is below 0.
+/// - `interpolated` (length 1e-18 to 1e18) is normalized, and negated if its dot product with the
+///   turned geometric normal is below 0.
 /// - If `interpolated` is `None`, 0 or NaN, the turned geometric normal is returned.
 /// - Where a dot product is 0, either sign passes.
 ///
@@ -62,7 +61,7 @@ pub fn diffuse_term(normal: Vec3, to_light: Vec3) -> f32 {
 /// Exactly:
 ///
 /// - 0 if the light is behind the surface (`cos θ = n·l < 0`) or `cos φ < 0`.
-/// - If a cosine is 0, both 0 and the power pass.
+/// - If one of the two cosines is 0, both 0 and the power pass.
 /// - For an exponent of 0 any result in `0..=1` passes.
 ///
 /// Source: "Local illumination".
@@ -80,15 +79,15 @@ pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f3
 }
 
 /// A shadow ray goes from the surface to the light: what it hits occludes the light. The point is
-/// rounded, so it lies on either side of the surface. What does the ray hit first? What is at its
-/// other end?
+/// rounded, so it may lie on either side of the surface. What does the ray hit first? What is at
+/// its other end?
 ///
 /// Exactly:
 ///
 /// - `None` if `light.radiance` is 0, or if the dot product of `light.direction` with either normal
 ///   is 0 or less.
 /// - The ray has the direction of the light. It ends between 0.99 and 1 times `light.distance` (not
-///   included), or is infinite like the distance.
+///   included); an infinite distance stays infinite.
 /// - It starts on the viewer's side, at least `error·|n|` from the point along the geometric normal
 ///   n; `|n|` has the absolute values of its coordinates. Rounding must not make this more than 1 %
 ///   smaller.

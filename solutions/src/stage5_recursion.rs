@@ -31,8 +31,8 @@ pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
 }
 
 /// Snell's law bends light where it goes from a medium of index `n1` into one of `n2`:
-/// `n1 sin θ1 = n2 sin θ2`. The part of d along the surface has the length `sin θ1`. Which
-/// direction has it for a ray along the normal? What if `sin θ2` is above 1?
+/// `n1 sin θ1 = n2 sin θ2`. The part of d along the surface is `sin θ1` long. What is its direction
+/// for a ray along the normal? What if `sin θ2 > 1`?
 ///
 /// Returns a unit vector, never NaN.
 ///
@@ -64,8 +64,8 @@ pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> 
     // </solution>
 }
 
-/// The Fresnel reflectance is the fraction of light that the surface between two clear media
-/// reflects. Schlick's approximation:
+/// The Fresnel reflectance is the fraction of light that a clear surface reflects. Schlick's
+/// approximation:
 ///
 /// ```text
 /// R0 + (1 - R0) (1 - cos θ)⁵    R0 = ((n1 - n2) / (n1 + n2))²
@@ -136,15 +136,16 @@ fn cos_behind(cos_1: f32, n1: f32, n2: f32) -> Option<f32> {
 /// picture? What are n1 and n2 when a ray leaves glass?
 ///
 /// The ray of weight `weight` comes after `depth` reflections and refractions, from outside the
-/// material if `entering`. The index of refraction is 1 outside.
+/// material if `entering`. The index of refraction is `material.index_of_refraction` inside and 1
+/// outside.
 ///
 /// Exactly:
 ///
 /// - The directions are those of [`reflect`] and [`refract`].
 /// - The weights are `weight · (mirror + F transmission)` and `weight · (1 - F) transmission`,
 ///   channel by channel, for the fields of `material`.
-/// - If `material.fresnel` is `None`, F is 0, also beyond the critical angle, where there is no
-///   refracted ray.
+/// - F is that of `material.fresnel`, and 0 for `None`, also beyond the critical angle, where there
+///   is no refracted ray.
 /// - A ray is returned only if `depth < limits.max_depth` and the largest channel of its own weight
 ///   is above 0 and at least `limits.min_contribution`. The order does not matter.
 ///
@@ -207,7 +208,7 @@ pub fn scatter(
 ///
 /// - A reflected ray starts on the side of `surface.geometric_normal`, a refracted ray on the other
 ///   side.
-/// - The distance of its start from the point is as for
+/// - Its distance from the point along the normal is as for
 ///   [`shadow_ray`](crate::stage4_shading::shadow_ray).
 ///
 /// Source: "Algorithm (max depth)".

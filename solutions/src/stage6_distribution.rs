@@ -126,18 +126,17 @@ pub fn sample_disk(u: Vec2) -> Vec2 {
     // </solution>
 }
 
-/// A thin lens bends all rays of a pixel to one point: where the pinhole ray meets the focal plane.
-/// So the ray starts at a point of the lens and goes there. Is each point of this plane at
-/// `focal_distance` along its ray?
+/// All rays of a pixel meet where the pinhole ray meets the focal plane. Start at the point of the
+/// lens and go there. Is that at `focal_distance` along the pinhole ray?
 ///
-/// `on_lens`, a point of the disk of radius 1, stands for the point of the lens.
-/// `lens.focal_distance` is above 0.
+/// `on_lens`, in the disk of radius 1, stands for the point of the lens.
 ///
 /// Exactly:
 ///
 /// - The lens is a disk of diameter `lens.aperture` around `camera.position`, spanned by
 ///   `camera.right` and `camera.up`.
-/// - The focal plane is at right angles to `camera.towards`, at the focal distance.
+/// - The focal plane is at right angles to `camera.towards`, at the distance
+///   `lens.focal_distance > 0`.
 /// - The direction has unit length, and is precise far from the origin.
 /// - From the centre of the lens (`on_lens` or `lens.aperture` is 0) the result is `pinhole`, bit
 ///   for bit.
@@ -184,9 +183,8 @@ pub fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3 {
     // </solution>
 }
 
-/// A unit direction from `from` to the sphere, uniform over the solid angle. From outside, the
-/// directions fill a cone whose half-angle has `sin θ = radius / distance`, and on the unit sphere
-/// slices of equal height have equal area. What is `1 - cos θ` of a far sphere?
+/// A unit direction from `from` to the sphere, uniform over its solid angle. From outside, this is
+/// a cone of half-angle θ with `sin θ = radius / distance`. What is `1 - cos θ` of a far sphere?
 ///
 /// The radius is above 0.
 ///
@@ -224,11 +222,11 @@ fn around(axis: Vec3, one_minus_cos: f32, turn: f32) -> Vec3 {
 }
 // </solution>
 
-/// A glossy surface reflects into a lobe around `ideal`, the direction for a smooth surface: the
-/// density per solid angle at the angle θ is proportional to `cosⁿ θ`. How many numbers are there
-/// near `cos θ = 1`? What if the direction goes through the surface?
+/// A glossy surface reflects into a lobe around `ideal`, the direction for a smooth surface, with a
+/// density per solid angle proportional to `cosⁿ θ`. How many numbers are there near `cos θ = 1`?
+/// Can a ray go through the surface?
 ///
-/// `roughness` is in `0..=1`, and `normal` is on the side to which the ray goes. Returns a unit
+/// `roughness` is in `0..=1`, and `normal` on the side to which the ray goes. Returns a unit
 /// vector.
 ///
 /// Exactly:
@@ -276,10 +274,11 @@ pub fn temporal_slot(x: u32, y: u32) -> u32 {
     // </solution>
 }
 
-/// Motion blur: the time while the shutter is open is divided into `slots` slots of equal length,
-/// and `u` is the position in one of them, from 0 at its beginning.
+/// Motion blur: the interval in which the shutter is open is divided into `slots` slots of equal
+/// length. Which time is at position `u` of slot `slot`? May rounding lead beyond the interval?
 ///
-/// `slot` counts from 1. The result is in `shutter.open..=shutter.close`, both ends included.
+/// `slot` counts from 1, and `u = 0` is the beginning of the slot. The result is in
+/// `shutter.open..=shutter.close`, both ends included.
 ///
 /// Source: "Motion Blur".
 pub fn time_in_shutter(shutter: &Shutter, slot: u32, slots: u32, u: f32) -> f32 {
@@ -291,9 +290,9 @@ pub fn time_in_shutter(shutter: &Shutter, slot: u32, slots: u32, u: f32) -> f32 
     // </solution>
 }
 
-/// Linear interpolation: a point moves from `start` to `end` at constant speed. Where is it at
-/// `time`, in `0..=1`? Does `start + t (end - start)` reach the end exactly, and does
-/// `(1 - t) start + t end` stand still if both are equal?
+/// Linear interpolation: where is a point at `time`, in `0..=1`, that moves from `start` to `end`
+/// at constant speed? Does `start + t (end - start)` reach the end? Does `(1 - t) start + t end`
+/// stand still if both are equal?
 ///
 /// Exactly:
 ///
