@@ -123,9 +123,9 @@ pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> O
     // </solution>
 }
 
-/// A method of your choice. Pictures use this function until you write `watertight` in stage 10.
-/// Many published versions compare the determinant with an epsilon: which triangles do they lose?
-/// Others reject a negative determinant: which hits do these lose?
+/// A method of your choice. Pictures use it until you write `watertight` in stage 10. Many
+/// published versions compare the determinant with an epsilon, or reject a negative one: which hits
+/// do they lose?
 ///
 /// The contract is at the top of this file.
 ///
@@ -226,11 +226,10 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
 /// corners run anticlockwise. A ray comes from behind if `n·d > 0`. How large is n for a tiny
 /// triangle?
 ///
-/// Returns whether the ray comes from behind. A renderer then skips triangles of one-sided meshes.
+/// Returns whether the ray comes from behind, whether or not it hits the triangle in its range.
 ///
 /// Exactly:
 ///
-/// - Whether the ray hits the triangle, and its range, do not matter.
 /// - `false` for a triangle seen edge-on (`n·d = 0` exactly), a triangle without area, and a NaN.
 /// - The triangle may have any size.
 ///
@@ -245,10 +244,8 @@ pub fn backfacing(ray: &Ray, triangle: &Triangle) -> bool {
     // </solution>
 }
 
-/// Interpolation with barycentric coordinates: `α A + β B + γ C` for the values A, B and C at the
-/// corners a, b and c.
-///
-/// `barycentric` is `(α, β, γ)`. The result is not normalized.
+/// Interpolation with barycentric coordinates `(α, β, γ)`: `α A + β B + γ C` for the values A, B
+/// and C at the corners. The result is not normalized.
 pub fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3 {
     // <solution>
     barycentric.x * corners[0] + barycentric.y * corners[1] + barycentric.z * corners[2]
@@ -279,7 +276,7 @@ pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
 ///
 /// Exactly:
 ///
-/// - Each triangle counts once, whatever its area. A triangle without area does not count.
+/// - Each triangle counts once, whatever its area, but not one without area.
 /// - If the normals cancel, the vertex gets the normal of one of the triangles.
 /// - A vertex without such a triangle gets any unit vector.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
@@ -307,10 +304,10 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     // </solution>
 }
 
-/// The closest hit is the one with the smallest `t` of all primitives: ask each with
-/// `probe.hit(primitive, ray)`, which returns hits in the ray's range only.
+/// The closest hit has the smallest `t` of all primitives, `0..n_primitives`. Ask each with
+/// `probe.hit(primitive, ray)`, which returns only hits in the ray's range.
 ///
-/// The primitives are `0..n_primitives`. The result is `None` if nothing is hit.
+/// The result is `None` if nothing is hit.
 ///
 /// Exactly:
 ///

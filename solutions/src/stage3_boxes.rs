@@ -10,9 +10,8 @@ use raykata::ray::Ray;
 use raykata::rounding::gamma;
 use raykata::shape::{Sphere, Triangle};
 
-/// The smallest box around a triangle: each of its six sides touches a corner.
-///
-/// Each side is exactly a coordinate of a corner. Boxes are closed, so a flat box needs no padding.
+/// The smallest box around a triangle: each side is exactly a coordinate of a corner. Boxes are
+/// closed, so a flat box needs no padding.
 pub fn triangle_bounds(triangle: &Triangle) -> Aabb {
     // <solution>
     Aabb::new(triangle.a.min(triangle.b).min(triangle.c), triangle.a.max(triangle.b).max(triangle.c))

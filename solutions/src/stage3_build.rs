@@ -25,9 +25,8 @@ use crate::stage3_boxes::longest_axis;
 ///
 /// Exactly:
 ///
-/// - Each side holds n / 2; if n is odd, either side may hold one more.
-/// - Equal centroids may go to either side.
-/// - A centroid may be NaN.
+/// - If n is odd, either side may hold one more.
+/// - Equal centroids may go to either side. A centroid may be NaN.
 pub fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize {
     // <solution>
     let axis = longest_axis(&bounds_of(primitives));
@@ -49,7 +48,7 @@ pub fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize {
 ///
 /// Exactly:
 ///
-/// - Neither side is empty. If the cut leaves one empty, any other split is right.
+/// - Neither side is empty: if the cut leaves one empty, any other split is right.
 /// - A centroid exactly on the cut may go to either side.
 pub fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize {
     // <solution>

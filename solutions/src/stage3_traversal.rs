@@ -13,12 +13,8 @@ use raykata::ray::Ray;
 /// If a ray misses a box, it misses everything inside. If it enters the box of a node, search both
 /// children and keep the nearer hit.
 ///
-/// Returns the hit with the smallest `t` in the ray's range, or `None`.
-///
-/// Exactly:
-///
-/// - Of two hits at the same `t` the smaller primitive number wins.
-/// - A node is opened only if the ray enters its box (`probe.enter` returns `Some`).
+/// Returns the hit with the smallest `t` in the ray's range. At the same `t` the smaller primitive
+/// number wins. A node is opened only if the ray enters its box (`probe.enter` returns `Some`).
 pub fn closest_hit_both(bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     let root = bvh.root()?;
@@ -71,13 +67,13 @@ pub fn keep_closest(closest: &mut Option<PrimitiveHit>, ray: &mut Ray, hit: Prim
 /// Search the nearer child first, and skip every box that begins beyond the best hit so far. Boxes
 /// overlap: is a hit in the nearer child the closest? Does a hit at exactly `t_max` count?
 ///
-/// Returns the same hit as [`closest_hit_both`], also of two hits at the same `t`.
+/// Returns the same hit as [`closest_hit_both`], also at the same `t`.
 ///
 /// Exactly:
 ///
-/// - `t_max` is lowered at each hit.
-/// - After the nearer child, the farther child's entry is compared with `t_max` again.
-/// - If the ray enters both children at the same `t`, either may be searched first.
+/// - `t_max` is lowered at each hit. After the nearer child, the farther child's entry is compared
+///   with it again.
+/// - If the ray enters both children at the same `t`, either may be first.
 pub fn closest_hit(bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     // Enter the root, and search below it with a copy of the ray whose range shrinks.
@@ -127,10 +123,8 @@ fn search(node: u32, bvh: &Bvh, probe: &mut impl Probe, ray: &mut Ray, closest: 
 /// Whether any primitive is hit within the ray's range: a shadow ray needs to know no more. Is a
 /// box that it enters a hit?
 ///
-/// Exactly:
-///
-/// - After the first hit no further primitive is tested.
-/// - A node is opened only if the ray enters its box.
+/// After the first hit no further primitive is tested. A node is opened only if the ray enters its
+/// box.
 pub fn any_hit(bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> bool {
     // <solution>
     bvh.root().is_some_and(|root| any_below(root, bvh, probe, ray))

@@ -192,8 +192,7 @@ pub fn shade(
 /// With gamma 2, the byte for a component of linear light x is `255 √x`, rounded to the nearest
 /// byte. What is the square root of -1e-8?
 ///
-/// `linear` is clamped to `0..=1`: values below 0, also -∞, give 0, and values above 1, also ∞,
-/// give 255. NaN gives 0.
+/// `linear` is clamped to `0..=1`, so -∞ gives 0 and ∞ gives 255. NaN gives 0.
 ///
 /// Source: "Gamma Correction".
 pub fn encode_gamma(linear: f32) -> u8 {

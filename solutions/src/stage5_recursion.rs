@@ -106,10 +106,9 @@ pub fn fresnel_schlick(cos_theta: f32, n1: f32, n2: f32) -> f32 {
 /// ((n1 cos θ2 - n2 cos θ1) / (n1 cos θ2 + n2 cos θ1))²
 /// ```
 ///
-/// `cos_theta` is `cos θ1` as in [`fresnel_schlick`], and θ2 is the angle of the refracted ray.
-/// What if both cosines are 0?
+/// θ1 is the angle of the ray, and θ2 that of the refracted ray. What if both cosines are 0?
 ///
-/// The result is in `0..=1`; beyond the critical angle and near it, it is as for
+/// Input and range of the result, also beyond the critical angle and near it, are those of
 /// [`fresnel_schlick`].
 pub fn fresnel_exact(cos_theta: f32, n1: f32, n2: f32) -> f32 {
     // <solution>

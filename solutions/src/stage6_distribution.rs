@@ -26,8 +26,8 @@ const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 /// Stratified samples: the pixel, whose side is 1, is a grid of cells with one random sample each,
 /// at `(cell + u) / grid`. What is 3 + 0.99999994, rounded?
 ///
-/// The result is in its cell, up to rounding, and in `0.0..1.0` along x and y. It is never 1,
-/// because 1 belongs to the next pixel.
+/// The result is in its cell, up to rounding, and in `0.0..1.0` along x and y: 1 belongs to the
+/// next pixel.
 ///
 /// Source: "Generate pixel samples".
 pub fn jittered(stratum: &Stratum) -> Vec2 {
@@ -83,8 +83,8 @@ pub fn gaussian_weight(offset: Vec2) -> f32 {
 /// The colour of a pixel is the weighted mean of its samples. If all samples are white, is the
 /// pixel white, whatever their weights?
 ///
-/// Each weight is at least 0. If there is no sample, or if the weights sum to 0, the pixel is
-/// black. The colour is not clamped.
+/// Each weight is at least 0. Without samples, or if the weights sum to 0, the pixel is black. The
+/// colour is not clamped.
 ///
 /// Source: "Antialiasing".
 pub fn filter_pixel(samples: &[WeightedColor]) -> Vec3 {
@@ -129,12 +129,10 @@ pub fn sample_disk(u: Vec2) -> Vec2 {
 /// All rays of a pixel meet where the pinhole ray meets the focal plane. Start at the point of the
 /// lens and go there. Is that at `focal_distance` along the pinhole ray?
 ///
-/// `on_lens`, in the disk of radius 1, stands for the point of the lens.
-///
 /// Exactly:
 ///
 /// - The lens is a disk of diameter `lens.aperture` around `camera.position`, spanned by
-///   `camera.right` and `camera.up`.
+///   `camera.right` and `camera.up`. `on_lens` is in the disk of radius 1.
 /// - The focal plane is at right angles to `camera.towards`, at the distance
 ///   `lens.focal_distance > 0`.
 /// - The direction has unit length, and is precise far from the origin.
@@ -159,9 +157,8 @@ pub fn lens_ray(camera: &Camera, pinhole: &Ray, lens: &Lens, on_lens: Vec2) -> R
     // </solution>
 }
 
-/// A uniformly distributed point of the rectangle with the corner `corner`.
-///
-/// `edges` are the vectors from this corner along both sides. They need not be at right angles.
+/// A uniformly distributed point of the rectangle at `corner`. `edges` are the vectors along both
+/// sides, which need not be at right angles.
 ///
 /// Source: "Area Lights".
 pub fn sample_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3 {
@@ -185,13 +182,12 @@ pub fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3 {
 
 /// A unit direction from `from` to the sphere, uniform over its solid angle. From outside, this is
 /// a cone of half-angle θ with `sin θ = radius / distance`. What is `1 - cos θ` of a far sphere?
-///
 /// The radius is above 0.
 ///
 /// Exactly:
 ///
-/// - From outside, the directions are uniform over this cone, also for a far sphere.
-/// - From inside they are uniform over all directions.
+/// - The directions are uniform over the cone, also of a far sphere, and from inside over all
+///   directions.
 /// - From the centre any unit direction passes, and NaN fails.
 ///
 /// Source: "Soft shadows", "Area Lights".
@@ -255,8 +251,8 @@ pub fn sample_phong_lobe(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> 
     // </solution>
 }
 
-/// The time slot, from 1 to 16, of the cell in column `x` and row `y`. Cells form blocks of 4 by 4,
-/// and each block has the slots of this table:
+/// The time slot, from 1 to 16, of the cell in column `x` and row `y`. Each block of 4 by 4 cells
+/// has these slots:
 ///
 /// ```text
 ///  7 11  3 14
@@ -290,14 +286,13 @@ pub fn time_in_shutter(shutter: &Shutter, slot: u32, slots: u32, u: f32) -> f32 
     // </solution>
 }
 
-/// Linear interpolation: where is a point at `time`, in `0..=1`, that moves from `start` to `end`
-/// at constant speed? Does `start + t (end - start)` reach the end? Does `(1 - t) start + t end`
-/// stand still if both are equal?
+/// Linear interpolation: a point moves from `start` to `end` while `time` goes from 0 to 1. Does
+/// `start + t (end - start)` reach the end? Does `(1 - t) start + t end` stand still if both are
+/// equal?
 ///
 /// Exactly:
 ///
-/// - The result is `start` at time 0 and `end` at time 1.
-/// - If `start == end`, it is this point.
+/// - The result is exactly `start` at time 0, `end` at time 1, and `start` if `start == end`.
 /// - Each coordinate is between those of `start` and `end` (both included), because bounding boxes
 ///   rely on it.
 ///
@@ -312,10 +307,8 @@ pub fn lerp(start: Vec3, end: Vec3, time: f32) -> Vec3 {
     // </solution>
 }
 
-/// The smallest box around everything that moves linearly from box `start` to box `end`. Where is a
-/// corner farthest out?
-///
-/// It is exact: each coordinate is one of those of `start` and `end`.
+/// The smallest box around everything that moves linearly from box `start` to box `end`. It is
+/// exact: each coordinate is one of those of `start` and `end`.
 ///
 /// Source: "Motion Blur".
 pub fn motion_bounds(start: &Aabb, end: &Aabb) -> Aabb {
