@@ -74,7 +74,8 @@ pub fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 /// `v·v`, `u·u` and the determinant `D = (u·v)² - (u·u)(v·v)`. What is left of this difference for
 /// a thin triangle?
 ///
-/// `D` is 0 for a triangle without area, and never positive, however thin the triangle is.
+/// `D` is 0 for a triangle without area and negative otherwise. It is never positive, however thin
+/// the triangle is.
 pub fn gram_scalars(triangle: &Triangle) -> GramScalars {
     // <solution>
     let u = triangle.b - triangle.a;
