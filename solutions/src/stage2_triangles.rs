@@ -1,19 +1,28 @@
-//! Stage 2 · triangles: three methods of ray-triangle intersection, three inside tests, and the normals of meshes.
+//! Stage 2 · triangles: three methods of ray-triangle intersection, three inside tests, and the
+//! normals of meshes.
 //!
-//! Slides: "Finding the intersection", "Cramer's Rule", "Ray-triangle intersection precomputations",
-//! "Ray-Triangle Intersection" I, II, III, "Smooth Shading", "Normals of Vertices".
+//! Slides: "Finding the intersection", "Cramer's Rule", "Ray-triangle intersection
+//! precomputations", "Ray-Triangle Intersection" I, II, III, "Smooth Shading", "Normals of
+//! Vertices".
 //!
-//! A hit is `(t, β, γ)` with `o + t d = a + β (b - a) + γ (c - a)`, where `β ≥ 0`, `γ ≥ 0` and `β + γ ≤ 1`. With
-//! `α = 1 - β - γ`, the numbers `(α, β, γ)` are the barycentric coordinates of the hit for the corners a, b and c.
+//! A hit is `(t, β, γ)` with `o + t d = a + β (b - a) + γ (c - a)`, where `β ≥ 0`, `γ ≥ 0` and
+//! `β + γ ≤ 1`. With `α = 1 - β - γ`, the numbers `(α, β, γ)` are the barycentric coordinates of
+//! the hit for the corners a, b and c.
 //!
-//! The contract of the three intersection functions: points on an edge belong to the triangle. (In single precision that is
-//! certain only if nothing is rounded: otherwise a point of an edge may come out beside it. Stage 10 decides exactly.) The
-//! triangle is hit
-//! from the front and from the back, so the order of the corners does not matter. `t` counts lengths of `direction`,
-//! which need not be a unit vector. A hit counts if `ray.contains(t)`: the range is open. The triangle may have any
-//! size, so no fixed epsilon is right. The result is `None` for a ray along the plane of the triangle, a triangle
-//! without area, a direction of 0, and a NaN anywhere. If products of the sizes overflow or underflow single precision, as
-//! those of edges above 1e12 or below 1e-15 do, a hit and a miss are both right, but no part of a hit is NaN or infinite.
+//! The contract of the three intersection functions. Exactly:
+//!
+//! - A hit counts if `ray.contains(t)`: the range is open. `t` counts lengths of `direction`, which
+//!   need not be a unit vector.
+//! - Points on an edge belong to the triangle. (In single precision that is certain only if nothing
+//!   is rounded: otherwise a point of an edge may come out beside it. Stage 10 decides exactly.)
+//! - The triangle is hit from the front and from the back, so the order of the corners does not
+//!   matter.
+//! - The triangle may have any size, so no fixed epsilon is right.
+//! - Hits stay accurate far from the world's origin.
+//! - `None` for a ray along the plane of the triangle, a triangle without area, a direction of 0,
+//!   and a NaN anywhere.
+//! - If products of the sizes overflow or underflow single precision, as those of edges above 1e12
+//!   or below 1e-15 do, a hit and a miss are both right, but no part of a hit is NaN or infinite.
 
 use glam::Vec3;
 use raykata::bvh::{PrimitiveHit, Probe};
@@ -22,16 +31,17 @@ use raykata::mesh::Mesh;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// Ray-triangle intersection by Cramer's rule: solve `β (a - b) + γ (a - c) + t d = a - o`, which is three equations
-/// (x, y and z) with three unknowns.
+/// The ray meets the triangle where `o + t d = a + β (b - a) + γ (c - a)`. These are three
+/// equations, for x, y and z:
 ///
-/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
-/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
-/// No fixed epsilon is right. The full contract is at the top of this file.
+/// ```text
+/// β (a - b) + γ (a - c) + t d = a - o
+/// ```
 ///
-/// Pitfall: the determinant `D` on the slide is wrong, because it repeats terms of the numerator of x. It is right
-/// for triangles along the axes and loses more than half of the hits of all others. The method itself has a weakness,
-/// too: two triangles that share an edge round differently, so one in ten rays that are aimed at the edge hits neither.
+/// Cramer's rule solves them. The determinant `D` on the slide contains `a - o`, so it depends on
+/// where the ray starts. Can that be right?
+///
+/// The contract is at the top of this file.
 pub fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
     // Name the columns of the equations as the slide does: a e i | b f j | c g k | d h l.
@@ -52,41 +62,43 @@ pub fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     let gamma = (a * (h * k - g * l) + d * (g * i - e * k) + c * (e * l - h * i)) / determinant;
     let t = (a * (f * l - h * j) + b * (h * i - e * l) + d * (e * j - f * i)) / determinant;
 
-    // Reject points outside the triangle and hits outside the ray's range. NaN makes each comparison false.
+    // Reject points outside the triangle and hits outside the ray's range. NaN makes each
+    // comparison false.
     let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
     (inside && ray.contains(t)).then_some(TriangleHit { t, beta, gamma })
     // <stub> todo!("solve the three equations for β, γ and t by Cramer's rule")
     // </solution>
 }
 
-/// The four numbers of a triangle that the Gram method needs, computed once per triangle: `u·v`, `v·v`, `u·u` and
-/// `D = (u·v)² - (u·u)(v·v)` for `u = b - a`, `v = c - a`.
+/// The Gram method needs only four numbers of a triangle, with `u = b - a` and `v = c - a`: `u·v`,
+/// `v·v`, `u·u` and the determinant `D = (u·v)² - (u·u)(v·v)`. What is left of this difference for
+/// a thin triangle?
 ///
-/// All are in world units: squared for the dot products, to the fourth power for `D`. `D` is 0 for a triangle without
-/// area and negative otherwise.
-///
-/// Pitfall: for a thin triangle `D` is the difference of two nearly equal numbers, so this formula gives zero or even
-/// a positive number. `D` is equal to `-|u × v|²`, which is never positive.
+/// `D` is 0 for a triangle without area and negative otherwise. It is never positive, however thin
+/// the triangle is.
 pub fn gram_scalars(triangle: &Triangle) -> GramScalars {
     // <solution>
     let u = triangle.b - triangle.a;
     let v = triangle.c - triangle.a;
+    // Compute D as -|u × v|², which equals (u·v)² - (u·u)(v·v) and is never positive. For a thin
+    // triangle that difference of nearly equal numbers would be rounding errors, and its sign as
+    // well.
     GramScalars { uv: u.dot(v), vv: v.dot(v), uu: u.dot(u), d: -u.cross(v).length_squared() }
     // <stub> todo!("compute u·v, v·v, u·u and D for u = b - a and v = c - a")
     // </solution>
 }
 
-/// Ray-triangle intersection by the Gram matrix: first the `t` at which the ray hits the plane of the triangle, then
-/// the barycentric coordinates `s` (here β) and `t` (here γ) of the point `I = P - a = s u + t v`.
+/// First intersect the plane, which gives `t` and the point P. Then solve for the coordinates of
+/// `I = P - a = s u + t v` (this s is our β, this t our γ):
 ///
-/// `scalars` are the [`gram_scalars`] of `triangle`.
+/// ```text
+/// I·u = s u·u + t u·v
+/// I·v = s u·v + t v·v
+/// ```
 ///
-/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
-/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
-/// No fixed epsilon is right. The full contract is at the top of this file.
+/// Is P inside if `0 ≤ s + t ≤ 1`? How exact is P far from the world's origin?
 ///
-/// Pitfall: "0 ≤ s + t ≤ 1" alone accepts points with a negative coordinate. Test `s ≥ 0` and `t ≥ 0` as well. The
-/// method itself has a weakness, too: it rounds the point before the test, so far from the origin that error decides.
+/// `scalars` are the [`gram_scalars`] of `triangle`. The contract is at the top of this file.
 pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> Option<TriangleHit> {
     // <solution>
     let u = triangle.b - triangle.a;
@@ -96,35 +108,34 @@ pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> O
     let to_a = triangle.a - ray.origin;
     let t = to_a.dot(normal) / ray.direction.dot(normal);
 
-    // Compute I = o + t d - a as t d - (a - o), because adding o to t d would round at the size of o.
+    // Compute I = o + t d - a as t d - (a - o), because adding o to t d would round at the size of
+    // o.
     let point = t * ray.direction - to_a;
     // Solve the two equations I·u = s u·u + t u·v and I·v = s u·v + t v·v.
     let (point_u, point_v) = (point.dot(u), point.dot(v));
     let beta = (scalars.uv * point_v - scalars.vv * point_u) / scalars.d;
     let gamma = (scalars.uv * point_u - scalars.uu * point_v) / scalars.d;
 
-    // Reject points outside the triangle and hits outside the ray's range. Each comparison is false for NaN, so this
-    // also rejects rays along the plane and triangles without area.
+    // Reject points outside the triangle and hits outside the ray's range. Each comparison is false
+    // for NaN, so this also rejects rays along the plane and triangles without area.
     let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
     (inside && ray.contains(t)).then_some(TriangleHit { t, beta, gamma })
     // <stub> todo!("find t from the plane of the triangle, then β and γ from the Gram scalars")
     // </solution>
 }
 
-/// Ray-triangle intersection by a method of your choice. Your pictures use this function until you write `watertight`
-/// in stage 10.
+/// A method of your choice. Pictures use it until you write `watertight` in stage 10. Many
+/// published versions compare the determinant with an epsilon, or reject a negative one: which hits
+/// do they lose?
 ///
-/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
-/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
-/// No fixed epsilon is right. The full contract is at the top of this file.
+/// The contract is at the top of this file.
 ///
-/// Pitfall: many published versions compare the determinant with an epsilon, which loses small triangles, or reject a
-/// negative determinant, which loses all hits from behind.
-///
-/// The reference is the method of Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
+/// Source: Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997 (the method
+/// of the reference).
 pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
-    // Solve o + t d = a + β edge1 + γ edge2 by Cramer's rule, with scalar triple products as determinants.
+    // Solve o + t d = a + β edge1 + γ edge2 by Cramer's rule, with scalar triple products as
+    // determinants.
     let edge1 = triangle.b - triangle.a;
     let edge2 = triangle.c - triangle.a;
     // Compute the determinant, and reject rays along the plane and triangles without area.
@@ -141,36 +152,42 @@ pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     let gamma = ray.direction.dot(qvec) / determinant;
     let t = edge2.dot(qvec) / determinant;
 
-    // Reject points outside the triangle and hits outside the ray's range. NaN makes each comparison false.
+    // Reject points outside the triangle and hits outside the ray's range. NaN makes each
+    // comparison false.
     let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
     (inside && ray.contains(t)).then_some(TriangleHit { t, beta, gamma })
     // <stub> todo!("any method that you like: Möller–Trumbore, Plücker, watertight …")
     // </solution>
 }
 
-/// Inside test I: the ray's origin and each side of the triangle span a plane, and `point` is inside if it lies on
-/// the same side of all three planes.
+/// Inside test I: the ray's origin o and each side of the triangle span a plane. A point P inside
+/// lies on the same side of all three. For the side from T₁ to T₂ that is the sign of `n₁·(P - o)`
+/// with `n₁ = (T₂ - o) × (T₁ - o)`. Which sign means inside?
 ///
-/// `point` lies in the plane of the triangle, up to rounding. The corners may have either order, clockwise or
-/// counterclockwise. A point on a plane lies on both of its sides, so points on an edge are inside, and the plane of
-/// a side whose line contains the ray's origin (its normal is 0) accepts every point. A NaN gives `false`.
+/// P = `point` lies in the plane of the triangle, up to rounding.
 ///
-/// Pitfall: "distance < 0 → outside" is right for one order of the corners only. Do not normalize the normals, because
-/// that changes no sign and turns a normal of 0 into NaN.
+/// Exactly:
+///
+/// - The corners may have either order.
+/// - Points on an edge are inside.
+/// - A plane whose normal is 0, because o lies on the side's line, accepts every point.
+/// - A NaN gives `false`.
 pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // <solution>
     let to_point = point - ray.origin;
+    // Do not normalize the normals: that changes no sign, and it turns a normal of 0 into NaN.
     let side = |from: Vec3, to: Vec3| (from - ray.origin).cross(to - ray.origin).dot(to_point);
     same_side([side(triangle.a, triangle.b), side(triangle.b, triangle.c), side(triangle.c, triangle.a)])
     // <stub> todo!("test on which side of the plane through ray.origin and each side the point lies")
     // </solution>
 }
 
-/// Inside test II: seen along the ray, `point` is inside if it lies on the same side of all three edges. The sign of
-/// `d · ((T₂ - P) × (T₁ - P))` tells the side for the edge from `T₁` to `T₂`.
+/// Inside test II: seen along the ray, P = `point` is inside if it lies on the same side of all
+/// three edges. For the edge from T₁ to T₂ that is the sign of `d·((T₂ - P) × (T₁ - P))`. Which
+/// sign is that from behind?
 ///
-/// `point` lies in the plane of the triangle, up to rounding. The corners may have either order. Points on an edge
-/// are inside. With a NaN the result is `false`.
+/// `point` lies in the plane of the triangle, up to rounding. The corners may have either order.
+/// Points on an edge are inside. A NaN gives `false`.
 pub fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // <solution>
     let side = |from: Vec3, to: Vec3| (to - point).cross(from - point).dot(ray.direction);
@@ -186,18 +203,17 @@ fn same_side(sides: [f32; 3]) -> bool {
 }
 // </solution>
 
-/// Inside test III: the barycentric coordinates `(α, β, γ)` of `point`, each of which is the area of a triangle
-/// between `point` and two corners, divided by the area of the whole triangle.
+/// Inside test III: P = `point` divides the triangle into three, whose areas give its barycentric
+/// coordinates: `α = Area(P b c) / Area(a b c)`, and so on for β (P c a) and γ (P a b). Which areas
+/// has a point outside?
 ///
-/// `point` lies in the plane of the triangle, up to rounding. α belongs to corner a and the area opposite of it, β to
-/// b, and γ to c. Points on an edge are inside. The result is `None` if `point` is outside, if the triangle has no
-/// area, or for a NaN.
-///
-/// Pitfall: areas without a sign cannot tell (-0.2, -0.2) from (0.2, 0.2). Measure each area along the normal of the
-/// triangle, so that it is negative outside.
+/// Returns `(α, β, γ)`, or `None` for a point outside, a triangle without area, or a NaN. `point`
+/// lies in the plane of the triangle, up to rounding. Points on an edge are inside.
 pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
     // <solution>
     let normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
+    // Measure each area along the normal of the triangle, so that it is negative if the point lies
+    // beyond the side.
     let area = |from: Vec3, to: Vec3| (from - point).cross(to - point).dot(normal);
     let barycentric =
         Vec3::new(area(triangle.b, triangle.c), area(triangle.c, triangle.a), area(triangle.a, triangle.b))
@@ -207,19 +223,18 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
     // </solution>
 }
 
-/// Backfacing test: whether the triangle turns its back to the ray. Its front is the side to which the normal
-/// `n = (b - a) × (c - a)` points, the side from which its corners run anticlockwise. The ray comes from behind if
-/// `n·d > 0`, with d the ray's direction.
+/// The front of a triangle is the side to which `n = (b - a) × (c - a)` points: from there, its
+/// corners run anticlockwise. A ray comes from behind if `n·d > 0`. How large is n for a tiny
+/// triangle?
 ///
-/// Returns `false` for a triangle seen edge-on (`n·d = 0` exactly), for a triangle without area and for a NaN: the
-/// intersection test decides about these. Whether the ray hits the triangle, and its range, do not matter. A renderer
-/// skips the intersection test for triangles of one-sided meshes that turn their back to the ray.
+/// Returns whether the ray comes from behind, whether or not it hits the triangle in its range.
 ///
-/// Pitfall: the sign depends on this ray, not on the direction in which the camera looks, and not on a limit for the
-/// cosine. The triangle may have any size: for edges of 1e-20 the products underflow in single precision, and every
-/// triangle looks edge-on.
+/// Exactly:
 ///
-/// Slide: "Ray-Triangle Intersection III".
+/// - `false` for a triangle seen edge-on (`n·d = 0` exactly), a triangle without area, and a NaN.
+/// - The triangle may have any size.
+///
+/// Source: "Ray-Triangle Intersection III".
 pub fn backfacing(ray: &Ray, triangle: &Triangle) -> bool {
     // <solution>
     // Compute in double precision, in which no product of three `f32` overflows or underflows.
@@ -230,8 +245,8 @@ pub fn backfacing(ray: &Ray, triangle: &Triangle) -> bool {
     // </solution>
 }
 
-/// Interpolation with barycentric coordinates: `α A + β B + γ C` for `barycentric` = `(α, β, γ)` and the values A, B and
-/// C at the corners a, b and c. The result is not normalized.
+/// Interpolation with barycentric coordinates `(α, β, γ)`: `α A + β B + γ C` for the values A, B
+/// and C at the corners. The result is not normalized.
 pub fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3 {
     // <solution>
     barycentric.x * corners[0] + barycentric.y * corners[1] + barycentric.z * corners[2]
@@ -239,13 +254,11 @@ pub fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3 {
     // </solution>
 }
 
-/// The unit normal `u × v / |u × v|` of a triangle, with `u = b - a` and `v = c - a`.
+/// The unit normal of a triangle, `u × v / |u × v|` with `u = b - a` and `v = c - a`. How large is
+/// `|u × v|²` if the edges are 1e-12 long?
 ///
-/// The result has length 1 up to rounding for a triangle of any size. It is `None` for a triangle without area and
-/// for a NaN.
-///
-/// Pitfall: for edges of 1e-11 the square of `|u × v|` underflows, and the "unit" normal is 1 % too long. For edges
-/// of 1e-12 it is NaN. Scale the edges first, because their lengths do not change the direction of the normal.
+/// The result has length 1 up to rounding for a triangle of any size. It is `None` for a triangle
+/// without area and for a NaN.
 pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
     // <solution>
     // Divide each edge by its largest component, so that no product underflows.
@@ -257,13 +270,16 @@ pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
     // </solution>
 }
 
-/// One unit normal per vertex: the normalized sum of the unit normals of the triangles that use the vertex.
+/// A vertex normal is the normalized sum of the unit normals of the triangles around the vertex.
+/// What is the sum of up and down?
 ///
-/// The result has as many normals as the mesh has positions, in the same order. Each triangle counts once, whatever
-/// its area. A triangle without area does not count. A vertex that no triangle with an area uses gets any unit vector.
+/// Returns one unit normal per position of the mesh, in the same order.
 ///
-/// Pitfall: opposite normals add up to zero, or to rounding errors, and zero cannot be normalized. Then take the
-/// normal of one of the triangles around the vertex.
+/// Exactly:
+///
+/// - Each triangle counts once, whatever its area, but not one without area.
+/// - If the normals cancel, the vertex gets the normal of one of the triangles.
+/// - A vertex without such a triangle gets any unit vector.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     // <solution>
     // Start with a sum of zero for each vertex, and with a normal to fall back on.
@@ -278,7 +294,8 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
             of_one_face[vertex as usize] = normal;
         }
     }
-    // Normalize each sum. A sum below this limit consists of rounding errors: take the normal of one face.
+    // Normalize each sum. A sum below this limit consists of rounding errors: take the normal of
+    // one face.
     let cancelled = |sum: Vec3| sum.length_squared() < 1e-10;
     sums.iter()
         .zip(of_one_face)
@@ -288,17 +305,21 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     // </solution>
 }
 
-/// The closest hit among primitives `0..n_primitives`: call `probe.hit(primitive, ray)` for each of them and keep the
-/// hit with the smallest `t`.
+/// The closest hit has the smallest `t` of all primitives, `0..n_primitives`. Ask each with
+/// `probe.hit(primitive, ray)`, which returns only hits in the ray's range.
 ///
-/// Each primitive is asked exactly once. Only hits in the ray's range count, and `probe.hit` returns no others. Of
-/// two hits at the same `t` the primitive with the smaller number wins, so that all search functions return the same
-/// hit. The result is `None` if nothing is hit.
+/// The result is `None` if nothing is hit.
+///
+/// Exactly:
+///
+/// - Each primitive is asked exactly once.
+/// - Of two hits at the same `t` the smaller number wins, as in all searches.
 pub fn brute_force(n_primitives: u32, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     let mut ray = *ray;
     let mut closest = None;
-    // Ask each primitive, and end the ray at each hit: from then on only nearer hits count, and an equal t does not.
+    // Ask each primitive, and end the ray at each hit: from then on only nearer hits count, and an
+    // equal t does not.
     for primitive in 0..n_primitives {
         if let Some(t) = probe.hit(primitive, &ray) {
             closest = Some(PrimitiveHit { t, primitive });

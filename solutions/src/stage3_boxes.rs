@@ -10,9 +10,8 @@ use raykata::ray::Ray;
 use raykata::rounding::gamma;
 use raykata::shape::{Sphere, Triangle};
 
-/// The smallest box around a triangle.
-///
-/// Each side is exactly a coordinate of a corner. Boxes are closed, so a flat box needs no padding.
+/// The smallest box around a triangle: each side is exactly a coordinate of a corner. Boxes are
+/// closed, so a flat box needs no padding.
 pub fn triangle_bounds(triangle: &Triangle) -> Aabb {
     // <solution>
     Aabb::new(triangle.a.min(triangle.b).min(triangle.c), triangle.a.max(triangle.b).max(triangle.c))
@@ -20,25 +19,25 @@ pub fn triangle_bounds(triangle: &Triangle) -> Aabb {
     // </solution>
 }
 
-/// The box around a sphere: from `center - radius` to `center + radius` on each axis.
+/// The box around a sphere, from `center - radius` to `center + radius` on each axis.
 ///
-/// Each side may be off by the rounding of the sum or difference, and may lie up to two more floats outwards.
+/// Each side may be off by the rounding of this sum or difference, and may lie up to two more
+/// floats outwards.
 pub fn sphere_bounds(sphere: &Sphere) -> Aabb {
     // <solution>
     let (low, high) = (sphere.center - sphere.radius, sphere.center + sphere.radius);
-    // Move each side one float outwards, because rounding to nearest may cut off a part of the sphere.
+    // Move each side one float outwards, because rounding to nearest may cut off a part of the
+    // sphere.
     Aabb::new(low.map(f32::next_down), high.map(f32::next_up))
     // <stub> todo!("go one radius from the centre on each axis")
     // </solution>
 }
 
-/// The smallest box around two boxes.
+/// The smallest box around two boxes: the smaller minima and the larger maxima. What is the minimum
+/// of 1 and NaN?
 ///
-/// The union of a box and [`Aabb::EMPTY`] is the box. A coordinate that is NaN is ignored: the result has the
-/// coordinate of the other box, so that a primitive with NaN does not change the boxes of other primitives.
-///
-/// Pitfall: `Vec3::min` and `Vec3::max` keep or drop a NaN depending on the order of the operands. `f32::min` and
-/// `f32::max` always drop it.
+/// The union of a box and [`Aabb::EMPTY`] is the box. A coordinate that is NaN is ignored: the
+/// result has that of the other box.
 pub fn union(first: &Aabb, second: &Aabb) -> Aabb {
     // <solution>
     // Use f32::min and f32::max on each axis, because they drop a NaN in either order.
@@ -59,7 +58,8 @@ pub fn centroid(bounds: &Aabb) -> Vec3 {
     // </solution>
 }
 
-/// The surface area of a box: the sum of its six faces, in square world units. It is 0 for the empty box.
+/// The surface area of a box: the sum of its six faces, in square world units. It is 0 for the
+/// empty box.
 pub fn surface_area(bounds: &Aabb) -> f32 {
     // <solution>
     if bounds.is_empty() {
@@ -71,44 +71,43 @@ pub fn surface_area(bounds: &Aabb) -> f32 {
     // </solution>
 }
 
-/// Ray-box intersection by slabs: the `t` at which `ray` enters `bounds` and the `t` at which it leaves. The ray is
-/// inside the box while it is between the two planes of each of the three axes (`t_b = t_x ∩ t_y ∩ t_z`).
+/// A ray is inside a box while it is between the two planes of each axis, from `(b⁻ - o) / d` to
+/// `(b⁺ - o) / d`: `t_b = t_x ∩ t_y ∩ t_z`. What if it starts inside? What if d is 0 or -0.0?
 ///
-/// Both results lie in `ray.t_min..=ray.t_max`, whose ends count here. A ray that starts inside enters at `t_min`.
-/// The result is `None` if the ray misses the box within that range, and always for [`Aabb::EMPTY`]. The box is
-/// closed: a ray that touches a face, an edge or a corner hits it, also a ray that runs within a face, and a box
-/// without thickness can be hit. A ray that is aimed exactly at a corner must not miss by rounding, so the result may
-/// be wider than the exact interval by a few roundings. That holds for `ray.t_min >= 0`.
+/// Returns the `t` of entry and exit. `inverse_direction` is `1 / ray.direction`, infinite where d
+/// is 0 (with the sign of the zero) and where `1/d` overflows (below 2.9e-39).
 ///
-/// `inverse_direction` is `1 / ray.direction`, which the caller computes once for many boxes. It is infinite on an axis
-/// along which the ray does not move, with the sign of the zero. It is also infinite where a component of the direction
-/// is so small that `1/d` overflows (below 2.9e-39).
+/// Exactly:
 ///
-/// Pitfall: `t_b⁻ ≥ 0` rejects every box that the ray starts in. "Corner cases are covered by IEEE" is wrong for
-/// `0 · ∞`, which is NaN, and for a direction of -0.0. `<` instead of `≤` loses flat boxes. Rounding loses 6 of 100
-/// rays that are aimed at a corner.
+/// - Both lie in `ray.t_min..=ray.t_max`, whose ends count here. A ray that starts inside enters at
+///   `t_min`.
+/// - The box is closed: a ray that touches a face, an edge or a corner, or runs within a face, hits
+///   it. A box may have no thickness.
+/// - For `ray.t_min >= 0`, a ray aimed exactly at a corner does not miss by rounding. The interval
+///   may be a few roundings too wide.
+/// - `None` if the ray misses the box within its range, or for [`Aabb::EMPTY`].
 #[inline]
 pub fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>
     let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
     for axis in 0..3 {
-        // Choose the plane that the ray passes first, by the sign bit and not by `< 0`: 1 / -0.0 is -∞, and the
-        // planes must be swapped for it as well.
+        // Choose the plane that the ray passes first, by the sign bit and not by `< 0`: 1 / -0.0 is
+        // -∞, and the planes must be swapped for it as well.
         let (first, last) = if inverse_direction[axis].is_sign_negative() {
             (bounds.max[axis], bounds.min[axis])
         } else {
             (bounds.min[axis], bounds.max[axis])
         };
-        // Compute the t of both planes. Subtract first, because b/d - o/d would be ∞ - ∞ for d = 0. Where 1/d overflows,
-        // divide instead: the quotient may be finite.
+        // Compute the t of both planes. Subtract first, because b/d - o/d would be ∞ - ∞ for d = 0.
+        // Where 1/d overflows, divide instead: the quotient may be finite.
         let inverse = inverse_direction[axis];
         let t_at = |plane: f32| {
             let distance = plane - ray.origin[axis];
             if inverse.is_finite() { distance * inverse } else { distance / ray.direction[axis] }
         };
         let (enter, leave) = (t_at(first), t_at(last));
-        // Intersect the intervals. A NaN means that the ray runs within the plane of a face, which is inside: in this
-        // order the comparison is false for NaN and changes nothing.
+        // Intersect the intervals. A NaN means that the ray runs within the plane of a face, which
+        // is inside: in this order the comparison is false for NaN and changes nothing.
         if enter > near {
             near = enter;
         }
@@ -116,7 +115,8 @@ pub fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f
             far = leave;
         }
     }
-    // Widen the interval by the rounding errors, on both sides of t = 0, and intersect it with the ray's range.
+    // Widen the interval by the rounding errors, on both sides of t = 0, and intersect it with the
+    // ray's range.
     let near = (near * LESS).min(near * MORE).max(ray.t_min);
     let far = (far * LESS).max(far * MORE).min(ray.t_max);
     (near <= far).then_some((near, far))
@@ -125,13 +125,15 @@ pub fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f
 }
 
 // <solution>
-/// The factors by which `slab` moves the entry and the exit. Both have three roundings each: 1/d, the difference and the
-/// product. If the exit is later by twice γ₃, rounding loses no box (Ize, "Robust BVH Ray Traversal", JCGT 2013).
-/// Measured: without it 6 of 100 rays that are aimed at corners miss.
+/// The factors by which `slab` moves the entry and the exit. Both have three roundings each: 1/d,
+/// the difference and the product. If the exit is later by twice γ₃, rounding loses no box (Ize,
+/// "Robust BVH Ray Traversal", JCGT 2013). Measured: without it 6 of 100 rays that are aimed at
+/// corners miss.
 ///
-/// The entry is earlier by twice γ₃, because a search compares it with the `t` of the best hit, which is rounded in another
-/// way, and may otherwise skip a box that contains a hit at the same `t`. Measured: without it 1 of 500 rays in a room of
-/// flat walls, and 2 or 3 of 500 in a stadium with a small object, find another triangle than brute force.
+/// The entry is earlier by twice γ₃, because a search compares it with the `t` of the best hit,
+/// which is rounded in another way, and may otherwise skip a box that contains a hit at the same
+/// `t`. Measured: without it 1 of 500 rays in a room of flat walls, and 2 or 3 of 500 in a stadium
+/// with a small object, find another triangle than brute force.
 const MORE: f32 = 1.0 + 2.0 * gamma(3);
 const LESS: f32 = 1.0 - 2.0 * gamma(3);
 // </solution>

@@ -1,32 +1,37 @@
 //! Stage 4 · shading: the Phong model, shadow rays and gamma correction.
 //!
-//! Slides: "Local illumination", "Shadow ray", "Cost of shadow computation", "Coloured Lights", "Smooth Shading",
-//! "Gamma Correction".
+//! Slides: "Local illumination", "Shadow ray", "Cost of shadow computation", "Coloured Lights",
+//! "Smooth Shading", "Gamma Correction".
 //!
-//! All directions have unit length and point away from the surface, unless a function says otherwise. [`Surface`] has
-//! the point, its two unit normals (both on the viewer's side) and a bound on the rounding error of the point.
+//! All directions have unit length and point away from the surface, unless a function says
+//! otherwise. [`Surface`] has the point, its two unit normals (both on the viewer's side) and a
+//! bound on the rounding error of the point.
 
 use glam::Vec3;
 use raykata::kit::{LightSample, Surface};
 use raykata::material::Material;
 use raykata::ray::Ray;
 
-/// The unit normal for shading: the `interpolated` normal on a smooth surface, and the `geometric` normal otherwise, each
-/// on the side of the surface from which the ray comes.
+/// A smooth surface is shaded with its `interpolated` normal, a flat one with its `geometric`
+/// normal, on the viewer's side. Near a silhouette the two may disagree: which one tells this side?
 ///
-/// `direction` is the direction of the ray that comes from the viewer. `geometric` has unit length; it is negated if
-/// its dot product with `direction` is above 0. `interpolated` has either sign and any length between 1e-18 and 1e18; it
-/// is normalized, and negated if its dot product with the turned geometric normal is below 0. If `interpolated` is
-/// `None`, has length 0 or is NaN, the turned geometric normal is returned. For a dot product of 0 either sign passes.
+/// Returns a unit normal. `direction` is that of the ray from the viewer.
 ///
-/// Pitfall: the average of several normals may be zero or NaN, which has no direction. Near the silhouette of a smooth
-/// mesh the interpolated normal may point away from the viewer, who still sees the front: the geometric normal decides
-/// which side is the front, not `direction`.
+/// Exactly:
 ///
-/// Slide "Smooth Shading".
+/// - `geometric`, of unit length, is negated if its dot product with `direction` is above 0.
+/// - `interpolated` (length 1e-18 to 1e18) is normalized, and negated if its dot product with the
+///   turned geometric normal is below 0.
+/// - If `interpolated` is `None`, 0 or NaN, the turned geometric normal is returned.
+/// - Where a dot product is 0, either sign passes.
+///
+/// Source: "Smooth Shading".
 pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3 {
     // <solution>
+    // Turn the geometric normal to the viewer. It decides which side is the front, because near the
+    // silhouette the interpolated normal may point away from a viewer who still sees the front.
     let toward_viewer = if geometric.dot(direction) > 0.0 { -geometric } else { geometric };
+    // A sum of normals that is 0 or NaN has no direction: `try_normalize` returns None for it.
     match interpolated.and_then(Vec3::try_normalize) {
         None => toward_viewer,
         Some(smooth) if smooth.dot(toward_viewer) < 0.0 => -smooth,
@@ -36,12 +41,10 @@ pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Ve
     // </solution>
 }
 
-/// The diffuse term of the Phong model: `cos θ`, the cosine of the angle between the normal and the direction to the
-/// light.
+/// The diffuse term of the Phong model is `cos θ = n·l`: a tilted surface receives less light per
+/// area. It is 0 for a light behind the surface.
 ///
-/// Both vectors have unit length. For a light behind the surface, where the cosine is negative, the result is 0.
-///
-/// Slide "Local illumination".
+/// Source: "Local illumination".
 pub fn diffuse_term(normal: Vec3, to_light: Vec3) -> f32 {
     // <solution>
     normal.dot(to_light).max(0.0)
@@ -49,44 +52,49 @@ pub fn diffuse_term(normal: Vec3, to_light: Vec3) -> f32 {
     // </solution>
 }
 
-/// The specular term of the Phong model: `cosⁿ φ`, where φ is the angle between the reflected light and the viewer,
-/// and n is `exponent`.
+/// The specular term of the Phong model is `cosⁿ φ`, with the angle φ between the reflected light
+/// `r = 2 (n·l) n - l` and the viewer. What is a power of a negative cosine? Can a light behind the
+/// surface give a positive one?
 ///
-/// All vectors have unit length, and `exponent` is at least 0; for an exponent of 0 any result in `0..=1` passes. The
-/// result is 0 if the light is behind the surface (`cos θ < 0`, with θ as in [`diffuse_term`]) or if `cos φ < 0`. If one
-/// of the two cosines is 0, both 0 and the power pass.
+/// The power n is `exponent`, at least 0.
 ///
-/// Pitfall: a negative cosine to an even power is positive, and to a fractional power it is NaN. The reflection of a light
-/// behind the surface may still point to the viewer, with `cos φ > 0`.
+/// Exactly:
 ///
-/// Slide "Local illumination".
+/// - 0 if the light is behind the surface (`cos θ = n·l < 0`) or `cos φ < 0`.
+/// - If one of the two cosines is 0, both 0 and the power pass.
+/// - For an exponent of 0 any result in `0..=1` passes.
+///
+/// Source: "Local illumination".
 pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f32) -> f32 {
     // <solution>
     let cos_theta = normal.dot(to_light);
     let reflected = 2.0 * cos_theta * normal - to_light;
     let cos_phi = reflected.dot(to_viewer);
+    // Test both cosines before the power: a negative number to an even power is positive, and to a
+    // fractional power it is NaN. The reflection of a light behind the surface may point to the
+    // viewer.
     if cos_theta > 0.0 && cos_phi > 0.0 { cos_phi.powf(exponent) } else { 0.0 }
     // <stub> todo!("reflect the light by the normal, and raise the cosine with the viewer to the exponent")
     // </solution>
 }
 
-/// The shadow ray from `surface` to `light`: an object that it hits occludes the light.
+/// A shadow ray goes from the surface to the light: what it hits occludes the light. The point is
+/// rounded, so it may lie on either side of the surface. What does the ray hit first? What is at
+/// its other end?
 ///
-/// The result is `None` if `light.radiance` is 0, or if the light is behind the surface: if the dot product of
-/// `light.direction` with the geometric normal or with the shading normal is 0 or less. Otherwise the ray has the
-/// direction of the light. It ends just before the light, between 0.99 of `light.distance` and the distance itself (not
-/// included); an infinite distance stays infinite. It starts on the viewer's side of the surface. The distance of its
-/// start from the point along the geometric normal n is at least `error·|n|`, because the true surface may be that far
-/// from the rounded point; rounding must not make it more than 1 % smaller. The distance is at most `4 error·|n|` plus 64
-/// rounding steps of the largest coordinate, so that close objects are hit. Here `|n|` has the absolute values of the
-/// three coordinates of n.
+/// Exactly:
 ///
-/// Pitfall: a ray that starts at the rounded point hits its own surface in about half of all cases (shadow acne), and a
-/// ray over the whole distance hits the light itself. A fixed offset is too small or too large at other scales. The sum
-/// `point + offset n` is rounded, too: move each coordinate one float further (`next_up`, `next_down`), or move twice as
-/// far.
+/// - `None` if `light.radiance` is 0, or if the dot product of `light.direction` with either normal
+///   is 0 or less.
+/// - The ray has the direction of the light. It ends between 0.99 and 1 times `light.distance` (not
+///   included); an infinite distance stays infinite.
+/// - It starts on the viewer's side, at least `error·|n|` from the point along the geometric normal
+///   n; `|n|` has the absolute values of its coordinates. Rounding must not make this more than 1 %
+///   smaller.
+/// - It starts at most `4 error·|n|` plus 64 rounding steps of the largest coordinate away, so that
+///   close objects are hit.
 ///
-/// Slides "Shadow ray" and "Cost of shadow computation".
+/// Source: "Shadow ray", "Cost of shadow computation".
 #[inline]
 pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
     // <solution>
@@ -104,17 +112,18 @@ pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
 }
 
 // <solution>
-/// The fraction of the distance to the light at which a shadow ray ends. The light may be a surface of the scene, and
-/// its distance is rounded. One part in ten thousand is more than a thousand roundings of slack, and still too short
-/// to hide an object.
+/// The fraction of the distance to the light at which a shadow ray ends. The light may be a surface
+/// of the scene, and its distance is rounded. One part in ten thousand is more than a thousand
+/// roundings of slack, and still too short to hide an object.
 const BEFORE_THE_LIGHT: f32 = 0.9999;
 
-/// The origin of a ray that leaves the surface on the side of the unit normal `side`, as close to the surface as the
-/// rounding error of `point` allows (Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th edition, section
-/// 6.8.6).
+/// The origin of a ray that leaves the surface on the side of the unit normal `side`, as close to
+/// the surface as the rounding error of `point` allows (Pharr, Jakob and Humphreys, "Physically
+/// Based Rendering", 4th edition, section 6.8.6).
 #[inline]
 pub fn off_surface(point: Vec3, error: Vec3, side: Vec3) -> Vec3 {
-    // Move along the normal by the bound on the error: the true surface is at most this far from the point.
+    // Move along the normal by the bound on the error: the true surface is at most this far from
+    // the point.
     let origin = point + error.dot(side.abs()) * side;
     // Move each coordinate one float further outwards, because the sum is rounded as well.
     let outwards = |axis: usize| match side[axis] {
@@ -126,18 +135,24 @@ pub fn off_surface(point: Vec3, error: Vec3, side: Vec3) -> Vec3 {
 }
 // </solution>
 
-/// The colour that the viewer sees, by the Phong model: `A·ka + Σ V_i (I_i·kd·cosθ_i + I_i·ks·cosⁿφ_i)`.
+/// The colour that the viewer sees, by the Phong model:
 ///
-/// Colours are multiplied channel by channel. A is `ambient`, I_i is `lights[i].radiance`, and ka, kd, ks and n are
-/// `material.ambient`, `diffuse`, `specular` and `exponent`. The cosines are those of [`diffuse_term`] and
-/// [`specular_term`] with `surface.shading_normal`. V_i is 1 if `visible(i, ray)` is true for the ray of
-/// [`shadow_ray`], and 0 otherwise. Call `visible` before you add a light, at most once per light. Do not call it if
-/// `shadow_ray` returns `None` or if the light would add 0 in every channel. The colour is not clamped.
+/// ```text
+/// A·ka + Σ V_i (I_i·kd·cosθ_i + I_i·ks·cosⁿφ_i)
+/// ```
 ///
-/// Pitfall: 1000 × 1000 pixels with 10 lights need at most 10,000,000 shadow rays. A light behind the surface, or one
-/// that adds 0, needs none.
+/// A is `ambient`, I_i is `lights[i].radiance`, and ka, kd, ks and n are those of `material`. Which
+/// lights need no shadow ray?
 ///
-/// Slides "Local illumination", "Shadows" and "Cost of shadow computation".
+/// Exactly:
+///
+/// - Colours are multiplied channel by channel. The sum is not clamped.
+/// - The cosines are those of [`diffuse_term`] and [`specular_term`] with `surface.shading_normal`.
+/// - V_i is 1 if `visible(i, ray)` is true for the ray of [`shadow_ray`], and 0 otherwise.
+/// - `visible` is called at most once per light, and not if `shadow_ray` is `None` or the light
+///   would add 0 in every channel.
+///
+/// Source: "Local illumination", "Shadows", "Cost of shadow computation".
 pub fn shade(
     surface: &Surface,
     to_viewer: Vec3,
@@ -156,7 +171,8 @@ pub fn shade(
         // Compute the diffuse and the specular term.
         let normal = surface.shading_normal;
         let diffuse = material.diffuse * diffuse_term(normal, light.direction);
-        // Compute no power for a material without highlights: it takes as long as a ray/triangle test.
+        // Compute no power for a material without highlights: it takes as long as a ray/triangle
+        // test.
         let specular = match material.specular {
             Vec3::ZERO => Vec3::ZERO,
             strength => strength * specular_term(normal, light.direction, to_viewer, material.exponent),
@@ -173,16 +189,16 @@ pub fn shade(
     // </solution>
 }
 
-/// The byte for a component of linear light with gamma 2: 255 times the square root of `linear`, rounded to the nearest
-/// byte.
+/// With gamma 2, the byte for a component of linear light x is `255 √x`, rounded to the nearest
+/// byte. What is the square root of -1e-8?
 ///
-/// `linear` is clamped to `0..=1`: values below 0, also -∞, give 0, and values above 1, also ∞, give 255. NaN gives 0.
+/// `linear` is clamped to `0..=1`, so -∞ gives 0 and ∞ gives 255. NaN gives 0.
 ///
-/// Pitfall: the square root of -1e-8 is NaN, and `NaN as u8` is 0 without a warning.
-///
-/// Slide "Gamma Correction".
+/// Source: "Gamma Correction".
 pub fn encode_gamma(linear: f32) -> u8 {
     // <solution>
+    // Clamp first, because the root of a negative number is NaN. The cast rounds down, and makes 0
+    // of NaN.
     (255.0 * linear.clamp(0.0, 1.0).sqrt() + 0.5) as u8
     // <stub> todo!("take the square root and scale to 0..=255; mind values below 0 and above 1")
     // </solution>
@@ -190,7 +206,7 @@ pub fn encode_gamma(linear: f32) -> u8 {
 
 /// The component of linear light for a byte with gamma 2: `(byte / 255)²`, in `0..=1`.
 ///
-/// Slide "Gamma Correction".
+/// Source: "Gamma Correction".
 pub fn decode_gamma(byte: u8) -> f32 {
     // <solution>
     (f32::from(byte) / 255.0).powi(2)
