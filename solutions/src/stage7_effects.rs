@@ -321,6 +321,7 @@ pub fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
     // Map the index into 0..size, in i64 because it can be negative.
     let size = i64::from(size);
     let inside = match wrap {
+        // `%` of a negative number is negative or 0; rem_euclid is never negative.
         Wrap::Repeat => index.rem_euclid(size),
         Wrap::Clamp => index.clamp(0, size - 1),
         Wrap::Mirror => {

@@ -91,6 +91,7 @@ impl CachedSearch<'_> {
         {
             self.child(index, child, probe);
         }
+        // Leave out the cached child, because its primitives must not be tested twice.
         // Collect the other children that the ray enters, and sort them by their entry.
         let others = node.children.iter().copied().filter(|child| Some(*child) != cached);
         let enter = |child: u32| Some(Entered { t: self.enter(child, probe)?, node: child });

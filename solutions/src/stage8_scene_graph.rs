@@ -35,6 +35,7 @@ pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
     Ray {
         // Use double precision, because far from the origin large terms cancel.
         origin: to_object.as_daffine3().transform_point3(ray.origin.as_dvec3()).as_vec3(),
+        // Keep the length, because a unit direction changes t. The transpose is for normals only.
         direction: to_object.transform_vector3(ray.direction),
         ..*ray
     }
@@ -49,6 +50,8 @@ pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
 /// outwards if `normal` does, also for a reflection.
 pub fn normal_to_world(normal: Vec3, to_object: &Affine3A) -> Vec3 {
     // <solution>
+    // Multiply by the inverse transpose. It needs no sign: n · (M v) stays n₀ · v, so an outward
+    // normal stays outward, also for a reflection.
     let rows = to_object.as_daffine3().matrix3.transpose();
     (rows * normal.as_dvec3()).normalize_or_zero().as_vec3()
     // <stub> todo!("multiply by the transpose of to_object, then normalize")
@@ -136,6 +139,7 @@ pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
     let center = 0.5 * min + 0.5 * max;
     let distance = |point: &Vec3| point.as_dvec3().distance(center.as_dvec3());
     let radius = points.iter().map(distance).fold(0.0, f64::max);
+    // Round the radius up: rounded to nearest, it is too small in half of all cases.
     Sphere { center, radius: (radius as f32).next_up() }
     // <stub> todo!("take the centre of the points' box and the largest distance from it, rounded up")
     // </solution>

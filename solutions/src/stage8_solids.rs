@@ -273,6 +273,8 @@ pub fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit> {
     let seen: Vec<DVec3> = polygon.corners.iter().map(|corner| corner.as_dvec3() - origin).collect();
     let edges = || (0..seen.len()).map(|i| (seen[i], seen[(i + 1) % seen.len()]));
 
+    // A neighbour computes the same values for the shared edge, up to the sign, so no ray passes
+    // between them. A point on the plane would be rounded, and near an edge this decides.
     // Test whether the ray passes all edges on the same side.
     let passes: Vec<f64> = edges().map(|(p, q)| direction.dot(p.cross(q))).collect();
     let (left, right) = (passes.iter().all(|&side| side >= 0.0), passes.iter().all(|&side| side <= 0.0));

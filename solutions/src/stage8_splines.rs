@@ -77,6 +77,7 @@ pub fn nurbs_point(patch: &NurbsPatch, uv: Vec2) -> Vec3 {
             total += factor;
         }
     }
+    // The basis functions have the sum 1, but the factors with weights have not.
     (sum / total).as_vec3()
     // <stub> todo!("sum basis · basis · weight · point, and divide by the sum of basis · basis · weight")
     // </solution>

@@ -6,8 +6,9 @@
 //!
 //! Given: [`Bsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance` and
 //! `across`; [`ListGrowth`], whose `divide` returns `None` where all leaves together would list
-//! more than [`MOST_REFERENCES`](raykata::partition::MOST_REFERENCES) references per primitive. A
-//! hull is the list of corners of a polygon, or the eight corners of a box.
+//! more than [`MOST_REFERENCES`](raykata::partition::MOST_REFERENCES) references per primitive,
+//! which is the most that is allowed. A hull is the list of corners of a polygon, or the eight
+//! corners of a box.
 //!
 //! A search returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller
 //! primitive number wins. A hit may lie outside the leaf that lists its primitive. Without a hit or
@@ -212,6 +213,7 @@ fn search(
     match bsp.nodes[node as usize] {
         BspNode::Leaf { first, count } => test_cell(bsp.primitives(first, count), probe, ray, best),
         BspNode::Inner { plane, back, front } => {
+            // A ray that does not cross the plane is on one side along its whole length.
             // Find the part of the ray on each side, and search the nearer side first.
             let in_order = near_and_far(&plane, [back, front], 0.0, ray, part);
             for (child, part) in in_order.into_iter().flatten() {

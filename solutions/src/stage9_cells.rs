@@ -108,7 +108,7 @@ pub fn part_above(height: f64, rate: f64, room: f64, (t, t_end): (f64, f64)) -> 
 ///
 /// Exactly:
 ///
-/// - A ray that starts inside enters at `t_min`.
+/// - Returns the `t` of entry and exit. A ray that starts inside enters at `t_min`.
 /// - Cells are closed: a ray along a face or through a corner is inside.
 /// - The range and the faces have [`ROUNDING`] as room for hits in single precision.
 /// - `None` if the ray misses the cell within its range, and for an empty cell.

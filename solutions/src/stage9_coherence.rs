@@ -43,6 +43,7 @@ pub fn closest_hit_cached<P: Cells>(
         keep_closest(&mut closest, &mut ray, PrimitiveHit { t, primitive });
     }
     // Search with the shortened ray.
+    // It may find nothing; then the hit with the last primitive is the answer.
     let found = search(probe, &ray);
     nearer(closest, found)
     // <stub> todo!("test the last primitive, shorten the ray by its hit, search, and keep the nearer of both")
@@ -104,6 +105,7 @@ impl Packet {
         for (entry, ray) in active.iter_mut().zip(&self.rays) {
             *entry = entry.filter(|enter| *enter < ray.t_max);
         }
+        // Skip the box only if no ray is left, not as soon as one ray misses it.
         if active.iter().all(Option::is_none) {
             return;
         }

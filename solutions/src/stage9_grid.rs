@@ -165,6 +165,7 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
         probe.visit(number);
         test_cell(grid.primitives(number), probe, &mut ray, &mut best);
 
+        // Compute t from the index of the cell: a sum of steps accumulates rounding errors.
         // Find the face through which the ray leaves the cell.
         let far = |axis: usize| grid.plane(axis, cell[axis] + u32::from(direction[axis] > 0.0));
         let Exit { axis, t: exit } = first_exit(origin, direction, DVec3::new(far(0), far(1), far(2)));

@@ -5,7 +5,8 @@
 //!
 //! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`; [`ListGrowth`], whose `divide`
 //! returns `None` where all leaves together would list more than
-//! [`MOST_REFERENCES`](raykata::partition::MOST_REFERENCES) references per primitive.
+//! [`MOST_REFERENCES`](raykata::partition::MOST_REFERENCES) references per primitive, which is the
+//! most that is allowed.
 //!
 //! A search returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller
 //! primitive number wins. A hit may lie outside the leaf that lists its primitive. Without a hit or
@@ -240,6 +241,7 @@ fn search(
             let axis = usize::from(axis);
             let (height, rate) =
                 (f64::from(ray.origin[axis]) - f64::from(at), f64::from(ray.direction[axis]));
+            // A ray in the plane, or that starts on it, is on both sides.
             // Find the part of the ray on each side, and search the nearer side first.
             let room = ROUNDING * height.abs();
             let above = part_above(height, rate, room, part).map(|part| (right, part));

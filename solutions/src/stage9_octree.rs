@@ -7,7 +7,8 @@
 //!
 //! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`;
 //! [`ListGrowth`], whose `divide` returns `None` where all leaves together would list more than
-//! [`MOST_REFERENCES`](raykata::partition::MOST_REFERENCES) references per primitive.
+//! [`MOST_REFERENCES`](raykata::partition::MOST_REFERENCES) references per primitive, which is the
+//! most that is allowed.
 //!
 //! A search returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller
 //! primitive number wins. A hit may lie outside the leaf that lists its primitive. Without a hit or

@@ -8,9 +8,10 @@
 //! Given: [`PolygonBsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with
 //! `distance`, `across` and `keep`, which clips a polygon; [`ListGrowth`], whose `divide` returns
 //! `None` where all nodes together would list more than
-//! [`MOST_REFERENCES`](raykata::partition::MOST_REFERENCES) references per primitive. A hull of
-//! three to seven corners that lie in one plane is a convex polygon, with its corners in order.
-//! Every other hull is a solid: the eight corners of a box, or corners without a plane.
+//! [`MOST_REFERENCES`](raykata::partition::MOST_REFERENCES) references per primitive, which is the
+//! most that is allowed. A hull of three to seven corners that lie in one plane is a convex
+//! polygon, with its corners in order. Every other hull is a solid: the eight corners of a box, or
+//! corners without a plane.
 //!
 //! A search returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller
 //! primitive number wins. A hit may lie outside the leaf that lists its primitive. Without a hit or
@@ -267,6 +268,7 @@ fn search(
         PolygonBspNode::Inner { plane, first, count, back, front } => {
             // Find the part of the ray on each side.
             let [near, far] = near_and_far(&plane, [back, front], bsp.room, ray, part);
+            // No hit is final: a solid of the near side may be hit on the far side.
             // 1. Search the near side.
             if let Some((child, part)) = near {
                 search(bsp, child, part, probe, ray, best);
