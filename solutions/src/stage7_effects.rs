@@ -307,14 +307,14 @@ pub fn samples_for_error(deviation: f32, error: f32) -> u32 {
     // </solution>
 }
 
-/// The column (or row), in `0..size`, of an image that is shown at `index`, which may lie far
-/// outside. `size` is at least 1. What is `-1 % 3`?
+/// The column (or row), in `0..size`, that is shown at `index`, which may lie far outside. `size`
+/// is at least 1. What is `-1 % 3`?
 ///
 /// ```text
 /// index   -2 -1  0  1  2  3  4   (size 3)
 /// Repeat   1  2  0  1  2  0  1   starts again
-/// Clamp    0  0  0  1  2  2  2   continues the border
-/// Mirror   1  0  0  1  2  2  1   runs back and forth, borders twice
+/// Clamp    0  0  0  1  2  2  2   the border continues
+/// Mirror   1  0  0  1  2  2  1   back and forth, each border pixel twice
 /// ```
 pub fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
     // <solution>
@@ -334,9 +334,9 @@ pub fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
     // </solution>
 }
 
-/// The colour of the texture at `uv`, by bilinear interpolation of the four nearest pixels. `(0,
-/// 0)` is the lower left corner and `(1, 1)` the upper right one, but rows are stored from the top.
-/// A pixel's colour belongs to its centre. At which u is the first one?
+/// The colour of the texture at `uv`, by bilinear interpolation of the four nearest pixels.
+/// `(0, 0)` is the lower left corner and `(1, 1)` the upper right one, but rows are stored from the
+/// top. A pixel's colour belongs to its centre. At which u is the centre of the first column?
 ///
 /// Exactly:
 ///

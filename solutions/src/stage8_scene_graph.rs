@@ -21,10 +21,10 @@ use raykata::rounding::UNIT_ROUNDOFF;
 
 /// Moves the ray into the space of the object: `o' = M⁻¹(o - b)` and `d' = M⁻¹ d`. The same `t`
 /// then belongs to the same point in both spaces. What would a unit direction do to `t`?
+/// `to_object` is this inverse.
 ///
 /// Exactly:
 ///
-/// - `to_object` is the inverse transform, from world to object.
 /// - The origin stays accurate for objects far from the world's origin, where single precision
 ///   loses digits.
 /// - The direction keeps the length that the transform gives it.
@@ -153,7 +153,8 @@ pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
 /// - `t` counts lengths of the direction, which may have any length but 0. The radius is above 0.
 /// - The result is in `t_min..=t_max`; from inside it is `t_min`.
 /// - It is never later than the exact entry, and only a few rounding errors earlier.
-/// - `None` if the sphere, surface included, lies beside the ray, behind it or beyond `t_max`.
+/// - `None` if the sphere lies beside the ray, behind it or beyond `t_max`. The surface belongs to
+///   the sphere.
 pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
     // <solution>
     let (direction, to_center) = (ray.direction.as_dvec3(), sphere.center.as_dvec3() - ray.origin.as_dvec3());

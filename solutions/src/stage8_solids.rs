@@ -124,8 +124,8 @@ pub fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit> {
 }
 
 /// A ray hits a closed cylinder where its intervals in the infinite cylinder and between the end
-/// planes overlap. With `A` from base to top and `L = (o - base) × d`, the discriminant is `|d ×
-/// A|² r² - (A·L)²`. What is `a = |d × A|²` for a ray along the axis?
+/// planes overlap. With `A` from base to top and `L = (o - base) × d`, the discriminant is
+/// `|d × A|² r² - (A·L)²`. What is `a = |d × A|²` for a ray along the axis?
 ///
 /// Side, ends and rims belong to the cylinder; a ray that only touches the side hits it.
 pub fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<SolidHit> {

@@ -57,7 +57,8 @@ pub fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32 
 ///
 /// `u` runs along the rows and belongs to `degrees[0]` and `knots[0]`, `v` from row to row and
 /// belongs to `degrees[1]` and `knots[1]`. Both lie in their domains, ends included. All weights
-/// are above 0; equal ones give a B-spline, and `1, cos(α/2), 1` make an exact arc of the angle α.
+/// are above 0; equal ones give a B-spline. Three points with the weights `1, cos(α/2), 1` make an
+/// exact arc of the angle α.
 ///
 /// Source: Piegl and Tiller 1997, sections 4.2 and 7.3.
 pub fn nurbs_point(patch: &NurbsPatch, uv: Vec2) -> Vec3 {

@@ -10,8 +10,8 @@ use raykata::shape::BezierPatch;
 use std::collections::HashMap;
 
 /// A point of a bicubic Bézier patch by de Casteljau's algorithm, which is repeated linear
-/// interpolation. `u` runs along the rows and `v` along the columns, both in `0..=1`. Is `p + t (q
-/// - p)` exactly `q` at t = 1?
+/// interpolation. `u` runs along the rows and `v` along the columns, both in `0..=1`. Is
+/// `p + t (q - p)` exactly `q` at t = 1?
 ///
 /// For `u` and `v` of 0 or 1 the result is exactly the corner of the net: (0, 0) gives
 /// `rows[0][0]`, (1, 0) `rows[0][3]` and (0, 1) `rows[3][0]`.
@@ -40,15 +40,15 @@ fn on_curve([p0, p1, p2, p3]: [Vec3; 4], t: f32) -> Vec3 {
 ///
 /// - An edge `p q` with the third corners `r` and `s` gets the vertex `3/8 (p+q) + 1/8 (r+s)`, a
 ///   border edge `1/2 (p+q)`.
-/// - An old vertex `p` with `n` neighbours `pᵢ` moves to `(1 - nβ) p + β Σ pᵢ`. β is `3/16` for `n
-///   = 3`, else `3/(8n)` (Warren), or Loop's `(5/8 - (3/8 + cos(2π/n)/4)²)/n`.
+/// - An old vertex `p` with `n` neighbours `pᵢ` moves to `(1 - nβ) p + β Σ pᵢ`. β is `3/16` for
+///   `n = 3`, else `3/(8n)` (Warren), or Loop's `(5/8 - (3/8 + cos(2π/n)/4)²)/n`.
 /// - On a border it moves to `3/4 p + 1/8 (p₁+p₂)`, with the neighbours there. A vertex of no
 ///   triangle stays.
 /// - All formulas use the old positions.
 /// - Old vertices keep their numbers; new ones follow, one per edge, in any order.
 /// - Triangles, in any order, keep the old order of corners and material.
-/// - Old texture coordinates stay; a new vertex has the mean of its edge's ends. What the mesh
-///   lacks, the result lacks; it has no normals.
+/// - Old texture coordinates stay; a new vertex has the mean of its edge's ends. Without
+///   them, or without materials, the result has none. It has no normals.
 ///
 /// Source: Loop 1987; Warren 1995; Hoppe et al. 1994 (borders).
 pub fn loop_subdivide(mesh: &Mesh) -> Mesh {

@@ -35,8 +35,8 @@ use raykata::ray::Ray;
 ///   [`ListGrowth::divide`] returns `None`.
 /// - List a primitive once in every leaf that it overlaps; one that touches a plane is on both
 ///   sides.
-/// - Leave out hulls without corners, or with NaN or infinity. Without any other there are no
-///   nodes.
+/// - Leave out hulls without corners, or with NaN or infinity. Without a usable hull there are
+///   no nodes.
 ///
 /// Source: "Binary Space Partition (BSP) Tree".
 pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
@@ -173,8 +173,8 @@ fn divide(bsp: &mut Bsp, scene: &Scene<'_>, ids: &[u32], (depth, growth): (usize
 // </solution>
 
 /// At each plane, search the side of the ray's origin first and the other side second, each with
-/// the part of the ray that is on it. The slide returns `no_intersection` if `t < min_t` or `t <
-/// max_t`. Where is a ray that ends before the plane?
+/// the part of the ray that is on it. The slide returns `no_intersection` if `t < min_t` or
+/// `t < max_t`. Where is a ray that ends before the plane?
 ///
 /// Exactly:
 ///

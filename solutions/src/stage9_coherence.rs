@@ -51,12 +51,12 @@ pub fn closest_hit_cached<P: Cells>(
 }
 
 /// Up to [`PACKET`] neighbouring rays, which open mostly the same nodes, traverse the tree
-/// together; more rays form several packets. When may a packet skip a node?
+/// together; more form several packets. When may one skip a node?
 ///
 /// Exactly:
 ///
-/// - One result per ray, in order, the same as alone: each ray keeps its own range and best hit,
-///   and at equal `t` the smaller number wins.
+/// - One result per ray, in order, the same as alone: each ray keeps its range and best hit, and
+///   at equal `t` the smaller number wins.
 /// - Open a node at most once per packet, and only if at least one ray enters it before its best
 ///   hit.
 ///

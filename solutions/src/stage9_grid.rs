@@ -22,12 +22,11 @@ use crate::stage9_cells::{Exit, first_exit};
 // </solution>
 
 /// Coarse grids skip little, fine ones take many steps. A rule: about `density · n_primitives`
-/// cells that are nearly cubes, `side = ∛(volume / (ρ n))`. What is the volume of a flat box?
+/// nearly cubic cells, `side = ∛(volume / (ρ n))`. What is the volume of a flat box?
 ///
 /// Exactly:
 ///
-/// - An axis along which the box is thinner than a cell gets one cell, and the others share all
-///   cells.
+/// - An axis along which the box is thinner than a cell gets one cell, the others share all.
 /// - Every axis gets 1 to [`MOST_CELLS_ALONG`] cells.
 /// - An empty box, a single point and `n_primitives = 0` get one cell.
 ///
@@ -139,7 +138,7 @@ fn index(grid: &Grid, axis: usize, at: f64) -> u32 {
 // </solution>
 
 /// Steps from cell to cell: the ray leaves a cell through the nearest of three planes. What error
-/// has `tMax += tDelta` after 250 cells? And what if a primitive is hit outside this cell?
+/// has `tMax += tDelta` after 250 cells? What if a primitive is hit outside this cell?
 ///
 /// Exactly:
 ///

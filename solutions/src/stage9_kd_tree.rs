@@ -28,7 +28,7 @@ use raykata::ray::Ray;
 ///   [`ListGrowth::divide`] returns `None`.
 /// - A plane lies within its cell. The bounds contain all boxes.
 /// - List a primitive once in every leaf that its box touches, on both sides of a touched plane.
-/// - Leave out empty and NaN boxes; without any other there are no nodes.
+/// - Leave out empty and NaN boxes; without a usable box there are no nodes.
 /// - `longest_axis`: cut across the cell's longest side. Off: x, y, z in turn, x first.
 /// - `balanced_counts`: minimise the difference of counts.
 /// - `few_straddlers`: minimise the number on both sides. With both, minimise the sum; with

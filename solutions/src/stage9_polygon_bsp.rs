@@ -27,8 +27,8 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cells, CutPlane, ListGrowth, PolygonBsp, PolygonBspNode};
 use raykata::ray::Ray;
 
-/// Each node holds the polygons on its plane, and a polygon that crosses the plane is split. The
-/// planes of a convex body have all its polygons on one side: what does their tree look like?
+/// Each node holds the polygons on its plane; those that cross it are split. The planes of a convex
+/// body have all its polygons on one side: what does their tree look like?
 ///
 /// Exactly:
 ///
@@ -37,12 +37,12 @@ use raykata::ray::Ray;
 /// - A node lists all polygons in its plane, and no solids.
 /// - A point within [`PolygonBsp::room`] of a plane counts as on it; choose it from 0 to a 1000th
 ///   of the largest coordinate. Clip at the plane itself.
-/// - Pass a solid to each side that it reaches.
+/// - Pass each part to its side, and a solid to each side that it reaches.
 /// - Every part of every polygon lies on the plane of a node that lists it, and a leaf lists at
 ///   most `leaf_size` solids, or those that no plane divides. Exceptions: at `max_depth` (root: 0),
 ///   and where [`ListGrowth::divide`] returns `None`.
-/// - Leave out hulls without corners, or with NaN or infinity; without any other there are no
-///   nodes.
+/// - Leave out hulls without corners, or with NaN or infinity; without usable hulls there are
+///   no nodes.
 ///
 /// Source: "Binary Space Partition (BSP) Tree". The idea is from Fuchs, Kedem and Naylor, "On
 /// Visible Surface Generation by A Priori Tree Structures", SIGGRAPH 1980.
