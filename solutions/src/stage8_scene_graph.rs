@@ -25,9 +25,9 @@ use raykata::rounding::UNIT_ROUNDOFF;
 ///
 /// Exactly:
 ///
-/// - The origin stays accurate for objects far from the world's origin, where single precision
-///   loses digits.
-/// - The direction keeps the length that the transform gives it.
+/// - The origin stays accurate also far from the world's origin, where single precision loses
+///   digits.
+/// - The direction keeps its transformed length.
 /// - `t_min`, `t_max` and `time` stay the same.
 #[inline]
 pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
