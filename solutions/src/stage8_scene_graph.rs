@@ -1,10 +1,11 @@
-//! Stage 8 · scene graph: each shape has its own space, and one mesh can have a hundred thousand instances.
+//! Stage 8 · scene graph: each shape has its own space, and one mesh can have a hundred thousand
+//! instances.
 //!
-//! Slides: "Scene Graph", "Ray-Scene Intersection", "Bounding Volumes", "Transformations" (meshes), "Rotate Bounding
-//! Boxes", "Combine Transformations".
+//! Slides: "Scene Graph", "Ray-Scene Intersection", "Bounding Volumes", "Transformations" (meshes),
+//! "Rotate Bounding Boxes", "Combine Transformations".
 //!
-//! Given: [`Graph`], whose nodes have children and primitives; [`Probe`] with `enter` (where the ray enters the bounding
-//! volume of a node) and `hit` (where it hits a primitive).
+//! Given: [`Graph`], whose nodes have children and primitives; [`Probe`] with `enter` (where the
+//! ray enters the bounding volume of a node) and `hit` (where it hits a primitive).
 
 use glam::{Affine3A, DAffine3, Vec3};
 use raykata::aabb::Aabb;
@@ -18,22 +19,23 @@ use crate::stage3_traversal::{keep_closest, nearer};
 use raykata::rounding::UNIT_ROUNDOFF;
 // </solution>
 
-/// Transforms a ray from the world to the space of an object, so that each hit has the same `t` in both spaces.
+/// Moves the ray into the space of the object: `o' = M⁻¹(o - b)` and `d' = M⁻¹ d`. The same `t`
+/// then belongs to the same point in both spaces. What would a unit direction do to `t`?
+/// `to_object` is this inverse.
 ///
-/// `to_object` is the inverse transform, from the world to the object. The origin is transformed as a point and the
-/// direction as a vector, which keeps the length that the transform gives it. `t_min`, `t_max` and `time` stay the
-/// same. For an object far from the origin of the world, single precision loses digits of the ray's origin; double
-/// precision keeps them.
+/// Exactly:
 ///
-/// Pitfall: the slide transforms the direction by the inverse *transpose*, which is for normals only. For scales along
-/// the axes both give the same result, so tests with such scales do not show the mistake. A normalized direction is
-/// wrong, too: it changes the unit of `t`, which then cannot be compared with the `t` of another object.
+/// - The origin stays accurate also far from the world's origin, where single precision loses
+///   digits.
+/// - The direction keeps its transformed length.
+/// - `t_min`, `t_max` and `time` stay the same.
 #[inline]
 pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
     // <solution>
     Ray {
         // Use double precision, because far from the origin large terms cancel.
         origin: to_object.as_daffine3().transform_point3(ray.origin.as_dvec3()).as_vec3(),
+        // Keep the length, because a unit direction changes t. The transpose is for normals only.
         direction: to_object.transform_vector3(ray.direction),
         ..*ray
     }
@@ -41,30 +43,30 @@ pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
     // </solution>
 }
 
-/// Transforms the unit normal `normal` of a surface from the space of its object to the world. The result has unit
-/// length.
+/// A normal goes through the inverse transpose, `n = M⁻ᵀ n₀`, and so stays perpendicular to the
+/// surface. Stretch a sphere along x: do its normals turn towards the x axis?
 ///
-/// `to_object` is the inverse of the transform to the world, so its transpose is the inverse transpose that normals
-/// need. A normal that points outwards still does after the transform, also for a reflection.
-///
-/// Pitfall: a normal that is transformed like a point is not perpendicular to a stretched surface. Do not flip the result
-/// for a negative determinant.
+/// `to_object` is M⁻¹, and `normal` has unit length. The result has unit length, too. It points
+/// outwards if `normal` does, also for a reflection.
 pub fn normal_to_world(normal: Vec3, to_object: &Affine3A) -> Vec3 {
     // <solution>
+    // Multiply by the inverse transpose. It needs no sign: n · (M v) stays n₀ · v, so an outward
+    // normal stays outward, also for a reflection.
     let rows = to_object.as_daffine3().matrix3.transpose();
     (rows * normal.as_dvec3()).normalize_or_zero().as_vec3()
     // <stub> todo!("multiply by the transpose of to_object, then normalize")
     // </solution>
 }
 
-/// Computes the transform from the space of a node to the world, and its inverse.
+/// The transforms from the space of a node to the world and back. `path` holds `M₁ M₂ … Mₙ` from
+/// the root to the node, each from a node to its parent; `to_world` is their product.
 ///
-/// `path` holds the transforms `M₁ M₂ … Mₙ` from the root to the node itself, each from a node to its parent.
-/// `to_world` is their product `M₁ M₂ … Mₙ`, and `to_object` is `Mₙ⁻¹ … M₂⁻¹ M₁⁻¹`. An empty path gives the identity
-/// for both. The result is `None` if some determinant is exactly 0 or some inverse is not finite. A small or negative
-/// determinant is valid.
+/// Exactly:
 ///
-/// Pitfall: the inverse of a product is the product of the inverses in reverse order.
+/// - `to_object` is `Mₙ⁻¹ … M₂⁻¹ M₁⁻¹`.
+/// - An empty path gives the identity for both.
+/// - `None` if some determinant is exactly 0 or some inverse is not finite. A small or negative
+///   determinant is valid.
 pub fn placement(path: &[Affine3A]) -> Option<Placement> {
     // <solution>
     // Multiply the transforms from the root to the node, and the inverses in reverse order.
@@ -84,15 +86,17 @@ pub fn placement(path: &[Affine3A]) -> Option<Placement> {
     // </solution>
 }
 
-/// Computes an axis-aligned box that contains all points of `bounds` after the transform `to_world`.
+/// The axis-aligned box around the eight corners of `bounds` after the transform `to_world`. A
+/// corner is a sum of rounded terms. Where may rounding move it?
 ///
-/// It is the box around the eight transformed corners, rounded outwards, and larger than the exact box by a few rounding
-/// errors of the terms at most. An empty box (`min` above `max` on some axis) gives [`Aabb::EMPTY`].
+/// Exactly:
 ///
-/// Pitfall: rounded to nearest, the largest corner lies inside the exact box in half of all cases, and a ray that hits
-/// the object there misses the box.
+/// - The box contains all transformed points of `bounds`.
+/// - It is larger than the exact box by a few rounding errors of the terms at most.
+/// - An empty box (`min` above `max` on some axis) gives [`Aabb::EMPTY`].
 ///
-/// Source: Arvo, "Transforming axis-aligned bounding boxes", Graphics Gems, 1990; slide "Rotate Bounding Boxes".
+/// Source: Arvo, "Transforming axis-aligned bounding boxes", Graphics Gems, 1990; "Rotate Bounding
+/// Boxes".
 pub fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
     // <solution>
     // Return the empty box for an empty box, because sums of infinite corners can be NaN.
@@ -120,13 +124,14 @@ pub fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
     // </solution>
 }
 
-/// Computes a sphere that contains all `points`, of which there is at least one.
+/// A sphere that contains all `points`, of which there is at least one. The centre of their
+/// bounding box is a good centre, and the farthest point gives the radius. What if it is rounded?
 ///
-/// It need not be the smallest such sphere, but its radius must be at most twice as large, apart from a few rounding
-/// errors of the coordinates. The sphere around the centre of the points' bounding box is small enough. No point may lie
-/// outside, also not by a rounding error.
+/// Exactly:
 ///
-/// Pitfall: a radius that is rounded to nearest is too small in half of all cases. Round it up.
+/// - No point lies outside, also not by a rounding error.
+/// - The radius is at most twice the smallest possible one, apart from a few rounding errors of the
+///   coordinates.
 pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
     // <solution>
     let min = points.iter().fold(Vec3::INFINITY, |low, point| low.min(*point));
@@ -134,32 +139,35 @@ pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
     let center = 0.5 * min + 0.5 * max;
     let distance = |point: &Vec3| point.as_dvec3().distance(center.as_dvec3());
     let radius = points.iter().map(distance).fold(0.0, f64::max);
+    // Round the radius up: rounded to nearest, it is too small in half of all cases.
     Sphere { center, radius: (radius as f32).next_up() }
     // <stub> todo!("take the centre of the points' box and the largest distance from it, rounded up")
     // </solution>
 }
 
-/// Computes the `t` at which `ray` enters the sphere: the slab test's counterpart for bounding spheres.
+/// The slab test's counterpart for bounding spheres: the nearer root is the `t` at which `ray`
+/// enters. A search compares it with the `t` of hits. What if it is late by one rounding error?
 ///
-/// The result lies in `t_min..=t_max` and counts lengths of the direction, which may have any length but 0; the radius is
-/// above 0. The result is `t_min` if the ray starts inside, and
-/// `None` if the sphere lies beside the ray, behind it or beyond `t_max`. The surface belongs to the sphere. The result
-/// must not be later than the exact entry, and may be earlier by a few rounding errors.
+/// Exactly:
 ///
-/// Pitfall: a search compares this `t` with the `t` of hits. If it is late by a rounding error, the search skips a sphere
-/// that contains a hit at the same `t`.
+/// - `t` counts lengths of the direction, which may have any length but 0. The radius is above 0.
+/// - The result is in `t_min..=t_max`; from inside it is `t_min`.
+/// - It is never later than the exact entry, and only a few rounding errors earlier.
+/// - `None` if the sphere lies beside the ray, behind it or beyond `t_max`. The surface belongs to
+///   the sphere.
 pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
     // <solution>
     let (direction, to_center) = (ray.direction.as_dvec3(), sphere.center.as_dvec3() - ray.origin.as_dvec3());
     let radius = f64::from(sphere.radius);
-    // Compare the distance of the line from the centre with the radius. The line is closest to the centre at t = b / a,
-    // and the square of this distance is |to_center × direction|² / a.
+    // Compare the distance of the line from the centre with the radius. The line is closest to the
+    // centre at t = b / a, and the square of this distance is |to_center × direction|² / a.
     let (a, b) = (direction.length_squared(), to_center.dot(direction));
     let discriminant = a * radius * radius - to_center.cross(direction).length_squared();
     if !(discriminant >= 0.0) {
         return None;
     }
-    // Compute both roots, widen the interval by the rounding errors, and clamp it to the ray's range.
+    // Compute both roots, widen the interval by the rounding errors, and clamp it to the ray's
+    // range.
     let (enter, leave) = ((b - discriminant.sqrt()) / a, (b + discriminant.sqrt()) / a);
     let enter = ((enter - ROOM * enter.abs()) as f32).max(ray.t_min);
     let leave = ((leave + ROOM * leave.abs()) as f32).min(ray.t_max);
@@ -169,27 +177,27 @@ pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
 }
 
 // <solution>
-/// The relative widening of the interval in a sphere: eight times the unit roundoff `u = 2⁻²⁴`. A search compares
-/// the entry with the `t` of hits, which has other rounding errors. With this room it does not skip a sphere that contains
-/// a hit at exactly the best `t`.
+/// The relative widening of the interval in a sphere: eight times the unit roundoff `u = 2⁻²⁴`. A
+/// search compares the entry with the `t` of hits, which has other rounding errors. With this room
+/// it does not skip a sphere that contains a hit at exactly the best `t`.
 const ROOM: f64 = 8.0 * UNIT_ROUNDOFF as f64;
 // </solution>
 
-/// Finds the closest hit of `ray` in a scene graph: tests a node's own primitives first, then visits its children. Node
-/// 0 is the root; a graph without nodes gives `None`.
+/// The closest hit of `ray` in a scene graph: test a node's own primitives, then visit its
+/// children. Node 0 is the root; a graph without nodes gives `None`. A hit at exactly `t_max` does
+/// not count. How far may the range shrink after a hit?
 ///
-/// Of two hits at the same `t` the smaller primitive number wins. `probe.hit` tests a primitive; test each one at most
-/// once. `savings` switches on three optimisations, and the hit is the same for all combinations:
+/// Exactly:
 ///
-/// - `volumes`: call `probe.enter` once for each node before its primitives are tested, also for the root, and skip a
-///   node that the ray does not enter, with all nodes below. Without `volumes`, `enter` is never called, and every node
-///   is visited.
-/// - `skip`: skip a node that the ray enters beyond the closest hit so far. Decide this when you are about to visit the
-///   node. A node that begins exactly at the closest hit must be visited.
-/// - `sort`: visit the entered children in the order in which the ray enters them. Without `sort`, visit them as listed.
-///
-/// Pitfall: a hit at exactly `t_max` does not count. If the range shrinks to the closest hit, a hit at the same `t`
-/// with a smaller number is lost.
+/// - The hit is the same for all combinations of `savings`. At equal `t` the smaller primitive
+///   number wins.
+/// - Test each primitive at most once.
+/// - `volumes`: call `probe.enter` once per node before its primitives are tested, also for the
+///   root; skip a node that the ray does not enter, with all nodes below. Off: never call it, and
+///   visit all nodes.
+/// - `skip`: just before you visit a node, skip it if the ray enters it beyond the closest hit so
+///   far, not exactly there.
+/// - `sort`: visit the entered children in the order of their entries. Off: as listed.
 pub fn closest_hit_in_graph(
     graph: &Graph,
     probe: &mut impl Probe,
@@ -248,7 +256,8 @@ impl GraphSearch<'_> {
             entered.sort_by(|first, second| first.t.total_cmp(&second.t));
         }
         for child in entered {
-            // Skip a child that begins beyond the closest hit, which an earlier child may have changed.
+            // Skip a child that begins beyond the closest hit, which an earlier child may have
+            // changed.
             if child.t < self.ray.t_max {
                 self.node(child.node, probe);
             }

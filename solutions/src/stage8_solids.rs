@@ -1,17 +1,19 @@
 //! Stage 8 · solids: boxes, cylinders, cones, disks and polygons, each in its own space.
 //!
-//! Slides: "Ray-Box Intersection", "Other Ray-Primitive Intersections" (cone, cylinder: similar to sphere, must also
-//! check end caps; convex polygon: same as triangle).
+//! Slides: "Ray-Box Intersection", "Other Ray-Primitive Intersections" (cone, cylinder: similar to
+//! sphere, must also check end caps; convex polygon: same as triangle).
 //!
-//! A convex solid is the intersection of simpler convex sets: a box of three slabs, a cylinder of an infinite cylinder
-//! and a slab. A line lies in each of them for one interval of `t`, so it lies in the solid where all intervals
-//! overlap, and no end cap needs a test of its own. The first end of the overlap in the ray's range is the hit.
+//! A convex solid is the intersection of simpler convex sets: a box of three slabs, a cylinder of
+//! an infinite cylinder and a slab. A line lies in each of them for one interval of `t`, so it lies
+//! in the solid where all intervals overlap, and no end cap needs a test of its own. The first end
+//! of the overlap in the ray's range is the hit.
 //!
-//! All functions have the same contract. `t` counts lengths of the direction, which may have any length but 0. A hit
-//! counts if [`Ray::contains`] accepts its `t`. From inside a solid the hit is the point where the ray leaves. The
-//! normal has unit length and points out of the solid; at edges, rims and tips each of the possible normals is right.
-//! The result is `None` for a ray or shape with NaN or infinite coordinates, and for a direction of 0. Otherwise radii
-//! are above 0, axes and normals have any length but 0, and `min` is not above `max`: nothing else is asked.
+//! All functions have the same contract. `t` counts lengths of the direction, which may have any
+//! length but 0. A hit counts if [`Ray::contains`] accepts its `t`. From inside a solid the hit is
+//! the point where the ray leaves. The normal has unit length and points out of the solid; at
+//! edges, rims and tips each of the possible normals is right. The result is `None` for a ray or
+//! shape with NaN or infinite coordinates, and for a direction of 0. Otherwise radii are above 0,
+//! axes and normals have any length but 0, and `min` is not above `max`: nothing else is asked.
 
 use glam::{DVec3, Vec3};
 use raykata::kit::SolidHit;
@@ -19,8 +21,9 @@ use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 
 // <solution>
-/// The part of a line that lies in a convex set, with the outward normals at its ends. It is in double precision: the
-/// product of two input numbers of single precision is then exact, and enough digits remain after cancellation.
+/// The part of a line that lies in a convex set, with the outward normals at its ends. It is in
+/// double precision: the product of two input numbers of single precision is then exact, and enough
+/// digits remain after cancellation.
 #[derive(Clone, Copy)]
 struct Span {
     enter: f64,
@@ -59,10 +62,12 @@ impl Span {
     }
 }
 
-/// The span in which a line of height `start + t rate` lies between two heights. `up` is the direction of height.
+/// The span in which a line of height `start + t rate` lies between two heights. `up` is the
+/// direction of height.
 fn slab(start: f64, rate: f64, [low, high]: [f64; 2], up: DVec3) -> Option<Span> {
     if rate == 0.0 {
-        // A line parallel to the slab is inside for all t or for no t. Do not divide by a rate of 0 or -0.0.
+        // A line parallel to the slab is inside for all t or for no t. Do not divide by a rate of 0
+        // or -0.0.
         return (low <= start && start <= high).then_some(Span::WHOLE_LINE);
     }
     let (at_low, at_high) = ((low - start) / rate, (high - start) / rate);
@@ -72,7 +77,8 @@ fn slab(start: f64, rate: f64, [low, high]: [f64; 2], up: DVec3) -> Option<Span>
     })
 }
 
-/// The roots of `a t² + 2 b t + c` with `root = √(b² - ac)`, the smaller first, without cancellation.
+/// The roots of `a t² + 2 b t + c` with `root = √(b² - ac)`, the smaller first, without
+/// cancellation.
 fn roots(a: f64, b: f64, c: f64, root: f64) -> (f64, f64) {
     let q = -(b + root.copysign(b));
     // q is 0 only if b and the root are 0; then both roots of a t² are 0.
@@ -86,12 +92,19 @@ fn all_finite(ray: &Ray, points: &[Vec3]) -> bool {
 }
 // </solution>
 
-/// Intersects a ray with a solid box: returns the nearest point of its surface in the ray's range. Faces, edges and
-/// corners belong to the box, which may be flat (`min` equal to `max` on an axis). The normal is that of the face that
-/// is hit.
+/// A ray is in a box where its intervals in the three slabs overlap:
 ///
-/// Pitfall: the slide's "check front-facing sides" loses every ray that starts inside. A rounded point on one face can
-/// lie outside of the face's edges, so a test of points loses rays at edges. Intersect three intervals instead.
+/// ```text
+/// x     ├──────────┤
+/// y  ├─────────┤
+/// z       ├───────────┤
+/// box     ├────┤         → t
+/// ```
+///
+/// What if it starts inside? And what is 0/0, for a ray in the plane of a face?
+///
+/// Faces, edges and corners belong to the box, which may be flat (`min` equal to `max` on an axis).
+/// The normal is that of the face that is hit.
 pub fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit> {
     // <solution>
     // Reject invalid input.
@@ -110,14 +123,11 @@ pub fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit> {
     // </solution>
 }
 
-/// Intersects a ray with a cylinder whose ends are closed: returns the nearest point of side or ends in the ray's
-/// range. Side, ends and rims belong to the cylinder, and a ray that only touches the side hits it.
+/// A ray hits a closed cylinder where its intervals in the infinite cylinder and between the end
+/// planes overlap. With `A` from base to top and `L = (o - base) × d`, the discriminant is
+/// `|d × A|² r² - (A·L)²`. What is `a = |d × A|²` for a ray along the axis?
 ///
-/// With the axis `A` from base to top and the moment `L = (o - base) × d`, the line passes the axis at the distance
-/// `|A·L| / |d × A|`, so the discriminant of the infinite cylinder is `|d × A|² r² - (A·L)²`.
-///
-/// Pitfall: the slide's "similar to sphere" is not enough. For a ray parallel to the axis, `a = |d × A|²` is 0, and 0/0
-/// is NaN. Caps that are tested as separate disks leak at the rim.
+/// Side, ends and rims belong to the cylinder; a ray that only touches the side hits it.
 pub fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<SolidHit> {
     // <solution>
     // Reject invalid input.
@@ -159,15 +169,18 @@ pub fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<SolidHit> {
     // </solution>
 }
 
-/// Intersects a ray with a cone whose base is closed: returns the nearest point of side or base in the ray's range. Side,
-/// base, rim and apex belong to the cone.
+/// A closed cone is the part of a double cone between apex and base:
 ///
-/// With the axis `A` from apex to base and the moment `L = (o - apex) × d`, the discriminant of the double cone
-/// `|x × A|² ≤ k (x·A)²`, `k = r²/|A|²`, is `|A|² (k |A × L|² - (A·L)²)`.
+/// ```text
+/// \ /
+///  •  apex
+/// /_\ base
+/// ```
 ///
-/// Pitfall: the equation describes two cones, apex to apex, and a ray that passes above the apex meets the second cone.
-/// For a ray parallel to the side `a` is 0. For a steeper ray `a` is negative, and the ray is inside *beyond* the
-/// roots, not between them.
+/// With `x` from the apex, `A` from apex to base and `k = r²/|A|²`, it is `|x × A|² ≤ k (x·A)²`;
+/// the discriminant is `|A|² (k |A × L|² - (A·L)²)`, `L = (o - apex) × d`. What if `a < 0`?
+///
+/// Side, base, rim and apex belong to the cone.
 pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     // <solution>
     // Reject invalid input.
@@ -178,7 +191,8 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     let from_apex = ray.origin.as_dvec3() - cone.apex.as_dvec3();
     let axis = cone.base.as_dvec3() - cone.apex.as_dvec3();
     let (height_squared, start, rate) = (axis.length_squared(), from_apex.dot(axis), direction.dot(axis));
-    // Compute the interval between apex and base. It excludes the second cone, whose points have negative heights.
+    // Compute the interval between apex and base. It excludes the second cone, whose points have
+    // negative heights.
     let below_apex = slab(start, rate, [0.0, height_squared], axis)?;
 
     // Compute the quadratic's coefficients for the double cone, and its discriminant.
@@ -195,7 +209,8 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     let (enter, leave) = if a > 0.0 {
         (first, second)
     } else if a < 0.0 {
-        // A ray steeper than the side enters this cone at the larger root, or leaves it at the smaller one.
+        // A ray steeper than the side enters this cone at the larger root, or leaves it at the
+        // smaller one.
         if rate > 0.0 { (second, f64::INFINITY) } else { (f64::NEG_INFINITY, first) }
     } else if b != 0.0 {
         // For a ray parallel to the side, 2 b t + c ≤ 0 remains.
@@ -206,7 +221,8 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     } else {
         return None;
     };
-    // Compute the normal: half the gradient of |x × A|² - k (x·A)², or -axis at the apex, where the gradient is 0.
+    // Compute the normal: half the gradient of |x × A|² - k (x·A)², or -axis at the apex, where the
+    // gradient is 0.
     let outwards = |t: f64| {
         let at = from_apex + t * direction;
         let gradient = height_squared * at - at.dot(axis) * (1.0 + k) * axis;
@@ -218,11 +234,11 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     // </solution>
 }
 
-/// Intersects a ray with a flat disk, from both sides. The rim belongs to the disk. The normal is `disk.normal` as a
-/// unit vector, also if the ray comes from the other side. The result is `None` for a radius that is NaN, and for a ray
-/// parallel to the disk.
+/// A ray hits a flat disk, from both sides, if it meets the disk's plane at most the radius away
+/// from the centre. What is this `t` for a ray parallel to the disk?
 ///
-/// Pitfall: `t` is infinite or NaN for a ray parallel to the disk. Write comparisons that are false for NaN.
+/// The rim belongs to the disk. The normal is `disk.normal` as a unit vector on both sides. The
+/// result is `None` for a radius that is NaN, and for a ray parallel to the disk.
 pub fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit> {
     // <solution>
     let (direction, normal) = (ray.direction.as_dvec3(), disk.normal.as_dvec3());
@@ -237,15 +253,19 @@ pub fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit> {
     // </solution>
 }
 
-/// Intersects a ray with a flat convex polygon, from both sides. Edges and corners belong to the polygon, and three
-/// corners may lie on a line. The normal points to the side from which the corners run anticlockwise, also if the ray
-/// comes from the other side. A ray in the plane of the polygon does not hit it.
+/// A ray hits a flat convex polygon, from both sides, if it passes all edges on the same side: the
+/// sign of `d · (p × q)`, for the ends of an edge relative to the ray's origin. Which number does
+/// the neighbour at this edge compute?
 ///
-/// Pitfall: a point on the plane is rounded, and near an edge this rounding decides. Test on which side of each edge
-/// the ray passes instead: the sign of `d · (p × q)` for the ends `p` and `q` of the edge relative to the ray's origin.
-/// A neighbouring polygon computes the same value for the shared edge, up to the sign, so no ray passes between them.
-/// Corners that rounding moved off their plane have no common plane: near its rim such a polygon differs from the triangles
-/// of its fan.
+/// Exactly:
+///
+/// - Edges and corners belong to the polygon; three corners may lie on a line.
+/// - The normal points to the side from which the corners run anticlockwise, also for rays from
+///   behind.
+/// - A ray in its plane misses it.
+/// - No ray passes between two polygons that share an edge.
+/// - If rounding moved corners off their plane, the triangles of a fan may give other hits near the
+///   rim.
 pub fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit> {
     // <solution>
     // Express the corners relative to the ray's origin.
@@ -253,13 +273,16 @@ pub fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit> {
     let seen: Vec<DVec3> = polygon.corners.iter().map(|corner| corner.as_dvec3() - origin).collect();
     let edges = || (0..seen.len()).map(|i| (seen[i], seen[(i + 1) % seen.len()]));
 
+    // A neighbour computes the same values for the shared edge, up to the sign, so no ray passes
+    // between them. A point on the plane would be rounded, and near an edge this decides.
     // Test whether the ray passes all edges on the same side.
     let passes: Vec<f64> = edges().map(|(p, q)| direction.dot(p.cross(q))).collect();
     let (left, right) = (passes.iter().all(|&side| side >= 0.0), passes.iter().all(|&side| side <= 0.0));
     if !(left || right) {
         return None;
     }
-    // Compute the normal by Newell's method: sum the areas between each edge and one corner. Single areas may be 0.
+    // Compute the normal by Newell's method: sum the areas between each edge and one corner. Single
+    // areas may be 0.
     let normal: DVec3 = edges().map(|(p, q)| (p - seen[0]).cross(q - seen[0])).sum();
     // Intersect the plane of the polygon.
     let hit = SolidHit {

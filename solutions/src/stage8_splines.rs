@@ -1,8 +1,8 @@
-//! Stage 8 · B-spline and NURBS surfaces: many control points with a low degree, and weights that make arcs of circles
-//! exact.
+//! Stage 8 · B-spline and NURBS surfaces: many control points with a low degree, and weights that
+//! make arcs of circles exact.
 //!
-//! Slides: "Types of primitives" (splines, NURBS). Cox, "The Numerical Evaluation of B-Splines", 1972; de Boor, "On
-//! Calculating with B-Splines", 1972; Piegl and Tiller, "The NURBS Book", 1997.
+//! Slides: "Types of primitives" (splines, NURBS). Cox, "The Numerical Evaluation of B-Splines",
+//! 1972; de Boor, "On Calculating with B-Splines", 1972; Piegl and Tiller, "The NURBS Book", 1997.
 //!
 //! Given: [`NurbsPatch`] with its degrees, knots, control points and weights.
 
@@ -13,20 +13,19 @@ use raykata::shape::NurbsPatch;
 use glam::DVec3;
 // </solution>
 
-/// Computes the B-spline basis function `N(i, p)` at `u` by the recursion of Cox and de Boor, for `i = index` and
-/// `p = degree`.
+/// The B-spline basis function `N(i, p)` at `u` (`i = index`, `p = degree`) blends two functions of
+/// one degree less (Cox, de Boor). What if knots are equal? And which span contains the last knot?
 ///
-/// - `N(i, 0)(u)` is 1 in the span `knots[i] <= u < knots[i + 1]`, and 0 elsewhere. At the last knot it is 1 in the
-///   last span that is not empty, which is closed on both sides.
-/// - `N(i, p)(u) = (u - k_i) / (k_{i+p} - k_i) N(i, p-1)(u) + (k_{i+p+1} - u) / (k_{i+p+1} - k_{i+1}) N(i+1, p-1)(u)`.
-///   A term whose denominator is 0 is left out.
+/// Knots are finite and never descend, and `index + degree + 1` is a valid index. `u` lies in the
+/// domain `knots[p]..=knots[n]` of `n = knots.len() - p - 1` functions.
 ///
-/// The knots are finite and never descend, and `index + degree + 1` is a valid index into them. `u` lies in the domain
-/// `knots[p]..=knots[n]` of `n = knots.len() - p - 1` basis functions, both ends included. There they are at least 0, and
-/// their sum is 1.
+/// Exactly:
 ///
-/// Pitfall: equal knots make both the numerator and the denominator 0, and 0 / 0 is NaN. If all spans are half open, all
-/// basis functions are 0 at the end of the domain, and the surface lacks its last row of points.
+/// - `N(i, 0)(u)` is 1 in the span `knots[i] <= u < knots[i + 1]`, and 0 elsewhere. The last span
+///   that is not empty also contains the last knot.
+/// - `N(i, p)(u) = (u - k_i) / (k_{i+p} - k_i) N(i, p-1)(u) + (k_{i+p+1} - u) / (k_{i+p+1} -
+///   k_{i+1}) N(i+1, p-1)(u)`, without a term whose denominator is 0.
+/// - In the domain, ends included, they are at least 0, and their sum is 1.
 ///
 /// Source: Cox 1972; de Boor 1972.
 pub fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32 {
@@ -41,7 +40,8 @@ pub fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32 
         let is_end = u == last && knots.last() == Some(&last);
         return if first < last && (u < last || is_end) { 1.0 } else { 0.0 };
     }
-    // Blend two functions of one degree less: the factor of one rises from 0 to 1, that of the other falls.
+    // Blend two functions of one degree less: the factor of one rises from 0 to 1, that of the
+    // other falls.
     let (before_last, second) = (knots[index + degree], knots[index + 1]);
     let rising = if first < before_last { (u - first) / (before_last - first) } else { 0.0 };
     let falling = if second < last { (last - u) / (last - second) } else { 0.0 };
@@ -51,19 +51,14 @@ pub fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32 
     // </solution>
 }
 
-/// Computes a point of a NURBS surface (non-uniform rational B-spline): the mean of the control points `rows[j][i]` with
-/// the factors `N(i)(u) · N(j)(v) · weights[j][i]`.
+/// A point of a NURBS surface: the mean of the control points `rows[j][i]` with the factors
+/// `N(i)(u) · N(j)(v) · weights[j][i]`, where `N` is [`bspline_basis`]. The sum of the basis
+/// functions is 1. What is the sum of the factors?
 ///
-/// `u` runs along the rows and belongs to `degrees[0]` and `knots[0]`; `v` runs from row to row and belongs to `degrees[1]`
-/// and `knots[1]`. `N` are the functions of [`bspline_basis`]. Both parameters lie in their domains, ends included. All
-/// weights are above 0. With equal weights the surface is a B-spline surface.
-///
-/// Weights make conics exact: the points `(1, 0)`, `(1, 1)`, `(0, 1)` with the weights `1, √½, 1` and the knots
-/// `0, 0, 0, 1, 1, 1` of degree 2 give a quarter of a circle. In general the middle weight is the cosine of half the angle of
-/// the arc. No B-spline without weights is an arc.
-///
-/// Pitfall: divide by the sum of the factors *with* the weights. The basis functions alone have the sum 1, so without
-/// weights the division seems unnecessary.
+/// `u` runs along the rows and belongs to `degrees[0]` and `knots[0]`, `v` from row to row and
+/// belongs to `degrees[1]` and `knots[1]`. Both lie in their domains, ends included. All weights
+/// are above 0; equal ones give a B-spline. Three points with the weights `1, cos(α/2), 1` make an
+/// exact arc of the angle α.
 ///
 /// Source: Piegl and Tiller 1997, sections 4.2 and 7.3.
 pub fn nurbs_point(patch: &NurbsPatch, uv: Vec2) -> Vec3 {
@@ -73,7 +68,8 @@ pub fn nurbs_point(patch: &NurbsPatch, uv: Vec2) -> Vec3 {
     };
     let across = basis(0, patch.rows[0].len());
     let along = basis(1, patch.rows.len());
-    // Sum the weighted points and the weights in double precision, because a product with a weight can overflow.
+    // Sum the weighted points and the weights in double precision, because a product with a weight
+    // can overflow.
     let (mut sum, mut total) = (DVec3::ZERO, 0.0);
     for (j, &of_row) in along.iter().enumerate() {
         for (i, &of_column) in across.iter().enumerate() {
@@ -82,6 +78,7 @@ pub fn nurbs_point(patch: &NurbsPatch, uv: Vec2) -> Vec3 {
             total += factor;
         }
     }
+    // The basis functions have the sum 1, but the factors with weights have not.
     (sum / total).as_vec3()
     // <stub> todo!("sum basis · basis · weight · point, and divide by the sum of basis · basis · weight")
     // </solution>

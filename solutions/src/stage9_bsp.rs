@@ -1,9 +1,18 @@
-//! Stage 9 · the BSP tree: planes of any direction divide space, above all the planes of the polygons themselves.
+//! Stage 9 · the BSP tree: planes of any direction divide space, above all the planes of the
+//! polygons themselves.
 //!
-//! Slides: "Binary Space Partition (BSP) Tree" (recursively partition space by planes; traverse nodes front-to-back).
+//! Slides: "Binary Space Partition (BSP) Tree" (recursively partition space by planes; traverse
+//! nodes front-to-back).
 //!
-//! Given: [`Bsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance` and `across`;
-//! [`ListGrowth`].
+//! Given: [`Bsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance` and
+//! `across`; [`ListGrowth`], whose `divide` returns `None` where all leaves together would list
+//! more than [`MOST_REFERENCES`](raykata::partition::MOST_REFERENCES) references per primitive,
+//! which is the most that is allowed. A hull is the list of corners of a polygon, or the eight
+//! corners of a box.
+//!
+//! A search returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller
+//! primitive number wins. A hit may lie outside the leaf that lists its primitive. Without a hit or
+//! a node, the result is `None`.
 
 // <solution>
 use crate::stage9_cells::{may_stop_before, near_and_far, range, test_cell};
@@ -14,25 +23,22 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Bsp, BspNode, Cells, CutPlane, ListGrowth};
 use raykata::ray::Ray;
 
-/// Builds a BSP tree over hulls. A hull is the list of corners of a polygon, or the eight corners of a box.
+/// Planes of any direction divide space. Candidates are the planes of the polygons and, because
+/// those of a convex body do not divide it, one across the longest extent through the median
+/// centre. What if many polygons lie in one plane, or around one line?
 ///
-/// The candidates for a cut are the planes of the polygons, and one plane across the longest extent through the median
-/// centre, because the planes of a convex body do not divide it. Choose a plane that leaves few primitives on its
-/// fuller side, and few on both sides. Make a leaf if a node has at most `leaf_size` primitives, if it is at
-/// `max_depth` (the root is at depth 0), or if no plane leaves fewer primitives on each side and less than 60 % of them
-/// on both. Make a leaf also if [`ListGrowth::divide`] returns `None`: all leaves together list at most
-/// [`MOST_REFERENCES`] references per primitive.
+/// Exactly:
 ///
-/// List a primitive once in every leaf that it overlaps; a primitive that touches a plane is on both sides. Leave out
-/// hulls that have no corner, or a corner with NaN or infinity. Without a usable hull the tree has no nodes.
+/// - Choose a plane that leaves few primitives on its fuller side, and few on both.
+/// - Make a leaf of at most `leaf_size` primitives, at `max_depth` (the root is at depth 0), if no
+///   plane leaves fewer primitives on each side and less than 60 % of them on both, or if
+///   [`ListGrowth::divide`] returns `None`.
+/// - List a primitive once in every leaf that it overlaps; one that touches a plane is on both
+///   sides.
+/// - Leave out hulls without corners, or with NaN or infinity. Without a usable hull there are
+///   no nodes.
 ///
-/// Pitfall: many polygons in one plane, or around one line, are on both sides of each of their planes. The recursion
-/// must end there. If polygons cross each other, every plane has some of them on both sides, and the number of
-/// references grows at every level.
-///
-/// Slide: "Binary Space Partition (BSP) Tree".
-///
-/// [`MOST_REFERENCES`]: raykata::partition::MOST_REFERENCES
+/// Source: "Binary Space Partition (BSP) Tree".
 pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
     // <solution>
     // Leave out hulls that have no corner or a corner that is not finite.
@@ -53,8 +59,8 @@ pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
 }
 
 // <solution>
-/// How far from a plane a corner still counts as on it, as much as `padded_boxes` allows for rounding: 2⁻¹⁸ of the extent from
-/// `low` to `high`, and at least 2⁻²² of the largest coordinate.
+/// How far from a plane a corner still counts as on it, as much as `padded_boxes` allows for
+/// rounding: 2⁻¹⁸ of the extent from `low` to `high`, and at least 2⁻²² of the largest coordinate.
 pub(crate) fn room(low: DVec3, high: DVec3) -> f64 {
     let extent = (high - low).max_element() * (-18f64).exp2();
     extent.max(low.abs().max(high.abs()).max_element() * (-22f64).exp2())
@@ -62,8 +68,8 @@ pub(crate) fn room(low: DVec3, high: DVec3) -> f64 {
 
 /// The plane of the first corner of a polygon, with the polygon's normal; `None` if it has no area.
 pub(crate) fn newell_plane(corners: &[DVec3]) -> Option<CutPlane> {
-    // Compute the normal by Newell's method: the sum over the edges is twice the area times the normal, also if some
-    // corners lie in a line.
+    // Compute the normal by Newell's method: the sum over the edges is twice the area times the
+    // normal, also if some corners lie in a line.
     let edges = corners.iter().zip(corners.iter().cycle().skip(1));
     let doubled = edges.map(|(p, q)| (*p - corners[0]).cross(*q - corners[0])).sum::<DVec3>();
     let normal = doubled.try_normalize()?;
@@ -104,13 +110,15 @@ impl Scene<'_> {
             .then_some(plane)
     }
 
-    /// The planes to choose from: those of up to sixteen polygons, and one across the longest extent.
+    /// The planes to choose from: those of up to sixteen polygons, and one across the longest
+    /// extent.
     fn candidates(&self, ids: &[u32]) -> Vec<CutPlane> {
-        // Take at most sixteen polygons, spread over the list, because testing each plane against all takes too long.
+        // Take at most sixteen polygons, spread over the list, because testing each plane against
+        // all takes too long.
         let step = ids.len().div_ceil(16);
         let of_polygons = ids.iter().step_by(step).filter_map(|&id| self.plane_of(id));
-        // Choose the axis of the longest extent: repeated cuts across one axis make thin slices, and a ray crosses them
-        // all.
+        // Choose the axis of the longest extent: repeated cuts across one axis make thin slices,
+        // and a ray crosses them all.
         let hull =
             |id: u32, axis: usize| self.hulls[id as usize].iter().map(move |corner| f64::from(corner[axis]));
         let extent = |axis: usize| {
@@ -125,8 +133,8 @@ impl Scene<'_> {
         of_polygons.chain(across).collect()
     }
 
-    /// The plane that leaves the fewest primitives on its fuller side, where each primitive on both sides counts as
-    /// [`STRADDLER`] more; `None` if no plane divides the primitives.
+    /// The plane that leaves the fewest primitives on its fuller side, where each primitive on both
+    /// sides counts as [`STRADDLER`] more; `None` if no plane divides the primitives.
     fn choose(&self, ids: &[u32]) -> Option<(CutPlane, [Vec<u32>; 2])> {
         let cuts = self.candidates(ids).into_iter().map(|plane| (plane, self.sides(ids, &plane)));
         let on_both = |[back, front]: &[Vec<u32>; 2]| back.len() + front.len() - ids.len();
@@ -138,8 +146,9 @@ impl Scene<'_> {
     }
 }
 
-/// The cost of a primitive on both sides, relative to one on the fuller side. `raykata compare scenes/showcase.toml
-/// --size 160x90 --spp 1 --only bsp` counts 214 visits per ray with 0, 107 with 8 and 45 with 30.
+/// The cost of a primitive on both sides, relative to one on the fuller side. `raykata compare
+/// scenes/showcase.toml --size 160x90 --spp 1 --only bsp` counts 214 visits per ray with 0, 107
+/// with 8 and 45 with 30.
 const STRADDLER: usize = 30;
 
 fn divide(bsp: &mut Bsp, scene: &Scene<'_>, ids: &[u32], (depth, growth): (usize, ListGrowth)) -> u32 {
@@ -163,19 +172,17 @@ fn divide(bsp: &mut Bsp, scene: &Scene<'_>, ids: &[u32], (depth, growth): (usize
 }
 // </solution>
 
-/// Finds the closest hit. At each plane search the side of the ray's origin first and the other side second, each with
-/// the part of the ray that is on it.
+/// At each plane, search the side of the ray's origin first and the other side second, each with
+/// the part of the ray that is on it. The slide returns `no_intersection` if `t < min_t` or
+/// `t < max_t`. Where is a ray that ends before the plane?
 ///
-/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
-/// `None` if there is no hit or no node. Visit a node at most once, and only if the ray enters it before the best hit.
-/// A hit may lie outside the leaf that lists its primitive.
+/// Exactly:
 ///
-/// Pitfall: `if (t < min_t) || (t < max_t)) return no_intersection` is wrong if the plane is behind the ray or beyond
-/// its end. There the ray is on one side along its whole length, and that side must be searched. A ray in the plane is
-/// on both sides, and so is a ray that starts on it; a primitive in the plane may be listed on one side only. The computed
-/// height of such a ray may be a rounding error in place of 0.
+/// - Visit a node at most once, and only if the ray enters it before the best hit.
+/// - A ray in the plane, or that starts on it, is on both sides: a primitive in the plane may be
+///   listed on one side only. Its computed height may be a rounding error in place of 0.
 ///
-/// Slide: "Binary Space Partition (BSP) Tree".
+/// Source: "Binary Space Partition (BSP) Tree".
 pub fn closest_hit(bsp: &Bsp, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     if bsp.nodes.is_empty() {
@@ -206,6 +213,7 @@ fn search(
     match bsp.nodes[node as usize] {
         BspNode::Leaf { first, count } => test_cell(bsp.primitives(first, count), probe, ray, best),
         BspNode::Inner { plane, back, front } => {
+            // A ray that does not cross the plane is on one side along its whole length.
             // Find the part of the ray on each side, and search the nearer side first.
             let in_order = near_and_far(&plane, [back, front], 0.0, ray, part);
             for (child, part) in in_order.into_iter().flatten() {

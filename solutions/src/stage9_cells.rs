@@ -1,12 +1,13 @@
-//! Stage 9 · partitions: space is divided into cells, and each cell lists the primitives that overlap it. This file has
-//! the functions that all partitions share. The grid, the octree, the kd-tree, the BSP tree and the coherence of rays
-//! have a file each.
+//! Stage 9 · partitions: space is divided into cells, and each cell lists the primitives that
+//! overlap it. This file has the functions that all partitions share. The grid, the octree, the
+//! kd-tree, the BSP tree and the coherence of rays have a file each.
 //!
 //! Slides: "Kd-Trees", "Uniform Grid", "Octree", "Binary Space Partition (BSP) Tree".
 //!
-//! Given: [`Cells`] with `visit` (call it once per node or cell that the search visits) and `hit` (the `t` at which the
-//! ray hits a primitive); [`Cell`], a closed box in double precision, with its octants and halves. Of two hits at the
-//! same `t` the smaller primitive number wins, as in stage 3.
+//! Given: [`Cells`] with `visit` (call it once per node or cell that the search visits) and `hit`
+//! (the `t` at which the ray hits a primitive); [`Cell`], a closed box in double precision, with
+//! its octants and halves. Of two hits at the same `t` the smaller primitive number wins, as in
+//! stage 3.
 
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
@@ -22,10 +23,11 @@ use raykata::partition::CutPlane;
 
 /// The relative room for rounding when the `t` of a hit is compared with the `t` of a cell.
 ///
-/// The two come from different formulas, so their order is certain only if they differ by more than this fraction: 16
-/// times `u = 2⁻²⁴`. Three roundings give an error of 3 u, and a grazing triangle gives some more. If lists are tight,
-/// only this room keeps a hit on a face. It costs one more cell for about one ray in 10,000, as the test
-/// `room_for_rounding_costs_next_to_no_visits` counts (solutions/tests/suite/partitions.rs).
+/// The two come from different formulas, so their order is certain only if they differ by more than
+/// this fraction: 16 times `u = 2⁻²⁴`. Three roundings give an error of 3 u, and a grazing triangle
+/// gives some more. If lists are tight, only this room keeps a hit on a face. It costs one more
+/// cell for about one ray in 10,000, as the test `room_for_rounding_costs_next_to_no_visits` counts
+/// (solutions/tests/suite/partitions.rs).
 pub const ROUNDING: f64 = 16.0 * UNIT_ROUNDOFF as f64;
 
 /// Boxes for builders, each padded with some room for rounding.
@@ -36,14 +38,17 @@ pub struct PaddedBoxes {
     pub boxes: Vec<(u32, Aabb)>,
 }
 
-/// Widens every box a little on all sides, so that a hit that rounding moves just outside its box is still in a cell
-/// that lists it. Boxes that are empty or have a NaN coordinate are left out, because no ray hits them.
+/// Widens every box a little on all sides, so that a hit that rounding moves just outside its box
+/// is still in a cell that lists it. How large is the extent of huge boxes, in single precision?
 ///
-/// The room is 2⁻¹⁸ of the largest extent: a test in single precision has an error of about 2⁻²³ of the distance to the
-/// ray's origin, and cameras are usually within 32 extents. It is at least 2⁻²² of the largest coordinate, which is a
-/// few floats. The result stays within ±`f32::MAX`.
+/// The room is 2⁻¹⁸ of the largest extent, because a test in single precision has an error of about
+/// 2⁻²³ of the distance to the ray's origin, and cameras are usually within 32 extents. It is at
+/// least 2⁻²² of the largest coordinate, which is a few floats.
 ///
-/// Pitfall: the extent of huge boxes overflows in single precision, and infinite corners give cells without a middle.
+/// Exactly:
+///
+/// - Boxes that are empty or have a NaN coordinate are left out, because no ray hits them.
+/// - The result stays within ±`f32::MAX`.
 pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     // <solution>
     // Compute the box around all boxes that are not empty.
@@ -53,7 +58,8 @@ pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     };
     let all = around(&mut bounds.iter().enumerate().filter(usable).map(|(_, one)| one));
 
-    // Compute the room in double precision, because the extent of huge boxes overflows in single precision.
+    // Compute the room in double precision, because the extent of huge boxes overflows in single
+    // precision.
     let (min, max) = (all.min.as_dvec3(), all.max.as_dvec3());
     let extent = (max - min).max_element() * (-18f64).exp2();
     let step = min.abs().max_element().max(max.abs().max_element()) * (-22f64).exp2();
@@ -70,17 +76,20 @@ pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     // </solution>
 }
 
-/// Computes the part of the closed interval `t..=t_end` in which a ray is on one side of a plane: where its height
-/// above the plane, `height + rate · t`, is at least `-room`.
+/// The height of a ray above a plane is `height + rate · t`. It is at least `-room` from some `t`
+/// on, up to some `t`, always or never. On which side is a ray that runs in the plane, or starts in
+/// it?
 ///
-/// `height` is the height of the ray's origin, and `rate` its change per unit of `t`. With `rate = 0` the result is the
-/// whole interval or `None`. A ray within the plane is on both sides. The result may be a single `t`; it is `None` if
-/// no `t` of the interval is above.
+/// Returns that part of the closed interval `t..=t_end`; it may be a single `t`. `height` is the
+/// height of the ray's origin, and `rate` its change per unit of `t`.
 ///
-/// Pitfall: `tHit <= t → snd` leaves out one side for a ray that starts in the plane.
-/// `direction = 0: origin <= value → left` leaves out one side for a ray that stays in it.
+/// Exactly:
 ///
-/// Slide: "kd-Tree Traversal".
+/// - With `rate = 0` the result is the whole interval or `None`.
+/// - A ray within the plane is on both sides.
+/// - `None` if no `t` of the interval is above.
+///
+/// Source: "kd-Tree Traversal".
 #[inline]
 pub fn part_above(height: f64, rate: f64, room: f64, (t, t_end): (f64, f64)) -> Option<(f64, f64)> {
     // <solution>
@@ -94,16 +103,17 @@ pub fn part_above(height: f64, rate: f64, room: f64, (t, t_end): (f64, f64)) -> 
     // </solution>
 }
 
-/// Computes the `t` at which `ray` enters and leaves a cell, in double precision: the part of its range that is above
-/// all six faces.
+/// A ray is in a cell where it is above the planes of all six faces: each cuts its range
+/// ([`part_above`]). What is `(face - o) / d` for a ray in the plane of a face?
 ///
-/// The cell is closed: a ray along a face or through a corner is in the cell. Both the range of the ray and the faces
-/// have [`ROUNDING`] as room, so that no hit found in single precision is lost. A ray that starts inside enters at
-/// `t_min`. Returns `None` if the ray misses the cell within its range, and for an empty cell.
+/// Exactly:
 ///
-/// Pitfall: for a ray that runs in the plane of a face, dividing by the direction gives 0 / 0.
+/// - Returns the `t` of entry and exit. A ray that starts inside enters at `t_min`.
+/// - Cells are closed: a ray along a face or through a corner is inside.
+/// - The range and the faces have [`ROUNDING`] as room for hits in single precision.
+/// - `None` if the ray misses the cell within its range, and for an empty cell.
 ///
-/// Slide: "kd-Tree Traversal".
+/// Source: "kd-Tree Traversal".
 #[inline]
 pub fn span(ray: &Ray, cell: &Cell) -> Option<(f64, f64)> {
     // <solution>
@@ -133,14 +143,14 @@ pub fn range(ray: &Ray) -> (f64, f64) {
     (t_min - ROUNDING * t_min.abs(), t_max + ROUNDING * t_max.abs())
 }
 
-/// Tests the primitives of a cell: keeps the closest hit in `best`, and shortens the ray to it.
+/// Tests the primitives of a cell: keeps the closest hit in `best`, and shortens the ray to it. The
+/// range of a ray is open. Is another primitive at the same `t` still reported?
 ///
-/// A hit counts also if it lies outside the cell, because a primitive may extend beyond its cell. At equal `t` the
-/// smaller primitive number wins. A primitive that overlaps several cells may be tested several times; that does not
-/// change the result.
+/// Exactly:
 ///
-/// Pitfall: if the ray ends exactly at the best hit, another primitive at the same `t` is not reported, because the
-/// range of a ray is open. End it one float above `t`.
+/// - A hit counts also if it lies outside the cell, because a primitive may extend beyond its cell.
+/// - At equal `t` the smaller primitive number wins.
+/// - A primitive that overlaps several cells may be tested several times.
 #[inline]
 pub fn test_cell(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best: &mut Option<PrimitiveHit>) {
     // <solution>
@@ -152,13 +162,11 @@ pub fn test_cell(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best
     // </solution>
 }
 
-/// Whether the search may stop before a cell that the ray enters at `entry`: the best hit lies before the entry by more
-/// than [`ROUNDING`]. `false` if there is no hit yet.
+/// Whether the search may stop before a cell that the ray enters at `entry`: the best hit lies
+/// before the entry by more than [`ROUNDING`]. The slide compares `hit.distance < t'`. Which
+/// formula does each of the two come from? `false` if there is no hit yet.
 ///
-/// Pitfall: `hit.distance < t'` rejects a hit on the far face of its cell, and it compares two `t` from different
-/// formulas without room for rounding.
-///
-/// Slide: "kd-Tree Traversal".
+/// Source: "kd-Tree Traversal".
 #[inline]
 pub fn may_stop_before(best: &Option<PrimitiveHit>, entry: f64) -> bool {
     // <solution>
@@ -174,9 +182,9 @@ pub fn may_stop_before(best: &Option<PrimitiveHit>, entry: f64) -> bool {
 /// A child of a node, with the part of the ray in it.
 pub type Child = (u32, (f64, f64));
 
-/// Finds the parts of a ray on the two sides of a plane, behind which is the node `back` and in front of which is
-/// `front`. The first result is the side from which the ray comes; `None` if no `t` of `part` is on a side. Both sides
-/// extend beyond the plane by `room`, in world units.
+/// Finds the parts of a ray on the two sides of a plane, behind which is the node `back` and in
+/// front of which is `front`. The first result is the side from which the ray comes; `None` if no
+/// `t` of `part` is on a side. Both sides extend beyond the plane by `room`, in world units.
 pub fn near_and_far(
     plane: &CutPlane,
     [back, front]: [u32; 2],
@@ -203,8 +211,8 @@ pub struct Exit {
     pub t: f64,
 }
 
-/// Finds the first of the three faces at the coordinates `far`, which are the faces of a cell on the sides to which the
-/// ray goes. For a ray without a direction `t` is infinite.
+/// Finds the first of the three faces at the coordinates `far`, which are the faces of a cell on
+/// the sides to which the ray goes. For a ray without a direction `t` is infinite.
 pub fn first_exit(origin: DVec3, direction: DVec3, far: DVec3) -> Exit {
     let mut exit = Exit { axis: 0, t: f64::INFINITY };
     for axis in 0..3 {

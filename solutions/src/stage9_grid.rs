@@ -1,9 +1,14 @@
-//! Stage 9 · the uniform grid: cells of equal size, and a search that steps along the ray from cell to cell.
+//! Stage 9 · the uniform grid: cells of equal size, and a search that steps along the ray from cell
+//! to cell.
 //!
-//! Slides: "Uniform Grid" (index primitives according to overlaps; trace rays through grid cells; "How choose suitable
-//! grid resolution?").
+//! Slides: "Uniform Grid" (index primitives according to overlaps; trace rays through grid cells;
+//! "How choose suitable grid resolution?").
 //!
 //! Given: [`Grid`] with `plane` (the coordinate at which a cell begins), `number` and `primitives`.
+//!
+//! A search returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller
+//! primitive number wins. A hit may lie outside the cell that lists its primitive. Without a hit,
+//! or if the ray misses the grid, the result is `None`.
 
 use crate::stage9_cells::{may_stop_before, padded_boxes, span, test_cell};
 use glam::{DVec3, UVec3};
@@ -16,15 +21,16 @@ use raykata::ray::Ray;
 use crate::stage9_cells::{Exit, first_exit};
 // </solution>
 
-/// Chooses the number of cells along each axis, such that the grid has about `density · n_primitives` cells that are
-/// nearly cubes.
+/// Coarse grids skip little, fine ones take many steps. A rule: about `density · n_primitives`
+/// nearly cubic cells, `side = ∛(volume / (ρ n))`. What is the volume of a flat box?
 ///
-/// An axis along which the box is thinner than a cell gets one cell. Every axis gets at least 1 and at most
-/// [`MOST_CELLS_ALONG`] cells. An empty box, a single point and `n_primitives = 0` get one cell.
+/// Exactly:
 ///
-/// Pitfall: a flat box has no volume. Use the area of the two remaining axes, or the length of the one remaining axis.
+/// - An axis along which the box is thinner than a cell gets one cell, the others share all.
+/// - Every axis gets 1 to [`MOST_CELLS_ALONG`] cells.
+/// - An empty box, a single point and `n_primitives = 0` get one cell.
 ///
-/// Slide: "Uniform Grid" (How choose suitable grid resolution?).
+/// Source: "Uniform Grid" (How choose suitable grid resolution?).
 pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
     // <solution>
     // Return one cell for an empty or an infinite box.
@@ -34,8 +40,9 @@ pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
         return UVec3::ONE;
     }
 
-    // Compute the side of a cube of which `n_cells` fill the box: over k axes, sideᵏ = product of their sizes /
-    // n_cells. Drop the axes that are thinner than the side, and repeat. Without primitives the side is infinite.
+    // Compute the side of a cube of which `n_cells` fill the box: over k axes, sideᵏ = product of
+    // their sizes / n_cells. Drop the axes that are thinner than the side, and repeat. Without
+    // primitives the side is infinite.
     let mut thick: Vec<usize> = (0..3).filter(|&axis| size[axis] > 0.0).collect();
     let side = loop {
         let volume: f64 = thick.iter().map(|&axis| size[axis]).product();
@@ -62,15 +69,17 @@ pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
     // </solution>
 }
 
-/// Builds a grid of `resolution` cells over the box around all primitives: lists each primitive in all cells that its
-/// box overlaps.
+/// A grid of `resolution` cells over the box around all primitives. Each primitive is listed once
+/// in all cells that its box overlaps: per axis, from that of its lower to that of its upper
+/// corner. What if the quotient that gives the index is rounded?
 ///
-/// A box that touches a cell overlaps it. Each primitive is listed once per cell. Empty boxes and boxes with NaN are
-/// left out. An axis with resolution 0 gets one cell.
+/// Exactly:
 ///
-/// Pitfall: the quotient that gives the index of a cell is rounded. Compare with [`Grid::plane`] after the division.
+/// - A box that touches a cell overlaps it.
+/// - Empty boxes and boxes with NaN are left out.
+/// - An axis with resolution 0 gets one cell.
 ///
-/// Slide: "Uniform Grid" (index primitives according to overlaps).
+/// Source: "Uniform Grid" (index primitives according to overlaps).
 pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
     // <solution>
     let padded = padded_boxes(bounds);
@@ -110,7 +119,8 @@ pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
 }
 
 // <solution>
-/// The index along `axis` of the cell that contains coordinate `at`, or of the nearest cell if it is outside.
+/// The index along `axis` of the cell that contains coordinate `at`, or of the nearest cell if it
+/// is outside.
 fn index(grid: &Grid, axis: usize, at: f64) -> u32 {
     let (first, last) = (grid.plane(axis, 0), grid.plane(axis, grid.resolution[axis]));
     let n = grid.resolution[axis];
@@ -127,21 +137,16 @@ fn index(grid: &Grid, axis: usize, at: f64) -> u32 {
 }
 // </solution>
 
-/// Finds the closest hit: visits the cells in the order in which the ray enters them, and stops when the best hit lies
-/// before the next cell.
+/// Steps from cell to cell: the ray leaves a cell through the nearest of three planes. What error
+/// has `tMax += tDelta` after 250 cells? What if a primitive is hit outside this cell?
 ///
-/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
-/// `None` if there is no hit, or if the ray misses the grid. Visit each cell at most once. At a corner, visit any
-/// sequence of cells that share a face.
+/// Exactly:
 ///
-/// Pitfall: a primitive of a cell may be hit outside the cell, and a later cell may hold a nearer hit.
+/// - Visit the cells in the order in which the ray enters them, each at most once. At a corner,
+///   visit any sequence of cells that share a face.
+/// - Stop when the best hit lies before the next cell.
 ///
-/// Pitfall: the quotient that gives the index of the first cell is rounded, as in [`build`].
-///
-/// Pitfall: `tMax += tDelta` accumulates rounding errors and visits wrong cells in a fine grid: compute `t` from the index of
-/// the cell, in double precision.
-///
-/// Slide: "Uniform Grid" (trace rays through grid cells).
+/// Source: "Uniform Grid" (trace rays through grid cells).
 pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     // Find the cell in which the ray enters the grid.
@@ -159,6 +164,7 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
         probe.visit(number);
         test_cell(grid.primitives(number), probe, &mut ray, &mut best);
 
+        // Compute t from the index of the cell: a sum of steps accumulates rounding errors.
         // Find the face through which the ray leaves the cell.
         let far = |axis: usize| grid.plane(axis, cell[axis] + u32::from(direction[axis] > 0.0));
         let Exit { axis, t: exit } = first_exit(origin, direction, DVec3::new(far(0), far(1), far(2)));

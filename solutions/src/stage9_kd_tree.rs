@@ -1,8 +1,16 @@
-//! Stage 9 · the kd-tree: planes across the axes divide space, and five heuristics choose the planes.
+//! Stage 9 · the kd-tree: planes across the axes divide space, and five heuristics choose the
+//! planes.
 //!
 //! Slides: "Kd-Trees", "Heuristics" 1 to 5, "kd-Tree Traversal" with `t` and `t'`.
 //!
-//! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`; [`ListGrowth`].
+//! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`; [`ListGrowth`], whose `divide`
+//! returns `None` where all leaves together would list more than
+//! [`MOST_REFERENCES`](raykata::partition::MOST_REFERENCES) references per primitive, which is the
+//! most that is allowed.
+//!
+//! A search returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller
+//! primitive number wins. A hit may lie outside the leaf that lists its primitive. Without a hit or
+//! a node, or if the ray misses the bounds, the result is `None`.
 
 use crate::stage9_cells::{ROUNDING, may_stop_before, padded_boxes, part_above, span, test_cell};
 use raykata::aabb::Aabb;
@@ -10,37 +18,25 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, KdHeuristics, KdNode, KdTree, ListGrowth};
 use raykata::ray::Ray;
 
-/// Builds a kd-tree from the root down.
+/// Planes across the axes divide space. Five heuristics choose them, each alone or together. What
+/// if all boxes are on both sides?
 ///
-/// Divide a node with more than `leaf_size` primitives, unless it is at depth [`KdTree::most_depth`] (the root is at
-/// depth 0), all primitives would be on both sides, or [`ListGrowth::divide`] returns `None`: all leaves together list at
-/// most [`MOST_REFERENCES`] references per primitive. A plane lies within its cell. List a primitive once in every leaf
-/// that its box touches; a primitive that touches a plane is on both sides. Leave out empty boxes and boxes with NaN.
-/// Without a usable box the tree has no nodes.
+/// Exactly:
 ///
-/// Each heuristic can be switched on alone:
-/// - `longest_axis` cuts across the longest side of the cell. Without it the cuts take x, y, z in turn, with x at the
-///   root.
-/// - `balanced_counts` minimises the difference of the counts of the two sides.
-/// - `few_straddlers` minimises the number of primitives on both sides. With both heuristics the sum of the two numbers
-///   is minimal; with neither the cut is in the middle of the cell.
-/// - `cut_off_empty_space` first cuts off an empty margin of more than a tenth of the cell.
-/// - `stop_at_overlap` makes a leaf if at least 60 % of the primitives of one side would be on both sides. If no primitive
-///   would be on both sides, it makes no leaf.
+/// - Divide a node of more than `leaf_size` primitives, unless it is at depth
+///   [`KdTree::most_depth`] (root: 0), all of them would be on both sides, or
+///   [`ListGrowth::divide`] returns `None`.
+/// - A plane lies within its cell. The bounds contain all boxes.
+/// - List a primitive once in every leaf that its box touches, on both sides of a touched plane.
+/// - Leave out empty and NaN boxes; without a usable box there are no nodes.
+/// - `longest_axis`: cut across the cell's longest side. Off: x, y, z in turn, x first.
+/// - `balanced_counts`: minimise the difference of counts.
+/// - `few_straddlers`: minimise the number on both sides. With both, minimise the sum; with
+///   neither, cut in the middle.
+/// - `cut_off_empty_space`: first cut off an empty margin of over a tenth of the cell.
+/// - `stop_at_overlap`: make a leaf if at least 60 % of one side, but not 0, would be on both.
 ///
-/// Pitfall: boxes that all lie at one place are on both sides of every plane through them. The recursion must end
-/// there. Without heuristics, long thin boxes are on both sides of most planes, and each level of the tree doubles the
-/// number of references.
-///
-/// Why 60 %: a primitive on both sides is listed twice, so a plane with a large overlap costs memory and gains little. The rule
-/// looks at one plane only. A plane through a connected surface has a large overlap if one side has few primitives, and then
-/// the node stays whole, although later planes would divide it well. With all heuristics a ray makes 138 primitive tests in
-/// `scenes/showcase.toml`, without this rule 56, and with none of them ("easy way") 7, in 1.7, 8.3 and 7.0 MB (`raykata compare
-/// scenes/showcase.toml --size 96x60 --spp 1 --of heuristics --table`).
-///
-/// Slides: "Kd-Trees", "Heuristics" 1 to 5.
-///
-/// [`MOST_REFERENCES`]: raykata::partition::MOST_REFERENCES
+/// Source: "Kd-Trees", "Heuristics" 1 to 5.
 pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree {
     // <solution>
     let padded = padded_boxes(bounds);
@@ -149,7 +145,8 @@ fn widest_margin(boxes: &[(u32, Aabb)], cell: &Aabb) -> Option<Cut> {
     let mut widest = (0.1, None);
     for axis in 0..3 {
         let [low, high] = [cell.min[axis], cell.max[axis]].map(f64::from);
-        // Put the plane one float away from the primitives: if they touched it, they would be on both sides.
+        // Put the plane one float away from the primitives: if they touched it, they would be on
+        // both sides.
         for (position, margin) in [
             (around.min[axis].next_down(), f64::from(around.min[axis]) - low),
             (around.max[axis].next_up(), high - f64::from(around.max[axis])),
@@ -174,8 +171,8 @@ fn position(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeur
         return Some(middle).filter(inside);
     }
 
-    // Try the middle between neighbouring ends of boxes: counts change only at these ends, and a plane between them
-    // touches no box.
+    // Try the middle between neighbouring ends of boxes: counts change only at these ends, and a
+    // plane between them touches no box.
     let sorted = |side: fn(&Aabb) -> glam::Vec3| {
         let mut sorted: Vec<f32> = boxes.iter().map(|(_, one)| side(one)[axis]).collect();
         sorted.sort_by(f32::total_cmp);
@@ -198,18 +195,17 @@ fn position(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeur
 }
 // </solution>
 
-/// Finds the closest hit, with the interval of `t` in which the ray is in each cell: searches the near side of each
-/// plane first, then the far side, unless the best hit lies before it.
+/// The ray is in each cell for an interval `t..t'`. A plane cuts it in two: search the near side
+/// first, then the far side, unless the best hit lies before it. Is a hit on the face of the cell
+/// before `t'`?
 ///
-/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
-/// `None` if there is no hit, if the ray misses the bounds, or if there is no node. Visit a node at most once, and only
-/// if the ray enters it before the best hit. A hit may lie outside the leaf that lists its primitive.
+/// Exactly:
 ///
-/// Pitfall: `hit.distance < t'` loses a wall on the face of the box, and a primitive that extends beyond its leaf.
-/// A ray in the plane, or one that starts on it, is on both sides, because a builder may list a primitive in the plane
-/// on one side only.
+/// - Visit a node at most once, and only if the ray enters it before the best hit.
+/// - A ray in the plane, or that starts on it, is on both sides: a primitive in the plane may be
+///   listed on one side only.
 ///
-/// Slide: "kd-Tree Traversal" with `t` and `t'`.
+/// Source: "kd-Tree Traversal" with `t` and `t'`.
 pub fn closest_hit(tree: &KdTree, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     if tree.nodes.is_empty() {
@@ -245,6 +241,7 @@ fn search(
             let axis = usize::from(axis);
             let (height, rate) =
                 (f64::from(ray.origin[axis]) - f64::from(at), f64::from(ray.direction[axis]));
+            // A ray in the plane, or that starts on it, is on both sides.
             // Find the part of the ray on each side, and search the nearer side first.
             let room = ROUNDING * height.abs();
             let above = part_above(height, rate, room, part).map(|part| (right, part));

@@ -1,10 +1,21 @@
-//! Stage 9 · the BSP tree of the slide: the polygons lie in its nodes, and a polygon that crosses a plane is split.
+//! Stage 9 · the BSP tree of the slide: the polygons lie in its nodes, and a polygon that crosses a
+//! plane is split.
 //!
-//! Slides: "Binary Space Partition (BSP) Tree" ("BSP tree nodes store partition plane and set of polygons lying on that
-//! partition plane"; "every part of every polygon lies on a partition plane"; `ComputeBSPIntersection`).
+//! Slides: "Binary Space Partition (BSP) Tree" ("BSP tree nodes store partition plane and set of
+//! polygons lying on that partition plane"; "every part of every polygon lies on a partition
+//! plane"; `ComputeBSPIntersection`).
 //!
-//! Given: [`PolygonBsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance`, `across` and
-//! `keep`, which clips a polygon; [`ListGrowth`].
+//! Given: [`PolygonBsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with
+//! `distance`, `across` and `keep`, which clips a polygon; [`ListGrowth`], whose `divide` returns
+//! `None` where all nodes together would list more than
+//! [`MOST_REFERENCES`](raykata::partition::MOST_REFERENCES) references per primitive, which is the
+//! most that is allowed. A hull of three to seven corners that lie in one plane is a convex
+//! polygon, with its corners in order. Every other hull is a solid: the eight corners of a box, or
+//! corners without a plane.
+//!
+//! A search returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller
+//! primitive number wins. A hit may lie outside the leaf that lists its primitive. Without a hit or
+//! a node, the result is `None`.
 
 // <solution>
 use crate::stage9_bsp::{median_plane, newell_plane, room};
@@ -16,31 +27,25 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cells, CutPlane, ListGrowth, PolygonBsp, PolygonBspNode};
 use raykata::ray::Ray;
 
-/// Builds a BSP tree whose nodes hold the polygons on their planes.
+/// Each node holds the polygons on its plane; those that cross it are split. The planes of a convex
+/// body have all its polygons on one side: what does their tree look like?
 ///
-/// A hull of three to seven corners that lie in one plane is a convex polygon, with its corners in order. Every other
-/// hull is a solid: the eight corners of a box, or corners without a plane. Leave out hulls that have no corner, or a
-/// corner with NaN or infinity. Without a usable hull the tree has no nodes.
+/// Exactly:
 ///
-/// Choose a plane for each node: that of a polygon, or one across an axis. List all polygons of the node that lie in the
-/// plane at the node. Split each polygon that crosses the plane, and pass its two parts to the two sides; pass a solid to
-/// each side that it reaches. A point within [`PolygonBsp::room`] of a plane counts as a point of the plane. Choose
-/// `room` from 0 to a 1000th of the largest coordinate, and clip at the plane itself. Prefer planes that split
-/// few polygons and leave few primitives on their fuller side.
+/// - A plane is that of a polygon, or across an axis. Prefer one that splits few polygons and
+///   leaves few primitives on its fuller side.
+/// - A node lists all polygons in its plane, and no solids.
+/// - A point within [`PolygonBsp::room`] of a plane counts as on it; choose it from 0 to a 1000th
+///   of the largest coordinate. Clip at the plane itself.
+/// - Pass each part to its side, and a solid to each side that it reaches.
+/// - Every part of every polygon lies on the plane of a node that lists it, and a leaf lists at
+///   most `leaf_size` solids, or those that no plane divides. Exceptions: at `max_depth` (root: 0),
+///   and where [`ListGrowth::divide`] returns `None`.
+/// - Leave out hulls without corners, or with NaN or infinity; without usable hulls there are
+///   no nodes.
 ///
-/// Go on until every part of every polygon lies on the plane of a node that lists it, and until a leaf lists at most
-/// `leaf_size` solids or no plane divides its solids. Only at `max_depth` (the root is at depth 0), and where
-/// [`ListGrowth::divide`] returns `None`, may a leaf list polygons. All nodes together list at most [`MOST_REFERENCES`]
-/// references per primitive.
-///
-/// Pitfall: the planes of the polygons of a convex body have all other polygons on one side. If no other plane is
-/// chosen, the tree is a list, in which each ray visits most nodes. If a polygon that crosses the plane is passed on
-/// whole, it comes to lie on both sides of more and more planes.
-///
-/// Slide: "Binary Space Partition (BSP) Tree". The idea is from Fuchs, Kedem and Naylor, "On Visible Surface Generation
-/// by A Priori Tree Structures", SIGGRAPH 1980.
-///
-/// [`MOST_REFERENCES`]: raykata::partition::MOST_REFERENCES
+/// Source: "Binary Space Partition (BSP) Tree". The idea is from Fuchs, Kedem and Naylor, "On
+/// Visible Surface Generation by A Priori Tree Structures", SIGGRAPH 1980.
 pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> PolygonBsp {
     // <solution>
     // Leave out hulls that have no corner or a corner that is not finite.
@@ -87,7 +92,8 @@ fn plane_of(corners: &[DVec3], room: f64) -> Option<CutPlane> {
     if !(3..8).contains(&corners.len()) {
         return None;
     }
-    // Refuse corners that do not lie in one plane. Parts of the polygon are then within the whole room of it.
+    // Refuse corners that do not lie in one plane. Parts of the polygon are then within the whole
+    // room of it.
     let plane = newell_plane(corners)?;
     let is_flat = corners.iter().all(|corner| 2.0 * height(&plane, *corner).abs() <= room);
     is_flat.then_some(plane)
@@ -130,13 +136,14 @@ fn count(parts: &[Part], plane: &CutPlane, room: f64) -> Counts {
 
 /// The planes to choose from: those of up to sixteen polygons, and one across the longest extent.
 fn candidates(parts: &[Part]) -> Vec<CutPlane> {
-    // Take at most sixteen polygons, spread over the list, because testing each plane against all takes too long.
+    // Take at most sixteen polygons, spread over the list, because testing each plane against all
+    // takes too long.
     let polygons: Vec<CutPlane> = parts.iter().filter_map(|part| part.plane).collect();
     let step = polygons.len().div_ceil(16).max(1);
     let of_polygons = polygons.into_iter().step_by(step);
 
-    // Put one plane across the axis of the longest extent, between the two middle centres. The planes of a convex body do
-    // not divide its polygons, and this plane does.
+    // Put one plane across the axis of the longest extent, between the two middle centres. The
+    // planes of a convex body do not divide its polygons, and this plane does.
     let corners = || parts.iter().flat_map(|part| &part.corners);
     let low = corners().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = corners().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -146,23 +153,24 @@ fn candidates(parts: &[Part]) -> Vec<CutPlane> {
     of_polygons.chain([across]).collect()
 }
 
-/// The plane that leaves the fewest parts on its fuller side, where each part on both sides counts as [`SPLIT`] more;
-/// `None` if no plane divides the parts.
+/// The plane that leaves the fewest parts on its fuller side, where each part on both sides counts
+/// as [`SPLIT`] more; `None` if no plane divides the parts.
 fn choose(parts: &[Part], room: f64) -> Option<(CutPlane, Counts)> {
     let counted = candidates(parts).into_iter().map(|plane| (plane, count(parts, &plane, room)));
     let on_both = |counts: &Counts| counts.n_back + counts.n_front + counts.n_on - parts.len();
     let fuller = |counts: &Counts| counts.n_back.max(counts.n_front);
-    // A plane without a polygon must leave fewer parts on each side, and less than 60 % of them on both.
+    // A plane without a polygon must leave fewer parts on each side, and less than 60 % of them on
+    // both.
     let divides = |counts: &Counts| fuller(counts) < parts.len() && 10 * on_both(counts) < 6 * parts.len();
     counted
         .filter(|(_, counts)| counts.n_on > 0 || divides(counts))
         .min_by_key(|(_, counts)| fuller(counts) + SPLIT * on_both(counts))
 }
 
-/// The cost of a part on both sides, relative to one on the fuller side. `raykata compare scenes/showcase.toml
-/// --size 160x90 --spp 1 --only polygon-bsp` counts 126 visits and 8.0 primitive tests per ray with 2, 57 and 8.6 with 8,
-/// 39 and 44.9 with 30. With 30 the planes of polygons are chosen, which leave most others on one side, until the tree is
-/// too deep.
+/// The cost of a part on both sides, relative to one on the fuller side. `raykata compare
+/// scenes/showcase.toml --size 160x90 --spp 1 --only polygon-bsp` counts 126 visits and 8.0
+/// primitive tests per ray with 2, 57 and 8.6 with 8, 39 and 44.9 with 30. With 30 the planes of
+/// polygons are chosen, which leave most others on one side, until the tree is too deep.
 const SPLIT: usize = 8;
 
 fn divide(
@@ -215,21 +223,19 @@ fn divide(
 }
 // </solution>
 
-/// Finds the closest hit: searches the side of the ray's origin first, then the polygons on the plane (step 2 of the
-/// slide), then the other side.
+/// Three steps per plane: search the side of the ray's origin, test the polygons on the plane,
+/// search the other side. The slide returns `no_intersection` if `t < min_t` or `t < max_t`, else
+/// the first hit. What if the plane is behind the ray? And where is a solid of the near side hit?
 ///
-/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
-/// `None` if there is no hit or no node. Test the polygons of a node only if the ray comes to its plane within the part
-/// of the ray that is in the node. Visit a node at most once, and only if the ray enters it before the best hit. A
-/// point within [`PolygonBsp::room`] of a plane counts as a point of the plane: a polygon in front of the plane may extend
-/// behind it by this distance.
+/// Exactly:
 ///
-/// Pitfall: `if (t < min_t) || (t < max_t)) return no_intersection` is wrong if the plane is behind the ray or beyond
-/// its end. There the ray is on one side along its whole length, and that side must be searched. `if (intersection1 is
-/// a hit) return intersection1` is wrong if a leaf lists solids: a solid of the near side may be hit on the far side,
-/// behind a polygon.
+/// - Test the polygons of a node only if the ray comes to its plane within the part of the ray that
+///   is in the node.
+/// - Visit a node at most once, and only if the ray enters it before the best hit.
+/// - A point within [`PolygonBsp::room`] of a plane counts as on it: a polygon in front of the
+///   plane may extend behind it by this distance.
 ///
-/// Slide: "Binary Space Partition (BSP) Tree" (`ComputeBSPIntersection`).
+/// Source: "Binary Space Partition (BSP) Tree" (`ComputeBSPIntersection`).
 pub fn closest_hit(bsp: &PolygonBsp, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     if bsp.nodes.is_empty() {
@@ -262,6 +268,7 @@ fn search(
         PolygonBspNode::Inner { plane, first, count, back, front } => {
             // Find the part of the ray on each side.
             let [near, far] = near_and_far(&plane, [back, front], bsp.room, ray, part);
+            // No hit is final: a solid of the near side may be hit on the far side.
             // 1. Search the near side.
             if let Some((child, part)) = near {
                 search(bsp, child, part, probe, ray, best);
