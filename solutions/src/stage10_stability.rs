@@ -1,12 +1,21 @@
-//! Stage 10 · stability: intersection tests of earlier stages, for inputs where rounding errors decide the answer.
+//! Stage 10 · stability: intersection tests of earlier stages, for inputs where rounding errors
+//! decide the answer.
 //!
-//! Slides: "Ray-Sphere Intersection", "Inside Test", "Numerical precision", "Bounding Volumes"; Woop, Benthin and Wald
-//! 2013; Ize 2013; Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th edition, section 6.8.
+//! Slides: "Ray-Sphere Intersection", "Inside Test", "Numerical precision", "Bounding Volumes";
+//! Woop, Benthin and Wald 2013; Ize 2013; Pharr, Jakob and Humphreys, "Physically Based Rendering",
+//! 4th edition, section 6.8.
 //!
-//! Your functions of earlier stages may already be good enough. `cargo run --release -- gauntlet --kit exercises` shows
-//! what they cost and where they fail.
+//! Your functions of earlier stages may already be good enough.
+//! `cargo run --release -- gauntlet --kit exercises` shows what they cost and where they fail.
 //!
-//! A hit with a triangle or a sphere counts if `ray.contains(t)`, that is `t_min < t < t_max`: both ends are open.
+//! A hit with a triangle or a sphere counts if `ray.contains(t)`, that is `t_min < t < t_max`: both
+//! ends are open.
+//!
+//! Your pictures use [`watertight`], [`conservative_slab`], [`offset_origin`] and
+//! [`safe_normalize`] as soon as they are written; before, triangles use `triangle_choice` of stage
+//! 2, boxes `slab` of stage 3, and shadow rays and secondary rays start where `shadow_ray` of stage
+//! 4 and `spawn_ray` of stage 5 put them. Scenes with `sphere_method = "stable_roots"` or
+//! `precision = "double"` use [`stable_roots`] or the last two functions.
 
 use glam::Vec3;
 use raykata::aabb::Aabb;
@@ -21,26 +30,25 @@ use glam::DVec2;
 use raykata::rounding::two_sum;
 // </solution>
 
-/// Computes the real roots of `a t² + b t + c = 0` without cancellation.
+/// The real roots of `a t² + b t + c = 0`, whose product is `c / a`. The usual formula gives 0 for
+/// one root of `t² - 10000 t + 1`: why?
 ///
-/// Returns the smaller root first, for every sign of `a` and `b`. A double root is returned twice, and for `b = c = 0`
-/// both roots are 0. Returns `None` if there is no real root, if `a` is 0, or if a coefficient is NaN or infinite. No
-/// root is NaN; a root too large for `f32` is infinite.
+/// Exactly:
 ///
-/// Pitfall: `-b + √(b² - 4ac)` cancels if b is large: one root of `t² - 10000 t + 1` becomes 0. Add numbers of the same
-/// sign instead, `q = -(b + sign(b) √(b² - 4ac)) / 2`: one root is `q / a`, the other `c / q`.
+/// - The smaller root comes first, for every sign of `a` and `b`.
+/// - A double root is returned twice; for `b = c = 0` both roots are 0.
+/// - `None` if there is no real root, if `a` is 0, or if a coefficient is NaN or infinite.
+/// - No root is NaN; one too large for `f32` is infinite.
 ///
-/// Scenes with `sphere_method = "stable_roots"` are rendered with this function.
-///
-/// Slide: "Ray-Sphere Intersection".
+/// Source: "Ray-Sphere Intersection".
 pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
     // <solution>
     // Refuse equations that are not quadratic and coefficients that are not finite.
     if a == 0.0 || !(a.is_finite() && b.is_finite() && c.is_finite()) {
         return None;
     }
-    // Compute the discriminant in double precision: both products are exact, so it is rounded once and its sign is
-    // right.
+    // Compute the discriminant in double precision: both products are exact, so it is rounded once
+    // and its sign is right.
     let [a, b, c] = [a, b, c].map(f64::from);
     let discriminant = b * b - 4.0 * a * c;
     if discriminant < 0.0 {
@@ -55,40 +63,40 @@ pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
     // </solution>
 }
 
-/// Intersects a ray with a triangle such that no ray escapes from a closed mesh: neither between two triangles that share
-/// an edge or a corner, nor through a triangle that is seen edge-on, at any size and at any place.
+/// Intersects a ray with a triangle so that no ray escapes from a closed mesh. If the ray is the z
+/// axis, the sign of `e(p, q) = p_x q_y - p_y q_x` tells on which side of the edge `pq` it passes,
+/// and the neighbour gets the same number with the opposite sign. What if rounding errors decide
+/// the sign? [`exact_sum`] makes none.
 ///
-/// Returns `t` and the barycentric coordinates β and γ of the hit. Points on edges belong to the triangle. A ray that lies
-/// in the plane of the triangle misses it. Scaling ray and triangle by a power of two changes no answer, unless a number
-/// over- or underflows. `t` is accurate also on triangles a million times as long as wide. NaN or infinite inputs give
-/// `None` or a finite hit.
+/// Exactly:
 ///
-/// Pitfall: each triangle has its own rounding errors, so a ray at a shared edge may miss both. Decide on which side of
-/// an edge the ray passes by a computation that uses only the two ends of the edge: the neighbour repeats it exactly.
+/// - No ray escapes at a shared edge or corner, at any size and place.
+/// - None escapes through a triangle seen edge-on.
+/// - Points on edges belong to the triangle.
+/// - A ray in its plane misses it.
+/// - Scaling by a power of two changes no answer, unless a number over- or underflows.
+/// - `t` is accurate also on triangles a million times as long as wide.
+/// - NaN or infinite inputs give `None` or a finite hit.
 ///
-/// Pitfall: where the triangle is seen edge-on, or the ray starts next to it, rounding errors may give `t` the wrong sign.
-/// Where rounding errors may decide, compute the determinants with [`exact_sum`], which loses no digit.
-///
-/// Your pictures use this function for triangles as soon as it is written; before, they use `triangle_choice` of stage 2.
-///
-/// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013; Shewchuk, "Adaptive Precision
-/// Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
+/// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013; Shewchuk,
+/// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
 #[inline]
 pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
-    // Convert everything to double precision, in which no product of three single precision numbers overflows or
-    // underflows.
+    // Convert everything to double precision, in which no product of three single precision numbers
+    // overflows or underflows.
     let [o, d, a, b, c] = [ray.origin, ray.direction, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
 
-    // Transform the triangle: the ray's origin to zero, the ray's longest axis to z, and a shear that turns the ray
-    // into (0 0 z).
+    // Transform the triangle: the ray's origin to zero, the ray's longest axis to z, and a shear
+    // that turns the ray into (0 0 z).
     let z = ray.direction.abs().max_position();
     let (x, y) = ((z + 1) % 3, (z + 2) % 3);
     let shear = DVec2::new(d[x], d[y]) / d[z];
     let corners = [a - o, b - o, c - o];
     let [p, q, r] = corners.map(|corner| DVec2::new(corner[x], corner[y]) - shear * corner[z]);
 
-    // Compute three edge functions. The sign of each tells on which side of the edge the ray passes.
+    // Compute three edge functions. The sign of each tells on which side of the edge the ray
+    // passes.
     let [alpha, beta, gamma] = [edge(q, r), edge(r, p), edge(p, q)];
     let (least, most) = (alpha.min(beta).min(gamma), alpha.max(beta).max(gamma));
     let sum = alpha + beta + gamma;
@@ -104,16 +112,18 @@ pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
         return None;
     }
 
-    // Compute t from the plane, t = (a - o)·n / d·n, and bound the rounding errors of both products. The paper takes t
-    // from the sheared z of the corners, which loses all digits on a needle seen from inside.
+    // Compute t from the plane, t = (a - o)·n / d·n, and bound the rounding errors of both
+    // products. The paper takes t from the sheared z of the corners, which loses all digits on a
+    // needle seen from inside.
     let normal = (b - a).cross(c - a);
     let (distance, slope) = (corners[0].dot(normal), d.dot(normal));
     let size = largest((b - a).to_array()) * largest((c - a).to_array());
     let distance_error = PLANE_ERROR * size * largest(corners[0].to_array());
     let slope_error = PLANE_ERROR * size * largest(d.to_array());
 
-    // Where rounding errors may decide, compute the exact answer. That is rare: the ray meets an edge, or the triangle is a
-    // needle, is seen edge-on, or contains the origin of the ray up to rounding.
+    // Where rounding errors may decide, compute the exact answer. That is rare: the ray meets an
+    // edge, or the triangle is a needle, is seen edge-on, or contains the origin of the ray up to
+    // rounding.
     let certain = (least > edge_error || most < -edge_error)
         && sum.abs() > DIGITS * edge_error
         && distance.abs() > DIGITS * distance_error
@@ -129,24 +139,27 @@ pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 }
 
 // <solution>
-/// A bound on the rounding errors of an edge function is `EDGE_ERROR · w (w + z)`, with `w` the largest coordinate of the
-/// three sheared corners and `z` their largest depth.
+/// A bound on the rounding errors of an edge function is `EDGE_ERROR · w (w + z)`, with `w` the
+/// largest coordinate of the three sheared corners and `z` their largest depth.
 ///
-/// With `u = 2⁻⁵³`: the shear, a corner and their product have a relative error of `u` each, so a sheared coordinate
-/// `x - s z` has an error of at most `u (|x| + 3 |s z|) + u w ≤ u (2 w + 4 z)`, because `|s| ≤ 1` and `|x| ≤ w + |z|`. An
-/// edge function is the difference of two products of sheared coordinates: that makes `4 w` times this error, plus `4 u w²`
-/// for its own three roundings. Together `u w (12 w + 16 z)`; `32 u` leaves room for products of errors.
+/// With `u = 2⁻⁵³`: the shear, a corner and their product have a relative error of `u` each, so a
+/// sheared coordinate `x - s z` has an error of at most `u (|x| + 3 |s z|) + u w ≤ u (2 w + 4 z)`,
+/// because `|s| ≤ 1` and `|x| ≤ w + |z|`. An edge function is the difference of two products of
+/// sheared coordinates: that makes `4 w` times this error, plus `4 u w²` for its own three
+/// roundings. Together `u w (12 w + 16 z)`; `32 u` leaves room for products of errors.
 const EDGE_ERROR: f64 = 16.0 * f64::EPSILON;
 
-/// A bound on the rounding errors of `v·n`, with `n` the cross product of two edges, is `PLANE_ERROR` times the largest
-/// coordinates of `v` and of both edges.
+/// A bound on the rounding errors of `v·n`, with `n` the cross product of two edges, is
+/// `PLANE_ERROR` times the largest coordinates of `v` and of both edges.
 ///
-/// With `e` and `f` for the largest coordinates of the edges: each coordinate of `n` is at most `2 e f` and has an error of
-/// `8 u e f` at most (two differences, a product and a difference each). The scalar product adds three products of it with
-/// `v`, which has an error of `u`: `3 · (8 + 2 · 4) u e f v`. That is `48 u`; `96 u` leaves room for products of errors.
+/// With `e` and `f` for the largest coordinates of the edges: each coordinate of `n` is at most
+/// `2 e f` and has an error of `8 u e f` at most (two differences, a product and a difference
+/// each). The scalar product adds three products of it with `v`, which has an error of `u`:
+/// `3 · (8 + 2 · 4) u e f v`. That is `48 u`; `96 u` leaves room for products of errors.
 const PLANE_ERROR: f64 = 48.0 * f64::EPSILON;
 
-/// A number that exceeds its error bound by this factor has 26 right binary digits, two more than single precision keeps.
+/// A number that exceeds its error bound by this factor has 26 right binary digits, two more than
+/// single precision keeps.
 const DIGITS: f64 = (1 << 26) as f64;
 
 /// Twice the signed area of the triangle from the origin over `p` to `q`.
@@ -159,23 +172,28 @@ fn largest<const N: usize>(numbers: [f64; N]) -> f64 {
     numbers.into_iter().fold(0.0, |most, number| if number.abs() > most { number.abs() } else { most })
 }
 
-/// The hit of a ray with a triangle. Signs are exact, and the numbers have 26 right binary digits before they are rounded.
+/// The hit of a ray with a triangle. Signs are exact, and the numbers have 26 right binary digits
+/// before they are rounded.
 ///
-/// Why no ray escapes from a closed mesh: let the ray start inside, on no triangle. Move its origin by a little, such that
-/// the ray meets no edge and lies in no plane of a triangle. It still starts inside, so it crosses some triangle at `t > 0`.
-/// Let these moves tend to zero: as there are finitely many triangles, one of them is crossed again and again. It contains
-/// the limit, which is a point of the original ray, because triangles are closed. Its determinant depends only on the
-/// direction, which was not moved, so it is not 0. Its `t` tends to a number that is not negative, and not 0, because the
-/// origin lies on no triangle. This triangle is hit by exact arithmetic, so it is hit by `watertight`, whose decisions are
-/// exact: wherever rounding errors may decide, it comes here. Rounding keeps `t > 0`, unless it underflows.
+/// Why no ray escapes from a closed mesh: let the ray start inside, on no triangle. Move its origin
+/// by a little, such that the ray meets no edge and lies in no plane of a triangle. It still starts
+/// inside, so it crosses some triangle at `t > 0`. Let these moves tend to zero: as there are
+/// finitely many triangles, one of them is crossed again and again. It contains the limit, which is
+/// a point of the original ray, because triangles are closed. Its determinant depends only on the
+/// direction, which was not moved, so it is not 0. Its `t` tends to a number that is not negative,
+/// and not 0, because the origin lies on no triangle. This triangle is hit by exact arithmetic, so
+/// it is hit by `watertight`, whose decisions are exact: wherever rounding errors may decide, it
+/// comes here. Rounding keeps `t > 0`, unless it underflows.
 ///
-/// The same holds for a mesh with a border, such as a fan around a vertex, if the ray would hit it after every small move
-/// of the origin. A ray in the plane of a triangle misses that triangle and hits its neighbours.
+/// The same holds for a mesh with a border, such as a fan around a vertex, if the ray would hit it
+/// after every small move of the origin. A ray in the plane of a triangle misses that triangle and
+/// hits its neighbours.
 #[cold]
 fn exact_hit(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     let (o, d, Triangle { a, b, c }) = (ray.origin, ray.direction, *triangle);
-    // The barycentric coordinates are to each other as the determinants |d  b-o  c-o|, |d  c-o  a-o| and |d  a-o  b-o|.
-    // A determinant is linear in each column, so expand the differences.
+    // The barycentric coordinates are to each other as the determinants |d  b-o  c-o|,
+    // |d  c-o  a-o| and |d  a-o  b-o|. A determinant is linear in each column, so expand the
+    // differences.
     let side = |q: Vec3, r: Vec3| sum_of_determinants([[d, q, r], [o, d, r], [q, d, o]]);
     let (alpha, beta) = (side(b, c), side(c, a));
     // Reject the ray if two signs differ, or if it lies in the plane of the triangle.
@@ -194,10 +212,12 @@ fn exact_hit(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     ray.contains(t).then_some(TriangleHit { t, beta: (beta / sum) as f32, gamma: (gamma / sum) as f32 })
 }
 
-/// The sum of the determinants of matrices with three columns. Its sign is right, and so are its first 26 binary digits.
+/// The sum of the determinants of matrices with three columns. Its sign is right, and so are its
+/// first 26 binary digits.
 fn sum_of_determinants<const N: usize>(matrices: [[Vec3; 3]; N]) -> f64 {
-    // Expand the determinants into products of three numbers. A product of two single precision numbers has 48 digits, so it
-    // is exact in double precision. Each half of its digits times the third number is exact, too.
+    // Expand the determinants into products of three numbers. A product of two single precision
+    // numbers has 48 digits, so it is exact in double precision. Each half of its digits times the
+    // third number is exact, too.
     let mut terms = [[0.0; 12]; N];
     for (terms, columns) in terms.iter_mut().zip(matrices) {
         let [u, v, w] = columns.map(Vec3::as_dvec3);
@@ -219,9 +239,10 @@ fn sum_of_determinants<const N: usize>(matrices: [[Vec3; 3]; N]) -> f64 {
         lost += rounding.abs();
         size += term.abs();
     }
-    // Return the sum if no digit was lost, or if its digits are right: with its rounding errors added, the sum of n terms is
-    // off by at most u |sum| + (n u)² Σ|term| (Ogita, Rump and Oishi, "Accurate Sum and Dot Product", 2005), with u = ε/2.
-    // The other half of ε leaves room for the rounding of this bound.
+    // Return the sum if no digit was lost, or if its digits are right: with its rounding errors
+    // added, the sum of n terms is off by at most u |sum| + (n u)² Σ|term| (Ogita, Rump and Oishi,
+    // "Accurate Sum and Dot Product", 2005), with u = ε/2. The other half of ε leaves room for the
+    // rounding of this bound.
     let bound = (terms.len() as f64 * f64::EPSILON).powi(2) * size;
     let corrected = sum + error;
     if lost == 0.0 || corrected.abs() > DIGITS * bound {
@@ -230,70 +251,81 @@ fn sum_of_determinants<const N: usize>(matrices: [[Vec3; 3]; N]) -> f64 {
     exact_sum(terms.iter().copied())
 }
 
-/// The first 24 of the binary digits of a number, so that at most 24 remain of a product of two single precision numbers.
+/// The first 24 of the binary digits of a number, so that at most 24 remain of a product of two
+/// single precision numbers.
 fn upper_half(product: f64) -> f64 {
     const LOWER: u64 = (1 << (f64::MANTISSA_DIGITS - f32::MANTISSA_DIGITS)) - 1;
     f64::from_bits(product.to_bits() & !LOWER)
 }
 // </solution>
 
-/// Computes the `t` at which `ray` enters and leaves `bounds`, as in stage 3, but never returns `None` for a box that
-/// the ray meets.
+/// The slab test of stage 3, with the same results, but it misses no box. Each `t` of a plane has
+/// three rounding errors, together at most `γ₃ |t|`. At a corner entry and exit are equal: which is
+/// larger after rounding? And which way is "later" at a negative `t`?
 ///
-/// This holds for every range, also for negative `t`, and for every direction: at corners, for flat boxes, far away,
-/// along faces, for a direction of -0.0, and where `inverse_direction` is infinite because `1/d` overflows. A box with a
-/// hit at `t` is entered at `t` or before. A box that the ray passes by at more than 64 roundings gives `None`, and so
-/// does the empty box. Neither result is ever NaN. Coordinates and directions are below 1e37 in size, and a `t` that is
-/// not 0 is above 1e-30.
+/// Coordinates and directions are below 1e37 in size, and a `t` that is not 0 is above 1e-30.
 ///
-/// Pitfall: widening boxes by 1e-5 has no effect at coordinates of 1000 and more. Move the exit later by `2 γ₃ |t|`,
-/// the bound on its own three rounding errors, and the entry earlier by as much, because a search compares the entry
-/// with the `t` of hits, which are rounded differently. A factor of `1 + 2 γ₃` moves a negative exit the wrong way.
+/// Exactly:
 ///
-/// Your pictures use this function for boxes as soon as it is written; before, they use `slab` of stage 3.
+/// - No box that the ray meets gives `None`: at corners, along faces, flat boxes, far away.
+/// - The same in every range, also at negative `t`.
+/// - The same in every direction, also -0.0, and where `1/d` overflows.
+/// - A box with a hit at `t` is entered at `t` or before.
+/// - The entry is right up to 64 roundings, where the ray clearly meets the box.
+/// - A box passed by at more than 64 roundings gives `None`, and so does the empty box.
+/// - Neither result is ever NaN.
 ///
 /// Source: Ize, "Robust BVH Ray Traversal", JCGT 2013.
 pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>
-    // Call the slab test of stage 3, which is conservative.
+    // Call the slab test of stage 3, which is conservative: it moves the exit later by 2 γ₃ |t|,
+    // the bound on its three rounding errors, and the entry earlier by as much, because a search
+    // compares the entry with the t of hits, which are rounded differently. A factor of 1 + 2 γ₃
+    // would move a negative exit the wrong way, and a fixed width of 1e-5 has no effect at
+    // coordinates of 1000 and more.
     slab(ray, inverse_direction, bounds)
     // <stub> todo!("compare so that NaN changes nothing; then widen the interval at both ends, on both sides of 0")
     // </solution>
 }
 
-/// Computes the origin of a ray along `direction` that leaves a surface, such that the ray does not hit the same
-/// surface again (shadow acne).
+/// The origin of a ray that leaves a surface and must not hit it again (shadow acne).
 ///
-/// The true surface lies within `error` of `point` along each axis. Move the point along the unit `normal` by
-/// `error · |normal|`, to the side to which `direction` goes, and then each coordinate by one float outwards, because
-/// the sum is rounded as well. If `direction` is perpendicular to the normal, take the side of the normal. The height
-/// above `point` may be at most 4 times this bound plus 64 rounding steps of the largest coordinate.
+/// ```text
+///    • origin
+/// ┌──┼──┐
+/// │  •  │ point ± error
+/// └─────┘
+/// ```
 ///
-/// Pitfall: any fixed distance is too small in one scene and too large in another. In a scene of size 0.001, a ray that
-/// starts 0.0001 away misses objects that touch the surface.
+/// The true surface lies within `error` of `point` along each axis, so along the unit `normal` n at
+/// most `h = e_x |n_x| + e_y |n_y| + e_z |n_z|` away. Which fixed distance suits scenes of size
+/// 0.001 and of size 1000?
 ///
-/// In your pictures shadow rays and secondary rays start here as soon as this function is written; before, they start where
-/// `shadow_ray` of stage 4 and `spawn_ray` of stage 5 put them.
+/// Exactly:
+///
+/// - The origin is at least h above `point`, also after rounding.
+/// - It is on the side to which `direction` goes, or on that of `normal` if both are perpendicular.
+/// - Its height is at most 4 h plus 64 rounding steps of the largest coordinate.
 ///
 /// Source: Pharr, Jakob and Humphreys, section 6.8.
 pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     // <solution>
-    // Turn the normal to the side to which the ray goes, and leave the surface on that side.
+    // Turn the normal to the side to which the ray goes, and leave the surface on that side, by
+    // error · |n| and then by one float per coordinate, because the sum is rounded as well.
     let side = if normal.dot(direction) < 0.0 { -normal } else { normal };
     off_surface(point, error, side)
     // <stub> todo!("move the point along the normal by its error, then each coordinate by one float outwards")
     // </solution>
 }
 
-/// Normalizes a vector: `v / |v|`, with length 1 up to rounding, for every finite `v` except 0, however short or long.
+/// The unit vector in the direction of `v`: `v / |v|`. What is the square of 1e-30 in single
+/// precision, and of 1e30?
 ///
-/// Returns `None` for the zero vector (also with -0.0) and for a vector with a coordinate that is NaN or infinite.
+/// The result has length 1 up to rounding for every finite `v` except 0, however short or long. It
+/// is `None` for the zero vector (also with -0.0) and for a vector with a coordinate that is NaN or
+/// infinite.
 ///
-/// Pitfall: in single precision the square of 1e-30 is 0 and the square of 1e30 is infinite.
-///
-/// Your pictures normalize the directions of rays with this function as soon as it is written.
-///
-/// Slide: "Numerical precision".
+/// Source: "Numerical precision".
 pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
     // <solution>
     let largest = v.abs().max_element();
@@ -306,18 +338,21 @@ pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
     // </solution>
 }
 
-/// Intersects a ray with a triangle in double precision: solves `o + t d = a + β (b - a) + γ (c - a)`.
+/// Intersects a ray with a triangle in double precision: solves
+/// `o + t d = a + β (b - a) + γ (c - a)`, by Cramer's rule or any other method. How many right
+/// digits has `(a - b).as_dvec3()`? Which epsilon suits determinants of every size?
 ///
-/// Every number is an `f64`, and only the three results are rounded to `f32`. Any method is accepted. Points on edges
-/// belong to the triangle: `β >= 0`, `γ >= 0` and `β + γ <= 1`. (That is certain only if no product of three numbers is
-/// rounded, as for small integers: double precision leaks less than single precision, but it leaks.) A hit counts if the range of the ray contains the
-/// rounded `t`. An input with NaN gives `None`, and so does a determinant of 0. Every hit is finite. Scenes with
-/// `precision = "double"` are rendered with this function.
+/// Exactly:
 ///
-/// Pitfall: a number that was rounded before its conversion stays rounded, so `(a - b).as_dvec3()` gains nothing. Do
-/// not compare the determinant with an epsilon, in any precision, because it grows with the cube of the size.
+/// - Every number is an `f64`, and only the results are rounded: `t` is at most one unit in the
+///   last place off.
+/// - Points on edges belong to the triangle (`β >= 0`, `γ >= 0`, `β + γ <= 1`), if no product of
+///   three numbers is rounded.
+/// - The range of the ray contains the rounded `t`.
+/// - `None` for NaN in the input, or a determinant of 0.
+/// - Every hit is finite.
 ///
-/// Slide: "Cramer's Rule". The reference is the method of Möller and Trumbore, as `triangle_choice` of stage 2.
+/// Source: "Cramer's Rule".
 pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
     // Convert all inputs before the first subtraction.
@@ -333,31 +368,36 @@ pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
     let gamma = d.dot(qvec) / determinant;
     let t = (edge2.dot(qvec) / determinant) as f32;
 
-    // Reject points outside the triangle. A determinant of 0 gives infinities or NaN, for which a comparison is false.
+    // Reject points outside the triangle. A determinant of 0 gives infinities or NaN, for which a
+    // comparison is false.
     let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
     (inside && ray.contains(t)).then_some(TriangleHit { t, beta: beta as f32, gamma: gamma as f32 })
     // <stub> todo!("convert all five vectors first, then solve for t, β and γ; round them last")
     // </solution>
 }
 
-/// Intersects a ray with a sphere in double precision: the `t` of the nearest hit within the range of the ray, computed
-/// in double precision and then rounded to `f32`.
+/// Intersects a ray with a sphere in double precision, by any method. What is the error of
+/// `(o - c).as_dvec3()` for a sphere 100,000 radii away?
 ///
-/// A ray that starts inside hits the far side. A ray that touches the sphere hits it. `t` is within 0.51 units in the last
-/// place of the exact one, if the ray starts at least a millionth of the radius away from the sphere: nearer to it, the
-/// root near 0 loses digits. A sphere whose radius is 0, negative or NaN is never hit. An input with NaN gives `None`, and every `t` is finite.
+/// Returns the `t` of the nearest hit within the range of the ray, rounded to `f32` last.
 ///
-/// Pitfall: `(o - c).as_dvec3()` has an error of up to 3 thousandths of a radius for a sphere 100,000 radii away. The
-/// rest of the computation is then exact for a sphere at a wrong place.
+/// Exactly:
 ///
-/// Slide: "Ray-Sphere Intersection".
+/// - A ray that starts inside hits the far side; one that touches the sphere hits it.
+/// - `t` is within 0.51 units in the last place, if the ray starts a millionth of the radius or
+///   more away from the sphere.
+/// - A sphere whose radius is 0, negative or NaN is never hit.
+/// - `None` for NaN in the input, and every `t` is finite.
+///
+/// Source: "Ray-Sphere Intersection".
 pub fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // <solution>
     // Convert origin, centre, direction and radius before the subtraction.
     let (d, r) = (ray.direction.as_dvec3(), f64::from(radius));
     let f = ray.origin.as_dvec3() - center.as_dvec3();
 
-    // Compute the squared half chord r² - |f⊥|², as in stage 1. b² - a c is accurate enough here as well.
+    // Compute the squared half chord r² - |f⊥|², as in stage 1. b² - a c is accurate enough here as
+    // well.
     let a = d.length_squared();
     let b = -f.dot(d);
     let half_chord_squared = r * r - (f + (b / a) * d).length_squared();
@@ -365,7 +405,8 @@ pub fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
         return None;
     }
 
-    // Compute both roots without cancellation, round each, and return the nearest one in the range of the ray.
+    // Compute both roots without cancellation, round each, and return the nearest one in the range
+    // of the ray.
     let q = b + (a * half_chord_squared).sqrt().copysign(b);
     nearest_root([(f.length_squared() - r * r) / q, q / a].map(|t| t as f32), ray)
     // <stub> todo!("convert origin, direction, centre and radius first, then use any method of stage 1")

@@ -1,10 +1,12 @@
-//! Stage 12 · a builder that is as fast as its trees: bins in place of sorting, leaves that pay for whole blocks, and work
-//! that several threads share.
+//! Stage 12 · a builder that is as fast as its trees: bins in place of sorting, leaves that pay for
+//! whole blocks, and work that several threads share.
 //!
-//! Slides: "Surface Area Heuristic". Source: Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007.
+//! Slides: "Surface Area Heuristic". Source: Wald, "On fast Construction of SAH-based Bounding
+//! Volume Hierarchies", 2007.
 //!
-//! Given: [`PrimitiveBox`], a primitive with its box in 32 bytes; [`BinGrid`] and [`Bins`]; [`Forks`], which makes these boxes, runs
-//! two pieces of work in parallel and logs it; the costs [`NODE_COST`] and [`BLOCK_COST`]; [`DEEPEST_SPLIT`].
+//! Given: [`PrimitiveBox`], a primitive with its box in 32 bytes; [`BinGrid`] and [`Bins`];
+//! [`Forks`], which makes these boxes, runs two pieces of work in parallel and logs it; the costs
+//! [`NODE_COST`] and [`BLOCK_COST`]; [`DEEPEST_SPLIT`].
 
 use raykata::aabb::Aabb;
 use raykata::bvh::DEEPEST_SPLIT;
@@ -18,14 +20,15 @@ use glam::{Vec3, Vec3A};
 use raykata::wide::{Bin, BoxA, FlatNode};
 // </solution>
 
-/// Sorts primitives into bins: per axis, each bin gets the number of the primitives whose centroid lies in it, and the box
-/// around their boxes.
+/// Sorts primitives into bins, `bin(c) = ⌊(c - low) · scale⌋`: per axis, each bin gets the number
+/// of the primitives whose centroid lies in it, and the box around their boxes.
 ///
-/// Along an axis, a primitive with `c = primitive.twice_centroid()` belongs to bin `⌊(c - grid.low) · grid.scale⌋`. A bin below
-/// 0 or a NaN counts as bin 0, and a bin above the last one as the last one. The empty box changes no box of a bin, but its
-/// primitive is counted.
+/// Exactly:
 ///
-/// One pass over the primitives is enough, and it must be one pass: the builder does it at each node.
+/// - c is `primitive.twice_centroid()`.
+/// - A bin below 0 or a NaN counts as bin 0, a bin above the last one as the last one.
+/// - The empty box changes no box, but its primitive is counted.
+/// - One pass over the primitives is made.
 pub fn fill_bins(primitives: &[PrimitiveBox], grid: &BinGrid) -> Bins {
     // <solution>
     let mut bins = Bins::EMPTY;
@@ -82,10 +85,9 @@ impl Grow for BoxA {
 }
 // </solution>
 
-/// The cost of a leaf with this number of primitives: `BLOCK_COST · ⌈n / BLOCK⌉`.
-///
-/// A ray tests four triangles at once, so it pays for whole blocks. A leaf of five costs as much as one of eight. The result is
-/// exact for up to 2²⁴ primitives.
+/// The cost of a leaf of n primitives: `BLOCK_COST · ⌈n / BLOCK⌉`. A ray tests four triangles at
+/// once, so it pays for whole blocks: five cost as much as eight. The result is exact for up to 2²⁴
+/// primitives.
 pub fn block_cost(n_primitives: u32) -> f32 {
     // <solution>
     BLOCK_COST * n_primitives.div_ceil(BLOCK as u32) as f32
@@ -93,16 +95,22 @@ pub fn block_cost(n_primitives: u32) -> f32 {
     // </solution>
 }
 
-/// The cheapest split between two bins, of all three axes, by the surface area heuristic: the one with the smallest
-/// `A(L) c(L) + A(R) c(R)`, with half the surface area `A` of the box around a side, and the cost `c` of its primitives as a
-/// leaf ([`block_cost`]).
+/// The cheapest split between two bins, of all three axes, by the surface area heuristic: the
+/// smallest `A(L) c(L) + A(R) c(R)`, with half the surface area `A` of the box around a side's bins
+/// and the cost `c` of its primitives as a leaf ([`block_cost`]). How many passes over the bins
+/// does an axis need?
 ///
-/// `n_bins` bins per axis are in use, so the first bin of the right side is one of `1..n_bins`. Both sides have primitives; the
-/// result is `None` if every split leaves one side without any. Of splits with the same cost up to rounding any one is right,
-/// and a cost of 0 (boxes without area) is a cost like any other. The box of a side is the box around its bins. The result has
-/// the cost of the split.
+/// `n_bins` bins per axis are in use, so the right side begins at a bin of `1..n_bins`.
 ///
-/// Two passes per axis are enough: one from the right that stores the cost of each right side, and one from the left.
+/// Exactly:
+///
+/// - Both sides have primitives; `None` if every split leaves one side without any.
+/// - A cost of 0 (boxes without area) is a cost like any other.
+/// - Of equal costs up to rounding, any is right.
+/// - The result has the cost of the split.
+///
+/// Source: "Surface Area Heuristic"; Wald, "On fast Construction of SAH-based Bounding Volume
+/// Hierarchies", 2007.
 pub fn cheapest_split(bins: &Bins, n_bins: u32) -> Option<BinSplit> {
     // <solution>
     let n_bins = (n_bins as usize).min(MAX_BINS);
@@ -141,15 +149,16 @@ fn cost_of(side: &Bin) -> f32 {
 }
 // </solution>
 
-/// Reorders primitives so that those of the left side of `split` come first, and returns their number.
+/// Reorders primitives so that those of the left side of `split` come first, and returns their
+/// number. On which side is a centroid exactly between two bins?
 ///
-/// The bin of a primitive is that of [`fill_bins`]. The order within a side is free. No memory is needed beside the slice.
-///
-/// Pitfall: a different formula for the bin may round differently. Then the sides are not those whose cost was compared,
-/// and one may be empty.
+/// The bin of a primitive is that of [`fill_bins`]. The order within a side is free, and a side may
+/// be empty. No memory is needed beside the slice.
 pub fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &BinSplit) -> usize {
     // <solution>
     let axis = split.axis as usize;
+    // Compute the bin by the operations of `fill_bins`: any other formula rounds differently, and a
+    // primitive would go to another side than the one on which it was counted.
     let is_left = |primitive: &PrimitiveBox| {
         let place = (primitive.twice_centroid()[axis] - grid.low[axis]) * grid.scale[axis];
         bin_at(place, grid) < split.bin as usize
@@ -172,23 +181,22 @@ pub fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &B
     // </solution>
 }
 
-/// Builds a binary hierarchy over primitives with these boxes, top down, with bins in place of sorting.
+/// Builds a binary hierarchy from the top down, each node divided at its cheapest split between
+/// bins over its centroids. What if all centroids are equal? Primitive `i` has the box `bounds[i]`.
 ///
-/// Primitive `i` has the box `bounds[i]`. A node of at most [`BLOCK`] primitives becomes a leaf. A larger node is split at its
-/// cheapest split between [`MAX_BINS`] equal bins per axis, over the box around the centroids of its primitives, unless
-/// a leaf is not more expensive: `NODE_COST · A + A(L) c(L) + A(R) c(R) ≥ A · c` with `c` for [`block_cost`]. Only a node of at
-/// most [`MAX_LEAF`] primitives may become a leaf. A node with fewer primitives than bins may use fewer bins. Where no split is
-/// possible, because all centroids are equal, a node that may become a leaf becomes one. A larger one, and every node of more than
-/// [`BLOCK`] primitives at depth [`DEEPEST_SPLIT`], is divided in half in any order.
+/// Exactly:
 ///
-/// The tree has the layout of [`FlatTree`], and its leaves stand in `order` in the order of the tree. The box of a node is the
-/// smallest box around the boxes of its primitives. A box that is empty or has NaN goes into some leaf and changes no other box.
-///
-/// The cost of the tree, `NODE_COST · A` for each inner node and `A · c` for each leaf, is at most 1.05 times that of a full
-/// sweep, which tries every split of the sorted primitives with the same costs. Equal bins cannot do this for sizes that
-/// differ by a factor of a million, such as boxes of which each is half as large as the one before.
-///
-/// Pitfall: with `1 / extent` as scale, an axis along which all centroids are equal gives 0 · ∞.
+/// - A node of up to [`BLOCK`] primitives is a leaf; one of more than [`MAX_LEAF`] never is.
+/// - In between it is one where no split is possible, or if
+///   `NODE_COST · A + A(L) c(L) + A(R) c(R) ≥ A · c` (c is [`block_cost`]).
+/// - Each axis has [`MAX_BINS`] equal bins, fewer only for fewer primitives.
+/// - Without a split a larger node, and at depth [`DEEPEST_SPLIT`] each of more than `BLOCK`, is
+///   halved in any order.
+/// - Leaves stand in `order` as in the tree.
+/// - Boxes are the smallest possible.
+/// - An empty box or one with NaN goes into some leaf and changes no other box.
+/// - The cost (`NODE_COST · A` per inner node, `A · c` per leaf) is at most 1.05 times that of a
+///   full sweep, unless sizes differ a millionfold.
 pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
     // <solution>
     build_parallel(bounds, &mut Forks::new(false))
@@ -196,25 +204,21 @@ pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
     // </solution>
 }
 
-/// Builds the tree of [`build_binned`] with forks: where both sides of a split are large, they are built in parallel
-/// by [`Forks::join`].
+/// Builds the tree of [`build_binned`], both sides of large nodes in parallel by [`Forks::join`].
+/// The *work* is the time on one thread, the *span* that on any number. What happens to indices
+/// when arrays are joined?
 ///
-/// The tree is the same as that of [`build_binned`], bit for bit. Each forked node is logged once, as
-/// [`ForkKind::Children`]: `first` is the position of its first primitive in the `order` of the whole tree.
+/// Exactly:
 ///
-/// The *work* is the time on one thread, and the *span* the time on any number of threads, both counted in primitives. The work
-/// of a node is its number of primitives plus the work of its two sides. Its span is its number of primitives plus the larger span
-/// of its two sides if they are built in parallel, and plus both spans if not. For primitives of about one size,
-/// the span must be at most a third of the work at 30,000 primitives and at most a fifth at 100,000. Forks at all nodes above 2,000
-/// primitives achieve that.
-///
-/// Bonus: with as many threads as you like, the root's own primitives take most of the time. Sort the primitives of large nodes
-/// into bins in equal pieces by [`Forks::each`], which logs the node once with the number of pieces, and add up the bins. Half of
-/// the node's own work is sorting, which takes the time of one piece then; the other half, dividing, is not forked. So its own
-/// span is `n/2 + n/(2 pieces)` in place of `n`. A piece has at least 1,000 primitives. The span must be at most an eighth of the work
-/// at 100,000 primitives.
-///
-/// Pitfall: two sides that are built in parallel cannot append to one array, and indices shift when arrays are joined.
+/// - The tree is the same, bit for bit.
+/// - Each forked node is logged once, as [`ForkKind::Children`], with the position `first` of its
+///   first primitive in the whole `order`.
+/// - A node adds its number n of primitives to the work and span of its sides; of parallel sides
+///   the larger span counts.
+/// - The span is at most 1/3 of the work at 30,000 primitives of about one size, and 1/5 at
+///   100,000.
+/// - Bonus: 1/8 at 100,000. [`Forks::each`] sorts into bins in pieces of 1,000 primitives or more,
+///   logged once with the number of pieces; the node then adds `n/2 + n/(2 pieces)` to the span.
 ///
 /// Source: Blumofe and Leiserson, "Scheduling Multithreaded Computations by Work Stealing", 1999.
 pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {
@@ -223,7 +227,8 @@ pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {
         return FlatTree::default();
     }
     let mut primitives = forks.boxes(bounds);
-    // With many more forks than processors, copying the nodes of the right sides takes longer than waiting.
+    // With many more forks than processors, copying the nodes of the right sides takes longer than
+    // waiting.
     let fork_from = FORK_FROM.max(bounds.len() / 128);
 
     // Reserve what a tree with leaves of three primitives needs, which is usual.
@@ -237,13 +242,15 @@ pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {
 }
 
 // <solution>
-/// Both sides of a node of fewer primitives are built one after the other: they would take less time than a fork.
+/// Both sides of a node of fewer primitives are built one after the other: they would take less
+/// time than a fork.
 const FORK_FROM: usize = 2048;
 
 const LEAF: FlatNode = FlatNode { low: Vec3::ZERO, first: 0, high: Vec3::ZERO, count: 0 };
 
-/// The node over these primitives, of which the first is at position `first` of the finished order. All nodes below it are
-/// appended to `nodes`. From `fork_from` primitives on, the two sides of a node are built in parallel.
+/// The node over these primitives, of which the first is at position `first` of the finished order.
+/// All nodes below it are appended to `nodes`. From `fork_from` primitives on, the two sides of a
+/// node are built in parallel.
 fn build_node(
     primitives: &mut [PrimitiveBox],
     first: u32,
@@ -266,7 +273,8 @@ fn build_node(
     let (below, above) = primitives.split_at_mut(middle);
     let first_above = first + middle as u32;
 
-    // Build both sides. The two children come first, then all nodes below the left one, then those below the right one.
+    // Build both sides. The two children come first, then all nodes below the left one, then those
+    // below the right one.
     let pair = nodes.len();
     nodes.extend([LEAF, LEAF]);
     if in_parallel {
@@ -279,7 +287,8 @@ fn build_node(
                 (build_node(above, first_above, depth + 1, &mut nodes, forks, fork_from), nodes)
             },
         );
-        // Indices start at 0 in the array of the right side: add the number of nodes in front of it.
+        // Indices start at 0 in the array of the right side: add the number of nodes in front of
+        // it.
         let shift = nodes.len() as u32;
         for inner in nodes_right.iter_mut().chain([&mut right]).filter(|node| !node.is_leaf()) {
             inner.first += shift;
@@ -306,8 +315,8 @@ fn bounds_of(primitives: &[PrimitiveBox]) -> (BoxA, BoxA) {
     (bounds, centroids)
 }
 
-/// Divides the primitives of a node in two and returns the number of the first side; `None` for a leaf. The first primitive is at
-/// position `first` of the finished order.
+/// Divides the primitives of a node in two and returns the number of the first side; `None` for a
+/// leaf. The first primitive is at position `first` of the finished order.
 fn divide(
     primitives: &mut [PrimitiveBox],
     first: u32,
@@ -352,7 +361,8 @@ fn divide(
     Some(partition_bins(primitives, &grid, &split))
 }
 
-/// The bins of two sets of primitives together. Boxes and counts are exact, so the sum is that of one pass.
+/// The bins of two sets of primitives together. Boxes and counts are exact, so the sum is that of
+/// one pass.
 fn sum_of(mut sum: Bins, other: &Bins) -> Bins {
     for (bins, others) in sum.0.iter_mut().zip(&other.0) {
         for (bin, other) in bins.iter_mut().zip(others) {
@@ -362,12 +372,13 @@ fn sum_of(mut sum: Bins, other: &Bins) -> Bins {
     sum
 }
 
-/// From this number of primitives on, they are sorted into bins in [`BINNING_PIECES`] pieces in parallel.
+/// From this number of primitives on, they are sorted into bins in [`BINNING_PIECES`] pieces in
+/// parallel.
 const BIN_IN_PIECES_FROM: usize = 16_384;
 const BINNING_PIECES: usize = 8;
 
-/// The number of bins for a node: small nodes use fewer, because at a node of ten primitives the bins take longer than the
-/// primitives.
+/// The number of bins for a node: small nodes use fewer, because at a node of ten primitives the
+/// bins take longer than the primitives.
 fn bins_for(count: usize) -> u32 {
     (4 + count / 8).min(MAX_BINS) as u32
 }

@@ -1,11 +1,14 @@
 //! Stage 12 · eight boxes at once, and four triangles at once.
 //!
-//! Slides: the box intersection with `t_b = t_x ∩ t_y ∩ t_z`; "Cramer's Rule". Sources: Ize, "Robust BVH Ray Traversal", JCGT
-//! 2013; Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997; Higham, "Accuracy and Stability of
-//! Numerical Algorithms", 2002.
+//! Slides: the box intersection with `t_b = t_x ∩ t_y ∩ t_z`; "Cramer's Rule". Sources: Ize,
+//! "Robust BVH Ray Traversal", JCGT 2013; Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle
+//! Intersection", 1997; Higham, "Accuracy and Stability of Numerical Algorithms", 2002.
 //!
-//! Given: [`gamma`] and [`UNIT_ROUNDOFF`]; [`F32x8`] and [`F32x4`] with `+`, `-`, `*`, `min`, `max`, `abs`, `le`, `lt` per lane; masks with `&`, `|` and `bits`;
-//! [`WideRay`] with `1 / direction` and the near side of boxes on each axis.
+//! Given: [`gamma`] and [`UNIT_ROUNDOFF`]; [`F32x8`] and [`F32x4`] with `+`, `-`, `*`, `min`,
+//! `max`, `abs`, `le`, `lt` per lane; masks with `&`, `|` and `bits`; [`WideRay`] with
+//! `1 / direction` and the near side of boxes on each axis. `ray.t_min` is 0 or more. Coordinates
+//! and directions of triangles are at most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing
+//! overflows.
 
 use raykata::rounding::{UNIT_ROUNDOFF, gamma};
 use raykata::wide::simd::{F32x4, F32x8, Level};
@@ -15,61 +18,65 @@ use raykata::wide::{Entered, TriangleBlock, WideNode, WideRay};
 use glam::Vec3;
 // </solution>
 
-/// Which of the eight boxes of a node a ray enters, by the slab test of stage 3, eight boxes at once.
+/// Which of the eight boxes of a node a ray enters: the slab test `t_b = t_x ∩ t_y ∩ t_z`, eight
+/// boxes at once. `ray.near_side[axis]` says which plane the ray passes first. What is `0 · ∞`, and
+/// which operand of `min` and `max` survives a NaN?
 ///
-/// For a ray with the range `ray.t_min..=t_max`, `t_min >= 0`: the `t` of a plane is `(plane - origin) · inverse_direction`.
-/// Intersect the intervals of the three axes, multiply the entry by `1 - 2γ₃` and the exit by `1 + 2γ₃`, and intersect with the
-/// range. A box is entered if the entry is at most the exit. The result is that of these operations in single precision, bit for
-/// bit (0 and -0 are the same). So no box is missed that a ray meets, and the entry is never NaN. Where a plane has the `t`
-/// NaN, it decides nothing: the ray runs within a face, or the axis is ignored because `inverse_direction` is NaN. An empty
-/// place is never entered: `node.occupied` has a bit per child.
+/// Exactly:
 ///
-/// `ray.near_side[axis]` says which of the two coordinates the ray passes first, so nothing is compared or swapped.
+/// - The `t` of a plane is `(plane - origin) · inverse_direction`; one that is NaN decides nothing.
+/// - Intersect the axes, multiply the entry by `1 - 2γ₃` and the exit by `1 + 2γ₃`, and intersect
+///   with the range `ray.t_min..=t_max`. A box is entered if the entry is at most the exit.
+/// - The result is that of these operations in single precision, bit for bit, except for the sign
+///   of 0.
+/// - An empty place is never entered: `node.occupied` has a bit per child.
 ///
-/// Pitfall: `0 · ∞` is NaN where a ray runs within a face. `min` and `max` return the second operand if the first one is NaN,
-/// so the interval so far must be the second operand.
+/// Source: "Ray/box intersection"; Ize, "Robust BVH Ray Traversal", JCGT 2013.
 #[inline(always)]
 pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f32) -> Entered {
     // <solution>
     let (mut near, mut far) = (F32x8::splat(level, f32::NEG_INFINITY), F32x8::splat(level, f32::INFINITY));
     for axis in 0..3 {
-        // Compute the t of the near and of the far plane of all eight boxes. `& 1` tells the compiler that the index is in
-        // range.
+        // Compute the t of the near and of the far plane of all eight boxes. `& 1` tells the
+        // compiler that the index is in range.
         let (origin, inverse) =
             (F32x8::splat(level, ray.origin[axis]), F32x8::splat(level, ray.inverse_direction[axis]));
         let side = ray.near_side[axis] & 1;
         let enter = (F32x8::load(level, &node.bounds[axis][side]) - origin) * inverse;
         let leave = (F32x8::load(level, &node.bounds[axis][1 - side]) - origin) * inverse;
-        // Intersect the intervals.
+        // Intersect the intervals. `min` and `max` return their second operand if the first one is
+        // NaN, so the interval so far is the second one.
         near = enter.max(near);
         far = leave.min(far);
     }
-    // Widen the interval by the rounding errors: outwards from 0 is earlier for an entry and later for an exit that counts,
-    // because t is not negative within the range.
+    // Widen the interval by the rounding errors: outwards from 0 is earlier for an entry and later
+    // for an exit that counts, because t is not negative within the range.
     let near = (near * F32x8::splat(level, 1.0 - 2.0 * gamma(3))).max(F32x8::splat(level, ray.t_min));
     let far = (far * F32x8::splat(level, 1.0 + 2.0 * gamma(3))).min(F32x8::splat(level, t_max));
-    // Leave out the empty places: where all three axes are ignored, their boxes are entered as well.
+    // Leave out the empty places: where all three axes are ignored, their boxes are entered as
+    // well.
     Entered { mask: near.le(far).bits() & node.occupied, t: near.to_array() }
     // <stub> todo!("the slab test with eight lanes: near planes, far planes, minimum, maximum, widen, compare")
     // </solution>
 }
 
-/// Which of four triangles a ray may hit before `t_max`: bit `i` of the result is 0 only if the ray certainly misses triangle
-/// `i`, or certainly hits it outside of `ray.t_min..t_max`.
+/// Which of four triangles a ray may hit before `t_max`: a filter before the test of stage 10,
+/// which decides. The barycentric coordinates times `d·n` are `U = ((a-o) × d)·(c-a)`,
+/// `V = -((a-o) × d)·(b-a)` and `W = d·n - U - V`, with `n = (b-a) × (c-a)`. Different signs mean a
+/// miss: when is a sign certain? `t` is `n·(a-o) / d·n`.
 ///
-/// Frames test only the remaining triangles with the watertight test of stage 10, in double precision. So this function may
-/// not reject any triangle that the watertight test hits, for any finite input: the exact line meets the closed triangle, and
-/// the exact `t`, rounded, is in the range. It must reject nearly all others, because each triangle that remains costs about as
-/// much as a whole block: at least 99 of 100 triangles that a ray misses by a good part of their size, or hits outside of
-/// `ray.t_min..t_max` by a tenth. A lane with NaN is never rejected, because its primitive is not a triangle. Coordinates and
-/// directions are at most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing overflows.
+/// Bit `i` is 0 if triangle `i` is rejected.
 ///
-/// The signs of three numbers decide: `U = ((a - o) × d)·(c - a)`, `V = -((a - o) × d)·(b - a)` and `W = d·n - U - V` with
-/// `n = (b - a) × (c - a)`. They are the barycentric coordinates times `d·n`. If two of them have different signs, and both
-/// are larger than their rounding errors, the ray misses. `t` is `n·(a - o) / d·n`.
+/// Exactly:
 ///
-/// Pitfall: rounding errors grow with the distance of the triangle and not with its size. A fixed epsilon rejects hits in one
-/// scene and nothing in another. And where `d·n` is smaller than its error, its sign is unknown, and with it the sign of `t`.
+/// - No triangle that the watertight test hits is rejected, for any finite input: the exact line
+///   meets the closed triangle, and the exact `t`, rounded, is in `ray.t_min..t_max`.
+/// - At least 99 of 100 are rejected that a ray misses by a good part of their size, or hits
+///   outside of the range by a tenth.
+/// - A lane with NaN is never rejected: it holds another shape.
+///
+/// Source: "Cramer's Rule"; Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection",
+/// 1997.
 #[inline(always)]
 pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: f32) -> u32 {
     // <solution>
@@ -94,8 +101,8 @@ pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: 
         .mul_add(size, tiny)
         .mul_add(far_away + size, F32x4::splat(level, UNDERFLOW * (1.0 + fastest)));
 
-    // Reject a triangle if two signs differ for certain. Most blocks are done here. Each comparison is false for a NaN, which
-    // rejects nothing.
+    // Reject a triangle if two signs differ for certain. Most blocks are done here. Each comparison
+    // is false for a NaN, which rejects nothing.
     let v = F32x4::splat(level, 0.0) - minus_v;
     let (least, most) = (w.min(u.min(v)), w.max(u.max(v)));
     let outside = least.lt(F32x4::splat(level, 0.0) - edge_error) & edge_error.lt(most);
@@ -120,7 +127,8 @@ pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: 
     // Beyond t_max, with the computed sign of the slope: |slope| t = along.
     let (along, steep) = (distance * F32x4::splat(level, 1.0).copysign(slope), slope.abs());
     let beyond = error_at_t_max.lt(along - F32x4::splat(level, t_max) * steep);
-    // A hit before t_min needs a slope whose sign is certain. Beyond t_max it does not, see T_ERROR.
+    // A hit before t_min needs a slope whose sign is certain. Beyond t_max it does not, see
+    // T_ERROR.
     let before = along.lt(F32x4::splat(level, t_min) * steep - error_at_t_min) & edge_error.lt(steep);
     may_be_inside & !(beyond | before).bits()
     // <stub> todo!("compute U, V and W with four lanes, bound their errors, and reject what is certain")
@@ -128,37 +136,44 @@ pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: 
 }
 
 // <solution>
-/// A bound on the rounding errors of U, V, W and d·n is `EDGE_ERROR · m e (h + e)`, with the largest coordinates `m` of d, `e`
-/// of both edges and `h` of a - o.
+/// A bound on the rounding errors of U, V, W and d·n is `EDGE_ERROR · m e (h + e)`, with the
+/// largest coordinates `m` of d, `e` of both edges and `h` of a - o.
 ///
-/// With the unit roundoff u: a difference of two inputs has a relative error of u. A coordinate of `(a - o) × d` is at most
-/// `2 h m` and has an error of `6 u h m` (two products of numbers with errors u, and a difference). U adds three products of it
-/// with an edge: an error of `3 (6 + 2 · 2) u h m e` plus `10 u h m e` for two sums, together `40 u h m e`. A coordinate of n is
-/// at most `2 e²` and has an error of `8 u e²`, so d·n has an error of `3 (8 + 2) u m e² + 10 u m e² = 40 u m e²`. W adds the
-/// errors of d·n, U and V and rounds twice: `52 u m e² + 98 u h m e`. `128 u` leaves room for products of errors. With fused
-/// products there are fewer roundings.
+/// With the unit roundoff u: a difference of two inputs has a relative error of u. A coordinate of
+/// `(a - o) × d` is at most `2 h m` and has an error of `6 u h m` (two products of numbers with
+/// errors u, and a difference). U adds three products of it with an edge: an error of
+/// `3 (6 + 2 · 2) u h m e` plus `10 u h m e` for two sums, together `40 u h m e`. A coordinate of n
+/// is at most `2 e²` and has an error of `8 u e²`, so d·n has an error of
+/// `3 (8 + 2) u m e² + 10 u m e² = 40 u m e²`. W adds the errors of d·n, U and V and rounds twice:
+/// `52 u m e² + 98 u h m e`. `128 u` leaves room for products of errors. With fused products there
+/// are fewer roundings.
 const EDGE_ERROR: f32 = 128.0 * UNIT_ROUNDOFF;
 
-/// A bound on the rounding errors of `n·(a - o) - t d·n` is `T_ERROR · e² (h + t m)`, for t_min and for t_max.
+/// A bound on the rounding errors of `n·(a - o) - t d·n` is `T_ERROR · e² (h + t m)`, for t_min and
+/// for t_max.
 ///
-/// `n·(a - o)` has an error of `3 (8 + 2 · 2) u e² h + 10 u e² h = 46 u e² h`, and `d·n` one of `40 u m e²`. The product with
-/// t and the difference round numbers of at most `6 e² h` and `6 t m e²`: together at most `52 u e² (h + t m)`. The
-/// remaining `12 u` cover the rounding of the hit's `t` to single precision.
+/// `n·(a - o)` has an error of `3 (8 + 2 · 2) u e² h + 10 u e² h = 46 u e² h`, and `d·n` one of
+/// `40 u m e²`. The product with t and the difference round numbers of at most `6 e² h` and
+/// `6 t m e²`: together at most `52 u e² (h + t m)`. The remaining `12 u` cover the rounding of the
+/// hit's `t` to single precision.
 ///
-/// So `along > t_max |slope| + error` is certain to reject. If the slope has the computed sign, the exact `|slope| t` is above
-/// `t_max |slope|` as well. If rounding has changed its sign, then so has the sign of the exact `t`: `along` is larger than
-/// the error of `n·(a - o)`, which is a part of the bound, so that the exact `along` is positive too, and the exact `t`, which is
+/// So `along > t_max |slope| + error` is certain to reject. If the slope has the computed sign, the
+/// exact `|slope| t` is above `t_max |slope|` as well. If rounding has changed its sign, then so
+/// has the sign of the exact `t`: `along` is larger than the error of `n·(a - o)`, which is a part
+/// of the bound, so that the exact `along` is positive too, and the exact `t`, which is
 /// `along / |slope|` with the other sign, is negative. If the slope is exactly 0, there is no hit.
 const T_ERROR: f32 = 64.0 * UNIT_ROUNDOFF;
 
-/// Where a product underflows, it has an error of up to 2⁻¹⁵⁰ more. In U, V, W, d·n and n·(a - o) at most 12 of these are
-/// multiplied by e, 6 by m, 6 by h and 9 by nothing: together at most `2⁻¹⁴⁶ (1 + m + e + h)`. A larger number
-/// serves as well. This one is not subnormal: many processors compute slowly with subnormal numbers, and with 2⁻¹⁴³ a search
-/// in thin triangles took 1.6 times as long.
+/// Where a product underflows, it has an error of up to 2⁻¹⁵⁰ more. In U, V, W, d·n and n·(a - o)
+/// at most 12 of these are multiplied by e, 6 by m, 6 by h and 9 by nothing: together at most
+/// `2⁻¹⁴⁶ (1 + m + e + h)`. A larger number serves as well. This one is not subnormal: many
+/// processors compute slowly with subnormal numbers, and with 2⁻¹⁴³ a search in thin triangles took
+/// 1.6 times as long.
 const UNDERFLOW: f32 = f32::MIN_POSITIVE; // 2⁻¹²⁶
 
-/// Four vectors, one per lane. Functions with a level are `#[inline(always)]`, and closures are avoided, because a closure may be
-/// compiled without the instructions of the level: measured, a closure in `may_hit` made searches twice as slow.
+/// Four vectors, one per lane. Functions with a level are `#[inline(always)]`, and closures are
+/// avoided, because a closure may be compiled without the instructions of the level: measured, a
+/// closure in `may_hit` made searches twice as slow.
 type Vector<L> = [F32x4<L>; 3];
 
 #[inline(always)]
@@ -186,8 +201,8 @@ fn dot<L: Level>(p: Vector<L>, q: Vector<L>) -> F32x4<L> {
     p[0].mul_add(q[0], p[1].mul_add(q[1], p[2] * q[2]))
 }
 
-/// The largest absolute coordinate of each vector. A NaN in the first two coordinates may be lost: the comparisons see it
-/// all the same, because U, V and W are NaN then.
+/// The largest absolute coordinate of each vector. A NaN in the first two coordinates may be lost:
+/// the comparisons see it all the same, because U, V and W are NaN then.
 #[inline(always)]
 fn largest<L: Level>(p: Vector<L>) -> F32x4<L> {
     p[0].abs().max(p[1].abs()).max(p[2].abs())
