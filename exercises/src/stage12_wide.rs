@@ -1,31 +1,42 @@
-//! Stage 12 · trees as fast searches need them: all nodes in one array, and eight children per node.
+//! Stage 12 · trees as fast searches need them: all nodes in one array, and eight children per
+//! node.
 //!
 //! Source: Wald, Benthin and Boulos, "Getting Rid of Packets", 2008.
 //!
-//! Given: [`FlatTree`], a binary tree with nodes of 32 bytes; [`WideTree`], a tree whose nodes have eight children.
+//! Given: [`FlatTree`], a binary tree with nodes of 32 bytes; [`WideTree`], a tree whose nodes have
+//! eight children.
 
 use raykata::bvh::Bvh;
 use raykata::wide::{BLOCK, Child, FlatTree, NO_PRIMITIVE, WideNode, WideTree};
 
-/// Copies a hierarchy of stage 3 into the layout of [`FlatTree`]: nodes of 32 bytes, the two children of a node next to each
-/// other, and the nodes below the first child before those below the second.
+/// Copies a hierarchy of stage 3 into one array, [`FlatTree`]. A ray needs both children of a node
+/// at once, so they lie side by side:
 ///
-/// Boxes, leaves and the order of the primitives stay as they are, and the left child comes first. Neighbours are read together: a line of the cache holds 64
-/// bytes, which is a pair of children. A hierarchy without nodes gives a tree without nodes.
+/// ```text
+/// root | A B | children of A | ... | children of B | ...
+/// ```
+///
+/// Exactly:
+///
+/// - The left child A comes first, and all below A before all below B.
+/// - Boxes, leaves and the order of the primitives stay as they are.
+/// - A hierarchy without nodes gives a tree without nodes.
 pub fn flatten(bvh: &Bvh) -> FlatTree {
     todo!("copy the root, then the two children of each node side by side, depth first")
 }
 
-/// Collapses a binary tree into one with eight children per node: a node takes its two children, and then replaces the inner
-/// child with the largest surface area by the two children of that child, until it has eight children or only leaves.
+/// Turns a binary tree into one with eight children per node. A node takes its two children, and
+/// replaces the inner child with the largest surface area by its own two, until there are eight or
+/// only leaves. Which child does a ray enter most probably?
 ///
-/// Each leaf of the binary tree becomes one leaf of the wide tree, with the same box and primitives. Its primitives fill
-/// whole blocks of four, in order; free lanes of the last block have [`NO_PRIMITIVE`]. The children of a node come first, then
-/// its empty places. If the root is a leaf, the wide tree has one node with one child. A tree without nodes gives a tree
-/// without nodes. A parent has a smaller index than its children.
+/// Exactly:
 ///
-/// Why the largest area: a ray that enters a node enters a child with a probability proportional to the child's area, so this
-/// child saves most visits.
+/// - Each leaf becomes one leaf with the same box and primitives.
+/// - Its primitives fill whole blocks of four, in order; free lanes of the last block have
+///   [`NO_PRIMITIVE`].
+/// - The children of a node come before its empty places.
+/// - A parent has a smaller index than its children.
+/// - A root that is a leaf becomes the only child of one node; no nodes give no nodes.
 pub fn collapse(tree: &FlatTree) -> WideTree {
     todo!("open the child with the largest area until there are eight; fill blocks at the leaves")
 }
