@@ -35,13 +35,11 @@ pub struct PaddedBoxes {
 /// Widens every box a little on all sides, so that a hit that rounding moves just outside its box
 /// is still in a cell that lists it. How large is the extent of huge boxes, in single precision?
 ///
-/// The room is 2⁻¹⁸ of the largest extent, because a test in single precision has an error of about
-/// 2⁻²³ of the distance to the ray's origin, and cameras are usually within 32 extents. It is at
-/// least 2⁻²² of the largest coordinate, which is a few floats.
+/// The room is 2⁻¹⁸ of the largest extent, and at least 2⁻²² of the largest coordinate.
 ///
 /// Exactly:
 ///
-/// - Boxes that are empty or have a NaN coordinate are left out, because no ray hits them.
+/// - Boxes that are empty or have a NaN coordinate are left out.
 /// - The result stays within ±`f32::MAX`.
 pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     todo!("leave out boxes that are empty or NaN, and widen every other box a little")
@@ -51,8 +49,7 @@ pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
 /// on, up to some `t`, always or never. On which side is a ray that runs in the plane, or starts in
 /// it?
 ///
-/// Returns that part of the closed interval `t..=t_end`; it may be a single `t`. `height` is the
-/// height of the ray's origin, and `rate` its change per unit of `t`.
+/// Returns that part of the closed interval `t..=t_end`; it may be a single `t`.
 ///
 /// Exactly:
 ///
@@ -93,7 +90,7 @@ pub fn range(ray: &Ray) -> (f64, f64) {
 ///
 /// Exactly:
 ///
-/// - A hit counts also if it lies outside the cell, because a primitive may extend beyond its cell.
+/// - A hit counts also if it lies outside the cell.
 /// - At equal `t` the smaller primitive number wins.
 /// - A primitive that overlaps several cells may be tested several times.
 #[inline]

@@ -142,7 +142,7 @@ fn cos_behind(cos_1: f32, n1: f32, n2: f32) -> Option<f32> {
 ///
 /// - The directions are those of [`reflect`] and [`refract`].
 /// - The weights are `weight · (mirror + F transmission)` and `weight · (1 - F) transmission`,
-///   channel by channel, for the fields of `material`.
+///   channel by channel.
 /// - F is that of `material.fresnel`, and 0 for `None`, also beyond the critical angle, where there
 ///   is no refracted ray.
 /// - A ray is returned only if `depth < limits.max_depth` and the largest channel of its own weight

@@ -41,13 +41,11 @@ pub struct PaddedBoxes {
 /// Widens every box a little on all sides, so that a hit that rounding moves just outside its box
 /// is still in a cell that lists it. How large is the extent of huge boxes, in single precision?
 ///
-/// The room is 2⁻¹⁸ of the largest extent, because a test in single precision has an error of about
-/// 2⁻²³ of the distance to the ray's origin, and cameras are usually within 32 extents. It is at
-/// least 2⁻²² of the largest coordinate, which is a few floats.
+/// The room is 2⁻¹⁸ of the largest extent, and at least 2⁻²² of the largest coordinate.
 ///
 /// Exactly:
 ///
-/// - Boxes that are empty or have a NaN coordinate are left out, because no ray hits them.
+/// - Boxes that are empty or have a NaN coordinate are left out.
 /// - The result stays within ±`f32::MAX`.
 pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     // <solution>
@@ -61,6 +59,8 @@ pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     // Compute the room in double precision, because the extent of huge boxes overflows in single
     // precision.
     let (min, max) = (all.min.as_dvec3(), all.max.as_dvec3());
+    // A test in single precision has an error of about 2⁻²³ of the distance to the ray's origin, and
+    // cameras are usually within 32 extents.
     let extent = (max - min).max_element() * (-18f64).exp2();
     let step = min.abs().max_element().max(max.abs().max_element()) * (-22f64).exp2();
     let room = extent.max(step).min(f64::from(f32::MAX)) as f32;
@@ -80,8 +80,7 @@ pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
 /// on, up to some `t`, always or never. On which side is a ray that runs in the plane, or starts in
 /// it?
 ///
-/// Returns that part of the closed interval `t..=t_end`; it may be a single `t`. `height` is the
-/// height of the ray's origin, and `rate` its change per unit of `t`.
+/// Returns that part of the closed interval `t..=t_end`; it may be a single `t`.
 ///
 /// Exactly:
 ///
@@ -148,7 +147,7 @@ pub fn range(ray: &Ray) -> (f64, f64) {
 ///
 /// Exactly:
 ///
-/// - A hit counts also if it lies outside the cell, because a primitive may extend beyond its cell.
+/// - A hit counts also if it lies outside the cell.
 /// - At equal `t` the smaller primitive number wins.
 /// - A primitive that overlaps several cells may be tested several times.
 #[inline]
