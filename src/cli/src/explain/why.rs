@@ -120,6 +120,9 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
             DARK.into()
         }
         Effect::Motion => "the shutter opens and closes at the same time".into(),
+        Effect::SmoothNormals if scene.meshes.is_empty() && has_curved_surface(scene) => {
+            "there is no mesh; curved surfaces have normals of their own".into()
+        }
         Effect::SmoothNormals if scene.meshes.is_empty() => "there is no mesh".into(),
         Effect::SmoothNormals
             if shown.iter().any(|shape| shape.mesh.is_some_and(|m| scene.meshes[m].smooth)) =>
@@ -132,6 +135,10 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
         Effect::IndirectLight if scene.indirect_light => DARK.into(),
         Effect::IndirectLight => "[environment] does not request it".into(),
     }
+}
+
+fn has_curved_surface(scene: &Scene) -> bool {
+    scene.nodes.iter().any(|node| matches!(node.shape, Some(Shape::Bezier { .. } | Shape::Nurbs { .. })))
 }
 
 fn light_name(scene: &Scene, light: usize) -> String {
