@@ -167,10 +167,10 @@ fn choose(parts: &[Part], room: f64) -> Option<(CutPlane, Counts)> {
         .min_by_key(|(_, counts)| fuller(counts) + SPLIT * on_both(counts))
 }
 
-/// The cost of a part on both sides, relative to one on the fuller side. `raykata compare
-/// scenes/showcase.toml --size 160x90 --spp 1 --only polygon-bsp` counts 126 visits and 8.0
-/// primitive tests per ray with 2, 57 and 8.6 with 8, 39 and 44.9 with 30. With 30 the planes of
-/// polygons are chosen, which leave most others on one side, until the tree is too deep.
+/// The cost of a part on both sides, relative to one on the fuller side. With 2, parts are on both
+/// sides too often, and a ray makes more visits. With 30, the planes of polygons are chosen that
+/// leave most others on one side, until the tree is too deep and a ray makes more primitive tests
+/// (`raykata compare scenes/showcase.toml --only polygon-bsp` counts both).
 const SPLIT: usize = 8;
 
 fn divide(
