@@ -236,6 +236,16 @@ macro_rules! door {
                 }
             }
 
+            /// The request with one of its queries only; `None` for frames and their rays, and if there is no such query.
+            pub fn only(&self, index: usize) -> Option<Request> {
+                match self {
+                    $($(Request::$Message(queries) => {
+                        queries.get(index).map(|query| Request::$Message(vec![query.clone()]))
+                    })*)*
+                    _ => None,
+                }
+            }
+
             /// Calls the function of `kit` that this request names. `watch` receives the progress of a frame.
             ///
             /// # Panics

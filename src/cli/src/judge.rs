@@ -1,4 +1,4 @@
-//! `raykata check` and `raykata gauntlet`: start the judge, the program that contains the checks and the exact oracle. It is built when it is
+//! `raykata check`, `raykata try` and `raykata gauntlet`: start the judge, the program that contains the checks and the exact oracle. It is built when it is
 //! needed, so that a picture does not wait for that.
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec};
@@ -35,6 +35,19 @@ pub fn check(given: &Given) -> Result<ExitCode> {
         return judge("pixel", which, &[check, pixel.as_os_str()]);
     }
     judge("check", which, list::stage(given)?.map(|stage| stage.to_string()).as_slice())
+}
+
+/// `raykata try`.
+pub static TRY: Spec = Spec {
+    name: "raykata try",
+    about: "Call your function again with the input of a failing check, alone, and show what it prints: println!, dbg! and panics.",
+    arguments: &[Argument::required("CHECK", "Its name, as `raykata list` and failing tests print it.")],
+    options: &[Choice::OPTIONS],
+};
+
+/// Calls the function of a failing check again; returns the exit code of the judge.
+pub fn try_again(given: &Given) -> Result<ExitCode> {
+    judge("try", Choice::read(given)?.or_exercises(), &[given.required(0)?])
 }
 
 /// `raykata gauntlet`.

@@ -10,7 +10,7 @@ mod watchdog;
 mod withheld;
 
 pub use autopsy::last_words;
-use autopsy::{cause_of_death, keep_start, shortened, wait_briefly};
+use autopsy::{cause_of_death, keep_start, shortened, show_start, wait_briefly};
 use launcher::lock;
 pub use launcher::{Death, Launcher};
 use raykata::frame::Watch;
@@ -59,6 +59,8 @@ pub struct Worker {
     call_patience: Duration,
     frame_patience: Duration,
     asks_again: AtomicBool,
+    /// Whether the output of the program is shown.
+    shows: bool,
     /// Whether the tables of searches stay here, so that the worker must ask for each entry.
     withholds: AtomicBool,
     process: Mutex<Option<Process>>,
@@ -79,6 +81,7 @@ impl Worker {
             call_patience,
             frame_patience: FRAME_PATIENCE,
             asks_again: AtomicBool::new(false),
+            shows: false,
             withholds: AtomicBool::new(false),
             process: Mutex::new(None),
             running: Mutex::new(None),
@@ -93,6 +96,11 @@ impl Worker {
     pub fn sandboxed(program: PathBuf, patience: Duration, launcher: impl Launcher + 'static) -> Self {
         let launcher: Arc<dyn Launcher> = Arc::new(launcher);
         Worker { launcher: Some(launcher), frame_patience: patience, ..Worker::new(program, patience) }
+    }
+
+    /// The same for a student who looks at one call: the first lines that the program writes are shown.
+    pub fn showing(program: PathBuf, patience: Duration) -> Self {
+        Worker { shows: true, ..Worker::new(program, patience) }
     }
 
     /// The same for small pictures, some of which never end: a frame has no more time than any other call.
@@ -142,7 +150,7 @@ impl Worker {
 
     fn ask(&self, request: &Request, watch: &dyn Watch, patience: Duration) -> Result<Answer, KitError> {
         let mut slot = lock(&self.process);
-        let start = || Process::start(&self.program, self.launcher.clone());
+        let start = || Process::start(&self.program, self.launcher.clone(), self.shows);
         let mut process = match slot.take().map_or_else(start, Ok) {
             Ok(process) => process,
             Err(error) => return Err(KitError::Crashed { how: format!("it cannot be started: {error}") }),
@@ -212,25 +220,31 @@ struct Process {
     from_worker: Box<dyn Read + Send>,
     watchdog: Arc<Watchdog>,
     stderr: std::thread::JoinHandle<String>,
+    shows: bool,
     launcher: Option<Arc<dyn Launcher>>,
 }
 
 impl Process {
-    fn start(program: &Path, launcher: Option<Arc<dyn Launcher>>) -> io::Result<Process> {
+    fn start(program: &Path, launcher: Option<Arc<dyn Launcher>>, shows: bool) -> io::Result<Process> {
         let mut command = match &launcher {
             Some(launcher) => launcher.command(program),
             None => Command::new(program),
         };
-        command.stdout(Stdio::null()).stderr(Stdio::piped());
-        let (mut child, to_worker, from_worker) = spawn(command, launcher.as_deref())?;
-        let stderr = child.stderr.take().ok_or_else(|| io::Error::other("no standard error"))?;
+        let (errors, output) = io::pipe()?;
+        match shows {
+            true => command.stdout(output.try_clone()?),
+            false => command.stdout(Stdio::null()),
+        };
+        command.stderr(output);
+        let (child, to_worker, from_worker) = spawn(command, launcher.as_deref())?;
         let child = Arc::new(Mutex::new(child));
         Ok(Process {
             watchdog: Watchdog::guard(&child, launcher.clone()),
             child,
             to_worker,
             from_worker,
-            stderr: std::thread::spawn(move || keep_start(stderr)),
+            stderr: std::thread::spawn(move || if shows { show_start(errors) } else { keep_start(errors) }),
+            shows,
             launcher,
         })
     }
@@ -326,6 +340,10 @@ impl Drop for Process {
         let _ = child.wait();
         drop(child);
         self.watchdog.retire();
+        // The last lines are shown before the caller writes more.
+        if self.shows {
+            let _ = std::mem::replace(&mut self.stderr, std::thread::spawn(String::new)).join();
+        }
     }
 }
 

@@ -7,6 +7,7 @@ macro_rules! println {
     ($($words:tt)*) => { raykata_cli::report::say(format_args!("{}\n", format_args!($($words)*))) };
 }
 
+pub mod again;
 pub mod boxes_and_offsets;
 pub mod gauntlet;
 pub mod hits;

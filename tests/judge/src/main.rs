@@ -1,9 +1,9 @@
 //! The program that `raykata` starts: `judge check ROOT WORKER [STAGE]`, `judge status ROOT WORKER`, `judge
-//! pixel ROOT WORKER CHECK X,Y`, `judge gauntlet ROOT WORKER INPUTS SEED`, `judge verdicts ROOT WORKER STAGE`, which writes messages, `judge hits` and `judge trials`, which
+//! pixel ROOT WORKER CHECK X,Y`, `judge try ROOT WORKER CHECK`, `judge gauntlet ROOT WORKER INPUTS SEED`, `judge verdicts ROOT WORKER STAGE`, which writes messages, `judge hits` and `judge trials`, which
 //! read requests from standard input.
 
 use anyhow::{Result, bail};
-use judge::{boxes_and_offsets, gauntlet, hits, pixel, scorecard, trials};
+use judge::{again, boxes_and_offsets, gauntlet, hits, pixel, scorecard, trials};
 use raykata_cli::kits::{Source, Which};
 use std::path::Path;
 use std::process::ExitCode;
@@ -28,6 +28,7 @@ fn run() -> Result<bool> {
         ["check", _, worker] => scorecard::scorecard(&source(worker), None),
         ["check", _, worker, stage] => scorecard::scorecard(&source(worker), Some(stage.parse()?)),
         ["pixel", _, worker, check, at] => pixel::replay(&source(worker), check, at),
+        ["try", _, worker, check] => again::again(&source(worker), check),
         ["status", root, worker] => scorecard::status(Path::new(root), &source(worker)).map(|()| true),
         ["gauntlet", _, worker, inputs, seed] => {
             let kit = source(worker).fresh();

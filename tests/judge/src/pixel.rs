@@ -19,12 +19,12 @@ const MOST_CALLS: usize = 16;
 const LONGEST: usize = 600;
 
 /// A batch of calls, and their answers once they are known.
-type Batch = (Request, Option<Answer>);
+pub(crate) type Batch = (Request, Option<Answer>);
 
 /// Passes each request on, and keeps it with its answer.
-struct Recorder {
-    kit: Arc<dyn Kit + Send + Sync>,
-    batches: Arc<Mutex<Vec<Batch>>>,
+pub(crate) struct Recorder {
+    pub(crate) kit: Arc<dyn Kit + Send + Sync>,
+    pub(crate) batches: Arc<Mutex<Vec<Batch>>>,
 }
 
 impl Transport for Recorder {
@@ -49,13 +49,7 @@ impl Transport for Recorder {
 
 /// Prints the calls for the pixel `at`, such as `12,7`, of the picture of the check `name`; `Ok(true)` if its colour is right.
 pub fn replay(source: &Source, name: &str, at: &str) -> Result<bool> {
-    let mut all = STAGES.iter().flat_map(|(_, checks)| checks.iter());
-    let check = match all.find(|check| check.name == name) {
-        Some(check) => check,
-        None => {
-            return Err(raykata_cli::list::entry(name).err().context("the rubric lists no such check")?);
-        }
-    };
+    let check = find(name)?;
     let (x, y) = at
         .split_once(',')
         .and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)))
@@ -63,6 +57,14 @@ pub fn replay(source: &Source, name: &str, at: &str) -> Result<bool> {
     let (text, is_right) = report(check, source.fresh(), x, y)?;
     raykata_cli::report::say(format_args!("{text}"));
     Ok(is_right)
+}
+
+/// The check with this name.
+pub(crate) fn find(name: &str) -> Result<&'static Check> {
+    match STAGES.iter().flat_map(|(_, checks)| checks.iter()).find(|check| check.name == name) {
+        Some(check) => Ok(check),
+        None => Err(raykata_cli::list::entry(name).err().context("the rubric lists no such check")?),
+    }
 }
 
 /// The report about a pixel, and whether its colour is right.
@@ -135,7 +137,7 @@ fn text(result: &Replayed, (x, y): (u32, u32), batches: &[Batch], error: Option<
 }
 
 /// A value as text, cut if it is long.
-fn shorten(value: &dyn Debug) -> String {
+pub(crate) fn shorten(value: &dyn Debug) -> String {
     let text = format!("{value:?}");
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{} …", &text[..end]),

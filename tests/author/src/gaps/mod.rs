@@ -174,7 +174,7 @@ fn differences(worker: PathBuf, scenes: &Scenes, whole: &[Shown]) -> String {
     for (one, whole) in scenes.shown_by(&Door(Worker::hasty(worker, CALL_PATIENCE))).iter().zip(whole) {
         let (words, scene) = match &one.pixels {
             _ if one == whole => continue,
-            Ok(_) => (one.notes.join("; "), format!("{} ({})", one.scene, one.hash())),
+            Ok(_) => (without_lines(&one.notes.join("; ")), format!("{} ({})", one.scene, one.hash())),
             Err(error) => (without_lines(error).replace("\n ", ":"), one.scene.clone()),
         };
         match said.iter_mut().find(|(known, _)| *known == words) {

@@ -192,6 +192,7 @@ fn a_student_can_begin() {
         (&["run", "--", "list"], true, check),
         (&["run", "--", "hint", check], true, "still stuck"),
         (&["run", "--", "check"], false, "0 passed"),
+        (&["run", "--", "try", check], false, "not written yet"),
         (
             &["run", "--", "check", "picture_of_a_sphere_on_a_plane", "--pixel", "40,30"],
             false,
