@@ -30,12 +30,12 @@ pub fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32> {
 /// quadratic:
 ///
 /// ```text
-/// a t² - 2 b t + c = 0
-/// a = d·d,  b = -(o - center)·d,  c = |o - center|² - r²
+/// a t² + b t + c = 0
+/// a = d·d,  b = 2 (o - center)·d,  c = |o - center|² - r²
 /// ```
 ///
-/// A line meets a sphere in two points: which one does the ray see? What is left of `b² - a c` when
-/// the sphere is far away?
+/// A line meets a sphere in two points: which one does the ray see? What is left of `b² - 4 a c`
+/// when the sphere is far away?
 ///
 /// Returns the nearest root that counts.
 ///
