@@ -260,7 +260,9 @@ fn quoted_messages_are_those_of_the_kit() {
         };
         // The lines that every message takes from the rubric are not stored.
         let (of_rubric, quote): (Vec<&str>, Vec<&str>) = quote.lines().partition(|line| {
-            ["stage ", "  slides: ", "  again: ", "  stuck: "].iter().any(|start| line.starts_with(start))
+            ["stage ", "  slides: ", "  again: ", "  print: ", "  stuck: "]
+                .iter()
+                .any(|start| line.starts_with(start))
         });
         assert_eq!(missing_line(&quote.join("\n"), &text), None, "{deck}: {source} has no such line");
         let missing = of_rubric.into_iter().find(|line| !rubric.lines().any(|other| other == *line));
@@ -275,7 +277,7 @@ fn lines_of_rubric() -> String {
         for (name, entry) in entries.in_order() {
             text += &format!("stage {stage} · {}\n  slides: {}\n", entry.title, entry.slide);
             text += &format!(
-                "  again: cargo test --test stage{stage} {name}\n  stuck: cargo run -- hint {name}\n"
+                "  again: cargo test --test stage{stage} {name}\n  print: cargo run -- try {name}\n  stuck: cargo run -- hint {name}\n"
             );
         }
     }

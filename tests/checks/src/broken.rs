@@ -152,9 +152,11 @@ pub fn all_hold(outcomes: Vec<CheckResult>) -> CheckResult {
     first_broken(outcomes).map_or(Ok(()), |(_, broken)| Err(broken))
 }
 
-/// The last two lines of every failure.
+/// The last lines of every failure.
 pub fn next_commands(stage: u8, check: &str) -> String {
-    format!("  again: cargo test --test stage{stage} {check}\n  stuck: cargo run -- hint {check}\n")
+    format!(
+        "  again: cargo test --test stage{stage} {check}\n  print: cargo run -- try {check}\n  stuck: cargo run -- hint {check}\n"
+    )
 }
 
 /// The first `lines` lines of a text, each cut after 400 characters.

@@ -37,7 +37,7 @@ const RIGHT: f64 = 980.0;
 const TOP: f64 = 116.0;
 const BOTTOM: f64 = 460.0;
 /// The first line of names, and the distance of two lines: a quarter more than the height of their letters.
-const NAMES: f64 = 600.0;
+const NAMES: f64 = 584.0;
 const APART: f64 = 40.0;
 /// The width of a letter of size 1: digits have 0.556 in Helvetica and Arial, and text has less.
 const LETTER: f64 = 0.55;

@@ -83,7 +83,9 @@ fn heading(name: &str) -> String {
 /// Returns a message without the lines that come from the rubric.
 pub fn without_rubric(message: &str) -> String {
     let of_rubric = |line: &&str| {
-        ["stage ", "  slides: ", "  again: ", "  stuck: "].iter().any(|start| line.starts_with(start))
+        ["stage ", "  slides: ", "  again: ", "  print: ", "  stuck: "]
+            .iter()
+            .any(|start| line.starts_with(start))
     };
     message.lines().filter(|line| !of_rubric(line)).map(|line| format!("{line}\n")).collect()
 }
