@@ -231,11 +231,8 @@ impl Process {
             None => Command::new(program),
         };
         let (errors, output) = io::pipe()?;
-        match shows {
-            true => command.stdout(output.try_clone()?),
-            false => command.stdout(Stdio::null()),
-        };
-        command.stderr(output);
+        let shown = if shows { Stdio::from(output.try_clone()?) } else { Stdio::null() };
+        command.stdout(shown).stderr(output);
         let (child, to_worker, from_worker) = spawn(command, launcher.as_deref())?;
         let child = Arc::new(Mutex::new(child));
         Ok(Process {

@@ -62,12 +62,9 @@ pub fn run_all(root: &Path, keep: bool, shard: Option<Shard>) -> Result<Vec<Stri
             continue;
         }
         // Keep the first lines only, if the command ends so.
-        let (run, most_lines) = match command.split_once(" | head -") {
-            Some((run, most)) => {
-                (run, most.parse().with_context(|| format!("{FOLDER}/{name}.txt: `head -{most}`"))?)
-            }
-            None => (command.as_str(), usize::MAX),
-        };
+        let (run, most_lines) = command.split_once(" | head -").unwrap_or((&command, "1000000"));
+        let most_lines =
+            most_lines.parse().with_context(|| format!("{FOLDER}/{name}.txt: `head -{most_lines}`"))?;
         let words = run.strip_prefix("cargo run ");
         let words = words
             .with_context(|| format!("{FOLDER}/{name}.txt: the first line is no `cargo run` command"))?;
