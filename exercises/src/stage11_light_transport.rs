@@ -82,8 +82,7 @@ pub fn light_pdf(emitter: &AreaEmitter, from: Vec3, direction: Vec3) -> f32 {
 ///   square lights of side 0.02 to 2 at distance 1 and lobes `cosⁿ θ`, n from 1 to 10,000, as with
 ///   both heuristics.
 ///
-/// Source: Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering"
-/// (1995).
+/// Source: Veach and Guibas, SIGGRAPH 1995.
 pub fn mis_weight(own: f32, other: f32) -> f32 {
     todo!("compare the two densities: balance heuristic or power heuristic")
 }

@@ -24,7 +24,7 @@ use raykata::ray::Ray;
 /// Exactly:
 ///
 /// - Divide a node of more than `leaf_size` primitives, unless it is at depth
-///   [`KdTree::most_depth`] (root: 0), all of them would be on both sides, or
+///   [`KdTree::most_depth`] (root: 0), all would be on both sides, or
 ///   [`ListGrowth::divide`] returns `None`.
 /// - A plane lies within its cell. The bounds contain all boxes.
 /// - List a primitive once in every leaf that its box touches, on both sides of a touched plane.
@@ -36,7 +36,7 @@ use raykata::ray::Ray;
 /// - `cut_off_empty_space`: first cut off an empty margin of over a tenth of the cell.
 /// - `stop_at_overlap`: make a leaf if at least 60 % of one side, but not 0, would be on both.
 ///
-/// Source: "Kd-Trees", "Heuristics" 1 to 5.
+/// Source: "Heuristics" 1 to 5.
 pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree {
     todo!("make a leaf if the primitives are few; else choose a plane and build both sides")
 }

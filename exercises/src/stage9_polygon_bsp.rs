@@ -40,8 +40,7 @@ use raykata::ray::Ray;
 /// - Leave out hulls without corners, or with NaN or infinity; without usable hulls there are
 ///   no nodes.
 ///
-/// Source: "Binary Space Partition (BSP) Tree". The idea is from Fuchs, Kedem and Naylor, "On
-/// Visible Surface Generation by A Priori Tree Structures", SIGGRAPH 1980.
+/// Source: Fuchs et al., SIGGRAPH 1980.
 pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> PolygonBsp {
     todo!("choose a plane, list the polygons in it, split the polygons that cross it, and build both sides")
 }

@@ -141,8 +141,8 @@ pub fn emitted_contribution(emission: Vec3, pdf: f32, light_pdf: f32) -> Vec3 {
     // </solution>
 }
 
-/// What a path does at the surface `vertex`: it collects light, asks a light by a shadow ray, and
-/// continues. Which of these remain at its last bounce?
+/// At `vertex` a path collects light, asks a light by a shadow ray, and continues. Which of these
+/// remain at its last bounce?
 ///
 /// Exactly:
 ///

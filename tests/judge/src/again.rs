@@ -31,14 +31,13 @@ pub fn again(source: &Source, name: &str) -> Result<bool> {
     let batches = batches.lock().unwrap_or_else(PoisonError::into_inner);
     let request = match &broken {
         Some(broken) => batches.iter().rev().find_map(|batch| call_of(batch, &broken.input, &broken.yours)),
-        None => batches
-            .iter()
-            .rev()
-            .find(|(_, answer)| answer.is_none())
-            .and_then(|(request, _)| failing(request, source)),
+        None => {
+            let unanswered = batches.iter().rev().find(|(_, answer)| answer.is_none());
+            unanswered.and_then(|(request, _)| failing(request, source))
+        }
     };
     let Some(request) = request else {
-        println!("The law is about several calls, or about a picture, so no single call shows it.");
+        println!("This message describes its input in words, so there is no single call to repeat.");
         return Ok(false);
     };
     let (function, queries) = request.queries().unwrap_or_default();
@@ -53,7 +52,9 @@ pub fn again(source: &Source, name: &str) -> Result<bool> {
         }
         Err(error) => println!("and then: {error}"),
     }
-    let file = Function::ALL.iter().find(|one| one.name() == function).map_or("", |one| one.file());
+    // Searches and builders of several stages share a name.
+    let is_it = |one: &&Function| one.name() == function && one.stage() == check.stage;
+    let file = Function::ALL.iter().find(is_it).map_or("", |one| one.file());
     match &broken {
         Some(broken) if broken.input.contains(&format!("{function}(")) => println!(
             "\nTo call it yourself, paste this at the end of exercises/src/{file}.rs:\n\n  #[test]\n  fn again() {{\n      use glam::*;\n      use raykata::kit::types::*;\n      dbg!({});\n  }}\n\nand run\n\n  cargo test -p exercises --lib -- --nocapture",
