@@ -9,9 +9,11 @@ pub mod rubric;
 mod stage;
 #[cfg(test)]
 mod tests;
+mod verdict;
 
 pub use moment::Moment;
 pub use read::{parse, parse_language, stages_of};
+pub use verdict::Verdict;
 
 use serde::Serialize;
 use stage::Stage;

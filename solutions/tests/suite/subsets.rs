@@ -18,17 +18,8 @@ use raykata::scene::Scene;
 use std::path::Path;
 use std::sync::Arc;
 
-const EFFECTS: [Effect; 9] = [
-    Effect::Shadows,
-    Effect::AreaLights,
-    Effect::Mirrors,
-    Effect::Transmission,
-    Effect::Glossy,
-    Effect::Lens,
-    Effect::Motion,
-    Effect::SmoothNormals,
-    Effect::Textures,
-];
+/// All effects but indirect light, which is the last.
+const EFFECTS: [Effect; 9] = *Effect::ALL.first_chunk().expect("ten effects");
 
 /// A set of effects, one bit each.
 #[derive(Clone, Copy, PartialEq, Debug)]

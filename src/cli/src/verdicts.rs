@@ -1,5 +1,6 @@
 //! The messages of `judge verdicts`, the verdicts of a stage, each as soon as it is known, and of `judge trials`.
 
+pub use raykata::course::Verdict;
 use raykata::message;
 use std::path::PathBuf;
 
@@ -13,24 +14,6 @@ pub struct CheckVerdict {
 }
 
 message! { CheckVerdict { check, verdict } }
-
-/// The result of a check for the student.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
-    /// The law holds.
-    Passed,
-    /// The student's function is still a gap.
-    NotWritten {
-        /// What to write.
-        task: String,
-        /// The place of the gap, as `file:line`.
-        place: String,
-    },
-    /// The law is broken, or the code crashed or did not end: the message for the student.
-    Failed(String),
-}
-
-message! { enum Verdict { Passed, NotWritten { task, place }, Failed(message) } }
 
 /// A request to `judge trials`: one check of one worker. The answer is a [`Verdict`].
 #[derive(Clone, Debug, PartialEq)]

@@ -116,13 +116,7 @@ pub fn plane(ray: &Ray, plane: &Plane) -> Expected {
     }
     // Bound the error of each dot product by a few roundings of its largest term.
     let distance_slack = 8.0 * U * (offset.abs().dot(normal.abs()));
-    let slope_slack = 8.0 * U * direction.abs().dot(normal.abs());
-    if slope.abs() <= 16.0 * slope_slack {
-        return Expected::Open;
-    }
-    let t = distance / slope;
-    let tolerance = 2.0 * (distance_slack + t.abs() * slope_slack) / slope.abs();
-    first_in_range(ray, &[t], tolerance)
+    at_a_slope(ray, normal, distance, distance_slack)
 }
 
 /// How a method may round the sum of D and n·o.
@@ -150,6 +144,13 @@ pub fn plane_equation(ray: &Ray, plane: &PlaneEquation, sum: Sum) -> Expected {
         Sum::Single => 8.0 * U * terms,
         Sum::Double => 4.0 * f64::EPSILON * terms + 8.0 * U * distance.abs(),
     };
+    at_a_slope(ray, normal, distance, distance_slack)
+}
+
+/// The hit where a ray has gone `distance` ± `distance_slack` along `normal`, which is not perpendicular to it.
+fn at_a_slope(ray: &Ray, normal: DVec3, distance: f64, distance_slack: f64) -> Expected {
+    let direction = ray.direction.as_dvec3();
+    let slope = direction.dot(normal);
     let slope_slack = 8.0 * U * direction.abs().dot(normal.abs());
     if slope.abs() <= 16.0 * slope_slack {
         return Expected::Open;

@@ -9,6 +9,7 @@ use crate::rubric;
 use crate::symmetry::{Symmetries, Symmetry, TurnedKit};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+pub use raykata::course::Verdict;
 use raykata::kit::{Door, Kit, KitError, kit_error};
 use raykata::worker::Thread;
 use std::cell::Cell;
@@ -69,22 +70,6 @@ impl Default for Inputs {
     fn default() -> Self {
         Inputs { drawn: None, one_in: 1, reference: None, pixel: None }
     }
-}
-
-/// The result of a check for the student.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
-    /// The law holds.
-    Passed,
-    /// The student's function is still a gap.
-    NotWritten {
-        /// The text of the gap: what to write.
-        task: String,
-        /// The place of the gap, as `file:line`.
-        place: String,
-    },
-    /// The law is broken, or the code crashed or did not end: the message for the student.
-    Failed(String),
 }
 
 impl<'a> Trial<'a> {

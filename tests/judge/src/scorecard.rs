@@ -59,20 +59,11 @@ pub fn tell(source: &Source, stage: u8, out: impl Write + Send) -> Result<()> {
     let checks: Vec<&'static Check> =
         STAGES.iter().filter(|(number, _)| *number == stage).flat_map(|(_, checks)| checks.iter()).collect();
     queue::run(&queue::one_a_core(), &checks, |(), &check| {
-        let verdict = to_message(checks::run(check, &source.fresh(), 0));
+        let verdict = checks::run(check, &source.fresh(), 0);
         let mut out = out.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(send(&mut *out, &verdicts::CheckVerdict { check: check.name.into(), verdict })?)
     })?;
     Ok(())
-}
-
-/// The verdict as a message.
-pub(crate) fn to_message(verdict: Verdict) -> verdicts::Verdict {
-    match verdict {
-        Verdict::Passed => verdicts::Verdict::Passed,
-        Verdict::NotWritten { task, place } => verdicts::Verdict::NotWritten { task, place },
-        Verdict::Failed(message) => verdicts::Verdict::Failed(message),
-    }
 }
 
 /// Prints the scorecard; `Ok(true)` if all checks passed, except for bonus ones.

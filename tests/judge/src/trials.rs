@@ -1,7 +1,6 @@
 //! `judge trials`: single checks of many workers. The mutation testing of `author` changes a check, builds this program, and asks
 //! whether a verdict differs.
 
-use crate::scorecard::to_message;
 use anyhow::{Context, Result};
 use raykata::worker::{receive, send};
 use raykata_cli::kits::{Source, Which};
@@ -24,7 +23,7 @@ fn verdict(trial: &CheckTrial) -> Result<Verdict> {
         .with_context(|| format!("stage {} has no check `{}`", trial.stage, trial.check))?;
     let kit = Source { which: Which::Solutions, program: trial.worker.clone() }.fresh();
     Ok(match trial.needs_message {
-        true => to_message(checks::run(check, &kit, 0)),
+        true => checks::run(check, &kit, 0),
         false if checks::passes(check, &kit, 0) => Verdict::Passed,
         false => Verdict::Failed(String::new()),
     })
