@@ -157,7 +157,7 @@ pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
 ///
 /// Exactly:
 ///
-/// - Each triangle counts once, whatever its area, but not one without area.
+/// - Each triangle with an area counts once, large or small.
 /// - If the normals cancel, the vertex gets the normal of one of the triangles.
 /// - A vertex without such a triangle gets any unit vector.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {

@@ -62,8 +62,8 @@ pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
 }
 
 /// From the top down, a node gets the box around its primitives. It becomes a leaf, or they are
-/// split in two and both parts are built alike. Does that end for one primitive? How deep is it if
-/// each split takes one away?
+/// split in two and both parts are built in the same way. Does that end for one primitive? How
+/// deep is it if each split takes one away?
 ///
 /// Primitive `i` has the box `bounds[i]`.
 ///

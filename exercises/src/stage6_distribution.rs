@@ -57,7 +57,7 @@ pub fn gaussian_weight(offset: Vec2) -> f32 {
 }
 
 /// The colour of a pixel is the weighted mean of its samples. If all samples are white, is the
-/// pixel white, whatever their weights?
+/// pixel white, for any weights?
 ///
 /// Each weight is at least 0. Without samples, or if the weights sum to 0, the pixel is black. The
 /// colour is not clamped.

@@ -71,7 +71,7 @@ pub fn effects(scene: &Scene) -> Effects {
 ///
 /// - `primary`: one ray per sample of each pixel.
 /// - `reflection`: a hit spawns `quality.glossy_samples` rays if its one material is glossy, else
-///   1; `transmission` alike. The largest number over all materials counts; for the next level,
+///   1; `transmission` likewise. The largest number over all materials counts; for the next level,
 ///   that of both together.
 /// - There are at most `quality.max_depth` bounces, each only if the weight of the whole reflection
 ///   or refraction is above 0 and at least `quality.min_contribution`.
@@ -95,7 +95,7 @@ pub fn most_rays(scene: &Scene, effects: &Effects) -> RayCounts {
 /// - `shadow`: the sum of `in_front[light]` over all lights that matter to the material and cast
 ///   shadows.
 /// - `reflection`: per hit of a material with `mirror`, `quality.glossy_samples` rays if it is
-///   glossy, else 1. `transmission` alike.
+///   glossy, else 1. `transmission` likewise.
 pub fn rays_of_hits(hits: &[MaterialHits], effects: &Effects, quality: &Quality) -> RayCounts {
     todo!("add up the rays row by row, as the effects of the row's material say")
 }

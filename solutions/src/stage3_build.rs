@@ -158,8 +158,8 @@ fn sort_along(primitives: &mut [PrimitiveRef], axis: usize) {
 // </solution>
 
 /// From the top down, a node gets the box around its primitives. It becomes a leaf, or they are
-/// split in two and both parts are built alike. Does that end for one primitive? How deep is it if
-/// each split takes one away?
+/// split in two and both parts are built in the same way. Does that end for one primitive? How
+/// deep is it if each split takes one away?
 ///
 /// Primitive `i` has the box `bounds[i]`.
 ///
