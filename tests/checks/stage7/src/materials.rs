@@ -14,18 +14,7 @@ use raykata::scene::Quality;
 
 /// A material that reflects, transmits and emits no light.
 fn black() -> Material {
-    Material {
-        ambient: Vec3::ZERO,
-        diffuse: Vec3::ZERO,
-        specular: Vec3::ZERO,
-        mirror: Vec3::ZERO,
-        transmission: Vec3::ZERO,
-        index_of_refraction: 1.5,
-        fresnel: Fresnel::None,
-        roughness: 0.0,
-        texture: None,
-        ..Material::default()
-    }
+    Material { ambient: Vec3::ZERO, diffuse: Vec3::ZERO, index_of_refraction: 1.5, ..Material::default() }
 }
 
 /// Materials with few colours, each with a `max_depth` and the effects that it needs under a red, a green, a faint
@@ -106,30 +95,29 @@ fn recorded() -> Vec<(MaterialQuery, MaterialEffects)> {
     cases.into_iter().map(query).collect()
 }
 
+/// The colours of a material that [`color`] draws.
+fn colors(material: &mut Material) -> [&mut Vec3; N_COLORS] {
+    let Material { ambient, diffuse, specular, mirror, transmission, .. } = material;
+    [ambient, diffuse, specular, mirror, transmission]
+}
+
 /// For each colour of the material: the same material with all other colours black.
 fn by_color(query: &MaterialQuery) -> Vec<MaterialQuery> {
-    let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
-    let colors = [ambient, diffuse, specular, mirror, transmission];
     let alone = |kept: usize| {
-        let mut left = [Vec3::ZERO; N_COLORS];
-        left[kept] = colors[kept];
-        with_colors(query, left)
+        let mut query = query.clone();
+        let others = colors(&mut query.material).into_iter().enumerate().filter(|(i, _)| *i != kept);
+        others.for_each(|(_, color)| *color = Vec3::ZERO);
+        query
     };
     (0..N_COLORS).map(alone).collect()
 }
 
-fn with_colors(query: &MaterialQuery, colors: [Vec3; N_COLORS]) -> MaterialQuery {
-    let [ambient, diffuse, specular, mirror, transmission] = colors;
-    let material = Material { ambient, diffuse, specular, mirror, transmission, ..query.material.clone() };
-    MaterialQuery { material, ..query.clone() }
-}
-
 /// The same query with every colour of the material and of its lights changed.
 fn recolored(query: &MaterialQuery, change: impl Fn(Vec3) -> Vec3) -> MaterialQuery {
-    let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
-    let changed = with_colors(query, [ambient, diffuse, specular, mirror, transmission].map(&change));
-    let lights = query.lights.iter().map(|light| Light { color: change(light.color), ..light.clone() });
-    MaterialQuery { lights: lights.collect(), ..changed }
+    let mut query = query.clone();
+    let of_lights = query.lights.iter_mut().map(|light| &mut light.color);
+    of_lights.chain(colors(&mut query.material)).for_each(|color| *color = change(*color));
+    query
 }
 
 /// For each channel: the same query with all other channels black.
@@ -290,57 +278,30 @@ fn material_query() -> impl Strategy<Value = MaterialQuery> + Clone {
     let fresnel = prop_oneof![Just(Fresnel::None), Just(Fresnel::Schlick), Just(Fresnel::Exact)];
     let rough = prop_oneof![Just(0.0f32), Just(0.25f32)];
     let texture = prop_oneof![Just(None), Just(Some(0))];
-    let colors = (color(), color(), color(), color(), color());
     let index = prop_oneof![Just(1.0f32), Just(1.5f32)];
     let lights = prop::collection::vec(color().prop_map(|color| light(color, 2.0)), 0..4);
-    (colors, fresnel, rough, texture, lights, 0..3u32, index).prop_map(
-        |(
-            (ambient, diffuse, specular, mirror, transmission),
-            fresnel,
-            roughness,
-            texture,
-            lights,
-            max_depth,
-            index_of_refraction,
-        )| {
-            MaterialQuery {
-                material: Material {
-                    ambient,
-                    diffuse,
-                    specular,
-                    mirror,
-                    transmission,
-                    index_of_refraction,
-                    fresnel,
-                    roughness,
-                    texture,
-                    ..Material::default()
-                },
-                lights,
-                quality: Quality { max_depth, ..Quality::default() },
-            }
-        },
-    )
+    let drawn =
+        ((color(), color(), color(), color(), color()), fresnel, rough, texture, lights, 0..3u32, index);
+    drawn.prop_map(|(drawn, fresnel, roughness, texture, lights, max_depth, index_of_refraction)| {
+        let mut material = Material { index_of_refraction, fresnel, roughness, texture, ..black() };
+        colors(&mut material)
+            .into_iter()
+            .zip(<[Vec3; N_COLORS]>::from(drawn))
+            .for_each(|(color, drawn)| *color = drawn);
+        MaterialQuery { material, lights, quality: Quality { max_depth, ..Quality::default() } }
+    })
 }
 
 fn describe(query: &MaterialQuery) -> String {
-    let m = &query.material;
+    let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
+    let Material { index_of_refraction, fresnel, roughness, coat, texture, .. } = query.material;
+    let max_depth = query.quality.max_depth;
     let lights: Vec<String> = query.lights.iter().map(|light| light.radiance().paste()).collect();
+    let lights = lights.join(", ");
     format!(
-        "material_effects of ambient {}, diffuse {}, specular {}, mirror {}, transmission {}, index \
-         {},\nfresnel {:?}, roughness {}, coat {}, texture {:?}, max_depth {},\nunder lights of radiance [{}]",
-        m.ambient,
-        m.diffuse,
-        m.specular,
-        m.mirror,
-        m.transmission,
-        m.index_of_refraction,
-        m.fresnel,
-        m.roughness,
-        m.coat,
-        m.texture,
-        query.quality.max_depth,
-        lights.join(", ")
+        "material_effects of ambient {ambient}, diffuse {diffuse}, specular {specular}, mirror {mirror}, \
+         transmission {transmission}, index {index_of_refraction},\nfresnel {fresnel:?}, roughness {roughness}, \
+         coat {coat}, texture {texture:?}, max_depth {max_depth},\nunder lights of radiance [{lights}]"
     )
 }
 
