@@ -128,21 +128,6 @@ fn by_channel(query: &MaterialQuery) -> Vec<MaterialQuery> {
 const N_COLORS: usize = 5;
 const N_CHANNELS: usize = 3;
 
-/// The other materials whose answers are compared with the answer for a material.
-struct Others {
-    /// The material with each colour alone, with each channel alone, and its variants.
-    asked: Vec<MaterialQuery>,
-    /// The effects that the variants must need.
-    expected: Vec<MaterialEffects>,
-}
-
-impl Others {
-    fn of((query, yours): (&MaterialQuery, &MaterialEffects)) -> Others {
-        let (variants, expected): (Vec<_>, Vec<_>) = variants(query, yours).into_iter().unzip();
-        Others { asked: [by_color(query), by_channel(query), variants].concat(), expected }
-    }
-}
-
 /// The union of the answers: an effect is set if any answer sets it.
 fn together(answers: &[MaterialEffects]) -> MaterialEffects {
     let any = |said: fn(&MaterialEffects) -> bool| answers.iter().any(said);
@@ -221,8 +206,8 @@ fn material_mistakes(
     // Some effects follow from others, so the first wrong one decides.
     let mirror = !lights_differ && yours.mirror != expected.mirror;
     let transmission = !lights_differ && yours.transmission != expected.transmission;
-    let glossy = !lights_differ && !mirror && !transmission && yours.glossy != expected.glossy;
-    let texture = !lights_differ && !mirror && !transmission && yours.texture != expected.texture;
+    let same_rays = !lights_differ && !mirror && !transmission;
+    let mirror_alone = mirror && !transmission && shown;
     vec![
         (
             lights_differ && more && yours.lights.len() > expected.lights.len(),
@@ -234,22 +219,25 @@ fn material_mistakes(
              faint light",
         ),
         (!shown && (mirror || transmission), "with max_depth 0 a surface spawns no secondary rays"),
-        (mirror && !transmission && material.coat != 1.0 && shown, "a coat, which is not 1, reflects rays"),
+        (mirror_alone && material.coat != 1.0, "a coat, which is not 1, reflects rays"),
         (
-            mirror && !transmission && material.mirror == Vec3::ZERO && shown,
+            mirror_alone && material.mirror == Vec3::ZERO,
             "with fresnel, a material reflects if its transmission is not 0, and only then",
         ),
         (
-            mirror && !transmission && material.mirror != Vec3::ZERO && shown,
+            mirror_alone && material.mirror != Vec3::ZERO,
             "rays are reflected if some channel of mirror is not 0",
         ),
         (
             transmission && through && shown,
             "rays are refracted if some channel of transmission is not 0, for every index of refraction",
         ),
-        (glossy, "glossy is true if roughness is above 0 and the material reflects or refracts rays"),
         (
-            texture,
+            same_rays && yours.glossy != expected.glossy,
+            "glossy is true if roughness is above 0 and the material reflects or refracts rays",
+        ),
+        (
+            same_rays && yours.texture != expected.texture,
             "an image matters if diffuse or ambient, which it multiplies, is not 0: otherwise texture is \
              false",
         ),
@@ -317,26 +305,27 @@ pub(super) fn materials_take_what_they_show(trial: &Trial<'_>) -> CheckResult {
             .map_err(|broken| broken.explained_by(mistakes))
     }))?;
     trial.forall(1000, material_query(), |queries| {
-        let yours = trial.kit.material_effects(queries);
-        let others: Vec<Others> = queries.iter().zip(&yours).map(Others::of).collect();
-        let asked: Vec<MaterialQuery> = others.iter().flat_map(|others| others.asked.clone()).collect();
-        let mut answers = trial.kit.material_effects(&asked).into_iter();
-        let judge = |((query, yours), others): ((&MaterialQuery, &MaterialEffects), &Others)| {
-            let answers: Vec<MaterialEffects> = answers.by_ref().take(others.asked.len()).collect();
-            let (parts, variants) = answers.split_at(N_COLORS + N_CHANNELS);
-            let (colors, channels) = parts.split_at(N_COLORS);
-            compare_effects(
-                query,
-                yours,
-                &together(colors),
-                "the union of your answers for each of its colours",
-            )?;
-            compare_effects(query, yours, &together(channels), "the union of your answers for each channel")?;
-            let asked = &others.asked[N_COLORS + N_CHANNELS..];
-            asked.iter().zip(&others.expected).zip(variants).try_for_each(|((variant, expected), yours)| {
+        let ask = |queries: &[MaterialQuery]| trial.kit.material_effects(queries);
+        let yours = ask(queries);
+        let unions = |parts: fn(&MaterialQuery) -> Vec<MaterialQuery>, n_parts| -> Vec<MaterialEffects> {
+            let parts: Vec<MaterialQuery> = queries.iter().flat_map(parts).collect();
+            ask(&parts).chunks(n_parts).map(together).collect()
+        };
+        let (colors, channels) = (unions(by_color, N_COLORS), unions(by_channel, N_CHANNELS));
+        let variants: Vec<_> =
+            queries.iter().zip(&yours).map(|(query, yours)| variants(query, yours)).collect();
+        let asked: Vec<MaterialQuery> = variants.iter().flatten().map(|(query, _)| query.clone()).collect();
+        let mut answers = ask(&asked).into_iter();
+        let judge = |index: usize| {
+            let (query, yours, variants) = (&queries[index], &yours[index], &variants[index]);
+            let answers: Vec<MaterialEffects> = answers.by_ref().take(variants.len()).collect();
+            let of_colors = "the union of your answers for each of its colours";
+            compare_effects(query, yours, &colors[index], of_colors)?;
+            compare_effects(query, yours, &channels[index], "the union of your answers for each channel")?;
+            variants.iter().zip(&answers).try_for_each(|((variant, expected), yours)| {
                 compare_effects(variant, yours, expected, "what your answer for another material implies")
             })
         };
-        queries.iter().zip(&yours).zip(&others).map(judge).collect()
+        (0..queries.len()).map(judge).collect()
     })
 }
