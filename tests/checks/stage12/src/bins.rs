@@ -4,11 +4,11 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare_formulas;
 use checks::nasty;
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::BinsQuery;
-use raykata::wide::{BinGrid, Bins, BoxA, MAX_BINS, PrimitiveBox};
+use raykata::wide::{Bin, BinGrid, Bins, BoxA, MAX_BINS, PrimitiveBox};
 
 /// The ways in which the bin of a primitive is computed wrongly.
 #[derive(Clone, Copy, PartialEq)]
@@ -135,11 +135,18 @@ fn members(query: &BinsQuery, axis: usize, bin: usize, rounding: Rounding) -> Ve
     query.primitives.iter().filter(is_in).collect()
 }
 
+/// The smallest box around two boxes.
+pub(super) fn union(p: BoxA, q: BoxA) -> BoxA {
+    BoxA { low: p.low.min(q.low), high: p.high.max(q.high) }
+}
+
+fn box_of(primitive: &PrimitiveBox) -> BoxA {
+    BoxA { low: primitive.low(), high: primitive.high() }
+}
+
 /// The box around some primitives.
 fn around(members: &[&PrimitiveBox]) -> BoxA {
-    members
-        .iter()
-        .fold(BoxA::EMPTY, |all, one| BoxA { low: all.low.min(one.low()), high: all.high.max(one.high()) })
+    members.iter().map(|one| box_of(one)).fold(BoxA::EMPTY, union)
 }
 
 /// All bins by axis and number.
@@ -169,35 +176,35 @@ fn wrong_numbers(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
     mistakes
 }
 
-fn judge_counts(query: &BinsQuery, yours: &Bins) -> CheckResult {
+/// Compares a property of each bin with that of its primitives. `describe` is its text in a message.
+fn judge_bins<T: PartialEq>(
+    query: &BinsQuery,
+    yours: &Bins,
+    property: impl Fn(&Bin) -> T,
+    expected: impl Fn(&[&PrimitiveBox]) -> T,
+    describe: impl Fn(T) -> String,
+    source: &'static str,
+) -> CheckResult {
     for (axis, bin) in all_bins() {
-        let expected = members(query, axis, bin, Rounding::Right).len();
-        let count = yours.0[axis][bin].count as usize;
-        if count != expected {
-            let of = |n: usize| format!("{n} primitives in bin {bin} of axis {axis}");
-            return Err(Broken::with_texts(input(query), of(count), of(expected), "counted").explained_by([]));
+        let mine = property(&yours.0[axis][bin]);
+        let expected = expected(&members(query, axis, bin, Rounding::Right));
+        if mine != expected {
+            let [mine, expected] =
+                [mine, expected].map(|one| format!("{} in bin {bin} of axis {axis}", describe(one)));
+            return Err(Broken::with_texts(input(query), mine, expected, source).explained_by([]));
         }
     }
     Ok(())
 }
 
+fn judge_counts(query: &BinsQuery, yours: &Bins) -> CheckResult {
+    let describe = |n| format!("{n} primitives");
+    judge_bins(query, yours, |bin| bin.count as usize, |members| members.len(), describe, "counted")
+}
+
 fn judge_boxes(query: &BinsQuery, yours: &Bins) -> CheckResult {
-    for (axis, bin) in all_bins() {
-        let (expected, mine) =
-            (around(&members(query, axis, bin, Rounding::Right)), yours.0[axis][bin].bounds);
-        if mine != expected {
-            let of =
-                |bounds: BoxA| format!("{:?}..{:?} in bin {bin} of axis {axis}", bounds.low, bounds.high);
-            return Err(Broken::with_texts(
-                input(query),
-                of(mine),
-                of(expected),
-                "the box around its primitives",
-            )
-            .explained_by([]));
-        }
-    }
-    Ok(())
+    let describe = |bounds: BoxA| format!("{:?}..{:?}", bounds.low, bounds.high);
+    judge_bins(query, yours, |bin| bin.bounds, around, describe, "the box around its primitives")
 }
 
 /// The mistakes of a bin's box that give exactly these boxes.
@@ -207,17 +214,12 @@ fn wrong_boxes(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
             yours.0[axis][bin].bounds == bounds(&members(query, axis, bin, Rounding::Right))
         })
     };
-    let last = |members: &[&PrimitiveBox]| members.last().map_or(BoxA::EMPTY, |last| around(&[last]));
+    let point = |at: Vec3A| BoxA { low: at, high: at };
+    let last = |members: &[&PrimitiveBox]| members.last().map_or(BoxA::EMPTY, |last| box_of(last));
     let centroids = |members: &[&PrimitiveBox]| {
-        members.iter().fold(BoxA::EMPTY, |all, one| {
-            let at = one.twice_centroid();
-            BoxA { low: all.low.min(at), high: all.high.max(at) }
-        })
+        members.iter().map(|one| point(one.twice_centroid())).fold(BoxA::EMPTY, union)
     };
-    let from_origin = |members: &[&PrimitiveBox]| {
-        let all = around(members);
-        BoxA { low: all.low.min(glam::Vec3A::ZERO), high: all.high.max(glam::Vec3A::ZERO) }
-    };
+    let from_origin = |members: &[&PrimitiveBox]| union(around(members), point(Vec3A::ZERO));
     vec![
         (gives(&last), "the box of a bin is that of its last primitive: take the union"),
         (gives(&centroids), "the box of a bin is that of the centroids: take the boxes of the primitives"),

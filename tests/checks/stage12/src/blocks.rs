@@ -87,9 +87,13 @@ fn judge_hits(four: &Four, mask: u32) -> CheckResult {
     Ok(())
 }
 
+/// The blocks that frames ask about, with their queries.
+fn queries(drawn: Vec<Four>) -> (Vec<Four>, Vec<BlockQuery>) {
+    drawn.into_iter().filter_map(|four| four.query().map(|query| (four, query))).unzip()
+}
+
 fn judge_all(trial: &Trial<'_>, drawn: Vec<Four>) -> CheckResult {
-    let (drawn, queries): (Vec<Four>, Vec<BlockQuery>) =
-        drawn.into_iter().filter_map(|four| four.query().map(|query| (four, query))).unzip();
+    let (drawn, queries) = queries(drawn);
     all_hold(compare(&drawn, trial.kit.may_hit(&queries), judge_hits))
 }
 
@@ -209,8 +213,7 @@ pub(super) fn may_hit_keeps_lanes_without_a_triangle(trial: &Trial<'_>) -> Check
         triangles.insert(0, Triangle { a: Vec3::splat(4.0 * LARGEST), b: Vec3::X, c: Vec3::Y });
         drawn.push(Four { triangles, ray: Ray::new(4.0 * random.direction(), random.direction()) });
     }
-    let (drawn, queries): (Vec<Four>, Vec<BlockQuery>) =
-        drawn.into_iter().filter_map(|four| four.query().map(|query| (four, query))).unzip();
+    let (drawn, queries) = queries(drawn);
     let without =
         |query: &BlockQuery| (0..BLOCK).filter(|&lane| query.block.size[lane].is_nan()).collect::<Vec<_>>();
     let masks = trial.kit.may_hit(&queries);

@@ -2,7 +2,7 @@
 
 use super::bars::sweep_cost;
 use super::scenes::scenes;
-use super::trees::{boxes, cost, depth, fault};
+use super::trees::{boxes, broken_by, cost, depth, fault};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
@@ -26,13 +26,7 @@ pub(super) fn describe(boxes: &[Aabb]) -> String {
 
 /// Judges a tree by its layout and its boxes.
 pub(super) fn judge_tree(boxes: &[Aabb], tree: &FlatTree) -> CheckResult {
-    match fault(tree, boxes) {
-        None => Ok(()),
-        Some((yours, expected, cause)) => {
-            let broken = Broken::with_texts(describe(boxes), yours, expected, MISSING);
-            Err(broken.explained_by(cause.map(|text| (true, text))))
-        }
-    }
+    fault(tree, boxes).map_or(Ok(()), |fault| Err(broken_by(fault, describe(boxes), MISSING)))
 }
 
 pub(super) fn build_binned_holds_every_primitive_once(trial: &Trial<'_>) -> CheckResult {
@@ -232,18 +226,22 @@ pub(super) fn build_binned_costs_little_more_than_a_sweep(trial: &Trial<'_>) -> 
     Ok(())
 }
 
-/// Builds a tree over boxes on which a builder may never end.
-fn build_of(trial: &Trial<'_>, what: &str, boxes: Vec<Aabb>) -> CheckResult {
-    let built = kit_error::catch(|| trial.kit.build_binned(std::slice::from_ref(&boxes)).remove(0));
-    let input = format!("build_binned of {what}");
-    let tree = match built {
-        Ok(tree) => tree,
+/// The tree over boxes on which a builder may panic.
+fn build(trial: &Trial<'_>, boxes: &[Aabb], input: String) -> Result<FlatTree, Broken> {
+    match kit_error::catch(|| trial.kit.build_binned(&[boxes.to_vec()]).remove(0)) {
+        Ok(tree) => Ok(tree),
         Err(KitError::Panicked { message, place }) => {
             let panic = format!("a panic at {place}: {message}");
-            return Err(Broken::with_texts(input, panic, "a tree", "the definition").explained_by([]));
+            Err(Broken::with_texts(input, panic, "a tree", "the definition").explained_by([]))
         }
         Err(error) => kit_error::unwind(error),
-    };
+    }
+}
+
+/// Builds a tree over boxes on which a builder may never end.
+fn build_of(trial: &Trial<'_>, what: &str, boxes: Vec<Aabb>) -> CheckResult {
+    let input = format!("build_binned of {what}");
+    let tree = build(trial, &boxes, input.clone())?;
     judge_tree(&boxes, &tree).map_err(|broken| Broken { input: input.clone(), ..broken })?;
     let small = tree.nodes.iter().filter(|node| node.is_leaf()).count();
     // Each level below DEEPEST_SPLIT halves the primitives, down to a leaf of BLOCK.
@@ -310,17 +308,7 @@ pub(super) fn build_binned_isolates_what_is_not_a_number(trial: &Trial<'_>) -> C
     }
     boxes[50] = Aabb::EMPTY;
     boxes[51] = Aabb::new(Vec3::NAN, Vec3::NAN);
-    let judge = |boxes: &[Aabb]| {
-        let answer = kit_error::catch(|| trial.kit.build_binned(&[boxes.to_vec()]).remove(0));
-        match answer {
-            Ok(tree) => judge_tight(boxes, &tree),
-            Err(KitError::Panicked { message, place }) => {
-                let panic = format!("a panic at {place}: {message}");
-                Err(Broken::with_texts(describe(boxes), panic, "a tree", "the definition").explained_by([]))
-            }
-            Err(error) => kit_error::unwind(error),
-        }
-    };
+    let judge = |boxes: &[Aabb]| judge_tight(boxes, &build(trial, boxes, describe(boxes))?);
     let outcome = judge(&boxes);
     // The same boxes without NaN, to prove that the NaN is the cause.
     let is_cause = outcome.is_err() && judge(&ordinary).is_ok();

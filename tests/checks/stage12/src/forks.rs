@@ -2,7 +2,7 @@
 
 use super::builds::judge_tree;
 use super::scenes::scenes;
-use super::trees::fault;
+use super::trees::{broken_by, fault};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use oracle::splitmix::Random;
@@ -112,10 +112,8 @@ struct Forked {
 fn build_many(trial: &Trial<'_>, n: usize) -> Result<Forked, Broken> {
     let boxes = cloud(trial.seed, n);
     let ForkedTree { tree, forks } = trial.kit.build_parallel(std::slice::from_ref(&boxes)).remove(0);
-    if let Some((yours, expected, cause)) = fault(&tree, &boxes) {
-        let input = format!("build_parallel of {n} boxes");
-        let broken = Broken::with_texts(input, yours, expected, "the layout of FlatTree");
-        return Err(broken.explained_by(cause.map(|text| (true, text))));
+    if let Some(fault) = fault(&tree, &boxes) {
+        return Err(broken_by(fault, format!("build_parallel of {n} boxes"), "the layout of FlatTree"));
     }
     Ok(Forked { ranges: ranges(&tree), tree, forks })
 }

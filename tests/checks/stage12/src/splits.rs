@@ -1,5 +1,6 @@
 //! `block_cost` and `cheapest_split`.
 
+use super::bins::{n_bins, union};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::compare_formulas;
@@ -50,8 +51,7 @@ fn bins_of(placed: &[Placed], n_bins: u32) -> BinSplitQuery {
     for (bounds, places) in placed {
         for (axis, place) in places.iter().enumerate() {
             let bin = &mut bins.0[axis][usize::from(*place) % n_bins as usize];
-            bin.bounds.low = bin.bounds.low.min(bounds.min.into());
-            bin.bounds.high = bin.bounds.high.max(bounds.max.into());
+            bin.bounds = union(bin.bounds, BoxA { low: bounds.min.into(), high: bounds.max.into() });
             bin.count += 1;
         }
     }
@@ -67,18 +67,12 @@ fn placed() -> impl Strategy<Value = Placed> + Clone {
 }
 
 fn queries() -> impl Strategy<Value = BinSplitQuery> + Clone {
-    (prop::collection::vec(placed(), 0..30), super::bins::n_bins())
-        .prop_map(|(placed, n_bins)| bins_of(&placed, n_bins))
+    (prop::collection::vec(placed(), 0..30), n_bins()).prop_map(|(placed, n_bins)| bins_of(&placed, n_bins))
 }
 
 /// One side of a split: the box around some bins, and the number of their primitives.
 fn side(bins: &[Bin]) -> (BoxA, u32) {
-    let join = |(bounds, count): (BoxA, u32), bin: &Bin| {
-        let low = bounds.low.min(bin.bounds.low);
-        let high = bounds.high.max(bin.bounds.high);
-        (BoxA { low, high }, count + bin.count)
-    };
-    bins.iter().fold((BoxA::EMPTY, 0), join)
+    (bins.iter().map(|bin| bin.bounds).fold(BoxA::EMPTY, union), bins.iter().map(|bin| bin.count).sum())
 }
 
 /// Half of the surface area in double precision; 0 for the empty box.
@@ -208,11 +202,13 @@ fn judge_choice(query: &BinSplitQuery, yours: &Option<BinSplit>) -> CheckResult 
     Err(Broken::with_texts(input(query), describe(yours), expected, "each split").explained_by(mistakes))
 }
 
+fn judge_choices(trial: &Trial<'_>, queries: &[BinSplitQuery]) -> Vec<CheckResult> {
+    let answers = trial.kit.cheapest_split(queries);
+    compare_formulas(queries, answers, |query, yours| judge_choice(query, &yours), mistakes)
+}
+
 pub(super) fn cheapest_split_is_the_cheapest(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(250, queries(), |queries| {
-        let answers = trial.kit.cheapest_split(queries);
-        compare_formulas(queries, answers, |query, yours| judge_choice(query, &yours), mistakes)
-    })
+    trial.forall(250, queries(), |queries| judge_choices(trial, queries))
 }
 
 pub(super) fn cheapest_split_returns_its_cost(trial: &Trial<'_>) -> CheckResult {
@@ -274,8 +270,5 @@ pub(super) fn cheapest_split_leaves_no_side_empty(trial: &Trial<'_>) -> CheckRes
     let point = Aabb::new(Vec3::ONE, Vec3::ONE);
     let apart = bins_of(&[(point, [0; 3]), (point, [15; 3])], 16);
     let together = bins_of(&[(point, [7; 3]), (point, [7; 3])], 16);
-    trial.forall_and(&[apart, together], 200, few, |queries| {
-        let answers = trial.kit.cheapest_split(queries);
-        compare_formulas(queries, answers, |query, yours| judge_choice(query, &yours), mistakes)
-    })
+    trial.forall_and(&[apart, together], 200, few, |queries| judge_choices(trial, queries))
 }

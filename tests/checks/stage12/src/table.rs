@@ -98,24 +98,9 @@ fn lines(kit: &dyn Kit, boxes: &[Aabb], bvh: &Bvh) -> String {
 
 pub(super) fn table_of_bins_and_trees(trial: &Trial<'_>) -> CheckResult {
     // Boxes in a row with gaps of different widths, and of different sizes, so that the cheapest split is the only one.
-    let public: Vec<(i32, i32)> = vec![
-        (2, 1),
-        (9, 4),
-        (3, 2),
-        (25, 7),
-        (4, 1),
-        (1, 5),
-        (13, 2),
-        (6, 3),
-        (31, 6),
-        (5, 2),
-        (8, 1),
-        (2, 4),
-        (17, 3),
-        (3, 8),
-        (11, 2),
-        (7, 5),
-    ];
+    let gaps = [2, 9, 3, 25, 4, 1, 13, 6, 31, 5, 8, 2, 17, 3, 11, 7];
+    let sizes = [1, 4, 2, 7, 1, 5, 2, 3, 6, 2, 1, 4, 3, 8, 2, 5];
+    let public = gaps.into_iter().zip(sizes).collect();
     let hidden = prop::collection::vec((1..=31i32, 1..=8i32), 16);
     let drawn = trial.composed(public, hidden);
     let mut x = 0.0;

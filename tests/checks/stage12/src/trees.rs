@@ -1,5 +1,6 @@
 //! Flat trees: trees whose shape is drawn, and the faults and the cost of a tree.
 
+use checks::broken::Broken;
 use checks::tree::{around, half_area};
 use glam::Vec3;
 use proptest::prelude::*;
@@ -79,6 +80,10 @@ pub(super) fn drawn_trees(most: usize) -> impl Strategy<Value = (Vec<Aabb>, Flat
 
 /// What is wrong with a tree: yours, expected, and the text of a diagnosis if the fault is itself the cause.
 pub(super) type Fault = (String, String, Option<&'static str>);
+
+pub(super) fn broken_by((yours, expected, cause): Fault, input: String, source: &'static str) -> Broken {
+    Broken::with_texts(input, yours, expected, source).explained_by(cause.map(|text| (true, text)))
+}
 
 pub(super) const LEFT_OUT: &str = "a primitive was left out, or is in two leaves: both sides of a split together \
                                    must hold each exactly once";
