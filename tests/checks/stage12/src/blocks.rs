@@ -98,17 +98,16 @@ fn judge_all(trial: &Trial<'_>, drawn: Vec<Four>) -> CheckResult {
 }
 
 pub(super) fn may_hit_keeps_what_is_hit(trial: &Trial<'_>) -> CheckResult {
-    for (index, distribution) in DISTRIBUTIONS.iter().enumerate() {
-        let mut random = Random::new(trial.seed, 30 + index as u64);
+    DISTRIBUTIONS.iter().zip(30..).try_for_each(|(distribution, stream)| {
+        let mut random = Random::new(trial.seed, stream);
         let drawn = (0..250).map(|_| {
             let (ray, first) = (distribution.draw)(&mut random);
-            let triangles =
-                [vec![first], (0..3).map(|_| (distribution.draw)(&mut random).1).collect()].concat();
+            let others = (0..3).map(|_| (distribution.draw)(&mut random).1);
+            let triangles = std::iter::once(first).chain(others).collect();
             Four { triangles, ray: Ray { t_min: ray.t_min.max(0.0), ..ray } }
         });
-        judge_all(trial, drawn.collect())?;
-    }
-    Ok(())
+        judge_all(trial, drawn.collect())
+    })
 }
 
 /// A ray whose range begins one float before its hit, or ends one float behind it; `None` without a hit.

@@ -147,19 +147,16 @@ fn mistakes(query: &BinSplitQuery, yours: &Option<BinSplit>) -> Vec<(bool, &'sta
         Some(yours) => is_cheapest(query, yours, cost, may),
         None => !splits(query).iter().any(|(split, _)| may(split)),
     };
-    let mut mistakes: Vec<_> = (0..3)
-        .map(|axis| {
-            let text = ["only the axis x is tried", "only the axis y is tried", "only the axis z is tried"];
-            (is_of(right_cost, &|split| split.axis == axis), text[axis as usize])
-        })
-        .collect();
     let last = query.n_bins - 1;
-    mistakes.push((is_of(right_cost, &|split| split.bin > 1), "the split behind the first bin is not tried"));
-    mistakes
-        .push((is_of(right_cost, &|split| split.bin < last), "the split before the last bin is not tried"));
-    for (cost, text) in WRONG_COSTS {
-        mistakes.push((is_of(cost, &|_| true), text));
-    }
+    let of_fewer = |may: &dyn Fn(&BinSplit) -> bool| is_of(right_cost, may);
+    let mut mistakes = vec![
+        (of_fewer(&|split| split.axis == 0), "only the axis x is tried"),
+        (of_fewer(&|split| split.axis == 1), "only the axis y is tried"),
+        (of_fewer(&|split| split.axis == 2), "only the axis z is tried"),
+        (of_fewer(&|split| split.bin > 1), "the split behind the first bin is not tried"),
+        (of_fewer(&|split| split.bin < last), "the split before the last bin is not tried"),
+    ];
+    mistakes.extend(WRONG_COSTS.map(|(cost, text)| (is_of(cost, &|_| true), text)));
     mistakes
 }
 

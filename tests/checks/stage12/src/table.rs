@@ -67,21 +67,15 @@ fn children_of_root(wide: &WideTree, text: &mut String) {
                     ids.extend(blocks.take(count as usize).copied());
                 }
                 Some(ChildContents::Inner(node)) => {
-                    let node = wide.nodes.get(node as usize);
-                    waiting.extend(
-                        node.into_iter()
-                            .flat_map(|node| node.children[..node.n_children() as usize].to_vec()),
-                    );
+                    let Some(node) = wide.nodes.get(node as usize) else { continue };
+                    waiting.extend_from_slice(&node.children[..node.n_children() as usize]);
                 }
             }
         }
         ids.sort_unstable();
         let bounds = root.child_bounds(place);
-        lines.push(format!(
-            "child of the root  {} to {}  {ids:?}",
-            digits(bounds.min.x, 2),
-            digits(bounds.max.x, 2)
-        ));
+        let (low, high) = (digits(bounds.min.x, 2), digits(bounds.max.x, 2));
+        lines.push(format!("child of the root  {low} to {high}  {ids:?}"));
     }
     lines.sort_unstable();
     lines.iter().for_each(|line| _ = writeln!(text, "{line}"));
