@@ -2,7 +2,7 @@
 
 use super::bars::sweep_cost;
 use super::scenes::scenes;
-use super::trees::{boxes, broken_by, cost, depth, fault};
+use super::trees::{boxes, broken_by, cost, depth, fault, from_leaves};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::bvh::DEEPEST_SPLIT;
 use raykata::kit::{KitError, kit_error};
-use raykata::wide::{BLOCK, FlatTree};
+use raykata::wide::{BLOCK, FlatNode, FlatTree};
 
 const MISSING: &str = "the nodes of a tree without faults";
 
@@ -37,18 +37,11 @@ pub(super) fn build_binned_holds_every_primitive_once(trial: &Trial<'_>) -> Chec
 
 /// The boxes below each node of a tree without faults: the smallest box around the boxes of its primitives.
 fn tight(boxes: &[Aabb], tree: &FlatTree) -> Vec<Aabb> {
-    let mut tight = vec![Aabb::EMPTY; tree.nodes.len()];
-    // Children come after their parents.
-    for (index, node) in tree.nodes.iter().enumerate().rev() {
-        let first = node.first as usize;
-        tight[index] = if node.is_leaf() {
-            let ids = &tree.order[first..first + node.count as usize];
-            around(ids.iter().map(|&id| &boxes[id as usize]).filter(|bounds| !bounds.is_empty()))
-        } else {
-            around([&tight[first], &tight[first + 1]])
-        };
-    }
-    tight
+    let leaf = |_, node: &FlatNode| {
+        let ids = &tree.order[node.first as usize..(node.first + node.count) as usize];
+        around(ids.iter().map(|&id| &boxes[id as usize]).filter(|bounds| !bounds.is_empty()))
+    };
+    from_leaves(tree, leaf, |_, left, right| around([&left, &right]))
 }
 
 fn judge_tight(boxes: &[Aabb], tree: &FlatTree) -> CheckResult {

@@ -4,6 +4,7 @@ use super::bins::{n_bins, union};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::compare_formulas;
+use checks::tree::half_area;
 use glam::{Vec3, Vec3A};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
@@ -77,9 +78,7 @@ fn side(bins: &[Bin]) -> (BoxA, u32) {
 
 /// Half of the surface area in double precision; 0 for the empty box.
 fn area(bounds: &BoxA) -> f64 {
-    let size = (bounds.high - bounds.low).max(Vec3A::ZERO);
-    let [x, y, z] = size.to_array().map(f64::from);
-    x * y + y * z + z * x
+    half_area(&Aabb::new(bounds.low.into(), bounds.high.into()))
 }
 
 fn volume(bounds: &BoxA) -> f64 {

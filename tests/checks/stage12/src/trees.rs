@@ -156,17 +156,31 @@ pub(super) fn fault(tree: &FlatTree, boxes: &[Aabb]) -> Option<Fault> {
     None
 }
 
+/// A value for each node of a tree without faults, from the leaves up. `join` computes it from the values of both children.
+/// Both functions also get the index of the node.
+pub(super) fn from_leaves<T: Copy>(
+    tree: &FlatTree,
+    leaf: impl Fn(usize, &FlatNode) -> T,
+    join: impl Fn(usize, T, T) -> T,
+) -> Vec<T> {
+    // Children come after their parents, so the values are computed, and stored, from the last node to the first.
+    let last = tree.nodes.len().saturating_sub(1);
+    let mut values: Vec<T> = Vec::new();
+    for (index, node) in tree.nodes.iter().enumerate().rev() {
+        let of = |child: u32| values[last - child as usize];
+        values.push(if node.is_leaf() {
+            leaf(index, node)
+        } else {
+            join(index, of(node.first), of(node.first + 1))
+        });
+    }
+    values.reverse();
+    values
+}
+
 /// The number of levels of a tree without faults.
 pub(super) fn depth(tree: &FlatTree) -> usize {
-    let (mut deepest, mut waiting) = (0, vec![(0usize, 1)]);
-    while let Some((index, level)) = waiting.pop() {
-        let Some(node) = tree.nodes.get(index) else { continue };
-        deepest = deepest.max(level);
-        if !node.is_leaf() {
-            waiting.extend([(node.first as usize, level + 1), (node.first as usize + 1, level + 1)]);
-        }
-    }
-    deepest
+    from_leaves(tree, |_, _| 1, |_, left, right| 1 + left.max(right)).first().copied().unwrap_or(0)
 }
 
 /// The cost of a tree without faults by the surface area heuristic of this stage, for a ray that enters its root.

@@ -1,6 +1,6 @@
 //! `collapse`.
 
-use super::trees::{Fault, broken_by, drawn_tree, drawn_trees};
+use super::trees::{Fault, broken_by, drawn_tree, drawn_trees, from_leaves};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::{compare, compare_formulas};
@@ -22,11 +22,7 @@ fn parents(tree: &FlatTree) -> Vec<usize> {
 
 /// For each node of a flat tree the number of leaves below it, or 1 for a leaf.
 fn n_leaves(tree: &FlatTree) -> Vec<usize> {
-    let mut n = vec![1; tree.nodes.len()];
-    for (index, node) in tree.nodes.iter().enumerate().rev().filter(|(_, node)| !node.is_leaf()) {
-        n[index] = n[node.first as usize] + n[node.first as usize + 1];
-    }
-    n
+    from_leaves(tree, |_, _| 1, |_, left, right| left + right)
 }
 
 /// The nodes of the flat tree that the children of each wide node stand for.
@@ -266,19 +262,17 @@ pub(super) fn collapse_opens_the_largest_child(trial: &Trial<'_>) -> CheckResult
     trial.forall(200, trees_only(120), |trees| {
         let judge = |tree: &FlatTree, wide: WideTree| judge_opened(tree, &wide);
         let formulas = |tree: &FlatTree, wide: &WideTree| {
-            let Ok(meaning) = meaning(tree, wide) else {
-                return WRONG_RULES.map(|(_, text)| (false, text)).to_vec();
+            let (meaning, parents) = (meaning(tree, wide).ok(), parents(tree));
+            let follows = |rule: Opens, children: &Vec<usize>| {
+                let mut sorted = children.clone();
+                sorted.sort_unstable();
+                let top = common(&parents, children).unwrap_or(0);
+                tree.nodes[top].is_leaf() || sorted == opened_by(tree, top, rule)
             };
-            let parents = parents(tree);
-            let follows = |rule: Opens| {
-                meaning.iter().all(|children| {
-                    let mut sorted = children.clone();
-                    sorted.sort_unstable();
-                    let top = common(&parents, children).unwrap_or(0);
-                    tree.nodes[top].is_leaf() || sorted == opened_by(tree, top, rule)
-                })
-            };
-            WRONG_RULES.map(|(rule, text)| (follows(rule), text)).to_vec()
+            let gives = |rule, all: &Meaning| all.iter().all(|children| follows(rule, children));
+            WRONG_RULES
+                .map(|(rule, text)| (meaning.as_ref().is_some_and(|all| gives(rule, all)), text))
+                .to_vec()
         };
         compare_formulas(trees, trial.kit.collapse(trees), judge, formulas)
     })?;
