@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare_formulas;
+use checks::judge::{compare, compare_formulas};
 use checks::nasty;
 use glam::{Vec3, Vec3A};
 use proptest::prelude::*;
@@ -253,9 +253,7 @@ pub(super) fn fill_bins_takes_special_numbers(trial: &Trial<'_>) -> CheckResult 
     // First test one ordinary primitive, so that no panic of a special one hides what is wrong.
     let one = primitives(&[Aabb::new(Vec3::ZERO, Vec3::ONE)]);
     let simple = [BinsQuery { grid: grid_over(&one, 4), primitives: one }];
-    all_hold(
-        simple.iter().zip(ask(trial, &simple)).map(|(query, yours)| judge_counts(query, &yours)).collect(),
-    )?;
+    all_hold(compare(&simple, ask(trial, &simple), |query, yours| judge_counts(query, &yours)))?;
     trial.forall(400, special(), |queries| {
         let judge = |query: &BinsQuery, yours: Bins| {
             judge_counts(query, &yours).and_then(|()| judge_boxes(query, &yours))

@@ -15,8 +15,6 @@ use raykata::bvh::DEEPEST_SPLIT;
 use raykata::kit::{KitError, kit_error};
 use raykata::wide::{BLOCK, FlatNode, FlatTree};
 
-const MISSING: &str = "the nodes of a tree without faults";
-
 pub(super) fn describe(boxes: &[Aabb]) -> String {
     let shown: Vec<String> =
         boxes.iter().take(6).map(|b| format!("{:?}..{:?}", b.min.to_array(), b.max.to_array())).collect();
@@ -26,7 +24,8 @@ pub(super) fn describe(boxes: &[Aabb]) -> String {
 
 /// Judges a tree by its layout and its boxes.
 pub(super) fn judge_tree(boxes: &[Aabb], tree: &FlatTree) -> CheckResult {
-    fault(tree, boxes).map_or(Ok(()), |fault| Err(broken_by(fault, describe(boxes), MISSING)))
+    fault(tree, boxes)
+        .map_or(Ok(()), |fault| Err(broken_by(fault, describe(boxes), "the nodes of a tree without faults")))
 }
 
 pub(super) fn build_binned_holds_every_primitive_once(trial: &Trial<'_>) -> CheckResult {
@@ -196,11 +195,9 @@ pub(super) fn build_binned_costs_little_more_than_a_sweep(trial: &Trial<'_>) -> 
         let yours = cost(&tree);
         if yours > 1.05 * sweep {
             let input = format!("build_binned of {} boxes: {name}", boxes.len());
-            let (yours, most) = (
-                format!("cost {yours:.3}"),
-                format!("at most {:.3}, 1.05 times that of a sweep", 1.05 * sweep),
-            );
-            return Err(Broken::with_texts(input, yours, most, "the surface area heuristic").explained_by([]));
+            let most = format!("at most {:.3}, 1.05 times that of a sweep", 1.05 * sweep);
+            let source = "the surface area heuristic";
+            return Err(Broken::with_texts(input, format!("cost {yours:.3}"), most, source).explained_by([]));
         }
     }
     Ok(())

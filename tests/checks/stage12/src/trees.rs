@@ -85,11 +85,11 @@ pub(super) fn broken_by((yours, expected, cause): Fault, input: String, source: 
     Broken::with_texts(input, yours, expected, source).explained_by(cause.map(|text| (true, text)))
 }
 
-pub(super) const LEFT_OUT: &str = "a primitive was left out, or is in two leaves: both sides of a split together \
+const LEFT_OUT: &str = "a primitive was left out, or is in two leaves: both sides of a split together \
                                    must hold each exactly once";
-pub(super) const NOT_DEPTH_FIRST: &str = "the nodes are not depth first: append both children of a node, then all \
+const NOT_DEPTH_FIRST: &str = "the nodes are not depth first: append both children of a node, then all \
                                           nodes below the first, then all below the second";
-pub(super) const TOO_LARGE: &str =
+const TOO_LARGE: &str =
     "a leaf holds more than MAX_LEAF primitives: only a node of at most MAX_LEAF may become a leaf";
 
 /// The first fault of a tree that a builder made over `boxes`.

@@ -154,18 +154,13 @@ type Parts = Vec<(HitsQuery, u64)>;
 
 /// The table in parts: for each row one hit alone, and one sample of each light alone, each with its number in the row.
 fn parts(query: &HitsQuery) -> Parts {
-    let mut parts = Vec::new();
-    for MaterialHits { material, hits, in_front } in &query.hits {
-        let alone =
-            |hits, in_front| HitsQuery { hits: vec![row(*material, hits, in_front)], ..query.clone() };
-        parts.push((alone(1, [0, 0, 0]), *hits));
-        for (light, &places) in in_front.iter().enumerate() {
-            let mut one = [0, 0, 0];
-            one[light] = 1;
-            parts.push((alone(0, one), places));
-        }
-    }
-    parts
+    let singles = [(1, [0, 0, 0]), (0, [1, 0, 0]), (0, [0, 1, 0]), (0, [0, 0, 1])];
+    let of_row = |MaterialHits { material, hits, in_front }: &MaterialHits| {
+        let numbers = std::iter::once(*hits).chain(in_front.clone());
+        let alone = singles.map(|(hits, in_front)| vec![row(*material, hits, in_front)]);
+        alone.into_iter().map(|hits| HitsQuery { hits, ..query.clone() }).zip(numbers).collect::<Parts>()
+    };
+    query.hits.iter().flat_map(of_row).collect()
 }
 
 /// Checks known counts: the fixed table, single hits and single light samples. All other tables must be sums of those.

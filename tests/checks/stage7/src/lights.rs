@@ -3,7 +3,7 @@
 use super::scenes::{ONE_SAMPLE, light, sphere_light};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare_formulas;
+use checks::judge::{compare, compare_formulas};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::effects::LightEffects;
@@ -148,15 +148,13 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> CheckResult {
     all_hold(compare_formulas(&cases, answers, judge, light_mistakes))?;
     trial.forall(200, drawn_lights(), |drawn| {
         let queries: Vec<LightQuery> = drawn.iter().map(|(query, _)| query.clone()).collect();
-        let answers = drawn.iter().zip(trial.kit.light_effects(&queries));
-        let judge = |((query, expected), yours): (&(LightQuery, LightEffects), LightEffects)| {
+        compare(drawn, trial.kit.light_effects(&queries), |(query, expected), yours| {
             if yours == *expected {
                 return Ok(());
             }
             let input = format!("light_effects of {query:?}");
             Err(Broken::new(input, yours, *expected, "the definition").explained_by([]))
-        };
-        answers.map(judge).collect()
+        })
     })
 }
 

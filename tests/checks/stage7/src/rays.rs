@@ -72,15 +72,10 @@ fn judge(trial: &Trial<'_>, BoundedScene { what, query, expected, wrong }: Bound
         Ok(yours) => Err(Broken::new(input, yours, expected, "counted by hand")
             .explained_by(wrong.into_iter().map(|(counts, text)| (counts == yours, text)))),
         Err(KitError::Panicked { message, place }) => {
-            let overflow = message.contains("overflow");
-            let broken = Broken::with_texts(
-                input,
-                format!("a panic at {place}: {message}"),
-                format!("{expected:?}"),
-                "counted by hand",
-            );
+            let yours = format!("a panic at {place}: {message}");
+            let broken = Broken::with_texts(input, yours, format!("{expected:?}"), "counted by hand");
             Err(broken.explained_by([(
-                overflow,
+                message.contains("overflow"),
                 "a number overflows: count in u64, with saturating_add and saturating_mul",
             )]))
         }
