@@ -104,8 +104,8 @@ pub(super) fn what_nothing_lights_needs_nothing(trial: &Trial<'_>) -> CheckResul
     };
     let sky = |scene: &mut Scene| scene.background = Background::Color(brightness * grey);
     let add_emitter = |scene: &mut Scene, node: Option<usize>| {
-        let [diffuse, ambient] = [Vec3::ZERO; 2];
-        let emitter = Material { diffuse, ambient, emission: brightness * grey, ..Material::default() };
+        let emission = brightness * grey;
+        let emitter = Material { diffuse: Vec3::ZERO, ambient: Vec3::ZERO, emission, ..Material::default() };
         add_material(scene, "emitter", emitter);
         node.into_iter().for_each(|node| scene.nodes[node].material = Some(2));
     };
