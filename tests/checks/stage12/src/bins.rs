@@ -8,7 +8,7 @@ use glam::{Vec3, Vec3A};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::BinsQuery;
-use raykata::wide::{Bin, BinGrid, Bins, BoxA, MAX_BINS, PrimitiveBox};
+use raykata::wide::{BinGrid, Bins, BoxA, MAX_BINS, PrimitiveBox};
 
 /// The ways in which the bin of a primitive is computed wrongly.
 #[derive(Clone, Copy, PartialEq)]
@@ -176,35 +176,29 @@ fn wrong_numbers(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
     mistakes
 }
 
-/// Compares a property of each bin with that of its primitives. `describe` is its text in a message.
-fn judge_bins<T: PartialEq>(
-    query: &BinsQuery,
-    yours: &Bins,
-    property: impl Fn(&Bin) -> T,
-    expected: impl Fn(&[&PrimitiveBox]) -> T,
-    describe: impl Fn(T) -> String,
-    source: &'static str,
-) -> CheckResult {
+fn judge_counts(query: &BinsQuery, yours: &Bins) -> CheckResult {
     for (axis, bin) in all_bins() {
-        let mine = property(&yours.0[axis][bin]);
-        let expected = expected(&members(query, axis, bin, Rounding::Right));
-        if mine != expected {
-            let [mine, expected] =
-                [mine, expected].map(|one| format!("{} in bin {bin} of axis {axis}", describe(one)));
-            return Err(Broken::with_texts(input(query), mine, expected, source).explained_by([]));
+        let expected = members(query, axis, bin, Rounding::Right).len();
+        let count = yours.0[axis][bin].count as usize;
+        if count != expected {
+            let of = |n: usize| format!("{n} primitives in bin {bin} of axis {axis}");
+            return Err(Broken::with_texts(input(query), of(count), of(expected), "counted").explained_by([]));
         }
     }
     Ok(())
 }
 
-fn judge_counts(query: &BinsQuery, yours: &Bins) -> CheckResult {
-    let describe = |n| format!("{n} primitives");
-    judge_bins(query, yours, |bin| bin.count as usize, |members| members.len(), describe, "counted")
-}
-
 fn judge_boxes(query: &BinsQuery, yours: &Bins) -> CheckResult {
-    let describe = |bounds: BoxA| format!("{:?}..{:?}", bounds.low, bounds.high);
-    judge_bins(query, yours, |bin| bin.bounds, around, describe, "the box around its primitives")
+    for (axis, bin) in all_bins() {
+        let expected = around(&members(query, axis, bin, Rounding::Right));
+        let bounds = yours.0[axis][bin].bounds;
+        if bounds != expected {
+            let of = |one: BoxA| format!("{:?}..{:?} in bin {bin} of axis {axis}", one.low, one.high);
+            let source = "the box around its primitives";
+            return Err(Broken::with_texts(input(query), of(bounds), of(expected), source).explained_by([]));
+        }
+    }
+    Ok(())
 }
 
 /// The mistakes of a bin's box that give exactly these boxes.
