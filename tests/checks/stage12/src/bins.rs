@@ -2,9 +2,9 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare_formulas;
+use checks::judge::{compare, compare_formulas};
 use checks::nasty;
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::BinsQuery;
@@ -135,11 +135,18 @@ fn members(query: &BinsQuery, axis: usize, bin: usize, rounding: Rounding) -> Ve
     query.primitives.iter().filter(is_in).collect()
 }
 
+/// The smallest box around two boxes.
+pub(super) fn union(p: BoxA, q: BoxA) -> BoxA {
+    BoxA { low: p.low.min(q.low), high: p.high.max(q.high) }
+}
+
+fn box_of(primitive: &PrimitiveBox) -> BoxA {
+    BoxA { low: primitive.low(), high: primitive.high() }
+}
+
 /// The box around some primitives.
 fn around(members: &[&PrimitiveBox]) -> BoxA {
-    members
-        .iter()
-        .fold(BoxA::EMPTY, |all, one| BoxA { low: all.low.min(one.low()), high: all.high.max(one.high()) })
+    members.iter().map(|one| box_of(one)).fold(BoxA::EMPTY, union)
 }
 
 /// All bins by axis and number.
@@ -183,18 +190,12 @@ fn judge_counts(query: &BinsQuery, yours: &Bins) -> CheckResult {
 
 fn judge_boxes(query: &BinsQuery, yours: &Bins) -> CheckResult {
     for (axis, bin) in all_bins() {
-        let (expected, mine) =
-            (around(&members(query, axis, bin, Rounding::Right)), yours.0[axis][bin].bounds);
-        if mine != expected {
-            let of =
-                |bounds: BoxA| format!("{:?}..{:?} in bin {bin} of axis {axis}", bounds.low, bounds.high);
-            return Err(Broken::with_texts(
-                input(query),
-                of(mine),
-                of(expected),
-                "the box around its primitives",
-            )
-            .explained_by([]));
+        let expected = around(&members(query, axis, bin, Rounding::Right));
+        let bounds = yours.0[axis][bin].bounds;
+        if bounds != expected {
+            let of = |one: BoxA| format!("{:?}..{:?} in bin {bin} of axis {axis}", one.low, one.high);
+            let source = "the box around its primitives";
+            return Err(Broken::with_texts(input(query), of(bounds), of(expected), source).explained_by([]));
         }
     }
     Ok(())
@@ -207,17 +208,12 @@ fn wrong_boxes(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
             yours.0[axis][bin].bounds == bounds(&members(query, axis, bin, Rounding::Right))
         })
     };
-    let last = |members: &[&PrimitiveBox]| members.last().map_or(BoxA::EMPTY, |last| around(&[last]));
+    let point = |at: Vec3A| BoxA { low: at, high: at };
+    let last = |members: &[&PrimitiveBox]| members.last().map_or(BoxA::EMPTY, |last| box_of(last));
     let centroids = |members: &[&PrimitiveBox]| {
-        members.iter().fold(BoxA::EMPTY, |all, one| {
-            let at = one.twice_centroid();
-            BoxA { low: all.low.min(at), high: all.high.max(at) }
-        })
+        members.iter().map(|one| point(one.twice_centroid())).fold(BoxA::EMPTY, union)
     };
-    let from_origin = |members: &[&PrimitiveBox]| {
-        let all = around(members);
-        BoxA { low: all.low.min(glam::Vec3A::ZERO), high: all.high.max(glam::Vec3A::ZERO) }
-    };
+    let from_origin = |members: &[&PrimitiveBox]| union(around(members), point(Vec3A::ZERO));
     vec![
         (gives(&last), "the box of a bin is that of its last primitive: take the union"),
         (gives(&centroids), "the box of a bin is that of the centroids: take the boxes of the primitives"),
@@ -251,9 +247,7 @@ pub(super) fn fill_bins_takes_special_numbers(trial: &Trial<'_>) -> CheckResult 
     // First test one ordinary primitive, so that no panic of a special one hides what is wrong.
     let one = primitives(&[Aabb::new(Vec3::ZERO, Vec3::ONE)]);
     let simple = [BinsQuery { grid: grid_over(&one, 4), primitives: one }];
-    all_hold(
-        simple.iter().zip(ask(trial, &simple)).map(|(query, yours)| judge_counts(query, &yours)).collect(),
-    )?;
+    all_hold(compare(&simple, ask(trial, &simple), |query, yours| judge_counts(query, &yours)))?;
     trial.forall(400, special(), |queries| {
         let judge = |query: &BinsQuery, yours: Bins| {
             judge_counts(query, &yours).and_then(|()| judge_boxes(query, &yours))

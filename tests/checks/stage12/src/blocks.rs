@@ -87,24 +87,27 @@ fn judge_hits(four: &Four, mask: u32) -> CheckResult {
     Ok(())
 }
 
+/// The blocks that frames ask about, with their queries.
+fn queries(drawn: Vec<Four>) -> (Vec<Four>, Vec<BlockQuery>) {
+    drawn.into_iter().filter_map(|four| four.query().map(|query| (four, query))).unzip()
+}
+
 fn judge_all(trial: &Trial<'_>, drawn: Vec<Four>) -> CheckResult {
-    let (drawn, queries): (Vec<Four>, Vec<BlockQuery>) =
-        drawn.into_iter().filter_map(|four| four.query().map(|query| (four, query))).unzip();
+    let (drawn, queries) = queries(drawn);
     all_hold(compare(&drawn, trial.kit.may_hit(&queries), judge_hits))
 }
 
 pub(super) fn may_hit_keeps_what_is_hit(trial: &Trial<'_>) -> CheckResult {
-    for (index, distribution) in DISTRIBUTIONS.iter().enumerate() {
-        let mut random = Random::new(trial.seed, 30 + index as u64);
+    DISTRIBUTIONS.iter().zip(30..).try_for_each(|(distribution, stream)| {
+        let mut random = Random::new(trial.seed, stream);
         let drawn = (0..250).map(|_| {
             let (ray, first) = (distribution.draw)(&mut random);
-            let triangles =
-                [vec![first], (0..3).map(|_| (distribution.draw)(&mut random).1).collect()].concat();
+            let others = (0..3).map(|_| (distribution.draw)(&mut random).1);
+            let triangles = std::iter::once(first).chain(others).collect();
             Four { triangles, ray: Ray { t_min: ray.t_min.max(0.0), ..ray } }
         });
-        judge_all(trial, drawn.collect())?;
-    }
-    Ok(())
+        judge_all(trial, drawn.collect())
+    })
 }
 
 /// A ray whose range begins one float before its hit, or ends one float behind it; `None` without a hit.
@@ -209,8 +212,7 @@ pub(super) fn may_hit_keeps_lanes_without_a_triangle(trial: &Trial<'_>) -> Check
         triangles.insert(0, Triangle { a: Vec3::splat(4.0 * LARGEST), b: Vec3::X, c: Vec3::Y });
         drawn.push(Four { triangles, ray: Ray::new(4.0 * random.direction(), random.direction()) });
     }
-    let (drawn, queries): (Vec<Four>, Vec<BlockQuery>) =
-        drawn.into_iter().filter_map(|four| four.query().map(|query| (four, query))).unzip();
+    let (drawn, queries) = queries(drawn);
     let without =
         |query: &BlockQuery| (0..BLOCK).filter(|&lane| query.block.size[lane].is_nan()).collect::<Vec<_>>();
     let masks = trial.kit.may_hit(&queries);

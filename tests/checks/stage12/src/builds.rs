@@ -2,7 +2,7 @@
 
 use super::bars::sweep_cost;
 use super::scenes::scenes;
-use super::trees::{boxes, cost, depth, fault};
+use super::trees::{boxes, broken_by, cost, depth, fault, from_leaves};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
@@ -13,9 +13,7 @@ use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::bvh::DEEPEST_SPLIT;
 use raykata::kit::{KitError, kit_error};
-use raykata::wide::{BLOCK, FlatTree};
-
-const MISSING: &str = "the nodes of a tree without faults";
+use raykata::wide::{BLOCK, FlatNode, FlatTree};
 
 pub(super) fn describe(boxes: &[Aabb]) -> String {
     let shown: Vec<String> =
@@ -26,13 +24,8 @@ pub(super) fn describe(boxes: &[Aabb]) -> String {
 
 /// Judges a tree by its layout and its boxes.
 pub(super) fn judge_tree(boxes: &[Aabb], tree: &FlatTree) -> CheckResult {
-    match fault(tree, boxes) {
-        None => Ok(()),
-        Some((yours, expected, cause)) => {
-            let broken = Broken::with_texts(describe(boxes), yours, expected, MISSING);
-            Err(broken.explained_by(cause.map(|text| (true, text))))
-        }
-    }
+    fault(tree, boxes)
+        .map_or(Ok(()), |fault| Err(broken_by(fault, describe(boxes), "the nodes of a tree without faults")))
 }
 
 pub(super) fn build_binned_holds_every_primitive_once(trial: &Trial<'_>) -> CheckResult {
@@ -43,18 +36,11 @@ pub(super) fn build_binned_holds_every_primitive_once(trial: &Trial<'_>) -> Chec
 
 /// The boxes below each node of a tree without faults: the smallest box around the boxes of its primitives.
 fn tight(boxes: &[Aabb], tree: &FlatTree) -> Vec<Aabb> {
-    let mut tight = vec![Aabb::EMPTY; tree.nodes.len()];
-    // Children come after their parents.
-    for (index, node) in tree.nodes.iter().enumerate().rev() {
-        let first = node.first as usize;
-        tight[index] = if node.is_leaf() {
-            let ids = &tree.order[first..first + node.count as usize];
-            around(ids.iter().map(|&id| &boxes[id as usize]).filter(|bounds| !bounds.is_empty()))
-        } else {
-            around([&tight[first], &tight[first + 1]])
-        };
-    }
-    tight
+    let leaf = |_, node: &FlatNode| {
+        let ids = &tree.order[node.first as usize..(node.first + node.count) as usize];
+        around(ids.iter().map(|&id| &boxes[id as usize]).filter(|bounds| !bounds.is_empty()))
+    };
+    from_leaves(tree, leaf, |_, left, right| around([&left, &right]))
 }
 
 fn judge_tight(boxes: &[Aabb], tree: &FlatTree) -> CheckResult {
@@ -88,31 +74,30 @@ pub(super) fn build_binned_boxes_are_tight(trial: &Trial<'_>) -> CheckResult {
     })
 }
 
-/// A set of boxes with the sizes of the leaves that its tree must have, and the mistakes that give other ones.
-struct Choice {
-    what: &'static str,
-    boxes: Vec<Aabb>,
-    leaves: Vec<u32>,
-    /// Each mistake with the leaves that it gives.
-    mistakes: Vec<(Other, &'static str)>,
-}
+/// A name, a set of boxes, the sizes of the leaves that its tree must have, and those that each of [`KNOWN`] gives.
+type Choice = (&'static str, Vec<Aabb>, Vec<u32>, [Leaves; 5]);
 
-/// Other leaves than the right ones.
-enum Other {
-    Sizes(Vec<u32>),
+/// The leaves that a mistake gives, in comparison with the right ones.
+#[derive(Clone, Copy)]
+enum Leaves {
+    Same,
+    Sizes(&'static [u32]),
     More,
     Fewer,
 }
 
-const BY_PRIMITIVES: &str = "the costs count single primitives: a leaf pays for whole blocks, block_cost";
-const WITHOUT_NODE_COST: &str = "NODE_COST is left out: visiting a node costs something, too";
-const ALWAYS_SPLIT: &str = "a node is split although a leaf is not more expensive";
-const NEVER_SPLIT: &str = "a node becomes a leaf although a split is cheaper";
-const BELOW_BLOCK: &str = "a node of at most BLOCK primitives becomes a leaf";
+/// The known mistakes, the most specific one first.
+const KNOWN: [&str; 5] = [
+    "the costs count single primitives: a leaf pays for whole blocks, block_cost",
+    "NODE_COST is left out: visiting a node costs something, too",
+    "a node of at most BLOCK primitives becomes a leaf",
+    "a node is split although a leaf is not more expensive",
+    "a node becomes a leaf although a split is cheaper",
+];
 
 /// The cases in which a leaf, or a split, is cheaper by at least a hundredth of the cost of the leaf.
 fn choices(random: &mut Random) -> Vec<Choice> {
-    use Other::{Fewer, More, Sizes};
+    use Leaves::{Fewer, More, Same, Sizes};
     // Bars along x from 0 to `length`, or from 1 - `length` to 1, whose ends differ by up to a thousandth.
     let mut bars = |n: usize, length: f32, from_right: bool| -> Vec<Aabb> {
         let bar = |_| {
@@ -124,93 +109,81 @@ fn choices(random: &mut Random) -> Vec<Choice> {
     };
     let mut pair = |n: usize, m: usize, length: f32| [bars(n, length, false), bars(m, length, true)].concat();
     let bar = |length: f32| Aabb::new(Vec3::ZERO, vec3(length, 1.0, 1.0));
-    // Half the surface area of a bar is 1 + 2 · length, and that of all is 3. Mistakes are listed in the order of `known`.
+    let apart = |x: f32| Aabb::new(Vec3::splat(9.0 * x), Vec3::splat(9.0 * x + 1.0));
+    // Half the surface area of a bar is 1 + 2 · length, and that of all is 3.
     vec![
-        Choice {
-            what: "two groups of four that are far apart",
-            boxes: pair(4, 4, 0.2),
-            leaves: vec![4, 4],
-            mistakes: vec![(Fewer, NEVER_SPLIT), (More, BELOW_BLOCK)],
-        },
-        Choice {
-            what: "four boxes at one end and one at the other",
-            boxes: pair(4, 1, 0.1),
-            leaves: vec![1, 4],
-            mistakes: vec![(Fewer, NEVER_SPLIT), (More, BELOW_BLOCK)],
-        },
-        Choice {
+        (
+            "two groups of four that are far apart",
+            pair(4, 4, 0.2),
+            vec![4, 4],
+            [Same, Same, More, Same, Fewer],
+        ),
+        (
+            "four boxes at one end and one at the other",
+            pair(4, 1, 0.1),
+            vec![1, 4],
+            [Same, Same, More, Same, Fewer],
+        ),
+        (
             // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.75. By primitives 6 · 3 and 0.25 · 3 + 6 · 2.75.
-            what: "two groups of three that overlap by three quarters",
-            boxes: pair(3, 3, 0.875),
-            leaves: vec![6],
-            mistakes: vec![
-                (Sizes(vec![3, 3]), BY_PRIMITIVES),
-                (Sizes(vec![3, 3]), WITHOUT_NODE_COST),
-                (More, ALWAYS_SPLIT),
-                (More, BELOW_BLOCK),
-            ],
-        },
-        Choice {
+            "two groups of three that overlap by three quarters",
+            pair(3, 3, 0.875),
+            vec![6],
+            [Sizes(&[3, 3]), Sizes(&[3, 3]), More, More, Same],
+        ),
+        (
             // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.85. By primitives 8 · 3 and 0.25 · 3 + 8 · 2.85.
-            what: "two groups of four that overlap nearly",
-            boxes: pair(4, 4, 0.925),
-            leaves: vec![8],
-            mistakes: vec![
-                (Sizes(vec![4, 4]), BY_PRIMITIVES),
-                (Sizes(vec![4, 4]), WITHOUT_NODE_COST),
-                (More, ALWAYS_SPLIT),
-            ],
-        },
-        Choice {
+            "two groups of four that overlap nearly",
+            pair(4, 4, 0.925),
+            vec![8],
+            [Sizes(&[4, 4]), Sizes(&[4, 4]), Same, More, Same],
+        ),
+        (
             // As a leaf 8 · 3; split 0.25 · 3 + 8 · 2.99 at best.
-            what: "two groups of 16 that overlap but for a hundredth",
-            boxes: pair(16, 16, 0.995),
-            leaves: vec![32],
-            mistakes: vec![(More, WITHOUT_NODE_COST), (More, ALWAYS_SPLIT)],
-        },
-        Choice {
+            "two groups of 16 that overlap but for a hundredth",
+            pair(16, 16, 0.995),
+            vec![32],
+            [Same, More, Same, More, Same],
+        ),
+        (
             // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.91 + 3, because bins do not separate the five.
-            what: "five equal boxes in a larger one",
-            boxes: [vec![bar(0.955); 5], vec![bar(1.0)]].concat(),
-            leaves: vec![6],
-            mistakes: vec![(More, ALWAYS_SPLIT)],
-        },
-        Choice {
-            what: "four boxes that are far apart",
-            boxes: [0.0, 1.0, 2.0, 3.0]
-                .map(|x| Aabb::new(Vec3::splat(9.0 * x), Vec3::splat(9.0 * x + 1.0)))
-                .to_vec(),
-            leaves: vec![4],
-            mistakes: vec![(More, BELOW_BLOCK)],
-        },
+            "five equal boxes in a larger one",
+            [vec![bar(0.955); 5], vec![bar(1.0)]].concat(),
+            vec![6],
+            [Same, Same, Same, More, Same],
+        ),
+        (
+            "four boxes that are far apart",
+            [0.0, 1.0, 2.0, 3.0].map(apart).to_vec(),
+            vec![4],
+            [Same, Same, More, Same, Same],
+        ),
     ]
 }
 
 pub(super) fn build_binned_makes_leaves_that_pay(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 20);
     let choices = choices(&mut random);
-    let sets: Vec<Vec<Aabb>> = choices.iter().map(|choice| choice.boxes.clone()).collect();
+    let sets: Vec<Vec<Aabb>> = choices.iter().map(|(_, boxes, ..)| boxes.clone()).collect();
     let answers = trial.kit.build_binned(&sets);
-    all_hold(compare(&choices, answers, |choice, tree| {
-        judge_tree(&choice.boxes, &tree)?;
+    all_hold(compare(&choices, answers, |(what, boxes, leaves, mistakes), tree| {
+        judge_tree(boxes, &tree)?;
         let mut sizes: Vec<u32> =
             tree.nodes.iter().filter(|node| node.is_leaf()).map(|node| node.count).collect();
         sizes.sort_unstable();
-        if sizes == choice.leaves {
+        if sizes == *leaves {
             return Ok(());
         }
-        let [yours, expected] = [&sizes, &choice.leaves].map(|sizes| format!("leaves of {sizes:?}"));
-        // Every mistake is listed for every set, in the same order.
-        let known = [BY_PRIMITIVES, WITHOUT_NODE_COST, BELOW_BLOCK, ALWAYS_SPLIT, NEVER_SPLIT];
-        let gives = |other: &Other| match other {
-            Other::Sizes(given) => *given == sizes,
-            Other::More => sizes.len() > choice.leaves.len(),
-            Other::Fewer => sizes.len() < choice.leaves.len(),
+        let gives = |mistake: Leaves| match mistake {
+            Leaves::Same => false,
+            Leaves::Sizes(given) => *given == sizes,
+            Leaves::More => sizes.len() > leaves.len(),
+            Leaves::Fewer => sizes.len() < leaves.len(),
         };
-        let mistakes =
-            known.map(|text| (choice.mistakes.iter().any(|(other, of)| *of == text && gives(other)), text));
-        let input = format!("build_binned of {}", choice.what);
-        Err(Broken::with_texts(input, yours, expected, "NODE_COST and block_cost").explained_by(mistakes))
+        let [yours, expected] = [&sizes, leaves].map(|sizes| format!("leaves of {sizes:?}"));
+        let input = format!("build_binned of {what}");
+        Err(Broken::with_texts(input, yours, expected, "NODE_COST and block_cost")
+            .explained_by(mistakes.map(gives).into_iter().zip(KNOWN)))
     }))
 }
 
@@ -222,28 +195,30 @@ pub(super) fn build_binned_costs_little_more_than_a_sweep(trial: &Trial<'_>) -> 
         let yours = cost(&tree);
         if yours > 1.05 * sweep {
             let input = format!("build_binned of {} boxes: {name}", boxes.len());
-            let (yours, most) = (
-                format!("cost {yours:.3}"),
-                format!("at most {:.3}, 1.05 times that of a sweep", 1.05 * sweep),
-            );
-            return Err(Broken::with_texts(input, yours, most, "the surface area heuristic").explained_by([]));
+            let most = format!("at most {:.3}, 1.05 times that of a sweep", 1.05 * sweep);
+            let source = "the surface area heuristic";
+            return Err(Broken::with_texts(input, format!("cost {yours:.3}"), most, source).explained_by([]));
         }
     }
     Ok(())
 }
 
-/// Builds a tree over boxes on which a builder may never end.
-fn build_of(trial: &Trial<'_>, what: &str, boxes: Vec<Aabb>) -> CheckResult {
-    let built = kit_error::catch(|| trial.kit.build_binned(std::slice::from_ref(&boxes)).remove(0));
-    let input = format!("build_binned of {what}");
-    let tree = match built {
-        Ok(tree) => tree,
+/// The tree over boxes on which a builder may panic.
+fn build(trial: &Trial<'_>, boxes: &[Aabb], input: String) -> Result<FlatTree, Broken> {
+    match kit_error::catch(|| trial.kit.build_binned(&[boxes.to_vec()]).remove(0)) {
+        Ok(tree) => Ok(tree),
         Err(KitError::Panicked { message, place }) => {
             let panic = format!("a panic at {place}: {message}");
-            return Err(Broken::with_texts(input, panic, "a tree", "the definition").explained_by([]));
+            Err(Broken::with_texts(input, panic, "a tree", "the definition").explained_by([]))
         }
         Err(error) => kit_error::unwind(error),
-    };
+    }
+}
+
+/// Builds a tree over boxes on which a builder may never end.
+fn build_of(trial: &Trial<'_>, what: &str, boxes: Vec<Aabb>) -> CheckResult {
+    let input = format!("build_binned of {what}");
+    let tree = build(trial, &boxes, input.clone())?;
     judge_tree(&boxes, &tree).map_err(|broken| Broken { input: input.clone(), ..broken })?;
     let small = tree.nodes.iter().filter(|node| node.is_leaf()).count();
     // Each level below DEEPEST_SPLIT halves the primitives, down to a leaf of BLOCK.
@@ -310,17 +285,7 @@ pub(super) fn build_binned_isolates_what_is_not_a_number(trial: &Trial<'_>) -> C
     }
     boxes[50] = Aabb::EMPTY;
     boxes[51] = Aabb::new(Vec3::NAN, Vec3::NAN);
-    let judge = |boxes: &[Aabb]| {
-        let answer = kit_error::catch(|| trial.kit.build_binned(&[boxes.to_vec()]).remove(0));
-        match answer {
-            Ok(tree) => judge_tight(boxes, &tree),
-            Err(KitError::Panicked { message, place }) => {
-                let panic = format!("a panic at {place}: {message}");
-                Err(Broken::with_texts(describe(boxes), panic, "a tree", "the definition").explained_by([]))
-            }
-            Err(error) => kit_error::unwind(error),
-        }
-    };
+    let judge = |boxes: &[Aabb]| judge_tight(boxes, &build(trial, boxes, describe(boxes))?);
     let outcome = judge(&boxes);
     // The same boxes without NaN, to prove that the NaN is the cause.
     let is_cause = outcome.is_err() && judge(&ordinary).is_ok();

@@ -63,11 +63,8 @@ fn reordered(tree: &FlatTree, order: Order) -> FlatTree {
     // Pairs of (index in the tree, index in the result) whose children are not placed yet.
     let mut waiting: Vec<(usize, usize)> = nodes.iter().map(|_| (0, 0)).collect();
     while !waiting.is_empty() {
-        let (from, to) = if matches!(order, Order::Breadth) {
-            waiting.remove(0)
-        } else {
-            waiting.pop().unwrap_or_default()
-        };
+        let next = if matches!(order, Order::Breadth) { 0 } else { waiting.len() - 1 };
+        let (from, to) = waiting.remove(next);
         let node = tree.nodes[from];
         if node.is_leaf() {
             continue;
@@ -76,12 +73,11 @@ fn reordered(tree: &FlatTree, order: Order) -> FlatTree {
         nodes[to].first = pair as u32;
         let children = if matches!(order, Order::Right) { [first + 1, first] } else { [first, first + 1] };
         nodes.extend(children.map(|child| tree.nodes[child]));
-        match order {
-            Order::SecondSide | Order::Breadth => {
-                waiting.extend([(children[0], pair), (children[1], pair + 1)]);
-            }
-            Order::Right => waiting.extend([(children[1], pair + 1), (children[0], pair)]),
+        let mut placed = [(children[0], pair), (children[1], pair + 1)];
+        if matches!(order, Order::Right) {
+            placed.reverse();
         }
+        waiting.extend(placed);
     }
     FlatTree { nodes, order: tree.order.clone() }
 }

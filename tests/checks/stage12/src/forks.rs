@@ -2,7 +2,7 @@
 
 use super::builds::judge_tree;
 use super::scenes::scenes;
-use super::trees::fault;
+use super::trees::{broken_by, fault, from_leaves};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use oracle::splitmix::Random;
@@ -48,17 +48,7 @@ pub(super) fn build_parallel_gives_the_same_tree(trial: &Trial<'_>) -> CheckResu
 
 /// The first primitive and the number of primitives of each node of a tree without faults.
 fn ranges(tree: &FlatTree) -> Vec<(u32, u32)> {
-    let mut ranges = vec![(0, 0); tree.nodes.len()];
-    // Children come after their parents.
-    for (index, node) in tree.nodes.iter().enumerate().rev() {
-        let first = node.first as usize;
-        ranges[index] = if node.is_leaf() {
-            (node.first, node.count)
-        } else {
-            (ranges[first].0, ranges[first].1 + ranges[first + 1].1)
-        };
-    }
-    ranges
+    from_leaves(tree, |_, leaf| (leaf.first, leaf.count), |_, left, right| (left.0, left.1 + right.1))
 }
 
 /// The work and the span of a build without faults that has logged these forks, in primitives.
@@ -89,17 +79,13 @@ fn work_and_span_of(
     own_span: impl Fn(usize) -> u64,
     forks: impl Fn(usize) -> bool,
 ) -> (u64, u64) {
-    let mut sums = vec![(0u64, 0u64); tree.nodes.len()];
-    for (index, node) in tree.nodes.iter().enumerate().rev() {
-        let (mut work, mut span) = (u64::from(ranges[index].1), own_span(index));
-        if !node.is_leaf() {
-            let [left, right] = [sums[node.first as usize], sums[node.first as usize + 1]];
-            work += left.0 + right.0;
-            span += if forks(index) { left.1.max(right.1) } else { left.1 + right.1 };
-        }
-        sums[index] = (work, span);
-    }
-    sums.first().copied().unwrap_or_default()
+    let own = |index: usize| (u64::from(ranges[index].1), own_span(index));
+    let join = |index, left: (u64, u64), right: (u64, u64)| {
+        let (work, span) = own(index);
+        let below = if forks(index) { left.1.max(right.1) } else { left.1 + right.1 };
+        (work + left.0 + right.0, span + below)
+    };
+    from_leaves(tree, |index, _| own(index), join).first().copied().unwrap_or_default()
 }
 
 /// A build of many boxes: the tree, the ranges of its nodes, and the nodes that are forked.
@@ -112,10 +98,8 @@ struct Forked {
 fn build_many(trial: &Trial<'_>, n: usize) -> Result<Forked, Broken> {
     let boxes = cloud(trial.seed, n);
     let ForkedTree { tree, forks } = trial.kit.build_parallel(std::slice::from_ref(&boxes)).remove(0);
-    if let Some((yours, expected, cause)) = fault(&tree, &boxes) {
-        let input = format!("build_parallel of {n} boxes");
-        let broken = Broken::with_texts(input, yours, expected, "the layout of FlatTree");
-        return Err(broken.explained_by(cause.map(|text| (true, text))));
+    if let Some(fault) = fault(&tree, &boxes) {
+        return Err(broken_by(fault, format!("build_parallel of {n} boxes"), "the layout of FlatTree"));
     }
     Ok(Forked { ranges: ranges(&tree), tree, forks })
 }

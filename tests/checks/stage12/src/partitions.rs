@@ -31,12 +31,10 @@ fn queries(
         .prop_map(|(boxes, kind, n_bins, axis, bin)| query(&boxes, kind, n_bins, axis, u32::from(bin)))
 }
 
-/// The numbers of the primitives on the left side, by a rounding of the bin.
+/// The numbers of the primitives on the left side, sorted.
 fn left_side(query: &PartitionQuery, is_left: impl Fn(&PrimitiveBox) -> bool) -> Vec<u32> {
-    let mut ids: Vec<u32> =
-        query.primitives.iter().filter(|primitive| is_left(primitive)).map(PrimitiveBox::id).collect();
-    ids.sort_unstable();
-    ids
+    let left = query.primitives.iter().filter(|primitive| is_left(primitive));
+    sorted(&left.map(PrimitiveBox::id).collect::<Vec<_>>())
 }
 
 fn sorted(ids: &[u32]) -> Vec<u32> {
@@ -45,26 +43,40 @@ fn sorted(ids: &[u32]) -> Vec<u32> {
     ids
 }
 
+/// The bin of a primitive on the axis of the split.
+fn bin(query: &PartitionQuery, primitive: &PrimitiveBox, rounding: Rounding) -> usize {
+    bin_of(primitive, &query.grid, query.split.axis as usize, rounding)
+}
+
+/// The numbers of the primitives before the bin of the split.
+fn before_split(query: &PartitionQuery, rounding: Rounding) -> Vec<u32> {
+    left_side(query, |primitive| bin(query, primitive, rounding) < query.split.bin as usize)
+}
+
+/// The length of the left side of an answer, which has no more than all primitives.
+fn middle(yours: &SplitAnswer) -> usize {
+    yours.middle.unwrap_or(usize::MAX).min(yours.order.len())
+}
+
 fn judge(query: &PartitionQuery, yours: &SplitAnswer) -> CheckResult {
-    let PartitionQuery { grid, split, .. } = query;
-    let bin = |primitive: &PrimitiveBox| bin_of(primitive, grid, split.axis as usize, Rounding::Right);
-    let left = left_side(query, |primitive| bin(primitive) < split.bin as usize);
+    let split = &query.split;
+    let left = before_split(query, Rounding::Right);
+    let right_bin = |primitive: &PrimitiveBox| bin(query, primitive, Rounding::Right);
     let bins: Vec<String> =
-        query.primitives.iter().map(|primitive| format!("{}: {}", primitive.id(), bin(primitive))).collect();
+        query.primitives.iter().map(|one| format!("{}: {}", one.id(), right_bin(one))).collect();
     let input = format!(
         "partition_bins before bin {} of axis {}, primitives with their bins: {}",
         split.bin,
         split.axis,
         bins.join(", ")
     );
-    let middle = yours.middle.unwrap_or(usize::MAX).min(yours.order.len());
-    let all = sorted(&query.primitives.iter().map(PrimitiveBox::id).collect::<Vec<_>>());
-    let text = format!("{:?} and {:?}", &yours.order[..middle], &yours.order[middle..]);
-    if sorted(&yours.order) != all {
+    let (first, second) = yours.order.split_at(middle(yours));
+    let text = format!("{first:?} and {second:?}");
+    if sorted(&yours.order) != left_side(query, |_| true) {
         let broken = Broken::with_texts(input, text, "each primitive once", "the given primitives");
         return Err(broken.explained_by([(true, "a primitive is lost or copied: only swap")]));
     }
-    if sorted(&yours.order[..middle]) == left && yours.middle == Some(left.len()) {
+    if sorted(first) == left && yours.middle == Some(left.len()) {
         return Ok(());
     }
     let expected = format!("{left:?} in any order, and then the others");
@@ -72,49 +84,37 @@ fn judge(query: &PartitionQuery, yours: &SplitAnswer) -> CheckResult {
 }
 
 fn mistakes(query: &PartitionQuery, yours: &SplitAnswer) -> Vec<(bool, &'static str)> {
-    let PartitionQuery { grid, split, .. } = query;
+    let PartitionQuery { primitives, grid, split } = query;
     let (axis, last_left) = (split.axis as usize, split.bin as usize);
-    let middle = yours.middle.unwrap_or(usize::MAX).min(yours.order.len());
+    let middle = middle(yours);
     // An answer that lost a primitive follows none of these formulas.
     let is_complete = sorted(&yours.order) == left_side(query, |_| true);
-    let of = |primitive: &PrimitiveBox, rounding| bin_of(primitive, grid, axis, rounding);
-    let is = |is_left: &dyn Fn(&PrimitiveBox) -> bool| {
-        yours.middle == Some(middle) && sorted(&yours.order[..middle]) == left_side(query, is_left)
-    };
-    let right = |primitive: &PrimitiveBox| of(primitive, Rounding::Right);
-    let n_left = left_side(query, |primitive| right(primitive) < last_left).len();
+    let is = |side: Vec<u32>| yours.middle == Some(middle) && sorted(&yours.order[..middle]) == side;
+    let right = |primitive: &PrimitiveBox| bin(query, primitive, Rounding::Right);
+    let left = before_split(query, Rounding::Right);
     let plane = grid.low[axis] + split.bin as f32 / grid.scale[axis];
     let mut mistakes = vec![
         (
-            is(&|primitive| right(primitive) <= last_left),
+            is(left_side(query, |primitive| right(primitive) <= last_left)),
             "the first bin of the right side goes to the left: bins before `bin` are left",
         ),
-        (is(&|primitive| right(primitive) >= last_left), "the sides are exchanged"),
+        (is(left_side(query, |primitive| right(primitive) >= last_left)), "the sides are exchanged"),
         (
-            is(&|primitive| primitive.twice_centroid()[axis] < plane),
+            is(left_side(query, |primitive| primitive.twice_centroid()[axis] < plane)),
             "the centroid is compared with a plane, which rounds otherwise than the bin does: compute the bin as fill_bins does",
         ),
         (
-            yours.order.iter().copied().eq(query.primitives.iter().map(PrimitiveBox::id)) && middle == n_left,
+            yours.order.iter().copied().eq(primitives.iter().map(PrimitiveBox::id)) && middle == left.len(),
             "the number of the left side is right, but the primitives stay as they come",
         ),
         (
-            (yours.middle == Some(query.primitives.len() - n_left)) && is_divided(query, yours, n_left),
+            yours.middle == Some(primitives.len() - left.len())
+                && yours.order.get(..left.len()).is_some_and(|first| sorted(first) == left),
             "you return the number of the right side",
         ),
     ];
-    for (rounding, text) in ROUNDINGS {
-        mistakes.push((is(&|primitive| of(primitive, rounding) < last_left), text));
-    }
+    mistakes.extend(ROUNDINGS.map(|(rounding, text)| (is(before_split(query, rounding)), text)));
     mistakes.into_iter().map(|(gives, text)| (gives && is_complete, text)).collect()
-}
-
-/// Whether the left side comes first, of `n_left` primitives.
-fn is_divided(query: &PartitionQuery, yours: &SplitAnswer, n_left: usize) -> bool {
-    let PartitionQuery { grid, split, .. } = query;
-    let bin = |primitive: &PrimitiveBox| bin_of(primitive, grid, split.axis as usize, Rounding::Right);
-    let left = left_side(query, |primitive| bin(primitive) < split.bin as usize);
-    yours.order.get(..n_left).is_some_and(|first| sorted(first) == left)
 }
 
 fn judge_all(

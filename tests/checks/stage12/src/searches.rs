@@ -144,15 +144,13 @@ pub(super) fn wide_any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult 
         compare(queries, trial.kit.wide_any_hit(queries), |query, yours| {
             // A search that asks nothing finds nothing.
             judge_any(query, &yours)?;
-            let describe_calls = |n: u32| format!("{n} calls after the first hit");
-            match yours.calls_after_hit {
-                0 => Ok(()),
-                n => {
-                    let input = format!("wide_any_hit in {}", describe(query));
-                    let broken = Broken::with_texts(input, describe_calls(n), describe_calls(0), "counted");
-                    Err(broken.explained_by([(n > 0, "the search goes on after a hit: return true at once")]))
-                }
+            if yours.calls_after_hit == 0 {
+                return Ok(());
             }
+            let [yours, none] = [yours.calls_after_hit, 0].map(|n| format!("{n} calls after the first hit"));
+            let broken =
+                Broken::with_texts(format!("wide_any_hit in {}", describe(query)), yours, none, "counted");
+            Err(broken.explained_by([(true, "the search goes on after a hit: return true at once")]))
         })
     })
 }

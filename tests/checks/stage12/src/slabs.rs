@@ -102,25 +102,28 @@ fn judge(query: &WideBoxesQuery, yours: &Entered) -> CheckResult {
     Err(Broken::with_texts(input, of(mine[place]), of(expected[place]), "one box at a time").explained_by([]))
 }
 
-fn judge_all(trial: &Trial<'_>, queries: &[WideBoxesQuery]) -> CheckResult {
+/// Judges `n` queries, without those that are `None`. `stream` is the number of their random numbers.
+fn judge_drawn(
+    trial: &Trial<'_>,
+    n: usize,
+    stream: u64,
+    mut draw: impl FnMut(&mut Random) -> Option<WideBoxesQuery>,
+) -> CheckResult {
+    let mut random = Random::new(trial.seed, stream);
+    let queries: Vec<WideBoxesQuery> = (0..n).filter_map(|_| draw(&mut random)).collect();
+    let mistakes = |query: &WideBoxesQuery, yours: &Entered| {
+        let gives = |flaw| {
+            let same = |(p, q): (&Option<f32>, &Option<f32>)| match (p, q) {
+                (Some(p), Some(q)) => p == q || p.is_nan() && q.is_nan(),
+                (p, q) => p.is_none() && q.is_none(),
+            };
+            answers(yours).iter().zip(&entries(query, flaw)).all(same)
+        };
+        FLAWS.map(|(flaw, text)| (gives(flaw), text)).to_vec()
+    };
     // Every known mistake must give another answer to some query, so that only one can explain all answers.
-    all_hold(compare_formulas(
-        queries,
-        trial.kit.enter_boxes(queries),
-        |query, yours| judge(query, &yours),
-        |query, yours| {
-            FLAWS
-                .map(|(flaw, text)| {
-                    let (mine, wrong) = (answers(yours), entries(query, flaw));
-                    let same = |(p, q): (&Option<f32>, &Option<f32>)| match (p, q) {
-                        (Some(p), Some(q)) => p == q || p.is_nan() && q.is_nan(),
-                        (p, q) => p.is_none() && q.is_none(),
-                    };
-                    (mine.iter().zip(&wrong).all(same), text)
-                })
-                .to_vec()
-        },
-    ))
+    let judge = |query: &WideBoxesQuery, yours| judge(query, &yours);
+    all_hold(compare_formulas(&queries, trial.kit.enter_boxes(&queries), judge, mistakes))
 }
 
 /// A node with these boxes in its first places.
@@ -148,8 +151,7 @@ fn among_others(random: &mut Random, ray: Ray, first: Aabb) -> WideBoxesQuery {
 }
 
 pub(super) fn enter_boxes_agrees_with_one_box_at_a_time(trial: &Trial<'_>) -> CheckResult {
-    let mut random = Random::new(trial.seed, 24);
-    let mut draw = || {
+    judge_drawn(trial, 1500, 24, |random| {
         let low = 4.0 * random.in_cube();
         let bounds = Aabb::new(low, low + random.in_cube().abs());
         let origin = 6.0 * random.in_cube();
@@ -159,22 +161,19 @@ pub(super) fn enter_boxes_agrees_with_one_box_at_a_time(trial: &Trial<'_>) -> Ch
         if random.below(3) == 0 {
             ray = ray.with_range(random.unit(), 0.5 + random.unit());
         }
-        among_others(&mut random, ray, bounds)
-    };
-    let queries: Vec<WideBoxesQuery> = (0..1500).map(|_| draw()).collect();
-    judge_all(trial, &queries)
+        Some(among_others(random, ray, bounds))
+    })
 }
 
 pub(super) fn enter_boxes_takes_zeros_and_faces(trial: &Trial<'_>) -> CheckResult {
-    let mut random = Random::new(trial.seed, 25);
-    let mut draw = || {
+    judge_drawn(trial, 2000, 25, |random| {
         let whole = |random: &mut Random| vec3(1.0, 1.0, 1.0).map(|one| one * (random.below(5) as f32 - 2.0));
-        let (low, mut size) = (whole(&mut random), whole(&mut random).abs());
+        let (low, mut size) = (whole(random), whole(random).abs());
         if random.below(2) == 0 {
             size[random.below(3) as usize] = 0.0;
         }
         let bounds = Aabb::new(low, low + size);
-        let (mut origin, mut direction) = (3.0 * whole(&mut random), whole(&mut random));
+        let (mut origin, mut direction) = (3.0 * whole(random), whole(random));
         for axis in 0..3 {
             match random.below(6) {
                 0 => direction[axis] = 0.0,
@@ -191,36 +190,27 @@ pub(super) fn enter_boxes_takes_zeros_and_faces(trial: &Trial<'_>) -> CheckResul
         if random.below(6) == 0 {
             bounds.max[random.below(3) as usize] = f32::INFINITY;
         }
-        among_others(&mut random, Ray::new(origin, direction), bounds)
-    };
-    let queries: Vec<WideBoxesQuery> = (0..2000).map(|_| draw()).collect();
-    judge_all(trial, &queries)
+        Some(among_others(random, Ray::new(origin, direction), bounds))
+    })
 }
 
 pub(super) fn enter_boxes_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> CheckResult {
-    let mut random = Random::new(trial.seed, 26);
-    let mut draw = || {
-        let query = at_a_corner(&mut random)?;
-        Some(among_others(&mut random, query.ray, query.bounds))
-    };
-    let queries: Vec<WideBoxesQuery> = (0..2000).filter_map(|_| draw()).collect();
-    judge_all(trial, &queries)
+    judge_drawn(trial, 2000, 26, |random| {
+        let query = at_a_corner(random)?;
+        Some(among_others(random, query.ray, query.bounds))
+    })
 }
 
 pub(super) fn enter_boxes_of_any_size(trial: &Trial<'_>) -> CheckResult {
-    let mut random = Random::new(trial.seed, 27);
     // Directions down to the denormal numbers: where 1/d overflows, an axis decides nothing.
-    let mut draw = || {
-        let query = of_any_size(&mut random)?;
-        Some(among_others(&mut random, query.ray, query.bounds))
-    };
-    let queries: Vec<WideBoxesQuery> = (0..2000).filter_map(|_| draw()).collect();
-    judge_all(trial, &queries)
+    judge_drawn(trial, 2000, 27, |random| {
+        let query = of_any_size(random)?;
+        Some(among_others(random, query.ray, query.bounds))
+    })
 }
 
 pub(super) fn enter_boxes_respects_the_range(trial: &Trial<'_>) -> CheckResult {
-    let mut random = Random::new(trial.seed, 28);
-    let mut draw = || {
+    judge_drawn(trial, 2000, 28, |random| {
         // A box along an axis, entered and left at whole numbers; ranges that touch these from either side.
         let (axis, from) = (random.below(3) as usize, 1.0 + random.below(4) as f32);
         let thickness = random.below(3) as f32;
@@ -231,19 +221,16 @@ pub(super) fn enter_boxes_respects_the_range(trial: &Trial<'_>) -> CheckResult {
             let t = from + [0.0, thickness][random.below(2) as usize];
             [t, t.next_up(), t.next_down(), t * 1.5, t * 0.5, 0.0, f32::INFINITY][random.below(7) as usize]
         };
-        let (t_min, t_max) = (end(&mut random), end(&mut random));
+        let (t_min, t_max) = (end(random), end(random));
         let t_min = if t_min.is_finite() { t_min } else { 0.0 };
         let query =
             WideBoxesQuery { node: node_of(&[Aabb::new(low, high)]), ray: ray.with_range(t_min, t_max) };
-        if random.below(2) == 0 { query } else { among_others(&mut random, query.ray, Aabb::new(low, high)) }
-    };
-    let queries: Vec<WideBoxesQuery> = (0..2000).map(|_| draw()).collect();
-    judge_all(trial, &queries)
+        Some(if random.below(2) == 0 { query } else { among_others(random, query.ray, Aabb::new(low, high)) })
+    })
 }
 
 pub(super) fn enter_boxes_enters_no_empty_place(trial: &Trial<'_>) -> CheckResult {
-    let mut random = Random::new(trial.seed, 29);
-    let mut draw = || {
+    judge_drawn(trial, 1000, 29, |random| {
         let n = 1 + random.below(7);
         let boxes: Vec<Aabb> = (0..n)
             .map(|_| {
@@ -254,8 +241,6 @@ pub(super) fn enter_boxes_enters_no_empty_place(trial: &Trial<'_>) -> CheckResul
         // Half of the directions are so small that 1/d overflows on every axis, so that no box decides anything.
         let scale = [1.0, f32::MIN_POSITIVE / 16_384.0][random.below(2) as usize];
         let ray = Ray::new(3.0 * random.in_cube(), scale * random.direction());
-        WideBoxesQuery { node: node_of(&boxes), ray }
-    };
-    let queries: Vec<WideBoxesQuery> = (0..1000).map(|_| draw()).collect();
-    judge_all(trial, &queries)
+        Some(WideBoxesQuery { node: node_of(&boxes), ray })
+    })
 }

@@ -1,8 +1,10 @@
 //! `block_cost` and `cheapest_split`.
 
+use super::bins::{n_bins, union};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::compare_formulas;
+use checks::tree::half_area;
 use glam::{Vec3, Vec3A};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
@@ -50,8 +52,7 @@ fn bins_of(placed: &[Placed], n_bins: u32) -> BinSplitQuery {
     for (bounds, places) in placed {
         for (axis, place) in places.iter().enumerate() {
             let bin = &mut bins.0[axis][usize::from(*place) % n_bins as usize];
-            bin.bounds.low = bin.bounds.low.min(bounds.min.into());
-            bin.bounds.high = bin.bounds.high.max(bounds.max.into());
+            bin.bounds = union(bin.bounds, BoxA { low: bounds.min.into(), high: bounds.max.into() });
             bin.count += 1;
         }
     }
@@ -67,25 +68,17 @@ fn placed() -> impl Strategy<Value = Placed> + Clone {
 }
 
 fn queries() -> impl Strategy<Value = BinSplitQuery> + Clone {
-    (prop::collection::vec(placed(), 0..30), super::bins::n_bins())
-        .prop_map(|(placed, n_bins)| bins_of(&placed, n_bins))
+    (prop::collection::vec(placed(), 0..30), n_bins()).prop_map(|(placed, n_bins)| bins_of(&placed, n_bins))
 }
 
 /// One side of a split: the box around some bins, and the number of their primitives.
 fn side(bins: &[Bin]) -> (BoxA, u32) {
-    let join = |(bounds, count): (BoxA, u32), bin: &Bin| {
-        let low = bounds.low.min(bin.bounds.low);
-        let high = bounds.high.max(bin.bounds.high);
-        (BoxA { low, high }, count + bin.count)
-    };
-    bins.iter().fold((BoxA::EMPTY, 0), join)
+    (bins.iter().map(|bin| bin.bounds).fold(BoxA::EMPTY, union), bins.iter().map(|bin| bin.count).sum())
 }
 
 /// Half of the surface area in double precision; 0 for the empty box.
 fn area(bounds: &BoxA) -> f64 {
-    let size = (bounds.high - bounds.low).max(Vec3A::ZERO);
-    let [x, y, z] = size.to_array().map(f64::from);
-    x * y + y * z + z * x
+    half_area(&Aabb::new(bounds.low.into(), bounds.high.into()))
 }
 
 fn volume(bounds: &BoxA) -> f64 {
@@ -153,19 +146,16 @@ fn mistakes(query: &BinSplitQuery, yours: &Option<BinSplit>) -> Vec<(bool, &'sta
         Some(yours) => is_cheapest(query, yours, cost, may),
         None => !splits(query).iter().any(|(split, _)| may(split)),
     };
-    let mut mistakes: Vec<_> = (0..3)
-        .map(|axis| {
-            let text = ["only the axis x is tried", "only the axis y is tried", "only the axis z is tried"];
-            (is_of(right_cost, &|split| split.axis == axis), text[axis as usize])
-        })
-        .collect();
     let last = query.n_bins - 1;
-    mistakes.push((is_of(right_cost, &|split| split.bin > 1), "the split behind the first bin is not tried"));
-    mistakes
-        .push((is_of(right_cost, &|split| split.bin < last), "the split before the last bin is not tried"));
-    for (cost, text) in WRONG_COSTS {
-        mistakes.push((is_of(cost, &|_| true), text));
-    }
+    let of_fewer = |may: &dyn Fn(&BinSplit) -> bool| is_of(right_cost, may);
+    let mut mistakes = vec![
+        (of_fewer(&|split| split.axis == 0), "only the axis x is tried"),
+        (of_fewer(&|split| split.axis == 1), "only the axis y is tried"),
+        (of_fewer(&|split| split.axis == 2), "only the axis z is tried"),
+        (of_fewer(&|split| split.bin > 1), "the split behind the first bin is not tried"),
+        (of_fewer(&|split| split.bin < last), "the split before the last bin is not tried"),
+    ];
+    mistakes.extend(WRONG_COSTS.map(|(cost, text)| (is_of(cost, &|_| true), text)));
     mistakes
 }
 
@@ -208,11 +198,13 @@ fn judge_choice(query: &BinSplitQuery, yours: &Option<BinSplit>) -> CheckResult 
     Err(Broken::with_texts(input(query), describe(yours), expected, "each split").explained_by(mistakes))
 }
 
+fn judge_choices(trial: &Trial<'_>, queries: &[BinSplitQuery]) -> Vec<CheckResult> {
+    let answers = trial.kit.cheapest_split(queries);
+    compare_formulas(queries, answers, |query, yours| judge_choice(query, &yours), mistakes)
+}
+
 pub(super) fn cheapest_split_is_the_cheapest(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(250, queries(), |queries| {
-        let answers = trial.kit.cheapest_split(queries);
-        compare_formulas(queries, answers, |query, yours| judge_choice(query, &yours), mistakes)
-    })
+    trial.forall(250, queries(), |queries| judge_choices(trial, queries))
 }
 
 pub(super) fn cheapest_split_returns_its_cost(trial: &Trial<'_>) -> CheckResult {
@@ -274,8 +266,5 @@ pub(super) fn cheapest_split_leaves_no_side_empty(trial: &Trial<'_>) -> CheckRes
     let point = Aabb::new(Vec3::ONE, Vec3::ONE);
     let apart = bins_of(&[(point, [0; 3]), (point, [15; 3])], 16);
     let together = bins_of(&[(point, [7; 3]), (point, [7; 3])], 16);
-    trial.forall_and(&[apart, together], 200, few, |queries| {
-        let answers = trial.kit.cheapest_split(queries);
-        compare_formulas(queries, answers, |query, yours| judge_choice(query, &yours), mistakes)
-    })
+    trial.forall_and(&[apart, together], 200, few, |queries| judge_choices(trial, queries))
 }

@@ -67,21 +67,15 @@ fn children_of_root(wide: &WideTree, text: &mut String) {
                     ids.extend(blocks.take(count as usize).copied());
                 }
                 Some(ChildContents::Inner(node)) => {
-                    let node = wide.nodes.get(node as usize);
-                    waiting.extend(
-                        node.into_iter()
-                            .flat_map(|node| node.children[..node.n_children() as usize].to_vec()),
-                    );
+                    let Some(node) = wide.nodes.get(node as usize) else { continue };
+                    waiting.extend_from_slice(&node.children[..node.n_children() as usize]);
                 }
             }
         }
         ids.sort_unstable();
         let bounds = root.child_bounds(place);
-        lines.push(format!(
-            "child of the root  {} to {}  {ids:?}",
-            digits(bounds.min.x, 2),
-            digits(bounds.max.x, 2)
-        ));
+        let (low, high) = (digits(bounds.min.x, 2), digits(bounds.max.x, 2));
+        lines.push(format!("child of the root  {low} to {high}  {ids:?}"));
     }
     lines.sort_unstable();
     lines.iter().for_each(|line| _ = writeln!(text, "{line}"));
@@ -98,24 +92,9 @@ fn lines(kit: &dyn Kit, boxes: &[Aabb], bvh: &Bvh) -> String {
 
 pub(super) fn table_of_bins_and_trees(trial: &Trial<'_>) -> CheckResult {
     // Boxes in a row with gaps of different widths, and of different sizes, so that the cheapest split is the only one.
-    let public: Vec<(i32, i32)> = vec![
-        (2, 1),
-        (9, 4),
-        (3, 2),
-        (25, 7),
-        (4, 1),
-        (1, 5),
-        (13, 2),
-        (6, 3),
-        (31, 6),
-        (5, 2),
-        (8, 1),
-        (2, 4),
-        (17, 3),
-        (3, 8),
-        (11, 2),
-        (7, 5),
-    ];
+    let gaps = [2, 9, 3, 25, 4, 1, 13, 6, 31, 5, 8, 2, 17, 3, 11, 7];
+    let sizes = [1, 4, 2, 7, 1, 5, 2, 3, 6, 2, 1, 4, 3, 8, 2, 5];
+    let public = gaps.into_iter().zip(sizes).collect();
     let hidden = prop::collection::vec((1..=31i32, 1..=8i32), 16);
     let drawn = trial.composed(public, hidden);
     let mut x = 0.0;

@@ -1,5 +1,6 @@
 //! Flat trees: trees whose shape is drawn, and the faults and the cost of a tree.
 
+use checks::broken::Broken;
 use checks::tree::{around, half_area};
 use glam::Vec3;
 use proptest::prelude::*;
@@ -80,11 +81,15 @@ pub(super) fn drawn_trees(most: usize) -> impl Strategy<Value = (Vec<Aabb>, Flat
 /// What is wrong with a tree: yours, expected, and the text of a diagnosis if the fault is itself the cause.
 pub(super) type Fault = (String, String, Option<&'static str>);
 
-pub(super) const LEFT_OUT: &str = "a primitive was left out, or is in two leaves: both sides of a split together \
+pub(super) fn broken_by((yours, expected, cause): Fault, input: String, source: &'static str) -> Broken {
+    Broken::with_texts(input, yours, expected, source).explained_by(cause.map(|text| (true, text)))
+}
+
+const LEFT_OUT: &str = "a primitive was left out, or is in two leaves: both sides of a split together \
                                    must hold each exactly once";
-pub(super) const NOT_DEPTH_FIRST: &str = "the nodes are not depth first: append both children of a node, then all \
+const NOT_DEPTH_FIRST: &str = "the nodes are not depth first: append both children of a node, then all \
                                           nodes below the first, then all below the second";
-pub(super) const TOO_LARGE: &str =
+const TOO_LARGE: &str =
     "a leaf holds more than MAX_LEAF primitives: only a node of at most MAX_LEAF may become a leaf";
 
 /// The first fault of a tree that a builder made over `boxes`.
@@ -151,17 +156,31 @@ pub(super) fn fault(tree: &FlatTree, boxes: &[Aabb]) -> Option<Fault> {
     None
 }
 
+/// A value for each node of a tree without faults, from the leaves up. `join` computes it from the values of both children.
+/// Both functions also get the index of the node.
+pub(super) fn from_leaves<T: Copy>(
+    tree: &FlatTree,
+    leaf: impl Fn(usize, &FlatNode) -> T,
+    join: impl Fn(usize, T, T) -> T,
+) -> Vec<T> {
+    // Children come after their parents, so the values are computed, and stored, from the last node to the first.
+    let last = tree.nodes.len().saturating_sub(1);
+    let mut values: Vec<T> = Vec::new();
+    for (index, node) in tree.nodes.iter().enumerate().rev() {
+        let of = |child: u32| values[last - child as usize];
+        values.push(if node.is_leaf() {
+            leaf(index, node)
+        } else {
+            join(index, of(node.first), of(node.first + 1))
+        });
+    }
+    values.reverse();
+    values
+}
+
 /// The number of levels of a tree without faults.
 pub(super) fn depth(tree: &FlatTree) -> usize {
-    let (mut deepest, mut waiting) = (0, vec![(0usize, 1)]);
-    while let Some((index, level)) = waiting.pop() {
-        let Some(node) = tree.nodes.get(index) else { continue };
-        deepest = deepest.max(level);
-        if !node.is_leaf() {
-            waiting.extend([(node.first as usize, level + 1), (node.first as usize + 1, level + 1)]);
-        }
-    }
-    deepest
+    from_leaves(tree, |_, _| 1, |_, left, right| 1 + left.max(right)).first().copied().unwrap_or(0)
 }
 
 /// The cost of a tree without faults by the surface area heuristic of this stage, for a ray that enters its root.

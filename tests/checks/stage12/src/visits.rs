@@ -146,13 +146,9 @@ pub(super) fn wide_closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> Chec
         return Ok(());
     }
     let of = |nodes: usize, blocks: usize| format!("{nodes} nodes and {blocks} blocks");
-    Err(Broken::with_texts(
-        what,
-        of(yours, answers[0].blocks.len()),
-        format!("at most {}", of(most, 1)),
-        "counted",
-    )
-    .explained_by(mistakes(&queries, n_calls(&answers[0]))))
+    let (yours, expected) = (of(yours, answers[0].blocks.len()), format!("at most {}", of(most, 1)));
+    Err(Broken::with_texts(what, yours, expected, "counted")
+        .explained_by(mistakes(&queries, n_calls(&answers[0]))))
 }
 
 /// Judges the number of calls: at most `percent` of those of the reference.

@@ -211,19 +211,15 @@ pub(super) fn flawed_search(query: &WideQuery, flaw: Flaw) -> (Option<(u32, f32)
                 stack.extend(entered);
             }
             ChildContents::Leaf { block, count } => {
-                for (index, lanes) in (block..)
-                    .zip(query.tree.blocks[block as usize..][..(count as usize).div_ceil(BLOCK)].iter())
-                {
+                let lanes = query.tree.blocks[block as usize..].iter().flatten();
+                let ids: Vec<u32> = lanes.copied().take(count as usize).collect();
+                for lanes in ids.chunks(BLOCK) {
                     n_calls += 1;
-                    let n = (count - (index - block) * BLOCK as u32).min(BLOCK as u32) as usize;
-                    let candidates: Vec<u32> = lanes[..n]
-                        .iter()
-                        .copied()
-                        .filter(|&id| query.hits[id as usize] < ray.t_max)
-                        .collect();
-                    for id in candidates {
+                    // A hit in this block leaves its other candidates as they are.
+                    let t_max = ray.t_max;
+                    let candidates = lanes.iter().map(|&id| (id, query.hits[id as usize]));
+                    for (id, t) in candidates.filter(|(_, t)| *t < t_max) {
                         n_calls += 1;
-                        let t = query.hits[id as usize];
                         let wins = |best: PrimitiveHit| {
                             t < best.t || flaw != Flaw::FirstOfEqual && t == best.t && id < best.primitive
                         };

@@ -1,6 +1,6 @@
 //! `collapse`.
 
-use super::trees::{drawn_tree, drawn_trees};
+use super::trees::{Fault, broken_by, drawn_tree, drawn_trees, from_leaves};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::{compare, compare_formulas};
@@ -22,11 +22,7 @@ fn parents(tree: &FlatTree) -> Vec<usize> {
 
 /// For each node of a flat tree the number of leaves below it, or 1 for a leaf.
 fn n_leaves(tree: &FlatTree) -> Vec<usize> {
-    let mut n = vec![1; tree.nodes.len()];
-    for (index, node) in tree.nodes.iter().enumerate().rev().filter(|(_, node)| !node.is_leaf()) {
-        n[index] = n[node.first as usize] + n[node.first as usize + 1];
-    }
-    n
+    from_leaves(tree, |_, _| 1, |_, left, right| left + right)
 }
 
 /// The nodes of the flat tree that the children of each wide node stand for.
@@ -34,13 +30,13 @@ type Meaning = Vec<Vec<usize>>;
 
 const SPLIT_LEAF: &str = "a leaf of the binary tree must become one leaf of the wide tree, whatever its size";
 
-/// The leaves and places of a wide tree over `tree`, or the first fault: yours, expected, and the cause if the fault is it.
-fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, (String, String, Option<&'static str>)> {
-    let wrong = |yours: String, expected: &str, cause| Err((yours, expected.to_owned(), cause));
+/// The leaves and places of a wide tree over `tree`, or the first fault.
+fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
+    let wrong = |yours: String, expected: &str| Err((yours, expected.to_owned(), None));
     if tree.nodes.is_empty() || wide.nodes.is_empty() {
         let yours = format!("{} wide nodes for {} nodes", wide.nodes.len(), tree.nodes.len());
         let same = tree.nodes.is_empty() && wide.nodes.is_empty();
-        return if same { Ok(Vec::new()) } else { wrong(yours, "nodes for nodes, and none for none", None) };
+        return if same { Ok(Vec::new()) } else { wrong(yours, "nodes for nodes, and none for none") };
     }
     // Find the leaf of each primitive.
     let mut leaf_of = vec![0; tree.order.len()];
@@ -64,11 +60,7 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, (String, String,
                 "node {index} has the children {:?}, occupied {:#010b}",
                 node.children, node.occupied
             );
-            return wrong(
-                yours,
-                "the children first, each put in by WideNode::set, then the empty places",
-                None,
-            );
+            return wrong(yours, "the children first, each put in by WideNode::set, then the empty places");
         }
         for place in 0..n {
             let (stands_for, bounds) = match node.children[place].contents() {
@@ -77,41 +69,35 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, (String, String,
                     if below <= index || below >= wide.nodes.len() {
                         let yours =
                             format!("a child of node {index} is node {below} of {}", wide.nodes.len());
-                        return wrong(yours, "a parent has a smaller index than its children", None);
+                        return wrong(yours, "a parent has a smaller index than its children");
                     }
                     reached[below] += 1;
                     let Some(top) = common(&parents, &meaning[below]) else { continue };
                     if meaning[below].iter().map(|&one| n_leaves[one]).sum::<usize>() != n_leaves[top] {
                         let yours = format!("node {below} holds leaves of different parts of the tree");
-                        return wrong(yours, "everything below one node of the binary tree", None);
+                        return wrong(yours, "everything below one node of the binary tree");
                     }
                     (top, tree.nodes[top].bounds())
                 }
                 ChildContents::Leaf { block, count } => {
                     let blocks = block as usize..block as usize + (count as usize).div_ceil(BLOCK);
                     let Some(lanes) = wide.blocks.get(blocks.clone()) else {
-                        return wrong(
-                            format!("a leaf with the blocks {blocks:?} of {}", wide.blocks.len()),
-                            "blocks that exist",
-                            None,
-                        );
+                        let yours = format!("a leaf with the blocks {blocks:?} of {}", wide.blocks.len());
+                        return wrong(yours, "blocks that exist");
                     };
                     used[blocks].iter_mut().for_each(|used| *used += 1);
                     let lanes: Vec<u32> = lanes.iter().flatten().copied().collect();
                     let (ids, free) = lanes.split_at(count as usize);
                     let Some(&leaf) = ids.first().and_then(|id| leaf_of.get(*id as usize)) else {
-                        return wrong(format!("a leaf of {ids:?}"), "primitives that exist", None);
+                        return wrong(format!("a leaf of {ids:?}"), "primitives that exist");
                     };
                     let node = &tree.nodes[leaf];
                     let expected = &tree.order[node.first as usize..(node.first + node.count) as usize];
                     if ids != expected || free.iter().any(|&id| id != NO_PRIMITIVE) {
                         let is_part = ids.len() < expected.len() && expected.starts_with(ids);
                         let expected = format!("{expected:?}, and NO_PRIMITIVE in the free lanes");
-                        return Err((
-                            format!("a leaf with the lanes {lanes:?}"),
-                            expected,
-                            is_part.then_some(SPLIT_LEAF),
-                        ));
+                        let yours = format!("a leaf with the lanes {lanes:?}");
+                        return Err((yours, expected, is_part.then_some(SPLIT_LEAF)));
                     }
                     times[leaf] += 1;
                     (leaf, node.bounds())
@@ -122,10 +108,9 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, (String, String,
                 let of = |bounds: &Aabb| {
                     format!("{:?}..{:?} for place {place} of node {index}", bounds.min, bounds.max)
                 };
-                let is_parents = common(&parents, &meaning[index]).is_some_and(|_| false)
-                    || yours == tree.nodes[0].bounds();
+                let is_of_root = yours == tree.nodes[0].bounds();
                 let cause =
-                    is_parents.then_some("a place has the box of the root: it needs the box of its child");
+                    is_of_root.then_some("a place has the box of the root: it needs the box of its child");
                 return Err((of(&yours), of(&bounds), cause));
             }
             meaning[index].push(stands_for);
@@ -133,18 +118,10 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, (String, String,
     }
     let lost = (0..tree.nodes.len()).find(|&leaf| tree.nodes[leaf].is_leaf() && times[leaf] != 1);
     if let Some(leaf) = lost {
-        return wrong(
-            format!("the leaf {leaf} of the binary tree appears {} times", times[leaf]),
-            "once",
-            None,
-        );
+        return wrong(format!("the leaf {leaf} of the binary tree appears {} times", times[leaf]), "once");
     }
     if reached.iter().chain(&used).any(|&times| times != 1) {
-        return wrong(
-            "a node or a block that is not in use, or used twice".into(),
-            "each exactly once",
-            None,
-        );
+        return wrong("a node or a block that is not in use, or used twice".into(), "each exactly once");
     }
     Ok(meaning)
 }
@@ -166,13 +143,8 @@ fn describe(tree: &FlatTree) -> String {
 }
 
 fn judge_leaves(tree: &FlatTree, wide: &WideTree) -> CheckResult {
-    match meaning(tree, wide) {
-        Ok(_) => Ok(()),
-        Err((yours, expected, cause)) => {
-            let broken = Broken::with_texts(describe(tree), yours, expected, "the binary tree");
-            Err(broken.explained_by(cause.map(|text| (true, text))))
-        }
-    }
+    let meaning = meaning(tree, wide);
+    meaning.map_or_else(|fault| Err(broken_by(fault, describe(tree), "the binary tree")), |_| Ok(()))
 }
 
 fn trees_only(most: usize) -> impl proptest::strategy::Strategy<Value = FlatTree> + Clone {
@@ -290,19 +262,17 @@ pub(super) fn collapse_opens_the_largest_child(trial: &Trial<'_>) -> CheckResult
     trial.forall(200, trees_only(120), |trees| {
         let judge = |tree: &FlatTree, wide: WideTree| judge_opened(tree, &wide);
         let formulas = |tree: &FlatTree, wide: &WideTree| {
-            let Ok(meaning) = meaning(tree, wide) else {
-                return WRONG_RULES.map(|(_, text)| (false, text)).to_vec();
+            let (meaning, parents) = (meaning(tree, wide).ok(), parents(tree));
+            let follows = |rule: Opens, children: &Vec<usize>| {
+                let mut sorted = children.clone();
+                sorted.sort_unstable();
+                let top = common(&parents, children).unwrap_or(0);
+                tree.nodes[top].is_leaf() || sorted == opened_by(tree, top, rule)
             };
-            let parents = parents(tree);
-            let follows = |rule: Opens| {
-                meaning.iter().all(|children| {
-                    let mut sorted = children.clone();
-                    sorted.sort_unstable();
-                    let top = common(&parents, children).unwrap_or(0);
-                    tree.nodes[top].is_leaf() || sorted == opened_by(tree, top, rule)
-                })
-            };
-            WRONG_RULES.map(|(rule, text)| (follows(rule), text)).to_vec()
+            let gives = |rule, all: &Meaning| all.iter().all(|children| follows(rule, children));
+            WRONG_RULES
+                .map(|(rule, text)| (meaning.as_ref().is_some_and(|all| gives(rule, all)), text))
+                .to_vec()
         };
         compare_formulas(trees, trial.kit.collapse(trees), judge, formulas)
     })?;

@@ -1,12 +1,13 @@
 //! Checks of `effects` for scenes in which some or all surfaces are dark.
 
-use super::scenes::{everything, light};
+use super::scenes::{ONE_SAMPLE, add_material, everything, light};
 use super::whole::judge;
 use checks::Trial;
 use checks::broken::{CheckResult, all_hold};
 use checks::judge::compare_formulas;
 use glam::{Vec3, vec3};
-use raykata::effects::{Effects, LightEffects, MaterialEffects};
+use raykata::effects::{Effects, MaterialEffects};
+use raykata::material::Material;
 use raykata::scene::{Background, Scene};
 
 /// A scene, and which of its parts light reaches.
@@ -23,27 +24,19 @@ impl Dark {
     /// The effects if materials with images are lit as `lit` says, and the scene shines as `shines` says.
     fn effects(&self, shines: bool, lit: bool) -> Effects {
         let scene = &self.scene;
-        let lights: Vec<usize> = (0..scene.lights.len()).filter(|_| self.listed()).collect();
-        let lights_of_scene =
-            vec![LightEffects { samples: 1, area: false, shadows: true }; scene.lights.len()];
-        if !shines {
-            return Effects {
-                lights: lights_of_scene,
-                materials: vec![MaterialEffects::default(); scene.materials.len()],
-                smooth_meshes: vec![false],
-                ..Effects::default()
-            };
-        }
-        let paint = MaterialEffects { lights, mirror: true, glossy: true, texture: lit, transmission: false };
         let mut materials = vec![MaterialEffects::default(); scene.materials.len()];
-        materials[1] = paint;
+        if shines {
+            let lights = (0..scene.lights.len()).filter(|_| self.listed()).collect();
+            materials[1] =
+                MaterialEffects { lights, mirror: true, glossy: true, texture: lit, transmission: false };
+        }
         Effects {
-            lens: true,
-            motion: true,
-            indirect_light: scene.indirect_light,
-            lights: lights_of_scene,
+            lens: shines,
+            motion: shines,
+            indirect_light: shines && scene.indirect_light,
+            lights: vec![ONE_SAMPLE; scene.lights.len()],
             materials,
-            smooth_meshes: vec![true],
+            smooth_meshes: vec![shines],
         }
     }
 
@@ -111,13 +104,9 @@ pub(super) fn what_nothing_lights_needs_nothing(trial: &Trial<'_>) -> CheckResul
     };
     let sky = |scene: &mut Scene| scene.background = Background::Color(brightness * grey);
     let add_emitter = |scene: &mut Scene, node: Option<usize>| {
-        scene.materials.push(raykata::material::Material {
-            diffuse: Vec3::ZERO,
-            ambient: Vec3::ZERO,
-            emission: brightness * grey,
-            ..Default::default()
-        });
-        scene.material_names.push("emitter".into());
+        let emission = brightness * grey;
+        let emitter = Material { diffuse: Vec3::ZERO, ambient: Vec3::ZERO, emission, ..Material::default() };
+        add_material(scene, "emitter", emitter);
         node.into_iter().for_each(|node| scene.nodes[node].material = Some(2));
     };
     let cases = [

@@ -36,41 +36,26 @@ enum Moving {
     Elsewhere,
 }
 
-const FILMED: [Filmed; 11] = {
-    const fn filmed(
-        what: &'static str,
-        lens: Option<f32>,
-        shutter: Option<(f32, f32)>,
-        sphere: Moving,
-        expected: [bool; 2],
-    ) -> Filmed {
-        Filmed { what, lens, shutter, sphere, expected }
-    }
-    let open = Some((0.0, 1.0));
+fn filmed() -> [Filmed; 11] {
+    let (open, small) = (Some((0.0, 1.0)), Some(0.1));
     [
-        filmed("a lens of aperture 0", Some(0.0), None, Moving::No, [false, false]),
-        filmed("a lens", Some(0.1), None, Moving::No, [true, false]),
-        filmed("a lens with a tiny aperture", Some(1e-7), None, Moving::No, [true, false]),
-        filmed("a shutter, and a sphere at rest", None, open, Moving::No, [false, false]),
-        filmed("a moving sphere without a shutter", None, None, Moving::Yes, [false, false]),
-        filmed(
+        ("a lens of aperture 0", Some(0.0), None, Moving::No, [false, false]),
+        ("a lens", small, None, Moving::No, [true, false]),
+        ("a lens with a tiny aperture", Some(1e-7), None, Moving::No, [true, false]),
+        ("a shutter, and a sphere at rest", None, open, Moving::No, [false, false]),
+        ("a moving sphere without a shutter", None, None, Moving::Yes, [false, false]),
+        (
             "a moving sphere, and a shutter that closes at the time at which it opens",
             None,
             Some((0.5, 0.5)),
             Moving::Yes,
             [false, false],
         ),
-        filmed("a moving sphere, and a shutter", None, Some((0.25, 0.5)), Moving::Yes, [false, true]),
-        filmed("a moving sphere, a lens and a shutter", Some(0.1), open, Moving::Yes, [true, true]),
-        filmed("a moving sphere and a lens", Some(0.1), None, Moving::Yes, [true, false]),
-        filmed(
-            "a shutter, and a moving sphere that no root reaches",
-            None,
-            open,
-            Moving::Elsewhere,
-            [false, false],
-        ),
-        filmed(
+        ("a moving sphere, and a shutter", None, Some((0.25, 0.5)), Moving::Yes, [false, true]),
+        ("a moving sphere, a lens and a shutter", small, open, Moving::Yes, [true, true]),
+        ("a moving sphere and a lens", small, None, Moving::Yes, [true, false]),
+        ("a shutter, and a moving sphere that no root reaches", None, open, Moving::Elsewhere, [false; 2]),
+        (
             "a shutter, and a sphere whose transform is the same at both times",
             None,
             open,
@@ -78,7 +63,8 @@ const FILMED: [Filmed; 11] = {
             [false, false],
         ),
     ]
-};
+    .map(|(what, lens, shutter, sphere, expected)| Filmed { what, lens, shutter, sphere, expected })
+}
 
 impl Filmed {
     fn scene(&self) -> Scene {
@@ -146,11 +132,12 @@ const ELSEWHERE: &str = "a shape that no root reaches does not count: use scene.
 pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -> CheckResult {
     let lights = hidden_lights(trial);
     let plain = with_lights(plain(), lights.len());
-    let mut scenes: Vec<Scene> = FILMED.iter().map(Filmed::scene).collect();
+    let filmed = filmed();
+    let mut scenes: Vec<Scene> = filmed.iter().map(Filmed::scene).collect();
     scenes.iter_mut().for_each(|scene| scene.lights.extend_from_slice(&lights));
     let law = |filmed: &Filmed, yours: Effects| {
         let [lens, motion] = filmed.expected;
         judge(filmed.what, &yours, &Effects { lens, motion, ..plain.clone() })
     };
-    all_hold(compare_formulas(&FILMED, trial.kit.effects(&scenes), law, Filmed::mistakes))
+    all_hold(compare_formulas(&filmed, trial.kit.effects(&scenes), law, Filmed::mistakes))
 }

@@ -35,6 +35,16 @@ fn row(material: usize, hits: u64, in_front: [u64; 3]) -> MaterialHits {
     MaterialHits { material, hits, in_front: in_front.to_vec() }
 }
 
+fn query(
+    hits: Vec<MaterialHits>,
+    lights: Vec<LightEffects>,
+    materials: Vec<MaterialEffects>,
+    glossy_samples: u32,
+) -> HitsQuery {
+    let effects = Effects { lights, materials, ..Effects::default() };
+    HitsQuery { hits, effects, quality: Quality { glossy_samples, ..Quality::default() } }
+}
+
 fn hits_query() -> impl Strategy<Value = HitsQuery> + Clone {
     let lights = prop::collection::vec((0..4u32, any::<bool>()), 3);
     let materials = prop::collection::vec((0..KINDS.len(), prop::collection::vec(any::<bool>(), 3)), 3);
@@ -43,15 +53,9 @@ fn hits_query() -> impl Strategy<Value = HitsQuery> + Clone {
     let table = prop::collection::vec(rows, 0..4);
     (lights, materials, table, 1..5u32).prop_map(|(lights, materials, hits, glossy_samples)| {
         let lit = |lit: &[bool]| (0..3).filter(|&i| lit[i]).collect();
-        HitsQuery {
-            hits,
-            effects: Effects {
-                lights: lights.iter().map(|&(samples, shadows)| light(samples, shadows)).collect(),
-                materials: materials.iter().map(|(kind, on)| material(&KINDS[*kind], lit(on))).collect(),
-                ..Effects::default()
-            },
-            quality: Quality { glossy_samples, ..Quality::default() },
-        }
+        let lights = lights.iter().map(|&(samples, shadows)| light(samples, shadows)).collect();
+        let materials = materials.iter().map(|(kind, on)| material(&KINDS[*kind], lit(on))).collect();
+        query(hits, lights, materials, glossy_samples)
     })
 }
 
@@ -59,15 +63,8 @@ fn hits_query() -> impl Strategy<Value = HitsQuery> + Clone {
 fn drawn() -> HitsQuery {
     let plain = material(&KINDS[0], vec![0, 2]);
     let glass = material(&KINDS[6], vec![0, 1]);
-    HitsQuery {
-        hits: vec![row(1, 10, [3, 20, 5]), row(0, 7, [4, 31, 6])],
-        effects: Effects {
-            lights: vec![light(1, true), light(4, true), light(1, false)],
-            materials: vec![plain, glass],
-            ..Effects::default()
-        },
-        quality: Quality { glossy_samples: 3, ..Quality::default() },
-    }
+    let hits = vec![row(1, 10, [3, 20, 5]), row(0, 7, [4, 31, 6])];
+    query(hits, vec![light(1, true), light(4, true), light(1, false)], vec![plain, glass], 3)
 }
 
 /// The rays of [`drawn`], counted by hand. Shadow: the glass needs lights 0 and 1 (3 + 20), the plain material light 0
@@ -129,31 +126,23 @@ fn broken(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'st
 
 /// Tables of a single hit of each kind and of a single light sample, each with the rays that it needs.
 fn single_hits_and_places() -> Vec<(HitsQuery, RayCounts)> {
-    let query =
-        |kind: &Kind, lights: Vec<usize>, casts: bool, row: MaterialHits, glossy_samples: u32| HitsQuery {
-            hits: vec![row],
-            effects: Effects {
-                lights: vec![light(2, casts), light(3, casts), light(1, casts)],
-                materials: vec![material(kind, lights)],
-                ..Effects::default()
-            },
-            quality: Quality { glossy_samples, ..Quality::default() },
-        };
+    let single = |kind: &Kind, listed: &[usize], casts: bool, row: MaterialHits, glossy_samples: u32| {
+        let lights = [2, 3, 1].map(|samples| light(samples, casts));
+        query(vec![row], lights.to_vec(), vec![material(kind, listed.to_vec())], glossy_samples)
+    };
     let mut singles = Vec::new();
     for kind in &KINDS {
         for (glossy_samples, [reflection, transmission]) in [(1, kind.1), (4, kind.2)] {
             let expected = RayCounts { primary: 1, shadow: 0, reflection, transmission };
-            let hit = query(kind, vec![0, 1, 2], true, row(0, 1, [0, 0, 0]), glossy_samples);
+            let hit = single(kind, &[0, 1, 2], true, row(0, 1, [0, 0, 0]), glossy_samples);
             singles.push((hit, expected));
         }
         // One sample of light 1: the lights that matter, whether they cast shadows, and the number of shadow rays.
-        for (lights, casts, shadow) in [
-            (vec![0, 1, 2], true, 1),
-            (vec![0, 1, 2], false, 0),
-            (vec![0, 2], true, 0),
-            (vec![0, 2], false, 0),
-        ] {
-            let place = query(kind, lights, casts, row(0, 0, [0, 1, 0]), 4);
+        let (with, without) = (&[0, 1, 2][..], &[0, 2][..]);
+        for (listed, casts, shadow) in
+            [(with, true, 1), (with, false, 0), (without, true, 0), (without, false, 0)]
+        {
+            let place = single(kind, listed, casts, row(0, 0, [0, 1, 0]), 4);
             singles.push((place, RayCounts { shadow, ..RayCounts::default() }));
         }
     }
@@ -165,18 +154,13 @@ type Parts = Vec<(HitsQuery, u64)>;
 
 /// The table in parts: for each row one hit alone, and one sample of each light alone, each with its number in the row.
 fn parts(query: &HitsQuery) -> Parts {
-    let mut parts = Vec::new();
-    for MaterialHits { material, hits, in_front } in &query.hits {
-        let alone =
-            |hits, in_front| HitsQuery { hits: vec![row(*material, hits, in_front)], ..query.clone() };
-        parts.push((alone(1, [0, 0, 0]), *hits));
-        for (light, &places) in in_front.iter().enumerate() {
-            let mut one = [0, 0, 0];
-            one[light] = 1;
-            parts.push((alone(0, one), places));
-        }
-    }
-    parts
+    let singles = [(1, [0, 0, 0]), (0, [1, 0, 0]), (0, [0, 1, 0]), (0, [0, 0, 1])];
+    let of_row = |MaterialHits { material, hits, in_front }: &MaterialHits| {
+        let numbers = std::iter::once(*hits).chain(in_front.clone());
+        let alone = singles.map(|(hits, in_front)| vec![row(*material, hits, in_front)]);
+        alone.into_iter().map(|hits| HitsQuery { hits, ..query.clone() }).zip(numbers).collect::<Parts>()
+    };
+    query.hits.iter().flat_map(of_row).collect()
 }
 
 /// Checks known counts: the fixed table, single hits and single light samples. All other tables must be sums of those.

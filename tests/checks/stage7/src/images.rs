@@ -236,10 +236,9 @@ fn judge_stretch(stretch: &Stretch, queries: &[TextureQuery], yours: &[Vec3]) ->
             let ends = [&queries[first], &queries[first + 2]].map(|query| query.uv);
             let source = "the mean of your colours at the ends of an interval";
             let mut broken = broken(&queries[first + 1], yours[first + 1], mean, source);
-            broken.input += &format!(
-                ",\nin the middle between {:?} and {:?}: the colour must be {law}",
-                ends[0], ends[1]
-            );
+            let [begin, end] = ends;
+            broken.input +=
+                &format!(",\nin the middle between {begin:?} and {end:?}: the colour must be {law}");
             return Err(broken.explained_by([]));
         }
     }

@@ -1,9 +1,9 @@
 //! Checks of `light_effects`.
 
-use super::scenes::{light, sphere_light};
+use super::scenes::{ONE_SAMPLE, light, sphere_light};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare_formulas;
+use checks::judge::{compare, compare_formulas};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::effects::LightEffects;
@@ -23,7 +23,7 @@ struct LightCase {
 }
 
 fn light_cases() -> Vec<LightCase> {
-    let one = LightEffects { samples: 1, area: false, shadows: true };
+    let one = ONE_SAMPLE;
     let area = |samples| LightEffects { samples, area: true, shadows: true };
     let silent = |light: Light| Light { shadows: false, ..light };
     let case = |name, light: Light, light_samples, expected, bright| LightCase {
@@ -67,7 +67,7 @@ fn light_cases() -> Vec<LightCase> {
     ]
 }
 
-const ONE_SAMPLE: &str = "you use 1 sample: an area light needs quality.light_samples samples";
+const TOO_FEW: &str = "you use 1 sample: an area light needs quality.light_samples samples";
 
 /// The known mistakes, each with whether it gives this answer.
 fn light_mistakes(case: &LightCase, yours: &LightEffects) -> Vec<(bool, &'static str)> {
@@ -114,8 +114,8 @@ fn light_mistakes(case: &LightCase, yours: &LightEffects) -> Vec<(bool, &'static
             is(dark_if(radiance.max_element() < 1e-2)),
             "you return the default for dim lights: a faint red light still emits, so compare with 0",
         ),
-        (is(with(many, 1, true)), ONE_SAMPLE),
-        (is(with(many, 1, false)), ONE_SAMPLE),
+        (is(with(many, 1, true)), TOO_FEW),
+        (is(with(many, 1, false)), TOO_FEW),
         (is(with(many, n + 1, true)), "you add a sample: an area light needs quality.light_samples samples"),
         (
             is(with(is_area, n, true)),
@@ -148,15 +148,13 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> CheckResult {
     all_hold(compare_formulas(&cases, answers, judge, light_mistakes))?;
     trial.forall(200, drawn_lights(), |drawn| {
         let queries: Vec<LightQuery> = drawn.iter().map(|(query, _)| query.clone()).collect();
-        let answers = drawn.iter().zip(trial.kit.light_effects(&queries));
-        let judge = |((query, expected), yours): (&(LightQuery, LightEffects), LightEffects)| {
+        compare(drawn, trial.kit.light_effects(&queries), |(query, expected), yours| {
             if yours == *expected {
                 return Ok(());
             }
             let input = format!("light_effects of {query:?}");
             Err(Broken::new(input, yours, *expected, "the definition").explained_by([]))
-        };
-        answers.map(judge).collect()
+        })
     })
 }
 
@@ -184,7 +182,7 @@ fn drawn_lights() -> impl Strategy<Value = (LightQuery, LightEffects)> + 'static
             let falloff = Falloff::None;
             let sphere = AreaShape::Sphere(Sphere { center: position, radius: 0.5 });
             let rectangle = AreaShape::Rectangle { corner: position, edges: (Vec3::X, Vec3::Z) };
-            let one_sample = LightEffects { samples: 1, area: false, shadows };
+            let one_sample = LightEffects { shadows, ..ONE_SAMPLE };
             let by_area = match light_samples {
                 0 => one_sample,
                 samples => LightEffects { samples, area: true, shadows },

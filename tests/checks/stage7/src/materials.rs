@@ -14,18 +14,7 @@ use raykata::scene::Quality;
 
 /// A material that reflects, transmits and emits no light.
 fn black() -> Material {
-    Material {
-        ambient: Vec3::ZERO,
-        diffuse: Vec3::ZERO,
-        specular: Vec3::ZERO,
-        mirror: Vec3::ZERO,
-        transmission: Vec3::ZERO,
-        index_of_refraction: 1.5,
-        fresnel: Fresnel::None,
-        roughness: 0.0,
-        texture: None,
-        ..Material::default()
-    }
+    Material { ambient: Vec3::ZERO, diffuse: Vec3::ZERO, index_of_refraction: 1.5, ..Material::default() }
 }
 
 /// Materials with few colours, each with a `max_depth` and the effects that it needs under a red, a green, a faint
@@ -106,30 +95,29 @@ fn recorded() -> Vec<(MaterialQuery, MaterialEffects)> {
     cases.into_iter().map(query).collect()
 }
 
+/// The colours of a material that [`color`] draws.
+fn colors(material: &mut Material) -> [&mut Vec3; N_COLORS] {
+    let Material { ambient, diffuse, specular, mirror, transmission, .. } = material;
+    [ambient, diffuse, specular, mirror, transmission]
+}
+
 /// For each colour of the material: the same material with all other colours black.
 fn by_color(query: &MaterialQuery) -> Vec<MaterialQuery> {
-    let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
-    let colors = [ambient, diffuse, specular, mirror, transmission];
     let alone = |kept: usize| {
-        let mut left = [Vec3::ZERO; N_COLORS];
-        left[kept] = colors[kept];
-        with_colors(query, left)
+        let mut query = query.clone();
+        let others = colors(&mut query.material).into_iter().enumerate().filter(|(i, _)| *i != kept);
+        others.for_each(|(_, color)| *color = Vec3::ZERO);
+        query
     };
     (0..N_COLORS).map(alone).collect()
 }
 
-fn with_colors(query: &MaterialQuery, colors: [Vec3; N_COLORS]) -> MaterialQuery {
-    let [ambient, diffuse, specular, mirror, transmission] = colors;
-    let material = Material { ambient, diffuse, specular, mirror, transmission, ..query.material.clone() };
-    MaterialQuery { material, ..query.clone() }
-}
-
 /// The same query with every colour of the material and of its lights changed.
 fn recolored(query: &MaterialQuery, change: impl Fn(Vec3) -> Vec3) -> MaterialQuery {
-    let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
-    let changed = with_colors(query, [ambient, diffuse, specular, mirror, transmission].map(&change));
-    let lights = query.lights.iter().map(|light| Light { color: change(light.color), ..light.clone() });
-    MaterialQuery { lights: lights.collect(), ..changed }
+    let mut query = query.clone();
+    let of_lights = query.lights.iter_mut().map(|light| &mut light.color);
+    of_lights.chain(colors(&mut query.material)).for_each(|color| *color = change(*color));
+    query
 }
 
 /// For each channel: the same query with all other channels black.
@@ -139,21 +127,6 @@ fn by_channel(query: &MaterialQuery) -> Vec<MaterialQuery> {
 
 const N_COLORS: usize = 5;
 const N_CHANNELS: usize = 3;
-
-/// The other materials whose answers are compared with the answer for a material.
-struct Others {
-    /// The material with each colour alone, with each channel alone, and its variants.
-    asked: Vec<MaterialQuery>,
-    /// The effects that the variants must need.
-    expected: Vec<MaterialEffects>,
-}
-
-impl Others {
-    fn of((query, yours): (&MaterialQuery, &MaterialEffects)) -> Others {
-        let (variants, expected): (Vec<_>, Vec<_>) = variants(query, yours).into_iter().unzip();
-        Others { asked: [by_color(query), by_channel(query), variants].concat(), expected }
-    }
-}
 
 /// The union of the answers: an effect is set if any answer sets it.
 fn together(answers: &[MaterialEffects]) -> MaterialEffects {
@@ -233,8 +206,8 @@ fn material_mistakes(
     // Some effects follow from others, so the first wrong one decides.
     let mirror = !lights_differ && yours.mirror != expected.mirror;
     let transmission = !lights_differ && yours.transmission != expected.transmission;
-    let glossy = !lights_differ && !mirror && !transmission && yours.glossy != expected.glossy;
-    let texture = !lights_differ && !mirror && !transmission && yours.texture != expected.texture;
+    let same_rays = !lights_differ && !mirror && !transmission;
+    let mirror_alone = mirror && !transmission && shown;
     vec![
         (
             lights_differ && more && yours.lights.len() > expected.lights.len(),
@@ -246,22 +219,25 @@ fn material_mistakes(
              faint light",
         ),
         (!shown && (mirror || transmission), "with max_depth 0 a surface spawns no secondary rays"),
-        (mirror && !transmission && material.coat != 1.0 && shown, "a coat, which is not 1, reflects rays"),
+        (mirror_alone && material.coat != 1.0, "a coat, which is not 1, reflects rays"),
         (
-            mirror && !transmission && material.mirror == Vec3::ZERO && shown,
+            mirror_alone && material.mirror == Vec3::ZERO,
             "with fresnel, a material reflects if its transmission is not 0, and only then",
         ),
         (
-            mirror && !transmission && material.mirror != Vec3::ZERO && shown,
+            mirror_alone && material.mirror != Vec3::ZERO,
             "rays are reflected if some channel of mirror is not 0",
         ),
         (
             transmission && through && shown,
             "rays are refracted if some channel of transmission is not 0, for every index of refraction",
         ),
-        (glossy, "glossy is true if roughness is above 0 and the material reflects or refracts rays"),
         (
-            texture,
+            same_rays && yours.glossy != expected.glossy,
+            "glossy is true if roughness is above 0 and the material reflects or refracts rays",
+        ),
+        (
+            same_rays && yours.texture != expected.texture,
             "an image matters if diffuse or ambient, which it multiplies, is not 0: otherwise texture is \
              false",
         ),
@@ -290,57 +266,30 @@ fn material_query() -> impl Strategy<Value = MaterialQuery> + Clone {
     let fresnel = prop_oneof![Just(Fresnel::None), Just(Fresnel::Schlick), Just(Fresnel::Exact)];
     let rough = prop_oneof![Just(0.0f32), Just(0.25f32)];
     let texture = prop_oneof![Just(None), Just(Some(0))];
-    let colors = (color(), color(), color(), color(), color());
     let index = prop_oneof![Just(1.0f32), Just(1.5f32)];
     let lights = prop::collection::vec(color().prop_map(|color| light(color, 2.0)), 0..4);
-    (colors, fresnel, rough, texture, lights, 0..3u32, index).prop_map(
-        |(
-            (ambient, diffuse, specular, mirror, transmission),
-            fresnel,
-            roughness,
-            texture,
-            lights,
-            max_depth,
-            index_of_refraction,
-        )| {
-            MaterialQuery {
-                material: Material {
-                    ambient,
-                    diffuse,
-                    specular,
-                    mirror,
-                    transmission,
-                    index_of_refraction,
-                    fresnel,
-                    roughness,
-                    texture,
-                    ..Material::default()
-                },
-                lights,
-                quality: Quality { max_depth, ..Quality::default() },
-            }
-        },
-    )
+    let drawn =
+        ((color(), color(), color(), color(), color()), fresnel, rough, texture, lights, 0..3u32, index);
+    drawn.prop_map(|(drawn, fresnel, roughness, texture, lights, max_depth, index_of_refraction)| {
+        let mut material = Material { index_of_refraction, fresnel, roughness, texture, ..black() };
+        colors(&mut material)
+            .into_iter()
+            .zip(<[Vec3; N_COLORS]>::from(drawn))
+            .for_each(|(color, drawn)| *color = drawn);
+        MaterialQuery { material, lights, quality: Quality { max_depth, ..Quality::default() } }
+    })
 }
 
 fn describe(query: &MaterialQuery) -> String {
-    let m = &query.material;
+    let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
+    let Material { index_of_refraction, fresnel, roughness, coat, texture, .. } = query.material;
+    let max_depth = query.quality.max_depth;
     let lights: Vec<String> = query.lights.iter().map(|light| light.radiance().paste()).collect();
+    let lights = lights.join(", ");
     format!(
-        "material_effects of ambient {}, diffuse {}, specular {}, mirror {}, transmission {}, index \
-         {},\nfresnel {:?}, roughness {}, coat {}, texture {:?}, max_depth {},\nunder lights of radiance [{}]",
-        m.ambient,
-        m.diffuse,
-        m.specular,
-        m.mirror,
-        m.transmission,
-        m.index_of_refraction,
-        m.fresnel,
-        m.roughness,
-        m.coat,
-        m.texture,
-        query.quality.max_depth,
-        lights.join(", ")
+        "material_effects of ambient {ambient}, diffuse {diffuse}, specular {specular}, mirror {mirror}, \
+         transmission {transmission}, index {index_of_refraction},\nfresnel {fresnel:?}, roughness {roughness}, \
+         coat {coat}, texture {texture:?}, max_depth {max_depth},\nunder lights of radiance [{lights}]"
     )
 }
 
@@ -356,26 +305,27 @@ pub(super) fn materials_take_what_they_show(trial: &Trial<'_>) -> CheckResult {
             .map_err(|broken| broken.explained_by(mistakes))
     }))?;
     trial.forall(1000, material_query(), |queries| {
-        let yours = trial.kit.material_effects(queries);
-        let others: Vec<Others> = queries.iter().zip(&yours).map(Others::of).collect();
-        let asked: Vec<MaterialQuery> = others.iter().flat_map(|others| others.asked.clone()).collect();
-        let mut answers = trial.kit.material_effects(&asked).into_iter();
-        let judge = |((query, yours), others): ((&MaterialQuery, &MaterialEffects), &Others)| {
-            let answers: Vec<MaterialEffects> = answers.by_ref().take(others.asked.len()).collect();
-            let (parts, variants) = answers.split_at(N_COLORS + N_CHANNELS);
-            let (colors, channels) = parts.split_at(N_COLORS);
-            compare_effects(
-                query,
-                yours,
-                &together(colors),
-                "the union of your answers for each of its colours",
-            )?;
-            compare_effects(query, yours, &together(channels), "the union of your answers for each channel")?;
-            let asked = &others.asked[N_COLORS + N_CHANNELS..];
-            asked.iter().zip(&others.expected).zip(variants).try_for_each(|((variant, expected), yours)| {
+        let ask = |queries: &[MaterialQuery]| trial.kit.material_effects(queries);
+        let yours = ask(queries);
+        let unions = |parts: fn(&MaterialQuery) -> Vec<MaterialQuery>, n_parts| -> Vec<MaterialEffects> {
+            let parts: Vec<MaterialQuery> = queries.iter().flat_map(parts).collect();
+            ask(&parts).chunks(n_parts).map(together).collect()
+        };
+        let (colors, channels) = (unions(by_color, N_COLORS), unions(by_channel, N_CHANNELS));
+        let variants: Vec<_> =
+            queries.iter().zip(&yours).map(|(query, yours)| variants(query, yours)).collect();
+        let asked: Vec<MaterialQuery> = variants.iter().flatten().map(|(query, _)| query.clone()).collect();
+        let mut answers = ask(&asked).into_iter();
+        let judge = |index: usize| {
+            let (query, yours, variants) = (&queries[index], &yours[index], &variants[index]);
+            let answers: Vec<MaterialEffects> = answers.by_ref().take(variants.len()).collect();
+            let of_colors = "the union of your answers for each of its colours";
+            compare_effects(query, yours, &colors[index], of_colors)?;
+            compare_effects(query, yours, &channels[index], "the union of your answers for each channel")?;
+            variants.iter().zip(&answers).try_for_each(|((variant, expected), yours)| {
                 compare_effects(variant, yours, expected, "what your answer for another material implies")
             })
         };
-        queries.iter().zip(&yours).zip(&others).map(judge).collect()
+        (0..queries.len()).map(judge).collect()
     })
 }

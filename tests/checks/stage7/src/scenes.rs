@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Vec2, Vec3, vec3};
 use raykata::camera::{Camera, Lens, Shutter};
-use raykata::effects::Effect;
+use raykata::effects::{Effect, LightEffects};
 use raykata::material::{AreaShape, Emitter, Falloff, Light, Material, Texture, Wrap};
 use raykata::mesh::Mesh;
 use raykata::scene::{Node, Scene, SceneMesh};
@@ -19,6 +19,15 @@ pub(super) fn sphere_light(color: Vec3) -> Light {
     Light { emitter: Emitter::Area { shape, falloff: Falloff::None }, ..light(color, 1.0) }
 }
 
+/// What a light without an area needs if it casts shadows.
+pub(super) const ONE_SAMPLE: LightEffects = LightEffects { samples: 1, area: false, shadows: true };
+
+/// Adds a material that no shape has.
+pub(super) fn add_material(scene: &mut Scene, name: &str, material: Material) {
+    scene.materials.push(material);
+    scene.material_names.push(name.into());
+}
+
 pub(super) fn camera() -> Camera {
     Camera::new(vec3(0.0, 1.0, 5.0), Vec3::NEG_Z, Vec3::Y, 40.0, 1.0).expect("a camera that looks along -z")
 }
@@ -32,8 +41,7 @@ pub(super) fn sphere(material: usize) -> Node {
 pub(super) fn one_sphere(material: Material) -> Scene {
     let mut scene = Scene::empty(camera());
     scene.lights.push(light(Vec3::ONE, 1.0));
-    scene.materials.push(material);
-    scene.material_names.push("sphere".into());
+    add_material(&mut scene, "sphere", material);
     scene.nodes.push(sphere(1));
     scene.roots.push(0);
     scene
@@ -47,8 +55,8 @@ pub(super) fn everything() -> Scene {
         texture: Some(0),
         ..Material::default()
     });
-    scene.materials.push(Material { transmission: Vec3::ONE, roughness: 0.1, ..Material::default() });
-    scene.material_names.push("glass".into());
+    let frosted = Material { transmission: Vec3::ONE, roughness: 0.1, ..Material::default() };
+    add_material(&mut scene, "glass", frosted);
     scene.textures.push(Texture {
         width: 1,
         height: 1,

@@ -1,8 +1,9 @@
 //! Checks of `effects` for whole scenes.
 
-use super::scenes::{BUILT, everything, light, one_sphere, one_triangle};
+use super::scenes::{BUILT, ONE_SAMPLE, add_material, everything, light, one_sphere, one_triangle, sphere};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::effects::{Effect, Effects, LightEffects, MaterialEffects};
@@ -16,19 +17,17 @@ use std::sync::Arc;
 pub(super) fn plain() -> Effects {
     let lit = MaterialEffects { lights: vec![0], ..MaterialEffects::default() };
     Effects {
-        lights: vec![LightEffects { samples: 1, area: false, shadows: true }],
+        lights: vec![ONE_SAMPLE],
         materials: vec![MaterialEffects::default(), lit],
         ..Effects::default()
     }
 }
 
-/// A scene, its effects, and the mistakes in an answer, each with whether it explains that answer.
-struct SceneWithEffects {
-    what: &'static str,
-    scene: Scene,
-    expected: Effects,
-    mistakes: fn(&Effects, &Effects) -> Vec<(bool, &'static str)>,
-}
+/// A scene, and its effects.
+type SceneWithEffects = (&'static str, Scene, Effects);
+
+/// The mistakes in an answer, given the right one, each with whether it explains that answer.
+type Mistakes = fn(&Effects, &Effects) -> Vec<(bool, &'static str)>;
 
 /// Lights that scenes get for hidden seeds only.
 pub(super) fn hidden_lights(trial: &Trial<'_>) -> Vec<Light> {
@@ -39,7 +38,7 @@ pub(super) fn hidden_lights(trial: &Trial<'_>) -> Vec<Light> {
 /// The effects of the same scene with `n` more point lights, which light each material that is lit.
 pub(super) fn with_lights(mut effects: Effects, n: usize) -> Effects {
     let numbers = effects.lights.len()..effects.lights.len() + n;
-    effects.lights.extend(numbers.clone().map(|_| LightEffects { samples: 1, area: false, shadows: true }));
+    effects.lights.resize(numbers.end, ONE_SAMPLE);
     for material in effects.materials.iter_mut().filter(|material| !material.lights.is_empty()) {
         material.lights.extend(numbers.clone());
     }
@@ -47,21 +46,16 @@ pub(super) fn with_lights(mut effects: Effects, n: usize) -> Effects {
 }
 
 /// Judges all scenes, and names a mistake that explains all wrong answers.
-fn judge_all(trial: &Trial<'_>, cases: Vec<SceneWithEffects>) -> CheckResult {
+fn judge_all(trial: &Trial<'_>, mut cases: Vec<SceneWithEffects>, mistakes: Mistakes) -> CheckResult {
     let lights = hidden_lights(trial);
-    let add_lights = |case: SceneWithEffects| {
-        let lights_of_scene = [case.scene.lights, lights.clone()].concat();
-        let scene = Scene { lights: lights_of_scene, ..case.scene };
-        SceneWithEffects { scene, expected: with_lights(case.expected, lights.len()), ..case }
-    };
-    let cases: Vec<SceneWithEffects> = cases.into_iter().map(add_lights).collect();
-    let scenes: Vec<Scene> = cases.iter().map(|case| case.scene.clone()).collect();
-    let answers = cases.iter().zip(trial.kit.effects(&scenes));
-    let outcomes = answers.map(|(case, yours)| {
-        judge(case.what, &yours, &case.expected)
-            .map_err(|broken| broken.explained_by((case.mistakes)(&yours, &case.expected)))
-    });
-    all_hold(outcomes.collect())
+    for (_, scene, expected) in &mut cases {
+        scene.lights.extend_from_slice(&lights);
+        *expected = with_lights(std::mem::take(expected), lights.len());
+    }
+    let scenes: Vec<Scene> = cases.iter().map(|(_, scene, _)| scene.clone()).collect();
+    all_hold(compare(&cases, trial.kit.effects(&scenes), |(what, _, expected), yours| {
+        judge(what, &yours, expected).map_err(|broken| broken.explained_by(mistakes(&yours, expected)))
+    }))
 }
 
 pub(super) fn judge(what: &str, yours: &Effects, expected: &Effects) -> CheckResult {
@@ -128,19 +122,13 @@ pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> CheckRes
     let mut of_dark = plain();
     of_dark.lights.insert(0, LightEffects::default());
     of_dark.materials[1].lights = vec![1];
-    let case = |what, scene, expected| SceneWithEffects { what, scene, expected, mistakes: of_plain_scenes };
-    judge_all(
-        trial,
-        vec![
-            case("a diffuse sphere under a light", scene.clone(), plain()),
-            case(
-                "the same with indirect light",
-                Scene { indirect_light: true, ..scene },
-                Effects { indirect_light: true, ..plain() },
-            ),
-            case("a diffuse sphere under a black light and a white one", dark, of_dark),
-        ],
-    )
+    let indirect = Scene { indirect_light: true, ..scene.clone() };
+    let cases = vec![
+        ("a diffuse sphere under a light", scene, plain()),
+        ("the same with indirect light", indirect, Effects { indirect_light: true, ..plain() }),
+        ("a diffuse sphere under a black light and a white one", dark, of_dark),
+    ];
+    judge_all(trial, cases, of_plain_scenes)
 }
 
 const ONE_MATERIAL: &str =
@@ -156,10 +144,9 @@ fn of_hidden_parts(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static s
     } == *expected;
     let same_length = yours.materials.len() == expected.materials.len()
         && yours.smooth_meshes.len() == expected.smooth_meshes.len();
-    let pairs = yours.materials.iter().zip(&expected.materials);
-    let wrong = |(one, other): (&MaterialEffects, &MaterialEffects)| one != other;
-    let extra = pairs.clone().any(|(one, other)| one != other && *other == nothing);
-    let only_extra = pairs.filter(|pair| wrong(*pair)).all(|(_, other)| *other == nothing);
+    let mut wrong = yours.materials.iter().zip(&expected.materials).filter(|(one, other)| one != other);
+    let extra = wrong.clone().any(|(_, other)| *other == nothing);
+    let only_extra = wrong.all(|(_, other)| *other == nothing);
     // Keep one of the materials of the mesh, which are those from 2 on.
     let one_material = |kept: usize| {
         let keep = |(index, material): (usize, &MaterialEffects)| match index < 2 || index == kept {
@@ -186,21 +173,15 @@ fn of_hidden_parts(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static s
 
 pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult {
     let mut scene = one_sphere(Material::default());
-    scene.materials.push(Material { mirror: Vec3::ONE, ..Material::default() });
-    scene.material_names.push("mirror".into());
+    add_material(&mut scene, "mirror", Material { mirror: Vec3::ONE, ..Material::default() });
     let mut expected = plain();
     expected.materials.push(MaterialEffects::default());
-    let case = |what, scene: &Scene, expected: &Effects| SceneWithEffects {
-        what,
-        scene: scene.clone(),
-        expected: expected.clone(),
-        mistakes: of_hidden_parts,
-    };
+    let case = |what, scene: &Scene, expected: &Effects| (what, scene.clone(), expected.clone());
     let mut cases =
         vec![case("a diffuse sphere, and a mirror material that no shape has", &scene, &expected)];
 
     // Add a node with this mirror that no root reaches.
-    scene.nodes.push(super::scenes::sphere(2));
+    scene.nodes.push(sphere(2));
     cases.push(case("a diffuse sphere, and a mirror sphere that no root reaches", &scene, &expected));
 
     scene.meshes.push(SceneMesh { mesh: Arc::new(one_triangle()), smooth: true, ..SceneMesh::default() });
@@ -208,9 +189,8 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
     cases.push(case("a diffuse sphere, and a smooth mesh that no node holds", &scene, &expected));
 
     // Show the mesh, with three materials that the sphere does not have.
-    let glass = Material { transmission: Vec3::ONE, ..Material::default() };
-    scene.materials.extend([glass, Material::default()]);
-    scene.material_names.extend(["glass".into(), "paint".into()]);
+    add_material(&mut scene, "glass", Material { transmission: Vec3::ONE, ..Material::default() });
+    add_material(&mut scene, "paint", Material::default());
     let mesh = Mesh { triangles: vec![[0, 1, 2]; 3], face_materials: vec![0, 1, 2], ..one_triangle() };
     scene.meshes = vec![SceneMesh { mesh: Arc::new(mesh), materials: vec![2, 3, 4], ..SceneMesh::default() }];
     scene.nodes.push(Node { shape: Some(Shape::Mesh(0)), ..Node::default() });
@@ -219,7 +199,7 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
     expected.materials[2] = MaterialEffects { mirror: true, ..lit.clone() };
     expected.materials.extend([MaterialEffects { transmission: true, ..lit.clone() }, lit]);
     cases.push(case("a diffuse sphere, and a mesh of mirror, glass and paint", &scene, &expected));
-    judge_all(trial, cases)
+    judge_all(trial, cases, of_hidden_parts)
 }
 
 pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> CheckResult {
