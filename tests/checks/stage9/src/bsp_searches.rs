@@ -1,16 +1,16 @@
 //! The laws of the search of a BSP tree.
 
 use super::parts;
-use super::scenes::{Scene, Thing, sphere, wall};
-use super::searches::{Described, Searcher, agrees, judge_visits, queries, spheres_and_rays};
-use super::structures::bsp;
+use super::scenes::{Scene, Thing, along, room, sphere};
+use super::searches::{BSP, Described, agrees, judge_visits, queries, spheres_and_rays};
+use super::structures::{bsp, diagonal, tile, two_leaves};
 use checks::Trial;
 use checks::broken::{CheckResult, all_hold};
 use checks::judge::compare;
-use glam::{DVec3, Vec3, vec3};
-use raykata::partition::{Bsp, CutPlane};
+use glam::{Vec3, vec3};
+use raykata::partition::CutPlane;
 use raykata::ray::Ray;
-use raykata::shape::{Sphere, Triangle};
+use raykata::shape::Sphere;
 
 pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     // The box of the large sphere crosses the plane x + y = 0, so both leaves list it. Its hit is in front of the
@@ -25,23 +25,8 @@ pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResu
     let alone = Scene::new(vec![sphere(3.0, 3.0, 0.0, 0.5)]);
     asked.ask("BSP tree of one plane x + y = 0", &two_leaves(diagonal(), &[], &[0]), &alone, ray);
     asked.control("BSP tree of one plane", two_leaves(diagonal(), &[0, 1, 2], &[]), ray, (0.0, 1.0));
-    asked.judge(|queries| trial.kit.bsp_search(queries))?;
-    agrees(trial, Searcher::Bsp)
-}
-
-/// A tree of one plane, with these primitives on the two sides.
-fn two_leaves(plane: CutPlane, behind: &[u32], before: &[u32]) -> Bsp {
-    let mut bsp = Bsp::default();
-    let root = bsp.add_node(0, 1);
-    let [back, front] = [bsp.add_node(1, 1), bsp.add_node(1, 1)];
-    bsp.set_leaf(back, behind);
-    bsp.set_leaf(front, before);
-    bsp.set_children(root, plane, back, front);
-    bsp
-}
-
-fn diagonal() -> CutPlane {
-    CutPlane { normal: DVec3::new(1.0, 1.0, 0.0).normalize(), offset: 0.0 }
+    asked.judge(trial.kit, &BSP)?;
+    agrees(trial, &BSP)
 }
 
 /// The plane lies behind the ray or beyond its end, or the ray is parallel to it.
@@ -70,7 +55,7 @@ pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'
     for (what, ray) in cases {
         asked.ask(format!("BSP tree of one plane x + y = 0: {what}"), &tree, &scene, ray);
     }
-    asked.judge(|queries| trial.kit.bsp_search(queries))
+    asked.judge(trial.kit, &BSP)
 }
 
 /// Rays that run in the plane or start on it, and polygons that lie in it.
@@ -81,13 +66,6 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
         sphere(-3.0, 3.0, 0.0, 0.5),
         sphere(0.0, 0.0, 4.0, 0.5),
     ]);
-    let tile = |z: f32| {
-        Thing::Tile(Triangle {
-            a: vec3(4.0, -4.0, z - 4.0),
-            b: vec3(-4.0, 4.0, z - 4.0),
-            c: vec3(0.0, 0.0, z + 4.0),
-        })
-    };
     let stack = Scene::new(vec![tile(0.0), tile(1.0), tile(-1.0)]);
     for (behind, before) in
         [(&[0u32, 1, 2][..], &[][..]), (&[][..], &[0u32, 1, 2][..]), (&[1][..], &[0, 2][..])]
@@ -129,11 +107,7 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
     // Planes that do not pass through the origin of the world: the height of a ray in such a plane is a rounding error.
     for size in [2f32.powi(-10), 1.0, 2f32.powi(17)] {
         for (axis, i) in (0..3).flat_map(|axis| (1..12).map(move |i| (axis, i))) {
-            let turn = |x: f32, y: f32| {
-                let mut turned = Vec3::ZERO;
-                (turned[axis], turned[(axis + 1) % 3]) = (size * x, size * y);
-                turned
-            };
+            let turn = |x: f32, y: f32| size * along(axis, vec3(x, y, 0.0));
             // The two coordinates of each point add up to 1.75, and have few bits.
             let x = i as f32 / 8.0;
             let (origin, direction) = (turn(x, 1.75 - x), turn(1.0, -1.0));
@@ -149,20 +123,14 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
         }
     }
     // A room whose walls lie in the planes of the tree.
-    let walls = (0..3).flat_map(|axis| [wall(axis, -1.0, 1.0), wall(axis, 1.0, 1.0)]).flatten();
-    let room = Scene::new(walls.collect());
+    let (room, rays) = room();
     let tree = bsp(&room.hulls(), 5);
-    for i in 0..64 {
-        let spread = |k: i32| ((i * k) % 17) as f32 / 8.5 - 1.0;
-        let ray = Ray::new(vec3(0.1, -0.2, 0.3), vec3(spread(3), spread(5), spread(7) + 0.01));
-        asked.ask("BSP tree over a room of twelve triangles", &tree, &room, ray);
-    }
-    asked.judge(|queries| trial.kit.bsp_search(queries))
+    rays.into_iter().for_each(|ray| asked.ask("BSP tree over a room of twelve triangles", &tree, &room, ray));
+    asked.judge(trial.kit, &BSP)
 }
 
 pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
-    let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32 * 1.5);
-    let (scene, rays) = spheres_and_rays(&(0..64).map(place).collect::<Vec<Vec3>>(), 5, 12.0);
+    let (scene, rays) = spheres_and_rays(64, 5, (8, 1.5));
     let cells = bsp(&scene.hulls(), 8);
     let queries = queries(&cells, &scene, &rays);
     all_hold(compare(&queries, trial.kit.bsp_search(&queries), |query, yours| {

@@ -1,6 +1,6 @@
 //! The laws of the five heuristics of the kd-tree: each is tested alone, switched on and switched off.
 
-use super::kd_trees::below;
+use super::lists::below;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use glam::{Vec3, vec3};

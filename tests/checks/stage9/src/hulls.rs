@@ -1,6 +1,6 @@
 //! What the laws of both builders of BSP trees share: hulls, and the judgement of a tree over them.
 
-use super::lists::{self, Fault, fact};
+use super::lists::{self, Fault};
 use checks::broken::CheckResult;
 use glam::{Vec3, vec3};
 use raykata::kit::BspQuery;
@@ -31,16 +31,11 @@ pub(super) fn judge_tree(
     fault: impl FnOnce() -> Option<Fault>,
 ) -> CheckResult {
     let nothing = !query.hulls.iter().any(|hull| usable(hull));
-    let too_deep = || {
-        let (yours, expected) =
-            (format!("a node at depth {}", levels - 1), format!("at most {}", query.max_depth));
-        fact(yours, expected, "the tree is deeper than max_depth")
-    };
     lists::judge_tree(
         || describe(query),
         source,
         (nothing, n_nodes),
-        || if levels > query.max_depth + 1 { Some(too_deep()) } else { fault() },
+        || lists::too_deep(levels, query.max_depth, "the tree is deeper than max_depth").or_else(fault),
     )
 }
 

@@ -10,77 +10,73 @@ use checks::paste::Paste;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsAnswer, CellsQuery, Kit};
-use raykata::partition::Grid;
+use raykata::partition::{Bsp, Grid, KdTree, Octree, PolygonBsp};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// One of the student's seven searches.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Searcher {
-    Grid,
-    OctreeByCells,
-    OctreeByNeighbours,
-    Octree,
-    KdTree,
-    Bsp,
-    PolygonBsp,
+/// A search of a student, in structures of the type `S`.
+pub(super) struct Search<S> {
+    /// Its name in messages.
+    name: &'static str,
+    /// The queries for the rays of a case, in a structure over its scene that the checks have built.
+    queries: fn(&Searched<'_>) -> Vec<CellsQuery<S>>,
+    /// Calls the student's function.
+    pub ask: fn(&dyn Kit, &[CellsQuery<S>]) -> Vec<CellsAnswer>,
 }
 
-impl Searcher {
-    /// Its name in messages.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Searcher::Grid => "grid",
-            Searcher::OctreeByCells => "octree, cell by cell",
-            Searcher::OctreeByNeighbours => "octree, by neighbours",
-            Searcher::Octree => "octree",
-            Searcher::KdTree => "kd-tree",
-            Searcher::Bsp => "BSP tree",
-            Searcher::PolygonBsp => "BSP tree with polygons in its nodes",
+pub(super) const GRID: Search<Grid> = Search {
+    name: "grid",
+    queries: |Searched { scene, rays, one_leaf, .. }| {
+        let resolution = if *one_leaf { UVec3::ONE } else { UVec3::new(5, 4, 3) };
+        grid_queries(scene, rays, structures::around_loosely(&scene.boxes()), resolution)
+    },
+    ask: |kit, queries| kit.grid_search(queries),
+};
+
+pub(super) const OCTREE_BY_CELLS: Search<Octree> =
+    Search { name: "octree, cell by cell", ask: |kit, queries| kit.octree_by_cells(queries), ..OCTREE };
+
+pub(super) const OCTREE_BY_NEIGHBOURS: Search<Octree> =
+    Search { name: "octree, by neighbours", ask: |kit, queries| kit.octree_by_neighbours(queries), ..OCTREE };
+
+pub(super) const OCTREE: Search<Octree> = Search {
+    name: "octree",
+    queries: |case| case.queries(&structures::octree(&case.scene.boxes(), case.depth(3))),
+    ask: |kit, queries| kit.octree_search(queries),
+};
+
+pub(super) const KD_TREE: Search<KdTree> = Search {
+    name: "kd-tree",
+    queries: |case| case.queries(&structures::kd_tree(&case.scene.boxes(), case.depth(7))),
+    ask: |kit, queries| kit.kd_search(queries),
+};
+
+pub(super) const BSP: Search<Bsp> = Search {
+    name: "BSP tree",
+    queries: |case| case.queries(&structures::bsp(&case.scene.hulls(), case.depth(6))),
+    ask: |kit, queries| kit.bsp_search(queries),
+};
+
+pub(super) const POLYGON_BSP: Search<PolygonBsp> = Search {
+    name: "BSP tree with polygons in its nodes",
+    queries: |case| case.queries(&structures::polygon_bsp(&case.scene.hulls(), case.depth(6))),
+    ask: |kit, queries| kit.polygon_bsp_search(queries),
+};
+
+impl<S: Structure + Clone> Search<S> {
+    /// Searches for the rays of each case, and judges the answers.
+    pub(super) fn judge(&self, kit: &dyn Kit, cases: &[Searched<'_>]) -> Vec<CheckResult> {
+        let mut asked = Described::new();
+        for case in cases {
+            let what = self.over(&case.name);
+            (self.queries)(case).into_iter().for_each(|query| asked.add(&what, query));
         }
+        asked.judge_each(kit, self)
     }
 
-    /// The depth of a structure over a scene.
-    fn depth(self) -> usize {
-        match self {
-            Searcher::Grid | Searcher::OctreeByCells | Searcher::OctreeByNeighbours | Searcher::Octree => 3,
-            Searcher::KdTree => 7,
-            Searcher::Bsp | Searcher::PolygonBsp => 6,
-        }
-    }
-
-    /// Searches for the rays of each case, in a structure over its scene that the checks have built, and judges the answers.
-    pub(super) fn judge(self, kit: &dyn Kit, cases: &[Searched<'_>]) -> Vec<CheckResult> {
-        let octrees =
-            || Described::over(self, cases, |scene, depth| structures::octree(&scene.boxes(), depth));
-        match self {
-            Searcher::Grid => {
-                let mut asked = Described::new();
-                for Searched { name, scene, rays, one_leaf } in cases {
-                    let bounds = structures::around_loosely(&scene.boxes());
-                    let resolution = if *one_leaf { UVec3::ONE } else { UVec3::new(5, 4, 3) };
-                    for query in grid_queries(scene, rays, bounds, resolution) {
-                        asked.add(format!("grid over {name}"), query);
-                    }
-                }
-                asked.judge_each(|queries| kit.grid_search(queries))
-            }
-            Searcher::OctreeByCells => octrees().judge_each(|queries| kit.octree_by_cells(queries)),
-            Searcher::OctreeByNeighbours => octrees().judge_each(|queries| kit.octree_by_neighbours(queries)),
-            Searcher::Octree => octrees().judge_each(|queries| kit.octree_search(queries)),
-            Searcher::KdTree => {
-                Described::over(self, cases, |scene, depth| structures::kd_tree(&scene.boxes(), depth))
-                    .judge_each(|queries| kit.kd_search(queries))
-            }
-            Searcher::Bsp => {
-                Described::over(self, cases, |scene, depth| structures::bsp(&scene.hulls(), depth))
-                    .judge_each(|queries| kit.bsp_search(queries))
-            }
-            Searcher::PolygonBsp => {
-                Described::over(self, cases, |scene, depth| structures::polygon_bsp(&scene.hulls(), depth))
-                    .judge_each(|queries| kit.polygon_bsp_search(queries))
-            }
-        }
+    /// The words for a search over a scene of this name.
+    pub(super) fn over(&self, scene: &str) -> String {
+        format!("{} over {scene}", self.name)
     }
 }
 
@@ -96,6 +92,14 @@ impl<'a> Searched<'a> {
     pub(super) fn new(name: impl Into<String>, scene: &'a Scene, rays: &'a [Ray]) -> Self {
         Searched { name: name.into(), scene, rays, one_leaf: false }
     }
+
+    fn depth(&self, divided: usize) -> usize {
+        if self.one_leaf { 0 } else { divided }
+    }
+
+    fn queries<S: Clone>(&self, cells: &S) -> Vec<CellsQuery<S>> {
+        queries(cells, self.scene, self.rays)
+    }
 }
 
 /// Queries to a search, each with the text for its message.
@@ -107,18 +111,6 @@ pub(super) struct Described<S> {
 impl<S: Structure + Clone> Described<S> {
     pub(super) fn new() -> Self {
         Described { what: Vec::new(), queries: Vec::new() }
-    }
-
-    /// The rays of each case in the structure over its scene.
-    fn over(searcher: Searcher, cases: &[Searched<'_>], build: impl Fn(&Scene, usize) -> S) -> Self {
-        let mut asked = Described::new();
-        for Searched { name, scene, rays, one_leaf } in cases {
-            let depth = if *one_leaf { 0 } else { searcher.depth() };
-            for query in queries(&build(scene, depth), scene, rays) {
-                asked.add(format!("{} over {name}", searcher.name()), query);
-            }
-        }
-        asked
     }
 
     /// A ray in a structure whose first leaf on the way lists 0, 1 and 2, of which 1 is nearest. All three are hit between
@@ -139,12 +131,12 @@ impl<S: Structure + Clone> Described<S> {
     }
 
     /// Judges the answers of a search. A mistake is named only if it explains all wrong answers.
-    pub(super) fn judge(&self, search: impl Fn(&[CellsQuery<S>]) -> Vec<CellsAnswer>) -> CheckResult {
-        all_hold(self.judge_each(search))
+    pub(super) fn judge(&self, kit: &dyn Kit, search: &Search<S>) -> CheckResult {
+        all_hold(self.judge_each(kit, search))
     }
 
-    fn judge_each(&self, search: impl Fn(&[CellsQuery<S>]) -> Vec<CellsAnswer>) -> Vec<CheckResult> {
-        let answers = search(&self.queries);
+    fn judge_each(&self, kit: &dyn Kit, search: &Search<S>) -> Vec<CheckResult> {
+        let answers = (search.ask)(kit, &self.queries);
         let found = |answer: &CellsAnswer| answer.hit.map(|hit| (hit.primitive, hit.t));
         let is_right =
             |query: &CellsQuery<S>, answer: &CellsAnswer| found(answer) == closest(&query.hits, &query.ray);
@@ -211,18 +203,23 @@ pub(super) fn grid_queries(
     rays.iter().map(query).collect()
 }
 
-/// Small spheres at `places`, and rays at every `step`th of them from three points, one of which has the x coordinate
-/// `x`.
-pub(super) fn spheres_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, Vec<Ray>) {
+/// The place of sphere `i` in rows of this length: four rows side by side, and so on in layers of this height.
+pub(super) fn place(i: usize, length: usize, height: f32) -> Vec3 {
+    vec3((i % length) as f32, (i / length % 4) as f32, (i / (4 * length)) as f32 * height)
+}
+
+/// `n` small spheres in rows, and rays at every `step`th of them from three points.
+pub(super) fn spheres_and_rays(n: usize, step: usize, (length, height): (usize, f32)) -> (Scene, Vec<Ray>) {
+    let places: Vec<Vec3> = (0..n).map(|i| place(i, length, height)).collect();
     let spheres = places.iter().map(|&center| Thing::Sphere(Sphere { center, radius: 0.3 }));
-    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(x, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
+    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(length as f32 + 4.0, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
     let at =
         |eye: Vec3| places.iter().step_by(step).map(move |place| Ray::new(eye, (*place - eye).normalize()));
     (Scene::new(spheres.collect()), eyes.into_iter().flat_map(at).collect())
 }
 
 /// Compares a search with brute force, in random scenes and in degenerate ones.
-pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
+pub(super) fn agrees<S: Structure + Clone>(trial: &Trial<'_>, search: &Search<S>) -> CheckResult {
     // Three spheres in a row in one leaf, the nearest of them listed last; and a large sphere that overlaps many cells,
     // with a nearer small one before it.
     let row = Scene::new((0..3).map(|i| sphere(2.0 * i as f32, 0.0, 0.0, 0.5)).collect());
@@ -243,15 +240,15 @@ pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
         Searched::new("nine spheres", &through, &at_small),
     ];
     let cases: Vec<Searched<'_>> = [in_a_row, passing].into_iter().chain(others).collect();
-    all_hold(searcher.judge(trial.kit, &cases))?;
+    all_hold(search.judge(trial.kit, &cases))?;
     trial.forall(250, scenes(), |cases| {
         let name = |scene: &Scene| format!("{} primitives", scene.things.len());
         let case = |(scene, ray)| Searched::new(name(scene), scene, std::slice::from_ref(ray));
-        searcher.judge(trial.kit, &cases.iter().map(|(scene, ray)| case((scene, ray))).collect::<Vec<_>>())
+        search.judge(trial.kit, &cases.iter().map(|(scene, ray)| case((scene, ray))).collect::<Vec<_>>())
     })?;
     let odd = odd_scenes();
     odd.iter().try_for_each(|(name, scene, rays)| {
-        all_hold(searcher.judge(trial.kit, &[Searched::new(*name, scene, rays)]))
+        all_hold(search.judge(trial.kit, &[Searched::new(*name, scene, rays)]))
     })
 }
 
@@ -292,33 +289,36 @@ pub(super) fn judge_visits<S: Structure>(
     // A visit that the ray misses may be to a cell that does not exist.
     let mut tests = yours.tests.iter().copied().filter(|_| missed.is_none());
     let unlisted = tests.find(|primitive| !is_listed(primitive));
-    let (yours, expected, source) = match (missed, behind, twice) {
-        (Some(visit), ..) => (format!("a visit to {visit}"), "none".to_owned(), "the ray misses it"),
-        (None, Some((visit, t)), _) => (
-            format!("a visit to {visit}, which begins at t = {t:.4}"),
-            format!("none beyond the hit at t = {end}"),
-            "counted",
-        ),
-        (None, None, Some(visit)) => (format!("{visit} is visited again"), "once".to_owned(), "counted"),
-        (None, None, None) => match unlisted {
-            Some(primitive) => (
-                format!("a test of primitive {primitive}"),
-                "a visit to a cell that lists it".to_owned(),
-                "counted",
-            ),
-            None => return Ok(()),
-        },
-    };
-    Err(Broken::with_texts(input(), yours, expected, source).explained_by([
-        (missed.is_some(), "you visit a cell that the ray does not enter"),
+    // Each fault as `(yours, expected, source)` with its mistake; the message shows the first.
+    let faults = [
         (
-            behind.is_some(),
+            missed.map(|visit| (format!("a visit to {visit}"), "none".to_owned(), "the ray misses it")),
+            "you visit a cell that the ray does not enter",
+        ),
+        (
+            behind.map(|(visit, t)| {
+                let begins = format!("a visit to {visit}, which begins at t = {t:.4}");
+                (begins, format!("none beyond the hit at t = {end}"), "counted")
+            }),
             "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
         ),
-        (twice.is_some(), "you visit a cell several times"),
         (
-            unlisted.is_some(),
+            twice.map(|visit| (format!("{visit} is visited again"), "once".to_owned(), "counted")),
+            "you visit a cell several times",
+        ),
+        (
+            unlisted.map(|primitive| {
+                let test = format!("a test of primitive {primitive}");
+                (test, "a visit to a cell that lists it".to_owned(), "counted")
+            }),
             "you test a primitive that no visited cell lists: call `visit` for each cell that the search comes to",
         ),
-    ]))
+    ];
+    let mistakes = faults.each_ref().map(|(fault, mistake)| (fault.is_some(), *mistake));
+    match faults.into_iter().find_map(|(fault, _)| fault) {
+        None => Ok(()),
+        Some((yours, expected, source)) => {
+            Err(Broken::with_texts(input(), yours, expected, source).explained_by(mistakes))
+        }
+    }
 }
