@@ -111,29 +111,7 @@ pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResu
 }
 
 pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
-    let square = |size: f32, z: f32| {
-        let s = size;
-        vec![vec3(-s, -s, z), vec3(s, -s, z), vec3(s, s, z), vec3(-s, s, z)]
-    };
-    let stack: Vec<Vec<Vec3>> = (1..=40).map(|i| square(i as f32, 0.0)).collect();
-    let boxes = |all: Vec<Aabb>| -> Vec<Vec<Vec3>> { all.iter().map(corners).collect() };
-    let star: Vec<Vec<Vec3>> = (0..30)
-        .map(|i| {
-            let (y, x) = (i as f32 * 0.21).sin_cos();
-            vec![vec3(x, y, -1.0), vec3(-x, -y, -1.0), vec3(-x, -y, 1.0), vec3(x, y, 1.0)]
-        })
-        .collect();
-    let line = (0..20).map(|i| {
-        vec![vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 0.0, 0.0), vec3(i as f32 + 0.7, 0.0, 0.0)]
-    });
-    let hulls = [
-        // Each plane has all squares on one of its sides, so the root is a leaf.
-        ("forty squares in one plane", stack, 1),
-        ("thirty sheets through one line", star, MOST_REFERENCES),
-        ("twenty slivers in a line", line.collect(), MOST_REFERENCES),
-    ];
-    let sets = super::lists::infinite().into_iter().map(|(name, all)| (name, boxes(all), MOST_REFERENCES));
-    for (name, hulls, most) in hulls.into_iter().chain(sets) {
+    for (name, hulls, most) in hulls::infinite_polygons().into_iter().chain(hulls::infinite_boxes()) {
         judge_build(trial, name, hulls, 12, most)?;
     }
     judge_build(trial, "400 crossing needles", crossing_needles(400), 20, MOST_REFERENCES)

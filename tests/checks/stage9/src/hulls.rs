@@ -3,7 +3,9 @@
 use super::lists::{self, Fault};
 use checks::broken::CheckResult;
 use glam::{Vec3, vec3};
+use raykata::aabb::Aabb;
 use raykata::kit::BspQuery;
+use raykata::partition::{MOST_REFERENCES, corners};
 
 /// The call of a builder, as source code.
 pub(super) fn describe(query: &BspQuery) -> String {
@@ -37,6 +39,28 @@ pub(super) fn judge_tree(
         (nothing, n_nodes),
         || lists::too_deep(levels, query.max_depth, "the tree is deeper than max_depth").or_else(fault),
     )
+}
+
+/// Named polygons for which the recursion of a builder may not end, each with the most references per polygon.
+pub(super) fn infinite_polygons() -> [(&'static str, Vec<Vec<Vec3>>, usize); 3] {
+    let square = |s: f32| vec![vec3(-s, -s, 0.0), vec3(s, -s, 0.0), vec3(s, s, 0.0), vec3(-s, s, 0.0)];
+    let star = (0..30).map(|i| {
+        let (y, x) = (i as f32 * 0.21).sin_cos();
+        vec![vec3(x, y, -1.0), vec3(-x, -y, -1.0), vec3(-x, -y, 1.0), vec3(x, y, 1.0)]
+    });
+    let line = (0..20).map(|i| [0.0, 0.5, 0.7].map(|x| vec3(i as f32 + x, 0.0, 0.0)).to_vec());
+    [
+        // Each plane has all squares on it, and on one of its sides: one node lists all of them.
+        ("forty squares in one plane", (1..=40).map(|i| square(i as f32)).collect(), 1),
+        ("thirty sheets through one line", star.collect(), MOST_REFERENCES),
+        ("twenty slivers in a line", line.collect(), MOST_REFERENCES),
+    ]
+}
+
+/// The hulls of boxes for which the recursion may not end, each set with the most references per box.
+pub(super) fn infinite_boxes() -> impl Iterator<Item = (&'static str, Vec<Vec<Vec3>>, usize)> {
+    let hulls = |(name, all): (_, Vec<Aabb>)| (name, all.iter().map(corners).collect(), MOST_REFERENCES);
+    lists::infinite().into_iter().map(hulls)
 }
 
 /// `n` parallel squares side by side across a diagonal: planes across an axis do not divide them, but their own planes

@@ -109,26 +109,20 @@ pub(super) fn listing_fault<N: std::fmt::Display>(
                     high == cell.min[axis] || low == cell.max[axis]
                 });
                 let missing = times == 0;
+                let nowhere = missing && !elsewhere();
                 // Each cell lists only primitives that it overlaps, so that their places are right.
-                let elsewhere = || {
-                    let is_right =
-                        |cell: &Cell, id: u32| !is_far_off(bounds, &cell.to_box(), &boxes[id as usize]);
-                    let right = |(_, cell, listed): &Listed<N>| {
-                        listed.iter().all(|&id| (id as usize) < boxes.len() && is_right(cell, id))
-                    };
-                    leaves.iter().all(right) && elsewhere()
+                let is_right = |cell: &Cell, id: &u32| {
+                    boxes.get(*id as usize).is_some_and(|one| !is_far_off(bounds, &cell.to_box(), one))
                 };
-                let nowhere = missing && !leaves.iter().any(|(.., listed)| listed.contains(&(id as u32)));
+                let right = |(_, cell, listed): &Listed<N>| listed.iter().all(|id| is_right(cell, id));
+                let elsewhere = missing && !nowhere && leaves.iter().all(right);
                 return Some((
                     describe(times),
                     describe(1),
                     vec![
+                        (elsewhere && touches, "a primitive that touches a plane belongs to both sides"),
                         (
-                            missing && touches && elsewhere(),
-                            "a primitive that touches a plane belongs to both sides",
-                        ),
-                        (
-                            missing && elsewhere(),
+                            elsewhere,
                             "a primitive that overlaps or touches several cells belongs to all of them",
                         ),
                         (nowhere, "you leave out a primitive: no cell lists it"),

@@ -226,25 +226,12 @@ pub(super) fn polygon_bsp_puts_polygons_on_planes(trial: &Trial<'_>) -> CheckRes
 }
 
 pub(super) fn polygon_bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
-    let square = |s: f32| vec![vec3(-s, -s, 0.0), vec3(s, -s, 0.0), vec3(s, s, 0.0), vec3(-s, s, 0.0)];
-    let star = (0..30).map(|i| {
-        let (y, x) = (i as f32 * 0.21).sin_cos();
-        vec![vec3(x, y, -1.0), vec3(-x, -y, -1.0), vec3(-x, -y, 1.0), vec3(x, y, 1.0)]
-    });
-    let line = (0..20).map(|i| [0.0, 0.5, 0.7].map(|x| vec3(i as f32 + x, 0.0, 0.0)).to_vec());
-    type HullCase = (&'static str, Vec<Vec<Vec3>>, usize, usize);
-    let hulls: [HullCase; 4] = [
-        // One node lists all of them.
-        ("forty squares in one plane", (1..=40).map(|i| square(i as f32)).collect(), 1, 20),
-        ("thirty sheets through one line", star.collect(), MOST_REFERENCES, 20),
-        ("twenty slivers in a line", line.collect(), MOST_REFERENCES, 20),
-        // So deep a tree would split each triangle into more than `MOST_REFERENCES` parts.
-        ("400 large triangles that cross each other", crossing_triangles(400), MOST_REFERENCES, 32),
-    ];
-    let boxes = |all: Vec<Aabb>| -> Vec<Vec<Vec3>> { all.iter().map(corners).collect() };
-    let sets =
-        super::lists::infinite().into_iter().map(|(name, all)| (name, boxes(all), MOST_REFERENCES, 20));
-    for (name, hulls, most, max_depth) in hulls.into_iter().chain(sets) {
+    let polygons = hulls::infinite_polygons().map(|(name, hulls, most)| (name, hulls, most, 20));
+    // So deep a tree would split each triangle into more than `MOST_REFERENCES` parts.
+    let name = "400 large triangles that cross each other";
+    let crossing = [(name, crossing_triangles(400), MOST_REFERENCES, 32)];
+    let boxes = hulls::infinite_boxes().map(|(name, hulls, most)| (name, hulls, most, 20));
+    for (name, hulls, most, max_depth) in polygons.into_iter().chain(crossing).chain(boxes) {
         let n = hulls.len();
         let query = BspQuery { hulls, leaf_size: 1, max_depth };
         let input = format!("build of {name}, leaf_size 1, max_depth {max_depth}");
