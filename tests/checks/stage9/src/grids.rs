@@ -3,7 +3,7 @@
 use super::lists::{Fault, listing_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scales, Scene, Thing, along, lattice, rays, scales, sphere, straight, wall};
-use super::searches::{Described, GRID, agrees, grid_queries, judge_visits};
+use super::searches::{Described, GRID, agrees, grid_queries};
 use super::structures::{around_loosely, filled};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -95,10 +95,7 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> CheckRe
     let row = Scene::new((0..32).map(|i| sphere(i as f32, 0.0, 0.0, 0.25)).collect());
     let rays = [Ray::new(vec3(-2.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(40.0, 0.0, 0.0), Vec3::NEG_X)];
     let queries = grid_queries(&row, &rays, around_loosely(&row.boxes()), uvec3(32, 1, 1));
-    all_hold(compare(&queries, trial.kit.grid_search(&queries), |query, yours| {
-        let parts = parts::of_grid(&query.cells, &query.ray, parts::touching);
-        judge_visits("grid over a row of 32 spheres", query, &parts, &yours)
-    }))
+    GRID.visits(trial.kit, "grid over a row of 32 spheres", &queries)
 }
 
 const FARTHEST_FACE: &str =

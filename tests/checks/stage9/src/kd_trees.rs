@@ -3,12 +3,11 @@
 use super::lists::{
     Fault, below, ended, fact, infinite, judge_references, leaves, listing_fault, some_boxes, too_deep,
 };
-use super::parts;
-use super::scenes::{Scene, Thing, along, closest, wall};
-use super::searches::{Described, GRID, KD_TREE, agrees, judge_visits, queries, spheres_and_rays};
+use super::scenes::{Scene, Thing, along, wall};
+use super::searches::{Described, GRID, KD_TREE, agrees, queries, spheres_and_rays};
 use super::structures::{filled, kd_tree};
 use checks::Trial;
-use checks::broken::{CheckResult, all_hold};
+use checks::broken::CheckResult;
 use checks::judge::compare;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
@@ -284,10 +283,5 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Check
 pub(super) fn kd_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
     let (scene, rays) = spheres_and_rays(128, 9, (16, 1.5));
     let cells = kd_tree(&scene.boxes(), 10);
-    let queries = queries(&cells, &scene, &rays);
-    let judge = |query: &CellsQuery<KdTree>, yours| {
-        assert!(closest(&query.hits, &query.ray).is_some(), "each ray is aimed at a sphere");
-        judge_visits("kd-tree over 128 spheres", query, &parts::of_cells(&cells, &query.ray), &yours)
-    };
-    all_hold(compare(&queries, trial.kit.kd_search(&queries), judge))
+    KD_TREE.visits(trial.kit, "kd-tree over 128 spheres", &queries(&cells, &scene, &rays))
 }

@@ -7,8 +7,8 @@ use super::lists::{
 use super::parts;
 use super::scenes::{Scene, Thing, along, lattice, straight};
 use super::searches::{
-    Described, OCTREE, OCTREE_BY_CELLS, OCTREE_BY_NEIGHBOURS, Search, Searched, agrees, judge_visits,
-    queries, spheres_and_rays,
+    Described, OCTREE, OCTREE_BY_CELLS, OCTREE_BY_NEIGHBOURS, Search, Searched, agrees, queries,
+    spheres_and_rays,
 };
 use super::structures::octree;
 use checks::Trial;
@@ -18,7 +18,7 @@ use checks::nasty;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
-use raykata::kit::{CellsAnswer, OctreeQuery, kit_error};
+use raykata::kit::{CellsAnswer, CellsQuery, OctreeQuery, kit_error};
 use raykata::partition::{MOST_REFERENCES, Octree, OctreeNode, TreeNode};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
@@ -203,38 +203,40 @@ fn overlapping_two_octants(name: &str) -> Described<Octree> {
     asked
 }
 
-pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
+fn octree_over_spheres() -> Vec<CellsQuery<Octree>> {
     let (scene, rays) = spheres_and_rays(128, 9, (8, 1.0));
-    let cells = octree(&scene.boxes(), 4);
-    let queries = queries(&cells, &scene, &rays);
-    all_hold(compare(&queries, trial.kit.octree_search(&queries), |query, yours| {
-        let parts = parts::of_cells(&cells, &query.ray);
-        judge_visits("octree over 128 spheres, from the root down", query, &parts, &yours)
-    }))?;
-    all_hold(compare(&queries, trial.kit.octree_by_cells(&queries), |query, yours| {
+    queries(&octree(&scene.boxes(), 4), &scene, &rays)
+}
+
+/// The visits to leaves that the ray enters.
+fn to_leaves(query: &CellsQuery<Octree>, visits: &[u32]) -> Vec<u32> {
+    let parts = parts::of_cells(&query.cells, &query.ray);
+    let is_entered = |node: u32| parts.iter().any(|(entered, ..)| *entered == node);
+    let is_leaf = |node: u32| is_entered(node) && query.cells.nodes[node as usize].is_leaf();
+    visits.iter().copied().filter(|&node| is_leaf(node)).collect()
+}
+
+pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
+    let queries = octree_over_spheres();
+    OCTREE.visits(trial.kit, "octree over 128 spheres, from the root down", &queries)?;
+    OCTREE_BY_CELLS.all_visits(trial.kit, &queries, |query, yours| {
         // Judge the visits to leaves only: each way down to a leaf visits the nodes above it again.
-        let parts = parts::of_cells(&cells, &query.ray);
-        let leaves = parts::of_leaves(&cells, &parts);
-        let visits = yours.visits.iter().copied().filter(|node| leaves.contains(node)).collect();
-        judge_visits("octree over 128 spheres, cell by cell", query, &parts, &CellsAnswer { visits, ..yours })
-    }))
+        let visits = to_leaves(query, &yours.visits);
+        let what = "octree over 128 spheres, cell by cell";
+        OCTREE_BY_CELLS.judge_visits(what, query, &CellsAnswer { visits, ..yours })
+    })
 }
 
 pub(super) fn octree_by_neighbours_visits_no_node_again(trial: &Trial<'_>) -> CheckResult {
-    let (scene, rays) = spheres_and_rays(128, 9, (8, 1.0));
-    let cells = octree(&scene.boxes(), 4);
-    let queries = queries(&cells, &scene, &rays);
-    all_hold(compare(&queries, trial.kit.octree_by_neighbours(&queries), |query, yours| {
-        let parts = parts::of_cells(&cells, &query.ray);
-        let input = "octree over 128 spheres, by neighbours";
+    OCTREE_BY_NEIGHBOURS.all_visits(trial.kit, &octree_over_spheres(), |query, yours| {
         // A search that returns to the root visits the root once per leaf.
         let returns = yours.visits.iter().filter(|visit| **visit == 0).count();
-        let leaves = parts::of_leaves(&cells, &parts);
-        let n_leaves = yours.visits.iter().filter(|node| leaves.contains(node)).count();
         let mistake = (
-            returns > 1 && returns >= n_leaves,
+            returns > 1 && returns >= to_leaves(query, &yours.visits).len(),
             "you go back to the root for each leaf: go up only to the smallest cell that contains the next leaf, too",
         );
-        judge_visits(input, query, &parts, &yours).map_err(|broken| broken.explained_first_by([mistake]))
-    }))
+        let outcome =
+            OCTREE_BY_NEIGHBOURS.judge_visits("octree over 128 spheres, by neighbours", query, &yours);
+        outcome.map_err(|broken| broken.explained_first_by([mistake]))
+    })
 }

@@ -1,14 +1,9 @@
 //! The intervals of a ray in the nodes of a structure, computed by the definition: every node is tested.
 
-use super::octant_mistakes;
-use super::plane_mistakes::{Planes, at_planes};
-use super::searches::Parts;
 use checks::double::box_interval;
 use glam::{UVec3, uvec3};
 use raykata::aabb::Aabb;
-use raykata::partition::{
-    Bsp, Cell, CellTree, CutPlane, Grid, KdNode, KdTree, Octree, PlaneNode, PolygonBsp, Tree, TreeNode,
-};
+use raykata::partition::{Cell, CellTree, CutPlane, Grid, PlaneNode, PolygonBsp, Tree, TreeNode};
 use raykata::ray::Ray;
 
 /// A room for a cell that is a little larger, so that it includes what a ray only touches: a share of its longest side.
@@ -59,38 +54,17 @@ fn in_order(mut leaves: Vec<Leaf>) -> Vec<Leaf> {
     leaves
 }
 
-/// The cells of a structure as a ray goes through them, and the mistakes that are possible there.
-pub(super) trait Structure {
-    /// The leaves that the ray enters, in their order.
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf>;
-
-    /// The primitives that a cell or a node lists; none for an inner node.
-    fn listed(&self, node: u32) -> &[u32];
-
-    /// The known mistakes of this structure's searches, each with whether it finds this hit.
-    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)>;
-}
-
-impl Structure for Grid {
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        let leaf = |(number, _, cell): (u32, UVec3, Cell)| {
-            let (enter, exit) = exactly(ray, &cell)?;
-            Some(Leaf { enter, exit, ids: self.primitives(number).to_vec() })
-        };
-        in_order(numbered(self).filter_map(leaf).collect())
-    }
-
-    fn listed(&self, node: u32) -> &[u32] {
-        self.primitives(node)
-    }
-
-    fn mistakes(&self, _: &Ray, _: &[f32], _: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        Vec::new()
-    }
+/// The cells of a grid that a ray enters.
+pub(super) fn leaves_of_grid(grid: &Grid, ray: &Ray) -> Vec<Leaf> {
+    let leaf = |(number, _, cell): (u32, UVec3, Cell)| {
+        let (enter, exit) = exactly(ray, &cell)?;
+        Some(Leaf { enter, exit, ids: grid.primitives(number).to_vec() })
+    };
+    in_order(numbered(grid).filter_map(leaf).collect())
 }
 
 /// The leaves of a tree of cells that a ray enters.
-fn leaves_of_cells<N: TreeNode<Region = Cell>>(tree: &CellTree<N>, ray: &Ray) -> Vec<Leaf> {
+pub(super) fn leaves_of_cells<N: TreeNode<Region = Cell>>(tree: &CellTree<N>, ray: &Ray) -> Vec<Leaf> {
     let mut leaves = Vec::new();
     tree.walk(usize::MAX, |node, cell, _| {
         if tree.nodes[node as usize].is_leaf()
@@ -104,7 +78,7 @@ fn leaves_of_cells<N: TreeNode<Region = Cell>>(tree: &CellTree<N>, ray: &Ray) ->
 
 /// The leaves of a tree of planes that a ray enters, and the planes that it reaches with the polygons on them. A side
 /// contains the points within `room` of its plane.
-fn leaves_of_planes<N: PlaneNode>(tree: &Tree<N>, room: f64, ray: &Ray) -> Vec<Leaf> {
+pub(super) fn leaves_of_planes<N: PlaneNode>(tree: &Tree<N>, room: f64, ray: &Ray) -> Vec<Leaf> {
     let mut leaves = Vec::new();
     let on_wide_side = |part: (f64, f64), (plane, side): &(CutPlane, f64)| {
         let wide = CutPlane { offset: plane.offset - side * room, ..*plane };
@@ -124,66 +98,6 @@ fn leaves_of_planes<N: PlaneNode>(tree: &Tree<N>, room: f64, ray: &Ray) -> Vec<L
     in_order(leaves)
 }
 
-impl Structure for Octree {
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        leaves_of_cells(self, ray)
-    }
-
-    fn listed(&self, node: u32) -> &[u32] {
-        Tree::listed(self, node)
-    }
-
-    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        octant_mistakes::of_octree(self, ray, hits, found)
-    }
-}
-
-impl Structure for KdTree {
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        leaves_of_cells(self, ray)
-    }
-
-    fn listed(&self, node: u32) -> &[u32] {
-        Tree::listed(self, node)
-    }
-
-    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        let plane = |node: &KdNode| match *node {
-            KdNode::Inner { axis, at, .. } => Some(CutPlane::across(usize::from(axis), f64::from(at))),
-            KdNode::Leaf { .. } => None,
-        };
-        at_planes(&Planes { tree: self, plane, room: 0.0 }, ray, hits, found)
-    }
-}
-
-impl Structure for Bsp {
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        leaves_of_planes(self, 0.0, ray)
-    }
-
-    fn listed(&self, node: u32) -> &[u32] {
-        Tree::listed(self, node)
-    }
-
-    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        at_planes(&Planes { tree: self, plane: PlaneNode::plane, room: 0.0 }, ray, hits, found)
-    }
-}
-
-impl Structure for PolygonBsp {
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        leaves_of_planes(self, self.room, ray)
-    }
-
-    fn listed(&self, node: u32) -> &[u32] {
-        Tree::listed(self, node)
-    }
-
-    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        at_planes(&Planes { tree: self, plane: PlaneNode::plane, room: self.room }, ray, hits, found)
-    }
-}
-
 /// The cells of a grid, each with its number and its coordinates.
 pub(super) fn numbered(grid: &Grid) -> impl Iterator<Item = (u32, UVec3, Cell)> {
     let n = grid.resolution;
@@ -192,6 +106,9 @@ pub(super) fn numbered(grid: &Grid) -> impl Iterator<Item = (u32, UVec3, Cell)> 
         (i, at, grid.cell(at))
     })
 }
+
+/// The interval of a ray in each node of a structure: `(node, entry, exit)`, in double precision.
+pub(super) type Parts = Vec<(u32, f64, f64)>;
 
 /// The cells that the ray enters if each is larger by its `room`.
 pub(super) fn of_grid(grid: &Grid, ray: &Ray, room: impl Fn(&Cell) -> f64) -> Parts {
@@ -206,10 +123,6 @@ pub(super) fn of_cells<N: TreeNode<Region = Cell>>(tree: &CellTree<N>, ray: &Ray
         parts.extend(part(ray, &cell, touching(&cell)).map(|(near, far)| (node, near, far)))
     });
     parts
-}
-
-pub(super) fn of_leaves(octree: &Octree, parts: &Parts) -> Vec<u32> {
-    parts.iter().map(|(node, ..)| *node).filter(|&node| octree.nodes[node as usize].is_leaf()).collect()
 }
 
 pub(super) fn of_planes<N: PlaneNode>(bsp: &Tree<N>, ray: &Ray) -> Parts {

@@ -1,7 +1,7 @@
 //! Searches of binary trees with one mistake each at their planes. A mistake is named only if its search gives exactly the
 //! student's answer.
 
-use super::search_mistakes::{Hit, ROOM, Wrong};
+use super::search_mistakes::{Hit, Mistakes, ROOM, Wrong};
 use raykata::partition::{CutPlane, Tree, TreeNode};
 use raykata::ray::Ray;
 
@@ -174,7 +174,7 @@ pub(super) fn at_planes<N: TreeNode>(
     ray: &Ray,
     hits: &[f32],
     found: Hit,
-) -> Vec<(bool, &'static str)> {
+) -> Mistakes {
     let range = (f64::from(ray.t_min), f64::from(ray.t_max));
     let gives = |wrong: AtPlane| {
         let mut best = None;

@@ -2,11 +2,10 @@
 
 use super::parts;
 use super::scenes::{Scene, Thing, room, sphere, wall};
-use super::searches::{Described, POLYGON_BSP, agrees, judge_visits, place, queries, spheres_and_rays};
+use super::searches::{Described, POLYGON_BSP, agrees, place, queries, spheres_and_rays};
 use super::structures::{diagonal, one_plane, polygon_bsp, tile};
 use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
+use checks::broken::{Broken, CheckResult};
 use checks::paste::Paste;
 use glam::{Vec3, vec3};
 use raykata::kit::{CellsAnswer, CellsQuery};
@@ -95,12 +94,10 @@ pub(super) fn polygon_bsp_visits_what_the_ray_enters_before_its_hit(trial: &Tria
     });
     let scene = Scene::new(spheres.things.iter().cloned().chain(tiles).collect());
     let cells = polygon_bsp(&scene.hulls(), 8);
-    let queries = queries(&cells, &scene, &rays);
-    all_hold(compare(&queries, trial.kit.polygon_bsp_search(&queries), |query, yours| {
-        let parts = parts::of_planes(&cells, &query.ray);
-        judge_visits("BSP tree over 64 spheres and 32 triangles", query, &parts, &yours)?;
+    POLYGON_BSP.all_visits(trial.kit, &queries(&cells, &scene, &rays), |query, yours| {
+        POLYGON_BSP.judge_visits("BSP tree over 64 spheres and 32 triangles", query, &yours)?;
         judge_tests(query, &yours)
-    }))
+    })
 }
 
 /// Judges the tests: each tested primitive is in a visited leaf, or on the plane of a visited node that the ray reaches

@@ -1,27 +1,38 @@
 //! The laws that the seven searches of cells share.
 
-use super::parts::Structure;
+use super::octant_mistakes::of_octree;
+use super::parts::{self, Leaf, Parts};
+use super::plane_mistakes::{Planes, at_planes};
 use super::scenes::{Scene, Thing, closest, odd_scenes, scenes, sphere};
-use super::search_mistakes::{FIRST_CELL_ONLY, facts, in_cells};
+use super::search_mistakes::{FIRST_CELL_ONLY, Hit, Mistakes, facts, in_cells};
 use super::structures;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
 use checks::paste::Paste;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsAnswer, CellsQuery, Kit};
-use raykata::partition::{Bsp, Grid, KdTree, Octree, PolygonBsp};
+use raykata::partition::{Bsp, CutPlane, Grid, KdNode, KdTree, Octree, PlaneNode, PolygonBsp};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// A search of a student, in structures of the type `S`.
+/// A search of a student, in structures of the type `S`: cells with numbers, or trees with numbered nodes.
 pub(super) struct Search<S> {
     /// Its name in messages.
     name: &'static str,
     /// The queries for the rays of a case, in a structure over its scene that the checks have built.
     queries: fn(&Searched<'_>) -> Vec<CellsQuery<S>>,
     /// Calls the student's function.
-    pub ask: fn(&dyn Kit, &[CellsQuery<S>]) -> Vec<CellsAnswer>,
+    ask: fn(&dyn Kit, &[CellsQuery<S>]) -> Vec<CellsAnswer>,
+    /// The leaves that the ray enters, in their order.
+    leaves: fn(&S, &Ray) -> Vec<Leaf>,
+    /// The interval of the ray in each node that it enters or touches.
+    parts: fn(&S, &Ray) -> Parts,
+    /// The primitives that a cell or a node lists; none for an inner node, unless polygons lie on its plane.
+    listed: fn(&S, u32) -> &[u32],
+    /// The known mistakes of searches in this structure, each with whether it finds this hit.
+    mistakes: fn(&S, &Ray, &[f32], Hit) -> Mistakes,
 }
 
 pub(super) const GRID: Search<Grid> = Search {
@@ -31,6 +42,20 @@ pub(super) const GRID: Search<Grid> = Search {
         grid_queries(scene, rays, structures::around_loosely(&scene.boxes()), resolution)
     },
     ask: |kit, queries| kit.grid_search(queries),
+    leaves: parts::leaves_of_grid,
+    parts: |grid, ray| parts::of_grid(grid, ray, parts::touching),
+    listed: Grid::primitives,
+    mistakes: |_, _, _, _| Vec::new(),
+};
+
+pub(super) const OCTREE: Search<Octree> = Search {
+    name: "octree",
+    queries: |case| case.queries(&structures::octree(&case.scene.boxes(), case.depth(3))),
+    ask: |kit, queries| kit.octree_search(queries),
+    leaves: parts::leaves_of_cells,
+    parts: parts::of_cells,
+    listed: |octree, node| octree.listed(node),
+    mistakes: of_octree,
 };
 
 pub(super) const OCTREE_BY_CELLS: Search<Octree> =
@@ -39,31 +64,47 @@ pub(super) const OCTREE_BY_CELLS: Search<Octree> =
 pub(super) const OCTREE_BY_NEIGHBOURS: Search<Octree> =
     Search { name: "octree, by neighbours", ask: |kit, queries| kit.octree_by_neighbours(queries), ..OCTREE };
 
-pub(super) const OCTREE: Search<Octree> = Search {
-    name: "octree",
-    queries: |case| case.queries(&structures::octree(&case.scene.boxes(), case.depth(3))),
-    ask: |kit, queries| kit.octree_search(queries),
-};
-
 pub(super) const KD_TREE: Search<KdTree> = Search {
     name: "kd-tree",
     queries: |case| case.queries(&structures::kd_tree(&case.scene.boxes(), case.depth(7))),
     ask: |kit, queries| kit.kd_search(queries),
+    leaves: parts::leaves_of_cells,
+    parts: parts::of_cells,
+    listed: |tree, node| tree.listed(node),
+    mistakes: |tree, ray, hits, found| {
+        let plane = |node: &KdNode| match *node {
+            KdNode::Inner { axis, at, .. } => Some(CutPlane::across(usize::from(axis), f64::from(at))),
+            KdNode::Leaf { .. } => None,
+        };
+        at_planes(&Planes { tree, plane, room: 0.0 }, ray, hits, found)
+    },
 };
 
 pub(super) const BSP: Search<Bsp> = Search {
     name: "BSP tree",
     queries: |case| case.queries(&structures::bsp(&case.scene.hulls(), case.depth(6))),
     ask: |kit, queries| kit.bsp_search(queries),
+    leaves: |tree, ray| parts::leaves_of_planes(tree, 0.0, ray),
+    parts: parts::of_planes,
+    listed: Bsp::listed,
+    mistakes: |tree, ray, hits, found| {
+        at_planes(&Planes { tree, plane: PlaneNode::plane, room: 0.0 }, ray, hits, found)
+    },
 };
 
 pub(super) const POLYGON_BSP: Search<PolygonBsp> = Search {
     name: "BSP tree with polygons in its nodes",
     queries: |case| case.queries(&structures::polygon_bsp(&case.scene.hulls(), case.depth(6))),
     ask: |kit, queries| kit.polygon_bsp_search(queries),
+    leaves: |bsp, ray| parts::leaves_of_planes(bsp, bsp.room, ray),
+    parts: |bsp, ray| parts::of_planes(bsp, ray),
+    listed: |bsp, node| bsp.listed(node),
+    mistakes: |bsp, ray, hits, found| {
+        at_planes(&Planes { tree: bsp, plane: PlaneNode::plane, room: bsp.room }, ray, hits, found)
+    },
 };
 
-impl<S: Structure + Clone> Search<S> {
+impl<S: Clone> Search<S> {
     /// Searches for the rays of each case, and judges the answers.
     pub(super) fn judge(&self, kit: &dyn Kit, cases: &[Searched<'_>]) -> Vec<CheckResult> {
         let mut asked = Described::new();
@@ -72,6 +113,87 @@ impl<S: Structure + Clone> Search<S> {
             (self.queries)(case).into_iter().for_each(|query| asked.add(&what, query));
         }
         asked.judge_each(kit, self)
+    }
+
+    /// Judges the visits of the searches for these rays, each of which is aimed at a primitive.
+    pub(super) fn visits(&self, kit: &dyn Kit, what: &str, queries: &[CellsQuery<S>]) -> CheckResult {
+        assert!(queries.iter().all(|query| closest(&query.hits, &query.ray).is_some()), "a ray hits nothing");
+        self.all_visits(kit, queries, |query, yours| self.judge_visits(what, query, &yours))
+    }
+
+    /// Judges each answer of the search.
+    pub(super) fn all_visits(
+        &self,
+        kit: &dyn Kit,
+        queries: &[CellsQuery<S>],
+        judge: impl Fn(&CellsQuery<S>, CellsAnswer) -> CheckResult,
+    ) -> CheckResult {
+        all_hold(compare(queries, (self.ask)(kit, queries), judge))
+    }
+
+    /// Judges the visits of a search that must find a hit: the ray must enter each visited node before its hit, and each tested
+    /// primitive must be listed in a visited node.
+    pub(super) fn judge_visits(&self, what: &str, query: &CellsQuery<S>, yours: &CellsAnswer) -> CheckResult {
+        let parts = (self.parts)(&query.cells, &query.ray);
+        let ray = &query.ray;
+        let input = || format!("{what}\n{}", ray.paste());
+        // A search that visits nothing is not a search.
+        if yours.hit.is_none() || yours.visits.is_empty() {
+            let found = yours.hit.map(|hit| (hit.primitive, hit.t));
+            let expected = format!("{:?} after at least one visit", closest(&query.hits, ray));
+            let yours = format!("{found:?} after {} visits", yours.visits.len());
+            return Err(
+                Broken::with_texts(input(), yours, expected, "brute force, (primitive, t)").explained_by([])
+            );
+        }
+        let end = yours.hit.map_or(f64::INFINITY, |hit| f64::from(hit.t)).min(f64::from(ray.t_max));
+        // Allow 2⁻¹⁴, which is far more than rounding errors and far less than a cell.
+        let room = (-14f64).exp2();
+        let enter = |visit: u32| parts.iter().find(|(node, ..)| *node == visit).map(|(_, enter, _)| *enter);
+        let is_behind = |enter: f64| enter > end + room * end.abs();
+        let again = |visit: u32| yours.visits.iter().filter(|other| **other == visit).count() > 1;
+        let missed = yours.visits.iter().copied().find(|&visit| enter(visit).is_none());
+        let behind =
+            yours.visits.iter().find_map(|&visit| enter(visit).filter(|&t| is_behind(t)).map(|t| (visit, t)));
+        let twice = yours.visits.iter().copied().find(|&visit| again(visit));
+        let is_listed = |primitive: &u32| {
+            yours.visits.iter().any(|node| (self.listed)(&query.cells, *node).contains(primitive))
+        };
+        // A visit that the ray misses may be to a cell that does not exist.
+        let mut tests = yours.tests.iter().copied().filter(|_| missed.is_none());
+        let unlisted = tests.find(|primitive| !is_listed(primitive));
+        // Each fault as `(yours, expected, source)` with its mistake; the message shows the first.
+        let faults = [
+            (
+                missed.map(|visit| (format!("a visit to {visit}"), "none".to_owned(), "the ray misses it")),
+                "you visit a cell that the ray does not enter",
+            ),
+            (
+                behind.map(|(visit, t)| {
+                    let begins = format!("a visit to {visit}, which begins at t = {t:.4}");
+                    (begins, format!("none beyond the hit at t = {end}"), "counted")
+                }),
+                "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
+            ),
+            (
+                twice.map(|visit| (format!("{visit} is visited again"), "once".to_owned(), "counted")),
+                "you visit a cell several times",
+            ),
+            (
+                unlisted.map(|primitive| {
+                    let test = format!("a test of primitive {primitive}");
+                    (test, "a visit to a cell that lists it".to_owned(), "counted")
+                }),
+                "you test a primitive that no visited cell lists: call `visit` for each cell that the search comes to",
+            ),
+        ];
+        let mistakes = faults.each_ref().map(|(fault, mistake)| (fault.is_some(), *mistake));
+        match faults.into_iter().find_map(|(fault, _)| fault) {
+            None => Ok(()),
+            Some((yours, expected, source)) => {
+                Err(Broken::with_texts(input(), yours, expected, source).explained_by(mistakes))
+            }
+        }
     }
 
     /// The words for a search over a scene of this name.
@@ -108,7 +230,7 @@ pub(super) struct Described<S> {
     queries: Vec<CellsQuery<S>>,
 }
 
-impl<S: Structure + Clone> Described<S> {
+impl<S: Clone> Described<S> {
     pub(super) fn new() -> Self {
         Described { what: Vec::new(), queries: Vec::new() }
     }
@@ -146,11 +268,13 @@ impl<S: Structure + Clone> Described<S> {
         }
         // A wrong search that gives another answer than a right one of the student is not the student's.
         let formulas = |query: &CellsQuery<S>, answer: &CellsAnswer| {
-            let mut all = in_cells(&query.cells.leaves(&query.ray), &query.ray, &query.hits, found(answer));
+            let mut all =
+                in_cells(&(search.leaves)(&query.cells, &query.ray), &query.ray, &query.hits, found(answer));
             // A search that visits two leaves searches more than the first cell.
-            let n_leaves = answer.visits.iter().filter(|node| !query.cells.listed(**node).is_empty()).count();
+            let n_leaves =
+                answer.visits.iter().filter(|node| !(search.listed)(&query.cells, **node).is_empty()).count();
             all.iter_mut().for_each(|one| one.0 &= n_leaves < 2 || one.1 != FIRST_CELL_ONLY);
-            all.extend(query.cells.mistakes(&query.ray, &query.hits, found(answer)));
+            all.extend((search.mistakes)(&query.cells, &query.ray, &query.hits, found(answer)));
             all
         };
         let mut possible: Vec<bool> = Vec::new();
@@ -167,7 +291,7 @@ impl<S: Structure + Clone> Described<S> {
             proven.iter_mut().zip(&possible).for_each(|(mistake, possible)| mistake.0 &= possible);
             let input = (&query.ray, &query.hits[..]);
             let calls = (&answer.tests[..], &answer.visits[..]);
-            proven.extend(facts(found(answer), calls, input, |node| query.cells.listed(node)));
+            proven.extend(facts(found(answer), calls, input, |node| (search.listed)(&query.cells, node)));
             let expected = closest(&query.hits, &query.ray);
             Err(Broken::new(describe(what, query), found(answer), expected, "brute force, (primitive, t)")
                 .explained_by(proven))
@@ -219,7 +343,7 @@ pub(super) fn spheres_and_rays(n: usize, step: usize, (length, height): (usize, 
 }
 
 /// Compares a search with brute force, in random scenes and in degenerate ones.
-pub(super) fn agrees<S: Structure + Clone>(trial: &Trial<'_>, search: &Search<S>) -> CheckResult {
+pub(super) fn agrees<S: Clone>(trial: &Trial<'_>, search: &Search<S>) -> CheckResult {
     // Three spheres in a row in one leaf, the nearest of them listed last; and a large sphere that overlaps many cells,
     // with a nearer small one before it.
     let row = Scene::new((0..3).map(|i| sphere(2.0 * i as f32, 0.0, 0.0, 0.5)).collect());
@@ -250,75 +374,4 @@ pub(super) fn agrees<S: Structure + Clone>(trial: &Trial<'_>, search: &Search<S>
     odd.iter().try_for_each(|(name, scene, rays)| {
         all_hold(search.judge(trial.kit, &[Searched::new(*name, scene, rays)]))
     })
-}
-
-/// The interval of a ray in each node of a structure: `(node, entry, exit)`, in double precision.
-pub(super) type Parts = Vec<(u32, f64, f64)>;
-
-/// Judges the visits of a search that must find a hit: the ray must enter each visited node before its hit, and each tested
-/// primitive must be listed in a visited node. `parts` are all nodes that the ray enters or touches.
-pub(super) fn judge_visits<S: Structure>(
-    what: &str,
-    query: &CellsQuery<S>,
-    parts: &Parts,
-    yours: &CellsAnswer,
-) -> CheckResult {
-    let ray = &query.ray;
-    let input = || format!("{what}\n{}", ray.paste());
-    // A search that visits nothing is not a search.
-    if yours.hit.is_none() || yours.visits.is_empty() {
-        let found = yours.hit.map(|hit| (hit.primitive, hit.t));
-        let expected = format!("{:?} after at least one visit", closest(&query.hits, ray));
-        let yours = format!("{found:?} after {} visits", yours.visits.len());
-        return Err(
-            Broken::with_texts(input(), yours, expected, "brute force, (primitive, t)").explained_by([])
-        );
-    }
-    let end = yours.hit.map_or(f64::INFINITY, |hit| f64::from(hit.t)).min(f64::from(ray.t_max));
-    // Allow 2⁻¹⁴, which is far more than rounding errors and far less than a cell.
-    let room = (-14f64).exp2();
-    let enter = |visit: u32| parts.iter().find(|(node, ..)| *node == visit).map(|(_, enter, _)| *enter);
-    let is_behind = |enter: f64| enter > end + room * end.abs();
-    let again = |visit: u32| yours.visits.iter().filter(|other| **other == visit).count() > 1;
-    let missed = yours.visits.iter().copied().find(|&visit| enter(visit).is_none());
-    let behind =
-        yours.visits.iter().find_map(|&visit| enter(visit).filter(|&t| is_behind(t)).map(|t| (visit, t)));
-    let twice = yours.visits.iter().copied().find(|&visit| again(visit));
-    let is_listed =
-        |primitive: &u32| yours.visits.iter().any(|node| query.cells.listed(*node).contains(primitive));
-    // A visit that the ray misses may be to a cell that does not exist.
-    let mut tests = yours.tests.iter().copied().filter(|_| missed.is_none());
-    let unlisted = tests.find(|primitive| !is_listed(primitive));
-    // Each fault as `(yours, expected, source)` with its mistake; the message shows the first.
-    let faults = [
-        (
-            missed.map(|visit| (format!("a visit to {visit}"), "none".to_owned(), "the ray misses it")),
-            "you visit a cell that the ray does not enter",
-        ),
-        (
-            behind.map(|(visit, t)| {
-                let begins = format!("a visit to {visit}, which begins at t = {t:.4}");
-                (begins, format!("none beyond the hit at t = {end}"), "counted")
-            }),
-            "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
-        ),
-        (
-            twice.map(|visit| (format!("{visit} is visited again"), "once".to_owned(), "counted")),
-            "you visit a cell several times",
-        ),
-        (
-            unlisted.map(|primitive| {
-                let test = format!("a test of primitive {primitive}");
-                (test, "a visit to a cell that lists it".to_owned(), "counted")
-            }),
-            "you test a primitive that no visited cell lists: call `visit` for each cell that the search comes to",
-        ),
-    ];
-    let mistakes = faults.each_ref().map(|(fault, mistake)| (fault.is_some(), *mistake));
-    match faults.into_iter().find_map(|(fault, _)| fault) {
-        None => Ok(()),
-        Some((yours, expected, source)) => {
-            Err(Broken::with_texts(input(), yours, expected, source).explained_by(mistakes))
-        }
-    }
 }
