@@ -11,7 +11,7 @@ use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::BspQuery;
-use raykata::partition::{Bsp, BspNode, CutPlane, MOST_REFERENCES, corners};
+use raykata::partition::{Bsp, CutPlane, MOST_REFERENCES, TreeNode, corners};
 
 /// A leaf: its number, the planes above it with the side on which it lies, and the primitives that it lists.
 type Leaf = (u32, Vec<(CutPlane, f64)>, Vec<u32>);
@@ -19,8 +19,8 @@ type Leaf = (u32, Vec<(CutPlane, f64)>, Vec<u32>);
 fn leaves(bsp: &Bsp) -> Vec<Leaf> {
     let mut leaves = Vec::new();
     bsp.walk(|node, above, _| {
-        if let BspNode::Leaf { first, count } = bsp.nodes[node as usize] {
-            leaves.push((node, above.to_vec(), bsp.primitives(first, count).to_vec()));
+        if bsp.nodes[node as usize].is_leaf() {
+            leaves.push((node, above.to_vec(), bsp.listed(node).to_vec()));
         }
     });
     leaves

@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::BspQuery;
-use raykata::partition::{CutPlane, MOST_REFERENCES, PolygonBsp, PolygonBspNode, corners};
+use raykata::partition::{CutPlane, MOST_REFERENCES, PlaneNode, PolygonBsp, PolygonBspNode, corners};
 
 const WHAT_MAKES_IT: &str = "the definition of a BSP tree with polygons in its nodes";
 
@@ -54,12 +54,7 @@ fn fault(query: &BspQuery, yours: &PolygonBsp) -> Option<Fault> {
     let slack = size / 64.0;
     let mut faults = Vec::new();
     yours.walk(|node, above, depth| {
-        let (listed, plane) = match yours.nodes[node as usize] {
-            PolygonBspNode::Inner { plane, first, count, .. } => {
-                (yours.primitives(first, count), Some(plane))
-            }
-            PolygonBspNode::Leaf { first, count } => (yours.primitives(first, count), None),
-        };
+        let (listed, plane) = (yours.listed(node), yours.nodes[node as usize].plane());
         let excused = depth == query.max_depth || yours.items.len() > 2 * query.hulls.len();
         faults.extend(listing_fault(query, (node, listed), plane, above, (size, slack, excused)));
         // A solid with a corner in the region of a leaf belongs to the leaf.
@@ -192,15 +187,12 @@ fn points(hull: &[Vec3]) -> Vec<DVec3> {
 
 /// Whether a node that lists the polygon `id` contains `point`, within `room`.
 fn is_covered(bsp: &PolygonBsp, node: u32, point: DVec3, id: u32, room: f64) -> bool {
-    match bsp.nodes[node as usize] {
-        PolygonBspNode::Leaf { first, count } => bsp.primitives(first, count).contains(&id),
-        PolygonBspNode::Inner { plane, first, count, back, front } => {
-            let height = plane.normal.dot(point) - plane.offset;
-            let here = height.abs() <= room && bsp.primitives(first, count).contains(&id);
-            here || (height >= -room && is_covered(bsp, front, point, id, room))
-                || (height <= room && is_covered(bsp, back, point, id, room))
-        }
-    }
+    let is_listed = bsp.listed(node).contains(&id);
+    let PolygonBspNode::Inner { plane, back, front, .. } = bsp.nodes[node as usize] else { return is_listed };
+    let height = plane.normal.dot(point) - plane.offset;
+    (is_listed && height.abs() <= room)
+        || (height >= -room && is_covered(bsp, front, point, id, room))
+        || (height <= room && is_covered(bsp, back, point, id, room))
 }
 
 pub(super) fn polygon_bsp_puts_polygons_on_planes(trial: &Trial<'_>) -> CheckResult {
