@@ -69,38 +69,22 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
         [(&[0u32, 1, 2][..], &[][..]), (&[][..], &[0u32, 1, 2][..]), (&[1][..], &[0, 2][..])]
     {
         let tree = two_leaves(diagonal(), behind, before);
-        for direction in [vec3(1.0, -1.0, 0.0), vec3(-1.0, 1.0, -0.0), vec3(0.0, -0.0, 1.0)] {
-            asked.ask(
-                "BSP tree of one plane x + y = 0, and a ray in it",
-                &tree,
-                &spheres,
-                Ray::new(Vec3::ZERO, direction),
-            );
-        }
-        for (origin, direction) in
-            [(vec3(-3.0, -3.0, 0.2), vec3(1.0, 1.0, 0.0)), (vec3(2.0, 2.5, -0.3), vec3(-1.0, -1.1, 0.1))]
-        {
-            asked.ask(
-                "BSP tree of one plane x + y = 0, with triangles in it",
-                &tree,
-                &stack,
-                Ray::new(origin, direction),
-            );
-        }
+        let in_plane = [vec3(1.0, -1.0, 0.0), vec3(-1.0, 1.0, -0.0), vec3(0.0, -0.0, 1.0)]
+            .map(|direction| Ray::new(Vec3::ZERO, direction));
+        asked.ask_all("BSP tree of one plane x + y = 0, and a ray in it", &tree, &spheres, in_plane);
+        let across = [
+            Ray::new(vec3(-3.0, -3.0, 0.2), vec3(1.0, 1.0, 0.0)),
+            Ray::new(vec3(2.0, 2.5, -0.3), vec3(-1.0, -1.1, 0.1)),
+        ];
+        asked.ask_all("BSP tree of one plane x + y = 0, with triangles in it", &tree, &stack, across);
     }
     // Rays from a point of the plane to each side.
     let sides = Scene::new(vec![sphere(3.0, 3.0, 0.0, 0.5), sphere(-3.0, -3.0, 0.0, 0.5)]);
     let tree = two_leaves(diagonal(), &[1], &[0]);
     for direction in [vec3(1.0, 1.0, 0.0), vec3(-1.0, -1.0, 0.0)] {
-        for origin in [Vec3::ZERO, vec3(1.0, -1.0, 0.0)] {
-            let direction = direction - origin / 3.0;
-            asked.ask(
-                "BSP tree of one plane x + y = 0, and a ray that starts on it",
-                &tree,
-                &sides,
-                Ray::new(origin, direction),
-            );
-        }
+        let rays =
+            [Vec3::ZERO, vec3(1.0, -1.0, 0.0)].map(|origin| Ray::new(origin, direction - origin / 3.0));
+        asked.ask_all("BSP tree of one plane x + y = 0, and a ray that starts on it", &tree, &sides, rays);
     }
     // Planes that do not pass through the origin of the world: the height of a ray in such a plane is a rounding error.
     for size in [2f32.powi(-10), 1.0, 2f32.powi(17)] {
@@ -123,7 +107,7 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
     // A room whose walls lie in the planes of the tree.
     let (room, rays) = room();
     let tree = bsp(&room.hulls(), 5);
-    rays.into_iter().for_each(|ray| asked.ask("BSP tree over a room of twelve triangles", &tree, &room, ray));
+    asked.ask_all("BSP tree over a room of twelve triangles", &tree, &room, rays);
     asked.judge(trial.kit, &BSP)
 }
 

@@ -130,19 +130,13 @@ pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Check
         let control = two_leaves(bounds, (axis, 0.0), &[0, 1, 2], &[]);
         let start = Ray::new(size * along(axis, vec3(-0.5, 0.1, 0.2)), along(axis, Vec3::X));
         asked.control("kd-tree", control, start, (0.0, 0.5 * size));
+        let what = format!("kd-tree of two leaves with walls on faces, size {size}");
         for i in 0..12 {
             let y = (i as f32 - 5.5) * 0.07;
+            let direction = along(axis, vec3(1.0, 0.2 * y, 0.1)).normalize();
             // Aim at the far wall, and at the wall in the plane of the cut, which is listed on both sides.
-            for x in [0.2, -0.7] {
-                let origin = size * along(axis, vec3(x, y, 0.3 * y));
-                let ray = Ray::new(origin, along(axis, vec3(1.0, 0.2 * y, 0.1)).normalize());
-                asked.ask(
-                    format!("kd-tree of two leaves with walls on faces, size {size}"),
-                    &whole,
-                    &scene,
-                    ray,
-                );
-            }
+            let origins = [0.2, -0.7].map(|x| size * along(axis, vec3(x, y, 0.3 * y)));
+            asked.ask_all(&what, &whole, &scene, origins.map(|origin| Ray::new(origin, direction)));
         }
     }
     asked.judge(trial.kit, &KD_TREE)
@@ -206,12 +200,8 @@ pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> CheckResult {
         asked.control("kd-tree", control, ray, (1.0, 3.0));
         // Without the small sphere, the hit counts although it lies beyond the first leaf and the second does not list it.
         let tree = two_leaves(bounds, (axis, 2.0), &[0], &[]);
-        asked.ask(
-            "kd-tree; primitive 0 is listed in the first leaf only",
-            &tree,
-            &Scene::new(vec![large]),
-            ray,
-        );
+        let alone = Scene::new(vec![large]);
+        asked.ask("kd-tree; primitive 0 is listed in the first leaf only", &tree, &alone, ray);
     }
     asked.judge(trial.kit, &KD_TREE)
 }
@@ -224,6 +214,7 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Check
         let place = |x: f32, y: f32, z: f32, radius: f32| {
             Thing::Sphere(Sphere { center: along(axis, vec3(x, y, z)), radius })
         };
+        let from_plane = |direction: Vec3| Ray::new(along(axis, Vec3::X), along(axis, direction));
         for (left, right) in [(&[0u32, 1][..], &[2u32][..]), (&[2][..], &[0, 1][..]), (&[0][..], &[1, 2][..])]
         {
             let tree = two_leaves(bounds, (axis, 1.0), left, right);
@@ -234,15 +225,9 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Check
                 place(1.0, -5.0, 0.0, 0.5),
             ]);
             for zero in [0.0, -0.0] {
-                for (y, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0)] {
-                    let ray = Ray::new(along(axis, Vec3::X), along(axis, vec3(zero, y, z)));
-                    asked.ask(
-                        "kd-tree of two leaves, and a ray in the plane between them",
-                        &tree,
-                        &spheres,
-                        ray,
-                    );
-                }
+                let directions = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0)].map(|(y, z)| vec3(zero, y, z));
+                let what = "kd-tree of two leaves, and a ray in the plane between them";
+                asked.ask_all(what, &tree, &spheres, directions.map(from_plane));
             }
             // Rays from a point of the plane to spheres on each side.
             let beside = Scene::new(vec![
@@ -251,30 +236,20 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Check
                 place(5.0, 0.5, 0.0, 0.5),
             ]);
             let sides = two_leaves(bounds, (axis, 1.0), &[0, 1], &[2]);
-            for direction in [vec3(-8.0, 1.0, 0.0), vec3(-8.0, -1.0, 0.5), vec3(8.0, 1.0, 0.0)] {
-                let ray = Ray::new(along(axis, Vec3::X), along(axis, direction));
-                asked.ask(
-                    "kd-tree of two leaves, and a ray from the plane between them",
-                    &sides,
-                    &beside,
-                    ray,
-                );
-            }
+            let directions = [vec3(-8.0, 1.0, 0.0), vec3(-8.0, -1.0, 0.5), vec3(8.0, 1.0, 0.0)];
+            let what = "kd-tree of two leaves, and a ray from the plane between them";
+            asked.ask_all(what, &sides, &beside, directions.map(from_plane));
         }
         // A wall in the plane, listed on one side only, and rays at it from both sides, from far and near.
         let wall = Scene::new(wall(axis, 1.0, 4.0).to_vec());
         for (left, right) in [(&[0u32, 1][..], &[][..]), (&[][..], &[0, 1][..])] {
             let tree = two_leaves(bounds, (axis, 1.0), left, right);
-            for x in [-7.5, 0.3, 1.7, 7.5] {
+            let rays = [-7.5, 0.3, 1.7, 7.5].map(|x| {
                 let direction = along(axis, vec3(1.0 - x, 0.1, 0.2)).normalize();
-                let ray = Ray::new(along(axis, vec3(x, 0.3, 0.4)), direction);
-                asked.ask(
-                    "kd-tree of two leaves, and a wall in the plane, listed on one side",
-                    &tree,
-                    &wall,
-                    ray,
-                );
-            }
+                Ray::new(along(axis, vec3(x, 0.3, 0.4)), direction)
+            });
+            let what = "kd-tree of two leaves, and a wall in the plane, listed on one side";
+            asked.ask_all(what, &tree, &wall, rays);
         }
     }
     asked.judge(trial.kit, &KD_TREE)

@@ -82,7 +82,7 @@ pub(super) fn polygon_bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> C
     // A room whose walls lie in the planes of the tree.
     let (room, rays) = room();
     let tree = polygon_bsp(&room.hulls(), 8);
-    rays.into_iter().for_each(|ray| asked.ask("BSP tree over a room of twelve triangles", &tree, &room, ray));
+    asked.ask_all("BSP tree over a room of twelve triangles", &tree, &room, rays);
     asked.judge(trial.kit, &POLYGON_BSP)
 }
 

@@ -8,6 +8,7 @@ use super::search_mistakes::{FIRST_CELL_ONLY, Hit, Mistakes, facts, in_cells};
 use super::structures;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare_formulas;
 use checks::paste::Paste;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
@@ -170,6 +171,17 @@ impl<S: Clone> Described<S> {
         self.add(what, CellsQuery { cells: cells.clone(), ray, hits: scene.hits(&ray) });
     }
 
+    /// Asks the same for each of these rays.
+    pub(super) fn ask_all(
+        &mut self,
+        what: &str,
+        cells: &S,
+        scene: &Scene,
+        rays: impl IntoIterator<Item = Ray>,
+    ) {
+        rays.into_iter().for_each(|ray| self.ask(what, cells, scene, ray));
+    }
+
     /// Judges the answers of a search. A mistake is named only if it explains all wrong answers.
     pub(super) fn judge(&self, kit: &dyn Kit, search: &Search<S>) -> CheckResult {
         all_hold(self.judge_each(kit, search))
@@ -178,43 +190,33 @@ impl<S: Clone> Described<S> {
     fn judge_each(&self, kit: &dyn Kit, search: &Search<S>) -> Vec<CheckResult> {
         let answers = (search.ask)(kit, &self.queries);
         let found = |answer: &CellsAnswer| answer.hit.map(|hit| (hit.primitive, hit.t));
-        let is_right =
-            |query: &CellsQuery<S>, answer: &CellsAnswer| found(answer) == closest(&query.hits, &query.ray);
-        let pairs = || self.queries.iter().zip(&answers);
-        if pairs().all(|(query, answer)| is_right(query, answer)) {
+        let expected = |query: &CellsQuery<S>| closest(&query.hits, &query.ray);
+        // The wrong searches, which go through each structure once per mistake, are needed for wrong answers only.
+        if self.queries.iter().zip(&answers).all(|(query, answer)| found(answer) == expected(query)) {
             return vec![Ok(()); answers.len()];
         }
-        // A wrong search that gives another answer than a right one of the student is not the student's.
-        let formulas = |query: &CellsQuery<S>, answer: &CellsAnswer| {
-            let mut all =
-                in_cells(&(search.leaves)(&query.cells, &query.ray), &query.ray, &query.hits, found(answer));
-            // A search that visits two leaves searches more than the first cell.
-            let n_leaves =
-                answer.visits.iter().filter(|node| !(search.listed)(&query.cells, **node).is_empty()).count();
-            all.iter_mut().for_each(|one| one.0 &= n_leaves < 2 || one.1 != FIRST_CELL_ONLY);
-            all.extend((search.mistakes)(&query.cells, &query.ray, &query.hits, found(answer)));
-            all
-        };
-        let mut possible: Vec<bool> = Vec::new();
-        for (query, answer) in pairs().filter(|(query, answer)| is_right(query, answer)) {
-            let given = formulas(query, answer);
-            possible.resize(given.len(), true);
-            possible.iter_mut().zip(&given).for_each(|(possible, (gives, _))| *possible &= gives);
-        }
-        let judge = |((query, answer), what): ((&CellsQuery<S>, &CellsAnswer), &String)| {
-            if is_right(query, answer) {
+        let judge = |(query, what): &(&CellsQuery<S>, &String), answer: CellsAnswer| {
+            let (found, expected) = (found(&answer), expected(query));
+            if found == expected {
                 return Ok(());
             }
-            let mut proven = formulas(query, answer);
-            proven.iter_mut().zip(&possible).for_each(|(mistake, possible)| mistake.0 &= possible);
-            let input = (&query.ray, &query.hits[..]);
-            let calls = (&answer.tests[..], &answer.visits[..]);
-            proven.extend(facts(found(answer), calls, input, |node| (search.listed)(&query.cells, node)));
-            let expected = closest(&query.hits, &query.ray);
-            Err(Broken::new(describe(what, query), found(answer), expected, "brute force, (primitive, t)")
-                .explained_by(proven))
+            let listed = |node| (search.listed)(&query.cells, node);
+            let facts = facts(found, (&answer.tests, &answer.visits), (&query.ray, &query.hits), listed);
+            Err(Broken::new(describe(what, query), found, expected, "brute force, (primitive, t)")
+                .explained_by(facts))
         };
-        pairs().zip(&self.what).map(judge).collect()
+        let formulas = |(query, _): &(&CellsQuery<S>, &String), answer: &CellsAnswer| {
+            let CellsQuery { cells, ray, hits } = *query;
+            let mut all = in_cells(&(search.leaves)(cells, ray), ray, hits, found(answer));
+            // A search that visits two leaves searches more than the first cell.
+            let n_leaves =
+                answer.visits.iter().filter(|node| !(search.listed)(cells, **node).is_empty()).count();
+            all.iter_mut().for_each(|one| one.0 &= n_leaves < 2 || one.1 != FIRST_CELL_ONLY);
+            all.extend((search.mistakes)(cells, ray, hits, found(answer)));
+            all
+        };
+        let queries: Vec<_> = self.queries.iter().zip(&self.what).collect();
+        compare_formulas(&queries, answers, judge, formulas)
     }
 }
 
