@@ -1,6 +1,6 @@
 //! The choice of a lobe: `sample_bsdf` and `bsdf_pdf`.
 
-use crate::directions::LARGEST;
+use crate::directions::number;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, compare_formulas};
@@ -66,8 +66,9 @@ pub(super) fn surfaces() -> impl Strategy<Value = Scattering> + Clone {
     )
 }
 
-fn number() -> impl Strategy<Value = f32> + Clone {
-    prop_oneof![6 => (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0), 1 => Just(0.0f32), 1 => Just(LARGEST)]
+fn bsdf_queries() -> impl Strategy<Value = BsdfQuery> + Clone {
+    (surfaces(), number(), number(), number())
+        .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) })
 }
 
 /// The reflectance of a lobe.
@@ -113,9 +114,7 @@ pub(super) fn missing(query: &BsdfQuery) -> CheckResult {
 const CHOOSES_BLACK: &str = "you choose a lobe whose reflectance is 0";
 
 pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> CheckResult {
-    let queries = (surfaces(), number(), number(), number())
-        .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) });
-    trial.forall(800, queries, |queries| {
+    trial.forall(800, bsdf_queries(), |queries| {
         compare(queries, trial.kit.sample_bsdf(queries), |query, yours| {
             let scattering = &query.scattering;
             let Some(sample) = yours else { return missing(query) };
@@ -180,9 +179,7 @@ fn judge_weight(query: &BsdfQuery, sample: &BsdfSample) -> bool {
 }
 
 pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> CheckResult {
-    let queries = (surfaces(), number(), number(), number())
-        .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) });
-    trial.forall(800, queries, |queries| {
+    trial.forall(800, bsdf_queries(), |queries| {
         compare_formulas(
             queries,
             trial.kit.sample_bsdf(queries),

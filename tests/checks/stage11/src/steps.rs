@@ -116,27 +116,22 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
             })
         };
         let densities = per_some(queries, density, |queries| trial.kit.light_pdf(queries));
-        let light_pdfs: Vec<f32> = queries
-            .iter()
-            .zip(&densities)
-            .map(|(query, density)| {
-                query.vertex.emitter.map_or(0.0, |chosen| chosen.probability * density.unwrap_or(0.0))
-            })
-            .collect();
-        let pairs: Vec<(f32, f32)> =
-            queries.iter().zip(&light_pdfs).map(|(query, light)| (query.path.pdf, *light)).collect();
-        let unscaled: Vec<(f32, f32)> = queries
-            .iter()
-            .zip(&densities)
-            .map(|(query, density)| (query.path.pdf, density.unwrap_or(0.0)))
-            .collect();
-        let answers: Vec<_> = trial
-            .kit
-            .step(queries)
-            .into_iter()
-            .zip(trial.kit.mis_weight(&pairs))
-            .zip(trial.kit.mis_weight(&unscaled))
-            .collect();
+        // The densities of the path and of the emitter's sample, the latter with the probability of the choice or without it.
+        let weights = |by_choice: bool| {
+            let pair = |(query, density): (&StepQuery, &Option<f32>)| {
+                let probability = query.vertex.emitter.map_or(0.0, |chosen| chosen.probability);
+                let factor = if by_choice { probability } else { 1.0 };
+                (query.path.pdf, factor * density.unwrap_or(0.0))
+            };
+            trial.kit.mis_weight(&queries.iter().zip(&densities).map(pair).collect::<Vec<_>>())
+        };
+        let answers: Vec<_> =
+            trial.kit.step(queries).into_iter().zip(weights(true)).zip(weights(false)).collect();
+        // Light counts in full if the ray is certain, or if no sample finds the emitter.
+        let counting = |query: &StepQuery, weight: f32| {
+            let is_whole = query.path.pdf == f32::INFINITY || query.vertex.emitter.is_none();
+            if is_whole { 1.0 } else { f64::from(weight) }
+        };
         // The roundings of a few products.
         let near = |yours: Vec3, expected: DVec3| {
             (yours.as_dvec3() - expected).abs().max_element() <= 1e-5 * expected.max_element() + 1e-30
@@ -145,9 +140,8 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
             queries,
             answers,
             |query, ((step, weight), _)| {
-                let is_whole = query.path.pdf == f32::INFINITY || query.vertex.emitter.is_none();
-                let weight = if is_whole { 1.0 } else { f64::from(weight) };
-                let expected = weight * (query.path.weight * query.vertex.emission).as_dvec3();
+                let expected =
+                    counting(query, weight) * (query.path.weight * query.vertex.emission).as_dvec3();
                 if near(step.light, expected) {
                     return Ok(());
                 }
@@ -161,9 +155,7 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
             },
             |query, ((step, weight), unscaled)| {
                 let whole = (query.path.weight * query.vertex.emission).as_dvec3();
-                let is_whole = query.path.pdf == f32::INFINITY || query.vertex.emitter.is_none();
-                let weight = if is_whole { 1.0 } else { f64::from(*weight) };
-                let unscaled = if is_whole { 1.0 } else { f64::from(*unscaled) };
+                let [weight, unscaled] = [*weight, *unscaled].map(|weight| counting(query, weight));
                 let is_last = query.path.bounces == query.max_depth;
                 vec![
                     (step.light.is_nan(), "you return NaN"),
