@@ -14,7 +14,8 @@ use glam::{DVec3, Vec2, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::{BsdfQuery, EmitterPdfQuery, RouletteQuery, StepQuery, Surface};
 use raykata::light_path::{
-    BsdfSample, ChosenEmitter, LightCandidate, Lobe, PathState, PathStep, PathVertex, Scattering, StepNumbers,
+    BsdfSample, ChosenEmitter, LightCandidate, Lobe, NextRay, PathState, PathStep, PathVertex, Scattering,
+    StepNumbers,
 };
 
 /// A query for a message: the parts that matter here.
@@ -237,6 +238,13 @@ pub(super) fn steps_end_at_the_greatest_depth(trial: &Trial<'_>) -> CheckResult 
     })
 }
 
+/// The ray along which a path continues, in words.
+fn says(next: Option<NextRay>) -> String {
+    next.map_or("None: the path ends".to_owned(), |NextRay { lobe, direction, weight, pdf }| {
+        format!("{lobe:?} along {direction} with weight {weight} and pdf {pdf:?}")
+    })
+}
+
 pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) -> CheckResult {
     let state = (color(), 0..8u32, pdf());
     // The geometric normal is at an angle of up to 1 to the shading normal, so some diffuse directions are below it.
@@ -315,24 +323,11 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
                 if is(&step, &sample, weight) {
                     return Ok(());
                 }
-                let expected = match weight == DVec3::ZERO {
-                    true => "None: the path ends".to_owned(),
-                    false => format!(
-                        "{:?} along {} with weight {} and pdf {:?}",
-                        sample.lobe,
-                        sample.direction,
-                        weight.as_vec3(),
-                        sample.pdf
-                    ),
-                };
+                let BsdfSample { lobe, direction, pdf, .. } = sample;
+                let expected = NextRay { lobe, direction, weight: weight.as_vec3(), pdf };
+                let expected = (weight != DVec3::ZERO).then_some(expected);
                 let source = "path.weight · weight of sample_bsdf · survives";
-                let yours = step.next.map_or("None: the path ends".to_owned(), |next| {
-                    format!(
-                        "{:?} along {} with weight {} and pdf {:?}",
-                        next.lobe, next.direction, next.weight, next.pdf
-                    )
-                });
-                Err(Broken::with_texts(describe(query), yours, expected, source))
+                Err(Broken::with_texts(describe(query), says(step.next), says(expected), source))
             },
             |query, ((step, sample), [factor, early, late])| {
                 let Some(sample) = sample else {
