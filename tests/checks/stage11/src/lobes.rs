@@ -308,24 +308,26 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
     trial.forall(800, strategy, |queries| {
         let samples = trial.kit.sample_bsdf(queries);
         // Among hundreds of samples of diffuse surfaces some are diffuse.
-        let is_diffuse =
-            |sample: &Option<BsdfSample>| sample.is_some_and(|sample| sample.lobe == Lobe::Diffuse);
-        let none_is_diffuse = queries.len() > 100 && !samples.iter().any(is_diffuse);
-        let direction = |sample: &Option<BsdfSample>| sample.map_or(Vec3::Z, |sample| sample.direction);
-        let pdf_queries: Vec<BsdfPdfQuery> = queries
-            .iter()
-            .zip(&samples)
-            .map(|(query, sample)| BsdfPdfQuery {
-                scattering: query.scattering.clone(),
-                direction: direction(sample),
-            })
-            .collect();
+        let diffuse = |sample: &Option<BsdfSample>| sample.filter(|sample| sample.lobe == Lobe::Diffuse);
+        let none_is_diffuse = queries.len() > 100 && samples.iter().all(|sample| diffuse(sample).is_none());
+        let of_sample = |(query, sample): (&BsdfQuery, &Option<BsdfSample>)| BsdfPdfQuery {
+            scattering: query.scattering.clone(),
+            direction: sample.map_or(Vec3::Z, |sample| sample.direction),
+        };
+        let pdf_queries: Vec<BsdfPdfQuery> = queries.iter().zip(&samples).map(of_sample).collect();
+        // The cosine, and the probability of the diffuse lobe, which follows from the weight of the sample.
+        let factors = |query: &BsdfPdfQuery, sample: &BsdfSample| {
+            let cosine = query.scattering.normal.as_dvec3().dot(sample.direction.as_dvec3()).max(0.0);
+            (cosine, probability(&query.scattering, sample))
+        };
+        // Roundings of the products in the cosine, and of the probability.
+        let near = |pdf: f32, expected: f64| (f64::from(pdf) - expected).abs() <= 1e-6 + 1e-5 * expected;
         let answers: Vec<_> = samples.into_iter().zip(trial.kit.bsdf_pdf(&pdf_queries)).collect();
         compare_formulas(
             &pdf_queries,
             answers,
             |query, (sample, yours)| {
-                let Some(sample) = sample.filter(|sample| sample.lobe == Lobe::Diffuse) else {
+                let Some(sample) = diffuse(&sample) else {
                     let input = format!("sample_bsdf for {} diffuse surfaces", queries.len());
                     let broken = Broken::with_texts(
                         input,
@@ -335,12 +337,9 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
                     );
                     return if none_is_diffuse { Err(broken) } else { Ok(()) };
                 };
-                let cosine = query.scattering.normal.as_dvec3().dot(sample.direction.as_dvec3()).max(0.0);
-                // The probability of the diffuse lobe follows from the weight of the sample.
-                let expected = probability(&query.scattering, &sample) * cosine / PI;
-                // Roundings of the products in the cosine, and of the probability.
-                let near = |pdf: f32| (f64::from(pdf) - expected).abs() <= 1e-6 + 1e-5 * expected;
-                if near(yours) && near(sample.pdf) {
+                let (cosine, probability) = factors(query, &sample);
+                let expected = probability * cosine / PI;
+                if near(yours, expected) && near(sample.pdf, expected) {
                     return Ok(());
                 }
                 let input =
@@ -354,13 +353,8 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
                 ))
             },
             |query, (sample, yours)| {
-                let Some(sample) = sample.filter(|sample| sample.lobe == Lobe::Diffuse) else {
-                    return vec![(true, ""); 4];
-                };
-                let cosine = query.scattering.normal.as_dvec3().dot(sample.direction.as_dvec3()).max(0.0);
-                let probability = probability(&query.scattering, &sample);
-                let near =
-                    |pdf: f32, expected: f64| (f64::from(pdf) - expected).abs() <= 1e-6 + 1e-5 * expected;
+                let Some(sample) = diffuse(sample) else { return vec![(true, ""); 4] };
+                let (cosine, probability) = factors(query, &sample);
                 let both = |expected: f64| near(*yours, expected) && near(sample.pdf, expected);
                 vec![
                     (both(cosine / PI), "the probability of the diffuse lobe is missing in both densities"),
