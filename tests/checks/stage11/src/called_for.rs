@@ -54,6 +54,10 @@ fn scene(shapes: &[(Shape, Material)]) -> Scene {
 type Needs = (&'static [usize], &'static [usize], bool);
 
 const NOTHING: Needs = (&[], &[], false);
+/// The first shape reflects light.
+const WALL: Needs = (&[1], &[], false);
+/// The first shape reflects light, and the second one is sampled as a light.
+const BOTH: Needs = (&[1], &[2], false);
 
 /// A scene, what its paths need, and what a mistake makes of it.
 struct SceneForPaths {
@@ -135,8 +139,6 @@ pub(super) fn no_paths_without_indirect_light(trial: &Trial<'_>) -> CheckResult 
     let lit = scene(&[wall(), emitter()]);
     let mut shallow = lit.clone();
     shallow.quality.max_depth = 0;
-    const WALL: Needs = (&[1], &[], false);
-    const BOTH: Needs = (&[1], &[2], false);
     const OFF: &str = "nothing is needed without scene.indirect_light";
     const DARK: &str = "nothing emits light, so no path finds any";
     const FLAT: &str = "with max_depth 0 no path has a bounce";
@@ -196,10 +198,10 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
     let mut lit = scene(&[wall()]);
     lit.lights.push(light(RED));
     let (zero, one) = (Vec3::ZERO, Vec3::ONE);
-    const WALL: Needs = (&[1], &[], false);
     const WITH_MAP: Needs = (&[1], &[], true);
     const LIGHTS: &str = "lights of the scene are light, too";
-    let background = [(NOTHING, "the background is light, too")];
+    const BACKGROUND: (Needs, &str) = (NOTHING, "the background is light, too");
+    let sky = |what, background| case(what, with(background), WALL, &[BACKGROUND]);
     let mut mirror = scene(&[wall(), (sphere(), Material { mirror: one, ..diffuse(zero) })]);
     mirror.lights.push(light(one));
     let mut glass =
@@ -209,20 +211,10 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
         trial,
         vec![
             case("a diffuse sphere under a red light", lit, WALL, &[(NOTHING, LIGHTS)]),
-            case("a diffuse sphere under a grey sky", with(Background::Color(0.1 * one)), WALL, &background),
-            case("a diffuse sphere over a bright ground", with(gradient(zero, zero, one)), WALL, &background),
-            case(
-                "a diffuse sphere under a bright zenith",
-                with(gradient(one, zero, zero)),
-                WALL,
-                &background,
-            ),
-            case(
-                "a diffuse sphere before a bright horizon",
-                with(gradient(zero, GREEN, zero)),
-                WALL,
-                &background,
-            ),
+            sky("a diffuse sphere under a grey sky", Background::Color(0.1 * one)),
+            sky("a diffuse sphere over a bright ground", gradient(zero, zero, one)),
+            sky("a diffuse sphere under a bright zenith", gradient(one, zero, zero)),
+            sky("a diffuse sphere before a bright horizon", gradient(zero, GREEN, zero)),
             case(
                 "a diffuse sphere in a black gradient",
                 with(gradient(zero, zero, zero)),
@@ -233,7 +225,7 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
                 "a diffuse sphere in an environment map",
                 with(map(1.0)),
                 WITH_MAP,
-                &[(NOTHING, "the background is light, too"), (WALL, "an environment map is sampled")],
+                &[BACKGROUND, (WALL, "an environment map is sampled")],
             ),
             case(
                 "a diffuse sphere in an environment map of scale 0",
@@ -257,17 +249,13 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
                 (&[2], &[], false),
                 &[((&[1, 2], &[], false), "glass and highlights send no diffuse rays"), (NOTHING, LIGHTS)],
             ),
-            case(
+            sky(
                 "a diffuse sphere in a gradient whose zenith and horizon have the same colour",
-                with(gradient(one, one, zero)),
-                WALL,
-                &background,
+                gradient(one, one, zero),
             ),
-            case(
+            sky(
                 "a diffuse sphere in a gradient whose horizon and nadir have the same colour",
-                with(gradient(zero, one, one)),
-                WALL,
-                &background,
+                gradient(zero, one, one),
             ),
         ],
     )
@@ -298,11 +286,7 @@ pub(super) fn paths_are_called_for_channel_by_channel(trial: &Trial<'_>) -> Chec
                 "a green sphere and a red emitter",
                 scene(&[wall(GREEN), emitter(RED)]),
                 NOTHING,
-                &[
-                    ((&[1], &[2], false), CHANNELS),
-                    ((&[], &[2], false), CHANNELS),
-                    ((&[1], &[], false), CHANNELS),
-                ],
+                &[(BOTH, CHANNELS), ((&[], &[2], false), CHANNELS), (WALL, CHANNELS)],
             ),
             case(
                 "a red sphere, a green emitter and a red emitter",
@@ -310,13 +294,8 @@ pub(super) fn paths_are_called_for_channel_by_channel(trial: &Trial<'_>) -> Chec
                 (&[1], &[3], false),
                 &[((&[1], &[2, 3], false), CHANNELS)],
             ),
-            case("a green sphere and a yellow emitter", mixed, (&[1], &[2], false), &[]),
-            case(
-                "a green sphere and a red emitter under a green sky",
-                sky,
-                (&[1], &[], false),
-                &[((&[1], &[2], false), CHANNELS)],
-            ),
+            case("a green sphere and a yellow emitter", mixed, BOTH, &[]),
+            case("a green sphere and a red emitter under a green sky", sky, WALL, &[(BOTH, CHANNELS)]),
             case(
                 "a black sphere in an environment map",
                 black,
@@ -354,24 +333,22 @@ pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckRe
     visible.lights.push(Light { emitter: area, ..light(Vec3::ONE) });
     visible.visible_lights.push(VisibleLight { light: 0, material: 2 });
     let glow = Material { emission: Vec3::ONE, ..diffuse(Vec3::ONE) };
-    const WALL: Needs = (&[1], &[], false);
-    const BOTH: Needs = (&[1], &[2], false);
     const STILL: &str = "a light moves only if the shutter closes later than it opens";
     const SHOWN: &str = "only shapes that a root reaches are shown: use scene.shown()";
+    let sampled = |what, scene, mistake| case(what, scene, BOTH, &[(WALL, mistake)]);
+    let not_sampled = |what, scene, mistake| case(what, scene, WALL, &[(BOTH, mistake)]);
     judge_all(
         trial,
         vec![
-            case(
+            not_sampled(
                 "a diffuse sphere and a plane that emits light",
                 plain,
-                WALL,
-                &[(BOTH, "an infinite plane is not sampled")],
+                "an infinite plane is not sampled",
             ),
-            case(
+            sampled(
                 "a diffuse sphere, and a plane and a sphere of the same glowing material",
                 both,
-                BOTH,
-                &[(WALL, "a material is sampled if one of its shapes can be")],
+                "a material is sampled if one of its shapes can be",
             ),
             case(
                 "a diffuse sphere and an emitter that no root reaches, under a sky",
@@ -379,29 +356,25 @@ pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckRe
                 WALL,
                 &[(BOTH, SHOWN), ((&[1], &[2, 3], false), SHOWN), ((&[1], &[3], false), SHOWN)],
             ),
-            case(
+            not_sampled(
                 "a diffuse sphere and an emitter that moves",
                 moving(Some(Shutter { open: 0.0, close: 1.0 })),
-                WALL,
-                &[(BOTH, "a light that moves is not sampled")],
+                "a light that moves is not sampled",
             ),
-            case(
+            sampled(
                 "a diffuse sphere and an emitter that would move, without a shutter",
                 moving(None),
-                BOTH,
-                &[(WALL, STILL)],
+                STILL,
             ),
-            case(
+            sampled(
                 "a diffuse sphere and an emitter that would move, with a shutter that closes when it opens",
                 moving(Some(Shutter { open: 0.5, close: 0.5 })),
-                BOTH,
-                &[(WALL, STILL)],
+                STILL,
             ),
-            case(
+            not_sampled(
                 "a diffuse sphere and a visible light",
                 visible,
-                WALL,
-                &[(BOTH, "a visible light is sampled as a light, not as a surface")],
+                "a visible light is sampled as a light, not as a surface",
             ),
             case(
                 "one sphere that emits and reflects light",

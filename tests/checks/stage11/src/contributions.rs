@@ -1,5 +1,6 @@
 //! Light that counts: `sample_light_contribution` and `emitted_contribution`.
 
+use crate::weights::both_ways;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::magnitude;
@@ -73,11 +74,8 @@ pub(super) fn light_contributions_have_their_closed_form(trial: &Trial<'_>) -> C
     trial.forall(600, queries(nasty::tilt()), |queries| {
         // The weights of the student's own mis_weight: any heuristic passes.
         let pairs: Vec<(f32, f32)> = queries.iter().map(|query| (query.sample.pdf, query.bsdf_pdf)).collect();
-        let weights = trial.kit.mis_weight(&pairs);
-        let swapped =
-            trial.kit.mis_weight(&pairs.iter().map(|(own, other)| (*other, *own)).collect::<Vec<_>>());
-        let answers: Vec<_> =
-            trial.kit.sample_light_contribution(queries).into_iter().zip(weights).zip(swapped).collect();
+        let weights = both_ways(trial, &pairs);
+        let answers: Vec<_> = trial.kit.sample_light_contribution(queries).into_iter().zip(weights).collect();
         // At a grazing angle the cosine is off by some roundings of its products, each at most 1.
         let slack = |query: &LightContributionQuery, factor: f64| {
             let unit =
@@ -91,7 +89,7 @@ pub(super) fn light_contributions_have_their_closed_form(trial: &Trial<'_>) -> C
         compare_formulas(
             queries,
             answers,
-            |query, ((yours, weight), _)| {
+            |query, (yours, (weight, _))| {
                 // Light that rays cannot hit counts in full.
                 let weight = if query.bsdf_pdf == 0.0 { 1.0 } else { f64::from(weight) };
                 let expected = weight * unweighted(query);
@@ -105,7 +103,7 @@ pub(super) fn light_contributions_have_their_closed_form(trial: &Trial<'_>) -> C
                     "kd / π · L · cos θ / pdf · mis_weight",
                 ))
             },
-            |query, ((yours, weight), swapped)| {
+            |query, (yours, (weight, swapped))| {
                 let (weight, whole) = (f64::from(*weight), unweighted(query));
                 let cosine = query.normal.as_dvec3().dot(query.sample.direction.as_dvec3());
                 let (pdf, other) = (f64::from(query.sample.pdf), f64::from(query.bsdf_pdf));
@@ -203,8 +201,7 @@ pub(super) fn emission_counts_by_its_weight(trial: &Trial<'_>) -> CheckResult {
     ];
     trial.forall_and(&first, 500, queries, |queries| {
         let pairs: Vec<(f32, f32)> = queries.iter().map(|query| (query.pdf, query.light_pdf)).collect();
-        let swapped: Vec<(f32, f32)> = pairs.iter().map(|(own, other)| (*other, *own)).collect();
-        let weights = trial.kit.mis_weight(&pairs).into_iter().zip(trial.kit.mis_weight(&swapped));
+        let weights = both_ways(trial, &pairs);
         let answers: Vec<_> = trial.kit.emitted_contribution(queries).into_iter().zip(weights).collect();
         // One rounding of the product, and those of another way to compute the same weight.
         let near = |yours: Vec3, expected: DVec3| {

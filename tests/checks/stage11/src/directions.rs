@@ -13,15 +13,13 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// The largest random number, just below 1.
 pub(super) const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
 
+/// A random number, which may be the smallest or the largest one.
+pub(super) fn number() -> impl Strategy<Value = f32> + Clone {
+    prop_oneof![6 => (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0), 1 => Just(0.0f32), 1 => Just(LARGEST)]
+}
+
 /// A pair of random numbers; some lie on the border of the unit square.
 pub(super) fn numbers() -> impl Strategy<Value = Vec2> + Clone {
-    let number = || {
-        prop_oneof![
-            6 => (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0),
-            1 => Just(0.0f32),
-            1 => Just(LARGEST),
-        ]
-    };
     (number(), number()).prop_map(|(x, y)| vec2(x, y))
 }
 

@@ -227,19 +227,24 @@ impl Lit {
     }
 
     /// The irradiance at the point, of a surface with this normal, if the whole emitter is above its horizon: Lambert's formula
-    /// `½ Σ angle(vᵢ, vᵢ₊₁) (vᵢ × vᵢ₊₁) / |vᵢ × vᵢ₊₁| · n` for a polygon, and `π (R / d)² cos θ` for a sphere. The radiance is 1.
+    /// for a polygon, and `π (R / d)² cos θ` for a sphere. The radiance is 1.
     pub fn irradiance(&self, normal: DVec3) -> f64 {
-        let corners = self.corners();
-        if corners.is_empty() {
-            let (to_center, radius, _) = self.cone();
-            return PI * radius * radius * to_center.dot(normal) / to_center.length().powi(3);
+        if self.flat().is_some() {
+            return lambert(&self.corners(), normal);
         }
-        let edge = |index: usize| {
-            let (v, w) = (corners[index], corners[(index + 1) % corners.len()]);
-            v.angle_between(w) * v.cross(w).normalize().dot(normal)
-        };
-        0.5 * (0..corners.len()).map(edge).sum::<f64>().abs()
+        let (to_center, radius, _) = self.cone();
+        PI * radius * radius * to_center.dot(normal) / to_center.length().powi(3)
     }
+}
+
+/// The irradiance at the origin, of a surface with this normal, from a polygon of radiance 1 that is wholly above it: Lambert's
+/// formula `½ Σ angle(vᵢ, vᵢ₊₁) (vᵢ × vᵢ₊₁) / |vᵢ × vᵢ₊₁| · n`.
+pub(super) fn lambert(corners: &[DVec3], normal: DVec3) -> f64 {
+    let edge = |index: usize| {
+        let (v, w) = (corners[index], corners[(index + 1) % corners.len()]);
+        v.angle_between(w) * v.cross(w).normalize().dot(normal)
+    };
+    0.5 * (0..corners.len()).map(edge).sum::<f64>().abs()
 }
 
 /// The nodes and weights of the Gauss–Legendre rule with three points on `0..1`.

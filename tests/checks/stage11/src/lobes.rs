@@ -1,6 +1,6 @@
 //! The choice of a lobe: `sample_bsdf` and `bsdf_pdf`.
 
-use crate::directions::LARGEST;
+use crate::directions::number;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, compare_formulas};
@@ -66,8 +66,9 @@ pub(super) fn surfaces() -> impl Strategy<Value = Scattering> + Clone {
     )
 }
 
-fn number() -> impl Strategy<Value = f32> + Clone {
-    prop_oneof![6 => (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0), 1 => Just(0.0f32), 1 => Just(LARGEST)]
+fn bsdf_queries() -> impl Strategy<Value = BsdfQuery> + Clone {
+    (surfaces(), number(), number(), number())
+        .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) })
 }
 
 /// The reflectance of a lobe.
@@ -113,9 +114,7 @@ pub(super) fn missing(query: &BsdfQuery) -> CheckResult {
 const CHOOSES_BLACK: &str = "you choose a lobe whose reflectance is 0";
 
 pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> CheckResult {
-    let queries = (surfaces(), number(), number(), number())
-        .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) });
-    trial.forall(800, queries, |queries| {
+    trial.forall(800, bsdf_queries(), |queries| {
         compare(queries, trial.kit.sample_bsdf(queries), |query, yours| {
             let scattering = &query.scattering;
             let Some(sample) = yours else { return missing(query) };
@@ -180,9 +179,7 @@ fn judge_weight(query: &BsdfQuery, sample: &BsdfSample) -> bool {
 }
 
 pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> CheckResult {
-    let queries = (surfaces(), number(), number(), number())
-        .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) });
-    trial.forall(800, queries, |queries| {
+    trial.forall(800, bsdf_queries(), |queries| {
         compare_formulas(
             queries,
             trial.kit.sample_bsdf(queries),
@@ -311,24 +308,26 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
     trial.forall(800, strategy, |queries| {
         let samples = trial.kit.sample_bsdf(queries);
         // Among hundreds of samples of diffuse surfaces some are diffuse.
-        let is_diffuse =
-            |sample: &Option<BsdfSample>| sample.is_some_and(|sample| sample.lobe == Lobe::Diffuse);
-        let none_is_diffuse = queries.len() > 100 && !samples.iter().any(is_diffuse);
-        let direction = |sample: &Option<BsdfSample>| sample.map_or(Vec3::Z, |sample| sample.direction);
-        let pdf_queries: Vec<BsdfPdfQuery> = queries
-            .iter()
-            .zip(&samples)
-            .map(|(query, sample)| BsdfPdfQuery {
-                scattering: query.scattering.clone(),
-                direction: direction(sample),
-            })
-            .collect();
+        let diffuse = |sample: &Option<BsdfSample>| sample.filter(|sample| sample.lobe == Lobe::Diffuse);
+        let none_is_diffuse = queries.len() > 100 && samples.iter().all(|sample| diffuse(sample).is_none());
+        let of_sample = |(query, sample): (&BsdfQuery, &Option<BsdfSample>)| BsdfPdfQuery {
+            scattering: query.scattering.clone(),
+            direction: sample.map_or(Vec3::Z, |sample| sample.direction),
+        };
+        let pdf_queries: Vec<BsdfPdfQuery> = queries.iter().zip(&samples).map(of_sample).collect();
+        // The cosine, and the probability of the diffuse lobe, which follows from the weight of the sample.
+        let factors = |query: &BsdfPdfQuery, sample: &BsdfSample| {
+            let cosine = query.scattering.normal.as_dvec3().dot(sample.direction.as_dvec3()).max(0.0);
+            (cosine, probability(&query.scattering, sample))
+        };
+        // Roundings of the products in the cosine, and of the probability.
+        let near = |pdf: f32, expected: f64| (f64::from(pdf) - expected).abs() <= 1e-6 + 1e-5 * expected;
         let answers: Vec<_> = samples.into_iter().zip(trial.kit.bsdf_pdf(&pdf_queries)).collect();
         compare_formulas(
             &pdf_queries,
             answers,
             |query, (sample, yours)| {
-                let Some(sample) = sample.filter(|sample| sample.lobe == Lobe::Diffuse) else {
+                let Some(sample) = diffuse(&sample) else {
                     let input = format!("sample_bsdf for {} diffuse surfaces", queries.len());
                     let broken = Broken::with_texts(
                         input,
@@ -338,12 +337,9 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
                     );
                     return if none_is_diffuse { Err(broken) } else { Ok(()) };
                 };
-                let cosine = query.scattering.normal.as_dvec3().dot(sample.direction.as_dvec3()).max(0.0);
-                // The probability of the diffuse lobe follows from the weight of the sample.
-                let expected = probability(&query.scattering, &sample) * cosine / PI;
-                // Roundings of the products in the cosine, and of the probability.
-                let near = |pdf: f32| (f64::from(pdf) - expected).abs() <= 1e-6 + 1e-5 * expected;
-                if near(yours) && near(sample.pdf) {
+                let (cosine, probability) = factors(query, &sample);
+                let expected = probability * cosine / PI;
+                if near(yours, expected) && near(sample.pdf, expected) {
                     return Ok(());
                 }
                 let input =
@@ -357,13 +353,8 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
                 ))
             },
             |query, (sample, yours)| {
-                let Some(sample) = sample.filter(|sample| sample.lobe == Lobe::Diffuse) else {
-                    return vec![(true, ""); 4];
-                };
-                let cosine = query.scattering.normal.as_dvec3().dot(sample.direction.as_dvec3()).max(0.0);
-                let probability = probability(&query.scattering, &sample);
-                let near =
-                    |pdf: f32, expected: f64| (f64::from(pdf) - expected).abs() <= 1e-6 + 1e-5 * expected;
+                let Some(sample) = diffuse(sample) else { return vec![(true, ""); 4] };
+                let (cosine, probability) = factors(query, &sample);
                 let both = |expected: f64| near(*yours, expected) && near(sample.pdf, expected);
                 vec![
                     (both(cosine / PI), "the probability of the diffuse lobe is missing in both densities"),

@@ -3,6 +3,7 @@
 //! E is the mean radiance that arrives over directions with density `cos θ / π`: the irradiance divided by π. A surface of
 //! diffuse reflectance kd sends kd E back.
 
+use crate::emitters::lambert;
 use crate::rooms::{Form, Found, Paint, Room, Roulette, Wall, follow};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -11,7 +12,7 @@ use checks::radiosity::EmptyBox;
 use checks::statistics::{Mistakes, SAMPLES, has_mean, has_mean_within};
 use glam::{DVec3, Vec3, dvec3, vec3};
 use proptest::prelude::*;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// A depth that no path reaches: Russian roulette ends it before.
 const DEEP: u32 = 1_000_000;
@@ -249,15 +250,10 @@ pub(super) fn steps_in_an_integrating_sphere_find_its_light(trial: &Trial<'_>) -
     channel_has_mean("an integrating sphere", &found, 0, expected, |_| Vec::new())
 }
 
-/// Lambert's formula for the mean radiance that arrives at the origin, of a surface with normal +y, from a parallelogram of
-/// radiance 1 that is wholly above it.
+/// The mean radiance that arrives at the origin, of a surface with normal +y, from a parallelogram of radiance 1 that is
+/// wholly above it.
 fn from_parallelogram(corner: DVec3, first: DVec3, second: DVec3) -> f64 {
-    let corners = [corner, corner + first, corner + first + second, corner + second];
-    let edge = |index: usize| {
-        let (v, w) = (corners[index], corners[(index + 1) % 4]);
-        v.angle_between(w) * v.cross(w).normalize().y
-    };
-    (0..4).map(edge).sum::<f64>().abs() / TAU
+    lambert(&[corner, corner + first, corner + first + second, corner + second], DVec3::Y) / PI
 }
 
 /// The ray of the camera to the origin, from above.

@@ -14,7 +14,8 @@ use glam::{DVec3, Vec2, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::{BsdfQuery, EmitterPdfQuery, RouletteQuery, StepQuery, Surface};
 use raykata::light_path::{
-    BsdfSample, ChosenEmitter, LightCandidate, Lobe, PathState, PathStep, PathVertex, Scattering, StepNumbers,
+    BsdfSample, ChosenEmitter, LightCandidate, Lobe, NextRay, PathState, PathStep, PathVertex, Scattering,
+    StepNumbers,
 };
 
 /// A query for a message: the parts that matter here.
@@ -116,27 +117,22 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
             })
         };
         let densities = per_some(queries, density, |queries| trial.kit.light_pdf(queries));
-        let light_pdfs: Vec<f32> = queries
-            .iter()
-            .zip(&densities)
-            .map(|(query, density)| {
-                query.vertex.emitter.map_or(0.0, |chosen| chosen.probability * density.unwrap_or(0.0))
-            })
-            .collect();
-        let pairs: Vec<(f32, f32)> =
-            queries.iter().zip(&light_pdfs).map(|(query, light)| (query.path.pdf, *light)).collect();
-        let unscaled: Vec<(f32, f32)> = queries
-            .iter()
-            .zip(&densities)
-            .map(|(query, density)| (query.path.pdf, density.unwrap_or(0.0)))
-            .collect();
-        let answers: Vec<_> = trial
-            .kit
-            .step(queries)
-            .into_iter()
-            .zip(trial.kit.mis_weight(&pairs))
-            .zip(trial.kit.mis_weight(&unscaled))
-            .collect();
+        // The densities of the path and of the emitter's sample, the latter with the probability of the choice or without it.
+        let weights = |by_choice: bool| {
+            let pair = |(query, density): (&StepQuery, &Option<f32>)| {
+                let probability = query.vertex.emitter.map_or(0.0, |chosen| chosen.probability);
+                let factor = if by_choice { probability } else { 1.0 };
+                (query.path.pdf, factor * density.unwrap_or(0.0))
+            };
+            trial.kit.mis_weight(&queries.iter().zip(&densities).map(pair).collect::<Vec<_>>())
+        };
+        let answers: Vec<_> =
+            trial.kit.step(queries).into_iter().zip(weights(true)).zip(weights(false)).collect();
+        // Light counts in full if the ray is certain, or if no sample finds the emitter.
+        let counting = |query: &StepQuery, weight: f32| {
+            let is_whole = query.path.pdf == f32::INFINITY || query.vertex.emitter.is_none();
+            if is_whole { 1.0 } else { f64::from(weight) }
+        };
         // The roundings of a few products.
         let near = |yours: Vec3, expected: DVec3| {
             (yours.as_dvec3() - expected).abs().max_element() <= 1e-5 * expected.max_element() + 1e-30
@@ -145,9 +141,8 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
             queries,
             answers,
             |query, ((step, weight), _)| {
-                let is_whole = query.path.pdf == f32::INFINITY || query.vertex.emitter.is_none();
-                let weight = if is_whole { 1.0 } else { f64::from(weight) };
-                let expected = weight * (query.path.weight * query.vertex.emission).as_dvec3();
+                let expected =
+                    counting(query, weight) * (query.path.weight * query.vertex.emission).as_dvec3();
                 if near(step.light, expected) {
                     return Ok(());
                 }
@@ -161,9 +156,7 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
             },
             |query, ((step, weight), unscaled)| {
                 let whole = (query.path.weight * query.vertex.emission).as_dvec3();
-                let is_whole = query.path.pdf == f32::INFINITY || query.vertex.emitter.is_none();
-                let weight = if is_whole { 1.0 } else { f64::from(*weight) };
-                let unscaled = if is_whole { 1.0 } else { f64::from(*unscaled) };
+                let [weight, unscaled] = [*weight, *unscaled].map(|weight| counting(query, weight));
                 let is_last = query.path.bounces == query.max_depth;
                 vec![
                     (step.light.is_nan(), "you return NaN"),
@@ -245,6 +238,13 @@ pub(super) fn steps_end_at_the_greatest_depth(trial: &Trial<'_>) -> CheckResult 
     })
 }
 
+/// The ray along which a path continues, in words.
+fn says(next: Option<NextRay>) -> String {
+    next.map_or("None: the path ends".to_owned(), |NextRay { lobe, direction, weight, pdf }| {
+        format!("{lobe:?} along {direction} with weight {weight} and pdf {pdf:?}")
+    })
+}
+
 pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) -> CheckResult {
     let state = (color(), 0..8u32, pdf());
     // The geometric normal is at an angle of up to 1 to the shading normal, so some diffuse directions are below it.
@@ -323,24 +323,11 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
                 if is(&step, &sample, weight) {
                     return Ok(());
                 }
-                let expected = match weight == DVec3::ZERO {
-                    true => "None: the path ends".to_owned(),
-                    false => format!(
-                        "{:?} along {} with weight {} and pdf {:?}",
-                        sample.lobe,
-                        sample.direction,
-                        weight.as_vec3(),
-                        sample.pdf
-                    ),
-                };
+                let BsdfSample { lobe, direction, pdf, .. } = sample;
+                let expected = NextRay { lobe, direction, weight: weight.as_vec3(), pdf };
+                let expected = (weight != DVec3::ZERO).then_some(expected);
                 let source = "path.weight · weight of sample_bsdf · survives";
-                let yours = step.next.map_or("None: the path ends".to_owned(), |next| {
-                    format!(
-                        "{:?} along {} with weight {} and pdf {:?}",
-                        next.lobe, next.direction, next.weight, next.pdf
-                    )
-                });
-                Err(Broken::with_texts(describe(query), yours, expected, source))
+                Err(Broken::with_texts(describe(query), says(step.next), says(expected), source))
             },
             |query, ((step, sample), [factor, early, late])| {
                 let Some(sample) = sample else {

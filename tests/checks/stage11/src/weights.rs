@@ -15,7 +15,7 @@ fn paste((own, other): &Pair) -> String {
 }
 
 /// The answers for each pair and for the same pair in the other order.
-fn both_ways(trial: &Trial<'_>, pairs: &[Pair]) -> Vec<Pair> {
+pub(super) fn both_ways(trial: &Trial<'_>, pairs: &[Pair]) -> Vec<Pair> {
     let reversed: Vec<Pair> = pairs.iter().map(|(own, other)| (*other, *own)).collect();
     trial.kit.mis_weight(pairs).into_iter().zip(trial.kit.mis_weight(&reversed)).collect()
 }

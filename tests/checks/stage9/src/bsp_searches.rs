@@ -1,16 +1,14 @@
 //! The laws of the search of a BSP tree.
 
-use super::parts;
-use super::scenes::{Scene, Thing, sphere, wall};
-use super::searches::{Described, Searcher, agrees, judge_visits, queries, spheres_and_rays};
-use super::structures::bsp;
+use super::scenes::{Scene, Thing, along, room, sphere};
+use super::searches::{BSP, Described, agrees, queries, spheres_and_rays};
+use super::structures::{bsp, diagonal, tile, two_leaves};
 use checks::Trial;
-use checks::broken::{CheckResult, all_hold};
-use checks::judge::compare;
-use glam::{DVec3, Vec3, vec3};
-use raykata::partition::{Bsp, CutPlane};
+use checks::broken::CheckResult;
+use glam::{Vec3, vec3};
+use raykata::partition::CutPlane;
 use raykata::ray::Ray;
-use raykata::shape::{Sphere, Triangle};
+use raykata::shape::Sphere;
 
 pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     // The box of the large sphere crosses the plane x + y = 0, so both leaves list it. Its hit is in front of the
@@ -25,23 +23,8 @@ pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResu
     let alone = Scene::new(vec![sphere(3.0, 3.0, 0.0, 0.5)]);
     asked.ask("BSP tree of one plane x + y = 0", &two_leaves(diagonal(), &[], &[0]), &alone, ray);
     asked.control("BSP tree of one plane", two_leaves(diagonal(), &[0, 1, 2], &[]), ray, (0.0, 1.0));
-    asked.judge(|queries| trial.kit.bsp_search(queries))?;
-    agrees(trial, Searcher::Bsp)
-}
-
-/// A tree of one plane, with these primitives on the two sides.
-fn two_leaves(plane: CutPlane, behind: &[u32], before: &[u32]) -> Bsp {
-    let mut bsp = Bsp::default();
-    let root = bsp.add_node(0, 1);
-    let [back, front] = [bsp.add_node(1, 1), bsp.add_node(1, 1)];
-    bsp.set_leaf(back, behind);
-    bsp.set_leaf(front, before);
-    bsp.set_children(root, plane, back, front);
-    bsp
-}
-
-fn diagonal() -> CutPlane {
-    CutPlane { normal: DVec3::new(1.0, 1.0, 0.0).normalize(), offset: 0.0 }
+    asked.judge(trial.kit, &BSP)?;
+    agrees(trial, &BSP)
 }
 
 /// The plane lies behind the ray or beyond its end, or the ray is parallel to it.
@@ -70,7 +53,7 @@ pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'
     for (what, ray) in cases {
         asked.ask(format!("BSP tree of one plane x + y = 0: {what}"), &tree, &scene, ray);
     }
-    asked.judge(|queries| trial.kit.bsp_search(queries))
+    asked.judge(trial.kit, &BSP)
 }
 
 /// Rays that run in the plane or start on it, and polygons that lie in it.
@@ -81,59 +64,32 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
         sphere(-3.0, 3.0, 0.0, 0.5),
         sphere(0.0, 0.0, 4.0, 0.5),
     ]);
-    let tile = |z: f32| {
-        Thing::Tile(Triangle {
-            a: vec3(4.0, -4.0, z - 4.0),
-            b: vec3(-4.0, 4.0, z - 4.0),
-            c: vec3(0.0, 0.0, z + 4.0),
-        })
-    };
     let stack = Scene::new(vec![tile(0.0), tile(1.0), tile(-1.0)]);
     for (behind, before) in
         [(&[0u32, 1, 2][..], &[][..]), (&[][..], &[0u32, 1, 2][..]), (&[1][..], &[0, 2][..])]
     {
         let tree = two_leaves(diagonal(), behind, before);
-        for direction in [vec3(1.0, -1.0, 0.0), vec3(-1.0, 1.0, -0.0), vec3(0.0, -0.0, 1.0)] {
-            asked.ask(
-                "BSP tree of one plane x + y = 0, and a ray in it",
-                &tree,
-                &spheres,
-                Ray::new(Vec3::ZERO, direction),
-            );
-        }
-        for (origin, direction) in
-            [(vec3(-3.0, -3.0, 0.2), vec3(1.0, 1.0, 0.0)), (vec3(2.0, 2.5, -0.3), vec3(-1.0, -1.1, 0.1))]
-        {
-            asked.ask(
-                "BSP tree of one plane x + y = 0, with triangles in it",
-                &tree,
-                &stack,
-                Ray::new(origin, direction),
-            );
-        }
+        let in_plane = [vec3(1.0, -1.0, 0.0), vec3(-1.0, 1.0, -0.0), vec3(0.0, -0.0, 1.0)]
+            .map(|direction| Ray::new(Vec3::ZERO, direction));
+        asked.ask_all("BSP tree of one plane x + y = 0, and a ray in it", &tree, &spheres, in_plane);
+        let across = [
+            Ray::new(vec3(-3.0, -3.0, 0.2), vec3(1.0, 1.0, 0.0)),
+            Ray::new(vec3(2.0, 2.5, -0.3), vec3(-1.0, -1.1, 0.1)),
+        ];
+        asked.ask_all("BSP tree of one plane x + y = 0, with triangles in it", &tree, &stack, across);
     }
     // Rays from a point of the plane to each side.
     let sides = Scene::new(vec![sphere(3.0, 3.0, 0.0, 0.5), sphere(-3.0, -3.0, 0.0, 0.5)]);
     let tree = two_leaves(diagonal(), &[1], &[0]);
     for direction in [vec3(1.0, 1.0, 0.0), vec3(-1.0, -1.0, 0.0)] {
-        for origin in [Vec3::ZERO, vec3(1.0, -1.0, 0.0)] {
-            let direction = direction - origin / 3.0;
-            asked.ask(
-                "BSP tree of one plane x + y = 0, and a ray that starts on it",
-                &tree,
-                &sides,
-                Ray::new(origin, direction),
-            );
-        }
+        let rays =
+            [Vec3::ZERO, vec3(1.0, -1.0, 0.0)].map(|origin| Ray::new(origin, direction - origin / 3.0));
+        asked.ask_all("BSP tree of one plane x + y = 0, and a ray that starts on it", &tree, &sides, rays);
     }
     // Planes that do not pass through the origin of the world: the height of a ray in such a plane is a rounding error.
     for size in [2f32.powi(-10), 1.0, 2f32.powi(17)] {
         for (axis, i) in (0..3).flat_map(|axis| (1..12).map(move |i| (axis, i))) {
-            let turn = |x: f32, y: f32| {
-                let mut turned = Vec3::ZERO;
-                (turned[axis], turned[(axis + 1) % 3]) = (size * x, size * y);
-                turned
-            };
+            let turn = |x: f32, y: f32| size * along(axis, vec3(x, y, 0.0));
             // The two coordinates of each point add up to 1.75, and have few bits.
             let x = i as f32 / 8.0;
             let (origin, direction) = (turn(x, 1.75 - x), turn(1.0, -1.0));
@@ -149,23 +105,14 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
         }
     }
     // A room whose walls lie in the planes of the tree.
-    let walls = (0..3).flat_map(|axis| [wall(axis, -1.0, 1.0), wall(axis, 1.0, 1.0)]).flatten();
-    let room = Scene::new(walls.collect());
+    let (room, rays) = room();
     let tree = bsp(&room.hulls(), 5);
-    for i in 0..64 {
-        let spread = |k: i32| ((i * k) % 17) as f32 / 8.5 - 1.0;
-        let ray = Ray::new(vec3(0.1, -0.2, 0.3), vec3(spread(3), spread(5), spread(7) + 0.01));
-        asked.ask("BSP tree over a room of twelve triangles", &tree, &room, ray);
-    }
-    asked.judge(|queries| trial.kit.bsp_search(queries))
+    asked.ask_all("BSP tree over a room of twelve triangles", &tree, &room, rays);
+    asked.judge(trial.kit, &BSP)
 }
 
 pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
-    let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32 * 1.5);
-    let (scene, rays) = spheres_and_rays(&(0..64).map(place).collect::<Vec<Vec3>>(), 5, 12.0);
+    let (scene, rays) = spheres_and_rays(64, 5, (8, 1.5));
     let cells = bsp(&scene.hulls(), 8);
-    let queries = queries(&cells, &scene, &rays);
-    all_hold(compare(&queries, trial.kit.bsp_search(&queries), |query, yours| {
-        judge_visits("BSP tree over 64 spheres", query, &parts::of_planes(&cells, &query.ray), &yours)
-    }))
+    BSP.visits(trial.kit, "BSP tree over 64 spheres", &queries(&cells, &scene, &rays))
 }

@@ -11,7 +11,7 @@ use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::BspQuery;
-use raykata::partition::{Bsp, BspNode, CutPlane, MOST_REFERENCES, corners};
+use raykata::partition::{Bsp, CutPlane, MOST_REFERENCES, TreeNode, corners};
 
 /// A leaf: its number, the planes above it with the side on which it lies, and the primitives that it lists.
 type Leaf = (u32, Vec<(CutPlane, f64)>, Vec<u32>);
@@ -19,8 +19,8 @@ type Leaf = (u32, Vec<(CutPlane, f64)>, Vec<u32>);
 fn leaves(bsp: &Bsp) -> Vec<Leaf> {
     let mut leaves = Vec::new();
     bsp.walk(|node, above, _| {
-        if let BspNode::Leaf { first, count } = bsp.nodes[node as usize] {
-            leaves.push((node, above.to_vec(), bsp.primitives(first, count).to_vec()));
+        if bsp.nodes[node as usize].is_leaf() {
+            leaves.push((node, above.to_vec(), bsp.listed(node).to_vec()));
         }
     });
     leaves
@@ -111,29 +111,7 @@ pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResu
 }
 
 pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
-    let square = |size: f32, z: f32| {
-        let s = size;
-        vec![vec3(-s, -s, z), vec3(s, -s, z), vec3(s, s, z), vec3(-s, s, z)]
-    };
-    let stack: Vec<Vec<Vec3>> = (1..=40).map(|i| square(i as f32, 0.0)).collect();
-    let boxes = |all: Vec<Aabb>| -> Vec<Vec<Vec3>> { all.iter().map(corners).collect() };
-    let star: Vec<Vec<Vec3>> = (0..30)
-        .map(|i| {
-            let (y, x) = (i as f32 * 0.21).sin_cos();
-            vec![vec3(x, y, -1.0), vec3(-x, -y, -1.0), vec3(-x, -y, 1.0), vec3(x, y, 1.0)]
-        })
-        .collect();
-    let line = (0..20).map(|i| {
-        vec![vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 0.0, 0.0), vec3(i as f32 + 0.7, 0.0, 0.0)]
-    });
-    let hulls = [
-        // Each plane has all squares on one of its sides, so the root is a leaf.
-        ("forty squares in one plane", stack, 1),
-        ("thirty sheets through one line", star, MOST_REFERENCES),
-        ("twenty slivers in a line", line.collect(), MOST_REFERENCES),
-    ];
-    let sets = super::lists::infinite().into_iter().map(|(name, all)| (name, boxes(all), MOST_REFERENCES));
-    for (name, hulls, most) in hulls.into_iter().chain(sets) {
+    for (name, hulls, most) in hulls::infinite_polygons().into_iter().chain(hulls::infinite_boxes()) {
         judge_build(trial, name, hulls, 12, most)?;
     }
     judge_build(trial, "400 crossing needles", crossing_needles(400), 20, MOST_REFERENCES)

@@ -179,9 +179,12 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> CheckResult {
     // A row of spheres of which a ray from either end hits the first. No two boxes overlap, so the order is unique.
     let row: Vec<Sphere> =
         (0..64).map(|i| Sphere { center: vec3(4.0 * i as f32, 0.0, 0.0), radius: 1.0 }).collect();
+    let ask = |spheres: &[Sphere], rays: &[Ray]| {
+        let (query, singles) = packet(spheres, rays);
+        (trial.kit.packet_search(&[query]).remove(0), singles)
+    };
     for (x, direction) in [(-9.0, Vec3::X), (300.0, Vec3::NEG_X)] {
-        let (query, singles) = packet(&row, &[Ray::new(vec3(x, 0.0, 0.0), direction); 8]);
-        let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
+        let (yours, singles) = ask(&row, &[Ray::new(vec3(x, 0.0, 0.0), direction); 8]);
         judge_opened("8 equal rays along a row of", &yours, &singles, opened_alone(&singles[0]))?;
     }
     let spheres: Vec<Sphere> = (0..64)
@@ -193,15 +196,13 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> CheckResult {
     let ray = |x: f32, y: f32| Ray::new(vec3(-6.0, 7.0, 9.0), vec3(x + 6.0, y - 7.0, -9.0).normalize());
     for (x, y) in [(1.0, 1.0), (7.0, 9.0), (12.0, 3.0), (14.5, 14.0)] {
         // Eight equal rays open as many nodes as one ray.
-        let (query, singles) = packet(&spheres, &[ray(x, y); 8]);
-        let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
+        let (yours, singles) = ask(&spheres, &[ray(x, y); 8]);
         // If a ray enters both children at the same t, either may come first.
         let most = opened_alone(&singles[0]) + 2;
         judge_opened("8 equal rays through", &yours, &singles, most)?;
         // Eight rays side by side open fewer nodes together than one after the other.
         let beam: Vec<Ray> = (0..8).map(|i| ray(x + 0.05 * i as f32, y)).collect();
-        let (query, singles) = packet(&spheres, &beam);
-        let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
+        let (yours, singles) = ask(&spheres, &beam);
         let alone: u64 = singles.iter().map(opened_alone).sum();
         judge_opened("8 rays side by side through", &yours, &singles, alone / 2)?;
         let needless = needless(&yours, &singles);

@@ -2,8 +2,8 @@
 
 use super::lists::{Fault, listing_fault, some_boxes};
 use super::parts;
-use super::scenes::{Scales, Scene, Thing, rays, scales, sphere, wall};
-use super::searches::{Described, Searcher, agrees, grid_queries, judge_visits};
+use super::scenes::{Scales, Scene, Thing, along, lattice, rays, scales, sphere, straight, wall};
+use super::searches::{Described, GRID, agrees, grid_queries};
 use super::structures::{around_loosely, filled};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -45,30 +45,19 @@ fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<Fault> {
         let expected = format!("{n} cells, ascending starts, and the number of items as the last one");
         return Some((yours, expected, Vec::new()));
     }
-    let cell = |number: u32| {
-        let at = uvec3(
-            number % grid.resolution.x,
-            number / grid.resolution.x % grid.resolution.y,
-            number / (grid.resolution.x * grid.resolution.y),
-        );
-        (at, grid.cell(at), grid.primitives(number).to_vec())
-    };
-    listing_fault("cell", &grid.bounds, &query.bounds, &(0..n).map(cell).collect::<Vec<_>>())
+    let listed = |(number, at, cell): (u32, UVec3, Cell)| (at, cell, grid.primitives(number).to_vec());
+    listing_fault("cell", &grid.bounds, &query.bounds, &parts::numbered(grid).map(listed).collect::<Vec<_>>())
 }
 
 pub(super) fn grid_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    agrees(trial, Searcher::Grid)
+    agrees(trial, &GRID)
 }
 
 /// A large sphere of the first cell is hit in the third cell, and a small one in the second cell is nearer.
 pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> CheckResult {
     let mut asked = Described::new();
     for axis in 0..3 {
-        let turn = |v: Vec3| {
-            let mut turned = Vec3::ZERO;
-            (0..3).for_each(|k| turned[(axis + k) % 3] = v[k]);
-            turned
-        };
+        let turn = |v: Vec3| along(axis, v);
         let place = |center: Vec3, radius: f32| Thing::Sphere(Sphere { center: turn(center), radius });
         let scene = Scene::new(vec![
             place(vec3(5.0, 2.0, 0.0), 2.25),
@@ -84,7 +73,7 @@ pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> CheckResult {
         let control = filled(bounds, resolution, &[vec![0, 1, 2], vec![], vec![], vec![]]);
         asked.control("grid", control, ray, (1.0, 3.0));
     }
-    asked.judge(|queries| trial.kit.grid_search(queries))
+    asked.judge(trial.kit, &GRID)
 }
 
 fn bare_grid(bounds: Aabb, resolution: UVec3) -> Grid {
@@ -106,10 +95,7 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> CheckRe
     let row = Scene::new((0..32).map(|i| sphere(i as f32, 0.0, 0.0, 0.25)).collect());
     let rays = [Ray::new(vec3(-2.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(40.0, 0.0, 0.0), Vec3::NEG_X)];
     let queries = grid_queries(&row, &rays, around_loosely(&row.boxes()), uvec3(32, 1, 1));
-    all_hold(compare(&queries, trial.kit.grid_search(&queries), |query, yours| {
-        let parts = parts::of_grid(&query.cells, &query.ray);
-        judge_visits("grid over a row of 32 spheres", query, &parts, &yours)
-    }))
+    GRID.visits(trial.kit, "grid over a row of 32 spheres", &queries)
 }
 
 const FARTHEST_FACE: &str =
@@ -146,10 +132,10 @@ fn across_the_farthest(query: &CellsQuery<Grid>, earlier: f64) -> Vec<u32> {
 
 /// Whether the visits to empty cells are those of the ray.
 fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
-    let parts = parts::of_grid(&query.cells, &query.ray);
+    let parts = parts::of_grid(&query.cells, &query.ray, parts::touching);
     let is_entered = |visit: u32| parts.iter().any(|(cell, ..)| *cell == visit);
     // The search must visit each cell through whose inside the ray passes, and may visit cells that the ray touches.
-    let inside = parts::inside_grid(&query.cells, &query.ray);
+    let inside = parts::of_grid(&query.cells, &query.ray, parts::well_inside);
     let left_out = inside.iter().find(|(cell, ..)| !visits.contains(cell));
     let missed = visits.iter().find(|&&visit| !is_entered(visit));
     let twice = (0..visits.len()).find(|&index| visits[..index].contains(&visits[index]));
@@ -194,11 +180,7 @@ pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> CheckResu
     // The cell sides are not powers of two, so that each step is rounded. Cells are twice as long along the second axis, so
     // that one axis takes twice as many steps as the other.
     let query = |(axes, off): ([usize; 2], f32)| {
-        let turn = |x: f32, y: f32, z: f32| {
-            let mut turned = Vec3::splat(z);
-            (turned[axes[0]], turned[axes[1]]) = (x, y);
-            turned
-        };
+        let turn = |x: f32, y: f32, z: f32| along(axes[0], vec3(x, y, z));
         let bounds = Aabb::new(turn(1.1, 2.3, -3.7), turn(2.4, 3.6, -2.4));
         let cells = bare_grid(bounds, turn(250.0, 125.0, 1.0).as_uvec3());
         // Aim just beside corners: the distances that decide the next cell are small, but far above the error of an f64.
@@ -211,7 +193,7 @@ pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> CheckResu
     let queries: Vec<CellsQuery<Grid>> = asked.iter().map(|(query, _)| query.clone()).collect();
     all_hold(compare(&asked, trial.kit.grid_search(&queries), |(query, axes), yours| {
         let axes = *axes;
-        let expected = diagonal(query, axes);
+        let expected = in_double(query, axes);
         let Some(at) = (0..expected.len()).find(|&i| yours.visits.get(i) != Some(&expected[i])) else {
             return Ok(());
         };
@@ -245,7 +227,7 @@ fn visits_by(
     query: &CellsQuery<Grid>,
     axes: [usize; 2],
     tie: Tie,
-    t: impl Fn(usize, u32) -> f32,
+    t: impl Fn(usize, u32) -> f64,
 ) -> Vec<u32> {
     let is_first_at_ties = (axes[0] < axes[1]) == (tie == Tie::Smaller);
     let grid = &query.cells;
@@ -281,62 +263,36 @@ fn added_up(query: &CellsQuery<Grid>, axes: [usize; 2], rounded_once: bool, tie:
         (1..n as usize).for_each(|i| sums.push(sums[i] + delta));
         sums
     });
-    visits_by(query, axes, tie, |axis, index| sums[axis][index as usize])
+    visits_by(query, axes, tie, |axis, index| f64::from(sums[axis][index as usize]))
 }
 
 /// The visits of a search that computes the `t` of each plane in single precision.
 fn in_single(query: &CellsQuery<Grid>, axes: [usize; 2], tie: Tie) -> Vec<u32> {
     let (grid, ray) = (&query.cells, &query.ray);
     visits_by(query, axes, tie, |axis, index| {
-        (grid.plane(axis, index) as f32 - ray.origin[axis]) / ray.direction[axis]
+        f64::from((grid.plane(axis, index) as f32 - ray.origin[axis]) / ray.direction[axis])
     })
 }
 
-/// The cells along a ray whose direction is positive along two axes, from the sorted planes.
-fn diagonal(query: &CellsQuery<Grid>, axes: [usize; 2]) -> Vec<u32> {
+/// The visits of a search that computes the `t` of each plane in double precision, in which no two planes have the same.
+fn in_double(query: &CellsQuery<Grid>, axes: [usize; 2]) -> Vec<u32> {
     let (grid, ray) = (&query.cells, &query.ray);
-    let t = |axis: usize, i: u32| {
-        (grid.plane(axis, i) - f64::from(ray.origin[axis])) / f64::from(ray.direction[axis])
-    };
-    let [p, q] = axes;
-    let begin = t(p, 0).max(t(q, 0));
-    let end = t(p, grid.resolution[p]).min(t(q, grid.resolution[q]));
-    let inner = |axis: usize| (1..grid.resolution[axis]).map(move |i| (axis, i));
-    let mut cell = UVec3::ZERO;
-    let mut crossings: Vec<(f64, usize)> = axes
-        .into_iter()
-        .flat_map(inner)
-        .map(|(axis, i)| (t(axis, i), axis))
-        .filter(|(t, _)| *t > begin && *t < end)
-        .collect();
-    crossings.sort_by(|p, q| p.0.total_cmp(&q.0));
-    let mut visits = vec![grid.number(cell)];
-    for (_, axis) in crossings {
-        cell[axis] += 1;
-        visits.push(grid.number(cell));
-    }
-    visits
+    visits_by(query, axes, Tie::Smaller, |axis, index| {
+        (grid.plane(axis, index) - f64::from(ray.origin[axis])) / f64::from(ray.direction[axis])
+    })
 }
 
 /// Rays through corners of cells, from faces, along faces and in a flat grid.
 pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> CheckResult {
-    let lattice: Vec<Thing> = (0..27)
-        .map(|i| sphere((i % 3) as f32 * 2.0, (i / 3 % 3) as f32 * 2.0, (i / 9) as f32 * 2.0, 0.5))
-        .collect();
     let walls: Vec<Thing> =
         (0..3).flat_map(|axis| [wall(axis, -2.0, 2.0), wall(axis, 2.0, 2.0)]).flatten().collect();
     let flat: Vec<Thing> = [1.0, 2.0, 3.0].into_iter().flat_map(|size| wall(2, 0.0, size)).collect();
     let starts =
         [vec3(-3.0, -3.0, -3.0), Vec3::ZERO, vec3(2.0, 2.0, 2.0), vec3(-2.0, 0.0, 1.0), vec3(1.0, 1.0, -4.0)];
-    let zeros = [0.0, -0.0];
-    let steps = [-1.0, 0.0, -0.0, 1.0];
-    let dirs = steps.iter().flat_map(|&x| steps.iter().flat_map(move |&y| steps.map(|z| vec3(x, y, z))));
-    let rays: Vec<Ray> = dirs
-        .filter(|direction| !direction.to_array().iter().all(|x| zeros.contains(x)))
-        .flat_map(|direction| starts.map(|start| Ray::new(start, direction)))
-        .collect();
+    let rays: Vec<Ray> =
+        straight().flat_map(|direction| starts.map(|start| Ray::new(start, direction))).collect();
     for (name, things, resolution) in [
-        ("27 spheres", lattice, uvec3(4, 4, 4)),
+        ("27 spheres", lattice(2.0), uvec3(4, 4, 4)),
         ("a room", walls, uvec3(4, 4, 4)),
         ("flat tiles", flat, uvec3(6, 6, 1)),
     ] {
@@ -348,7 +304,7 @@ pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Ch
         for query in grid_queries(&scene, &rays, (all, around_loosely(&boxes).1), resolution) {
             asked.add(format!("grid of {resolution} cells over {name}"), query);
         }
-        asked.judge(|queries| trial.kit.grid_search(queries))?;
+        asked.judge(trial.kit, &GRID)?;
     }
     beside_faces(trial)
 }
@@ -358,11 +314,7 @@ pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Ch
 fn beside_faces(trial: &Trial<'_>) -> CheckResult {
     let mut asked = Described::new();
     for axis in 0..3 {
-        let turn = |v: Vec3| {
-            let mut turned = Vec3::ZERO;
-            (0..3).for_each(|k| turned[(axis + k) % 3] = v[k]);
-            turned
-        };
+        let turn = |v: Vec3| along(axis, v);
         // Each cell has the side 1, and the face between the first two cells is at 0. Only the cell of the ray lists the
         // primitive. The quotient for cell 1 is rounded to 1 of 3 cells, and below 1 of 49 cells.
         for (n, at) in [(3, -1e-20), (3, 1e-20), (49, -1e-20), (49, 1e-20)] {
@@ -383,5 +335,5 @@ fn beside_faces(trial: &Trial<'_>) -> CheckResult {
             "grid of 2 cells in a row, and a ray whose range begins one float before a hit in the first cell";
         asked.add(what, CellsQuery { cells, ray, hits: vec![hit] });
     }
-    asked.judge(|queries| trial.kit.grid_search(queries))
+    asked.judge(trial.kit, &GRID)
 }

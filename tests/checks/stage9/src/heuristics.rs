@@ -1,6 +1,6 @@
 //! The laws of the five heuristics of the kd-tree: each is tested alone, switched on and switched off.
 
-use super::kd_trees::below;
+use super::lists::below;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use glam::{Vec3, vec3};
@@ -10,39 +10,44 @@ use raykata::partition::{KdHeuristics, KdNode, KdTree};
 
 const NONE: KdHeuristics = KdHeuristics::NONE;
 
-fn build(trial: &Trial<'_>, bounds: &[Aabb], heuristics: KdHeuristics) -> KdTree {
-    trial.kit.kd_build(&[KdQuery { bounds: bounds.to_vec(), heuristics, leaf_size: 2 }]).remove(0)
+/// The axis and the coordinate of a cut, and the numbers of primitives on the left, on the right and on both sides.
+type Cut = (usize, f32, [usize; 3]);
+
+/// A student's tree over some boxes, and its first cut.
+struct Built {
+    what: String,
+    tree: KdTree,
+    cut: Option<Cut>,
 }
 
-/// The axis and the coordinate of the first cut, and the numbers of primitives on the left, on the right and on both
-/// sides.
-fn first_cut(tree: &KdTree) -> Option<(usize, f32, [usize; 3])> {
+/// Builds a tree with leaves of two primitives. `what` names the boxes and the heuristics.
+fn build(trial: &Trial<'_>, what: impl Into<String>, bounds: &[Aabb], heuristics: KdHeuristics) -> Built {
+    let query = KdQuery { bounds: bounds.to_vec(), heuristics, leaf_size: 2 };
+    let tree = trial.kit.kd_build(&[query]).remove(0);
+    let cut = first_cut(&tree);
+    Built { what: what.into(), tree, cut }
+}
+
+fn first_cut(tree: &KdTree) -> Option<Cut> {
     let Some(KdNode::Inner { axis, at, left, right }) = tree.nodes.first().copied() else { return None };
     let [left, right] = [left, right].map(|side| below(tree, side));
     let both = left.iter().filter(|id| right.contains(id)).count();
     Some((usize::from(axis), at, [left.len(), right.len(), both]))
 }
 
-fn describe(cut: &Option<(usize, f32, [usize; 3])>) -> String {
-    match cut {
-        None => "no cut at the root".into(),
-        Some((axis, at, [left, right, both])) => {
-            format!(
-                "a cut across {} at {at:.3}: {left} left, {right} right, {both} on both sides",
-                ["x", "y", "z"][*axis]
-            )
-        }
+impl Built {
+    /// The error that another cut is expected.
+    fn refuse(&self, expected: &str, mistake: (bool, &'static str)) -> CheckResult {
+        let yours = match self.cut {
+            None => "no cut at the root".into(),
+            Some((axis, at, [left, right, both])) => {
+                let axis = ["x", "y", "z"][axis];
+                format!("a cut across {axis} at {at:.3}: {left} left, {right} right, {both} on both sides")
+            }
+        };
+        let input = format!("build of {}, leaf_size 2", self.what);
+        Err(Broken::with_texts(input, yours, expected, "the heuristic").explained_by([mistake]))
     }
-}
-
-fn refuse(
-    what: &str,
-    cut: &Option<(usize, f32, [usize; 3])>,
-    expected: &str,
-    mistake: (bool, &'static str),
-) -> CheckResult {
-    Err(Broken::with_texts(format!("build of {what}, leaf_size 2"), describe(cut), expected, "the heuristic")
-        .explained_by([mistake]))
 }
 
 fn cubes(places: impl Iterator<Item = Vec3>) -> Vec<Aabb> {
@@ -57,23 +62,20 @@ pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> CheckResult 
             p
         }));
         let what = format!("16 boxes along {}", ["x", "y", "z"][axis]);
-        let on = first_cut(&build(trial, &row, KdHeuristics { longest_axis: true, ..NONE }));
-        if on.is_none_or(|(yours, ..)| yours != axis) {
-            return refuse(
-                &format!("{what}, longest_axis alone"),
-                &on,
+        let alone = KdHeuristics { longest_axis: true, ..NONE };
+        let on = build(trial, format!("{what}, longest_axis alone"), &row, alone);
+        if on.cut.is_none_or(|(yours, ..)| yours != axis) {
+            return on.refuse(
                 "a cut across that axis",
-                (on.is_some(), "you cut across an axis that is not the longest side of the cell"),
+                (on.cut.is_some(), "you cut across an axis that is not the longest side of the cell"),
             );
         }
-        let off = first_cut(&build(trial, &row, NONE));
-        if off.is_none_or(|(yours, ..)| yours != 0) {
-            return refuse(
-                &format!("{what}, no heuristic"),
-                &off,
+        let off = build(trial, format!("{what}, no heuristic"), &row, NONE);
+        if off.cut.is_none_or(|(yours, ..)| yours != 0) {
+            return off.refuse(
                 "a cut across x: axes in turn, x first",
                 (
-                    off.is_some_and(|(yours, ..)| yours == axis),
+                    off.cut.is_some_and(|(yours, ..)| yours == axis),
                     "you cut across the longest axis although longest_axis is switched off",
                 ),
             );
@@ -81,7 +83,7 @@ pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> CheckResult 
     }
     // Axes in turn: x at the root, y and z below it.
     let block = cubes((0..64).map(|i| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32)));
-    let tree = build(trial, &block, NONE);
+    let Built { what, tree, .. } = build(trial, "4 × 4 × 4 boxes, no heuristic", &block, NONE);
     let mut axes = vec![None; 3];
     tree.walk(2, |node, _, depth| {
         if let KdNode::Inner { axis, .. } = tree.nodes[node as usize] {
@@ -89,7 +91,7 @@ pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> CheckResult 
         }
     });
     if axes != [Some(0), Some(1), Some(2)] {
-        let input = "build of 4 × 4 × 4 boxes, no heuristic, leaf_size 2";
+        let input = format!("build of {what}, leaf_size 2");
         return Err(Broken::new(input, axes, "axes 0, 1, 2 at depths 0, 1, 2", "axes in turn")
             .explained_by([(true, "you do not take the axes in turn: the axis is the depth modulo 3")]));
     }
@@ -101,24 +103,21 @@ pub(super) fn kd_balances_counts(trial: &Trial<'_>) -> CheckResult {
     let what = "40 boxes side by side from x = 0 and one at 400";
     // No cut between two boxes has straddlers, so with both heuristics the counts decide.
     for others in [NONE, KdHeuristics { few_straddlers: true, ..NONE }] {
-        let on = first_cut(&build(trial, &crowd, KdHeuristics { balanced_counts: true, ..others }));
-        if on.is_none_or(|(_, _, [left, right, _])| left.abs_diff(right) > 2) {
-            let with = if others == NONE { " alone" } else { " and few_straddlers" };
-            return refuse(
-                &format!("{what}, balanced_counts{with}"),
-                &on,
+        let with = if others == NONE { " alone" } else { " and few_straddlers" };
+        let what = format!("{what}, balanced_counts{with}");
+        let on = build(trial, what, &crowd, KdHeuristics { balanced_counts: true, ..others });
+        if on.cut.is_none_or(|(_, _, [left, right, _])| left.abs_diff(right) > 2) {
+            return on.refuse(
                 "about 20 on each side",
-                (on.is_some(), "your cut leaves counts that are not balanced"),
+                (on.cut.is_some(), "your cut leaves counts that are not balanced"),
             );
         }
     }
-    let off = first_cut(&build(trial, &crowd, NONE));
-    if off.is_none_or(|(_, at, _)| (at - 200.25).abs() > 1.0) {
-        return refuse(
-            &format!("{what}, no heuristic"),
-            &off,
+    let off = build(trial, format!("{what}, no heuristic"), &crowd, NONE);
+    if off.cut.is_none_or(|(_, at, _)| (at - 200.25).abs() > 1.0) {
+        return off.refuse(
             "a cut in the middle, at 200.25",
-            (off.is_some(), "your cut is not in the middle of the cell although no heuristic is on"),
+            (off.cut.is_some(), "your cut is not in the middle of the cell although no heuristic is on"),
         );
     }
     Ok(())
@@ -132,30 +131,25 @@ pub(super) fn kd_avoids_straddlers(trial: &Trial<'_>) -> CheckResult {
     let all: Vec<Aabb> = planks.chain(small).collect();
     let what = "12 planks from x = 3 to 10 and 4 from 0 to 2";
     for others in [NONE, KdHeuristics { balanced_counts: true, ..NONE }] {
-        let on = first_cut(&build(trial, &all, KdHeuristics { few_straddlers: true, ..others }));
-        if on.is_none_or(|(axis, at, [.., both])| axis != 0 || both > 0 || !(1.9..=3.1).contains(&at)) {
-            let what = format!(
-                "{what}, few_straddlers{}",
-                if others == NONE { " alone" } else { " and balanced_counts" }
-            );
-            return refuse(
-                &what,
-                &on,
+        let with = if others == NONE { " alone" } else { " and balanced_counts" };
+        let what = format!("{what}, few_straddlers{with}");
+        let on = build(trial, what, &all, KdHeuristics { few_straddlers: true, ..others });
+        if on.cut.is_none_or(|(axis, at, [.., both])| axis != 0 || both > 0 || !(1.9..=3.1).contains(&at)) {
+            return on.refuse(
                 "a cut across x between 2 and 3, with none on both sides",
-                (on.is_some_and(|(.., [.., both])| both > 0), "you choose a plane with many on both sides"),
+                (
+                    on.cut.is_some_and(|(.., [.., both])| both > 0),
+                    "you choose a plane with many on both sides",
+                ),
             );
         }
     }
-    let off = first_cut(&build(trial, &all, NONE));
-    if off.is_none_or(|(_, _, [.., both])| both < 12) {
-        return refuse(
-            &format!("{what}, no heuristic"),
-            &off,
+    let off = build(trial, format!("{what}, no heuristic"), &all, NONE);
+    if off.cut.is_none_or(|(_, _, [.., both])| both < 12) {
+        let on = build(trial, what, &all, KdHeuristics { few_straddlers: true, ..NONE });
+        return off.refuse(
             "a cut in the middle, with 12 on both sides",
-            (
-                off == first_cut(&build(trial, &all, KdHeuristics { few_straddlers: true, ..NONE })),
-                "you avoid straddlers although few_straddlers is switched off",
-            ),
+            (off.cut == on.cut, "you avoid straddlers although few_straddlers is switched off"),
         );
     }
     Ok(())
@@ -189,23 +183,20 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> CheckResult {
     let what = "two groups of 27 boxes in opposite corners of a cube of side 20";
     let describe =
         |share: f64| format!("{:.0} % of the volume in empty leaves at depths 0 to 4", 100.0 * share);
-    let on = empty_share(&build(trial, &all, KdHeuristics { cut_off_empty_space: true, ..NONE }), 4);
+    let alone = KdHeuristics { cut_off_empty_space: true, ..NONE };
+    let [on, off] = [alone, NONE].map(|heuristics| build(trial, what, &all, heuristics).tree);
+    let share = empty_share(&on, 4);
     // 99.8 % of the cube is empty, and four cuts are enough to cut most of it off.
-    if on < 0.9 {
-        return Err(Broken::with_texts(
-            format!("build of {what}, cut_off_empty_space alone, leaf_size 2"),
-            describe(on),
-            "at least 90 %",
-            "the heuristic",
-        )
-        .explained_by([(
-            on == empty_share(&build(trial, &all, NONE), 4),
+    if share < 0.9 {
+        let input = format!("build of {what}, cut_off_empty_space alone, leaf_size 2");
+        let broken = Broken::with_texts(input, describe(share), "at least 90 %", "the heuristic");
+        return Err(broken.explained_by([(
+            share == empty_share(&off, 4),
             "empty margins of a cell are not cut off: do it before any other cut",
         )]));
     }
     // Cuts in the middle leave less of the volume in empty leaves at depth 2.
-    let off = empty_share(&build(trial, &all, NONE), 2);
-    let early = empty_share(&build(trial, &all, KdHeuristics { cut_off_empty_space: true, ..NONE }), 2);
+    let [early, off] = [on, off].map(|tree| empty_share(&tree, 2));
     if off >= early {
         let input = format!("build of {what}, with cut_off_empty_space and without, leaf_size 2");
         let yours = format!("with {:.0} %, without {:.0} % empty at depth 2", 100.0 * early, 100.0 * off);
@@ -230,29 +221,20 @@ pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> CheckResult {
     let stop = KdHeuristics { stop_at_overlap: true, ..NONE };
     // On the left are 8 planks, on the right 8 planks and 12 small boxes: 8 of 8 on the left are also on the right.
     let what = "8 planks from x = 0 to 64 and 12 small boxes right of x = 40";
-    let on = build(trial, &planks(8, 12), stop);
-    if on.nodes.len() != 1 {
-        return refuse(
-            &format!("{what}, stop_at_overlap alone"),
-            &first_cut(&on),
+    let on = build(trial, format!("{what}, stop_at_overlap alone"), &planks(8, 12), stop);
+    if on.tree.nodes.len() != 1 {
+        return on.refuse(
             "a leaf: all 8 on the left are also on the right",
             (
-                on.nodes.len() > 1,
+                on.tree.nodes.len() > 1,
                 "you divide although 60 % of those on one side are on both: compare with the count of each side",
             ),
         );
     }
-    let off = build(trial, &planks(8, 12), NONE);
-    if off.nodes.len() == 1 {
-        return refuse(
-            &format!("{what}, no heuristic"),
-            &first_cut(&off),
-            "a cut in the middle",
-            (
-                off.nodes.len() == 1,
-                "you make a leaf because of overlap although stop_at_overlap is switched off",
-            ),
-        );
+    let off = build(trial, format!("{what}, no heuristic"), &planks(8, 12), NONE);
+    if off.tree.nodes.len() == 1 {
+        let says = "you make a leaf because of overlap although stop_at_overlap is switched off";
+        return off.refuse("a cut in the middle", (true, says));
     }
     // 4 planks across the middle, 4 small boxes on the left and 4 on the right: half of each side, which is below 60 %.
     let small = |x: f32| {
@@ -261,24 +243,22 @@ pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> CheckResult {
         })
     };
     let few: Vec<Aabb> = planks(4, 0).into_iter().chain(small(1.0)).chain(small(50.0)).collect();
-    let divided = build(trial, &few, stop);
-    if divided.nodes.len() == 1 {
-        let what = "4 planks from x = 0 to 64 and 4 small boxes at either end, stop_at_overlap alone";
-        return refuse(
-            what,
-            &first_cut(&divided),
+    let what = "4 planks from x = 0 to 64 and 4 small boxes at either end, stop_at_overlap alone";
+    let divided = build(trial, what, &few, stop);
+    if divided.tree.nodes.len() == 1 {
+        return divided.refuse(
             "a cut in the middle: half of each side is on the other, which is below 60 %",
-            (divided.nodes.len() == 1, "you make a leaf although less than 60 % of each side are on both"),
+            (true, "you make a leaf although less than 60 % of each side are on both"),
         );
     }
     // 8 small boxes near x = 0 and one at 100: the second cut has all of its primitives on one side.
     let row: Vec<Aabb> = cubes((0..8).map(|i| vec3(i as f32, 0.0, 0.0)).chain([vec3(100.0, 0.0, 0.0)]));
-    let divided = build(trial, &row, KdHeuristics { longest_axis: true, ..stop });
+    let what = "8 boxes from x = 0 to 8 and one at 100, longest_axis and stop_at_overlap";
+    let divided = build(trial, what, &row, KdHeuristics { longest_axis: true, ..stop });
     let is_full = |node: &KdNode| matches!(node, KdNode::Leaf { count, .. } if *count >= 8);
-    if divided.nodes.iter().any(is_full) {
-        let what = "8 boxes from x = 0 to 8 and one at 100, longest_axis and stop_at_overlap";
+    if divided.tree.nodes.iter().any(is_full) {
         let says = "you make a leaf where one side has no primitives: then no primitive is on both sides";
-        return refuse(what, &first_cut(&divided), "the 8 boxes in several leaves", (true, says));
+        return divided.refuse("the 8 boxes in several leaves", (true, says));
     }
     Ok(())
 }

@@ -1,9 +1,11 @@
 //! What the laws of both builders of BSP trees share: hulls, and the judgement of a tree over them.
 
-use super::lists::{self, Fault, fact};
+use super::lists::{self, Fault};
 use checks::broken::CheckResult;
 use glam::{Vec3, vec3};
+use raykata::aabb::Aabb;
 use raykata::kit::BspQuery;
+use raykata::partition::{MOST_REFERENCES, corners};
 
 /// The call of a builder, as source code.
 pub(super) fn describe(query: &BspQuery) -> String {
@@ -31,17 +33,34 @@ pub(super) fn judge_tree(
     fault: impl FnOnce() -> Option<Fault>,
 ) -> CheckResult {
     let nothing = !query.hulls.iter().any(|hull| usable(hull));
-    let too_deep = || {
-        let (yours, expected) =
-            (format!("a node at depth {}", levels - 1), format!("at most {}", query.max_depth));
-        fact(yours, expected, "the tree is deeper than max_depth")
-    };
     lists::judge_tree(
         || describe(query),
         source,
         (nothing, n_nodes),
-        || if levels > query.max_depth + 1 { Some(too_deep()) } else { fault() },
+        || lists::too_deep(levels, query.max_depth, "the tree is deeper than max_depth").or_else(fault),
     )
+}
+
+/// Named polygons for which the recursion of a builder may not end, each with the most references per polygon.
+pub(super) fn infinite_polygons() -> [(&'static str, Vec<Vec<Vec3>>, usize); 3] {
+    let square = |s: f32| vec![vec3(-s, -s, 0.0), vec3(s, -s, 0.0), vec3(s, s, 0.0), vec3(-s, s, 0.0)];
+    let star = (0..30).map(|i| {
+        let (y, x) = (i as f32 * 0.21).sin_cos();
+        vec![vec3(x, y, -1.0), vec3(-x, -y, -1.0), vec3(-x, -y, 1.0), vec3(x, y, 1.0)]
+    });
+    let line = (0..20).map(|i| [0.0, 0.5, 0.7].map(|x| vec3(i as f32 + x, 0.0, 0.0)).to_vec());
+    [
+        // Each plane has all squares on it, and on one of its sides: one node lists all of them.
+        ("forty squares in one plane", (1..=40).map(|i| square(i as f32)).collect(), 1),
+        ("thirty sheets through one line", star.collect(), MOST_REFERENCES),
+        ("twenty slivers in a line", line.collect(), MOST_REFERENCES),
+    ]
+}
+
+/// The hulls of boxes for which the recursion may not end, each set with the most references per box.
+pub(super) fn infinite_boxes() -> impl Iterator<Item = (&'static str, Vec<Vec<Vec3>>, usize)> {
+    let hulls = |(name, all): (_, Vec<Aabb>)| (name, all.iter().map(corners).collect(), MOST_REFERENCES);
+    lists::infinite().into_iter().map(hulls)
 }
 
 /// `n` parallel squares side by side across a diagonal: planes across an axis do not divide them, but their own planes

@@ -1,21 +1,21 @@
 //! The laws of the kd-tree: which primitives each leaf lists, and the search.
 
-use super::lists::{Fault, ended, fact, infinite, judge_references, listing_fault, some_boxes};
-use super::parts;
-use super::scenes::{Scene, Thing, closest, wall};
-use super::searches::{Described, Searcher, agrees, judge_visits, queries, spheres_and_rays};
-use super::structures::kd_tree;
+use super::lists::{
+    Fault, below, ended, fact, infinite, judge_references, leaves, listing_fault, some_boxes, too_deep,
+};
+use super::scenes::{Scene, Thing, along, wall};
+use super::searches::{Described, GRID, KD_TREE, agrees, queries, spheres_and_rays};
+use super::structures::{filled, kd_tree};
 use checks::Trial;
-use checks::broken::{CheckResult, all_hold};
+use checks::broken::CheckResult;
 use checks::judge::compare;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsQuery, KdQuery};
-use raykata::partition::{Grid, KdHeuristics, KdNode, KdTree, MOST_REFERENCES};
+use raykata::partition::{KdHeuristics, KdNode, KdTree, MOST_REFERENCES};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
-use std::collections::BTreeSet;
 
 fn describe(query: &KdQuery) -> String {
     let boxes = checks::paste::list(&query.bounds);
@@ -35,11 +35,9 @@ fn judge_tree(query: &KdQuery, yours: &KdTree) -> CheckResult {
 }
 
 fn fault(query: &KdQuery, yours: &KdTree) -> Option<Fault> {
-    let mut leaves = Vec::new();
     let mut outside = None;
-    yours.walk(64, |node, cell, _| match yours.nodes[node as usize] {
-        KdNode::Leaf { first, count } => leaves.push((node, cell, yours.primitives(first, count).to_vec())),
-        KdNode::Inner { axis, at, .. } => {
+    yours.walk(64, |node, cell, _| {
+        if let KdNode::Inner { axis, at, .. } = yours.nodes[node as usize] {
             let (axis, at) = (usize::from(axis), f64::from(at));
             if !(cell.min[axis] <= at && at <= cell.max[axis]) {
                 outside =
@@ -48,9 +46,8 @@ fn fault(query: &KdQuery, yours: &KdTree) -> Option<Fault> {
         }
     });
     let most = KdTree::most_depth(query.bounds.iter().filter(|one| !one.is_empty()).count());
-    if yours.depth() > most + 1 {
-        let yours = format!("a node at depth {}", yours.depth() - 1);
-        return Some(fact(yours, format!("at most {most}"), "the tree is deeper than KdTree::most_depth"));
+    if let Some(fault) = too_deep(yours.depth(), most, "the tree is deeper than KdTree::most_depth") {
+        return Some(fault);
     }
     if let Some((yours, expected)) = outside {
         return Some(fact(yours, expected, "you cut at a plane outside the cell"));
@@ -60,7 +57,7 @@ fn fault(query: &KdQuery, yours: &KdTree) -> Option<Fault> {
         let mistake = "you divide primitives that are all on both sides: make a leaf of them";
         return Some(fact(described, "a leaf".into(), mistake));
     }
-    listing_fault("leaf", &yours.bounds, &query.bounds, &leaves)
+    listing_fault("leaf", &yours.bounds, &query.bounds, &leaves(yours))
 }
 
 /// Whether all primitives of an inner node are on both sides of its plane.
@@ -68,14 +65,6 @@ fn divides_nothing(tree: &KdTree, node: u32) -> bool {
     let KdNode::Inner { left, right, .. } = tree.nodes[node as usize] else { return false };
     let [left, right] = [left, right].map(|side| below(tree, side));
     !left.is_empty() && left == right
-}
-
-/// The primitives that the leaves below a node list.
-pub(super) fn below(tree: &KdTree, node: u32) -> BTreeSet<u32> {
-    match tree.nodes[node as usize] {
-        KdNode::Leaf { first, count } => tree.primitives(first, count).iter().copied().collect(),
-        KdNode::Inner { left, right, .. } => &below(tree, left) | &below(tree, right),
-    }
 }
 
 /// Any of the 32 sets of heuristics.
@@ -114,7 +103,7 @@ pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn kd_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    agrees(trial, Searcher::KdTree)
+    agrees(trial, &KD_TREE)
 }
 
 /// A tree of one cut across an axis, with these primitives on the two sides.
@@ -141,29 +130,16 @@ pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Check
         let control = two_leaves(bounds, (axis, 0.0), &[0, 1, 2], &[]);
         let start = Ray::new(size * along(axis, vec3(-0.5, 0.1, 0.2)), along(axis, Vec3::X));
         asked.control("kd-tree", control, start, (0.0, 0.5 * size));
+        let what = format!("kd-tree of two leaves with walls on faces, size {size}");
         for i in 0..12 {
             let y = (i as f32 - 5.5) * 0.07;
+            let direction = along(axis, vec3(1.0, 0.2 * y, 0.1)).normalize();
             // Aim at the far wall, and at the wall in the plane of the cut, which is listed on both sides.
-            for x in [0.2, -0.7] {
-                let origin = size * along(axis, vec3(x, y, 0.3 * y));
-                let ray = Ray::new(origin, along(axis, vec3(1.0, 0.2 * y, 0.1)).normalize());
-                asked.ask(
-                    format!("kd-tree of two leaves with walls on faces, size {size}"),
-                    &whole,
-                    &scene,
-                    ray,
-                );
-            }
+            let origins = [0.2, -0.7].map(|x| size * along(axis, vec3(x, y, 0.3 * y)));
+            asked.ask_all(&what, &whole, &scene, origins.map(|origin| Ray::new(origin, direction)));
         }
     }
-    asked.judge(|queries| trial.kit.kd_search(queries))
-}
-
-/// The vector with its x along `axis`, and its y and z along the next axes.
-fn along(axis: usize, v: Vec3) -> Vec3 {
-    let mut turned = Vec3::ZERO;
-    (0..3).for_each(|k| turned[(axis + k) % 3] = v[k]);
-    turned
+    asked.judge(trial.kit, &KD_TREE)
 }
 
 /// Two primitives lie in one face; that of the right cell has a `t` one float smaller than that of the
@@ -173,44 +149,41 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
     for axis in 0..3 {
         for (at, x) in [(1.0f32, -2.0f32), (0.75, -5.3), (-3.125, -7.7)] {
             let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(2.0 * at + 8.0));
-            let exact = at - x;
-            let hits = vec![exact.next_down(), exact.next_down().next_down()];
-            let ray = Ray::new(along(axis, vec3(x, 0.0, 0.0)), along(axis, Vec3::X));
-            let tree = two_leaves(bounds, (axis, at), &[0], &[1]);
             let resolution = along(axis, vec3(2.0, 1.0, 1.0)).as_uvec3();
-            let grid = Grid { bounds, resolution, starts: vec![0, 1, 2], items: vec![0, 1] };
-            let what =
-                |name: &str| format!("{name} of two cells, a primitive of each in the face between them");
-            let three = two_leaves(bounds, (axis, at), &[0, 1, 2], &[]);
-            trees.control("kd-tree", three, ray, (0.0, exact));
-            let three = Grid { starts: vec![0, 3, 3], items: vec![0, 1, 2], bounds, resolution };
-            grids.control("grid", three, ray, (0.0, exact));
-            // A hit behind the end of the first cell waits, because the second cell has a nearer one.
-            let waiting = vec![exact + 2.0, exact + 1.0];
-            let both = two_leaves(bounds, (axis, at), &[0], &[0, 1]);
-            let what_waits = "a hit behind the first cell, and a nearer one in the second";
-            trees.add(
-                format!("kd-tree; {what_waits}"),
-                CellsQuery { cells: both, ray, hits: waiting.clone() },
-            );
-            let both = Grid { starts: vec![0, 1, 3], items: vec![0, 0, 1], bounds, resolution };
-            grids.add(format!("grid; {what_waits}"), CellsQuery { cells: both, ray, hits: waiting });
-            // A hit behind the end of the first cell counts, because the second cell lists nothing.
-            let beyond = vec![exact + 1.0];
-            let alone = two_leaves(bounds, (axis, at), &[0], &[]);
-            trees.add(
-                "kd-tree; the only hit is behind its leaf",
-                CellsQuery { cells: alone, ray, hits: beyond.clone() },
-            );
-            let alone = Grid { starts: vec![0, 1, 1], items: vec![0], bounds, resolution };
-            grids
-                .add("grid; the only hit is behind its cell", CellsQuery { cells: alone, ray, hits: beyond });
-            trees.add(what("kd-tree"), CellsQuery { cells: tree, ray, hits: hits.clone() });
-            grids.add(what("grid"), CellsQuery { cells: grid, ray, hits });
+            let tree = |lists: [&[u32]; 2]| two_leaves(bounds, (axis, at), lists[0], lists[1]);
+            let grid = |lists: [&[u32]; 2]| filled(bounds, resolution, &lists.map(<[u32]>::to_vec));
+            let exact = at - x;
+            let ray = Ray::new(along(axis, vec3(x, 0.0, 0.0)), along(axis, Vec3::X));
+            trees.control("kd-tree", tree([&[0, 1, 2], &[]]), ray, (0.0, exact));
+            grids.control("grid", grid([&[0, 1, 2], &[]]), ray, (0.0, exact));
+            let cases: [(_, [&[u32]; 2], _); 3] = [
+                // A hit behind the end of the first cell waits, because the second cell has a nearer one.
+                (
+                    ["; a hit behind the first cell, and a nearer one in the second"; 2],
+                    [&[0], &[0, 1]],
+                    vec![exact + 2.0, exact + 1.0],
+                ),
+                // A hit behind the end of the first cell counts, because the second cell lists nothing.
+                (
+                    ["; the only hit is behind its leaf", "; the only hit is behind its cell"],
+                    [&[0], &[]],
+                    vec![exact + 1.0],
+                ),
+                (
+                    [" of two cells, a primitive of each in the face between them"; 2],
+                    [&[0], &[1]],
+                    vec![exact.next_down(), exact.next_down().next_down()],
+                ),
+            ];
+            for ([in_tree, in_grid], lists, hits) in cases {
+                let query = CellsQuery { cells: tree(lists), ray, hits: hits.clone() };
+                trees.add(format!("kd-tree{in_tree}"), query);
+                grids.add(format!("grid{in_grid}"), CellsQuery { cells: grid(lists), ray, hits });
+            }
         }
     }
-    trees.judge(|queries| trial.kit.kd_search(queries))?;
-    grids.judge(|queries| trial.kit.grid_search(queries))
+    trees.judge(trial.kit, &KD_TREE)?;
+    grids.judge(trial.kit, &GRID)
 }
 
 pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> CheckResult {
@@ -227,14 +200,10 @@ pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> CheckResult {
         asked.control("kd-tree", control, ray, (1.0, 3.0));
         // Without the small sphere, the hit counts although it lies beyond the first leaf and the second does not list it.
         let tree = two_leaves(bounds, (axis, 2.0), &[0], &[]);
-        asked.ask(
-            "kd-tree; primitive 0 is listed in the first leaf only",
-            &tree,
-            &Scene::new(vec![large]),
-            ray,
-        );
+        let alone = Scene::new(vec![large]);
+        asked.ask("kd-tree; primitive 0 is listed in the first leaf only", &tree, &alone, ray);
     }
-    asked.judge(|queries| trial.kit.kd_search(queries))
+    asked.judge(trial.kit, &KD_TREE)
 }
 
 /// A ray in the plane of a cut, or that starts on it, is on both sides.
@@ -245,6 +214,7 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Check
         let place = |x: f32, y: f32, z: f32, radius: f32| {
             Thing::Sphere(Sphere { center: along(axis, vec3(x, y, z)), radius })
         };
+        let from_plane = |direction: Vec3| Ray::new(along(axis, Vec3::X), along(axis, direction));
         for (left, right) in [(&[0u32, 1][..], &[2u32][..]), (&[2][..], &[0, 1][..]), (&[0][..], &[1, 2][..])]
         {
             let tree = two_leaves(bounds, (axis, 1.0), left, right);
@@ -255,15 +225,9 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Check
                 place(1.0, -5.0, 0.0, 0.5),
             ]);
             for zero in [0.0, -0.0] {
-                for (y, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0)] {
-                    let ray = Ray::new(along(axis, Vec3::X), along(axis, vec3(zero, y, z)));
-                    asked.ask(
-                        "kd-tree of two leaves, and a ray in the plane between them",
-                        &tree,
-                        &spheres,
-                        ray,
-                    );
-                }
+                let directions = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0)].map(|(y, z)| vec3(zero, y, z));
+                let what = "kd-tree of two leaves, and a ray in the plane between them";
+                asked.ask_all(what, &tree, &spheres, directions.map(from_plane));
             }
             // Rays from a point of the plane to spheres on each side.
             let beside = Scene::new(vec![
@@ -272,43 +236,27 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Check
                 place(5.0, 0.5, 0.0, 0.5),
             ]);
             let sides = two_leaves(bounds, (axis, 1.0), &[0, 1], &[2]);
-            for direction in [vec3(-8.0, 1.0, 0.0), vec3(-8.0, -1.0, 0.5), vec3(8.0, 1.0, 0.0)] {
-                let ray = Ray::new(along(axis, Vec3::X), along(axis, direction));
-                asked.ask(
-                    "kd-tree of two leaves, and a ray from the plane between them",
-                    &sides,
-                    &beside,
-                    ray,
-                );
-            }
+            let directions = [vec3(-8.0, 1.0, 0.0), vec3(-8.0, -1.0, 0.5), vec3(8.0, 1.0, 0.0)];
+            let what = "kd-tree of two leaves, and a ray from the plane between them";
+            asked.ask_all(what, &sides, &beside, directions.map(from_plane));
         }
         // A wall in the plane, listed on one side only, and rays at it from both sides, from far and near.
         let wall = Scene::new(wall(axis, 1.0, 4.0).to_vec());
         for (left, right) in [(&[0u32, 1][..], &[][..]), (&[][..], &[0, 1][..])] {
             let tree = two_leaves(bounds, (axis, 1.0), left, right);
-            for x in [-7.5, 0.3, 1.7, 7.5] {
+            let rays = [-7.5, 0.3, 1.7, 7.5].map(|x| {
                 let direction = along(axis, vec3(1.0 - x, 0.1, 0.2)).normalize();
-                let ray = Ray::new(along(axis, vec3(x, 0.3, 0.4)), direction);
-                asked.ask(
-                    "kd-tree of two leaves, and a wall in the plane, listed on one side",
-                    &tree,
-                    &wall,
-                    ray,
-                );
-            }
+                Ray::new(along(axis, vec3(x, 0.3, 0.4)), direction)
+            });
+            let what = "kd-tree of two leaves, and a wall in the plane, listed on one side";
+            asked.ask_all(what, &tree, &wall, rays);
         }
     }
-    asked.judge(|queries| trial.kit.kd_search(queries))
+    asked.judge(trial.kit, &KD_TREE)
 }
 
 pub(super) fn kd_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
-    let place = |i: usize| vec3((i % 16) as f32, (i / 16 % 4) as f32, (i / 64) as f32 * 1.5);
-    let (scene, rays) = spheres_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 20.0);
+    let (scene, rays) = spheres_and_rays(128, 9, (16, 1.5));
     let cells = kd_tree(&scene.boxes(), 10);
-    let queries = queries(&cells, &scene, &rays);
-    let judge = |query: &CellsQuery<KdTree>, yours| {
-        assert!(closest(&query.hits, &query.ray).is_some(), "each ray is aimed at a sphere");
-        judge_visits("kd-tree over 128 spheres", query, &parts::of_cells(&cells, &query.ray), &yours)
-    };
-    all_hold(compare(&queries, trial.kit.kd_search(&queries), judge))
+    KD_TREE.visits(trial.kit, "kd-tree over 128 spheres", &queries(&cells, &scene, &rays))
 }

@@ -2,9 +2,9 @@
 //!
 //! `resolutions` (and the interval of a ray in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` ·
 //! `bsp_searches` · `polygon_bsps` · `polygon_bsp_searches` · `coherence` · `table` · `picture`. Shared modules: `scenes`
-//! (primitives and rays), `structures` (simple builders), `searches` (calls a search and judges its answer), `search_mistakes`,
-//! `plane_mistakes` and `octant_mistakes` (searches with one mistake each), `parts` (the interval of a ray in each
-//! node), `lists` (judges the lists of cells), `hulls` (judges trees over hulls).
+//! (primitives and rays), `structures` (simple builders), `searches` (calls a search and judges its answer), `visits`
+//! (judges its visits), `search_mistakes`, `plane_mistakes` and `octant_mistakes` (searches with one mistake each), `parts`
+//! (the interval of a ray in each node), `lists` (judges the lists of cells), `hulls` (judges trees over hulls).
 
 mod bsp_searches;
 mod bsps;
@@ -27,6 +27,7 @@ mod search_mistakes;
 mod searches;
 mod structures;
 mod table;
+mod visits;
 
 checks::stage! { ($ crate) 9 [
     resolutions::spans_of_cells_agree_with_double_precision

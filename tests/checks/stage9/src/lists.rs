@@ -8,7 +8,8 @@ use glam::Vec3;
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::kit_error::{self, KitError};
-use raykata::partition::Cell;
+use raykata::partition::{Cell, CellTree, Tree, TreeNode};
+use std::collections::BTreeSet;
 
 /// Boxes on a lattice, so that many touch or are flat, on a finer grid, and with full mantissas. Some have NaN coordinates.
 /// A volume is a normal number in single precision at any of these scales.
@@ -52,8 +53,31 @@ pub(super) fn fact(yours: String, expected: String, mistake: &'static str) -> Fa
     (yours, expected, vec![(true, mistake)])
 }
 
+/// The fault of a tree with more levels than a tree of depth `most` has.
+pub(super) fn too_deep(levels: usize, most: usize, mistake: &'static str) -> Option<Fault> {
+    let describe = || fact(format!("a node at depth {}", levels - 1), format!("at most {most}"), mistake);
+    (levels > most + 1).then(describe)
+}
+
 /// A leaf, or a cell of a grid: its name, its place, and the primitives that it lists.
 pub(super) type Listed<N> = (N, Cell, Vec<u32>);
+
+/// The leaves of a tree of cells.
+pub(super) fn leaves<N: TreeNode<Region = Cell>>(tree: &CellTree<N>) -> Vec<Listed<u32>> {
+    let mut leaves = Vec::new();
+    tree.walk(64, |node, cell, _| {
+        if tree.nodes[node as usize].is_leaf() {
+            leaves.push((node, cell, tree.listed(node).to_vec()));
+        }
+    });
+    leaves
+}
+
+/// The primitives that the leaves below a node list, each once.
+pub(super) fn below<N: TreeNode>(tree: &Tree<N>, node: u32) -> BTreeSet<u32> {
+    let here = tree.listed(node).iter().copied();
+    here.chain(tree.nodes[node as usize].children().flat_map(|child| below(tree, child))).collect()
+}
 
 /// The first fault in the lists of leaves or of cells, which are called `kind`.
 pub(super) fn listing_fault<N: std::fmt::Display>(
@@ -85,26 +109,20 @@ pub(super) fn listing_fault<N: std::fmt::Display>(
                     high == cell.min[axis] || low == cell.max[axis]
                 });
                 let missing = times == 0;
+                let nowhere = missing && !elsewhere();
                 // Each cell lists only primitives that it overlaps, so that their places are right.
-                let elsewhere = || {
-                    let is_right =
-                        |cell: &Cell, id: u32| !is_far_off(bounds, &cell.to_box(), &boxes[id as usize]);
-                    let right = |(_, cell, listed): &Listed<N>| {
-                        listed.iter().all(|&id| (id as usize) < boxes.len() && is_right(cell, id))
-                    };
-                    leaves.iter().all(right) && elsewhere()
+                let is_right = |cell: &Cell, id: &u32| {
+                    boxes.get(*id as usize).is_some_and(|one| !is_far_off(bounds, &cell.to_box(), one))
                 };
-                let nowhere = missing && !leaves.iter().any(|(.., listed)| listed.contains(&(id as u32)));
+                let right = |(_, cell, listed): &Listed<N>| listed.iter().all(|id| is_right(cell, id));
+                let elsewhere = missing && !nowhere && leaves.iter().all(right);
                 return Some((
                     describe(times),
                     describe(1),
                     vec![
+                        (elsewhere && touches, "a primitive that touches a plane belongs to both sides"),
                         (
-                            missing && touches && elsewhere(),
-                            "a primitive that touches a plane belongs to both sides",
-                        ),
-                        (
-                            missing && elsewhere(),
+                            elsewhere,
                             "a primitive that overlaps or touches several cells belongs to all of them",
                         ),
                         (nowhere, "you leave out a primitive: no cell lists it"),

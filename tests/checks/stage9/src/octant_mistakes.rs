@@ -2,7 +2,7 @@
 //! student's answer.
 
 use super::parts::exactly;
-use super::search_mistakes::{Hit, ROOM, Wrong};
+use super::search_mistakes::{Hit, Mistakes, ROOM, Wrong};
 use raykata::partition::{Cell, Octree, OctreeNode};
 use raykata::ray::Ray;
 
@@ -49,7 +49,7 @@ fn one_of_equal_entries(octree: &Octree, ray: &Ray, hits: &[f32], keeps_last: bo
 }
 
 /// The known mistakes at octants, each with whether it finds this hit.
-pub(super) fn of_octree(octree: &Octree, ray: &Ray, hits: &[f32], found: Hit) -> Vec<(bool, &'static str)> {
+pub(super) fn of_octree(octree: &Octree, ray: &Ray, hits: &[f32], found: Hit) -> Mistakes {
     let gives = |keeps_last| one_of_equal_entries(octree, ray, hits, keeps_last) == found;
     vec![
         (gives(true), "of octants that the ray enters at the same t you search only one, the last one"),

@@ -1,9 +1,15 @@
 //! The laws of the octree: which primitives each leaf lists, and three searches.
 
-use super::lists::{Fault, ended, fact, infinite, judge_references, judge_tree, listing_fault, some_boxes};
+use super::lists::{
+    Fault, below, ended, fact, infinite, judge_references, judge_tree, leaves, listing_fault, some_boxes,
+    too_deep,
+};
 use super::parts;
-use super::scenes::{Scene, Thing, sphere};
-use super::searches::{Described, Searched, Searcher, agrees, judge_visits, queries, spheres_and_rays};
+use super::scenes::{Scene, Thing, along, lattice, straight};
+use super::searches::{
+    Described, OCTREE, OCTREE_BY_CELLS, OCTREE_BY_NEIGHBOURS, Search, Searched, agrees, queries,
+    spheres_and_rays,
+};
 use super::structures::octree;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -12,8 +18,8 @@ use checks::nasty;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
-use raykata::kit::{CellsAnswer, OctreeQuery, kit_error};
-use raykata::partition::{MOST_REFERENCES, Octree, OctreeNode};
+use raykata::kit::{CellsAnswer, CellsQuery, OctreeQuery, kit_error};
+use raykata::partition::{MOST_REFERENCES, Octree, OctreeNode, TreeNode};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -30,21 +36,9 @@ fn judge_octree(query: &OctreeQuery, yours: &Octree) -> CheckResult {
 }
 
 fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
-    let mut leaves = Vec::new();
-    let mut deepest = 0;
-    yours.walk(64, |node, cell, depth| {
-        deepest = deepest.max(depth);
-        if let OctreeNode::Leaf { first, count } = yours.nodes[node as usize] {
-            leaves.push((node, cell, yours.primitives(first, count).to_vec()));
-        }
-    });
-    if deepest > query.max_depth {
-        let expected = format!("at most {}", query.max_depth);
-        return Some(fact(
-            format!("a node at depth {deepest}"),
-            expected,
-            "the tree is deeper than max_depth",
-        ));
+    let levels = yours.walk(64, |_, _, _| {});
+    if let Some(fault) = too_deep(levels, query.max_depth, "the tree is deeper than max_depth") {
+        return Some(fault);
     }
     let sides = yours.bounds.max - yours.bounds.min;
     // Rounding changes a side by far less than a hundredth.
@@ -55,7 +49,7 @@ fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
             "the root cell must be a cube",
         ));
     }
-    listing_fault("leaf", &yours.bounds, &query.bounds, &leaves)
+    listing_fault("leaf", &yours.bounds, &query.bounds, &leaves(yours))
 }
 
 pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
@@ -83,13 +77,11 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResu
     let query = OctreeQuery { bounds, leaf_size: 2, max_depth: 8 };
     let yours = trial.kit.octree_build(std::slice::from_ref(&query)).remove(0);
     judge_octree(&query, &yours)?;
-    let most = yours.nodes.iter().map(|node| match node {
-        OctreeNode::Leaf { count, .. } => *count,
-        OctreeNode::Inner { .. } => 0,
-    });
-    let most = most.max().unwrap_or(0);
+    let leaves = yours.nodes.iter().filter(|node| node.is_leaf()).filter_map(OctreeNode::range);
+    let most = leaves.map(|(_, count)| count).max().unwrap_or(0);
     let (depth, n) = (yours.depth(), yours.nodes.len());
-    let needless = (0..n as u32).find(|&node| is_inner(&yours, node) && below(&yours, node).len() <= 2);
+    let needless =
+        (0..n as u32).find(|&node| !yours.nodes[node as usize].is_leaf() && below(&yours, node).len() <= 2);
     if most <= 2 && depth > 3 && needless.is_none() {
         return Ok(());
     }
@@ -109,21 +101,6 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResu
     .explained_by(mistakes))
 }
 
-fn is_inner(octree: &Octree, node: u32) -> bool {
-    matches!(octree.nodes[node as usize], OctreeNode::Inner { .. })
-}
-
-/// The primitives that the leaves below a node list, each once.
-fn below(octree: &Octree, node: u32) -> Vec<u32> {
-    let mut found = match octree.nodes[node as usize] {
-        OctreeNode::Leaf { first, count } => octree.primitives(first, count).to_vec(),
-        OctreeNode::Inner { first } => (first..first + 8).flat_map(|child| below(octree, child)).collect(),
-    };
-    found.sort_unstable();
-    found.dedup();
-    found
-}
-
 pub(super) fn octree_build_ends(trial: &Trial<'_>) -> CheckResult {
     for (name, bounds) in infinite() {
         let n = bounds.len();
@@ -141,41 +118,36 @@ pub(super) fn octree_build_ends(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn octree_by_cells_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    agrees(trial, Searcher::OctreeByCells)
+    agrees(trial, &OCTREE_BY_CELLS)
 }
 
 pub(super) fn octree_by_neighbours_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    agrees(trial, Searcher::OctreeByNeighbours)
+    agrees(trial, &OCTREE_BY_NEIGHBOURS)
 }
 
 pub(super) fn octree_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    agrees(trial, Searcher::Octree)
+    agrees(trial, &OCTREE)
 }
 
 /// Rays along the edges and through the corners at which octants meet, with zeros of both signs in their directions.
-fn along_edges(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
+fn along_edges(trial: &Trial<'_>, search: &Search<Octree>) -> CheckResult {
+    let mut things = lattice(4.0);
     // Leave out the sphere in the middle, where octants meet.
-    let things: Vec<Thing> = (0..27)
-        .filter(|i| *i != 13)
-        .map(|i| sphere((i % 3) as f32 * 4.0, (i / 3 % 3) as f32 * 4.0, (i / 9) as f32 * 4.0, 0.5))
-        .collect();
+    things.remove(13);
     let scene = Scene::new(things);
-    let steps = [-1.0, 0.0, -0.0, 1.0];
-    let dirs = steps.iter().flat_map(|&x| steps.iter().flat_map(move |&y| steps.map(|z| vec3(x, y, z))));
-    let rays: Vec<Ray> = dirs
-        .filter(|direction| direction.length_squared() > 0.0)
+    let rays: Vec<Ray> = straight()
         .flat_map(|direction| {
             let through = |at: f32| Ray::new(Vec3::splat(at) - 12.0 * direction, direction);
             [through(0.0), through(2.0), through(4.0), Ray::new(Vec3::splat(4.0), direction)]
         })
         .collect();
     let name = "26 spheres, rays along axes and diagonals".to_owned();
-    let judge = || searcher.judge(trial.kit, &[Searched::new(&name, &scene, &rays)]);
+    let judge = || search.judge(trial.kit, &[Searched::new(&name, &scene, &rays)]);
     match kit_error::catch(judge) {
         Ok(outcomes) => all_hold(outcomes),
         Err(kit_error::KitError::Panicked { message, .. }) => {
             let endless = message.contains("does not end");
-            let input = format!("{} over {name}", searcher.name());
+            let input = search.over(&name);
             Err(Broken::with_texts(input, message, "an answer", "brute force").explained_by([(
                 endless,
                 "your search goes on without an end: a step leads back into the cell that the ray has left, or stays in it",
@@ -186,22 +158,22 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
 }
 
 pub(super) fn octree_by_cells_goes_along_edges(trial: &Trial<'_>) -> CheckResult {
-    along_edges(trial, Searcher::OctreeByCells)
+    along_edges(trial, &OCTREE_BY_CELLS)
 }
 
 pub(super) fn octree_by_neighbours_goes_along_edges(trial: &Trial<'_>) -> CheckResult {
-    along_edges(trial, Searcher::OctreeByNeighbours)
+    along_edges(trial, &OCTREE_BY_NEIGHBOURS)
 }
 
 pub(super) fn octree_sorts_octants_that_are_entered_at_one_t(trial: &Trial<'_>) -> CheckResult {
-    along_edges(trial, Searcher::Octree)
+    along_edges(trial, &OCTREE)
 }
 
 /// A large sphere that overlaps the first octant is hit in the second, behind a small one.
 pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> CheckResult {
-    overlapping_two_octants("from the root down").judge(|queries| trial.kit.octree_search(queries))?;
-    overlapping_two_octants("cell by cell").judge(|queries| trial.kit.octree_by_cells(queries))?;
-    overlapping_two_octants("by neighbours").judge(|queries| trial.kit.octree_by_neighbours(queries))
+    overlapping_two_octants("from the root down").judge(trial.kit, &OCTREE)?;
+    overlapping_two_octants("cell by cell").judge(trial.kit, &OCTREE_BY_CELLS)?;
+    overlapping_two_octants("by neighbours").judge(trial.kit, &OCTREE_BY_NEIGHBOURS)
 }
 
 /// A large sphere and a small one along each axis, in both directions, for the search of this name.
@@ -209,12 +181,7 @@ fn overlapping_two_octants(name: &str) -> Described<Octree> {
     let mut asked = Described::new();
     for axis in 0..3 {
         for flipped in [false, true] {
-            let turn = |v: Vec3| {
-                let mut turned = Vec3::ZERO;
-                let v = if flipped { vec3(8.0 - v.x, v.y, v.z) } else { v };
-                (0..3).for_each(|k| turned[(axis + k) % 3] = v[k]);
-                turned
-            };
+            let turn = |v: Vec3| along(axis, if flipped { vec3(8.0 - v.x, v.y, v.z) } else { v });
             let place = |center: Vec3, radius: f32| Thing::Sphere(Sphere { center: turn(center), radius });
             let scene = Scene::new(vec![place(vec3(7.0, 4.0, 1.0), 3.75), place(vec3(4.5, 1.0, 1.0), 0.25)]);
             let (from, to) = (turn(vec3(-1.0, 1.0, 1.0)), turn(vec3(0.0, 1.0, 1.0)));
@@ -236,40 +203,40 @@ fn overlapping_two_octants(name: &str) -> Described<Octree> {
     asked
 }
 
+fn octree_over_spheres() -> Vec<CellsQuery<Octree>> {
+    let (scene, rays) = spheres_and_rays(128, 9, (8, 1.0));
+    queries(&octree(&scene.boxes(), 4), &scene, &rays)
+}
+
+/// The visits to leaves that the ray enters.
+fn to_leaves(query: &CellsQuery<Octree>, visits: &[u32]) -> Vec<u32> {
+    let parts = parts::of_cells(&query.cells, &query.ray);
+    let is_entered = |node: u32| parts.iter().any(|(entered, ..)| *entered == node);
+    let is_leaf = |node: u32| is_entered(node) && query.cells.nodes[node as usize].is_leaf();
+    visits.iter().copied().filter(|&node| is_leaf(node)).collect()
+}
+
 pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
-    let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32);
-    let (scene, rays) = spheres_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 12.0);
-    let cells = octree(&scene.boxes(), 4);
-    let queries = queries(&cells, &scene, &rays);
-    all_hold(compare(&queries, trial.kit.octree_search(&queries), |query, yours| {
-        let parts = parts::of_cells(&cells, &query.ray);
-        judge_visits("octree over 128 spheres, from the root down", query, &parts, &yours)
-    }))?;
-    all_hold(compare(&queries, trial.kit.octree_by_cells(&queries), |query, yours| {
+    let queries = octree_over_spheres();
+    OCTREE.visits(trial.kit, "octree over 128 spheres, from the root down", &queries)?;
+    OCTREE_BY_CELLS.all_visits(trial.kit, &queries, |query, yours| {
         // Judge the visits to leaves only: each way down to a leaf visits the nodes above it again.
-        let parts = parts::of_cells(&cells, &query.ray);
-        let leaves = parts::of_leaves(&cells, &parts);
-        let visits = yours.visits.iter().copied().filter(|node| leaves.contains(node)).collect();
-        judge_visits("octree over 128 spheres, cell by cell", query, &parts, &CellsAnswer { visits, ..yours })
-    }))
+        let visits = to_leaves(query, &yours.visits);
+        let what = "octree over 128 spheres, cell by cell";
+        OCTREE_BY_CELLS.judge_visits(what, query, &CellsAnswer { visits, ..yours })
+    })
 }
 
 pub(super) fn octree_by_neighbours_visits_no_node_again(trial: &Trial<'_>) -> CheckResult {
-    let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32);
-    let (scene, rays) = spheres_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 12.0);
-    let cells = octree(&scene.boxes(), 4);
-    let queries = queries(&cells, &scene, &rays);
-    all_hold(compare(&queries, trial.kit.octree_by_neighbours(&queries), |query, yours| {
-        let parts = parts::of_cells(&cells, &query.ray);
-        let input = "octree over 128 spheres, by neighbours";
+    OCTREE_BY_NEIGHBOURS.all_visits(trial.kit, &octree_over_spheres(), |query, yours| {
         // A search that returns to the root visits the root once per leaf.
         let returns = yours.visits.iter().filter(|visit| **visit == 0).count();
-        let leaves = parts::of_leaves(&cells, &parts);
-        let n_leaves = yours.visits.iter().filter(|node| leaves.contains(node)).count();
         let mistake = (
-            returns > 1 && returns >= n_leaves,
+            returns > 1 && returns >= to_leaves(query, &yours.visits).len(),
             "you go back to the root for each leaf: go up only to the smallest cell that contains the next leaf, too",
         );
-        judge_visits(input, query, &parts, &yours).map_err(|broken| broken.explained_first_by([mistake]))
-    }))
+        let outcome =
+            OCTREE_BY_NEIGHBOURS.judge_visits("octree over 128 spheres, by neighbours", query, &yours);
+        outcome.map_err(|broken| broken.explained_first_by([mistake]))
+    })
 }

@@ -1,22 +1,23 @@
 //! The intervals of a ray in the nodes of a structure, computed by the definition: every node is tested.
 
-use super::searches::Parts;
-use super::{octant_mistakes, plane_mistakes};
 use checks::double::box_interval;
-use glam::uvec3;
+use glam::{UVec3, uvec3};
 use raykata::aabb::Aabb;
-use raykata::partition::{
-    Bsp, BspNode, Cell, CellTree, CutPlane, Grid, KdTree, Octree, OctreeNode, PlaneNode, PolygonBsp,
-    PolygonBspNode, Tree, TreeNode,
-};
+use raykata::partition::{Cell, CellTree, CutPlane, Grid, PlaneNode, PolygonBsp, Tree, TreeNode};
 use raykata::ray::Ray;
 
-/// The interval of a ray in a cell that is widened a little, so that cells that the ray only touches are included.
-fn part(ray: &Ray, cell: &Cell) -> Option<(f64, f64)> {
-    part_of(ray, cell, (cell.max - cell.min).max_element() * (-16f64).exp2())
+/// A room for a cell that is a little larger, so that it includes what a ray only touches: a share of its longest side.
+pub(super) fn touching(cell: &Cell) -> f64 {
+    (cell.max - cell.min).max_element() * (-16f64).exp2()
 }
 
-fn part_of(ray: &Ray, cell: &Cell, room: f64) -> Option<(f64, f64)> {
+/// A room for a smaller cell, into which a ray comes only well inside the faces: by a 256th of the longest side.
+pub(super) fn well_inside(cell: &Cell) -> f64 {
+    (cell.max - cell.min).max_element() / -256.0
+}
+
+/// The interval of a ray in a cell that is larger by `room` on all sides.
+fn part(ray: &Ray, cell: &Cell, room: f64) -> Option<(f64, f64)> {
     let wide = Aabb::new((cell.min - room).as_vec3(), (cell.max + room).as_vec3());
     let (near, far) = box_interval(ray, &wide);
     let (near, far) = (near.max(f64::from(ray.t_min)), far.min(f64::from(ray.t_max)));
@@ -53,38 +54,17 @@ fn in_order(mut leaves: Vec<Leaf>) -> Vec<Leaf> {
     leaves
 }
 
-/// The cells of a structure as a ray goes through them, and the mistakes that are possible there.
-pub(super) trait Structure {
-    /// The leaves that the ray enters, in their order.
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf>;
-
-    /// The primitives that a cell or a node lists; none for an inner node.
-    fn listed(&self, node: u32) -> &[u32];
-
-    /// The known mistakes of this structure's searches, each with whether it finds this hit.
-    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)>;
-}
-
-impl Structure for Grid {
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        let leaf = |(number, cell): (u32, Cell)| {
-            let (enter, exit) = exactly(ray, &cell)?;
-            Some(Leaf { enter, exit, ids: self.primitives(number).to_vec() })
-        };
-        in_order(numbered(self).filter_map(leaf).collect())
-    }
-
-    fn listed(&self, node: u32) -> &[u32] {
-        self.primitives(node)
-    }
-
-    fn mistakes(&self, _: &Ray, _: &[f32], _: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        Vec::new()
-    }
+/// The cells of a grid that a ray enters.
+pub(super) fn leaves_of_grid(grid: &Grid, ray: &Ray) -> Vec<Leaf> {
+    let leaf = |(number, _, cell): (u32, UVec3, Cell)| {
+        let (enter, exit) = exactly(ray, &cell)?;
+        Some(Leaf { enter, exit, ids: grid.primitives(number).to_vec() })
+    };
+    in_order(numbered(grid).filter_map(leaf).collect())
 }
 
 /// The leaves of a tree of cells that a ray enters.
-fn leaves_of_cells<N: TreeNode<Region = Cell>>(tree: &CellTree<N>, ray: &Ray) -> Vec<Leaf> {
+pub(super) fn leaves_of_cells<N: TreeNode<Region = Cell>>(tree: &CellTree<N>, ray: &Ray) -> Vec<Leaf> {
     let mut leaves = Vec::new();
     tree.walk(usize::MAX, |node, cell, _| {
         if tree.nodes[node as usize].is_leaf()
@@ -96,127 +76,53 @@ fn leaves_of_cells<N: TreeNode<Region = Cell>>(tree: &CellTree<N>, ray: &Ray) ->
     in_order(leaves)
 }
 
-impl Structure for Octree {
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        leaves_of_cells(self, ray)
-    }
-
-    fn listed(&self, node: u32) -> &[u32] {
-        Tree::listed(self, node)
-    }
-
-    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        octant_mistakes::of_octree(self, ray, hits, found)
-    }
+/// The leaves of a tree of planes that a ray enters, and the planes that it reaches with the polygons on them. A side
+/// contains the points within `room` of its plane.
+pub(super) fn leaves_of_planes<N: PlaneNode>(tree: &Tree<N>, room: f64, ray: &Ray) -> Vec<Leaf> {
+    let mut leaves = Vec::new();
+    let on_wide_side = |part: (f64, f64), (plane, side): &(CutPlane, f64)| {
+        let wide = CutPlane { offset: plane.offset - side * room, ..*plane };
+        on_side(ray, &wide, *side, part, 0.0)
+    };
+    tree.walk(|node, above, _| {
+        let inner = &tree.nodes[node as usize];
+        let here = inner.plane().map(|plane| [(plane, -1.0), (plane, 1.0)]);
+        let range = (f64::from(ray.t_min), f64::from(ray.t_max));
+        let (enter, exit) = above.iter().chain(here.iter().flatten()).fold(range, on_wide_side);
+        if enter <= exit && inner.range().is_some() {
+            // No hit of a polygon lies behind its plane.
+            let exit = if here.is_some() { f64::INFINITY } else { exit };
+            leaves.push(Leaf { enter, exit, ids: tree.listed(node).to_vec() });
+        }
+    });
+    in_order(leaves)
 }
 
-impl Structure for KdTree {
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        leaves_of_cells(self, ray)
-    }
-
-    fn listed(&self, node: u32) -> &[u32] {
-        Tree::listed(self, node)
-    }
-
-    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        plane_mistakes::of_kd_tree(self, ray, hits, found)
-    }
-}
-
-impl Structure for Bsp {
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        let mut leaves = Vec::new();
-        self.walk(|node, above, _| {
-            let BspNode::Leaf { first, count } = self.nodes[node as usize] else { return };
-            let range = (f64::from(ray.t_min), f64::from(ray.t_max));
-            let (enter, exit) =
-                above.iter().fold(range, |part, (plane, side)| on_side(ray, plane, *side, part, 0.0));
-            if enter <= exit {
-                leaves.push(Leaf { enter, exit, ids: self.primitives(first, count).to_vec() });
-            }
-        });
-        in_order(leaves)
-    }
-
-    fn listed(&self, node: u32) -> &[u32] {
-        Tree::listed(self, node)
-    }
-
-    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        plane_mistakes::of_bsp(self, ray, hits, found)
-    }
-}
-
-impl Structure for PolygonBsp {
-    /// The leaves, and the planes that the ray reaches with the polygons on them.
-    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
-        let mut leaves = Vec::new();
-        // A side contains the points within the room of its plane.
-        let on_wide_side = |part: (f64, f64), (plane, side): &(CutPlane, f64)| {
-            let wide = CutPlane { offset: plane.offset - side * self.room, ..*plane };
-            on_side(ray, &wide, *side, part, 0.0)
-        };
-        self.walk(|node, above, _| {
-            let range = (f64::from(ray.t_min), f64::from(ray.t_max));
-            let part = above.iter().fold(range, on_wide_side);
-            let ((enter, exit), end, first, count) = match self.nodes[node as usize] {
-                PolygonBspNode::Leaf { first, count } => (part, part.1, first, count),
-                PolygonBspNode::Inner { plane, first, count, .. } => {
-                    let both = [(plane, -1.0), (plane, 1.0)].iter().fold(part, on_wide_side);
-                    // No hit of a polygon lies behind its plane.
-                    (both, f64::INFINITY, first, count)
-                }
-            };
-            if enter <= exit {
-                leaves.push(Leaf { enter, exit: end, ids: self.primitives(first, count).to_vec() });
-            }
-        });
-        in_order(leaves)
-    }
-
-    fn listed(&self, node: u32) -> &[u32] {
-        Tree::listed(self, node)
-    }
-
-    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        plane_mistakes::of_polygon_bsp(self, ray, hits, found)
-    }
-}
-
-fn numbered(grid: &Grid) -> impl Iterator<Item = (u32, Cell)> {
+/// The cells of a grid, each with its number and its coordinates.
+pub(super) fn numbered(grid: &Grid) -> impl Iterator<Item = (u32, UVec3, Cell)> {
     let n = grid.resolution;
-    (0..n.element_product()).map(move |i| (i, grid.cell(uvec3(i % n.x, i / n.x % n.y, i / (n.x * n.y)))))
+    (0..n.element_product()).map(move |i| {
+        let at = uvec3(i % n.x, i / n.x % n.y, i / (n.x * n.y));
+        (i, at, grid.cell(at))
+    })
 }
 
-pub(super) fn of_grid(grid: &Grid, ray: &Ray) -> Parts {
-    numbered(grid).filter_map(|(i, cell)| part(ray, &cell).map(|(near, far)| (i, near, far))).collect()
-}
+/// The interval of a ray in each node of a structure: `(node, entry, exit)`, in double precision.
+pub(super) type Parts = Vec<(u32, f64, f64)>;
 
-/// The cells that the ray enters, or passes by within `room`.
-pub(super) fn near_grid(grid: &Grid, ray: &Ray, room: f64) -> Parts {
-    numbered(grid)
-        .filter_map(|(i, cell)| part_of(ray, &cell, room).map(|(near, far)| (i, near, far)))
-        .collect()
-}
-
-/// The cells that the ray passes through well inside their faces: by more than a 256th of their longest side.
-pub(super) fn inside_grid(grid: &Grid, ray: &Ray) -> Parts {
-    let inside = |cell: &Cell| part_of(ray, cell, (cell.max - cell.min).max_element() / -256.0);
-    numbered(grid).filter_map(|(i, cell)| inside(&cell).map(|(near, far)| (i, near, far))).collect()
+/// The cells that the ray enters if each is larger by its `room`.
+pub(super) fn of_grid(grid: &Grid, ray: &Ray, room: impl Fn(&Cell) -> f64) -> Parts {
+    let entered =
+        |(i, _, cell): (u32, UVec3, Cell)| part(ray, &cell, room(&cell)).map(|(near, far)| (i, near, far));
+    numbered(grid).filter_map(entered).collect()
 }
 
 pub(super) fn of_cells<N: TreeNode<Region = Cell>>(tree: &CellTree<N>, ray: &Ray) -> Parts {
     let mut parts = Vec::new();
     tree.walk(usize::MAX, |node, cell, _| {
-        parts.extend(part(ray, &cell).map(|(near, far)| (node, near, far)))
+        parts.extend(part(ray, &cell, touching(&cell)).map(|(near, far)| (node, near, far)))
     });
     parts
-}
-
-pub(super) fn of_leaves(octree: &Octree, parts: &Parts) -> Vec<u32> {
-    let is_leaf = |node: u32| matches!(octree.nodes[node as usize], OctreeNode::Leaf { .. });
-    parts.iter().map(|(node, ..)| *node).filter(|&node| is_leaf(node)).collect()
 }
 
 pub(super) fn of_planes<N: PlaneNode>(bsp: &Tree<N>, ray: &Ray) -> Parts {
@@ -234,7 +140,7 @@ pub(super) fn of_planes<N: PlaneNode>(bsp: &Tree<N>, ray: &Ray) -> Parts {
 pub(super) fn reached_planes(bsp: &PolygonBsp, ray: &Ray) -> Vec<u32> {
     let mut reached = Vec::new();
     bsp.walk(|node, above, _| {
-        if let PolygonBspNode::Inner { plane, .. } = bsp.nodes[node as usize] {
+        if let Some(plane) = bsp.nodes[node as usize].plane() {
             let with = |side: f64| above.iter().copied().chain([(plane, side)]).collect::<Vec<_>>();
             let ((enter, exit), (other_enter, other_exit)) =
                 (part_in(ray, &with(1.0)), part_in(ray, &with(-1.0)));

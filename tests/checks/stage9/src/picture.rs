@@ -1,14 +1,13 @@
 //! The picture of stage 9: a spiral staircase, searched in another structure in each sixth of the picture.
 
 use super::scenes::{Scene, Thing};
+use super::searches::queries;
 use checks::broken::CheckResult;
 use checks::picture::{Composed, SMALL};
 use checks::{Trial, picture};
 use glam::{Vec3, vec3};
-use raykata::kit::{
-    BspQuery, CellsAnswer, CellsQuery, GridQuery, KdQuery, Kit, OctreeQuery, ResolutionQuery,
-};
-use raykata::partition::KdHeuristics;
+use raykata::kit::{BspQuery, CellsAnswer, GridQuery, KdQuery, Kit, OctreeQuery, ResolutionQuery};
+use raykata::partition::{KdHeuristics, Tree};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 use std::f32::consts::TAU;
@@ -50,10 +49,6 @@ const MOST_NUMBERS: usize = 20_000;
 
 /// The answers to the rays, which are in six groups. Each is searched in a structure that the same kit has built.
 fn answers(kit: &dyn Kit, scene: &Scene, groups: &[Vec<Ray>; 6]) -> Vec<Vec<CellsAnswer>> {
-    fn queries<S: Clone>(cells: &S, numbers: usize, scene: &Scene, rays: &[Ray]) -> Vec<CellsQuery<S>> {
-        let rays = if numbers > MOST_NUMBERS { &[] } else { rays };
-        rays.iter().map(|ray| CellsQuery { cells: cells.clone(), ray: *ray, hits: scene.hits(ray) }).collect()
-    }
     let (boxes, hulls) = (scene.boxes(), scene.hulls());
     let all = checks::tree::around(&boxes);
     let resolution = ResolutionQuery { bounds: all, n_primitives: boxes.len(), density: 3.0 };
@@ -66,19 +61,21 @@ fn answers(kit: &dyn Kit, scene: &Scene, groups: &[Vec<Ray>; 6]) -> Vec<Vec<Cell
     let hulls = BspQuery { hulls, leaf_size: 4, max_depth: 6 };
     let bsp = kit.bsp_build(std::slice::from_ref(&hulls)).remove(0);
     let polygon_bsp = kit.polygon_bsp_build(&[hulls]).remove(0);
-    let in_grid = grid.starts.len() + grid.items.len();
-    let in_octree = octree.nodes.len() + octree.items.len();
-    let in_kd_tree = kd_tree.nodes.len() + kd_tree.items.len();
-    let in_bsp = bsp.nodes.len() + bsp.items.len();
-    let in_polygon_bsp = polygon_bsp.nodes.len() + polygon_bsp.items.len();
+    let rays = |numbers: usize, group: usize| -> &[Ray] {
+        if numbers > MOST_NUMBERS { &[] } else { &groups[group] }
+    };
     vec![
-        kit.grid_search(&queries(&grid, in_grid, scene, &groups[0])),
-        kit.octree_by_cells(&queries(&octree, in_octree, scene, &groups[1])),
-        kit.octree_search(&queries(&octree, in_octree, scene, &groups[2])),
-        kit.kd_search(&queries(&kd_tree, in_kd_tree, scene, &groups[3])),
-        kit.bsp_search(&queries(&bsp, in_bsp, scene, &groups[4])),
-        kit.polygon_bsp_search(&queries(&polygon_bsp, in_polygon_bsp, scene, &groups[5])),
+        kit.grid_search(&queries(&grid, scene, rays(grid.starts.len() + grid.items.len(), 0))),
+        kit.octree_by_cells(&queries(&octree, scene, rays(numbers(&octree), 1))),
+        kit.octree_search(&queries(&octree, scene, rays(numbers(&octree), 2))),
+        kit.kd_search(&queries(&kd_tree, scene, rays(numbers(&kd_tree), 3))),
+        kit.bsp_search(&queries(&bsp, scene, rays(numbers(&bsp), 4))),
+        kit.polygon_bsp_search(&queries(&polygon_bsp, scene, rays(numbers(&polygon_bsp), 5))),
     ]
+}
+
+fn numbers<N>(tree: &Tree<N>) -> usize {
+    tree.nodes.len() + tree.items.len()
 }
 
 /// The colour of a hit: each step has another hue, and what is near the camera is bright.

@@ -1,8 +1,8 @@
 //! Searches of binary trees with one mistake each at their planes. A mistake is named only if its search gives exactly the
 //! student's answer.
 
-use super::search_mistakes::{Hit, ROOM, Wrong};
-use raykata::partition::{Bsp, BspNode, KdNode, KdTree, PolygonBsp, PolygonBspNode};
+use super::search_mistakes::{Hit, Mistakes, ROOM, Wrong};
+use raykata::partition::{CutPlane, Tree, TreeNode};
 use raykata::ray::Ray;
 
 /// How a search of a binary tree treats a plane.
@@ -34,7 +34,7 @@ enum AtPlane {
     PolygonsLeftOut,
 }
 
-const AT_PLANES: [(AtPlane, &str); 14] = [
+const AT_PLANES: [(AtPlane, &str); 15] = [
     (
         AtPlane::InPlaneBelow,
         "a ray in the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side below only",
@@ -85,43 +85,44 @@ const AT_PLANES: [(AtPlane, &str); 14] = [
         AtPlane::ByDirection,
         "you choose the side by the direction alone: the ray is first on the side of its origin",
     ),
+    (AtPlane::PolygonsLeftOut, "step 2 of the slide is missing: you do not test the polygons on the plane"),
 ];
 
-/// A node of a binary tree, as one ray sees it.
-enum Plane<'a> {
-    Leaf(&'a [u32]),
-    /// The height of the ray's origin above the plane, its change per unit of `t`, the children below and above, the
-    /// polygons in the plane, and the height at which a point still counts as in the plane.
-    Cut {
-        height: f64,
-        rate: f64,
-        below: u32,
-        above: u32,
-        on: &'a [u32],
-        room: f64,
-    },
-}
-
-/// A ray in a binary tree whose nodes it sees by `plane`, with the hits of all primitives.
-struct Binary<'a> {
-    plane: &'a dyn Fn(u32) -> Plane<'a>,
+/// A ray in a binary tree, with the hits of all primitives.
+struct Binary<'a, N> {
+    planes: &'a Planes<'a, N>,
     ray: &'a Ray,
     hits: &'a [f32],
     wrong: AtPlane,
 }
 
-impl Binary<'_> {
+/// A binary tree with its planes.
+pub(super) struct Planes<'a, N> {
+    pub tree: &'a Tree<N>,
+    /// The plane of an inner node; `None` for a leaf. What an inner node lists lies in its plane.
+    pub plane: fn(&N) -> Option<CutPlane>,
+    /// The height above a plane at which a point still counts as in the plane.
+    pub room: f64,
+}
+
+impl<N: TreeNode> Binary<'_, N> {
     fn search(&self, node: u32, (t, t_end): (f64, f64), best: &mut Hit) {
         if best.is_some_and(|(_, best)| f64::from(best) * (1.0 + ROOM) < t) {
             return;
         }
-        let (height, rate, below, above, on, room) = match (self.plane)(node) {
-            Plane::Leaf(ids) => {
-                let kept = Wrong::NoRoom;
-                return kept.keep(best, kept.of_cell(ids, self.hits, self.ray));
-            }
-            Plane::Cut { height, rate, below, above, on, room } => (height, rate, below, above, on, room),
+        let Planes { tree, plane, room } = *self.planes;
+        // A tree without nodes lists nothing.
+        let Some(inner) = tree.nodes.get(node as usize) else { return };
+        let keep_listed = |best: &mut Hit| {
+            let kept = Wrong::NoRoom;
+            kept.keep(best, kept.of_cell(tree.listed(node), self.hits, self.ray));
         };
+        let mut children = inner.children();
+        let (Some(plane), Some(below), Some(above)) = (plane(inner), children.next(), children.next()) else {
+            return keep_listed(best);
+        };
+        let (height, rate) =
+            (plane.distance(self.ray.origin), plane.normal.dot(self.ray.direction.as_dvec3()));
         let crossing = -height / rate;
         let is_crossed = rate != 0.0 && t <= crossing && crossing <= t_end;
         let in_plane = height.abs() <= room && rate == 0.0;
@@ -159,8 +160,7 @@ impl Binary<'_> {
             self.search(child, part, best);
         }
         if tests_polygons {
-            let kept = Wrong::NoRoom;
-            kept.keep(best, kept.of_cell(on, self.hits, self.ray));
+            keep_listed(best);
         }
         for (child, part) in sides {
             self.search(child, part, best);
@@ -168,83 +168,18 @@ impl Binary<'_> {
     }
 }
 
-fn at_planes<'a>(
-    plane: &'a dyn Fn(u32) -> Plane<'a>,
-    ray: &'a Ray,
-    hits: &'a [f32],
-    found: Hit,
-) -> Vec<(bool, &'static str)> {
-    let range = (f64::from(ray.t_min), f64::from(ray.t_max));
-    let gives = |wrong: AtPlane| {
-        let mut best = None;
-        Binary { plane, ray, hits, wrong }.search(0, range, &mut best);
-        best == found
-    };
-    let left_out = (
-        gives(AtPlane::PolygonsLeftOut),
-        "step 2 of the slide is missing: you do not test the polygons on the plane",
-    );
-    AT_PLANES.map(|(wrong, text)| (gives(wrong), text)).into_iter().chain([left_out]).collect()
-}
-
-/// The known mistakes at the planes of a kd-tree, each with whether it finds this hit.
-pub(super) fn of_kd_tree(tree: &KdTree, ray: &Ray, hits: &[f32], found: Hit) -> Vec<(bool, &'static str)> {
-    let plane = |node: u32| match tree.nodes.get(node as usize).copied() {
-        // A tree without nodes lists nothing.
-        None => Plane::Leaf(&[]),
-        Some(KdNode::Leaf { first, count }) => Plane::Leaf(tree.primitives(first, count)),
-        Some(KdNode::Inner { axis, at, left, right }) => {
-            let axis = usize::from(axis);
-            let height = f64::from(ray.origin[axis]) - f64::from(at);
-            Plane::Cut {
-                height,
-                rate: f64::from(ray.direction[axis]),
-                below: left,
-                above: right,
-                on: &[],
-                room: 0.0,
-            }
-        }
-    };
-    at_planes(&plane, ray, hits, found)
-}
-
-/// The known mistakes at the planes of a BSP tree, each with whether it finds this hit.
-pub(super) fn of_bsp(bsp: &Bsp, ray: &Ray, hits: &[f32], found: Hit) -> Vec<(bool, &'static str)> {
-    let plane = |node: u32| match bsp.nodes.get(node as usize).copied() {
-        // A tree without nodes lists nothing.
-        None => Plane::Leaf(&[]),
-        Some(BspNode::Leaf { first, count }) => Plane::Leaf(bsp.primitives(first, count)),
-        Some(BspNode::Inner { plane, back, front }) => {
-            let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.direction.as_dvec3()));
-            Plane::Cut { height, rate, below: back, above: front, on: &[], room: 0.0 }
-        }
-    };
-    at_planes(&plane, ray, hits, found)
-}
-
-/// The known mistakes at the planes of a BSP tree with polygons in its nodes, each with whether it finds this hit.
-pub(super) fn of_polygon_bsp(
-    bsp: &PolygonBsp,
+/// The known mistakes at the planes of a tree, each with whether it finds this hit.
+pub(super) fn at_planes<N: TreeNode>(
+    planes: &Planes<'_, N>,
     ray: &Ray,
     hits: &[f32],
     found: Hit,
-) -> Vec<(bool, &'static str)> {
-    let plane = |node: u32| match bsp.nodes.get(node as usize).copied() {
-        // A tree without nodes lists nothing.
-        None => Plane::Leaf(&[]),
-        Some(PolygonBspNode::Leaf { first, count }) => Plane::Leaf(bsp.primitives(first, count)),
-        Some(PolygonBspNode::Inner { plane, first, count, back, front }) => {
-            let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.direction.as_dvec3()));
-            Plane::Cut {
-                height,
-                rate,
-                below: back,
-                above: front,
-                on: bsp.primitives(first, count),
-                room: bsp.room,
-            }
-        }
+) -> Mistakes {
+    let range = (f64::from(ray.t_min), f64::from(ray.t_max));
+    let gives = |wrong: AtPlane| {
+        let mut best = None;
+        Binary { planes, ray, hits, wrong }.search(0, range, &mut best);
+        best == found
     };
-    at_planes(&plane, ray, hits, found)
+    AT_PLANES.map(|(wrong, text)| (gives(wrong), text)).into()
 }

@@ -1,39 +1,17 @@
 //! The laws of the search in a BSP tree with polygons in its nodes.
 
 use super::parts;
-use super::scenes::{Scene, Thing, sphere, wall};
-use super::searches::{Described, Searcher, agrees, judge_visits, queries, spheres_and_rays};
-use super::structures::polygon_bsp;
+use super::scenes::{Scene, Thing, room, sphere, wall};
+use super::searches::{Described, POLYGON_BSP, agrees, place, queries, spheres_and_rays};
+use super::structures::{diagonal, one_plane, polygon_bsp, tile};
 use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
+use checks::broken::{Broken, CheckResult};
 use checks::paste::Paste;
-use glam::{DVec3, Vec3, vec3};
+use glam::{Vec3, vec3};
 use raykata::kit::{CellsAnswer, CellsQuery};
-use raykata::partition::{CutPlane, PolygonBsp, PolygonBspNode};
+use raykata::partition::{PolygonBsp, TreeNode};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
-
-/// A tree of one plane with these primitives on it, behind it and in front of it.
-fn one_plane(plane: CutPlane, on_plane: &[u32], behind: &[u32], before: &[u32]) -> PolygonBsp {
-    let mut bsp = PolygonBsp { room: 1e-6, ..PolygonBsp::default() };
-    let root = bsp.add_node(0, 1);
-    let [back, front] = [bsp.add_node(1, 1), bsp.add_node(1, 1)];
-    bsp.set_leaf(back, behind);
-    bsp.set_leaf(front, before);
-    bsp.set_children(root, plane, on_plane, back, front);
-    bsp
-}
-
-fn diagonal() -> CutPlane {
-    CutPlane { normal: DVec3::new(1.0, 1.0, 0.0).normalize(), offset: 0.0 }
-}
-
-/// A triangle in the plane x + y = 0.
-fn tile(z: f32) -> Thing {
-    let corners = [vec3(4.0, -4.0, z - 4.0), vec3(-4.0, 4.0, z - 4.0), vec3(0.0, 0.0, z + 4.0)];
-    Thing::Tile(Triangle { a: corners[0], b: corners[1], c: corners[2] })
-}
 
 pub(super) fn polygon_bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     // A large sphere in the leaf of the near side is hit on the far side, behind a triangle on the plane.
@@ -52,8 +30,8 @@ pub(super) fn polygon_bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> C
     let ray = Ray::new(vec3(-3.0, -3.0, 0.0), vec3(1.0, 1.0, 0.0));
     let control = one_plane(diagonal(), &[], &[0, 1, 2], &[]);
     asked.control("BSP tree of one plane without polygons", control, ray, (0.0, 2.0));
-    asked.judge(|queries| trial.kit.polygon_bsp_search(queries))?;
-    agrees(trial, Searcher::PolygonBsp)
+    asked.judge(trial.kit, &POLYGON_BSP)?;
+    agrees(trial, &POLYGON_BSP)
 }
 
 /// Planes behind the ray or beyond its end, and rays that run in a plane, start on it, or end on it.
@@ -102,39 +80,24 @@ pub(super) fn polygon_bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> C
         );
     }
     // A room whose walls lie in the planes of the tree.
-    let walls = (0..3).flat_map(|axis| [wall(axis, -1.0, 1.0), wall(axis, 1.0, 1.0)]).flatten();
-    let room = Scene::new(walls.collect());
+    let (room, rays) = room();
     let tree = polygon_bsp(&room.hulls(), 8);
-    for i in 0..64 {
-        let spread = |k: i32| ((i * k) % 17) as f32 / 8.5 - 1.0;
-        let ray = Ray::new(vec3(0.1, -0.2, 0.3), vec3(spread(3), spread(5), spread(7) + 0.01));
-        asked.ask("BSP tree over a room of twelve triangles", &tree, &room, ray);
-    }
-    asked.judge(|queries| trial.kit.polygon_bsp_search(queries))
+    asked.ask_all("BSP tree over a room of twelve triangles", &tree, &room, rays);
+    asked.judge(trial.kit, &POLYGON_BSP)
 }
 
 pub(super) fn polygon_bsp_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
-    let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32 * 1.5);
-    let (spheres, rays) = spheres_and_rays(&(0..64).map(place).collect::<Vec<Vec3>>(), 5, 12.0);
-    // Each sphere gets three walls behind it.
+    let (spheres, rays) = spheres_and_rays(64, 5, (8, 1.5));
+    // A wall of two triangles stands behind every fourth sphere.
     let tiles = (0..64).step_by(4).flat_map(|i| {
-        let [a, b] = wall(i % 3, 0.0, 0.4);
-        [a, b].map(|thing| match thing {
-            Thing::Tile(Triangle { a, b, c }) => {
-                let [a, b, c] = [a, b, c].map(|corner| corner + place(i) + 0.45);
-                Thing::Tile(Triangle { a, b, c })
-            }
-            thing => thing,
-        })
+        wall(i % 3, 0.0, 0.4).map(|thing| thing.moved(|point| point + place(i, 8, 1.5) + 0.45))
     });
     let scene = Scene::new(spheres.things.iter().cloned().chain(tiles).collect());
     let cells = polygon_bsp(&scene.hulls(), 8);
-    let queries = queries(&cells, &scene, &rays);
-    all_hold(compare(&queries, trial.kit.polygon_bsp_search(&queries), |query, yours| {
-        let parts = parts::of_planes(&cells, &query.ray);
-        judge_visits("BSP tree over 64 spheres and 32 triangles", query, &parts, &yours)?;
+    POLYGON_BSP.all_visits(trial.kit, &queries(&cells, &scene, &rays), |query, yours| {
+        POLYGON_BSP.judge_visits("BSP tree over 64 spheres and 32 triangles", query, &yours)?;
         judge_tests(query, &yours)
-    }))
+    })
 }
 
 /// Judges the tests: each tested primitive is in a visited leaf, or on the plane of a visited node that the ray reaches
@@ -142,13 +105,9 @@ pub(super) fn polygon_bsp_visits_what_the_ray_enters_before_its_hit(trial: &Tria
 fn judge_tests(query: &CellsQuery<PolygonBsp>, yours: &CellsAnswer) -> CheckResult {
     let (cells, ray) = (&query.cells, &query.ray);
     let reached = parts::reached_planes(cells, ray);
+    let is_reached = |node: u32| cells.nodes[node as usize].is_leaf() || reached.contains(&node);
     let may_test = |primitive: u32| {
-        yours.visits.iter().any(|&node| match cells.nodes[node as usize] {
-            PolygonBspNode::Leaf { first, count } => cells.primitives(first, count).contains(&primitive),
-            PolygonBspNode::Inner { first, count, .. } => {
-                reached.contains(&node) && cells.primitives(first, count).contains(&primitive)
-            }
-        })
+        yours.visits.iter().any(|&node| is_reached(node) && cells.listed(node).contains(&primitive))
     };
     match yours.tests.iter().find(|&&primitive| !may_test(primitive)) {
         None => Ok(()),

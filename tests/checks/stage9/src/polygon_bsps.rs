@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::BspQuery;
-use raykata::partition::{CutPlane, MOST_REFERENCES, PolygonBsp, PolygonBspNode, corners};
+use raykata::partition::{CutPlane, MOST_REFERENCES, PlaneNode, PolygonBsp, PolygonBspNode, corners};
 
 const WHAT_MAKES_IT: &str = "the definition of a BSP tree with polygons in its nodes";
 
@@ -54,12 +54,7 @@ fn fault(query: &BspQuery, yours: &PolygonBsp) -> Option<Fault> {
     let slack = size / 64.0;
     let mut faults = Vec::new();
     yours.walk(|node, above, depth| {
-        let (listed, plane) = match yours.nodes[node as usize] {
-            PolygonBspNode::Inner { plane, first, count, .. } => {
-                (yours.primitives(first, count), Some(plane))
-            }
-            PolygonBspNode::Leaf { first, count } => (yours.primitives(first, count), None),
-        };
+        let (listed, plane) = (yours.listed(node), yours.nodes[node as usize].plane());
         let excused = depth == query.max_depth || yours.items.len() > 2 * query.hulls.len();
         faults.extend(listing_fault(query, (node, listed), plane, above, (size, slack, excused)));
         // A solid with a corner in the region of a leaf belongs to the leaf.
@@ -192,15 +187,12 @@ fn points(hull: &[Vec3]) -> Vec<DVec3> {
 
 /// Whether a node that lists the polygon `id` contains `point`, within `room`.
 fn is_covered(bsp: &PolygonBsp, node: u32, point: DVec3, id: u32, room: f64) -> bool {
-    match bsp.nodes[node as usize] {
-        PolygonBspNode::Leaf { first, count } => bsp.primitives(first, count).contains(&id),
-        PolygonBspNode::Inner { plane, first, count, back, front } => {
-            let height = plane.normal.dot(point) - plane.offset;
-            let here = height.abs() <= room && bsp.primitives(first, count).contains(&id);
-            here || (height >= -room && is_covered(bsp, front, point, id, room))
-                || (height <= room && is_covered(bsp, back, point, id, room))
-        }
-    }
+    let is_listed = bsp.listed(node).contains(&id);
+    let PolygonBspNode::Inner { plane, back, front, .. } = bsp.nodes[node as usize] else { return is_listed };
+    let height = plane.normal.dot(point) - plane.offset;
+    (is_listed && height.abs() <= room)
+        || (height >= -room && is_covered(bsp, front, point, id, room))
+        || (height <= room && is_covered(bsp, back, point, id, room))
 }
 
 pub(super) fn polygon_bsp_puts_polygons_on_planes(trial: &Trial<'_>) -> CheckResult {
@@ -226,25 +218,12 @@ pub(super) fn polygon_bsp_puts_polygons_on_planes(trial: &Trial<'_>) -> CheckRes
 }
 
 pub(super) fn polygon_bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
-    let square = |s: f32| vec![vec3(-s, -s, 0.0), vec3(s, -s, 0.0), vec3(s, s, 0.0), vec3(-s, s, 0.0)];
-    let star = (0..30).map(|i| {
-        let (y, x) = (i as f32 * 0.21).sin_cos();
-        vec![vec3(x, y, -1.0), vec3(-x, -y, -1.0), vec3(-x, -y, 1.0), vec3(x, y, 1.0)]
-    });
-    let line = (0..20).map(|i| [0.0, 0.5, 0.7].map(|x| vec3(i as f32 + x, 0.0, 0.0)).to_vec());
-    type HullCase = (&'static str, Vec<Vec<Vec3>>, usize, usize);
-    let hulls: [HullCase; 4] = [
-        // One node lists all of them.
-        ("forty squares in one plane", (1..=40).map(|i| square(i as f32)).collect(), 1, 20),
-        ("thirty sheets through one line", star.collect(), MOST_REFERENCES, 20),
-        ("twenty slivers in a line", line.collect(), MOST_REFERENCES, 20),
-        // So deep a tree would split each triangle into more than `MOST_REFERENCES` parts.
-        ("400 large triangles that cross each other", crossing_triangles(400), MOST_REFERENCES, 32),
-    ];
-    let boxes = |all: Vec<Aabb>| -> Vec<Vec<Vec3>> { all.iter().map(corners).collect() };
-    let sets =
-        super::lists::infinite().into_iter().map(|(name, all)| (name, boxes(all), MOST_REFERENCES, 20));
-    for (name, hulls, most, max_depth) in hulls.into_iter().chain(sets) {
+    let polygons = hulls::infinite_polygons().map(|(name, hulls, most)| (name, hulls, most, 20));
+    // So deep a tree would split each triangle into more than `MOST_REFERENCES` parts.
+    let name = "400 large triangles that cross each other";
+    let crossing = [(name, crossing_triangles(400), MOST_REFERENCES, 32)];
+    let boxes = hulls::infinite_boxes().map(|(name, hulls, most)| (name, hulls, most, 20));
+    for (name, hulls, most, max_depth) in polygons.into_iter().chain(crossing).chain(boxes) {
         let n = hulls.len();
         let query = BspQuery { hulls, leaf_size: 1, max_depth };
         let input = format!("build of {name}, leaf_size 1, max_depth {max_depth}");

@@ -51,14 +51,21 @@ impl Scales {
     }
 
     fn of_thing(self, thing: Thing) -> Thing {
-        let size = self.size;
-        match thing {
+        match thing.moved(|point| self.size * point) {
             Thing::Sphere(Sphere { center, radius }) => {
-                Thing::Sphere(Sphere { center: size * center, radius: size * radius })
+                Thing::Sphere(Sphere { center, radius: self.size * radius })
             }
-            Thing::Tile(Triangle { a, b, c }) => {
-                Thing::Tile(Triangle { a: size * a, b: size * b, c: size * c })
-            }
+            tile => tile,
+        }
+    }
+}
+
+impl Thing {
+    /// The same primitive with its centre or its corners moved.
+    pub(super) fn moved(self, to: impl Fn(Vec3) -> Vec3) -> Thing {
+        match self {
+            Thing::Sphere(Sphere { center, radius }) => Thing::Sphere(Sphere { center: to(center), radius }),
+            Thing::Tile(Triangle { a, b, c }) => Thing::Tile(Triangle { a: to(a), b: to(b), c: to(c) }),
         }
     }
 }
@@ -127,14 +134,39 @@ fn tile_t(ray: &Ray, tile: &Triangle) -> Option<f64> {
 
 /// The two triangles of a square wall across `axis` at `at`, from `-size` to `size`.
 pub(super) fn wall(axis: usize, at: f32, size: f32) -> [Thing; 2] {
-    let corner = |u: f32, v: f32| {
-        let mut p = Vec3::splat(at);
-        p[(axis + 1) % 3] = u * size;
-        p[(axis + 2) % 3] = v * size;
-        p
-    };
+    let corner = |u: f32, v: f32| along(axis, vec3(at, u * size, v * size));
     let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
     [Thing::Tile(Triangle { a, b, c }), Thing::Tile(Triangle { a, b: c, c: d })]
+}
+
+/// The vector with its x along `axis`, and its y and z along the next axes.
+pub(super) fn along(axis: usize, v: Vec3) -> Vec3 {
+    let mut turned = Vec3::ZERO;
+    (0..3).for_each(|k| turned[(axis + k) % 3] = v[k]);
+    turned
+}
+
+/// 27 spheres in a cube, with centres at this distance from each other.
+pub(super) fn lattice(distance: f32) -> Vec<Thing> {
+    let place = |i: i32| distance * vec3((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32);
+    (0..27).map(|i| Thing::Sphere(Sphere { center: place(i), radius: 0.5 })).collect()
+}
+
+/// The twelve triangles of a room whose walls are at -1 and 1 across each axis, and 64 rays from inside it.
+pub(super) fn room() -> (Scene, Vec<Ray>) {
+    let walls = (0..3).flat_map(|axis| [wall(axis, -1.0, 1.0), wall(axis, 1.0, 1.0)]).flatten();
+    let spread = |i: i32, k: i32| ((i * k) % 17) as f32 / 8.5 - 1.0;
+    let direction = |i: i32| vec3(spread(i, 3), spread(i, 5), spread(i, 7) + 0.01);
+    let rays = (0..64).map(|i| Ray::new(vec3(0.1, -0.2, 0.3), direction(i)));
+    (Scene::new(walls.collect()), rays.collect())
+}
+
+/// The directions along axes and diagonals, with zeros of both signs.
+pub(super) fn straight() -> impl Iterator<Item = Vec3> {
+    const STEPS: [f32; 4] = [-1.0, 0.0, -0.0, 1.0];
+    let all =
+        STEPS.into_iter().flat_map(|x| STEPS.into_iter().flat_map(move |y| STEPS.map(|z| vec3(x, y, z))));
+    all.filter(|direction| *direction != Vec3::ZERO)
 }
 
 /// A sphere with centre `(x, y, z)`.

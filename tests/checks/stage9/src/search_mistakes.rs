@@ -7,6 +7,9 @@ use raykata::ray::Ray;
 
 pub(super) type Hit = Option<(u32, f32)>;
 
+/// Mistakes, each with whether it is proven.
+pub(super) type Mistakes = Vec<(bool, &'static str)>;
+
 /// The room that a search leaves between the best hit and the entry of a cell, relative to `t`: some roundings in single
 /// precision, because the `t` of a hit is rounded and that of a cell is not.
 pub(super) const ROOM: f64 = 1e-6;
@@ -133,7 +136,7 @@ const MISTAKES: [(Wrong, &str); 11] = [
 ];
 
 /// The known mistakes of a search that goes through these cells, each with whether it finds this hit.
-pub(super) fn in_cells(leaves: &[Leaf], ray: &Ray, hits: &[f32], found: Hit) -> Vec<(bool, &'static str)> {
+pub(super) fn in_cells(leaves: &[Leaf], ray: &Ray, hits: &[f32], found: Hit) -> Mistakes {
     MISTAKES.map(|(wrong, text)| (wrong.search(leaves, hits, ray) == found, text)).into()
 }
 
@@ -143,7 +146,7 @@ pub(super) fn facts<'a>(
     (tests, visits): (&[u32], &[u32]),
     (ray, hits): (&Ray, &[f32]),
     listed: impl Fn(u32) -> &'a [u32],
-) -> Vec<(bool, &'static str)> {
+) -> Mistakes {
     let expected = closest(hits, ray);
     let Some((best, best_t)) = expected else { return vec![out_of_range(found, ray)] };
     let is_tested = tests.contains(&best);

@@ -1,86 +1,123 @@
 //! The laws that the seven searches of cells share.
 
-use super::parts::Structure;
+use super::octant_mistakes::of_octree;
+use super::parts::{self, Leaf, Parts};
+use super::plane_mistakes::{Planes, at_planes};
 use super::scenes::{Scene, Thing, closest, odd_scenes, scenes, sphere};
-use super::search_mistakes::{FIRST_CELL_ONLY, facts, in_cells};
+use super::search_mistakes::{FIRST_CELL_ONLY, Hit, Mistakes, facts, in_cells};
 use super::structures;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare_formulas;
 use checks::paste::Paste;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsAnswer, CellsQuery, Kit};
-use raykata::partition::Grid;
+use raykata::partition::{Bsp, CutPlane, Grid, KdNode, KdTree, Octree, PlaneNode, PolygonBsp};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// One of the student's seven searches.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Searcher {
-    Grid,
-    OctreeByCells,
-    OctreeByNeighbours,
-    Octree,
-    KdTree,
-    Bsp,
-    PolygonBsp,
+/// A search of a student, in structures of the type `S`: cells with numbers, or trees with numbered nodes.
+pub(super) struct Search<S> {
+    /// Its name in messages.
+    name: &'static str,
+    /// The queries for the rays of a case, in a structure over its scene that the checks have built.
+    queries: fn(&Searched<'_>) -> Vec<CellsQuery<S>>,
+    /// Calls the student's function.
+    pub ask: fn(&dyn Kit, &[CellsQuery<S>]) -> Vec<CellsAnswer>,
+    /// The leaves that the ray enters, in their order.
+    leaves: fn(&S, &Ray) -> Vec<Leaf>,
+    /// The interval of the ray in each node that it enters or touches.
+    pub parts: fn(&S, &Ray) -> Parts,
+    /// The primitives that a cell or a node lists; none for an inner node, unless polygons lie on its plane.
+    pub listed: fn(&S, u32) -> &[u32],
+    /// The known mistakes of searches in this structure, each with whether it finds this hit.
+    mistakes: fn(&S, &Ray, &[f32], Hit) -> Mistakes,
 }
 
-impl Searcher {
-    /// Its name in messages.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Searcher::Grid => "grid",
-            Searcher::OctreeByCells => "octree, cell by cell",
-            Searcher::OctreeByNeighbours => "octree, by neighbours",
-            Searcher::Octree => "octree",
-            Searcher::KdTree => "kd-tree",
-            Searcher::Bsp => "BSP tree",
-            Searcher::PolygonBsp => "BSP tree with polygons in its nodes",
+pub(super) const GRID: Search<Grid> = Search {
+    name: "grid",
+    queries: |Searched { scene, rays, one_leaf, .. }| {
+        let resolution = if *one_leaf { UVec3::ONE } else { UVec3::new(5, 4, 3) };
+        grid_queries(scene, rays, structures::around_loosely(&scene.boxes()), resolution)
+    },
+    ask: |kit, queries| kit.grid_search(queries),
+    leaves: parts::leaves_of_grid,
+    parts: |grid, ray| parts::of_grid(grid, ray, parts::touching),
+    listed: Grid::primitives,
+    mistakes: |_, _, _, _| Vec::new(),
+};
+
+pub(super) const OCTREE: Search<Octree> = Search {
+    name: "octree",
+    queries: |case| case.queries(&structures::octree(&case.scene.boxes(), case.depth(3))),
+    ask: |kit, queries| kit.octree_search(queries),
+    leaves: parts::leaves_of_cells,
+    parts: parts::of_cells,
+    listed: |octree, node| octree.listed(node),
+    mistakes: of_octree,
+};
+
+pub(super) const OCTREE_BY_CELLS: Search<Octree> =
+    Search { name: "octree, cell by cell", ask: |kit, queries| kit.octree_by_cells(queries), ..OCTREE };
+
+pub(super) const OCTREE_BY_NEIGHBOURS: Search<Octree> =
+    Search { name: "octree, by neighbours", ask: |kit, queries| kit.octree_by_neighbours(queries), ..OCTREE };
+
+pub(super) const KD_TREE: Search<KdTree> = Search {
+    name: "kd-tree",
+    queries: |case| case.queries(&structures::kd_tree(&case.scene.boxes(), case.depth(7))),
+    ask: |kit, queries| kit.kd_search(queries),
+    leaves: parts::leaves_of_cells,
+    parts: parts::of_cells,
+    listed: |tree, node| tree.listed(node),
+    mistakes: |tree, ray, hits, found| {
+        let plane = |node: &KdNode| match *node {
+            KdNode::Inner { axis, at, .. } => Some(CutPlane::across(usize::from(axis), f64::from(at))),
+            KdNode::Leaf { .. } => None,
+        };
+        at_planes(&Planes { tree, plane, room: 0.0 }, ray, hits, found)
+    },
+};
+
+pub(super) const BSP: Search<Bsp> = Search {
+    name: "BSP tree",
+    queries: |case| case.queries(&structures::bsp(&case.scene.hulls(), case.depth(6))),
+    ask: |kit, queries| kit.bsp_search(queries),
+    leaves: |tree, ray| parts::leaves_of_planes(tree, 0.0, ray),
+    parts: parts::of_planes,
+    listed: Bsp::listed,
+    mistakes: |tree, ray, hits, found| {
+        at_planes(&Planes { tree, plane: PlaneNode::plane, room: 0.0 }, ray, hits, found)
+    },
+};
+
+pub(super) const POLYGON_BSP: Search<PolygonBsp> = Search {
+    name: "BSP tree with polygons in its nodes",
+    queries: |case| case.queries(&structures::polygon_bsp(&case.scene.hulls(), case.depth(6))),
+    ask: |kit, queries| kit.polygon_bsp_search(queries),
+    leaves: |bsp, ray| parts::leaves_of_planes(bsp, bsp.room, ray),
+    parts: |bsp, ray| parts::of_planes(bsp, ray),
+    listed: |bsp, node| bsp.listed(node),
+    mistakes: |bsp, ray, hits, found| {
+        at_planes(&Planes { tree: bsp, plane: PlaneNode::plane, room: bsp.room }, ray, hits, found)
+    },
+};
+
+impl<S: Clone> Search<S> {
+    /// Searches for the rays of each case, and judges the answers.
+    pub(super) fn judge(&self, kit: &dyn Kit, cases: &[Searched<'_>]) -> Vec<CheckResult> {
+        let mut asked = Described::new();
+        for case in cases {
+            let what = self.over(&case.name);
+            (self.queries)(case).into_iter().for_each(|query| asked.add(&what, query));
         }
+        asked.judge_each(kit, self)
     }
 
-    /// The depth of a structure over a scene.
-    fn depth(self) -> usize {
-        match self {
-            Searcher::Grid | Searcher::OctreeByCells | Searcher::OctreeByNeighbours | Searcher::Octree => 3,
-            Searcher::KdTree => 7,
-            Searcher::Bsp | Searcher::PolygonBsp => 6,
-        }
-    }
-
-    /// Searches for the rays of each case, in a structure over its scene that the checks have built, and judges the answers.
-    pub(super) fn judge(self, kit: &dyn Kit, cases: &[Searched<'_>]) -> Vec<CheckResult> {
-        let octrees =
-            || Described::over(self, cases, |scene, depth| structures::octree(&scene.boxes(), depth));
-        match self {
-            Searcher::Grid => {
-                let mut asked = Described::new();
-                for Searched { name, scene, rays, one_leaf } in cases {
-                    let bounds = structures::around_loosely(&scene.boxes());
-                    let resolution = if *one_leaf { UVec3::ONE } else { UVec3::new(5, 4, 3) };
-                    for query in grid_queries(scene, rays, bounds, resolution) {
-                        asked.add(format!("grid over {name}"), query);
-                    }
-                }
-                asked.judge_each(|queries| kit.grid_search(queries))
-            }
-            Searcher::OctreeByCells => octrees().judge_each(|queries| kit.octree_by_cells(queries)),
-            Searcher::OctreeByNeighbours => octrees().judge_each(|queries| kit.octree_by_neighbours(queries)),
-            Searcher::Octree => octrees().judge_each(|queries| kit.octree_search(queries)),
-            Searcher::KdTree => {
-                Described::over(self, cases, |scene, depth| structures::kd_tree(&scene.boxes(), depth))
-                    .judge_each(|queries| kit.kd_search(queries))
-            }
-            Searcher::Bsp => {
-                Described::over(self, cases, |scene, depth| structures::bsp(&scene.hulls(), depth))
-                    .judge_each(|queries| kit.bsp_search(queries))
-            }
-            Searcher::PolygonBsp => {
-                Described::over(self, cases, |scene, depth| structures::polygon_bsp(&scene.hulls(), depth))
-                    .judge_each(|queries| kit.polygon_bsp_search(queries))
-            }
-        }
+    /// The words for a search over a scene of this name.
+    pub(super) fn over(&self, scene: &str) -> String {
+        format!("{} over {scene}", self.name)
     }
 }
 
@@ -96,6 +133,14 @@ impl<'a> Searched<'a> {
     pub(super) fn new(name: impl Into<String>, scene: &'a Scene, rays: &'a [Ray]) -> Self {
         Searched { name: name.into(), scene, rays, one_leaf: false }
     }
+
+    fn depth(&self, divided: usize) -> usize {
+        if self.one_leaf { 0 } else { divided }
+    }
+
+    fn queries<S: Clone>(&self, cells: &S) -> Vec<CellsQuery<S>> {
+        queries(cells, self.scene, self.rays)
+    }
 }
 
 /// Queries to a search, each with the text for its message.
@@ -104,21 +149,9 @@ pub(super) struct Described<S> {
     queries: Vec<CellsQuery<S>>,
 }
 
-impl<S: Structure + Clone> Described<S> {
+impl<S: Clone> Described<S> {
     pub(super) fn new() -> Self {
         Described { what: Vec::new(), queries: Vec::new() }
-    }
-
-    /// The rays of each case in the structure over its scene.
-    fn over(searcher: Searcher, cases: &[Searched<'_>], build: impl Fn(&Scene, usize) -> S) -> Self {
-        let mut asked = Described::new();
-        for Searched { name, scene, rays, one_leaf } in cases {
-            let depth = if *one_leaf { 0 } else { searcher.depth() };
-            for query in queries(&build(scene, depth), scene, rays) {
-                asked.add(format!("{} over {name}", searcher.name()), query);
-            }
-        }
-        asked
     }
 
     /// A ray in a structure whose first leaf on the way lists 0, 1 and 2, of which 1 is nearest. All three are hit between
@@ -138,49 +171,52 @@ impl<S: Structure + Clone> Described<S> {
         self.add(what, CellsQuery { cells: cells.clone(), ray, hits: scene.hits(&ray) });
     }
 
-    /// Judges the answers of a search. A mistake is named only if it explains all wrong answers.
-    pub(super) fn judge(&self, search: impl Fn(&[CellsQuery<S>]) -> Vec<CellsAnswer>) -> CheckResult {
-        all_hold(self.judge_each(search))
+    /// Asks the same for each of these rays.
+    pub(super) fn ask_all(
+        &mut self,
+        what: &str,
+        cells: &S,
+        scene: &Scene,
+        rays: impl IntoIterator<Item = Ray>,
+    ) {
+        rays.into_iter().for_each(|ray| self.ask(what, cells, scene, ray));
     }
 
-    fn judge_each(&self, search: impl Fn(&[CellsQuery<S>]) -> Vec<CellsAnswer>) -> Vec<CheckResult> {
-        let answers = search(&self.queries);
+    /// Judges the answers of a search. A mistake is named only if it explains all wrong answers.
+    pub(super) fn judge(&self, kit: &dyn Kit, search: &Search<S>) -> CheckResult {
+        all_hold(self.judge_each(kit, search))
+    }
+
+    fn judge_each(&self, kit: &dyn Kit, search: &Search<S>) -> Vec<CheckResult> {
+        let answers = (search.ask)(kit, &self.queries);
         let found = |answer: &CellsAnswer| answer.hit.map(|hit| (hit.primitive, hit.t));
-        let is_right =
-            |query: &CellsQuery<S>, answer: &CellsAnswer| found(answer) == closest(&query.hits, &query.ray);
-        let pairs = || self.queries.iter().zip(&answers);
-        if pairs().all(|(query, answer)| is_right(query, answer)) {
+        let expected = |query: &CellsQuery<S>| closest(&query.hits, &query.ray);
+        // The wrong searches, which go through each structure once per mistake, are needed for wrong answers only.
+        if self.queries.iter().zip(&answers).all(|(query, answer)| found(answer) == expected(query)) {
             return vec![Ok(()); answers.len()];
         }
-        // A wrong search that gives another answer than a right one of the student is not the student's.
-        let formulas = |query: &CellsQuery<S>, answer: &CellsAnswer| {
-            let mut all = in_cells(&query.cells.leaves(&query.ray), &query.ray, &query.hits, found(answer));
-            // A search that visits two leaves searches more than the first cell.
-            let n_leaves = answer.visits.iter().filter(|node| !query.cells.listed(**node).is_empty()).count();
-            all.iter_mut().for_each(|one| one.0 &= n_leaves < 2 || one.1 != FIRST_CELL_ONLY);
-            all.extend(query.cells.mistakes(&query.ray, &query.hits, found(answer)));
-            all
-        };
-        let mut possible: Vec<bool> = Vec::new();
-        for (query, answer) in pairs().filter(|(query, answer)| is_right(query, answer)) {
-            let given = formulas(query, answer);
-            possible.resize(given.len(), true);
-            possible.iter_mut().zip(&given).for_each(|(possible, (gives, _))| *possible &= gives);
-        }
-        let judge = |((query, answer), what): ((&CellsQuery<S>, &CellsAnswer), &String)| {
-            if is_right(query, answer) {
+        let judge = |(query, what): &(&CellsQuery<S>, &String), answer: CellsAnswer| {
+            let (found, expected) = (found(&answer), expected(query));
+            if found == expected {
                 return Ok(());
             }
-            let mut proven = formulas(query, answer);
-            proven.iter_mut().zip(&possible).for_each(|(mistake, possible)| mistake.0 &= possible);
-            let input = (&query.ray, &query.hits[..]);
-            let calls = (&answer.tests[..], &answer.visits[..]);
-            proven.extend(facts(found(answer), calls, input, |node| query.cells.listed(node)));
-            let expected = closest(&query.hits, &query.ray);
-            Err(Broken::new(describe(what, query), found(answer), expected, "brute force, (primitive, t)")
-                .explained_by(proven))
+            let listed = |node| (search.listed)(&query.cells, node);
+            let facts = facts(found, (&answer.tests, &answer.visits), (&query.ray, &query.hits), listed);
+            Err(Broken::new(describe(what, query), found, expected, "brute force, (primitive, t)")
+                .explained_by(facts))
         };
-        pairs().zip(&self.what).map(judge).collect()
+        let formulas = |(query, _): &(&CellsQuery<S>, &String), answer: &CellsAnswer| {
+            let CellsQuery { cells, ray, hits } = *query;
+            let mut all = in_cells(&(search.leaves)(cells, ray), ray, hits, found(answer));
+            // A search that visits two leaves searches more than the first cell.
+            let n_leaves =
+                answer.visits.iter().filter(|node| !(search.listed)(cells, **node).is_empty()).count();
+            all.iter_mut().for_each(|one| one.0 &= n_leaves < 2 || one.1 != FIRST_CELL_ONLY);
+            all.extend((search.mistakes)(cells, ray, hits, found(answer)));
+            all
+        };
+        let queries: Vec<_> = self.queries.iter().zip(&self.what).collect();
+        compare_formulas(&queries, answers, judge, formulas)
     }
 }
 
@@ -211,18 +247,23 @@ pub(super) fn grid_queries(
     rays.iter().map(query).collect()
 }
 
-/// Small spheres at `places`, and rays at every `step`th of them from three points, one of which has the x coordinate
-/// `x`.
-pub(super) fn spheres_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, Vec<Ray>) {
+/// The place of sphere `i` in rows of this length: four rows side by side, and so on in layers of this height.
+pub(super) fn place(i: usize, length: usize, height: f32) -> Vec3 {
+    vec3((i % length) as f32, (i / length % 4) as f32, (i / (4 * length)) as f32 * height)
+}
+
+/// `n` small spheres in rows, and rays at every `step`th of them from three points.
+pub(super) fn spheres_and_rays(n: usize, step: usize, (length, height): (usize, f32)) -> (Scene, Vec<Ray>) {
+    let places: Vec<Vec3> = (0..n).map(|i| place(i, length, height)).collect();
     let spheres = places.iter().map(|&center| Thing::Sphere(Sphere { center, radius: 0.3 }));
-    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(x, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
+    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(length as f32 + 4.0, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
     let at =
         |eye: Vec3| places.iter().step_by(step).map(move |place| Ray::new(eye, (*place - eye).normalize()));
     (Scene::new(spheres.collect()), eyes.into_iter().flat_map(at).collect())
 }
 
 /// Compares a search with brute force, in random scenes and in degenerate ones.
-pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
+pub(super) fn agrees<S: Clone>(trial: &Trial<'_>, search: &Search<S>) -> CheckResult {
     // Three spheres in a row in one leaf, the nearest of them listed last; and a large sphere that overlaps many cells,
     // with a nearer small one before it.
     let row = Scene::new((0..3).map(|i| sphere(2.0 * i as f32, 0.0, 0.0, 0.5)).collect());
@@ -243,82 +284,14 @@ pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
         Searched::new("nine spheres", &through, &at_small),
     ];
     let cases: Vec<Searched<'_>> = [in_a_row, passing].into_iter().chain(others).collect();
-    all_hold(searcher.judge(trial.kit, &cases))?;
+    all_hold(search.judge(trial.kit, &cases))?;
     trial.forall(250, scenes(), |cases| {
         let name = |scene: &Scene| format!("{} primitives", scene.things.len());
         let case = |(scene, ray)| Searched::new(name(scene), scene, std::slice::from_ref(ray));
-        searcher.judge(trial.kit, &cases.iter().map(|(scene, ray)| case((scene, ray))).collect::<Vec<_>>())
+        search.judge(trial.kit, &cases.iter().map(|(scene, ray)| case((scene, ray))).collect::<Vec<_>>())
     })?;
     let odd = odd_scenes();
     odd.iter().try_for_each(|(name, scene, rays)| {
-        all_hold(searcher.judge(trial.kit, &[Searched::new(*name, scene, rays)]))
+        all_hold(search.judge(trial.kit, &[Searched::new(*name, scene, rays)]))
     })
-}
-
-/// The interval of a ray in each node of a structure: `(node, entry, exit)`, in double precision.
-pub(super) type Parts = Vec<(u32, f64, f64)>;
-
-/// Judges the visits of a search that must find a hit: the ray must enter each visited node before its hit, and each tested
-/// primitive must be listed in a visited node. `parts` are all nodes that the ray enters or touches.
-pub(super) fn judge_visits<S: Structure>(
-    what: &str,
-    query: &CellsQuery<S>,
-    parts: &Parts,
-    yours: &CellsAnswer,
-) -> CheckResult {
-    let ray = &query.ray;
-    let input = || format!("{what}\n{}", ray.paste());
-    // A search that visits nothing is not a search.
-    if yours.hit.is_none() || yours.visits.is_empty() {
-        let found = yours.hit.map(|hit| (hit.primitive, hit.t));
-        let expected = format!("{:?} after at least one visit", closest(&query.hits, ray));
-        let yours = format!("{found:?} after {} visits", yours.visits.len());
-        return Err(
-            Broken::with_texts(input(), yours, expected, "brute force, (primitive, t)").explained_by([])
-        );
-    }
-    let end = yours.hit.map_or(f64::INFINITY, |hit| f64::from(hit.t)).min(f64::from(ray.t_max));
-    // Allow 2⁻¹⁴, which is far more than rounding errors and far less than a cell.
-    let room = (-14f64).exp2();
-    let enter = |visit: u32| parts.iter().find(|(node, ..)| *node == visit).map(|(_, enter, _)| *enter);
-    let is_behind = |enter: f64| enter > end + room * end.abs();
-    let again = |visit: u32| yours.visits.iter().filter(|other| **other == visit).count() > 1;
-    let missed = yours.visits.iter().copied().find(|&visit| enter(visit).is_none());
-    let behind =
-        yours.visits.iter().find_map(|&visit| enter(visit).filter(|&t| is_behind(t)).map(|t| (visit, t)));
-    let twice = yours.visits.iter().copied().find(|&visit| again(visit));
-    let is_listed =
-        |primitive: &u32| yours.visits.iter().any(|node| query.cells.listed(*node).contains(primitive));
-    // A visit that the ray misses may be to a cell that does not exist.
-    let mut tests = yours.tests.iter().copied().filter(|_| missed.is_none());
-    let unlisted = tests.find(|primitive| !is_listed(primitive));
-    let (yours, expected, source) = match (missed, behind, twice) {
-        (Some(visit), ..) => (format!("a visit to {visit}"), "none".to_owned(), "the ray misses it"),
-        (None, Some((visit, t)), _) => (
-            format!("a visit to {visit}, which begins at t = {t:.4}"),
-            format!("none beyond the hit at t = {end}"),
-            "counted",
-        ),
-        (None, None, Some(visit)) => (format!("{visit} is visited again"), "once".to_owned(), "counted"),
-        (None, None, None) => match unlisted {
-            Some(primitive) => (
-                format!("a test of primitive {primitive}"),
-                "a visit to a cell that lists it".to_owned(),
-                "counted",
-            ),
-            None => return Ok(()),
-        },
-    };
-    Err(Broken::with_texts(input(), yours, expected, source).explained_by([
-        (missed.is_some(), "you visit a cell that the ray does not enter"),
-        (
-            behind.is_some(),
-            "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
-        ),
-        (twice.is_some(), "you visit a cell several times"),
-        (
-            unlisted.is_some(),
-            "you test a primitive that no visited cell lists: call `visit` for each cell that the search comes to",
-        ),
-    ]))
 }

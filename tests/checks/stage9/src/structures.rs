@@ -4,12 +4,13 @@
 //! from its hits.
 
 use super::parts;
-use super::scenes::{Scene, closest};
+use super::scenes::{Scene, Thing, closest};
 use checks::tree::around;
-use glam::{DVec3, UVec3, Vec3};
+use glam::{DVec3, UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
-use raykata::partition::{Bsp, Cell, CutPlane, Grid, KdTree, Octree, PolygonBsp};
+use raykata::partition::{Bsp, BspNode, Cell, CutPlane, Grid, KdTree, Octree, PolygonBsp, PolygonBspNode};
 use raykata::ray::Ray;
+use raykata::shape::Triangle;
 
 /// Numbered boxes with room for rounding. Empty boxes and boxes with NaN are left out.
 fn loose(boxes: &[Aabb]) -> (Vec<(u32, Aabb)>, Aabb) {
@@ -73,7 +74,7 @@ pub(super) fn grid_for(ray: &Ray, scene: &Scene, (bounds, room): (Aabb, f64), re
     let n_cells = resolution.element_product();
     let mut lists = vec![Vec::new(); n_cells as usize];
     // Find the cells along the ray.
-    let way = parts::near_grid(&filled(bounds, resolution, &lists), ray, room);
+    let way = parts::of_grid(&filled(bounds, resolution, &lists), ray, |_| room);
     // List the primitives in descending order: of two hits at the same `t` the larger number comes first.
     for id in (0..hits.len() as u32).rev() {
         let t = f64::from(hits[id as usize]);
@@ -140,34 +141,53 @@ fn add_kd_node(tree: &mut KdTree, boxes: &[(u32, Aabb)], cell: Cell, depth: usiz
 
 /// A BSP tree with planes in many directions, each through a corner of some primitive. Every seventh node is a leaf.
 pub(super) fn bsp(hulls: &[Vec<Vec3>], max_depth: usize) -> Bsp {
-    let usable = |hull: &[Vec3]| hull.iter().all(|corner| corner.is_finite());
-    let ids: Vec<u32> = (0..hulls.len() as u32).filter(|&id| usable(&hulls[id as usize])).collect();
-    let mut bsp = Bsp::default();
-    if !ids.is_empty() {
-        add_bsp_node(&mut bsp, hulls, &ids, 0, max_depth);
-    }
+    without_polygons(&by_planes(hulls, max_depth, false))
+}
+
+/// A BSP tree with triangles in its nodes, each plane that of a triangle or through a corner of another primitive. It does
+/// not split triangles: one that crosses a plane is passed on whole. Every seventh node is a leaf.
+pub(super) fn polygon_bsp(hulls: &[Vec<Vec3>], max_depth: usize) -> PolygonBsp {
+    by_planes(hulls, max_depth, true)
+}
+
+/// A tree with the planes and leaves of `bsp`.
+fn without_polygons(bsp: &PolygonBsp) -> Bsp {
+    let node = |node: &PolygonBspNode| match *node {
+        PolygonBspNode::Inner { plane, back, front, .. } => BspNode::Inner { plane, back, front },
+        PolygonBspNode::Leaf { first, count } => BspNode::Leaf { first, count },
+    };
+    Bsp { nodes: bsp.nodes.iter().map(node).collect(), items: bsp.items.clone() }
+}
+
+/// The plane x + y = 0.
+pub(super) fn diagonal() -> CutPlane {
+    CutPlane { normal: DVec3::new(1.0, 1.0, 0.0).normalize(), offset: 0.0 }
+}
+
+/// A triangle in the plane x + y = 0.
+pub(super) fn tile(z: f32) -> Thing {
+    let [a, b, c] = [vec3(4.0, -4.0, z - 4.0), vec3(-4.0, 4.0, z - 4.0), vec3(0.0, 0.0, z + 4.0)];
+    Thing::Tile(Triangle { a, b, c })
+}
+
+/// A tree of one plane with these primitives on it, behind it and in front of it.
+pub(super) fn one_plane(plane: CutPlane, on_plane: &[u32], behind: &[u32], before: &[u32]) -> PolygonBsp {
+    let mut bsp = PolygonBsp { room: 1e-6, ..PolygonBsp::default() };
+    let root = bsp.add_node(0, 1);
+    let [back, front] = [bsp.add_node(1, 1), bsp.add_node(1, 1)];
+    bsp.set_leaf(back, behind);
+    bsp.set_leaf(front, before);
+    bsp.set_children(root, plane, on_plane, back, front);
     bsp
 }
 
-fn add_bsp_node(bsp: &mut Bsp, hulls: &[Vec<Vec3>], ids: &[u32], depth: usize, max_depth: usize) -> u32 {
-    let node = bsp.add_node(depth, max_depth);
-    if depth >= max_depth || ids.is_empty() || node % 7 == 6 {
-        bsp.set_leaf(node, &ids.iter().rev().copied().collect::<Vec<u32>>());
-        return node;
-    }
-    let normals = [DVec3::X, DVec3::new(0.0, 1.0, 1.0), DVec3::new(-1.0, 1.0, 0.0), DVec3::NEG_Z, DVec3::ONE];
-    let normal = normals[depth % normals.len()].normalize();
-    // Put the plane through a corner of a primitive, so that they touch.
-    let corner = hulls[ids[ids.len() / 2] as usize][0].as_dvec3();
-    let plane = CutPlane { normal, offset: normal.dot(corner) };
-    let [back, front] =
-        on_sides(hulls, ids, &plane).map(|side| add_bsp_node(bsp, hulls, &side, depth + 1, max_depth));
-    bsp.set_children(node, plane, back, front);
-    node
+/// A tree of one plane with these primitives behind it and in front of it.
+pub(super) fn two_leaves(plane: CutPlane, behind: &[u32], before: &[u32]) -> Bsp {
+    without_polygons(&one_plane(plane, &[], behind, before))
 }
 
 /// The primitives behind and in front of a plane, with 2⁻²⁰ of the largest coordinate as room.
-pub(super) fn on_sides(hulls: &[Vec<Vec3>], ids: &[u32], plane: &CutPlane) -> [Vec<u32>; 2] {
+fn on_sides(hulls: &[Vec<Vec3>], ids: &[u32], plane: &CutPlane) -> [Vec<u32>; 2] {
     let reaches = |id: u32, side: f64| {
         hulls[id as usize].iter().any(|corner| {
             let room = f64::from(corner.abs().max_element()) * (-20f64).exp2();
@@ -177,46 +197,48 @@ pub(super) fn on_sides(hulls: &[Vec<Vec3>], ids: &[u32], plane: &CutPlane) -> [V
     [-1.0, 1.0].map(|side| ids.iter().copied().filter(|&id| reaches(id, side)).collect())
 }
 
-/// A BSP tree with triangles in its nodes, each plane that of a triangle or through a corner of another primitive. It does
-/// not split triangles: one that crosses a plane is passed on whole. Every seventh node is a leaf.
-pub(super) fn polygon_bsp(hulls: &[Vec<Vec3>], max_depth: usize) -> PolygonBsp {
+/// A tree whose planes go through triangles, which are then in its nodes, or only through corners.
+fn by_planes(hulls: &[Vec<Vec3>], max_depth: usize, through_triangles: bool) -> PolygonBsp {
     let usable = |hull: &[Vec3]| hull.iter().all(|corner| corner.is_finite());
     let ids: Vec<u32> = (0..hulls.len() as u32).filter(|&id| usable(&hulls[id as usize])).collect();
     let largest = ids.iter().flat_map(|&id| &hulls[id as usize]).map(|corner| corner.abs().max_element());
     let room = f64::from(largest.fold(0.0, f32::max)) * (-20f64).exp2();
     let mut bsp = PolygonBsp { room, ..PolygonBsp::default() };
     if !ids.is_empty() {
-        add_polygon_node(&mut bsp, hulls, &ids, 0, max_depth);
+        add_plane_node(&mut bsp, hulls, &ids, (0, max_depth), through_triangles);
     }
     bsp
 }
 
-fn add_polygon_node(
+fn add_plane_node(
     bsp: &mut PolygonBsp,
     hulls: &[Vec<Vec3>],
     ids: &[u32],
-    depth: usize,
-    max_depth: usize,
+    (depth, max_depth): (usize, usize),
+    through_triangles: bool,
 ) -> u32 {
     let node = bsp.add_node(depth, max_depth);
     if depth >= max_depth || ids.is_empty() || node % 7 == 6 {
         bsp.set_leaf(node, &ids.iter().rev().copied().collect::<Vec<u32>>());
         return node;
     }
-    let hull: Vec<DVec3> =
-        hulls[ids[ids.len() / 2] as usize].iter().map(|corner| corner.as_dvec3()).collect();
+    let is_triangle = |hull: &[Vec3]| through_triangles && hull.len() == 3;
+    let hull = &hulls[ids[ids.len() / 2] as usize];
     let normals = [DVec3::X, DVec3::new(0.0, 1.0, 1.0), DVec3::new(-1.0, 1.0, 0.0), DVec3::NEG_Z, DVec3::ONE];
-    let of_triangle = (hull.len() == 3).then(|| (hull[1] - hull[0]).cross(hull[2] - hull[0]).try_normalize());
+    let corner = |i: usize| hull[i].as_dvec3();
+    let of_triangle =
+        is_triangle(hull).then(|| (corner(1) - corner(0)).cross(corner(2) - corner(0)).try_normalize());
     let normal = of_triangle.flatten().unwrap_or(normals[depth % normals.len()].normalize());
-    let plane = CutPlane { normal, offset: normal.dot(hull[0]) };
+    // Put the plane through a corner of a primitive, so that they touch.
+    let plane = CutPlane { normal, offset: normal.dot(corner(0)) };
     let is_on = |id: &u32| {
         let hull = &hulls[*id as usize];
-        hull.len() == 3 && hull.iter().all(|corner| plane.distance(*corner).abs() <= bsp.room)
+        is_triangle(hull) && hull.iter().all(|corner| plane.distance(*corner).abs() <= bsp.room)
     };
     let (on_plane, others): (Vec<u32>, Vec<u32>) = ids.iter().partition(|id| is_on(id));
     let on_plane: Vec<u32> = on_plane.into_iter().rev().collect();
     let [back, front] = on_sides(hulls, &others, &plane)
-        .map(|side| add_polygon_node(bsp, hulls, &side, depth + 1, max_depth));
+        .map(|side| add_plane_node(bsp, hulls, &side, (depth + 1, max_depth), through_triangles));
     bsp.set_children(node, plane, &on_plane, back, front);
     node
 }

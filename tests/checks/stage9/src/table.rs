@@ -1,12 +1,12 @@
 //! The table of stage 9: maps of the cells that rays visit in a grid.
 
 use super::scenes::{Scene, sphere};
+use super::searches::queries;
 use checks::Trial;
 use checks::broken::CheckResult;
 use checks::golden::{Table, digits};
 use glam::{DVec3, uvec3, vec3};
-use raykata::kit::{CellsQuery, GridQuery, Kit};
-use raykata::partition::Grid;
+use raykata::kit::{GridQuery, Kit};
 use raykata::ray::Ray;
 
 const COLUMNS: u32 = 12;
@@ -60,10 +60,8 @@ fn fan(scene: &Scene, turn: f32) -> Vec<Ray> {
 fn lines(kit: &dyn Kit, scene: &Scene, rays: &[Ray]) -> String {
     let resolution = uvec3(COLUMNS, ROWS, 1);
     let grid = kit.grid_build(&[GridQuery { bounds: scene.boxes(), resolution }]).remove(0);
-    let query = |ray: &Ray| CellsQuery { cells: grid.clone(), ray: *ray, hits: scene.hits(ray) };
-    let queries: Vec<CellsQuery<Grid>> = rays.iter().map(query).collect();
     let mut lines = Vec::new();
-    for (ray, answer) in rays.iter().zip(kit.grid_search(&queries)) {
+    for (ray, answer) in rays.iter().zip(kit.grid_search(&queries(&grid, scene, rays))) {
         let hit =
             answer.hit.map_or("nothing".into(), |hit| format!("{} at {}", hit.primitive, digits(hit.t, 3)));
         lines.push(format!("along {} {}: {hit}", digits(ray.direction.x, 2), digits(ray.direction.y, 2)));
