@@ -5,8 +5,8 @@ use std::path::Path;
 use std::process::Command;
 
 /// The most lines of Rust in the repository. It rose from 130,471 with what files, `cost`, hard cases and scenes can do since then,
-/// with numbers of documents that are made, and, by 711, with comments of exercises and solutions at 100 columns and `raykata try`.
-const MOST_LINES: usize = 134_637;
+/// and with numbers of documents that are made. It only falls from here.
+const MOST_LINES: usize = 133_838;
 
 #[test]
 fn what_comes_in_takes_something_out() {
