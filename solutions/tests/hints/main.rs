@@ -1,4 +1,4 @@
-//! The third hints of stages 1 to 3 lead to code that passes: functions that contain the code of the hints, and otherwise what
+//! The third hints of stages 1 to 6 lead to code that passes: functions that contain the code of the hints, and otherwise what
 //! a textbook prints, pass every check. The code in the third hints of the bonus of stage 12 is that of the reference.
 
 #![allow(clippy::manual_range_contains)] // books write both comparisons
@@ -6,29 +6,38 @@
 mod stage1_shapes;
 mod stage2_triangles;
 mod stage3_boxes;
-#[path = "../textbook/stage3_build.rs"]
 mod stage3_build;
 #[path = "../textbook/stage3_traversal.rs"]
 mod stage3_traversal;
-#[expect(
-    dead_code,
-    reason = "`stage3_boxes` replaces the functions whose third hints differ from the textbook"
-)]
-#[path = "../textbook/stage3_boxes.rs"]
-mod textbook_boxes;
-#[expect(
-    dead_code,
-    reason = "`stage2_triangles` replaces the functions whose third hints differ from the textbook"
-)]
-#[path = "../textbook/stage2_triangles.rs"]
-mod textbook_triangles;
+mod stage4_shading;
+mod stage5_recursion;
+mod stage6_distribution;
+
+/// The textbook, parts of which the modules above replace by the code of the third hints.
+macro_rules! textbook {
+    ($($name:ident $path:literal)*) => {
+        $(
+            #[allow(dead_code, unused_imports)]
+            #[path = $path]
+            mod $name;
+        )*
+    };
+}
+
+textbook! {
+    textbook_triangles "../textbook/stage2_triangles.rs"
+    textbook_boxes "../textbook/stage3_boxes.rs"
+    textbook_build "../textbook/stage3_build.rs"
+    textbook_shading "../textbook/stage4_shading.rs"
+    textbook_recursion "../textbook/stage5_recursion.rs"
+    textbook_distribution "../textbook/stage6_distribution.rs"
+}
 
 use solutions::{
-    stage4_shading, stage5_recursion, stage6_distribution, stage7_effects, stage8_child_cache,
-    stage8_scene_graph, stage8_solids, stage8_splines, stage8_surfaces, stage9_bsp, stage9_cells,
-    stage9_coherence, stage9_grid, stage9_kd_tree, stage9_neighbours, stage9_octree, stage9_polygon_bsp,
-    stage10_stability, stage11_light_transport, stage11_paths, stage12_build, stage12_search, stage12_simd,
-    stage12_wide,
+    stage7_effects, stage8_child_cache, stage8_scene_graph, stage8_solids, stage8_splines, stage8_surfaces,
+    stage9_bsp, stage9_cells, stage9_coherence, stage9_grid, stage9_kd_tree, stage9_neighbours,
+    stage9_octree, stage9_polygon_bsp, stage10_stability, stage11_light_transport, stage11_paths,
+    stage12_build, stage12_search, stage12_simd, stage12_wide,
 };
 
 /// Functions with the code of the hints; those of later stages are the reference's.
@@ -48,7 +57,7 @@ impl raykata::kit::StudentKit for Kit {
 }
 
 /// Code in the third hint of a check, which the functions of this test contain.
-const HINTS: [(u8, &str, &str); 30] = [
+const HINTS: [(u8, &str, &str); 56] = [
     (
         1,
         "nearest_root_is_the_smaller_one_that_counts",
@@ -115,6 +124,40 @@ const HINTS: [(u8, &str, &str); 30] = [
         "build_isolates_what_is_not_a_number",
         "Build the union with `f32::min` and `f32::max` on each axis, and compare centroids with `total_cmp`",
     ),
+    (4, "shading_normal_falls_back_to_flat", "`try_normalize` returns None for 0 and NaN"),
+    (4, "diffuse_term_is_the_cosine", "max(n·l, 0)"),
+    (4, "specular_term_is_the_mirrored_cosine", "if both n·l and cos φ are above 0, and 0 otherwise"),
+    (4, "shadow_ray_reaches_just_short_of_the_light", "t_max = 0.9999 * light.distance"),
+    (4, "shadow_ray_leaves_its_own_surface_at_any_scale", "with `next_up` or `next_down`"),
+    (4, "gamma_is_two", "Add 0.5 before `as u8`"),
+    (4, "gamma_survives_invalid_numbers", "Clamp to 0..=1 before you take the root"),
+    (5, "reflect_keeps_the_angle", "d - n (d·n) removes the part along n. Subtract it twice"),
+    (5, "reflect_stays_of_unit_length_in_a_corridor", "Normalize the direction that you return"),
+    (
+        5,
+        "refract_obeys_snell",
+        "along = (n1 / n2) (d + n cos θ1), with cos θ1 = -d·n. The result is along - n √(1 - |along|²)",
+    ),
+    (5, "refract_beyond_the_critical_angle_is_none", "Return None unless 1 - |along|² >= 0"),
+    (5, "fresnel_schlick_agrees_with_double_precision", "If n1 > n2, use the cosine of the refracted ray"),
+    (5, "fresnel_exact_agrees_with_double_precision", "cos θ2 = √(1 - (n1 / n2)² (1 - cos² θ1))"),
+    (
+        5,
+        "secondary_rays_leave_their_surface",
+        "point + error·|n| n, then move each coordinate one float further",
+    ),
+    (5, "tree_ends_at_its_depth", "if depth >= limits.max_depth"),
+    (6, "jittered_samples_stay_in_their_cells", "1 - f32::EPSILON / 2"),
+    (6, "each_sampler_has_its_places", "0.5 + FILTER_RADIUS * (2 * jittered - 1)"),
+    (6, "gaussian_weight_is_a_bell_that_ends", "bell(x) = max(0, e^(-2x²) - e^(-2R²))"),
+    (6, "lens_rays_start_on_the_lens", "position + aperture / 2 * (x * right + y * up)"),
+    (6, "focal_plane_is_sharp", "focal_distance / (pinhole.direction · camera.towards) * pinhole.direction"),
+    (6, "places_on_a_rectangle_are_even", "corner + u.x * edges.0 + u.y * edges.1"),
+    (6, "a_far_sphere_is_still_a_sphere", "1 - cos θ = sin²θ / (1 + cos θ); and sin²θ = x (2 - x)"),
+    (6, "slightly_rough_is_not_a_few_angles", "x = -exp_m1(ln(u.x) / (n + 1))"),
+    (6, "temporal_table_has_each_time_once", "TABLE[y % 4][x % 4]"),
+    (6, "times_are_even", "open + share * (close - open)"),
+    (6, "lerp_is_exact_where_it_must", "(1 - t) start + t end, and clamp each coordinate"),
 ];
 
 #[test]
@@ -124,7 +167,7 @@ fn the_code_of_the_third_hints_passes() {
         assert!(hint.contains(code), "the third hint of `{name}` changed: apply it in this test\n{hint}");
     }
     let kit = checks::linked(Kit);
-    for stage in 1..=3 {
+    for stage in 1..=6 {
         let mut failed = Vec::new();
         for check in all_checks::of_stage(stage) {
             if let checks::Verdict::Failed(message) = checks::run(check, &kit, 0) {

@@ -9,9 +9,9 @@ use crate::printed::{self, Printed};
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail, ensure};
 use checks::Check;
-use checks::rubric;
+use checks::rubric::{self, Level};
 use checks::symmetry::Symmetries;
-use grader::exercises;
+use grader::exercises::{self, Exercise};
 use grader::files_below::{files_below, last_part};
 use std::cell::OnceCell;
 use std::fmt::Write as _;
@@ -150,7 +150,8 @@ impl Values<'_> {
         };
         let asked = |stage: u8| stages.contains(&stage);
         let checks = || STAGES.iter().filter(|(stage, _)| asked(*stage)).flat_map(|(_, checks)| *checks);
-        let is_bonus = |check: &&Check| entry_of(check).bonus;
+        let is_bonus = |check: &&Check| entry_of(check).level() == Level::Bonus;
+        let is_core = |check: &&Check| entry_of(check).level() == Level::Core;
         let points = |check: &Check| entry_of(check).points as usize;
         let entries = |keep: fn(&Claim) -> bool| -> Result<usize> {
             Ok(self.corpus()?.iter().filter(|entry| asked(entry.stage) && keep(&entry.claim)).count())
@@ -158,11 +159,17 @@ impl Values<'_> {
         let value = match words {
             "stages" => stages.len(),
             "functions" => self.functions(asked)?,
+            "core functions" => self.core_functions()?,
             // What a course counts, and what it counts apart.
             "checks" => checks().filter(|check| !is_bonus(check)).count(),
             "points" => checks().filter(|check| !is_bonus(check)).map(points).sum(),
             "bonus checks" => checks().filter(is_bonus).count(),
             "bonus points" => checks().filter(is_bonus).map(points).sum(),
+            "core checks" => checks().filter(is_core).count(),
+            "core points" => checks().filter(is_core).map(points).sum(),
+            "lines" => self.effort(asked)?[0],
+            "words" => self.effort(asked)?[1],
+            "hours" => hours(self.effort(asked)?),
             "all checks" => checks().count(),
             // The checks whose hidden inputs are the public ones in another frame.
             "turned checks" => checks().filter(is_turned).count(),
@@ -179,15 +186,43 @@ impl Values<'_> {
         Ok(thousands(value))
     }
 
-    /// The number of functions that students write in these stages: those whose stub is a `todo!`.
-    fn functions(&self, asked: impl Fn(u8) -> bool) -> Result<usize> {
+    /// The files of these stages.
+    fn exercises(&self, asked: impl Fn(u8) -> bool) -> Result<Vec<Exercise>> {
         let mut exercises = exercises::exercises(self.root)?;
         exercises.retain(|exercise| {
             let file = exercise.path.file_stem().unwrap_or_default().to_string_lossy();
             exercises::stage_of(&file).is_some_and(&asked)
         });
+        Ok(exercises)
+    }
+
+    /// The number of functions that students write in these stages: those whose stub is a `todo!`.
+    fn functions(&self, asked: impl Fn(u8) -> bool) -> Result<usize> {
+        let exercises = self.exercises(asked)?;
         let stubs = exercises.iter().flat_map(|exercise| exercise.stub.lines());
         Ok(stubs.filter(|line| line.trim_start().starts_with("todo!(")).count())
+    }
+
+    /// The number of functions that the core of stages 1 to 6 needs: the textbook of the tests writes them, and no others.
+    fn core_functions(&self) -> Result<usize> {
+        let mut functions = 0;
+        for file in fs::read_dir(self.root.join("solutions/tests/textbook"))? {
+            let text = fs::read_to_string(file?.path())?;
+            functions += text.lines().filter(|line| line.starts_with("pub fn ")).count();
+        }
+        Ok(functions)
+    }
+
+    /// The lines of code of the reference in these stages, and the words of the doc comments that students read.
+    fn effort(&self, asked: impl Fn(u8) -> bool) -> Result<[usize; 2]> {
+        let (mut lines, mut words) = (0, 0);
+        for exercise in self.exercises(asked)? {
+            words += doc_words(&exercise.stub);
+            let solution =
+                self.root.join("solutions/src").join(exercise.path.file_name().unwrap_or_default());
+            lines += code_lines(&fs::read_to_string(solution)?);
+        }
+        Ok([lines, words])
     }
 
     fn corpus(&self) -> Result<&[Entry]> {
@@ -230,6 +265,24 @@ impl Values<'_> {
         let functions = self.get(&format!("functions{stages}"))?;
         Ok([format!("{functions} functions"), with_bonus("checks")?, with_bonus("points")?])
     }
+}
+
+/// The lines of code before the tests, without comments and imports.
+fn code_lines(text: &str) -> usize {
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default().lines().map(str::trim_start);
+    code.filter(|line| !line.is_empty() && !line.starts_with("//") && !line.starts_with("use ")).count()
+}
+
+/// The words of the doc comments.
+fn doc_words(text: &str) -> usize {
+    let lines = text.lines().map(str::trim_start);
+    let docs = lines.filter_map(|line| line.strip_prefix("///").or_else(|| line.strip_prefix("//!")));
+    docs.map(|line| line.split_whitespace().count()).sum()
+}
+
+/// The hours that exercises take, by two assumptions: 1,500 words are read, and 30 lines of the reference written, in an hour.
+fn hours([lines, words]: [usize; 2]) -> usize {
+    (50 * lines + words).div_ceil(1500)
 }
 
 fn entry_of(check: &Check) -> rubric::CheckEntry {
