@@ -232,38 +232,35 @@ impl Values<'_> {
         Ok(self.corpus.get().map_or(&[], Vec::as_slice))
     }
 
-    /// The table of all decks, with their sums: minutes and hours from the first lines of each deck, the rest from the stage.
+    /// The table of all decks, with their sums: the minutes from the first lines of each deck, the rest from the stage.
     fn decks(&self) -> Result<String> {
         let mut table =
-            "| deck | minutes | students write | checks, and bonus | points, and bonus | hours (est.) |\n\
-                         |---|---|---|---|---|---|\n"
+            "| deck | minutes | students write | checks, and bonus | points, and bonus | of the core | lines | hours |\n\
+                         |---|---|---|---|---|---|---|---|\n"
                 .to_owned();
-        let (mut minutes, mut hours) = (0, 0);
+        let mut minutes = 0;
         for deck in decks(&self.root.join("slides"))? {
             minutes += deck.minutes;
-            hours += deck.hours.unwrap_or(0);
-            let [functions, checks, points] = match deck.stage.filter(|stage| *stage > 0) {
+            let of_stage = match deck.stage.filter(|stage| *stage > 0) {
                 Some(stage) => self.of_stages(&format!(" {stage}"))?,
                 None => Default::default(),
             };
-            let title = format!("[{}]({})", deck.title, deck.file);
-            let hours = deck.hours.map_or(String::new(), |hours| hours.to_string());
-            table += &row([title, deck.minutes.to_string(), functions, checks, points, hours]);
+            table += &row(format!("[{}]({})", deck.title, deck.file), deck.minutes, of_stage);
         }
-        let [functions, checks, points] = self.of_stages("")?;
-        Ok(table
-            + &row(["**all**".to_owned(), thousands(minutes), functions, checks, points, hours.to_string()]))
+        Ok(table + &row("**all**".to_owned(), minutes, self.of_stages("")?))
     }
 
-    /// The cells of the table of decks for some stages: functions, checks and points.
-    fn of_stages(&self, stages: &str) -> Result<[String; 3]> {
+    /// The cells of the table of decks for some stages: functions, checks, points, those of the core, lines and hours.
+    fn of_stages(&self, stages: &str) -> Result<[String; 6]> {
         let with_bonus = |what: &str| -> Result<String> {
             let bonus = self.get(&format!("bonus {what}{stages}"))?;
             let bonus = if bonus == "0" { String::new() } else { format!(", and {bonus}") };
             Ok(self.get(&format!("{what}{stages}"))? + &bonus)
         };
-        let functions = self.get(&format!("functions{stages}"))?;
-        Ok([format!("{functions} functions"), with_bonus("checks")?, with_bonus("points")?])
+        let [functions, core, lines, hours] =
+            ["functions", "core points", "lines", "hours"].map(|what| self.get(&format!("{what}{stages}")));
+        let functions = format!("{} functions", functions?);
+        Ok([functions, with_bonus("checks")?, with_bonus("points")?, core?, lines?, hours?])
     }
 }
 
@@ -294,9 +291,10 @@ fn is_turned(check: &&Check) -> bool {
 }
 
 /// A row of a table.
-fn row(cells: [String; 6]) -> String {
+fn row(title: String, minutes: usize, of_stage: [String; 6]) -> String {
+    let cells = [title, thousands(minutes)].into_iter().chain(of_stage);
     let cells = cells.map(|cell| if cell.is_empty() { "| ".to_owned() } else { format!("| {cell} ") });
-    cells.concat() + "|\n"
+    cells.collect::<String>() + "|\n"
 }
 
 /// A number with commas between its thousands: `1,569`.
@@ -313,7 +311,6 @@ struct Deck {
     title: String,
     stage: Option<u8>,
     minutes: usize,
-    hours: Option<usize>,
 }
 
 /// The decks in the folder of the slides: those of the stages in order, then the others.
@@ -337,7 +334,6 @@ fn decks(folder: &Path) -> Result<Vec<Deck>> {
             title: value("title").with_context(|| needed("title"))?.trim_matches('"').to_owned(),
             stage: number("stage")?.map(u8::try_from).transpose()?,
             minutes: number("minutes")?.with_context(|| needed("minutes"))?,
-            hours: number("hours")?,
         });
     }
     decks.sort_by_key(|deck| (deck.stage.unwrap_or(u8::MAX), deck.file.clone()));
@@ -375,6 +371,19 @@ mod tests {
         assert_eq!(error("\n\n7<!--=al-->"), "a.md:3: no number has the name \"al\"");
         assert_eq!(error("\nseven <!--=all-->"), "a.md:2: <!--=all--> must directly follow a number");
         assert_eq!(error("7<!--=all"), "a.md:1: `<!--=` is never closed");
+    }
+
+    /// No stage has more than twice as many points per line of the reference as another one.
+    #[test]
+    fn points_follow_the_lines_of_the_reference() {
+        let root = grader::kits::root().unwrap();
+        let values = Values { root: &root, corpus: OnceCell::new(), printed: Vec::new() };
+        let get =
+            |what: &str, stage: u8| values.get(&format!("{what} {stage}")).unwrap().parse::<f64>().unwrap();
+        let per_line: Vec<f64> =
+            STAGES.iter().map(|(stage, _)| get("points", *stage) / get("lines", *stage)).collect();
+        let least = per_line.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(per_line.iter().all(|points| *points <= 2.0 * least), "{per_line:.2?}");
     }
 
     #[test]

@@ -3,7 +3,6 @@ use crate::grade::result::{Class, Outcome};
 use anyhow::Context;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use checks::rubric::Level;
 use quick_xml::events::Event;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -226,13 +225,13 @@ fn points_are_the_same_in_every_format() -> Result<()> {
 fn bonus_points_stand_apart() -> Result<()> {
     let mut graded = student("Anna", [(Outcome::Passed, ""); 4]);
     let bonus = check(12, "build_parallel_has_an_eighth_of_the_span", Outcome::Passed, 2, "");
-    graded.checks.push(CheckResult { level: Level::Bonus, ..bonus });
+    graded.checks.push(bonus);
     assert_eq!((graded.score().points(), graded.score().bonus()), ((17, 17), 2));
     let session = class().session;
     let files = files_of(&Class { session, students: vec![graded] })?;
     assert!(files["grades.csv"].contains("\"Anna\",17,17,100,"), "{}", files["grades.csv"]);
     let html = &files["students/Anna.html"];
-    assert!(html.contains("<b>17</b> of 17 points (100 %): 17 of 17 points · 2 bonus"), "{html}");
+    assert!(html.contains("<b>17</b> of 17 points (100 %): 9 of 9 core · 8 deeper · 2 bonus"), "{html}");
     // Gradescope adds up scores beyond the maximum; Classroom has no extra credit.
     let sums = |file: &str, key: &str| -> Result<u64> {
         let value: Value = serde_json::from_str(&files[file])?;
