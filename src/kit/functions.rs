@@ -91,6 +91,12 @@ macro_rules! implement_student_functions {
 #[macro_export]
 macro_rules! student_kit {
     () => {
+        #[cfg(feature = "frames")]
+        $crate::student_kit!(Some(&$crate::tracer::Renderer::<Kit>::NEW));
+        #[cfg(not(feature = "frames"))]
+        $crate::student_kit!(None);
+    };
+    ($renderer:expr) => {
         /// The functions of this crate as a kit.
         #[derive(Clone, Copy, Debug, Default)]
         pub struct Kit;
@@ -103,14 +109,8 @@ macro_rules! student_kit {
         }
 
         impl $crate::kit::StudentKit for Kit {
-            #[cfg(feature = "frames")]
             fn renderer() -> Option<&'static dyn $crate::kit::Frames> {
-                Some(&$crate::tracer::Renderer::<Kit>::NEW)
-            }
-
-            #[cfg(not(feature = "frames"))]
-            fn renderer() -> Option<&'static dyn $crate::kit::Frames> {
-                None
+                $renderer
             }
         }
     };

@@ -38,21 +38,8 @@ textbook! {
 
 use solutions::*;
 
-/// Functions with the code of the hints; those of later stages are the reference's.
-#[derive(Clone, Copy)]
-pub struct Kit;
-
-mod functions {
-    #[allow(unused_imports)]
-    use raykata::kit::types::*;
-    raykata::student_functions! { raykata::implement_student_functions }
-}
-
-impl raykata::kit::StudentKit for Kit {
-    fn renderer() -> Option<&'static dyn raykata::kit::Frames> {
-        None
-    }
-}
+// Functions with the code of the hints; those of later stages are the reference's.
+raykata::student_kit!(None);
 
 /// Checks, and the code in the third hint of each, which the functions of this test contain.
 const HINTS: &str = "\

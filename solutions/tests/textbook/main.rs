@@ -14,21 +14,8 @@ mod stage6_distribution;
 
 use solutions::*;
 
-/// The textbook's functions; those of later stages are the reference's.
-#[derive(Clone, Copy)]
-pub struct Kit;
-
-mod functions {
-    #[allow(unused_imports)]
-    use raykata::kit::types::*;
-    raykata::student_functions! { raykata::implement_student_functions }
-}
-
-impl raykata::kit::StudentKit for Kit {
-    fn renderer() -> Option<&'static dyn raykata::kit::Frames> {
-        None
-    }
-}
+// The textbook's functions; those of later stages are the reference's.
+raykata::student_kit!(None);
 
 #[test]
 fn a_solution_from_the_slides_and_the_ideas_passes_the_core() {

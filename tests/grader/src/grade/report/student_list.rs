@@ -4,7 +4,6 @@
 use super::line::Line;
 use super::page::page;
 use super::tally::{self, Tally};
-use checks::rubric::Level;
 use maud::{Markup, html};
 
 /// Most rows of a page.
@@ -58,10 +57,7 @@ fn ends(lines: &[Line]) -> String {
 /// Returns the table. `to_class` leads from the page to the folder of the class.
 fn table(lines: &[Line], tallies: &[Tally], to_class: &str) -> Markup {
     let stages = tally::stages(tallies);
-    let of_stage = |stage| -> u32 {
-        let counted = tallies.iter().filter(|tally| tally.stage == stage && tally.level != Level::Bonus);
-        counted.map(|tally| tally.points).sum()
-    };
+    let of_stage = |stage| tally::of(tallies.iter().filter(|tally| tally.stage == stage));
     let has_bonus = tally::has_bonus(tallies);
     html! {
         div.scroll {

@@ -92,8 +92,8 @@ pub(super) fn stages(tallies: &[Tally]) -> Vec<u8> {
 }
 
 /// Returns the sum of all possible points, without bonus points.
-pub(super) fn of(tallies: &[Tally]) -> u32 {
-    tallies.iter().filter(|tally| tally.level != Level::Bonus).map(|tally| tally.points).sum()
+pub(super) fn of<'a>(tallies: impl IntoIterator<Item = &'a Tally>) -> u32 {
+    tallies.into_iter().filter(|tally| tally.level != Level::Bonus).map(|tally| tally.points).sum()
 }
 
 /// Returns the sum of the possible points of the core.
