@@ -10,6 +10,7 @@ use std::io::{BufRead, BufReader, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// The kit whose code is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +112,12 @@ impl Source {
 
     /// A new kit, with a process of its own.
     pub fn fresh(&self) -> Arc<dyn Kit + Send + Sync> {
-        Arc::new(Door(Worker::new(self.program.clone(), CALL_PATIENCE)))
+        self.fresh_within(CALL_PATIENCE)
+    }
+
+    /// The same with another longest time for a call.
+    pub fn fresh_within(&self, patience: Duration) -> Arc<dyn Kit + Send + Sync> {
+        Arc::new(Door(Worker::new(self.program.clone(), patience)))
     }
 }
 
@@ -208,9 +214,16 @@ impl BuiltPrograms {
     }
 }
 
-/// Runs a program with these words to its end, and returns its exit code; 1 if it was killed.
+/// Runs a program with these words to its end, and returns its exit code; 1 if it was killed. On Unix it takes the place of this
+/// process, so that a signal to this process ends the program.
 pub fn run_program(program: &Path, words: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Result<ExitCode> {
-    let status = Command::new(program).args(words).status();
+    let mut command = Command::new(program);
+    command.args(words);
+    #[cfg(unix)]
+    let status: std::io::Result<std::process::ExitStatus> =
+        Err(std::os::unix::process::CommandExt::exec(&mut command));
+    #[cfg(not(unix))]
+    let status = command.status();
     let status = status.with_context(|| format!("{} cannot be started", program.display()))?;
     Ok(ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)))
 }
