@@ -34,6 +34,7 @@ checks::stage! { ($ crate) 3 [
     splits::spatial_median_never_leaves_a_side_empty: turned
     cuts::surface_area_heuristic_finds_the_cheapest_cut
     splits::surface_area_heuristic_survives_zero_area: turned
+    cuts::surface_area_heuristic_joins_no_side_again: turned
     builds::build_holds_every_primitive_once
     builds::build_ends_where_all_centroids_are_one: turned
     builds::build_of_nothing_and_of_one: turned
