@@ -112,12 +112,12 @@ impl Source {
 
     /// A new kit, with a process of its own.
     pub fn fresh(&self) -> Arc<dyn Kit + Send + Sync> {
-        self.fresh_within(CALL_PATIENCE)
+        Arc::new(Door(Worker::new(self.program.clone(), CALL_PATIENCE)))
     }
 
-    /// The same with another longest time for a call.
+    /// The same with another longest time for a call, and for a frame without progress.
     pub fn fresh_within(&self, patience: Duration) -> Arc<dyn Kit + Send + Sync> {
-        Arc::new(Door(Worker::new(self.program.clone(), patience)))
+        Arc::new(Door(Worker::new(self.program.clone(), patience).frames_within(patience)))
     }
 }
 

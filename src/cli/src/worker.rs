@@ -95,7 +95,7 @@ impl Worker {
     /// time without the time that it waits for a processor, so that a busy machine does not change a verdict.
     pub fn sandboxed(program: PathBuf, patience: Duration, launcher: impl Launcher + 'static) -> Self {
         let launcher: Arc<dyn Launcher> = Arc::new(launcher);
-        Worker { launcher: Some(launcher), frame_patience: patience, ..Worker::new(program, patience) }
+        Worker { launcher: Some(launcher), ..Worker::new(program, patience).frames_within(patience) }
     }
 
     /// The same for a student who looks at one call: the first lines that the program writes are shown.
@@ -107,11 +107,13 @@ impl Worker {
     /// Because that may be too short on a busy machine, a late frame is tried once more with the long time
     /// limit, until such a second try has failed.
     pub fn hasty(program: PathBuf, patience: Duration) -> Self {
-        Worker {
-            frame_patience: patience,
-            asks_again: AtomicBool::new(true),
-            ..Worker::new(program, patience)
-        }
+        let asks_again = AtomicBool::new(true);
+        Worker { asks_again, ..Worker::new(program, patience).frames_within(patience) }
+    }
+
+    /// The same with another longest time without progress in a frame.
+    pub fn frames_within(self, patience: Duration) -> Self {
+        Worker { frame_patience: patience, ..self }
     }
 
     /// From now on keeps the tables of searches here, or no longer. The worker then asks for each entry, and the counts in an

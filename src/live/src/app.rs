@@ -7,12 +7,12 @@ use crate::run::{Event, Task};
 use crossterm::event::KeyCode;
 use live::compiler::CompilerError;
 use live::files::names_in;
-use raykata_cli::verdicts::Verdict;
+use raykata_cli::verdicts::{CheckVerdict, Verdict};
 use std::path::Path;
 use std::time::Duration;
 
 /// What must be done next.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     Nothing,
     Quit,
@@ -121,7 +121,7 @@ impl App {
             note: String::new(),
             size,
         };
-        let task = Action::Start(Task::Check(app.stage().number));
+        let task = Action::Start(Task::Check(vec![app.stage().number]));
         (app, task)
     }
 
@@ -147,10 +147,18 @@ impl App {
         self.stages.iter().enumerate().flat_map(of_stage).collect()
     }
 
-    /// A file of the student has changed.
+    /// A file of the student has changed. Stages that were done are checked again, after the stage that is shown.
     pub fn saved(&mut self) -> Action {
         self.note.clear();
-        self.run()
+        let mut action = self.run();
+        if let Action::Start(Task::Check(stages)) = &mut action {
+            stages.extend(self.other_done_stages().map(|stage| stage.number));
+        }
+        action
+    }
+
+    fn other_done_stages(&self) -> impl Iterator<Item = &Stage> {
+        self.stages.iter().filter(|stage| stage.was_done && stage.number != self.stage().number)
     }
 
     /// Starts a run for what is shown.
@@ -165,8 +173,35 @@ impl App {
                 let width = (rows * 16 / 9).min(columns).max(16);
                 Task::Render(stage, width as u32, (width * 9 / 16) as u32)
             }
-            _ => Task::Check(stage),
+            _ => Task::Check(vec![stage]),
         })
+    }
+
+    /// In words: the first check that fails of a stage that was done before, other than the stage that is shown.
+    pub fn regression(&self) -> Option<String> {
+        let stage = self.other_done_stages().find(|stage| !stage.is_done())?;
+        let check = stage.checks.iter().find(|check| !check.entry.bonus && !check.passes())?;
+        Some(format!("stage {} was done, and now fails {} (l lists the checks)", stage.number, check.name))
+    }
+
+    /// Keeps a verdict. Shows a failure at once if it comes before the check that is shown: others may wait for the same endless loop.
+    fn judged(&mut self, verdict: CheckVerdict) {
+        let failed = matches!(verdict.verdict, Verdict::Failed(_));
+        let at = self.stage().checks.iter().position(|check| check.name == verdict.check);
+        keep(&mut self.stages, verdict);
+        if let Some(at) =
+            at.filter(|&at| failed && !self.is_chosen && (at < self.check || self.check().passes()))
+        {
+            self.show(at);
+        }
+    }
+
+    /// Shows a check of the stage, unless another page is open.
+    fn show(&mut self, check: usize) {
+        if check != self.check && matches!(self.page, Page::Check { .. }) {
+            self.page = Page::CHECK;
+        }
+        self.check = check;
     }
 
     /// Goes to a check.
@@ -183,9 +218,11 @@ impl App {
             Event::Compiled(time) => (self.compiled, self.phase) = (time, Phase::Working),
             Event::Errors(errors) => self.phase = Phase::Errors(errors),
             Event::Broken(why) => self.phase = Phase::Broken(why),
-            Event::Verdict(verdict) => keep(&mut self.stages, verdict),
+            Event::Verdict(verdict) => self.judged(verdict),
+            Event::Progress(words) => self.note = words,
             Event::Picture(pixels) => {
                 self.phase = Phase::Ended { compiled: self.compiled, checked: Duration::ZERO };
+                self.note.clear();
                 if let Page::Picture(shown) = &mut self.page {
                     *shown = Some(pixels);
                 }
@@ -201,7 +238,8 @@ impl App {
 
     /// All checks of the stage have a verdict: shows what comes next.
     fn checked(&mut self) -> Action {
-        let is_last = self.stage + 1 == self.stages.len();
+        let (stage, is_last) = (self.stage, self.stage + 1 == self.stages.len());
+        self.stages[stage].was_done |= self.stage().is_done();
         if self.is_searching && self.stage().is_done() && !is_last {
             self.stage += 1;
             self.check = 0;
@@ -213,14 +251,7 @@ impl App {
             self.is_chosen = false;
         }
         if !self.is_chosen {
-            let next = self.stage().next_open(0, true).unwrap_or(self.check);
-            if next != self.check {
-                self.check = next;
-                self.page = match std::mem::replace(&mut self.page, Page::CHECK) {
-                    Page::Check { .. } => Page::CHECK,
-                    other => other,
-                };
-            }
+            self.show(self.stage().next_open(0, true).unwrap_or(self.check));
         }
         Action::Nothing
     }
@@ -399,7 +430,6 @@ fn function_in(message: &str, root: &Path, stage: u8) -> Option<(String, u32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use raykata_cli::verdicts::CheckVerdict;
 
     fn tell(app: &mut App, check: usize, verdict: Verdict) {
         let name = app.stage().checks[check].name.to_owned();
@@ -421,13 +451,40 @@ mod tests {
     #[test]
     fn it_begins_at_the_first_check_that_does_not_pass() {
         let (mut app, action) = App::new(None, (80, 24));
-        assert_eq!(action, Action::Start(Task::Check(1)));
+        assert_eq!(action, Action::Start(Task::Check(vec![1])));
         all(&mut app, &Verdict::Passed);
-        assert_eq!(end(&mut app), Action::Start(Task::Check(2)), "stage 1 is done");
+        assert_eq!(end(&mut app), Action::Start(Task::Check(vec![2])), "stage 1 is done");
         all(&mut app, &Verdict::Passed);
         tell(&mut app, 3, failed());
         assert_eq!(end(&mut app), Action::Nothing);
         assert_eq!((app.stage().number, app.check), (2, 3));
+    }
+
+    #[test]
+    fn a_save_tells_what_fails_in_a_stage_that_was_done() {
+        let (mut app, _) = App::new(None, (80, 24));
+        all(&mut app, &Verdict::Passed);
+        end(&mut app);
+        all(&mut app, &failed());
+        end(&mut app);
+        assert_eq!(app.saved(), Action::Start(Task::Check(vec![2, 1])));
+        let check = app.stages[0].checks[3].name;
+        app.event(Event::Verdict(CheckVerdict { check: check.into(), verdict: failed() }));
+        let line = app.regression().expect("stage 1 was done");
+        assert_eq!(line, format!("stage 1 was done, and now fails {check} (l lists the checks)"));
+        app.event(Event::Verdict(CheckVerdict { check: check.into(), verdict: Verdict::Passed }));
+        assert_eq!(app.regression(), None);
+    }
+
+    #[test]
+    fn a_failure_is_shown_before_the_other_checks_have_a_verdict() {
+        let (mut app, _) = App::new(Some(1), (80, 24));
+        all(&mut app, &Verdict::Passed);
+        tell(&mut app, 6, failed());
+        end(&mut app);
+        assert_eq!((app.check, app.saved()), (6, Action::Start(Task::Check(vec![1]))));
+        tell(&mut app, 2, failed());
+        assert_eq!(app.check, 2);
     }
 
     #[test]
@@ -452,7 +509,7 @@ mod tests {
         all(&mut app, &failed());
         end(&mut app);
         app.key(KeyCode::Char('n'));
-        assert_eq!(app.saved(), Action::Start(Task::Check(1)));
+        assert_eq!(app.saved(), Action::Start(Task::Check(vec![1])));
         end(&mut app);
         assert_eq!(app.check, 1, "it still fails");
         tell(&mut app, 1, Verdict::Passed);
@@ -466,7 +523,7 @@ mod tests {
         let (mut app, _) = App::new(Some(1), (80, 24));
         all(&mut app, &Verdict::Passed);
         assert_eq!(end(&mut app), Action::Nothing, "a stage that was asked for stays");
-        assert_eq!(app.key(KeyCode::Char('n')), Action::Start(Task::Check(2)));
+        assert_eq!(app.key(KeyCode::Char('n')), Action::Start(Task::Check(vec![2])));
     }
 
     #[test]
@@ -480,7 +537,7 @@ mod tests {
         app.key(KeyCode::Down);
         let action = app.key(KeyCode::Enter);
         assert_eq!((app.stage, app.check), found[1]);
-        assert_eq!(action, Action::Start(Task::Check(app.stage().number)));
+        assert_eq!(action, Action::Start(Task::Check(vec![app.stage().number])));
         assert_eq!(app.page, Page::CHECK);
     }
 
@@ -511,7 +568,7 @@ mod tests {
         assert!(matches!(app.saved(), Action::Start(Task::Render(4, ..))));
         app.event(Event::Picture(Pixels(vec![vec![([1; 3], [2; 3])]])));
         assert!(matches!(app.page, Page::Picture(Some(_))));
-        assert_eq!(app.key(KeyCode::Char('v')), Action::Start(Task::Check(4)), "back to the checks");
+        assert_eq!(app.key(KeyCode::Char('v')), Action::Start(Task::Check(vec![4])), "back to the checks");
     }
 
     #[test]

@@ -28,10 +28,18 @@ pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
         }
         action = match reports.recv_timeout(PAUSE) {
             Ok(Report { run, event }) if run == number => {
-                let has_ended = !matches!(event, Event::Verdict(_) | Event::Compiled(_));
+                let has_ended = match &event {
+                    Event::Verdict(_) | Event::Compiled(_) | Event::Progress(_) => false,
+                    Event::Checked(number, _) => *number == app.stage().number,
+                    _ => true,
+                };
+                let before = app.regression();
                 let action = app.event(event);
                 if has_ended && action == Action::Nothing {
                     say(format_args!("{}\n", lines(&app)));
+                }
+                if let Some(words) = app.regression().filter(|words| before.as_ref() != Some(words)) {
+                    say(format_args!("{words}\n"));
                 }
                 action
             }

@@ -267,15 +267,11 @@ fn foot(app: &App, columns: usize) -> Vec<String> {
         Phase::Errors(_) => "waiting for a save; o opens the place".to_owned(),
         Phase::Broken(_) => "waiting for a save".to_owned(),
     };
-    if app.note.is_empty() {
-        return vec![run];
-    }
-    let line = format!("{run}   {}", app.note);
-    if line.chars().count() <= columns {
-        vec![line]
-    } else {
-        [wrapped(&app.note, columns), vec![run]].concat()
-    }
+    let line = if app.note.is_empty() { run.clone() } else { format!("{run}   {}", app.note) };
+    let fits = line.chars().count() <= columns;
+    let lines = if fits { vec![line] } else { [wrapped(&app.note, columns), vec![run]].concat() };
+    let regression = app.regression().map(|words| wrapped(&words, columns));
+    regression.into_iter().flatten().chain(lines).collect()
 }
 
 /// The text in at most `columns` columns. Signs of the kit's texts are one column wide.
