@@ -109,7 +109,7 @@ impl App {
     pub fn new(stage: Option<u8>, size: (usize, usize)) -> (App, Action) {
         let stages = stages();
         let index = stage.and_then(|stage| stages.iter().position(|one| one.number == stage));
-        let app = App {
+        let mut app = App {
             stages,
             stage: index.unwrap_or(0),
             check: 0,
@@ -121,8 +121,8 @@ impl App {
             note: String::new(),
             size,
         };
-        let task = Action::Start(Task::Check(vec![app.stage().number]));
-        (app, task)
+        let action = app.run();
+        (app, action)
     }
 
     /// The stage that is shown.
@@ -147,18 +147,18 @@ impl App {
         self.stages.iter().enumerate().flat_map(of_stage).collect()
     }
 
-    /// A file of the student has changed. Stages that were done are checked again, after the stage that is shown.
+    /// A file of the student has changed.
     pub fn saved(&mut self) -> Action {
         self.note.clear();
-        let mut action = self.run();
-        if let Action::Start(Task::Check(stages)) = &mut action {
-            stages.extend(self.other_done_stages().map(|stage| stage.number));
-        }
-        action
+        self.run()
     }
 
-    fn other_done_stages(&self) -> impl Iterator<Item = &Stage> {
-        self.stages.iter().filter(|stage| stage.was_done && stage.number != self.stage().number)
+    /// The stages that are checked after the stage that is shown, because an edit may break what was done.
+    fn others(&self) -> impl Iterator<Item = &Stage> {
+        let is_other = |(index, stage): &(usize, &Stage)| {
+            *index != self.stage && (*index < self.stage || stage.was_done) && !self.is_searching
+        };
+        self.stages.iter().enumerate().filter(is_other).map(|(_, stage)| stage)
     }
 
     /// Starts a run for what is shown.
@@ -173,13 +173,13 @@ impl App {
                 let width = (rows * 16 / 9).min(columns).max(16);
                 Task::Render(stage, width as u32, (width * 9 / 16) as u32)
             }
-            _ => Task::Check(vec![stage]),
+            _ => Task::Check([stage].into_iter().chain(self.others().map(|other| other.number)).collect()),
         })
     }
 
     /// In words: the first check that fails of a stage that was done before, other than the stage that is shown.
     pub fn regression(&self) -> Option<String> {
-        let stage = self.other_done_stages().find(|stage| !stage.is_done())?;
+        let stage = self.others().find(|stage| stage.was_done && !stage.is_done())?;
         let check = stage.checks.iter().find(|check| !check.entry.bonus && !check.passes())?;
         Some(format!("stage {} was done, and now fails {} (l lists the checks)", stage.number, check.name))
     }
@@ -227,19 +227,22 @@ impl App {
                     *shown = Some(pixels);
                 }
             }
-            Event::Checked(number, checked) if number == self.stage().number => {
-                self.phase = Phase::Ended { compiled: self.compiled, checked };
-                return self.checked();
+            Event::Checked(number, checked) => {
+                for stage in self.stages.iter_mut().filter(|stage| stage.number == number) {
+                    stage.was_done |= stage.is_done();
+                }
+                if number == self.stage().number {
+                    self.phase = Phase::Ended { compiled: self.compiled, checked };
+                    return self.checked();
+                }
             }
-            Event::Checked(..) => {}
         }
         Action::Nothing
     }
 
     /// All checks of the stage have a verdict: shows what comes next.
     fn checked(&mut self) -> Action {
-        let (stage, is_last) = (self.stage, self.stage + 1 == self.stages.len());
-        self.stages[stage].was_done |= self.stage().is_done();
+        let is_last = self.stage + 1 == self.stages.len();
         if self.is_searching && self.stage().is_done() && !is_last {
             self.stage += 1;
             self.check = 0;
@@ -523,7 +526,7 @@ mod tests {
         let (mut app, _) = App::new(Some(1), (80, 24));
         all(&mut app, &Verdict::Passed);
         assert_eq!(end(&mut app), Action::Nothing, "a stage that was asked for stays");
-        assert_eq!(app.key(KeyCode::Char('n')), Action::Start(Task::Check(vec![2])));
+        assert_eq!(app.key(KeyCode::Char('n')), Action::Start(Task::Check(vec![2, 1])));
     }
 
     #[test]
@@ -537,7 +540,7 @@ mod tests {
         app.key(KeyCode::Down);
         let action = app.key(KeyCode::Enter);
         assert_eq!((app.stage, app.check), found[1]);
-        assert_eq!(action, Action::Start(Task::Check(vec![app.stage().number])));
+        assert!(matches!(action, Action::Start(Task::Check(stages)) if stages[0] == app.stage().number));
         assert_eq!(app.page, Page::CHECK);
     }
 
@@ -568,7 +571,11 @@ mod tests {
         assert!(matches!(app.saved(), Action::Start(Task::Render(4, ..))));
         app.event(Event::Picture(Pixels(vec![vec![([1; 3], [2; 3])]])));
         assert!(matches!(app.page, Page::Picture(Some(_))));
-        assert_eq!(app.key(KeyCode::Char('v')), Action::Start(Task::Check(vec![4])), "back to the checks");
+        assert_eq!(
+            app.key(KeyCode::Char('v')),
+            Action::Start(Task::Check(vec![4, 1, 2, 3])),
+            "back to the checks"
+        );
     }
 
     #[test]
