@@ -58,7 +58,6 @@ pub struct Worker {
     launcher: Option<Arc<dyn Launcher>>,
     call_patience: Duration,
     frame_patience: Duration,
-    asks_again: AtomicBool,
     /// Whether the output of the program is shown.
     shows: bool,
     /// Whether the tables of searches stay here, so that the worker must ask for each entry.
@@ -80,7 +79,6 @@ impl Worker {
             launcher: None,
             call_patience,
             frame_patience: FRAME_PATIENCE,
-            asks_again: AtomicBool::new(false),
             shows: false,
             withholds: AtomicBool::new(false),
             process: Mutex::new(None),
@@ -103,15 +101,7 @@ impl Worker {
         Worker { shows: true, ..Worker::new(program, patience) }
     }
 
-    /// The same for small pictures, some of which never end: a frame has no more time than any other call.
-    /// Because that may be too short on a busy machine, a late frame is tried once more with the long time
-    /// limit, until such a second try has failed.
-    pub fn hasty(program: PathBuf, patience: Duration) -> Self {
-        let asks_again = AtomicBool::new(true);
-        Worker { asks_again, ..Worker::new(program, patience).frames_within(patience) }
-    }
-
-    /// The same with another longest time without progress in a frame.
+    /// The same with another longest time without progress in a frame, for pictures that are small or may never end.
     pub fn frames_within(self, patience: Duration) -> Self {
         Worker { frame_patience: patience, ..self }
     }
@@ -201,13 +191,7 @@ impl Worker {
 impl Transport for Worker {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let patience = if request.frame().is_some() { self.frame_patience } else { self.call_patience };
-        let mut answer = self.ask(&request, watch, patience);
-        let late = |answer: &Result<Answer, KitError>| matches!(answer, Err(KitError::TimedOut { .. }));
-        if late(&answer) && self.asks_again.load(Ordering::Relaxed) {
-            answer = self.ask(&request, watch, FRAME_PATIENCE);
-            self.asks_again.store(!late(&answer), Ordering::Relaxed);
-        }
-        answer.unwrap_or_else(|error| kit_error::unwind(error))
+        self.ask(&request, watch, patience).unwrap_or_else(|error| kit_error::unwind(error))
     }
 
     fn waited(&self) -> Duration {

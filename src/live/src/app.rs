@@ -623,6 +623,6 @@ mod tests {
         }
         app.reset(root.path());
         assert_eq!(std::fs::read_to_string(file).unwrap(), stub);
-        assert_eq!(app.note, "the old text: out/stage1_shapes-before-reset-1.rs");
+        assert_eq!(app.note, "the old text: out/before-reset-1/stage1_shapes.rs");
     }
 }

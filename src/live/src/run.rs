@@ -19,7 +19,7 @@ use std::io::{BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 /// What a run reports.
@@ -41,14 +41,6 @@ pub enum Event {
     Broken(String),
 }
 
-/// An event, and the number of its run. Events of a run that was cancelled may still arrive.
-pub struct Report {
-    /// The number of the run.
-    pub run: u64,
-    /// What happened.
-    pub event: Event,
-}
-
 /// What a run does after it has compiled the exercises.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Task {
@@ -68,27 +60,32 @@ pub struct Paths {
 }
 
 /// A run. It is cancelled when it is dropped.
-pub struct Run(Arc<Process>);
+pub struct Run {
+    process: Arc<Process>,
+    /// What it reports. Each run has its own events, so those of a cancelled run are gone.
+    pub events: Receiver<Event>,
+}
 
 impl Run {
-    /// Starts a run, which reports to `reports`.
-    pub fn start(paths: Paths, task: Task, run: u64, reports: Sender<Report>) -> Run {
+    /// Starts a run.
+    pub fn start(paths: Paths, task: Task) -> Run {
         let process = Arc::new(Process::default());
+        let (sender, events) = channel();
         let own = process.clone();
         std::thread::spawn(move || {
-            // The receiver is gone only when the program ends.
-            let report = |event| _ = reports.send(Report { run, event });
+            // The receiver is gone if the run was cancelled.
+            let report = |event| _ = sender.send(event);
             if let Err(error) = work(&paths, task, &own, &report) {
                 report(Event::Broken(format!("{error:#}")));
             }
         });
-        Run(process)
+        Run { process, events }
     }
 }
 
 impl Drop for Run {
     fn drop(&mut self) {
-        self.0.end();
+        self.process.end();
     }
 }
 

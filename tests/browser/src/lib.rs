@@ -256,16 +256,6 @@ impl Browser {
         }
         Ok(())
     }
-
-    /// A picture of the window, as a PNG file in base64.
-    ///
-    /// # Errors
-    ///
-    /// If the browser does not answer.
-    pub fn screenshot(&mut self) -> Result<String> {
-        let picture = self.call("Page.captureScreenshot", json!({ "format": "png" }))?;
-        Ok(picture["data"].as_str().context("no picture")?.to_owned())
-    }
 }
 
 impl Drop for Browser {

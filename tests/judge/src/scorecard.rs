@@ -2,7 +2,7 @@
 
 use all_checks::STAGES;
 use anyhow::Result;
-use checks::rubric::{self, RUBRIC};
+use checks::rubric::{self, CheckEntry, RUBRIC};
 use checks::{Check, Verdict};
 use raykata::kit::KitError;
 use raykata::worker::send;
@@ -20,9 +20,7 @@ use std::sync::{Mutex, PoisonError};
 struct Graded {
     check: &'static Check,
     verdict: Verdict,
-    points: u32,
-    /// Whether the points are a bonus.
-    bonus: bool,
+    entry: CheckEntry,
 }
 
 impl Graded {
@@ -49,7 +47,7 @@ fn run_checks(
         let hangs = hangs.filter(|_| !has_hung.swap(true, Ordering::Relaxed)).cloned();
         let verdict = checks::verdict(check, examined);
         let entry = rubric::entry(check.stage, check.name);
-        let graded = Graded { check, verdict, points: entry.points, bonus: entry.bonus };
+        let graded = Graded { check, verdict, entry };
         report(&graded, hangs)?;
         Ok(graded)
     })
@@ -94,10 +92,10 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
                 Verdict::NotWritten { .. } => "not written",
                 Verdict::Failed(_) => "FAILED",
             };
-            let entry = rubric::entry(*number, one.check.name);
-            let earned = if one.passed() { one.points } else { 0 };
-            let of = if one.bonus { format!("+{}", one.points) } else { one.points.to_string() };
-            println!("  {word:<11}  {earned:>2}/{of:<2}  {:<52}  {}", one.check.name, entry.title);
+            let earned = if one.passed() { one.entry.points } else { 0 };
+            let bonus = if one.entry.bonus { "+" } else { "" };
+            let of = format!("{bonus}{}", one.entry.points);
+            println!("  {word:<11}  {earned:>2}/{of:<2}  {:<52}  {}", one.check.name, one.entry.title);
         }
         println!();
     }
@@ -111,7 +109,7 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
     }
     let passed = graded.iter().filter(|one| one.passed()).count();
     println!("\n{}\n{passed} passed, {} failed", points(graded.iter()), graded.len() - passed);
-    Ok(graded.iter().all(|one| one.bonus || one.passed()))
+    Ok(graded.iter().all(|one| one.entry.bonus || one.passed()))
 }
 
 /// Whether the course asks for this stage.
@@ -141,12 +139,12 @@ fn gaps(graded: &[Graded]) -> Vec<(String, (String, usize))> {
 fn points<'a>(graded: impl Iterator<Item = &'a Graded>) -> String {
     let (mut earned, mut all, mut bonus) = (0, 0, 0);
     for one in graded {
-        let of_check = if one.passed() { one.points } else { 0 };
-        if one.bonus {
+        let of_check = if one.passed() { one.entry.points } else { 0 };
+        if one.entry.bonus {
             bonus += of_check;
         } else {
             earned += of_check;
-            all += one.points;
+            all += one.entry.points;
         }
     }
     let bonus = if bonus > 0 { format!(", and {bonus} bonus") } else { String::new() };
@@ -155,7 +153,7 @@ fn points<'a>(graded: impl Iterator<Item = &'a Graded>) -> String {
 
 fn stage_line(number: u8, graded: &[&Graded]) -> String {
     let title = RUBRIC.get(&format!("stage{number}")).map_or("", |stage| &stage.title);
-    let asked_for = || graded.iter().filter(|one| !one.bonus);
+    let asked_for = || graded.iter().filter(|one| !one.entry.bonus);
     let passed = asked_for().filter(|one| one.passed()).count();
     let n = asked_for().count();
     format!(
@@ -178,14 +176,14 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
         println!("{}", stage_line(*number, &of_stage));
         if let Some(due) =
-            course.due.get(number).filter(|_| of_stage.iter().any(|one| !one.bonus && !one.passed()))
+            course.due.get(number).filter(|_| of_stage.iter().any(|one| !one.entry.bonus && !one.passed()))
         {
             println!("           {} {due}", course.text("due"));
         }
     }
     println!();
     // A bonus comes after everything else.
-    let open = |bonus: bool| graded.iter().find(move |one| one.bonus == bonus && !one.passed());
+    let open = |bonus: bool| graded.iter().find(move |one| one.entry.bonus == bonus && !one.passed());
     match open(false).or(open(true)) {
         None => println!(
             "Everything passes. `cargo run --release -- render scenes/showcase.toml{}` shows it.",
@@ -195,7 +193,7 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
             let (stage, name) = (next.check.stage, next.check.name);
             match &next.verdict {
                 Verdict::NotWritten { task, place } => {
-                    let slide = rubric::entry(stage, name).slide;
+                    let slide = &next.entry.slide;
                     let (next, slides) = (course.text("next"), course.text("slides"));
                     println!("{next}: {place}\n  {task}\n  {slides}: {slide}\n");
                 }

@@ -131,18 +131,6 @@ impl Store {
         })
     }
 
-    /// Stores many grades in one transaction.
-    #[cfg(test)]
-    pub fn keep_all(&self, grades: &[Graded]) -> Result<()> {
-        let mut connection = self.lock();
-        let transaction = connection.transaction()?;
-        for graded in grades {
-            let row = params![graded.student, graded.content, serde_json::to_string(graded)?];
-            transaction.execute("INSERT INTO graded (student, content, json) VALUES (?1, ?2, ?3)", row)?;
-        }
-        Ok(transaction.commit()?)
-    }
-
     /// Returns the graded students that are not among `students`.
     pub fn others(&self, students: &[&str]) -> Result<Vec<String>> {
         let students: HashSet<&str> = students.iter().copied().collect();
