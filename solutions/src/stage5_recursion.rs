@@ -72,11 +72,10 @@ pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> 
 /// ```
 ///
 /// The ray comes from the medium of index `n1`. `cos_theta`, in `0..=1`, is the cosine of its angle
-/// θ1 with the normal. Is that θ?
+/// θ1 with the normal. θ is the larger one of θ1 and the angle θ2 of the refracted ray.
 ///
 /// Exactly:
 ///
-/// - θ is θ1 if `n1 <= n2`, and the angle θ2 of the refracted ray if `n1 > n2`.
 /// - The result is in `0..=1`, and 1 beyond the critical angle. Within rounding of it (or if
 ///   `n1 == n2` and `cos_theta` is 0) any number in `0..=1` passes.
 ///

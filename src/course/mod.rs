@@ -6,6 +6,7 @@ mod moment;
 mod points;
 mod read;
 pub mod rubric;
+mod score;
 mod stage;
 #[cfg(test)]
 mod tests;
@@ -15,8 +16,9 @@ pub use moment::Moment;
 pub use read::{parse, parse_language, stages_of};
 pub use verdict::Verdict;
 
+use score::Level;
 use serde::Serialize;
-use stage::Stage;
+use stage::{CheckEntry, Stage};
 use std::collections::BTreeMap;
 
 /// What a course changes in the kit. The default changes nothing.
@@ -26,6 +28,8 @@ pub struct Course {
     pub title: String,
     /// The numbers of the stages that students are asked for, in ascending order; empty for all stages.
     pub stages: Vec<u8>,
+    /// Whether only the core counts: deeper and elective checks have no points, unless the file gives them some.
+    pub core_only: bool,
     /// The name of the file with the texts in another language, beside the course file.
     pub language: Option<String>,
     /// The changes of each stage, by its name in the rubric.
@@ -67,7 +71,8 @@ pub const TEXTS: [(&str, &str); 7] = [
     (
         "welcome",
         "Welcome. You build a ray tracer: you write its functions in exercises/src, one\nat a time. A check passes for each \
-         law of light and geometry that they obey.\nNothing is written yet.",
+         law of light and geometry that they obey.\nThe core of stages 1 to 6 is a course of four weeks, all stages are one of\n\
+         twelve (slides/plan.md). Nothing is written yet.",
     ),
     ("due", "due"),
     ("next", "Next"),
@@ -87,6 +92,11 @@ impl Course {
     /// Whether the course file leaves out a stage.
     pub fn leaves_out(&self, stage: u8) -> bool {
         !self.stages.is_empty() && !self.stages.contains(&stage)
+    }
+
+    /// Whether a check of this level counts in the course.
+    fn counts(&self, check: &CheckEntry) -> bool {
+        !self.core_only || matches!(check.level(), Level::Core | Level::Bonus)
     }
 
     /// Adds the texts of a language. Where the course file has a text of its own, it stays.
@@ -110,6 +120,8 @@ impl Course {
 
     /// Changes the rubric as the course asks.
     pub(crate) fn apply(&self, stages: &mut BTreeMap<String, Stage>) {
+        let checks = stages.values_mut().flat_map(|stage| stage.checks.values_mut());
+        checks.filter(|check| !self.counts(check)).for_each(|check| check.points = 0);
         for (name, change) in &self.changes {
             let Some(stage) = stages.get_mut(name) else { continue };
             replace(&mut stage.title, &change.title);
@@ -122,7 +134,8 @@ impl Course {
             }
             if let Some(points) = change.points {
                 // The order of the rubric decides between equal checks.
-                let mut checks: Vec<_> = stage.checks.values_mut().filter(|check| !check.bonus).collect();
+                let mut checks: Vec<_> =
+                    stage.checks.values_mut().filter(|check| check.level() != Level::Bonus).collect();
                 checks.sort_by_key(|check| check.place);
                 let weights: Vec<u32> = checks.iter().map(|check| check.points).collect();
                 for (check, points) in checks.into_iter().zip(points::divide(points, &weights)) {

@@ -1,6 +1,7 @@
 //! Reads course files and language files. Every error says where in the file it is, and what to do.
 
-use super::stage::{PLAIN, Stage};
+use super::score::Level;
+use super::stage::{CheckEntry, PLAIN, Stage};
 use super::{CheckChange, Course, Moment, StageChange, TEXTS};
 use crate::files::error::LoadError;
 use crate::files::scene::Limits;
@@ -33,7 +34,7 @@ fn read(file: &Path, text: &str, is_language: bool) -> Result<Course, LoadError>
     let source = Source::new(file, text, Limits::default());
     let document = source.document()?;
     let mut known: Vec<&str> = PLAIN.keys().map(String::as_str).collect();
-    known.extend(if is_language { &["texts"][..] } else { &["title", "stages", "language"] });
+    known.extend(if is_language { &["texts"][..] } else { &["title", "stages", "core_only", "language"] });
     let name = if is_language { "the language file" } else { "the course file" };
     let root = Table::root(&source, name, &document, &known)?;
 
@@ -42,6 +43,7 @@ fn read(file: &Path, text: &str, is_language: bool) -> Result<Course, LoadError>
         match value.key {
             "title" => course.title = line(value)?,
             "stages" => course.stages = stages_of(value.text()?).map_err(|why| value.error(why))?,
+            "core_only" => course.core_only = value.truth()?,
             "language" => course.language = Some(file_name(value)?),
             "texts" => {
                 let keys: Vec<&str> = TEXTS.iter().map(|(key, _)| *key).collect();
@@ -52,7 +54,9 @@ fn read(file: &Path, text: &str, is_language: bool) -> Result<Course, LoadError>
             name => {
                 let Some(stage) = PLAIN.get(name) else { continue };
                 let number = name.trim_start_matches("stage").parse().unwrap_or_default();
-                course.changes.insert(name.to_owned(), stage_change(value, number, stage, is_language)?);
+                course
+                    .changes
+                    .insert(name.to_owned(), stage_change(value, number, stage, &course, is_language)?);
                 if let Some(due) = value.any_table()?.get("due") {
                     course.due.insert(number, moment(due)?);
                 }
@@ -93,6 +97,7 @@ fn stage_change(
     value: Value<'_>,
     number: u8,
     stage: &Stage,
+    course: &Course,
     is_language: bool,
 ) -> Result<StageChange, LoadError> {
     let known: &[&str] =
@@ -119,11 +124,12 @@ fn stage_change(
     }
     // Each check that counts keeps a point of the stage's.
     if let Some((value, points)) = points {
-        let counts = |name: &String, points: u32| {
-            change.checks.get(name).and_then(|check| check.points).unwrap_or(points) > 0
+        let counts = |(name, check): &(&String, &CheckEntry)| {
+            let points = if course.counts(check) { check.points } else { 0 };
+            check.level() != Level::Bonus
+                && change.checks.get(*name).and_then(|check| check.points).unwrap_or(points) > 0
         };
-        let asked_for = stage.checks.iter().filter(|(_, check)| !check.bonus);
-        let n = asked_for.filter(|(name, check)| counts(name, check.points)).count();
+        let n = stage.checks.iter().filter(counts).count();
         if n == 0 {
             return Err(
                 value.error("no check of the stage has points, so the points of the stage cannot be divided")

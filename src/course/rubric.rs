@@ -4,6 +4,7 @@
 //! Rubric, course file and language file write a check in the same way, as a table `[stageN.checks.NAME]`: a lecturer copies an
 //! entry of the rubric into the course file and edits it there.
 
+pub use super::score::{Level, Score};
 pub use super::stage::{CheckEntry, Stage, Visibility};
 use super::stage::{PLAIN, RUBRIC_FILES};
 use super::{Course, parse, parse_language};

@@ -1,5 +1,6 @@
 //! A stage of the rubric and its checks as data, and the reader of the rubric's files.
 
+use super::score::{Level, Score};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -16,9 +17,15 @@ pub struct CheckEntry {
     pub place: usize,
     /// The number of points for a passed check.
     pub points: u32,
-    /// Whether the points are a bonus: they are shown apart, and a stage has all of its points without them.
+    /// Whether the check is one of [`Level::Core`]. The file may set one of these three; the default is [`Level::Deeper`].
     #[serde(default)]
-    pub bonus: bool,
+    pub(super) core: bool,
+    /// Whether it is one of [`Level::Elective`].
+    #[serde(default)]
+    pub(super) elective: bool,
+    /// Whether it is one of [`Level::Bonus`]: a stage has all of its points without them.
+    #[serde(default)]
+    pub(super) bonus: bool,
     /// The law that the check tests, in one sentence.
     pub title: String,
     /// The lecture and the slide that teach it.
@@ -95,7 +102,12 @@ pub(super) const RUBRIC_FILES: [(&str, &str); 12] = rubric_files!(1 2 3 4 5 6 7 
 impl Stage {
     /// The points of all checks, without bonus points.
     pub fn points(&self) -> u32 {
-        self.checks.values().filter(|check| !check.bonus).map(|check| check.points).sum()
+        self.score().points().1
+    }
+
+    /// The possible points by level, none of them earned.
+    pub fn score(&self) -> Score {
+        self.checks.values().map(|check| (check.level(), 0, check.points)).collect()
     }
 
     /// The checks of the stage with their names, in the order of the rubric, which is that of the lecture.
@@ -108,17 +120,34 @@ impl Stage {
 }
 
 impl CheckEntry {
-    /// The points in words: `1 point`, `4 points`, `4 bonus points`.
+    /// What the check is for.
+    pub fn level(&self) -> Level {
+        match (self.core, self.elective, self.bonus) {
+            (true, ..) => Level::Core,
+            (_, true, _) => Level::Elective,
+            (.., true) => Level::Bonus,
+            _ => Level::Deeper,
+        }
+    }
+
+    /// Whether a stage is complete only with this check: it has points, and they are no bonus.
+    pub fn is_asked_for(&self) -> bool {
+        self.points > 0 && !self.bonus
+    }
+
+    /// The points in words: `1 core point`, `4 deeper points`, `4 bonus points`.
     pub fn worth(&self) -> String {
-        let bonus = if self.bonus { "bonus " } else { "" };
         let s = if self.points == 1 { "" } else { "s" };
-        format!("{} {bonus}point{s}", self.points)
+        format!("{} {} point{s}", self.points, self.level().word())
     }
 
     /// The two lines with which every report about the check begins: stage and title, then the slide.
     pub fn header(&self) -> String {
-        let bonus = if self.bonus { " (bonus)" } else { "" };
-        format!("stage {}{bonus} · {}\n  slides: {}\n", self.stage, self.title, self.slide)
+        let apart = match self.level() {
+            Level::Core | Level::Deeper => String::new(),
+            level => format!(" ({})", level.word()),
+        };
+        format!("stage {}{apart} · {}\n  slides: {}\n", self.stage, self.title, self.slide)
     }
 }
 

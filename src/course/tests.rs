@@ -48,7 +48,7 @@ fn the_points_of_a_stage_are_those_without_the_bonus() {
     let with = rubric(&course("[stage12]\npoints = 100\n"));
     assert_eq!(with["stage12"].points(), 100);
     let bonus = |stage: &Stage| -> u32 {
-        stage.checks.values().filter(|check| check.bonus).map(|check| check.points).sum()
+        stage.checks.values().filter(|check| check.level() == Level::Bonus).map(|check| check.points).sum()
     };
     assert!(bonus(&PLAIN["stage12"]) > 0);
     assert_eq!(bonus(&with["stage12"]), bonus(&PLAIN["stage12"]));
@@ -71,6 +71,19 @@ fn a_course_pins_stages_points_titles_and_dates() {
     assert_eq!(check.hints, [was.hints[0].clone(), "b".into(), was.hints[2].clone()]);
     assert!(stage.checks.iter().all(|(name, check)| check.points > 0 || name == NEAREST));
     assert_eq!(stages["stage2"], PLAIN["stage2"]);
+}
+
+#[test]
+fn a_course_may_grade_the_core_alone() {
+    let stages = rubric(&course(&format!(
+        "core_only = true\n[stage1.checks.{NEAREST}]\npoints = 2\n[stage2]\npoints = 40\n"
+    )));
+    let before = PLAIN["stage1"].score().core().1;
+    assert_eq!(stages["stage1"].score().to_string(), format!("0 of {before} core · 0 deeper"));
+    assert_eq!(stages["stage1"].points(), before + 2);
+    assert_eq!(stages["stage2"].score().to_string(), "0 of 40 core");
+    let error = error("core_only = true\n[stage3]\npoints = 3\n");
+    assert!(error.contains("3 points cannot be divided among 23 checks"), "{error}");
 }
 
 #[test]

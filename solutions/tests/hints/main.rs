@@ -1,4 +1,4 @@
-//! The third hints of stages 1 to 3 lead to code that passes: functions that contain the code of the hints, and otherwise what
+//! The third hints of stages 1 to 6 lead to code that passes: functions that contain the code of the hints, and otherwise what
 //! a textbook prints, pass every check. The code in the third hints of the bonus of stage 12 is that of the reference.
 
 #![allow(clippy::manual_range_contains)] // books write both comparisons
@@ -6,39 +6,52 @@
 mod stage1_shapes;
 mod stage2_triangles;
 mod stage3_boxes;
-#[path = "../textbook/stage3_build.rs"]
-mod stage3_build;
+mod stage3_build {
+    pub use crate::textbook_build::*;
+    pub use solutions::stage3_build::build;
+}
 #[path = "../textbook/stage3_traversal.rs"]
 mod stage3_traversal;
-#[expect(
-    dead_code,
-    reason = "`stage3_boxes` replaces the functions whose third hints differ from the textbook"
-)]
-#[path = "../textbook/stage3_boxes.rs"]
-mod textbook_boxes;
-#[expect(
-    dead_code,
-    reason = "`stage2_triangles` replaces the functions whose third hints differ from the textbook"
-)]
-#[path = "../textbook/stage2_triangles.rs"]
-mod textbook_triangles;
+mod stage4_shading;
+mod stage5_recursion;
+mod stage6_distribution;
+
+/// The textbook, parts of which the modules above replace by the code of the third hints.
+macro_rules! textbook {
+    ($($name:ident $path:literal)*) => {
+        $(
+            #[allow(dead_code, unused_imports)]
+            #[path = $path]
+            mod $name;
+        )*
+    };
+}
+
+textbook! {
+    textbook_triangles "../textbook/stage2_triangles.rs"
+    textbook_boxes "../textbook/stage3_boxes.rs"
+    textbook_build "../textbook/stage3_build.rs"
+    textbook_shading "../textbook/stage4_shading.rs"
+    textbook_recursion "../textbook/stage5_recursion.rs"
+    textbook_distribution "../textbook/stage6_distribution.rs"
+}
 
 // The kit of these modules.
 include!("../textbook/kit.rs");
 
-/// Code in the third hint of a check, which the functions of this test contain: a line `stage check: code` for each.
+/// Checks, and the code in the third hint of each, which the functions of this test contain.
 const HINTS: &str = include_str!("third_hints.txt");
 
 #[test]
 fn the_code_of_the_third_hints_passes() {
-    for line in HINTS.lines() {
-        let (check, code) = line.split_once(": ").expect("a check and its code");
-        let (stage, name) = check.split_once(' ').expect("a stage and a name");
-        let hint = &checks::rubric::entry(stage.parse().expect("a number"), name).hints[2];
+    let entries = checks::rubric::RUBRIC.values().flat_map(|stage| stage.in_order());
+    let entries: std::collections::BTreeMap<_, _> = entries.collect();
+    for (name, code) in HINTS.lines().filter_map(|line| line.split_once(": ")) {
+        let hint = &entries[name].hints[2];
         assert!(hint.contains(code), "the third hint of `{name}` changed: apply it in this test\n{hint}");
     }
     let kit = checks::linked(Kit);
-    for stage in 1..=3 {
+    for stage in 1..=6 {
         let mut failed = Vec::new();
         for check in all_checks::of_stage(stage) {
             if let checks::Verdict::Failed(message) = checks::run(check, &kit, 0) {

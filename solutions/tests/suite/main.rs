@@ -32,7 +32,6 @@ mod slabs;
 mod specials;
 mod stages;
 mod subsets;
-mod textbook;
 mod texture_filter;
 mod visits;
 mod watertight;

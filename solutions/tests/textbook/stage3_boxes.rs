@@ -30,9 +30,6 @@ pub fn surface_area(bounds: &Aabb) -> f32 {
 }
 
 pub fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
-    if bounds.is_empty() {
-        return None;
-    }
     let (mut t0, mut t1) = (ray.t_min, ray.t_max);
     for axis in 0..3 {
         let near = (bounds.min[axis] - ray.origin[axis]) * inverse_direction[axis];

@@ -2,7 +2,7 @@
 
 use crate::stage3_boxes::{surface_area, union};
 use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, DEEPEST_SPLIT, INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
+use raykata::bvh::{Bvh, INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
 use raykata::scene::Split;
 
 fn bounds_of(primitives: &[PrimitiveRef]) -> Aabb {
@@ -66,49 +66,35 @@ pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
 }
 
 pub fn build(bounds: &[Aabb], split: Split, leaf_size: usize) -> Bvh {
-    let mut primitives: Vec<PrimitiveRef> = bounds
-        .iter()
-        .enumerate()
-        .map(|(id, bounds)| PrimitiveRef {
-            id: id as u32,
-            bounds: *bounds,
-            centroid: (bounds.min + bounds.max) / 2.0,
-        })
-        .collect();
+    let primitive = |(id, bounds): (usize, &Aabb)| PrimitiveRef {
+        id: id as u32,
+        bounds: *bounds,
+        centroid: (bounds.min + bounds.max) / 2.0,
+    };
+    let mut primitives: Vec<PrimitiveRef> = bounds.iter().enumerate().map(primitive).collect();
     let mut bvh = Bvh::for_primitives(bounds.len());
     if !primitives.is_empty() {
-        recurse(&mut bvh, &mut primitives, split, leaf_size.max(1), 0);
+        recurse(&mut bvh, &mut primitives, split, leaf_size);
     }
     bvh
 }
 
-fn recurse(
-    bvh: &mut Bvh,
-    primitives: &mut [PrimitiveRef],
-    split: Split,
-    leaf_size: usize,
-    depth: usize,
-) -> u32 {
+fn recurse(bvh: &mut Bvh, primitives: &mut [PrimitiveRef], split: Split, leaf_size: usize) -> u32 {
     let node = bvh.add_node(bounds_of(primitives));
-    let fits = primitives.len() <= leaf_size;
-    let middle = match split {
-        _ if primitives.len() == 1 => None,
-        _ if depth >= DEEPEST_SPLIT => (!fits).then(|| split_object_median(primitives)),
-        Split::ObjectMedian => (!fits).then(|| split_object_median(primitives)),
-        Split::SpatialMedian => (!fits).then(|| split_spatial_median(primitives)),
-        Split::SurfaceArea => match split_surface_area(primitives) {
-            None if !fits => Some(split_object_median(primitives)),
-            middle => middle,
-        },
-    };
-    match middle {
-        None => bvh.set_leaf(node, primitives),
-        Some(middle) => {
-            let (left, right) = primitives.split_at_mut(middle);
-            let left = recurse(bvh, left, split, leaf_size, depth + 1);
-            let right = recurse(bvh, right, split, leaf_size, depth + 1);
-            bvh.set_children(node, left, right);
-        }
+    if primitives.len() <= leaf_size {
+        bvh.set_leaf(node, primitives);
+        return node;
     }
+    let middle = match split {
+        Split::ObjectMedian => split_object_median(primitives),
+        Split::SpatialMedian => split_spatial_median(primitives),
+        Split::SurfaceArea => {
+            split_surface_area(primitives).unwrap_or_else(|| split_object_median(primitives))
+        }
+    };
+    let (left, right) = primitives.split_at_mut(middle);
+    let left = recurse(bvh, left, split, leaf_size);
+    let right = recurse(bvh, right, split, leaf_size);
+    bvh.set_children(node, left, right);
     node
 }

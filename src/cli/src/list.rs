@@ -54,7 +54,7 @@ pub fn run_hint(given: &Given) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The checks of a stage, or of all stages, with their points and titles. Bonus points have a plus.
+/// The checks of a stage, or of all stages, with their points, levels and titles.
 pub fn list(stage: Option<u8>) -> String {
     let mut text = String::new();
     for (number, about) in
@@ -64,8 +64,7 @@ pub fn list(stage: Option<u8>) -> String {
         let how = format!("work in {}, run `cargo test --test stage{number}`", about.file);
         let _ = writeln!(text, "  {}", wrapped(&how, 2));
         for (name, entry) in about.in_order() {
-            let sign = if entry.bonus { "+" } else { "" };
-            let _ = writeln!(text, "  {:>2}  {name}", format!("{sign}{}", entry.points));
+            let _ = writeln!(text, "  {:>2}  {:<8}  {name}", entry.points, entry.level().word());
             let _ = writeln!(text, "      {}", wrapped(&entry.title, 6));
         }
         text.push('\n');

@@ -1,6 +1,6 @@
 //! The course as it stands: its stages, their checks, and the last verdict of each.
 
-use raykata::rubric::{self, CheckEntry};
+use raykata::rubric::{self, CheckEntry, Score};
 use raykata_cli::verdicts::{CheckVerdict, Verdict};
 
 /// A stage.
@@ -29,25 +29,21 @@ impl Check {
 }
 
 impl Stage {
-    /// The checks that pass of those that are asked for: `5 of 8 checks`, `12 of 20 points`, and the bonus points if there are any.
-    pub fn earned(&self) -> (String, String) {
-        let asked_for = || self.checks.iter().filter(|check| !check.entry.bonus);
-        let points = |passes: bool, bonus: bool| -> u32 {
-            let counts = |check: &&Check| check.entry.bonus == bonus && (check.passes() || !passes);
-            self.checks.iter().filter(counts).map(|check| check.entry.points).sum()
-        };
+    /// The checks that pass of those that are asked for: `5 of 8 checks`, and the points.
+    pub fn earned(&self) -> (String, Score) {
+        let asked_for = || self.checks.iter().filter(|check| check.entry.is_asked_for());
         let passed = asked_for().filter(|check| check.passes()).count();
-        let bonus = match points(true, true) {
-            0 => String::new(),
-            earned => format!(" +{earned}"),
+        let points = |check: &Check| {
+            let of = check.entry.points;
+            (check.entry.level(), if check.passes() { of } else { 0 }, of)
         };
         let checks = format!("{passed} of {} checks", asked_for().count());
-        (checks, format!("{} of {}{bonus} points", points(true, false), points(false, false)))
+        (checks, self.checks.iter().map(points).collect())
     }
 
     /// Whether every check passes that is asked for.
     pub fn is_done(&self) -> bool {
-        self.checks.iter().all(|check| check.entry.bonus || check.passes())
+        self.checks.iter().all(|check| !check.entry.is_asked_for() || check.passes())
     }
 
     /// The first check after `from` (or from it on, if `inclusive`) that does not pass, also from the beginning.

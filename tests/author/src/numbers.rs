@@ -9,9 +9,9 @@ use crate::printed::{self, Printed};
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail, ensure};
 use checks::Check;
-use checks::rubric;
+use checks::rubric::{self, Level};
 use checks::symmetry::Symmetries;
-use grader::exercises;
+use grader::exercises::{self, Exercise};
 use grader::files_below::{files_below, last_part};
 use std::cell::OnceCell;
 use std::fmt::Write as _;
@@ -150,7 +150,8 @@ impl Values<'_> {
         };
         let asked = |stage: u8| stages.contains(&stage);
         let checks = || STAGES.iter().filter(|(stage, _)| asked(*stage)).flat_map(|(_, checks)| *checks);
-        let is_bonus = |check: &&Check| entry_of(check).bonus;
+        let is_bonus = |check: &&Check| entry_of(check).level() == Level::Bonus;
+        let is_core = |check: &&Check| entry_of(check).level() == Level::Core;
         let points = |check: &Check| entry_of(check).points as usize;
         let entries = |keep: fn(&Claim) -> bool| -> Result<usize> {
             Ok(self.corpus()?.iter().filter(|entry| asked(entry.stage) && keep(&entry.claim)).count())
@@ -158,11 +159,17 @@ impl Values<'_> {
         let value = match words {
             "stages" => stages.len(),
             "functions" => self.functions(asked)?,
+            "core functions" => self.core_functions()?,
             // What a course counts, and what it counts apart.
             "checks" => checks().filter(|check| !is_bonus(check)).count(),
             "points" => checks().filter(|check| !is_bonus(check)).map(points).sum(),
             "bonus checks" => checks().filter(is_bonus).count(),
             "bonus points" => checks().filter(is_bonus).map(points).sum(),
+            "core checks" => checks().filter(is_core).count(),
+            "core points" => checks().filter(is_core).map(points).sum(),
+            "lines" => self.effort(asked)?[0],
+            "words" => self.effort(asked)?[1],
+            "hours" => hours(self.effort(asked)?),
             "all checks" => checks().count(),
             // The checks whose hidden inputs are the public ones in another frame.
             "turned checks" => checks().filter(is_turned).count(),
@@ -179,15 +186,43 @@ impl Values<'_> {
         Ok(thousands(value))
     }
 
-    /// The number of functions that students write in these stages: those whose stub is a `todo!`.
-    fn functions(&self, asked: impl Fn(u8) -> bool) -> Result<usize> {
+    /// The files of these stages.
+    fn exercises(&self, asked: impl Fn(u8) -> bool) -> Result<Vec<Exercise>> {
         let mut exercises = exercises::exercises(self.root)?;
         exercises.retain(|exercise| {
             let file = exercise.path.file_stem().unwrap_or_default().to_string_lossy();
             exercises::stage_of(&file).is_some_and(&asked)
         });
+        Ok(exercises)
+    }
+
+    /// The number of functions that students write in these stages: those whose stub is a `todo!`.
+    fn functions(&self, asked: impl Fn(u8) -> bool) -> Result<usize> {
+        let exercises = self.exercises(asked)?;
         let stubs = exercises.iter().flat_map(|exercise| exercise.stub.lines());
         Ok(stubs.filter(|line| line.trim_start().starts_with("todo!(")).count())
+    }
+
+    /// The number of functions that the core of stages 1 to 6 needs: the textbook of the tests writes them, and no others.
+    fn core_functions(&self) -> Result<usize> {
+        let mut functions = 0;
+        for file in fs::read_dir(self.root.join("solutions/tests/textbook"))? {
+            let text = fs::read_to_string(file?.path())?;
+            functions += text.lines().filter(|line| line.starts_with("pub fn ")).count();
+        }
+        Ok(functions)
+    }
+
+    /// The lines of code of the reference in these stages, and the words of the doc comments that students read.
+    fn effort(&self, asked: impl Fn(u8) -> bool) -> Result<[usize; 2]> {
+        let (mut lines, mut words) = (0, 0);
+        for exercise in self.exercises(asked)? {
+            words += doc_words(&exercise.stub);
+            let solution =
+                self.root.join("solutions/src").join(exercise.path.file_name().unwrap_or_default());
+            lines += code_lines(&fs::read_to_string(solution)?);
+        }
+        Ok([lines, words])
     }
 
     fn corpus(&self) -> Result<&[Entry]> {
@@ -197,39 +232,54 @@ impl Values<'_> {
         Ok(self.corpus.get().map_or(&[], Vec::as_slice))
     }
 
-    /// The table of all decks, with their sums: minutes and hours from the first lines of each deck, the rest from the stage.
+    /// The table of all decks, with their sums: the minutes from the first lines of each deck, the rest from the stage.
     fn decks(&self) -> Result<String> {
         let mut table =
-            "| deck | minutes | students write | checks, and bonus | points, and bonus | hours (est.) |\n\
-                         |---|---|---|---|---|---|\n"
+            "| deck | minutes | students write | checks, and bonus | points, and bonus | of the core | lines | hours |\n\
+                         |---|---|---|---|---|---|---|---|\n"
                 .to_owned();
-        let (mut minutes, mut hours) = (0, 0);
+        let mut minutes = 0;
         for deck in decks(&self.root.join("slides"))? {
             minutes += deck.minutes;
-            hours += deck.hours.unwrap_or(0);
-            let [functions, checks, points] = match deck.stage.filter(|stage| *stage > 0) {
+            let of_stage = match deck.stage.filter(|stage| *stage > 0) {
                 Some(stage) => self.of_stages(&format!(" {stage}"))?,
                 None => Default::default(),
             };
-            let title = format!("[{}]({})", deck.title, deck.file);
-            let hours = deck.hours.map_or(String::new(), |hours| hours.to_string());
-            table += &row([title, deck.minutes.to_string(), functions, checks, points, hours]);
+            table += &row(format!("[{}]({})", deck.title, deck.file), deck.minutes, of_stage);
         }
-        let [functions, checks, points] = self.of_stages("")?;
-        Ok(table
-            + &row(["**all**".to_owned(), thousands(minutes), functions, checks, points, hours.to_string()]))
+        Ok(table + &row("**all**".to_owned(), minutes, self.of_stages("")?))
     }
 
-    /// The cells of the table of decks for some stages: functions, checks and points.
-    fn of_stages(&self, stages: &str) -> Result<[String; 3]> {
+    /// The cells of the table of decks for some stages: functions, checks, points, those of the core, lines and hours.
+    fn of_stages(&self, stages: &str) -> Result<[String; 6]> {
         let with_bonus = |what: &str| -> Result<String> {
             let bonus = self.get(&format!("bonus {what}{stages}"))?;
             let bonus = if bonus == "0" { String::new() } else { format!(", and {bonus}") };
             Ok(self.get(&format!("{what}{stages}"))? + &bonus)
         };
-        let functions = self.get(&format!("functions{stages}"))?;
-        Ok([format!("{functions} functions"), with_bonus("checks")?, with_bonus("points")?])
+        let [functions, core, lines, hours] =
+            ["functions", "core points", "lines", "hours"].map(|what| self.get(&format!("{what}{stages}")));
+        let functions = format!("{} functions", functions?);
+        Ok([functions, with_bonus("checks")?, with_bonus("points")?, core?, lines?, hours?])
     }
+}
+
+/// The lines of code before the tests, without comments and imports.
+fn code_lines(text: &str) -> usize {
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default().lines().map(str::trim_start);
+    code.filter(|line| !line.is_empty() && !line.starts_with("//") && !line.starts_with("use ")).count()
+}
+
+/// The words of the doc comments.
+fn doc_words(text: &str) -> usize {
+    let lines = text.lines().map(str::trim_start);
+    let docs = lines.filter_map(|line| line.strip_prefix("///").or_else(|| line.strip_prefix("//!")));
+    docs.map(|line| line.split_whitespace().count()).sum()
+}
+
+/// The hours that exercises take, by two assumptions: 1,500 words are read, and 30 lines of the reference written, in an hour.
+fn hours([lines, words]: [usize; 2]) -> usize {
+    (50 * lines + words).div_ceil(1500)
 }
 
 fn entry_of(check: &Check) -> rubric::CheckEntry {
@@ -241,9 +291,10 @@ fn is_turned(check: &&Check) -> bool {
 }
 
 /// A row of a table.
-fn row(cells: [String; 6]) -> String {
+fn row(title: String, minutes: usize, of_stage: [String; 6]) -> String {
+    let cells = [title, thousands(minutes)].into_iter().chain(of_stage);
     let cells = cells.map(|cell| if cell.is_empty() { "| ".to_owned() } else { format!("| {cell} ") });
-    cells.concat() + "|\n"
+    cells.collect::<String>() + "|\n"
 }
 
 /// A number with commas between its thousands: `1,569`.
@@ -260,7 +311,6 @@ struct Deck {
     title: String,
     stage: Option<u8>,
     minutes: usize,
-    hours: Option<usize>,
 }
 
 /// The decks in the folder of the slides: those of the stages in order, then the others.
@@ -284,7 +334,6 @@ fn decks(folder: &Path) -> Result<Vec<Deck>> {
             title: value("title").with_context(|| needed("title"))?.trim_matches('"').to_owned(),
             stage: number("stage")?.map(u8::try_from).transpose()?,
             minutes: number("minutes")?.with_context(|| needed("minutes"))?,
-            hours: number("hours")?,
         });
     }
     decks.sort_by_key(|deck| (deck.stage.unwrap_or(u8::MAX), deck.file.clone()));
@@ -322,6 +371,19 @@ mod tests {
         assert_eq!(error("\n\n7<!--=al-->"), "a.md:3: no number has the name \"al\"");
         assert_eq!(error("\nseven <!--=all-->"), "a.md:2: <!--=all--> must directly follow a number");
         assert_eq!(error("7<!--=all"), "a.md:1: `<!--=` is never closed");
+    }
+
+    /// No stage has more than twice as many points per line of the reference as another one.
+    #[test]
+    fn points_follow_the_lines_of_the_reference() {
+        let root = grader::kits::root().unwrap();
+        let values = Values { root: &root, corpus: OnceCell::new(), printed: Vec::new() };
+        let get =
+            |what: &str, stage: u8| values.get(&format!("{what} {stage}")).unwrap().parse::<f64>().unwrap();
+        let per_line: Vec<f64> =
+            STAGES.iter().map(|(stage, _)| get("points", *stage) / get("lines", *stage)).collect();
+        let least = per_line.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(per_line.iter().all(|points| *points <= 2.0 * least), "{per_line:.2?}");
     }
 
     #[test]

@@ -159,16 +159,19 @@ pub fn show(file: &Path) -> Result<()> {
     let course = rubric::course();
     let name = name(course);
     say(format_args!("{}\n\n", if name.is_empty() { "This course file changes nothing." } else { &name }));
-    say(format_args!("{:>5}  {:>6}  {:>6}  {:<25}  title\n", "stage", "checks", "points", "due"));
-    let mut total = 0;
+    say(format_args!(
+        "{:>5}  {:>6}  {:>6}  {:>6}  {:<25}  title\n",
+        "stage", "checks", "points", "core", "due"
+    ));
+    let (mut total, mut total_core) = (0, 0);
     for (number, stage) in rubric::stages() {
-        let points = stage.points();
-        total += points;
+        let (points, core) = (stage.points(), stage.score().core().1);
+        (total, total_core) = (total + points, total_core + core);
         let due = course.due.get(&number).map_or("-".to_owned(), Moment::to_string);
         let n = stage.checks.len();
-        say(format_args!("{number:>5}  {n:>6}  {points:>6}  {due:<25}  {}\n", stage.title));
+        say(format_args!("{number:>5}  {n:>6}  {points:>6}  {core:>6}  {due:<25}  {}\n", stage.title));
     }
-    say(format_args!("{total:>21}  in all\n"));
+    say(format_args!("{total:>21}  {total_core:>6}  in all\n"));
     for stage in course.due.keys().filter(|stage| course.leaves_out(**stage)) {
         say(format_args!("note: stage {stage} has a date, but `stages` leaves it out\n"));
     }

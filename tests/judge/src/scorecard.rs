@@ -2,7 +2,7 @@
 
 use all_checks::STAGES;
 use anyhow::Result;
-use checks::rubric::{self, CheckEntry, RUBRIC};
+use checks::rubric::{self, CheckEntry, RUBRIC, Score};
 use checks::{Check, Verdict};
 use raykata::kit::KitError;
 use raykata::worker::send;
@@ -26,6 +26,10 @@ struct Graded {
 impl Graded {
     fn passed(&self) -> bool {
         self.verdict == Verdict::Passed
+    }
+
+    fn earned(&self) -> u32 {
+        if self.passed() { self.entry.points } else { 0 }
     }
 }
 
@@ -79,7 +83,7 @@ pub fn tell(source: &Source, stage: u8, out: impl Write + Send) -> Result<()> {
     run_checks(source, |number| number == stage, report).map(drop)
 }
 
-/// Prints the scorecard; `Ok(true)` if all checks passed, except for bonus ones.
+/// Prints the scorecard; `Ok(true)` if all checks passed that are asked for.
 pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
     let wanted = |number| is_asked_for(number) && stage.is_none_or(|stage| stage == number);
     let graded = run_checks_with_bar(source, wanted)?;
@@ -92,10 +96,9 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
                 Verdict::NotWritten { .. } => "not written",
                 Verdict::Failed(_) => "FAILED",
             };
-            let earned = if one.passed() { one.entry.points } else { 0 };
-            let bonus = if one.entry.bonus { "+" } else { "" };
-            let of = format!("{bonus}{}", one.entry.points);
-            println!("  {word:<11}  {earned:>2}/{of:<2}  {:<52}  {}", one.check.name, one.entry.title);
+            let CheckEntry { points, title, .. } = &one.entry;
+            let (earned, level) = (one.earned(), one.entry.level().word());
+            println!("  {word:<11}  {earned:>2}/{points:<2} {level:<8}  {:<52}  {title}", one.check.name);
         }
         println!();
     }
@@ -108,8 +111,8 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
         println!("not written yet: {place}\n  {task} ({})", wait_for_it(waiting));
     }
     let passed = graded.iter().filter(|one| one.passed()).count();
-    println!("\n{}\n{passed} passed, {} failed", points(graded.iter()), graded.len() - passed);
-    Ok(graded.iter().all(|one| one.entry.bonus || one.passed()))
+    println!("\n{}\n{passed} passed, {} failed", score(&graded), graded.len() - passed);
+    Ok(graded.iter().all(|one| !one.entry.is_asked_for() || one.passed()))
 }
 
 /// Whether the course asks for this stage.
@@ -135,30 +138,18 @@ fn gaps(graded: &[Graded]) -> Vec<(String, (String, usize))> {
     gaps
 }
 
-/// The earned and the possible points in words: `12 of 20 points`. Earned bonus points stand apart.
-fn points<'a>(graded: impl Iterator<Item = &'a Graded>) -> String {
-    let (mut earned, mut all, mut bonus) = (0, 0, 0);
-    for one in graded {
-        let of_check = if one.passed() { one.entry.points } else { 0 };
-        if one.entry.bonus {
-            bonus += of_check;
-        } else {
-            earned += of_check;
-            all += one.entry.points;
-        }
-    }
-    let bonus = if bonus > 0 { format!(", and {bonus} bonus") } else { String::new() };
-    format!("{earned} of {all} points{bonus}")
+fn score<'a>(graded: impl IntoIterator<Item = &'a Graded>) -> Score {
+    graded.into_iter().map(|one| (one.entry.level(), one.earned(), one.entry.points)).collect()
 }
 
 fn stage_line(number: u8, graded: &[&Graded]) -> String {
     let title = RUBRIC.get(&format!("stage{number}")).map_or("", |stage| &stage.title);
-    let asked_for = || graded.iter().filter(|one| !one.entry.bonus);
+    let asked_for = || graded.iter().filter(|one| one.entry.is_asked_for());
     let passed = asked_for().filter(|one| one.passed()).count();
     let n = asked_for().count();
     format!(
-        "stage {number:>2} · {title:<28} {passed:>2} of {n:<2} checks   {:>17}",
-        points(graded.iter().copied())
+        "stage {number:>2} · {title:<28} {passed:>2} of {n:<2} checks   {}",
+        score(graded.iter().copied())
     )
 }
 
@@ -175,16 +166,19 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
     for (number, _) in STAGES.iter().filter(|(number, _)| is_asked_for(*number)) {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
         println!("{}", stage_line(*number, &of_stage));
-        if let Some(due) =
-            course.due.get(number).filter(|_| of_stage.iter().any(|one| !one.entry.bonus && !one.passed()))
+        if let Some(due) = course
+            .due
+            .get(number)
+            .filter(|_| of_stage.iter().any(|one| one.entry.is_asked_for() && !one.passed()))
         {
             println!("           {} {due}", course.text("due"));
         }
     }
     println!();
-    // A bonus comes after everything else.
-    let open = |bonus: bool| graded.iter().find(move |one| one.entry.bonus == bonus && !one.passed());
-    match open(false).or(open(true)) {
+    // What is not asked for comes after everything else.
+    let open =
+        |asked_for| graded.iter().find(move |one| one.entry.is_asked_for() == asked_for && !one.passed());
+    match open(true).or(open(false)) {
         None => println!(
             "Everything passes. `cargo run --release -- render scenes/showcase.toml{}` shows it.",
             with_exercises(root)

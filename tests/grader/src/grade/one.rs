@@ -3,7 +3,7 @@
 
 use super::options::GradingOptions;
 use super::report;
-use super::result::{Graded, Session, and_bonus};
+use super::result::{Graded, Session, in_words};
 use anyhow::{Context, Result, anyhow};
 use raykata::film::write_atomically;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
@@ -73,8 +73,7 @@ pub fn run(root: impl FnOnce() -> Result<PathBuf>, options: &GradeOneOptions) ->
     if let Some(file) = &options.classroom {
         write(file, &report::classroom(&graded))?;
     }
-    let (earned, of) = graded.points();
-    println!("{earned} of {of} points{}", and_bonus(graded.bonus()));
+    println!("{}", in_words(graded.score()));
     Ok(graded.trouble.is_empty())
 }
 

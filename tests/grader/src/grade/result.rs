@@ -1,6 +1,6 @@
 //! The results of grading, from which all reports are made.
 
-use checks::rubric::{self, CheckEntry};
+use checks::rubric::{self, Level, Score};
 use raykata::course::Moment;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -77,9 +77,9 @@ pub struct CheckResult {
     pub points: u32,
     /// The points that were earned: `points` or 0.
     pub earned: u32,
-    /// Whether the points are a bonus, which counts apart.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub bonus: bool,
+    /// What the check is for; the points of a bonus count apart.
+    #[serde(default)]
+    pub level: Level,
     /// Tells the student why the check failed, without hidden inputs. Empty if it passed. Plain text of several lines that
     /// may quote output of the student's code, without control characters.
     pub message: String,
@@ -133,21 +133,17 @@ pub struct Graded {
 impl CheckResult {
     /// Returns the result of a check that ended in this way, with the points of the rubric and without a picture.
     pub fn new(stage: u8, name: &str, outcome: Outcome, message: String) -> CheckResult {
-        let CheckEntry { points, bonus, .. } = rubric::entry(stage, name);
+        let entry = rubric::entry(stage, name);
+        let (points, level) = (entry.points, entry.level());
         let earned = if outcome == Outcome::Passed { points } else { 0 };
-        CheckResult { stage, name: name.to_owned(), outcome, points, earned, bonus, message, picture: None }
+        CheckResult { stage, name: name.to_owned(), outcome, points, earned, level, message, picture: None }
     }
 }
 
 impl Graded {
-    /// Returns the earned points and the possible points, without bonus points.
-    pub fn points(&self) -> (u32, u32) {
-        sum(self.checks.iter())
-    }
-
-    /// Returns the earned bonus points.
-    pub fn bonus(&self) -> u32 {
-        bonus(self.checks.iter())
+    /// Returns the earned points and the possible points.
+    pub fn score(&self) -> Score {
+        score(self.checks.iter())
     }
 
     /// Returns the stages in ascending order.
@@ -170,23 +166,16 @@ impl Graded {
     }
 }
 
-/// Returns the earned points and the possible points of these checks, without bonus points.
-pub fn sum<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> (u32, u32) {
-    let counted = checks.filter(|check| !check.bonus);
-    counted.fold((0, 0), |(earned, points), check| (earned + check.earned, points + check.points))
+/// Returns the earned points and the possible points of these checks.
+pub fn score<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> Score {
+    checks.map(|check| (check.level, check.earned, check.points)).collect()
 }
 
-/// Returns the earned bonus points of these checks.
-pub fn bonus<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> u32 {
-    checks.filter(|check| check.bonus).map(|check| check.earned).sum()
-}
-
-/// Returns earned bonus points as an addition to `12 of 20 points`; empty if there are none.
-pub fn and_bonus(bonus: u32) -> String {
-    match bonus {
-        0 => String::new(),
-        1 => ", and 1 bonus point".into(),
-        n => format!(", and {n} bonus points"),
+/// Returns a score as reports write it: `17 of 33 points (12 of 12 core · 5 deeper)`.
+pub fn in_words(score: Score) -> String {
+    match (score.points(), score.core()) {
+        (_, (_, 0)) => score.to_string(),
+        ((earned, of), _) => format!("{earned} of {of} points ({score})"),
     }
 }
 

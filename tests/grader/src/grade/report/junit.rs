@@ -58,11 +58,13 @@ fn opened(report: &Report) -> Result<String> {
 
 fn suite(graded: &Graded) -> TestSuite {
     let mut suite = TestSuite::new(graded.student.as_str());
-    let (earned, of) = graded.points();
+    let score = graded.score();
+    let (earned, of) = score.points();
     suite.add_property(("points", earned.to_string().as_str()));
     suite.add_property(("of", of.to_string().as_str()));
-    if graded.bonus() > 0 {
-        suite.add_property(("bonus", graded.bonus().to_string().as_str()));
+    suite.add_property(("core", score.core().0.to_string().as_str()));
+    if score.bonus() > 0 {
+        suite.add_property(("bonus", score.bonus().to_string().as_str()));
     }
     suite.add_test_cases(graded.checks.iter().map(case));
     if !graded.trouble.is_empty() {

@@ -1,7 +1,7 @@
 //! What the overview of a class keeps of each submission. A class may have many thousands, so it is little.
 
 use super::names::FileNames;
-use crate::grade::result::{Graded, Outcome, Session, sum};
+use crate::grade::result::{Graded, Outcome, Session, score};
 
 /// A submission in the overview.
 pub(super) struct Line {
@@ -11,6 +11,8 @@ pub(super) struct Line {
     pub page: String,
     /// The earned points of all stages, without bonus points.
     pub points: u32,
+    /// The earned points of the core of all stages.
+    pub core: u32,
     /// The earned bonus points of all stages.
     pub bonus: u32,
     /// The earned points of each graded stage.
@@ -31,12 +33,13 @@ pub(super) struct Line {
 impl Line {
     /// The line of a cleaned submission. `student` is its name before it was cleaned.
     pub fn new(graded: &Graded, student: &str, session: &Session, names: &mut FileNames) -> Line {
-        let of_stage = |stage| (stage, sum(graded.of_stage(stage)).0);
+        let of_stage = |stage| (stage, score(graded.of_stage(stage)).points().0);
         Line {
             student: graded.student.clone(),
             page: names.name(student),
-            points: graded.points().0,
-            bonus: graded.bonus(),
+            points: graded.score().points().0,
+            core: graded.score().core().0,
+            bonus: graded.score().bonus(),
             of_stages: graded.stages().into_iter().map(of_stage).collect(),
             n_checks: graded.checks.len(),
             n_remarks: graded.remarks.len(),

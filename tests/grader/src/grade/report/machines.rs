@@ -4,6 +4,7 @@ use super::clean::clean_line;
 use super::{Each, messages, presentable};
 use crate::grade::result::{CheckResult, Graded, Outcome, Remark, Session};
 use anyhow::Result;
+use checks::rubric::Level;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::io::Write;
@@ -15,6 +16,8 @@ struct GradedView<'a> {
     content: &'a str,
     earned: u32,
     of: u32,
+    core: u32,
+    core_of: u32,
     bonus: u32,
     checks: Vec<CheckResult>,
     remarks: &'a [Remark],
@@ -30,14 +33,17 @@ pub(super) fn results(session: &Session, each: &Each<'_>, out: &mut dyn Write) -
     write!(out, "{{\n  \"session\": {},\n  \"students\": [", indented(session, 2)?)?;
     let mut before = "";
     each(&mut |graded| {
-        let (earned, of) = graded.points();
+        let score = graded.score();
+        let ((earned, of), (core, core_of)) = (score.points(), score.core());
         let without_picture = |check: &CheckResult| CheckResult { picture: None, ..check.clone() };
         let view = GradedView {
             student: &graded.student,
             content: &graded.content,
             earned,
             of,
-            bonus: graded.bonus(),
+            core,
+            core_of,
+            bonus: score.bonus(),
             checks: graded.checks.iter().map(without_picture).collect(),
             remarks: &graded.remarks,
             compiler: &graded.compiler,
@@ -81,7 +87,7 @@ pub fn gradescope(graded: &Graded, session: &Session) -> Value {
                 "name": title(check),
                 "number": format!("{}.{}", place.0, place.1),
                 "score": check.earned,
-                "max_score": if check.bonus { 0 } else { check.points },
+                "max_score": if check.level == Level::Bonus { 0 } else { check.points },
                 "status": status,
                 "output": messages::message(check),
                 "output_format": "text",
@@ -117,18 +123,18 @@ pub fn gradescope(graded: &Graded, session: &Session) -> Value {
 /// there, and its title says what it earned.
 pub fn classroom(graded: &Graded) -> Value {
     let graded = &presentable(graded);
-    let (earned, of) = graded.points();
+    let (earned, of) = graded.score().points();
     let mut tests: Vec<Value> = graded
         .checks
         .iter()
         .map(|check| {
             let (title, message) = (title(check), messages::message(check));
-            match check.bonus {
-                true => {
+            match check.level {
+                Level::Bonus => {
                     let title = format!("{title} (bonus: {} of {})", check.earned, check.points);
                     classroom_test(&title, status(check.outcome), &message, 0)
                 }
-                false => classroom_test(&title, status(check.outcome), &message, check.earned),
+                _ => classroom_test(&title, status(check.outcome), &message, check.earned),
             }
         })
         .collect();

@@ -1,6 +1,6 @@
 //! The text about a check that a student reads. It is the same in every format.
 
-use crate::grade::result::{self, CheckResult, Graded, Outcome, Session, and_bonus};
+use crate::grade::result::{self, CheckResult, Graded, Outcome, Session, in_words};
 use checks::rubric::{self, CheckEntry, Visibility};
 
 /// Returns the rubric entry of a check.
@@ -76,16 +76,13 @@ pub fn late(graded: &Graded, session: &Session) -> Vec<String> {
 pub fn summary(graded: &Graded) -> String {
     let mut lines = Vec::new();
     if !graded.checks.is_empty() {
-        let (earned, points) = graded.points();
-        lines.push(format!("{earned} of {points} points{}", and_bonus(graded.bonus())));
+        lines.push(in_words(graded.score()));
     }
     if !graded.trouble.is_empty() {
         lines.push(format!("This submission could not be graded: {}", graded.trouble));
     }
     for stage in graded.stages() {
-        let (earned, points) = result::sum(graded.of_stage(stage));
-        let bonus = and_bonus(result::bonus(graded.of_stage(stage)));
-        lines.push(format!("stage {stage}: {earned} of {points} points{bonus}"));
+        lines.push(format!("stage {stage}: {}", result::score(graded.of_stage(stage))));
     }
     for (stage, n) in failing_on_hidden(graded) {
         let checks = if n == 1 { "1 check fails" } else { &format!("{n} checks fail") };

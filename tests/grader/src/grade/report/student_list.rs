@@ -4,6 +4,7 @@
 use super::line::Line;
 use super::page::page;
 use super::tally::{self, Tally};
+use checks::rubric::Level;
 use maud::{Markup, html};
 
 /// Most rows of a page.
@@ -58,7 +59,7 @@ fn ends(lines: &[Line]) -> String {
 fn table(lines: &[Line], tallies: &[Tally], to_class: &str) -> Markup {
     let stages = tally::stages(tallies);
     let of_stage = |stage| -> u32 {
-        let counted = tallies.iter().filter(|tally| tally.stage == stage && !tally.entry.bonus);
+        let counted = tallies.iter().filter(|tally| tally.stage == stage && tally.level != Level::Bonus);
         counted.map(|tally| tally.points).sum()
     };
     let has_bonus = tally::has_bonus(tallies);
@@ -69,6 +70,7 @@ fn table(lines: &[Line], tallies: &[Tally], to_class: &str) -> Markup {
                     tr {
                         th { "student" }
                         th.number { "points" div.note { "of " (tally::of(tallies)) } }
+                        th.number { "core" div.note { "of " (tally::of_core(tallies)) } }
                         @if has_bonus { th.number { "bonus" } }
                         @for &stage in &stages {
                             th.number { "stage " (stage) div.note { "of " (of_stage(stage)) } }
@@ -84,6 +86,7 @@ fn table(lines: &[Line], tallies: &[Tally], to_class: &str) -> Markup {
                                 b { (line.points) }
                                 div.note { (tally::percent(line.points, tally::of(tallies))) " %" }
                             }
+                            td.number { (line.core) }
                             @if has_bonus { td.number { (line.bonus) } }
                             @for &stage in &stages {
                                 td.number { (line.of_stage(stage)) }

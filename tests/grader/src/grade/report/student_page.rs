@@ -3,19 +3,19 @@
 use super::chart;
 use super::page::{page, session_line, with_code};
 use super::{messages, tally};
-use crate::grade::result::{self, CheckResult, Graded, Outcome, Picture, Session, and_bonus, sum};
+use crate::grade::result::{CheckResult, Graded, Outcome, Picture, Session, score};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use checks::rubric::Visibility;
+use checks::rubric::{Level, Visibility};
 use maud::{Markup, html};
 
 /// Returns the page of a student as HTML.
 pub(super) fn student_page(graded: &Graded, session: &Session) -> String {
-    let (earned, of) = graded.points();
+    let (earned, of) = graded.score().points();
     let body = html! {
         header {
             h1.student { (graded.student) }
-            @if !graded.checks.is_empty() { p.points { b { (earned) } " of " (of) " points (" (tally::percent(earned, of)) " %)" (and_bonus(graded.bonus())) } }
+            @if !graded.checks.is_empty() { p.points { b { (earned) } " of " (of) " points (" (tally::percent(earned, of)) " %): " (graded.score()) } }
             (session_line(session))
         }
         @if !graded.trouble.is_empty() {
@@ -61,7 +61,7 @@ fn blocked(graded: &Graded) -> Markup {
 
 /// Returns the points of a check, or 0 for bonus points.
 fn counted(check: &CheckResult) -> u32 {
-    if check.bonus { 0 } else { check.points }
+    if check.level == Level::Bonus { 0 } else { check.points }
 }
 
 fn overview(graded: &Graded) -> Markup {
@@ -70,11 +70,11 @@ fn overview(graded: &Graded) -> Markup {
             table.plain.overview {
                 tbody {
                     @for stage in graded.stages() {
-                        @let (earned, of) = sum(graded.of_stage(stage));
+                        @let score = score(graded.of_stage(stage));
+                        @let (earned, of) = score.points();
                         tr {
                             td { a href={ "#stage" (stage) } { (tally::stage_title(stage)) } }
-                            @let bonus = result::bonus(graded.of_stage(stage));
-                            td.number { (earned) " of " (of) @if bonus > 0 { " +" (bonus) } }
+                            td.number { (score) }
                             td.wide { (chart::share(earned, of)) }
                         }
                     }
@@ -159,7 +159,7 @@ fn failed(check: &CheckResult, alone: bool) -> Markup {
 
 fn heading(check: &CheckResult) -> Markup {
     html! {
-        span.worth { (check.earned) " of " @if check.bonus { "+" } (check.points) }
+        span.worth { (check.earned) " of " (check.points) " " (check.level.word()) }
         (with_code(&messages::entry(check).title)) " " span.name { (check.name) }
     }
 }

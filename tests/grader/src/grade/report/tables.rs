@@ -7,24 +7,26 @@ use crate::grade::result::Session;
 use anyhow::{Result, anyhow};
 use std::io::Write;
 
-/// Returns one row per student: points in total and per stage, bonus points, and what is late if the course has dates.
+/// Returns one row per student: points in total and per stage, bonus points, the core, and what is late if the course has dates.
 pub(super) fn grades(lines: &[Line], tallies: &[Tally], session: &Session) -> Result<Vec<u8>> {
-    let (stages, of) = (tally::stages(tallies), tally::of(tallies));
+    let (stages, of, core) = (tally::stages(tallies), tally::of(tallies), tally::of_core(tallies));
     let mut table = Table::new(Vec::new());
     let header = ["name", "points", "of", "percent"].map(str::to_owned).into_iter();
     let header = header.chain(stages.iter().map(|stage| format!("stage{stage}")));
     let header = header.chain(["bonus".to_owned()]);
     let dates: &[&str] = if session.due.is_empty() { &[] } else { &["handed_in", "late_stages"] };
     let header = header.chain(dates.iter().map(|&name| name.to_owned()));
-    table.row(header.chain(["remarks", "trouble", "page"].map(str::to_owned)))?;
+    table.row(header.chain(["remarks", "trouble", "page", "core", "core_of"].map(str::to_owned)))?;
     for line in lines {
         let percent = tally::percent(line.points, of);
-        let row = [line.student.clone(), line.points.to_string(), of.to_string(), percent].into_iter();
+        let [points, of, core, of_core] = [line.points, of, line.core, core].map(|points| points.to_string());
+        let row = [line.student.clone(), points, of, percent].into_iter();
         let row = row.chain(stages.iter().map(|&stage| line.of_stage(stage).to_string()));
         let row = row.chain([line.bonus.to_string()]);
         let late: Vec<String> = line.late.iter().map(u8::to_string).collect();
         let row = row.chain([line.handed_in.clone(), late.join(" ")].into_iter().take(dates.len()));
-        table.row(row.chain([line.n_remarks.to_string(), line.trouble.clone(), line.page.clone()]))?;
+        let remarks = [line.n_remarks.to_string(), line.trouble.clone(), line.page.clone()];
+        table.row(row.chain(remarks).chain([core, of_core]))?;
     }
     table.finish()
 }
@@ -32,13 +34,13 @@ pub(super) fn grades(lines: &[Line], tallies: &[Tally], session: &Session) -> Re
 /// Writes one row per check of each student.
 pub(super) fn checks(each: &Each<'_>, out: &mut dyn Write) -> Result<()> {
     let mut table = Table::new(out);
-    table.row(["name", "stage", "check", "outcome", "points", "earned", "bonus"].map(str::to_owned))?;
+    table.row(["name", "stage", "check", "outcome", "points", "earned", "level"].map(str::to_owned))?;
     each(&mut |graded| {
         graded.checks.iter().try_for_each(|check| {
             let (name, words) = (check.name.clone(), check.outcome.words().to_owned());
             let [points, earned] = [check.points, check.earned].map(|points| points.to_string());
-            let bonus = if check.bonus { "yes" } else { "no" }.to_owned();
-            table.row([graded.student.clone(), check.stage.to_string(), name, words, points, earned, bonus])
+            let level = check.level.word().to_owned();
+            table.row([graded.student.clone(), check.stage.to_string(), name, words, points, earned, level])
         })
     })?;
     table.finish().map(drop)

@@ -11,8 +11,9 @@ type Files = BTreeMap<String, String>;
 
 fn check(stage: u8, name: &str, outcome: Outcome, points: u32, message: &str) -> CheckResult {
     let earned = if outcome == Outcome::Passed { points } else { 0 };
+    let level = checks::rubric::entry(stage, name).level();
     let (name, message) = (name.to_owned(), message.to_owned());
-    CheckResult { stage, name, outcome, points, earned, bonus: false, message, picture: None }
+    CheckResult { stage, name, outcome, points, earned, level, message, picture: None }
 }
 
 fn student(name: &str, outcomes: [(Outcome, &str); 4]) -> Graded {
@@ -188,8 +189,9 @@ fn points_are_the_same_in_every_format() -> Result<()> {
         csv::Reader::from_reader(files["checks.csv"].as_bytes()).into_records().collect::<Result<_, _>>()?;
     assert_eq!(rows.len(), back.students.len());
     for (graded, row) in back.students.iter().zip(&rows) {
-        let (earned, of) = graded.points();
-        let page = &row[row.len() - 1];
+        let (earned, of) = graded.score().points();
+        let [page, core] = [3, 2].map(|place| &row[row.len() - place]);
+        assert_eq!(core, graded.score().core().0.to_string());
         assert_eq!(row[1], earned.to_string());
         assert_eq!(&row[2], "17");
         let stages: u32 = row[4].parse::<u32>()? + row[5].parse::<u32>()?;
@@ -223,13 +225,13 @@ fn points_are_the_same_in_every_format() -> Result<()> {
 fn bonus_points_stand_apart() -> Result<()> {
     let mut graded = student("Anna", [(Outcome::Passed, ""); 4]);
     let bonus = check(12, "build_parallel_has_an_eighth_of_the_span", Outcome::Passed, 2, "");
-    graded.checks.push(CheckResult { bonus: true, ..bonus });
-    assert_eq!((graded.points(), graded.bonus()), ((17, 17), 2));
+    graded.checks.push(bonus);
+    assert_eq!((graded.score().points(), graded.score().bonus()), ((17, 17), 2));
     let session = class().session;
     let files = files_of(&Class { session, students: vec![graded] })?;
     assert!(files["grades.csv"].contains("\"Anna\",17,17,100,"), "{}", files["grades.csv"]);
     let html = &files["students/Anna.html"];
-    assert!(html.contains("<b>17</b> of 17 points (100 %), and 2 bonus points"), "{html}");
+    assert!(html.contains("<b>17</b> of 17 points (100 %): 9 of 9 core · 8 deeper · 2 bonus"), "{html}");
     // Gradescope adds up scores beyond the maximum; Classroom has no extra credit.
     let sums = |file: &str, key: &str| -> Result<u64> {
         let value: Value = serde_json::from_str(&files[file])?;
@@ -298,7 +300,7 @@ fn an_empty_class_has_reports_too() -> Result<()> {
     let files = files_of(&class)?;
     assert_eq!(
         files["grades.csv"],
-        "\"name\",\"points\",\"of\",\"percent\",\"bonus\",\"remarks\",\"trouble\",\"page\"\n"
+        "\"name\",\"points\",\"of\",\"percent\",\"bonus\",\"remarks\",\"trouble\",\"page\",\"core\",\"core_of\"\n"
     );
     assert!(files["index.html"].contains("No submission tried a check and failed."));
     Ok(())
