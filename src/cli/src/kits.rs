@@ -10,7 +10,6 @@ use std::io::{BufRead, BufReader, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::sync::Arc;
-use std::time::Duration;
 
 /// The kit whose code is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,11 +112,6 @@ impl Source {
     /// A new kit, with a process of its own.
     pub fn fresh(&self) -> Arc<dyn Kit + Send + Sync> {
         Arc::new(Door(Worker::new(self.program.clone(), CALL_PATIENCE)))
-    }
-
-    /// The same with another longest time for a call, and for a frame without progress.
-    pub fn fresh_within(&self, patience: Duration) -> Arc<dyn Kit + Send + Sync> {
-        Arc::new(Door(Worker::new(self.program.clone(), patience).frames_within(patience)))
     }
 }
 

@@ -180,7 +180,7 @@ impl App {
     /// In words: the first check that fails of a stage that was done before, other than the stage that is shown.
     pub fn regression(&self) -> Option<String> {
         let stage = self.others().find(|stage| stage.was_done && !stage.is_done())?;
-        let check = stage.checks.iter().find(|check| !check.entry.bonus && !check.passes())?;
+        let check = stage.checks.iter().find(|check| check.entry.is_asked_for() && !check.passes())?;
         Some(format!("stage {} was done, and now fails {} (l lists the checks)", stage.number, check.name))
     }
 

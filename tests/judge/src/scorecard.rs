@@ -4,17 +4,17 @@ use all_checks::STAGES;
 use anyhow::Result;
 use checks::rubric::{self, CheckEntry, RUBRIC, Score};
 use checks::{Check, Verdict};
-use raykata::kit::KitError;
+use raykata::kit::{Door, Kit, KitError};
 use raykata::worker::send;
 use raykata_cli::kits::{Source, with_exercises};
 use raykata_cli::queue;
 use raykata_cli::report::bar_of_steps;
 use raykata_cli::verdicts::CheckVerdict;
-use raykata_cli::worker::CALL_PATIENCE;
+use raykata_cli::worker::{CALL_PATIENCE, Worker};
 use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A check and its verdict.
 struct Graded {
@@ -46,11 +46,12 @@ fn run_checks(
     let has_hung = AtomicBool::new(false);
     queue::run(&queue::one_a_core(), &checks, |(), &check| {
         let patience = if has_hung.load(Ordering::Relaxed) { CALL_PATIENCE / 10 } else { CALL_PATIENCE };
-        let examined = checks::examine(check, &source.fresh_within(patience), 0);
+        let worker = Worker::new(source.program.clone(), patience).frames_within(patience);
+        let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker));
+        let examined = checks::examine(check, &kit, 0);
         let hangs = examined.as_ref().err().filter(|error| matches!(error, KitError::TimedOut { .. }));
         let hangs = hangs.filter(|_| !has_hung.swap(true, Ordering::Relaxed)).cloned();
-        let verdict = checks::verdict(check, examined);
-        let entry = rubric::entry(check.stage, check.name);
+        let (verdict, entry) = (checks::verdict(check, examined), rubric::entry(check.stage, check.name));
         let graded = Graded { check, verdict, entry };
         report(&graded, hangs)?;
         Ok(graded)
