@@ -57,8 +57,7 @@ pub fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize {
 ///
 /// Exactly:
 ///
-/// - The boxes take at most 64 calls of `union` per primitive. To join a side again for each of its
-///   cuts takes n: a mesh of a million triangles would never be built.
+/// - At most 64 calls of `union` per primitive.
 /// - Of cuts with equal cost any one is right.
 /// - For boxes without area all costs are 0, and both a leaf and any cut are right.
 pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
