@@ -366,7 +366,11 @@ impl App {
         let text = std::fs::read_to_string(root.join(&file)).unwrap_or_default();
         match function_at(&text, line) {
             Some(name) => self.page = Page::Reset { file, name },
-            None => "there is no function to reset here".clone_into(&mut self.note),
+            None => {
+                self.note = missing_file(root).map_or("there is no function to reset here".into(), |file| {
+                    format!("{file} is gone: copy it from your hand-out, or from a backup")
+                });
+            }
         }
     }
 
@@ -414,6 +418,14 @@ fn files_of(root: &Path, stage: u8) -> Vec<String> {
     names.retain(|name| name.starts_with(&format!("stage{stage}_")));
     names.sort();
     names.into_iter().map(|name| format!("exercises/src/{name}")).collect()
+}
+
+/// The file of a module that the exercises declare, if there is none.
+fn missing_file(root: &Path) -> Option<String> {
+    let modules = std::fs::read_to_string(live::exercises(root).join("lib.rs")).ok()?;
+    let names = modules.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
+    let mut files = names.map(|name| format!("exercises/src/{name}.rs"));
+    files.find(|file| !root.join(file).exists())
 }
 
 /// The function that the input of a message calls, with its file and line.

@@ -124,17 +124,15 @@ fn draw(rows: &[Row], look: Look, has_colours: bool) -> Result<()> {
                 }
                 queue!(out, Print(text))?;
             }
-            Row::Pixels(_) if !(look.has_true_colour && look.has_unicode) => {
+            Row::Pixels(_) if !(has_colours && look.has_unicode) => {
                 if y == 3 {
                     queue!(out, Print("this terminal shows no pictures; look at out/watch.png"))?;
                 }
             }
             Row::Pixels(cells) => {
                 for (upper, lower) in cells {
-                    let [r, g, b] = *upper;
-                    queue!(out, SetForegroundColor(Color::Rgb { r, g, b }))?;
-                    let [r, g, b] = *lower;
-                    queue!(out, SetBackgroundColor(Color::Rgb { r, g, b }), Print('▀'))?;
+                    let [upper, lower] = [*upper, *lower].map(|pixel| look.colour(pixel));
+                    queue!(out, SetForegroundColor(upper), SetBackgroundColor(lower), Print('▀'))?;
                 }
             }
         }
