@@ -26,8 +26,8 @@ use raykata::partition::CutPlane;
 /// The two come from different formulas, so their order is certain only if they differ by more than
 /// this fraction: 16 times `u = 2⁻²⁴`. Three roundings give an error of 3 u, and a grazing triangle
 /// gives some more. If lists are tight, only this room keeps a hit on a face. It costs one more
-/// cell for about one ray in 10,000, as the test `room_for_rounding_costs_next_to_no_visits` counts
-/// (solutions/tests/suite/partitions.rs).
+/// cell for about one ray in 10,000, as the test `room_for_rounding_costs_next_to_no_visits` of the
+/// reference counts.
 pub const ROUNDING: f64 = 16.0 * UNIT_ROUNDOFF as f64;
 
 /// Boxes for builders, each padded with some room for rounding.

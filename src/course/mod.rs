@@ -72,7 +72,7 @@ pub const TEXTS: [(&str, &str); 7] = [
         "welcome",
         "Welcome. You build a ray tracer: you write its functions in exercises/src, one\nat a time. A check passes for each \
          law of light and geometry that they obey.\nThe core of stages 1 to 6 is a course of four weeks, all stages are one of\n\
-         twelve (slides/plan.md). Nothing is written yet.",
+         twelve (README.md). Nothing is written yet.",
     ),
     ("due", "due"),
     ("next", "Next"),

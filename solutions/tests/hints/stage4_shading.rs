@@ -3,7 +3,6 @@
 pub use crate::textbook_shading::*;
 use glam::Vec3;
 use raykata::kit::{LightSample, Surface};
-use raykata::material::Material;
 use raykata::ray::Ray;
 
 pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3 {
@@ -33,26 +32,4 @@ pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
 
 pub fn encode_gamma(linear: f32) -> u8 {
     (linear.clamp(0.0, 1.0).sqrt() * 255.0 + 0.5) as u8
-}
-
-pub fn shade(
-    surface: &Surface,
-    to_viewer: Vec3,
-    material: &Material,
-    ambient: Vec3,
-    lights: &[LightSample],
-    mut visible: impl FnMut(usize, &Ray) -> bool,
-) -> Vec3 {
-    let (normal, exponent) = (surface.shading_normal, material.exponent);
-    let mut color = ambient * material.ambient;
-    for (i, light) in lights.iter().enumerate() {
-        let Some(ray) = shadow_ray(surface, light) else { continue };
-        let specular = specular_term(normal, light.direction, to_viewer, exponent);
-        let added = light.radiance
-            * (material.diffuse * diffuse_term(normal, light.direction) + material.specular * specular);
-        if added != Vec3::ZERO && visible(i, &ray) {
-            color += added;
-        }
-    }
-    color
 }

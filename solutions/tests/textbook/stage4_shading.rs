@@ -40,15 +40,15 @@ pub fn shade(
     lights: &[LightSample],
     mut visible: impl FnMut(usize, &Ray) -> bool,
 ) -> Vec3 {
-    let normal = surface.shading_normal;
+    let (normal, exponent) = (surface.shading_normal, material.exponent);
     let mut color = ambient * material.ambient;
     for (i, light) in lights.iter().enumerate() {
-        let Some(ray) = shadow_ray(surface, light) else { continue };
-        if visible(i, &ray) {
-            color += light.radiance * material.diffuse * diffuse_term(normal, light.direction);
-            color += light.radiance
-                * material.specular
-                * specular_term(normal, light.direction, to_viewer, material.exponent);
+        let Some(ray) = crate::stage4_shading::shadow_ray(surface, light) else { continue };
+        let specular = specular_term(normal, light.direction, to_viewer, exponent);
+        let added = light.radiance
+            * (material.diffuse * diffuse_term(normal, light.direction) + material.specular * specular);
+        if added != Vec3::ZERO && visible(i, &ray) {
+            color += added;
         }
     }
     color

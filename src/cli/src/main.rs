@@ -1,7 +1,7 @@
 //! `raykata`: renders scenes, explains and measures them, checks exercises and gives hints.
 
 use raykata_cli::kits::root;
-use raykata_cli::program::{Program, exit_code};
+use raykata_cli::program::{Command, Program, exit_code};
 use raykata_cli::{
     compare, cost, doctor, explain, judge, list, merge_picture, programs, race, render, slides, strip, tree,
 };
@@ -36,9 +36,9 @@ be read; 2 if the command line was not understood.",
         (&programs::VIEW, programs::view),
         (&programs::UPDATE, programs::update),
         (&judge::GAUNTLET, judge::gauntlet),
-        (&programs::FIGURES, programs::figures),
         (&doctor::SPEC, doctor::run),
         (&slides::SPEC, slides::run),
+        FIGURES,
     ],
     groups: &[],
     without_command: Some(judge::status),
@@ -60,6 +60,11 @@ fn of_other_program(name: &str) -> String {
     }
 }
 
+/// The last command. A student's repository has not the reference, by which figures are made.
+const FIGURES: Command<ExitCode> = (&programs::FIGURES, programs::figures);
+
 fn main() -> ExitCode {
-    PROGRAM.main()
+    let has_figures = root().is_ok_and(|root| root.join("slides/Cargo.toml").is_file());
+    let commands = &PROGRAM.commands[..PROGRAM.commands.len() - usize::from(!has_figures)];
+    Program { commands, ..PROGRAM }.main()
 }

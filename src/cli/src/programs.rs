@@ -88,9 +88,6 @@ pub static FIGURES: Spec = Spec {
 pub fn figures(given: &Given) -> Result<ExitCode> {
     let kit = Choice::read(given)?;
     let root = root()?;
-    if !root.join("slides/Cargo.toml").is_file() {
-        bail!("there are no slides in {}", root.display());
-    }
     let worker = Program::worker(kit.or_reference(&root), Need::Frames);
     let [figures, worker] = build(&root, "the figures", [Program::FIGURES, worker])?;
     let here = std::env::current_exe().context("the path of this program is unknown")?;

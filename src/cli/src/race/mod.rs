@@ -31,7 +31,7 @@ use table::{Lane, Race};
 /// `raykata race`.
 pub static SPEC: Spec = Spec {
     name: "raykata race",
-    about: "Compare the speed of your code with the reference or with other exercises.",
+    about: "Compare the speed of your code with that of another folder of exercises.",
     arguments: &[Argument::required("SCENE", "The scene, a TOML file.")],
     options: &[
         &[
@@ -39,7 +39,7 @@ pub static SPEC: Spec = Spec {
                 "--against",
                 "FOLDER",
                 "Another folder of exercises, whose code is run as yours is; several can be given, and speeds \
-                 are relative to the first [default: solutions].",
+                 are relative to the first [default: the reference, if the kit has it].",
             )
             .many(),
             Opt::value("--rounds", "N", "How often each kit renders the picture [default: 15]."),

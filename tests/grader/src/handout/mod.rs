@@ -83,12 +83,21 @@ const FOLDERS: [(&str, &[&str]); 10] = [
     ("scenes/meshes", &["ply", "obj", "mtl"]),
     ("scenes/images", &["png", "hdr"]),
     ("scenes/reference", &["png"]),
-    ("slides", &["md", "svg"]),
+    ("slides", &["css", "json", "md", "png", "svg"]),
 ];
 
-/// Parts of those folders that are not handed out: tests of the kit itself. They need the solutions, or fail after an
-/// exercise was begun.
-const KEPT_BACK: [&str; 2] = ["src/cli/tests", "tests/checks/all/tests"];
+/// Parts of those folders that are not handed out: tests of the kit itself, which need the solutions or fail after an exercise
+/// was begun, and what only lecturers and authors use.
+const KEPT_BACK: [&str; 8] = [
+    "slides/README.md",
+    "slides/grading.md",
+    "slides/plan.md",
+    "slides/printed",
+    "slides/src",
+    "slides/tests",
+    "src/cli/tests",
+    "tests/checks/all/tests",
+];
 
 /// Files that are handed out unchanged.
 const FILES: [&str; 11] = [
@@ -170,6 +179,17 @@ pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
             files.insert(path.clone(), read(root, path)?);
         }
     }
+    // The decks show the reference, and name commands of authors; students have their own code only.
+    for (_, bytes) in
+        files.iter_mut().filter(|(path, _)| path.starts_with("slides/") && path.ends_with(".md"))
+    {
+        let text = String::from_utf8_lossy(bytes);
+        let lines = text.lines().filter(|line| !line.contains("cargo run --release -p author"));
+        let own = |line: &str| {
+            line.replace(" --kit solutions", "").replace("solutions/src", "exercises/src") + "\n"
+        };
+        *bytes = lines.map(own).collect::<String>().into_bytes();
+    }
     for (path, bytes) in
         named(root, "tests", "stage")?.into_iter().chain(named(root, "tests/golden", "stage")?)
     {
@@ -240,7 +260,6 @@ fn readme(of_kit: &str) -> Result<String> {
     let (_, rest) =
         rest.split_once("\n## As a student\n").context("README.md lacks a chapter `As a student`")?;
     let (student, _) = rest.split_once("\n## ").context("README.md lacks a chapter after `As a student`")?;
-    // The student's repository has only one kit, so the option is superfluous.
     let student = student.replace(" --kit exercises", "");
     Ok(README.replace("{greeting}", greeting.trim()).replace("{student}", student.trim()))
 }

@@ -121,28 +121,89 @@ fn manifests_name_nothing_that_is_missing() {
     }
 }
 
-/// The student's README names only existing commands.
-#[test]
-fn the_readme_names_only_what_is_there() {
+/// All texts that students read: documents, doc comments of exercises, hints, and comments of scenes.
+fn texts() -> Vec<(String, String)> {
     let folder = handed_out();
-    let readme = fs::read_to_string(folder.join("README.md")).expect("a README");
-    let mut tool = String::new();
-    for file in fs::read_dir(folder.join("src/cli/src")).expect("the program") {
-        tool += &fs::read_to_string(file.expect("a file").path()).unwrap_or_default();
+    let mut found = BTreeSet::new();
+    paths(folder, "", &mut found);
+    let is_text = |path: &&String| {
+        let is_read =
+            path.ends_with(".md") || path.ends_with(".toml") || path.starts_with("exercises/src/stage");
+        // The manifests of cargo, and the files of the course, which lecturers write.
+        is_read && !["Cargo.toml", "course.toml", "language.toml"].iter().any(|end| path.ends_with(end))
+    };
+    let text = |path: &String| (path.clone(), fs::read_to_string(folder.join(path)).expect("a text"));
+    found.iter().filter(is_text).map(text).collect()
+}
+
+/// The commands of a student's program.
+static COMMANDS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
+    let mut files = BTreeSet::new();
+    paths(handed_out(), "src/cli/src", &mut files);
+    let text: String =
+        files.iter().filter_map(|file| fs::read_to_string(handed_out().join(file)).ok()).collect();
+    let names = text.split("name: \"raykata ").skip(1).filter_map(|rest| rest.split('"').next());
+    // Figures are made by the reference.
+    names.filter(|name| *name != "figures").map(str::to_owned).collect()
+});
+
+/// What a text names that is not in the hand-out: links, paths, commands, and parts of the kit that only authors have.
+fn dead(path: &str, text: &str) -> Vec<String> {
+    let folder = handed_out();
+    let mut dead = Vec::new();
+    let is_there = |path: &str| folder.join(path).exists() || path.contains(['*', 'N', '…']);
+    if path.ends_with(".md") {
+        let beside = Path::new(path).parent().expect("a folder");
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next()) {
+            let is_local = !link.is_empty() && !link.contains("://");
+            dead.extend(
+                (is_local && !folder.join(beside).join(link).exists()).then(|| format!("link {link}")),
+            );
+        }
     }
+    // Names of files in code, and commands, which end at the end of the line or of the code.
+    for code in text.lines().flat_map(|line| line.split('`')) {
+        let is_path =
+            ["exercises/", "scenes/", "slides/", "src/", "tests/"].iter().any(|top| code.starts_with(top));
+        let name = code.split([' ', ':']).next().unwrap_or_default();
+        dead.extend((is_path && !is_there(name)).then(|| format!("path {name}")));
+        for command in code.split("cargo run ").skip(1).filter_map(|rest| rest.split("-- ").nth(1)) {
+            let word = command.split([' ', '"', '\n']).next().unwrap_or_default();
+            let is_known = COMMANDS.contains(word) || ["COMMAND", "…"].contains(&word);
+            dead.extend((!is_known).then(|| format!("command {word}")));
+            let scene =
+                command.split(' ').find(|word| word.starts_with("scenes/") && word.ends_with(".toml"));
+            dead.extend(scene.filter(|scene| !is_there(scene)).map(|scene| format!("scene {scene}")));
+        }
+        let of_authors =
+            ["-p author", "-p grader", "-p solutions", "solutions/", "cases.toml", "CONTRIBUTING"];
+        dead.extend(
+            of_authors.iter().filter(|word| code.contains(**word)).map(|word| format!("word {word}")),
+        );
+    }
+    dead
+}
+
+/// Each text of a hand-out names only what is there.
+#[test]
+fn texts_name_only_what_is_there() {
+    let readme = fs::read_to_string(handed_out().join("README.md")).expect("a README");
     assert!(readme.starts_with("# Raykata\n"));
     for word in ["--kit", "solutions", "corpus", "{student}", "{greeting}", "--workspace"] {
         assert!(!readme.contains(word), "{word}");
     }
-    for part in readme.split(" -- ").skip(1) {
-        let command = part.split([' ', '`', '\n']).next().unwrap_or_default();
-        let known = tool.contains(&format!("name: \"raykata {command}\""));
-        // Commands with files of their own are listed below.
-        let known = known || folder.join("src/cli/src").join(command).is_dir();
-        assert!(known, "`{command}` is not a command of the student's program");
-    }
-    for link in readme.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
-        assert!(link.starts_with("https://") || folder.join(link).exists(), "{link}");
+    let all: Vec<String> = texts()
+        .iter()
+        .flat_map(|(path, text)| dead(path, text).into_iter().map(move |what| format!("{path}: {what}")))
+        .collect();
+    assert!(all.is_empty(), "{all:#?}");
+    // What is not there is found.
+    let planted = "[a](b.md), `scenes/c.toml`, `cargo run -- renders scenes/plane.toml`, `cargo run -p author -- sync`\n";
+    let found = dead("slides/x.md", planted);
+    for what in
+        ["link b.md", "path scenes/c.toml", "command renders", "scene scenes/plane.toml", "word -p author"]
+    {
+        assert!(found.iter().any(|one| one == what), "{what}: {found:?}");
     }
 }
 
