@@ -192,14 +192,7 @@ fn bsp_trees_over_hard_triangles_are_small() {
         let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_bsp::closest_hit(&bsp, probe, ray);
         let nodes = (bsp.nodes.len(), most_nodes(hulls.len(), 2, depth));
         judge(&hard, &Bvh::default(), "a BSP tree", nodes, bsp.items.len(), &search);
-    }
-}
-
-#[test]
-fn polygon_bsp_trees_over_hard_triangles_are_small() {
-    for hard in hard_lists(n_triangles()) {
-        let hulls: Vec<Vec<Vec3>> = hard.triangles.iter().map(|t| vec![t.a, t.b, t.c]).collect();
-        let depth = 2 * KdTree::most_depth(hulls.len());
+        let depth = 2 * depth;
         let bsp: PolygonBsp = stage9_polygon_bsp::build(&hulls, LEAF_SIZE, depth);
         let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_polygon_bsp::closest_hit(&bsp, probe, ray);
         let nodes = (bsp.nodes.len(), most_nodes(hulls.len(), 2, depth));

@@ -367,8 +367,11 @@ impl App {
         match function_at(&text, line) {
             Some(name) => self.page = Page::Reset { file, name },
             None => {
-                self.note = missing_file(root).map_or("there is no function to reset here".into(), |file| {
-                    format!("{file} is gone: copy it from your hand-out, or from a backup")
+                // The compiler points at the module of a file that is gone.
+                let module = text.lines().nth(line.saturating_sub(1) as usize);
+                let name = module.and_then(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
+                self.note = name.map_or("there is no function to reset here".into(), |name| {
+                    format!("exercises/src/{name}.rs is gone: copy it from your hand-out or a backup")
                 });
             }
         }
@@ -418,14 +421,6 @@ fn files_of(root: &Path, stage: u8) -> Vec<String> {
     names.retain(|name| name.starts_with(&format!("stage{stage}_")));
     names.sort();
     names.into_iter().map(|name| format!("exercises/src/{name}")).collect()
-}
-
-/// The file of a module that the exercises declare, if there is none.
-fn missing_file(root: &Path) -> Option<String> {
-    let modules = std::fs::read_to_string(live::exercises(root).join("lib.rs")).ok()?;
-    let names = modules.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
-    let mut files = names.map(|name| format!("exercises/src/{name}.rs"));
-    files.find(|file| !root.join(file).exists())
 }
 
 /// The function that the input of a message calls, with its file and line.
