@@ -91,8 +91,8 @@ pub fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize {
 ///
 /// Exactly:
 ///
-/// - At most 64 calls of `union` per primitive.
-/// - Of cuts with equal cost any one is right.
+/// - At most 64 `union` calls per primitive.
+/// - Of cuts with equal cost any is right.
 /// - For boxes without area all costs are 0, and both a leaf and any cut are right.
 pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
     // <solution>
