@@ -282,9 +282,6 @@ impl Light {
     }
 }
 
-/// A texture coordinate; `(0, 0)` is the lower left corner of the image and `(1, 1)` the upper right one.
-pub type Uv = Vec2;
-
 #[cfg(test)]
 mod tests {
     use super::*;

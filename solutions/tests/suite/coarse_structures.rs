@@ -14,12 +14,8 @@ use std::sync::Arc;
 fn picture_of(name: &str, n: usize) -> Scene {
     let mut scene = scene(
         r#"
-[film]
-width = 12
-height = 8
-[camera]
-position = [1, 2, 6]
-look_at = [0, 0, 0]
+film = { width = 12, height = 8 }
+camera = { position = [1, 2, 6], look_at = [0, 0, 0] }
 [[lights]]
 point = { position = [4, 6, 5] }
 [meshes.hard]

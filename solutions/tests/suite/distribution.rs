@@ -23,9 +23,7 @@ fn render(scene: &Scene) -> Rendering {
 fn full(samples: u32) -> Scene {
     scene(&format!(
         r#"
-[film]
-width = 48
-height = 30
+film = {{ width = 48, height = 30 }}
 [camera]
 position = [0, 2, 6]
 look_at = [0, 0.8, 0]
@@ -160,9 +158,7 @@ fn half_a_light_makes_half_a_shadow() {
     let light = |shape: &str| {
         scene(&format!(
             r#"
-[film]
-width = 41
-height = 1
+film = {{ width = 41, height = 1 }}
 [camera]
 position = [0, 1, 0]
 direction = [0, -1, 0]
@@ -207,9 +203,7 @@ fn a_moving_edge_is_blurred_evenly_over_the_time() {
     // A white wall slides over a black background: a pixel is as bright as the time for which the wall covers it.
     let mut scene = scene(
         r#"
-[film]
-width = 16
-height = 1
+film = { width = 16, height = 1 }
 [camera]
 position = [0, 0, 8]
 look_at = [0, 0, 0]

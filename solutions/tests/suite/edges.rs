@@ -14,12 +14,8 @@ use std::f32::consts::TAU;
 fn room(shape: &str, transform: &str) -> Scene {
     scene(&format!(
         r#"
-[film]
-width = 1
-height = 1
-[camera]
-position = [0, 0, 0]
-look_at = [0, 0, 1]
+film = {{ width = 1, height = 1 }}
+camera = {{ position = [0, 0, 0], look_at = [0, 0, 1] }}
 [environment]
 background = 1.0
 ambient = 0.0

@@ -19,12 +19,8 @@ pub fn render(scene: &Scene) -> Rendering {
 }
 
 const VASES: &str = r#"
-[film]
-width = 72
-height = 54
-[camera]
-position = [0, 2.4, 6]
-look_at = [0, 1, 0]
+film = { width = 72, height = 54 }
+camera = { position = [0, 2.4, 6], look_at = [0, 1, 0] }
 [environment]
 background = 0.3
 ambient = 0.1
@@ -133,9 +129,7 @@ fn all_triangle_tests_make_nearly_the_same_picture() {
 fn a_plain_scene_costs_one_ray_a_pixel_and_one_a_light_that_matters() {
     let scene = scene(
         r#"
-[film]
-width = 40
-height = 30
+film = { width = 40, height = 30 }
 [camera]
 position = [0, 5, 0]
 direction = [0, -1, 0]
@@ -162,12 +156,8 @@ fn lit_scene(size: f32, offset: f32) -> String {
     };
     format!(
         r#"
-[film]
-width = 60
-height = 45
-[camera]
-position = {eye}
-look_at = {center}
+film = {{ width = 60, height = 45 }}
+camera = {{ position = {eye}, look_at = {center} }}
 [environment]
 background = 1
 [[lights]]
@@ -223,12 +213,8 @@ fn a_film_of_one_pixel_and_an_empty_scene_are_frames_too() {
 fn sphere_of(material: &str) -> Scene {
     scene(&format!(
         r#"
-[film]
-width = 60
-height = 45
-[camera]
-position = [0, 1, 6]
-look_at = [0, 1, 0]
+film = {{ width = 60, height = 45 }}
+camera = {{ position = [0, 1, 6], look_at = [0, 1, 0] }}
 [environment]
 background = [0.2, 0.4, 0.8]
 ambient = 1

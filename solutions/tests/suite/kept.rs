@@ -7,12 +7,8 @@ use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Precision, Scene, Split};
 
 const SCENE: &str = r#"
-[film]
-width = 40
-height = 30
-[camera]
-position = [0, 2.4, 6]
-look_at = [0, 1, 0]
+film = { width = 40, height = 30 }
+camera = { position = [0, 2.4, 6], look_at = [0, 1, 0] }
 [environment]
 ambient = 0.1
 [[lights]]

@@ -8,12 +8,8 @@ use raykata::film::Film;
 use raykata::scene::{Accelerator, Scene, SphereMethod, TriangleMethod};
 
 const SHAPES: &str = r#"
-[film]
-width = 60
-height = 40
-[camera]
-position = [0.3, 1.4, 6]
-look_at = [0, 1, 0]
+film = { width = 60, height = 40 }
+camera = { position = [0.3, 1.4, 6], look_at = [0, 1, 0] }
 [environment]
 background = [0.1, 0.2, 0.9]
 ambient = 0.3
@@ -91,8 +87,7 @@ fn coefficients_and_points_give_the_same_planes() {
 #[test]
 fn a_plane_of_coefficients_can_move() {
     let moving = |plane: &str| {
-        let text =
-            SHAPES.replace("look_at = [0, 1, 0]", "look_at = [0, 1, 0]\nshutter = { open = 0, close = 1 }");
+        let text = SHAPES.replace("look_at", "shutter = { open = 0, close = 1 }, look_at");
         render(&scene(&format!(
             "{text}\n[[nodes]]\nshape = {{ plane = {{ {plane} }} }}\ntransform_end = [{{ translate = [0, 0.5, 0] }}]\n"
         )))
@@ -106,12 +101,8 @@ fn a_plane_of_coefficients_can_move() {
 fn room(one_sided: bool, transform: &str) -> Film {
     render(&scene(&format!(
         r#"
-[film]
-width = 40
-height = 40
-[camera]
-position = [0, 1.2, 9]
-look_at = [0, 1.2, 0]
+film = {{ width = 40, height = 40 }}
+camera = {{ position = [0, 1.2, 9], look_at = [0, 1.2, 0] }}
 [environment]
 background = [0, 0, 1]
 [[lights]]

@@ -10,9 +10,7 @@ use raykata::scene::{Accelerator, Scene};
 
 /// Every effect that looks up random numbers, and a height that is no multiple of the tiles.
 const EFFECTS: &str = r#"
-[film]
-width = 36
-height = 70
+film = { width = 36, height = 70 }
 [quality]
 samples_per_pixel = 4
 [camera]

@@ -100,9 +100,7 @@ fn light_leaks_through_a_wall_in_single_precision_only() {
 #[test]
 fn the_rim_of_a_far_sphere_is_exact_in_double() {
     let text = r#"
-[film]
-width = 48
-height = 48
+film = { width = 48, height = 48 }
 [camera]
 position = [61234.5, 4321.25, -73456.75]
 look_at = [0.3, 0.1, -0.2]

@@ -18,12 +18,8 @@ fn scaled(k: i32) -> Scene {
     let at = |x: f32, y: f32, z: f32| format!("[{:e}, {:e}, {:e}]", size(x), size(y), size(z));
     scene(&format!(
         r#"
-[film]
-width = 40
-height = 30
-[camera]
-position = {eye}
-look_at = {middle}
+film = {{ width = 40, height = 30 }}
+camera = {{ position = {eye}, look_at = {middle} }}
 [environment]
 background = [0.2, 0.3, 0.5]
 ambient = 0.1

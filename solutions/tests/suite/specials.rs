@@ -18,9 +18,7 @@ const ENDLESS: [&str; 3] = ["inf", "-inf", "nan"];
 
 /// A scene with every shape and light; each `#` is replaced by a number.
 const SCENE: &str = r#"
-[film]
-width = 10
-height = 8
+film = { width = 10, height = 8 }
 [camera]
 position = [#, 0.25, 6.0]
 look_at = [0, 0, 0]

@@ -28,9 +28,7 @@ echo '{"reason":"compiler-artifact","target":{"name":"exercises-frames"},"execut
 const ERROR: &str = r#"{"reason":"compiler-message","message":{"level":"error","message":"expected one of `;` or `}`, found `<b>`","spans":[{"is_primary":true,"file_name":"exercises/src/stage1_shapes.rs","line_start":7,"column_start":4,"label":"expected `;`","text":[{"text":"let x = <b>1</b>"}]}],"children":[]}}"#;
 
 pub const SCENE: &str = r#"
-[film]
-width = 64
-height = 40
+film = { width = 64, height = 40 }
 [camera]
 position = [0, 0, 5]
 look_at = [0, 0, 0]
