@@ -57,8 +57,8 @@ pub fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize {
 ///
 /// Exactly:
 ///
-/// - At most 64 calls of `union` per primitive.
-/// - Of cuts with equal cost any one is right.
+/// - At most 64 `union` calls per primitive.
+/// - Of cuts with equal cost any is right.
 /// - For boxes without area all costs are 0, and both a leaf and any cut are right.
 pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
     todo!("find the cut with the least A(L) n(L) + A(R) n(R) over all three axes")
