@@ -28,6 +28,7 @@ macro_rules! textbook {
 }
 
 textbook! {
+    textbook_shapes "../textbook/stage1_shapes.rs"
     textbook_triangles "../textbook/stage2_triangles.rs"
     textbook_boxes "../textbook/stage3_boxes.rs"
     textbook_build "../textbook/stage3_build.rs"

@@ -93,7 +93,7 @@ impl Worker {
     /// time without the time that it waits for a processor, so that a busy machine does not change a verdict.
     pub fn sandboxed(program: PathBuf, patience: Duration, launcher: impl Launcher + 'static) -> Self {
         let launcher: Arc<dyn Launcher> = Arc::new(launcher);
-        Worker { launcher: Some(launcher), ..Worker::new(program, patience).frames_within(patience) }
+        Worker { launcher: Some(launcher), ..Worker::new(program, patience).with_short_frames() }
     }
 
     /// The same for a student who looks at one call: the first lines that the program writes are shown.
@@ -101,9 +101,9 @@ impl Worker {
         Worker { shows: true, ..Worker::new(program, patience) }
     }
 
-    /// The same with another longest time without progress in a frame, for pictures that are small or may never end.
-    pub fn frames_within(self, patience: Duration) -> Self {
-        Worker { frame_patience: patience, ..self }
+    /// The same, but a frame without progress has no more time than a call: for pictures that are small or may never end.
+    pub fn with_short_frames(self) -> Self {
+        Worker { frame_patience: self.call_patience, ..self }
     }
 
     /// From now on keeps the tables of searches here, or no longer. The worker then asks for each entry, and the counts in an

@@ -23,7 +23,7 @@ pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
             drop(run.take());
             run = Some(Run::start(paths.clone(), task));
         }
-        let event = run.as_ref().and_then(|run| run.events.recv_timeout(PAUSE).ok());
+        let event = run.as_ref().and_then(|run| run.events.try_recv().ok());
         action = match event {
             Some(event) => {
                 let has_ended = match &event {
@@ -43,7 +43,6 @@ pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
             }
             None if files.have_changed() => app.saved(),
             None => {
-                // The events of a run that has ended do not let the loop wait.
                 std::thread::sleep(PAUSE);
                 Action::Nothing
             }

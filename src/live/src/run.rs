@@ -152,8 +152,7 @@ fn render(
 ) -> Result<()> {
     let mut scene = read_scene(&scene_of(root, stage))?;
     (scene.film.width, scene.film.height, scene.quality.samples_per_pixel) = (width, height, 1);
-    let worker = Worker::new(worker.to_owned(), CALL_PATIENCE);
-    let kit = process.start_kit(worker.frames_within(CALL_PATIENCE));
+    let kit = process.start_kit(Worker::new(worker.to_owned(), CALL_PATIENCE).with_short_frames());
     let rendered = kit_error::catch(|| kit.render(&job(scene.clone()), &FrameProgress(report)));
     if process.is_over() {
         return Ok(());

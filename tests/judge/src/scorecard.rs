@@ -46,7 +46,7 @@ fn run_checks(
     let has_hung = AtomicBool::new(false);
     queue::run(&queue::one_a_core(), &checks, |(), &check| {
         let patience = if has_hung.load(Ordering::Relaxed) { CALL_PATIENCE / 10 } else { CALL_PATIENCE };
-        let worker = Worker::new(source.program.clone(), patience).frames_within(patience);
+        let worker = Worker::new(source.program.clone(), patience).with_short_frames();
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker));
         let examined = checks::examine(check, &kit, 0);
         let hangs = examined.as_ref().err().filter(|error| matches!(error, KitError::TimedOut { .. }));
