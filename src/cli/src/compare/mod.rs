@@ -9,7 +9,7 @@ mod plot;
 mod rows;
 mod table;
 
-use crate::args::{Argument, Given, Opt, Spec, names};
+use crate::args::{Argument, Given, Opt, Spec, names, wrapped};
 use crate::kits::Choice;
 use crate::program::exit_code;
 use crate::quality_options::{QualityOptions, THREADS, threads};
@@ -19,6 +19,7 @@ pub use drawing::{heat_color, projected, with_edges};
 use measure::Bench;
 use raykata::scene::Accelerator;
 use rows::Comparison;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -95,9 +96,21 @@ pub fn run(given: &Given) -> Result<ExitCode> {
         scene = small;
     }
     let rows = rows::rows(of, &only, &scene);
-    let measured = Bench { kit, rounds, threads }.measure(&scene, &rows)?;
+    let mut measured = Bench { kit, rounds, threads }.measure(&scene, &rows)?;
+    // A row that lacks what another row has measures something else: its functions are not written yet.
+    let in_all = |note: &String| measured.iter().all(|row| row.notes.contains(note));
+    let in_all: Vec<String> = measured[0].notes.iter().filter(|note| in_all(note)).cloned().collect();
+    let left_out: Vec<_> = measured.extract_if(.., |row| row.notes.len() > in_all.len()).collect();
     let title = format!("{name}.toml, {} × {} pixels", scene.film.width, scene.film.height);
     table::print(&title, &measured);
+    let mut left_out_by_reason: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for row in &left_out {
+        let why = row.notes.iter().find(|note| !in_all.contains(note)).map_or("", String::as_str);
+        left_out_by_reason.entry(why).or_default().push(&row.name);
+    }
+    for (why, names) in left_out_by_reason {
+        println!("{}", wrapped(&format!("left out: {}: {why}", names.join(" · ")), 2));
+    }
     if !given.has("--table") {
         make_folder(&out)?;
         drawing::write(&out, kit, &scene, &measured, level)?;

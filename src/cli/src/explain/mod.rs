@@ -11,7 +11,7 @@ use crate::columns::Columns;
 use crate::kits::Choice;
 use crate::quality_options::QualityOptions;
 use crate::report::{Thousands, bar_of_steps, job, quartiles, render, with_at_most};
-use anyhow::Result;
+use anyhow::{Result, bail};
 use raykata::count::Counts;
 use raykata::effects::{Effect, Effects};
 use raykata::kit::{BoundQuery, Kit, KitError, kit_error};
@@ -65,7 +65,13 @@ struct Explained<'a> {
 impl Explained<'_> {
     /// The analysis of `scene` by the kit.
     fn new<'a>(scene: &'a Scene, kit: &'a dyn Kit) -> Result<Explained<'a>> {
-        let effects = kit_error::catch(|| kit.effects(std::slice::from_ref(scene)))?.remove(0);
+        let effects = match kit_error::catch(|| kit.effects(std::slice::from_ref(scene))) {
+            Err(KitError::NotWritten { place, .. }) => bail!(
+                "explain works from stage 7 on: it prints what your own analysis of the effects says, and {place} is not \
+                 written yet"
+            ),
+            effects => effects?.remove(0),
+        };
         let paths = match kit_error::catch(|| kit.paths_called_for(std::slice::from_ref(scene))) {
             _ if !effects.indirect_light => None,
             Ok(mut paths) => Some(paths.remove(0)),

@@ -227,7 +227,13 @@ fn name_course(files: &mut BTreeMap<String, Vec<u8>>, course: &CourseFiles) -> R
     let readme = files.get_mut("README.md").context("README.md is missing")?;
     let is_kept = |line: &&str| {
         let number = line.strip_prefix("| ").and_then(|rest| rest.split(' ').next()?.parse::<u8>().ok());
-        number.is_none_or(|number| !of_course.leaves_out(number))
+        let is_left_out = |stage: u8| {
+            of_course.leaves_out(stage)
+                && (number == Some(stage)
+                    || line.contains(&format!("scenes/stage{stage}.toml"))
+                    || (stage == 7 && line.contains("-- explain ")))
+        };
+        !(1..=12).any(is_left_out)
     };
     let lines = std::str::from_utf8(readme)?.lines().filter(is_kept);
     let lines = lines.map(|line| format!("{line}\n")).collect::<String>();
@@ -260,7 +266,11 @@ fn readme(of_kit: &str) -> Result<String> {
     let (_, rest) =
         rest.split_once("\n## As a student\n").context("README.md lacks a chapter `As a student`")?;
     let (student, _) = rest.split_once("\n## ").context("README.md lacks a chapter after `As a student`")?;
-    let student = student.replace(" --kit exercises", "");
+    let mut student = student.replace(" --kit exercises", "");
+    // The names of the numbers in the text are for authors.
+    while let Some((before, after)) = student.split_once("<!--=") {
+        student = format!("{before}{}", after.split_once("-->").map_or("", |(_, rest)| rest));
+    }
     Ok(README.replace("{greeting}", greeting.trim()).replace("{student}", student.trim()))
 }
 
