@@ -194,7 +194,7 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
                 Verdict::NotWritten { task, place } => {
                     let slide = &next.entry.slide;
                     let (next, slides) = (course.text("next"), course.text("slides"));
-                    println!("{next}: {place}\n  {task}\n  {slides}: {slide}\n");
+                    println!("{next}: {place}\n  {task}\n  {slides}: {slide} (slides/stage{stage:02}.md)\n");
                 }
                 Verdict::Failed(message) => println!("{}, `{name}` fails:\n{message}", course.text("next")),
                 Verdict::Passed => {}
