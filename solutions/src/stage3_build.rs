@@ -6,9 +6,11 @@
 //!
 //! Given: [`Bvh`] with `add_node`, `set_leaf` and `set_children`; [`PrimitiveRef`] with the number,
 //! the box and the centroid of a primitive; the costs [`TRAVERSAL_COST`] and [`INTERSECTION_COST`];
-//! [`DEEPEST_SPLIT`]; your own functions for boxes.
+//! [`DEEPEST_SPLIT`]; your own functions for boxes. `counted::union` calls your `union`, and a check
+//! counts the calls.
 
-use crate::stage3_boxes::{centroid, surface_area, union};
+use crate::counted::union;
+use crate::stage3_boxes::{centroid, surface_area};
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, DEEPEST_SPLIT, INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
 use raykata::scene::Split;
@@ -89,7 +91,8 @@ pub fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize {
 ///
 /// Exactly:
 ///
-/// - Of cuts with equal cost any one is right.
+/// - At most 64 `union` calls per primitive.
+/// - Of cuts with equal cost any is right.
 /// - For boxes without area all costs are 0, and both a leaf and any cut are right.
 pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
     // <solution>

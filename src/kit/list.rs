@@ -552,7 +552,7 @@ macro_rules! student_functions {
                 { |q: PartitionQuery| -> SplitAnswer {
                     let mut primitives = q.primitives.clone();
                     let middle = F::partition_bins(&mut primitives, &q.grid, &q.split);
-                    SplitAnswer { order: primitives.iter().map(PrimitiveBox::id).collect(), middle: Some(middle) }
+                    SplitAnswer { order: primitives.iter().map(PrimitiveBox::id).collect(), middle: Some(middle), unions: 0 }
                 } }
                 /// A binary hierarchy over primitives with these boxes, built with bins.
                 BuildBinned fn build_binned(bounds: &[Aabb]) -> FlatTree

@@ -38,7 +38,7 @@ pub use door::{
 pub use effects_analysis::{MaterialHits, RayCounts};
 pub use function_names::Function;
 #[doc(hidden)]
-pub use functions::CallGuard;
+pub use functions::{CallGuard, count_union};
 pub use functions::{Linked, StudentFunctions, StudentKit, is_written};
 pub use job::{RenderJob, Rendering, StructureSize, View};
 pub use kit_error::KitError;

@@ -38,9 +38,11 @@ pub struct SplitAnswer {
     pub order: Vec<u32>,
     /// The primitives `order[..middle]` go left and the others right; `None` asks for a leaf.
     pub middle: Option<usize>,
+    /// The number of calls of `union` through `counted`.
+    pub unions: u64,
 }
 
-message! { SplitAnswer { order, middle } }
+message! { SplitAnswer { order, middle, unions } }
 
 /// The answers to all tests of one ray: the interval of `t` in each box and the nearest hit with each
 /// primitive.

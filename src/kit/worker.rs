@@ -158,6 +158,7 @@ pub fn serve(functions: impl StudentKit) {
 /// Answers requests with any function in place of a kit, until the pipe closes. A panic of `answer` is caught
 /// and sent as [`Reply::KitError`].
 pub fn serve_with(answer: &AnswerFunction<'_>) {
+    end_with_parent();
     let work = || {
         let (reader, writer) = pipes()?;
         answer_all(answer, reader, writer)
@@ -177,6 +178,23 @@ pub fn serve_with(answer: &AnswerFunction<'_>) {
             "This is a worker: `raykata check --kit exercises` starts it and asks it questions. \
              It cannot be used by hand ({error})."
         );
+    }
+}
+
+/// Ends this process half a second after its parent at the latest. The parent may be killed while student code computes here, which
+/// does not notice that the pipe is closed.
+pub fn end_with_parent() {
+    #[cfg(unix)]
+    {
+        use std::os::unix::process::parent_id;
+        let parent = parent_id();
+        // A sandbox allows no threads, and ends its processes itself.
+        let _ = std::thread::Builder::new().name("parent".into()).spawn(move || {
+            while parent_id() == parent {
+                std::thread::sleep(Duration::from_millis(500));
+            }
+            std::process::exit(1);
+        });
     }
 }
 

@@ -27,13 +27,8 @@ const LEAF_SIZE: usize = 4;
 /// The depth that frames use.
 const OCTREE_DEPTH: usize = 20;
 
-/// A structure over hard triangles: its name, the number of nodes and of references, and its search.
-struct Built<'a> {
-    what: &'a str,
-    n_nodes: usize,
-    n_references: usize,
-    search: &'a dyn Fn(&mut Counting<'_>, &Ray) -> Option<PrimitiveHit>,
-}
+/// The search of a structure.
+type Search<'a> = &'a dyn Fn(&mut Counting<'_>, &Ray) -> Option<PrimitiveHit>;
 
 /// Tests rays against triangles, and counts.
 struct Counting<'a> {
@@ -90,10 +85,16 @@ fn rays(triangles: &[Triangle]) -> Vec<Ray> {
     (0..40).map(|_| ray()).collect()
 }
 
-/// Demands that a structure has at most `most_nodes` nodes and 16 references per triangle, that each ray visits a node
+/// Demands that the structure `what` has at most `most_nodes` nodes and 16 references per triangle, that each ray visits a node
 /// at most once and tests no more primitives than there are references, and that it finds what brute force finds.
-fn judge(hard: &Hard, bvh: &Bvh, most_nodes: usize, built: &Built<'_>) {
-    let Built { what, n_nodes, n_references, search } = *built;
+fn judge(
+    hard: &Hard,
+    bvh: &Bvh,
+    what: &str,
+    (n_nodes, most_nodes): (usize, usize),
+    n_references: usize,
+    search: Search<'_>,
+) {
     let (name, n) = (hard.name, hard.triangles.len());
     println!("{what} over {n} {name}: {n_nodes} nodes, {n_references} references");
     assert!(n_nodes <= most_nodes, "{what} over {n} {name}: {n_nodes} nodes, more than {most_nodes}");
@@ -122,13 +123,7 @@ fn hierarchies_over_hard_triangles_are_shallow() {
             let search =
                 |probe: &mut Counting<'_>, ray: &Ray| stage3_traversal::closest_hit(&bvh, probe, ray);
             let what = format!("a hierarchy by {split:?}");
-            let built = Built {
-                what: &what,
-                n_nodes: bvh.nodes.len(),
-                n_references: bvh.order.len(),
-                search: &search,
-            };
-            judge(&hard, &bvh, 2 * n - 1, &built);
+            judge(&hard, &bvh, &what, (bvh.nodes.len(), 2 * n - 1), bvh.order.len(), &search);
         }
     }
 }
@@ -143,26 +138,21 @@ fn most_nodes(n: usize, n_children: usize, depth: usize) -> usize {
 fn octrees_over_hard_triangles_are_small() {
     for hard in hard_lists(n_triangles()) {
         let octree: Octree = stage9_octree::build(&boxes(&hard), LEAF_SIZE, OCTREE_DEPTH);
-        let (n_nodes, n_references) = (octree.nodes.len(), octree.items.len());
+        let n_references = octree.items.len();
         let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_octree::closest_hit(&octree, probe, ray);
-        let built = Built { what: "an octree", n_nodes, n_references, search: &search };
-        let most = most_nodes(hard.triangles.len(), 8, OCTREE_DEPTH);
-        judge(&hard, &Bvh::default(), most, &built);
+        let nodes = (octree.nodes.len(), most_nodes(hard.triangles.len(), 8, OCTREE_DEPTH));
+        judge(&hard, &Bvh::default(), "an octree", nodes, n_references, &search);
         // The search by neighbours visits each node at most once.
         let by_neighbours = |probe: &mut Counting<'_>, ray: &Ray| {
             stage9_neighbours::closest_hit_by_neighbours(&octree, probe, ray)
         };
-        let built =
-            Built { what: "an octree, by neighbours,", n_nodes, n_references, search: &by_neighbours };
-        judge(&hard, &Bvh::default(), most, &built);
+        judge(&hard, &Bvh::default(), "an octree, by neighbours,", nodes, n_references, &by_neighbours);
         // The search by cells visits the nodes above a leaf again for each leaf.
         let leaves = octree.nodes.iter().filter(|node| matches!(node, OctreeNode::Leaf { .. })).count();
         let by_cells =
             |probe: &mut Counting<'_>, ray: &Ray| stage9_octree::closest_hit_by_cells(&octree, probe, ray);
         let n_visits = leaves * octree.depth();
-        let built =
-            Built { what: "an octree, by cells,", n_nodes: n_visits, n_references, search: &by_cells };
-        judge(&hard, &Bvh::default(), n_visits, &built);
+        judge(&hard, &Bvh::default(), "an octree, by cells,", (n_visits, n_visits), n_references, &by_cells);
     }
 }
 
@@ -187,13 +177,8 @@ fn kd_trees_over_hard_triangles_are_small() {
             let n = hard.triangles.len();
             let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_kd_tree::closest_hit(&tree, probe, ray);
             let what = format!("a kd-tree with {heuristics:?}");
-            let built = Built {
-                what: &what,
-                n_nodes: tree.nodes.len(),
-                n_references: tree.items.len(),
-                search: &search,
-            };
-            judge(&hard, &Bvh::default(), most_nodes(n, 2, KdTree::most_depth(n)), &built);
+            let nodes = (tree.nodes.len(), most_nodes(n, 2, KdTree::most_depth(n)));
+            judge(&hard, &Bvh::default(), &what, nodes, tree.items.len(), &search);
         }
     }
 }
@@ -205,30 +190,13 @@ fn bsp_trees_over_hard_triangles_are_small() {
         let depth = KdTree::most_depth(hulls.len());
         let bsp: Bsp = stage9_bsp::build(&hulls, LEAF_SIZE, depth);
         let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_bsp::closest_hit(&bsp, probe, ray);
-        let built = Built {
-            what: "a BSP tree",
-            n_nodes: bsp.nodes.len(),
-            n_references: bsp.items.len(),
-            search: &search,
-        };
-        judge(&hard, &Bvh::default(), most_nodes(hulls.len(), 2, depth), &built);
-    }
-}
-
-#[test]
-fn polygon_bsp_trees_over_hard_triangles_are_small() {
-    for hard in hard_lists(n_triangles()) {
-        let hulls: Vec<Vec<Vec3>> = hard.triangles.iter().map(|t| vec![t.a, t.b, t.c]).collect();
-        let depth = 2 * KdTree::most_depth(hulls.len());
+        let nodes = (bsp.nodes.len(), most_nodes(hulls.len(), 2, depth));
+        judge(&hard, &Bvh::default(), "a BSP tree", nodes, bsp.items.len(), &search);
+        let depth = 2 * depth;
         let bsp: PolygonBsp = stage9_polygon_bsp::build(&hulls, LEAF_SIZE, depth);
         let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_polygon_bsp::closest_hit(&bsp, probe, ray);
-        let built = Built {
-            what: "a BSP tree of polygons",
-            n_nodes: bsp.nodes.len(),
-            n_references: bsp.items.len(),
-            search: &search,
-        };
-        judge(&hard, &Bvh::default(), most_nodes(hulls.len(), 2, depth), &built);
+        let nodes = (bsp.nodes.len(), most_nodes(hulls.len(), 2, depth));
+        judge(&hard, &Bvh::default(), "a BSP tree of polygons", nodes, bsp.items.len(), &search);
     }
 }
 

@@ -208,9 +208,16 @@ impl BuiltPrograms {
     }
 }
 
-/// Runs a program with these words to its end, and returns its exit code; 1 if it was killed.
+/// Runs a program with these words to its end, and returns its exit code; 1 if it was killed. On Unix it takes the place of this
+/// process, so that a signal to this process ends the program.
 pub fn run_program(program: &Path, words: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Result<ExitCode> {
-    let status = Command::new(program).args(words).status();
+    let mut command = Command::new(program);
+    command.args(words);
+    #[cfg(unix)]
+    let status: std::io::Result<std::process::ExitStatus> =
+        Err(std::os::unix::process::CommandExt::exec(&mut command));
+    #[cfg(not(unix))]
+    let status = command.status();
     let status = status.with_context(|| format!("{} cannot be started", program.display()))?;
     Ok(ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)))
 }

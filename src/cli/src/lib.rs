@@ -1,6 +1,7 @@
 //! The parts of the program `raykata`, so that tests and the programs of instructors can reach them.
 
 /// Prints a line like the macro of the standard library, but does not panic if the reader has closed the pipe.
+#[macro_export]
 macro_rules! println {
     () => { $crate::report::say(format_args!("\n")) };
     ($($words:tt)*) => { $crate::report::say(format_args!("{}\n", format_args!($($words)*))) };

@@ -22,9 +22,8 @@ pub fn watch(given: &Given) -> Result<ExitCode> {
     let stage = list::stage(given)?;
     let root = root()?;
     let [watch, judge] = build(&root, "the judge of your exercises", [Program::WATCH, Program::JUDGE])?;
-    let here = std::env::current_exe().context("the path of this program is unknown")?;
     let stage = stage.map(|stage| stage.to_string().into());
-    run_program(&watch, [OsString::from(root), judge.into(), here.into()].into_iter().chain(stage))
+    run_program(&watch, [OsString::from(root), judge.into()].into_iter().chain(stage))
 }
 
 /// `raykata view`: shows a picture in a browser while your exercises render it.

@@ -170,11 +170,16 @@ pub fn bar_of_steps(n: usize) -> ProgressBar {
     ProgressBar::new(n as u64)
 }
 
+/// How far the hierarchy of a frame, or another structure, is built.
+pub fn words_of_building(placed: u64, total: u64) -> String {
+    format!("building the hierarchy: {} of {} primitives", Thousands(placed), Thousands(total))
+}
+
 /// The progress of a frame: first its structure, then its pixels. It is drawn on a terminal only.
 pub struct FrameBar {
     bar: ProgressBar,
-    /// What is being rendered, and what is counted.
-    now: Mutex<(String, &'static str)>,
+    /// What is being rendered, until its first pixels are finished.
+    now: Mutex<Option<String>>,
 }
 
 impl FrameBar {
@@ -189,17 +194,7 @@ impl FrameBar {
     /// Starts the progress of something else.
     pub fn begin(&self, what: String) {
         self.bar.begin(what.as_str(), 0);
-        *self.now.lock().unwrap_or_else(PoisonError::into_inner) = (what, "nothing");
-    }
-
-    fn tell(&self, counted: &'static str, done: u64, total: u64) {
-        let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
-        if now.1 != counted {
-            // Start the bar again, because a pixel takes another time than a primitive.
-            now.1 = counted;
-            self.bar.begin(format!("{} {counted}", now.0), total);
-        }
-        self.bar.set(done, total);
+        *self.now.lock().unwrap_or_else(PoisonError::into_inner) = Some(what);
     }
 
     /// Removes the bar.
@@ -210,14 +205,15 @@ impl FrameBar {
 
 impl Watch for FrameBar {
     fn building(&self, placed: u64, total: u64) {
-        // The remaining time is unknown until the first primitive is in a leaf.
-        if placed > 0 {
-            self.tell("(building)", placed, total);
-        }
+        self.bar.set_message(words_of_building(placed, total));
     }
 
     fn progress(&self, done: u64, total: u64) {
-        self.tell("", done, total);
+        // Start the bar again with the first pixels, because the time before them says nothing about that of the others.
+        if let Some(what) = self.now.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            self.bar.begin(what, total);
+        }
+        self.bar.set(done, total);
     }
 }
 

@@ -58,7 +58,6 @@ pub struct Worker {
     launcher: Option<Arc<dyn Launcher>>,
     call_patience: Duration,
     frame_patience: Duration,
-    asks_again: AtomicBool,
     /// Whether the output of the program is shown.
     shows: bool,
     /// Whether the tables of searches stay here, so that the worker must ask for each entry.
@@ -80,7 +79,6 @@ impl Worker {
             launcher: None,
             call_patience,
             frame_patience: FRAME_PATIENCE,
-            asks_again: AtomicBool::new(false),
             shows: false,
             withholds: AtomicBool::new(false),
             process: Mutex::new(None),
@@ -95,7 +93,7 @@ impl Worker {
     /// time without the time that it waits for a processor, so that a busy machine does not change a verdict.
     pub fn sandboxed(program: PathBuf, patience: Duration, launcher: impl Launcher + 'static) -> Self {
         let launcher: Arc<dyn Launcher> = Arc::new(launcher);
-        Worker { launcher: Some(launcher), frame_patience: patience, ..Worker::new(program, patience) }
+        Worker { launcher: Some(launcher), ..Worker::new(program, patience).with_short_frames() }
     }
 
     /// The same for a student who looks at one call: the first lines that the program writes are shown.
@@ -103,15 +101,9 @@ impl Worker {
         Worker { shows: true, ..Worker::new(program, patience) }
     }
 
-    /// The same for small pictures, some of which never end: a frame has no more time than any other call.
-    /// Because that may be too short on a busy machine, a late frame is tried once more with the long time
-    /// limit, until such a second try has failed.
-    pub fn hasty(program: PathBuf, patience: Duration) -> Self {
-        Worker {
-            frame_patience: patience,
-            asks_again: AtomicBool::new(true),
-            ..Worker::new(program, patience)
-        }
+    /// The same, but a frame without progress has no more time than a call: for pictures that are small or may never end.
+    pub fn with_short_frames(self) -> Self {
+        Worker { frame_patience: self.call_patience, ..self }
     }
 
     /// From now on keeps the tables of searches here, or no longer. The worker then asks for each entry, and the counts in an
@@ -199,13 +191,7 @@ impl Worker {
 impl Transport for Worker {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let patience = if request.frame().is_some() { self.frame_patience } else { self.call_patience };
-        let mut answer = self.ask(&request, watch, patience);
-        let late = |answer: &Result<Answer, KitError>| matches!(answer, Err(KitError::TimedOut { .. }));
-        if late(&answer) && self.asks_again.load(Ordering::Relaxed) {
-            answer = self.ask(&request, watch, FRAME_PATIENCE);
-            self.asks_again.store(!late(&answer), Ordering::Relaxed);
-        }
-        answer.unwrap_or_else(|error| kit_error::unwind(error))
+        self.ask(&request, watch, patience).unwrap_or_else(|error| kit_error::unwind(error))
     }
 
     fn waited(&self) -> Duration {

@@ -7,12 +7,12 @@ use crate::run::{Event, Task};
 use crossterm::event::KeyCode;
 use live::compiler::CompilerError;
 use live::files::names_in;
-use raykata_cli::verdicts::Verdict;
+use raykata_cli::verdicts::{CheckVerdict, Verdict};
 use std::path::Path;
 use std::time::Duration;
 
 /// What must be done next.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     Nothing,
     Quit,
@@ -109,7 +109,7 @@ impl App {
     pub fn new(stage: Option<u8>, size: (usize, usize)) -> (App, Action) {
         let stages = stages();
         let index = stage.and_then(|stage| stages.iter().position(|one| one.number == stage));
-        let app = App {
+        let mut app = App {
             stages,
             stage: index.unwrap_or(0),
             check: 0,
@@ -121,8 +121,8 @@ impl App {
             note: String::new(),
             size,
         };
-        let task = Action::Start(Task::Check(app.stage().number));
-        (app, task)
+        let action = app.run();
+        (app, action)
     }
 
     /// The stage that is shown.
@@ -153,6 +153,14 @@ impl App {
         self.run()
     }
 
+    /// The stages that are checked after the stage that is shown, because an edit may break what was done.
+    fn others(&self) -> impl Iterator<Item = &Stage> {
+        let is_other = |(index, stage): &(usize, &Stage)| {
+            *index != self.stage && (*index < self.stage || stage.was_done) && !self.is_searching
+        };
+        self.stages.iter().enumerate().filter(is_other).map(|(_, stage)| stage)
+    }
+
     /// Starts a run for what is shown.
     fn run(&mut self) -> Action {
         self.phase = Phase::Compiling;
@@ -165,8 +173,35 @@ impl App {
                 let width = (rows * 16 / 9).min(columns).max(16);
                 Task::Render(stage, width as u32, (width * 9 / 16) as u32)
             }
-            _ => Task::Check(stage),
+            _ => Task::Check([stage].into_iter().chain(self.others().map(|other| other.number)).collect()),
         })
+    }
+
+    /// In words: the first check that fails of a stage that was done before, other than the stage that is shown.
+    pub fn regression(&self) -> Option<String> {
+        let stage = self.others().find(|stage| stage.was_done && !stage.is_done())?;
+        let check = stage.checks.iter().find(|check| check.entry.is_asked_for() && !check.passes())?;
+        Some(format!("stage {} was done, and now fails {} (l lists the checks)", stage.number, check.name))
+    }
+
+    /// Keeps a verdict. Shows a failure at once if it comes before the check that is shown: others may wait for the same endless loop.
+    fn judged(&mut self, verdict: CheckVerdict) {
+        let failed = matches!(verdict.verdict, Verdict::Failed(_));
+        let at = self.stage().checks.iter().position(|check| check.name == verdict.check);
+        keep(&mut self.stages, verdict);
+        if let Some(at) =
+            at.filter(|&at| failed && !self.is_chosen && (at < self.check || self.check().passes()))
+        {
+            self.show(at);
+        }
+    }
+
+    /// Shows a check of the stage, unless another page is open.
+    fn show(&mut self, check: usize) {
+        if check != self.check && matches!(self.page, Page::Check { .. }) {
+            self.page = Page::CHECK;
+        }
+        self.check = check;
     }
 
     /// Goes to a check.
@@ -183,18 +218,24 @@ impl App {
             Event::Compiled(time) => (self.compiled, self.phase) = (time, Phase::Working),
             Event::Errors(errors) => self.phase = Phase::Errors(errors),
             Event::Broken(why) => self.phase = Phase::Broken(why),
-            Event::Verdict(verdict) => keep(&mut self.stages, verdict),
+            Event::Verdict(verdict) => self.judged(verdict),
+            Event::Progress(words) => self.note = words,
             Event::Picture(pixels) => {
                 self.phase = Phase::Ended { compiled: self.compiled, checked: Duration::ZERO };
+                self.note.clear();
                 if let Page::Picture(shown) = &mut self.page {
                     *shown = Some(pixels);
                 }
             }
-            Event::Checked(number, checked) if number == self.stage().number => {
-                self.phase = Phase::Ended { compiled: self.compiled, checked };
-                return self.checked();
+            Event::Checked(number, checked) => {
+                for stage in self.stages.iter_mut().filter(|stage| stage.number == number) {
+                    stage.was_done |= stage.is_done();
+                }
+                if number == self.stage().number {
+                    self.phase = Phase::Ended { compiled: self.compiled, checked };
+                    return self.checked();
+                }
             }
-            Event::Checked(..) => {}
         }
         Action::Nothing
     }
@@ -213,14 +254,7 @@ impl App {
             self.is_chosen = false;
         }
         if !self.is_chosen {
-            let next = self.stage().next_open(0, true).unwrap_or(self.check);
-            if next != self.check {
-                self.check = next;
-                self.page = match std::mem::replace(&mut self.page, Page::CHECK) {
-                    Page::Check { .. } => Page::CHECK,
-                    other => other,
-                };
-            }
+            self.show(self.stage().next_open(0, true).unwrap_or(self.check));
         }
         Action::Nothing
     }
@@ -332,7 +366,14 @@ impl App {
         let text = std::fs::read_to_string(root.join(&file)).unwrap_or_default();
         match function_at(&text, line) {
             Some(name) => self.page = Page::Reset { file, name },
-            None => "there is no function to reset here".clone_into(&mut self.note),
+            None => {
+                // The compiler points at the module of a file that is gone.
+                let module = text.lines().nth(line.saturating_sub(1) as usize);
+                let name = module.and_then(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
+                self.note = name.map_or("there is no function to reset here".into(), |name| {
+                    format!("exercises/src/{name}.rs is gone: copy it from your hand-out or a backup")
+                });
+            }
         }
     }
 
@@ -399,7 +440,6 @@ fn function_in(message: &str, root: &Path, stage: u8) -> Option<(String, u32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use raykata_cli::verdicts::CheckVerdict;
 
     fn tell(app: &mut App, check: usize, verdict: Verdict) {
         let name = app.stage().checks[check].name.to_owned();
@@ -421,13 +461,32 @@ mod tests {
     #[test]
     fn it_begins_at_the_first_check_that_does_not_pass() {
         let (mut app, action) = App::new(None, (80, 24));
-        assert_eq!(action, Action::Start(Task::Check(1)));
+        assert_eq!(action, Action::Start(Task::Check(vec![1])));
         all(&mut app, &Verdict::Passed);
-        assert_eq!(end(&mut app), Action::Start(Task::Check(2)), "stage 1 is done");
+        assert_eq!(end(&mut app), Action::Start(Task::Check(vec![2])), "stage 1 is done");
         all(&mut app, &Verdict::Passed);
         tell(&mut app, 3, failed());
         assert_eq!(end(&mut app), Action::Nothing);
         assert_eq!((app.stage().number, app.check), (2, 3));
+        app.saved();
+        tell(&mut app, 1, failed());
+        assert_eq!(app.check, 1, "a failure is shown before the other checks have a verdict");
+    }
+
+    #[test]
+    fn a_save_tells_what_fails_in_a_stage_that_was_done() {
+        let (mut app, _) = App::new(None, (80, 24));
+        all(&mut app, &Verdict::Passed);
+        end(&mut app);
+        all(&mut app, &failed());
+        end(&mut app);
+        assert_eq!(app.saved(), Action::Start(Task::Check(vec![2, 1])));
+        let check = app.stages[0].checks[3].name;
+        app.event(Event::Verdict(CheckVerdict { check: check.into(), verdict: failed() }));
+        let line = app.regression().expect("stage 1 was done");
+        assert_eq!(line, format!("stage 1 was done, and now fails {check} (l lists the checks)"));
+        app.event(Event::Verdict(CheckVerdict { check: check.into(), verdict: Verdict::Passed }));
+        assert_eq!(app.regression(), None);
     }
 
     #[test]
@@ -452,7 +511,7 @@ mod tests {
         all(&mut app, &failed());
         end(&mut app);
         app.key(KeyCode::Char('n'));
-        assert_eq!(app.saved(), Action::Start(Task::Check(1)));
+        assert_eq!(app.saved(), Action::Start(Task::Check(vec![1])));
         end(&mut app);
         assert_eq!(app.check, 1, "it still fails");
         tell(&mut app, 1, Verdict::Passed);
@@ -466,7 +525,7 @@ mod tests {
         let (mut app, _) = App::new(Some(1), (80, 24));
         all(&mut app, &Verdict::Passed);
         assert_eq!(end(&mut app), Action::Nothing, "a stage that was asked for stays");
-        assert_eq!(app.key(KeyCode::Char('n')), Action::Start(Task::Check(2)));
+        assert_eq!(app.key(KeyCode::Char('n')), Action::Start(Task::Check(vec![2, 1])));
     }
 
     #[test]
@@ -480,7 +539,7 @@ mod tests {
         app.key(KeyCode::Down);
         let action = app.key(KeyCode::Enter);
         assert_eq!((app.stage, app.check), found[1]);
-        assert_eq!(action, Action::Start(Task::Check(app.stage().number)));
+        assert!(matches!(action, Action::Start(Task::Check(stages)) if stages[0] == app.stage().number));
         assert_eq!(app.page, Page::CHECK);
     }
 
@@ -511,7 +570,11 @@ mod tests {
         assert!(matches!(app.saved(), Action::Start(Task::Render(4, ..))));
         app.event(Event::Picture(Pixels(vec![vec![([1; 3], [2; 3])]])));
         assert!(matches!(app.page, Page::Picture(Some(_))));
-        assert_eq!(app.key(KeyCode::Char('v')), Action::Start(Task::Check(4)), "back to the checks");
+        assert_eq!(
+            app.key(KeyCode::Char('v')),
+            Action::Start(Task::Check(vec![4, 1, 2, 3])),
+            "back to the checks"
+        );
     }
 
     #[test]
@@ -559,6 +622,6 @@ mod tests {
         }
         app.reset(root.path());
         assert_eq!(std::fs::read_to_string(file).unwrap(), stub);
-        assert_eq!(app.note, "the old text: out/stage1_shapes-before-reset-1.rs");
+        assert_eq!(app.note, "the old text: out/before-reset-1/stage1_shapes.rs");
     }
 }

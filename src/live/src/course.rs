@@ -9,6 +9,8 @@ pub struct Stage {
     pub entry: &'static rubric::Stage,
     /// Its checks, in the order of the lecture.
     pub checks: Vec<Check>,
+    /// Whether it was done once since the program has started.
+    pub was_done: bool,
 }
 
 /// A check.
@@ -65,6 +67,7 @@ pub fn stages() -> Vec<Stage> {
         number,
         entry,
         checks: entry.in_order().into_iter().map(check).collect(),
+        was_done: false,
     };
     rubric::stages().into_iter().map(stage).collect()
 }

@@ -1,6 +1,7 @@
 //! Notices that files have changed, by looking at their times. This works on every file system, also where the system
 //! reports no events: in WSL, in containers, on network drives.
 
+use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -61,6 +62,25 @@ fn times(folder: &Path) -> Times {
 pub fn names_in(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect()
+}
+
+/// Makes a new folder in `out`, in which old texts are kept: `NAME-1`, or a larger number.
+///
+/// # Errors
+///
+/// The folder cannot be made.
+pub fn new_folder(root: &Path, name: &str) -> Result<PathBuf> {
+    let out = root.join("out");
+    fs::create_dir_all(&out).with_context(|| format!("{} cannot be made", out.display()))?;
+    for number in 1.. {
+        let folder = out.join(format!("{name}-{number}"));
+        match fs::create_dir(&folder) {
+            Ok(()) => return Ok(folder),
+            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error).with_context(|| format!("{} cannot be made", folder.display())),
+        }
+    }
+    bail!("out/ is full")
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! What the programs `watch`, `view` and `update` share: which files have changed, the functions of a file, the errors of the
-//! compiler, processes that a save ends, and the scene of a stage.
+//! compiler, processes that a save ends, and the scene of a stage and its picture.
 
 pub mod compiler;
 pub mod files;
 pub mod functions;
+pub mod picture;
 pub mod process;
 
 use std::path::{Path, PathBuf};

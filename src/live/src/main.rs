@@ -1,4 +1,4 @@
-//! The program that `raykata watch` starts: `watch ROOT JUDGE RAYKATA [STAGE]`. It compiles the exercises and runs the checks of a stage
+//! The program that `raykata watch` starts: `watch ROOT JUDGE [STAGE]`. It compiles the exercises and runs the checks of a stage
 //! whenever a file of the student changes.
 //!
 //! `run` (one run, which a save cancels) · `course` (stages, checks and verdicts) · `app` (what keys and events do) · `screen` (the text of the screen) · `pixels` (pictures
@@ -28,10 +28,10 @@ fn main() -> ExitCode {
 fn watch() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let [root, judge, raykata, ref stage @ ..] = words[..] else {
+    let [root, judge, ref stage @ ..] = words[..] else {
         bail!("`raykata watch` starts this program. It is not started by hand")
     };
-    let paths = Paths { root: root.into(), judge: judge.into(), raykata: raykata.into() };
+    let paths = Paths { root: root.into(), judge: judge.into() };
     let stage = stage.first().map(|stage| stage.parse().context("the stage is no number")).transpose()?;
     let screen = std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
     let dumb = std::env::var_os("TERM").is_some_and(|name| name == "dumb");

@@ -1,9 +1,7 @@
 //! Pictures in the terminal: each character is the upper half of a cell, and shows two pixels in the colours of its
 //! foreground and of its background.
 
-use anyhow::{Context, Result};
 use image::RgbImage;
-use std::path::Path;
 
 /// A colour of the screen.
 pub type Rgb = [u8; 3];
@@ -13,13 +11,7 @@ pub type Rgb = [u8; 3];
 pub struct Pixels(pub Vec<Vec<(Rgb, Rgb)>>);
 
 impl Pixels {
-    /// Reads a PNG file and shows it `columns` wide. It never enlarges.
-    pub fn read(file: &Path, columns: u32) -> Result<Pixels> {
-        let picture = image::open(file).with_context(|| format!("{} cannot be read", file.display()))?;
-        Ok(Pixels::of(&picture.to_rgb8(), columns))
-    }
-
-    /// The same for a picture in memory.
+    /// Shows a picture `columns` wide. It never enlarges.
     pub fn of(picture: &RgbImage, columns: u32) -> Pixels {
         let (width, height) = picture.dimensions();
         let columns = columns.clamp(1, width.max(1));

@@ -2,12 +2,11 @@
 //! program is interrupted.
 
 use crate::app::{Action, App, Phase};
-use crate::run::{Event, Paths, Report, Run};
+use crate::run::{Event, Paths, Run};
 use anyhow::Result;
 use live::files::Files;
 use raykata_cli::report::say;
 use raykata_cli::verdicts::Verdict;
-use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 /// The time between two looks at the files.
@@ -16,28 +15,37 @@ const PAUSE: Duration = Duration::from_millis(150);
 /// Follows the files until the program is interrupted.
 pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
     let mut files = Files::new(live::exercises(&paths.root));
-    let (sender, reports) = mpsc::channel();
     let (mut app, mut action) = App::new(stage, (80, 24));
-    let (mut run, mut number) = (None, 0);
+    let mut run = None;
     say(format_args!("watching exercises/src; Ctrl-C ends it\n"));
     loop {
         if let Action::Start(task) = action {
             drop(run.take());
-            number += 1;
-            run = Some(Run::start(paths.clone(), task, number, sender.clone()));
+            run = Some(Run::start(paths.clone(), task));
         }
-        action = match reports.recv_timeout(PAUSE) {
-            Ok(Report { run, event }) if run == number => {
-                let has_ended = !matches!(event, Event::Verdict(_) | Event::Compiled(_));
+        let event = run.as_ref().and_then(|run| run.events.try_recv().ok());
+        action = match event {
+            Some(event) => {
+                let has_ended = match &event {
+                    Event::Verdict(_) | Event::Compiled(_) | Event::Progress(_) => false,
+                    Event::Checked(number, _) => *number == app.stage().number,
+                    _ => true,
+                };
+                let before = app.regression();
                 let action = app.event(event);
                 if has_ended && action == Action::Nothing {
                     say(format_args!("{}\n", lines(&app)));
                 }
+                if let Some(words) = app.regression().filter(|words| before.as_ref() != Some(words)) {
+                    say(format_args!("{words}\n"));
+                }
                 action
             }
-            Ok(_) | Err(RecvTimeoutError::Disconnected) => Action::Nothing,
-            Err(RecvTimeoutError::Timeout) if files.have_changed() => app.saved(),
-            Err(RecvTimeoutError::Timeout) => Action::Nothing,
+            None if files.have_changed() => app.saved(),
+            None => {
+                std::thread::sleep(PAUSE);
+                Action::Nothing
+            }
         };
     }
 }

@@ -1,16 +1,23 @@
 //! A process that can be ended at any time, with all processes that it has started.
 
 use anyhow::{Context, Result};
+use raykata::kit::Door;
+use raykata_cli::worker::Worker;
 use std::io::{BufReader, Read};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The process that a run has started at the moment, if any. A run starts one process after the other.
+/// The process that a run has started at the moment, if any, and its kit. A run starts one process after the other.
 #[derive(Default)]
 pub struct Process {
     is_over: AtomicBool,
     child: Mutex<Option<Child>>,
+    kit: Mutex<Option<Arc<Door<Worker>>>>,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Ends a process and those that it has started.
@@ -34,18 +41,28 @@ impl Process {
     /// Ends the process, and starts no other one from now on.
     pub fn end(&self) {
         self.is_over.store(true, Ordering::Relaxed);
-        if let Some(child) = &mut *self.child() {
+        if let Some(child) = &mut *lock(&self.child) {
             end(child);
         }
+        if let Some(kit) = lock(&self.kit).take() {
+            kit.0.retire();
+        }
+    }
+
+    /// Starts a kit, whose process ends with the run.
+    pub fn start_kit(&self, worker: Worker) -> Arc<Door<Worker>> {
+        let kit = Arc::new(Door(worker));
+        *lock(&self.kit) = Some(kit.clone());
+        // The flag is set before `end` looks for a kit.
+        if self.is_over() {
+            kit.0.retire();
+        }
+        kit
     }
 
     /// Whether the run is over.
     pub fn is_over(&self) -> bool {
         self.is_over.load(Ordering::Relaxed)
-    }
-
-    fn child(&self) -> std::sync::MutexGuard<'_, Option<Child>> {
-        self.child.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Starts a process, reads what it writes, and returns whether it succeeded and what it wrote to standard error.
@@ -64,7 +81,7 @@ impl Process {
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         // Start it under the lock, so that a cancel before this sees no child and prevents it, and one after this ends it.
-        let mut slot = self.child();
+        let mut slot = lock(&self.child);
         if self.is_over.load(Ordering::Relaxed) {
             return Ok(None);
         }
@@ -81,20 +98,12 @@ impl Process {
         });
         let result = read(&mut BufReader::new(stdout));
         let words = words.join().unwrap_or_default();
-        let Some(mut child) = self.child().take().filter(|_| !self.is_over.load(Ordering::Relaxed)) else {
+        let Some(mut child) = lock(&self.child).take().filter(|_| !self.is_over.load(Ordering::Relaxed))
+        else {
             return Ok(None);
         };
         let succeeded = child.wait()?.success();
         result?;
         Ok(Some((succeeded, words)))
-    }
-
-    /// The same for a process whose standard output is of no interest.
-    ///
-    /// # Errors
-    ///
-    /// If the process cannot be started.
-    pub fn follow_silently(&self, command: Command) -> Result<Option<(bool, String)>> {
-        self.follow(command, |out| Ok(_ = std::io::copy(out, &mut std::io::sink())?))
     }
 }

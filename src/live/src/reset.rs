@@ -1,7 +1,9 @@
 //! Resets a function to the text that it had before it was written. The old file is kept.
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow};
+use live::files::new_folder;
 use live::functions::{name_in, replaced, span, stubs};
+use raykata_cli::report::write_file;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -22,31 +24,10 @@ pub fn reset(root: &Path, file: &str, name: &str) -> Result<PathBuf> {
     let path = root.join(file);
     let old = fs::read_to_string(&path).with_context(|| format!("{} cannot be read", path.display()))?;
     let new = with_stub(&old, name, stub)?;
-    let kept = keep(root, &stem, &old)?;
-    raykata::film::write_atomically(&path, |out| std::io::Write::write_all(out, new.as_bytes()))
-        .with_context(|| format!("{} cannot be written", path.display()))?;
+    let kept = new_folder(root, "before-reset")?.join(format!("{stem}.rs"));
+    write_file(&kept, old.as_bytes())?;
+    write_file(&path, new.as_bytes())?;
     Ok(kept)
-}
-
-/// Writes the old text to a new file in `out`.
-fn keep(root: &Path, stem: &str, old: &str) -> Result<PathBuf> {
-    let folder = root.join("out");
-    fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
-    for number in 1.. {
-        let file = folder.join(format!("{stem}-before-reset-{number}.rs"));
-        match fs::File::create_new(&file) {
-            Ok(mut out) => {
-                std::io::Write::write_all(&mut out, old.as_bytes())
-                    .with_context(|| format!("{} cannot be written", file.display()))?;
-                return Ok(file);
-            }
-            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
-            Err(error) => {
-                return Err(error).with_context(|| format!("{} cannot be written", file.display()));
-            }
-        }
-    }
-    bail!("out/ is full")
 }
 
 /// The text with `stub` in place of the function `name`.
@@ -94,10 +75,10 @@ mod tests {
         let file = "exercises/src/stage1_a.rs";
         fs::write(at(file), TEXT).unwrap();
         let kept = reset(root.path(), file, "one").unwrap();
-        assert_eq!(kept, at("out/stage1_a-before-reset-1.rs"));
+        assert_eq!(kept, at("out/before-reset-1/stage1_a.rs"));
         assert_eq!(fs::read_to_string(kept).unwrap(), TEXT);
         assert!(fs::read_to_string(at(file)).unwrap().contains(STUB));
-        assert_eq!(reset(root.path(), file, "one").unwrap(), at("out/stage1_a-before-reset-2.rs"));
+        assert_eq!(reset(root.path(), file, "one").unwrap(), at("out/before-reset-2/stage1_a.rs"));
         assert!(reset(root.path(), file, "three").is_err(), "no exercise");
     }
 }

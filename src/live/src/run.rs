@@ -3,17 +3,23 @@
 
 use crate::pixels::Pixels;
 use anyhow::{Context, Result, bail};
+use image::RgbImage;
 use live::compiler::{Compiled, CompilerError, compile};
+use live::picture::{encoded, read_scene};
 use live::process::Process;
 use live::scene_of;
+use raykata::frame::Watch;
+use raykata::kit::{Frames, kit_error};
 use raykata::worker::receive;
 use raykata_cli::kits::{Need, Program, Which, cargo_build, profile};
+use raykata_cli::report::{job, make_folder_of, words_of_building};
 use raykata_cli::verdicts::CheckVerdict;
+use raykata_cli::worker::{CALL_PATIENCE, Worker};
 use std::io::{BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 /// What a run reports.
@@ -27,25 +33,19 @@ pub enum Event {
     Errors(Vec<CompilerError>),
     /// All checks of this stage have a verdict.
     Checked(u8, Duration),
+    /// How far a picture is, in words.
+    Progress(String),
     /// A picture is finished.
     Picture(Pixels),
     /// The run cannot go on, for this reason.
     Broken(String),
 }
 
-/// An event, and the number of its run. Events of a run that was cancelled may still arrive.
-pub struct Report {
-    /// The number of the run.
-    pub run: u64,
-    /// What happened.
-    pub event: Event,
-}
-
 /// What a run does after it has compiled the exercises.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Task {
-    /// Runs the checks of a stage.
-    Check(u8),
+    /// Runs the checks of these stages, one stage after the other.
+    Check(Vec<u8>),
     /// Renders the scene of a stage, with this many pixels in width and height.
     Render(u8, u32, u32),
 }
@@ -57,37 +57,40 @@ pub struct Paths {
     pub root: PathBuf,
     /// The program that runs the checks.
     pub judge: PathBuf,
-    /// The program that renders.
-    pub raykata: PathBuf,
 }
 
 /// A run. It is cancelled when it is dropped.
-pub struct Run(Arc<Process>);
+pub struct Run {
+    process: Arc<Process>,
+    /// What it reports. Each run has its own events, so those of a cancelled run are gone.
+    pub events: Receiver<Event>,
+}
 
 impl Run {
-    /// Starts a run, which reports to `reports`.
-    pub fn start(paths: Paths, task: Task, run: u64, reports: Sender<Report>) -> Run {
+    /// Starts a run.
+    pub fn start(paths: Paths, task: Task) -> Run {
         let process = Arc::new(Process::default());
+        let (sender, events) = channel();
         let own = process.clone();
         std::thread::spawn(move || {
-            // The receiver is gone only when the program ends.
-            let report = |event| _ = reports.send(Report { run, event });
+            // The receiver is gone if the run was cancelled.
+            let report = |event| _ = sender.send(event);
             if let Err(error) = work(&paths, task, &own, &report) {
                 report(Event::Broken(format!("{error:#}")));
             }
         });
-        Run(process)
+        Run { process, events }
     }
 }
 
 impl Drop for Run {
     fn drop(&mut self) {
-        self.0.end();
+        self.process.end();
     }
 }
 
 /// Does the work of a run.
-fn work(paths: &Paths, task: Task, process: &Process, report: &impl Fn(Event)) -> Result<()> {
+fn work(paths: &Paths, task: Task, process: &Process, report: &(impl Fn(Event) + Sync)) -> Result<()> {
     // Compile the exercises.
     let begin = Instant::now();
     let need = match task {
@@ -110,8 +113,12 @@ fn work(paths: &Paths, task: Task, process: &Process, report: &impl Fn(Event)) -
     };
     report(Event::Compiled(begin.elapsed()));
     match task {
-        Task::Check(stage) => check(paths, &worker, stage, process, report),
-        Task::Render(stage, width, height) => render(paths, stage, (width, height), process, report),
+        Task::Check(stages) => stages.iter().try_for_each(|&stage| {
+            if process.is_over() { Ok(()) } else { check(paths, &worker, stage, process, report) }
+        }),
+        Task::Render(stage, width, height) => {
+            render(&paths.root, &worker, (stage, width, height), process, report)
+        }
     }
 }
 
@@ -135,24 +142,40 @@ fn check(paths: &Paths, worker: &Path, stage: u8, process: &Process, report: &im
     Ok(())
 }
 
-/// Renders the scene of a stage in the size of the terminal.
+/// Renders the scene of a stage in the size of the terminal, with one sample per pixel.
 fn render(
-    paths: &Paths,
-    stage: u8,
-    (width, height): (u32, u32),
+    root: &Path,
+    worker: &Path,
+    (stage, width, height): (u8, u32, u32),
     process: &Process,
-    report: &impl Fn(Event),
+    report: &(impl Fn(Event) + Sync),
 ) -> Result<()> {
-    let root = &paths.root;
-    let scene = scene_of(root, stage);
-    let out = root.join("out/watch.png");
-    let mut command = Command::new(&paths.raykata);
-    command.current_dir(root).arg("render").arg(&scene).arg("--out").arg(&out);
-    command.args(["--kit", "exercises", "--size", &format!("{width}x{height}"), "--spp", "1"]);
-    match process.follow_silently(command)? {
-        None => {}
-        Some((true, _)) => report(Event::Picture(Pixels::read(&out, width)?)),
-        Some((false, words)) => bail!("{}", words.trim().trim_start_matches("error: ")),
+    let mut scene = read_scene(&scene_of(root, stage))?;
+    (scene.film.width, scene.film.height, scene.quality.samples_per_pixel) = (width, height, 1);
+    let kit = process.start_kit(Worker::new(worker.to_owned(), CALL_PATIENCE).with_short_frames());
+    let rendered = kit_error::catch(|| kit.render(&job(scene.clone()), &FrameProgress(report)));
+    if process.is_over() {
+        return Ok(());
     }
+    let film = rendered?.context("the frame was cancelled")?.film;
+    let rgb = encoded(&scene, &film, &kit);
+    let picture = RgbImage::from_raw(width, height, rgb).context("the picture has another size")?;
+    let file = root.join("out/watch.png");
+    make_folder_of(&file)?;
+    picture.save(&file).with_context(|| format!("{} cannot be written", file.display()))?;
+    report(Event::Picture(Pixels::of(&picture, width)));
     Ok(())
+}
+
+/// Reports the progress of a frame in words.
+struct FrameProgress<'a, F>(&'a F);
+
+impl<F: Fn(Event) + Sync> Watch for FrameProgress<'_, F> {
+    fn progress(&self, done: u64, total: u64) {
+        self.0(Event::Progress(format!("{} % of the pixels", 100 * done / total.max(1))));
+    }
+
+    fn building(&self, placed: u64, total: u64) {
+        self.0(Event::Progress(words_of_building(placed, total)));
+    }
 }

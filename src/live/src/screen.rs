@@ -3,6 +3,7 @@
 use crate::app::{App, Page, Phase};
 use crate::course::Check;
 use crate::pixels::Rgb;
+use crossterm::style::Color;
 use live::compiler::CompilerError;
 use raykata_cli::verdicts::Verdict;
 
@@ -33,7 +34,7 @@ pub enum Row {
 pub struct Look {
     /// Whether it shows more than ASCII.
     pub has_unicode: bool,
-    /// Whether it shows 24-bit colours.
+    /// Whether it shows 24-bit colours. Otherwise pictures have the 216 colours that every terminal with colours has.
     pub has_true_colour: bool,
 }
 
@@ -44,9 +45,15 @@ impl Look {
         let locale = ["LC_ALL", "LC_CTYPE", "LANG"].map(value).into_iter().find(|name| !name.is_empty());
         let is_utf8 = locale.is_some_and(|name| name.contains("utf-8") || name.contains("utf8"));
         let has_colours = ["truecolor", "24bit"].contains(&value("COLORTERM").as_str());
-        Look {
-            has_unicode: is_utf8 || cfg!(windows),
-            has_true_colour: has_colours && std::env::var_os("NO_COLOR").is_none(),
+        Look { has_unicode: is_utf8 || cfg!(windows), has_true_colour: has_colours }
+    }
+
+    /// The colour of a pixel, or the nearest one of the cube of 6 × 6 × 6 colours of a terminal with 256.
+    pub fn colour(self, [r, g, b]: Rgb) -> Color {
+        let level = |channel: u8| (channel / 51) + u8::from(channel % 51 > 25);
+        match self.has_true_colour {
+            true => Color::Rgb { r, g, b },
+            false => Color::AnsiValue(16 + 36 * level(r) + 6 * level(g) + level(b)),
         }
     }
 
@@ -100,7 +107,13 @@ const TYPING_KEYS: &str = "type a part of a name or of a title  up/down choose  
 pub fn rows(app: &App, look: Look) -> Vec<Row> {
     let (columns, height) = app.size;
     let mut rows = head(app, look);
-    let room = height.saturating_sub(rows.len() + 3);
+    let keys = match app.page {
+        Page::List { is_typing: true, .. } => TYPING_KEYS,
+        Page::List { .. } => LIST_KEYS,
+        _ => KEYS,
+    };
+    let foot = [foot(app, columns), wrapped(keys, columns)].concat();
+    let room = height.saturating_sub(rows.len() + foot.len() + 1);
     let body = match (&app.phase, &app.page) {
         (_, Page::List { word, is_typing, at }) => list(app, look, word, *is_typing, *at, room),
         (_, Page::Reset { file, name }) => question(file, name),
@@ -110,19 +123,12 @@ pub fn rows(app: &App, look: Look) -> Vec<Row> {
         (_, Page::Picture(None)) => vec![Row::Words(Tone::Quiet, "the picture is being rendered …".into())],
         (_, Page::Check { hints, unfolded }) => check(app, *hints, *unfolded, columns),
     };
-    let foot = foot(app, columns);
     rows.extend(body.into_iter().take(room));
-    rows.truncate(height.saturating_sub(foot.len() + 1));
-    while rows.len() + foot.len() + 1 < height {
+    rows.truncate(height.saturating_sub(foot.len()));
+    while rows.len() + foot.len() < height {
         rows.push(Row::Words(Tone::Plain, String::new()));
     }
     rows.extend(foot.into_iter().map(|line| Row::Words(Tone::Quiet, line)));
-    let keys = match app.page {
-        Page::List { is_typing: true, .. } => TYPING_KEYS,
-        Page::List { .. } => LIST_KEYS,
-        _ => KEYS,
-    };
-    rows.push(Row::Words(Tone::Quiet, keys.into()));
     let fitted = |row| match row {
         Row::Words(tone, text) => Row::Words(tone, clipped(&look.plain(&text), columns, look)),
         Row::Pixels(cells) => Row::Pixels(cells.into_iter().take(columns).collect()),
@@ -135,17 +141,14 @@ fn head(app: &App, look: Look) -> Vec<Row> {
     let stage = app.stage();
     let (checks, points) = stage.earned();
     let name = format!("stage {} · {}", stage.number, stage.entry.title);
-    let counts = format!("{checks}   {points}");
+    let head = wrapped(&format!("{name:<38}  {checks}   {points}"), app.size.0);
     let signs = stage.checks.iter().enumerate().map(|(index, check)| match index == app.check {
         true => format!("[{}]", look.sign(check)),
         false => look.sign(check).to_string(),
     });
     let tone = if stage.is_done() { Tone::Good } else { Tone::Plain };
-    vec![
-        Row::Words(tone, format!("{name:<38}  {counts}")),
-        Row::Words(Tone::Plain, signs.collect()),
-        Row::Words(Tone::Plain, String::new()),
-    ]
+    let signs = [signs.collect(), String::new()].map(|line| Row::Words(Tone::Plain, line));
+    head.into_iter().map(|line| Row::Words(tone, line)).chain(signs).collect()
 }
 
 /// The check: its law, its message, and the hints that were asked for.
@@ -159,7 +162,7 @@ fn check(app: &App, hints: usize, unfolded: bool, columns: usize) -> Vec<Row> {
         rows.push(Row::Words(Tone::Quiet, format!("  slides: {}", check.entry.slide)));
     };
     match &check.verdict {
-        None => law(Tone::Plain, "no verdict yet"),
+        None => law(Tone::Plain, "? no verdict yet"),
         Some(Verdict::Passed) => {
             law(Tone::Good, "passes");
             let stage = app.stage();
@@ -267,15 +270,11 @@ fn foot(app: &App, columns: usize) -> Vec<String> {
         Phase::Errors(_) => "waiting for a save; o opens the place".to_owned(),
         Phase::Broken(_) => "waiting for a save".to_owned(),
     };
-    if app.note.is_empty() {
-        return vec![run];
-    }
-    let line = format!("{run}   {}", app.note);
-    if line.chars().count() <= columns {
-        vec![line]
-    } else {
-        [wrapped(&app.note, columns), vec![run]].concat()
-    }
+    let line = if app.note.is_empty() { run.clone() } else { format!("{run}   {}", app.note) };
+    let fits = line.chars().count() <= columns;
+    let lines = if fits { vec![line] } else { [wrapped(&app.note, columns), vec![run]].concat() };
+    let regression = app.regression().map(|words| wrapped(&words, columns));
+    regression.into_iter().flatten().chain(lines).collect()
 }
 
 /// The text in at most `columns` columns. Signs of the kit's texts are one column wide.

@@ -2,7 +2,7 @@
 
 use crate::app::{Action, App};
 use crate::editor;
-use crate::run::{Paths, Report, Run};
+use crate::run::{Paths, Run};
 use crate::screen::{Look, Row, Tone, rows};
 use anyhow::Result;
 use crossterm::cursor::{Hide, MoveTo, Show};
@@ -12,7 +12,6 @@ use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlt
 use crossterm::{execute, queue};
 use live::files::Files;
 use std::io::{Write, stdout};
-use std::sync::mpsc;
 use std::time::Duration;
 
 /// The time between two looks at the files.
@@ -43,9 +42,8 @@ pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
     let look = Look::of_environment();
     let has_colours = std::env::var_os("NO_COLOR").is_none();
     let mut files = Files::new(live::exercises(root));
-    let (sender, reports) = mpsc::channel();
     let (mut app, mut action) = App::new(stage, size());
-    let (mut run, mut number) = (None, 0);
+    let mut run = None;
     let mut shown = Vec::new();
     let mut screen = Screen::enter()?;
     loop {
@@ -56,8 +54,7 @@ pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
             Action::Start(task) => {
                 // End the run before this one first, because both use the same files.
                 drop(run.take());
-                number += 1;
-                run = Some(Run::start(paths.clone(), task, number, sender.clone()));
+                run = Some(Run::start(paths.clone(), task));
             }
             Action::AskReset => app.ask_reset(root),
             Action::Reset => app.reset(root),
@@ -98,9 +95,10 @@ pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
         } else if files.have_changed() {
             action = app.saved();
         } else {
-            for Report { run, event } in reports.try_iter() {
-                if run == number && action == Action::Nothing {
-                    action = app.event(event);
+            for event in run.iter().flat_map(|run: &Run| run.events.try_iter()) {
+                action = app.event(event);
+                if action != Action::Nothing {
+                    break;
                 }
             }
         }
@@ -126,17 +124,15 @@ fn draw(rows: &[Row], look: Look, has_colours: bool) -> Result<()> {
                 }
                 queue!(out, Print(text))?;
             }
-            Row::Pixels(_) if !(look.has_true_colour && look.has_unicode) => {
+            Row::Pixels(_) if !(has_colours && look.has_unicode) => {
                 if y == 3 {
                     queue!(out, Print("this terminal shows no pictures; look at out/watch.png"))?;
                 }
             }
             Row::Pixels(cells) => {
                 for (upper, lower) in cells {
-                    let [r, g, b] = *upper;
-                    queue!(out, SetForegroundColor(Color::Rgb { r, g, b }))?;
-                    let [r, g, b] = *lower;
-                    queue!(out, SetBackgroundColor(Color::Rgb { r, g, b }), Print('▀'))?;
+                    let [upper, lower] = [*upper, *lower].map(|pixel| look.colour(pixel));
+                    queue!(out, SetForegroundColor(upper), SetBackgroundColor(lower), Print('▀'))?;
                 }
             }
         }

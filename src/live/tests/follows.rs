@@ -68,7 +68,6 @@ fn watch(kit: &KitFolder) -> Command {
     command
         .arg(kit.root())
         .arg(kit.path("target/debug/judge"))
-        .arg("raykata")
         .arg("1")
         .env("CARGO", kit.path("cargo"))
         .env("LANG", "C.UTF-8");

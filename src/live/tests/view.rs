@@ -246,6 +246,12 @@ fn the_page_works_in_a_browser() {
     browser.wait_for("document.getElementById('summary').textContent.includes('1 line segments')").unwrap();
     browser.evaluate("document.getElementById('in').click()").unwrap();
 
+    // A picture without new tiles asks about an infinite loop. The timer does not wait here.
+    let stall = "{ const late = setTimeout; window.setTimeout = work => late(work, 0); \
+                 status({ phase: 'rendering', words: 'rendering' }); window.setTimeout = late }";
+    browser.evaluate(stall).unwrap();
+    browser.wait_for("document.getElementById('words').textContent.includes('infinite loop')").unwrap();
+
     // An error of the compiler is shown, also when the page is opened again.
     kit.save("// an error");
     let message = "!document.getElementById('errors').hidden && document.getElementById('errors').textContent.includes('expected one \

@@ -207,7 +207,7 @@ mod tests {
     fn the_longest_message_has_twelve_lines() {
         let long = "a line\n".repeat(30);
         let broken = Broken::with_texts(&long, &long, &long, "brute force").looks_like(Some(&long));
-        let entry = CheckEntry { stage: 3, ..CheckEntry::default() };
+        let entry = crate::rubric::entry(3, "union_holds_both_boxes");
         let message = broken.message("some_check", &entry);
         assert!(message.lines().count() <= 12, "{message}");
         assert!(message.ends_with("cargo run -- hint some_check\n"));

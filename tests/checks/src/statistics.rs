@@ -30,16 +30,10 @@ pub fn pairs(seed: u64, count: usize) -> Vec<Vec2> {
     (0..count as u64).map(pair).collect()
 }
 
-/// The chi-square score of cells that should be hit equally often. It is normally distributed by the approximation of
-/// Wilson and Hilferty, and large if the counts are too uneven. At this threshold and 63 degrees of freedom, the
-/// approximation gives about a seventh fewer false alarms than stated.
-pub fn chi_square_score(counts: &[u64]) -> f64 {
-    let expected = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
-    score_of_expected(counts, &vec![expected; counts.len()])
-}
-
-/// The chi-square score of cells with these expected counts. Each must be above 20 or so, because counts of rare cells are
-/// not normally distributed.
+/// The chi-square score of cells with these expected counts. It is normally distributed by the approximation of Wilson and
+/// Hilferty, and large if the counts do not fit. At this threshold and 63 degrees of freedom, the approximation gives about a
+/// seventh fewer false alarms than stated. Each expected count must be above 20 or so, because counts of rare cells are not
+/// normally distributed.
 fn score_of_expected(counts: &[u64], expected: &[f64]) -> f64 {
     let term = |(&count, &expected): (&u64, &f64)| (count as f64 - expected).powi(2) / expected;
     let chi_square: f64 = counts.iter().zip(expected).map(term).sum();
@@ -244,7 +238,7 @@ mod tests {
             for u in pairs(seed, 1024) {
                 counts[((u.x * 8.0) as usize) * 8 + (u.y * 8.0) as usize] += 1;
             }
-            chi_square_score(&counts)
+            score_of_expected(&counts, &[16.0; 64])
         };
         // At 1.645, 5 % of 2,000: 100 ± 10. Four standard deviations either way.
         let n = alarms(chi_square, 1.645);

@@ -1,11 +1,8 @@
 //! The modules of the grader, as a library for the program `author`, tests and benchmarks. The program is `main.rs`.
 
-/// Prints a line like the macro of the standard library, but ends the program without a panic if the reader has closed the
-/// pipe.
-macro_rules! println {
-    () => { raykata_cli::report::say(format_args!("\n")) };
-    ($($words:tt)*) => { raykata_cli::report::say(format_args!("{}\n", format_args!($($words)*))) };
-}
+// `println!` here does not panic if the reader has closed the pipe.
+#[macro_use(println)]
+extern crate raykata_cli;
 
 pub mod course;
 pub mod exercises;

@@ -3,22 +3,24 @@
 use all_checks::STAGES;
 use anyhow::Result;
 use checks::rubric::{self, CheckEntry, RUBRIC, Score};
-use checks::{Check, Inputs, Verdict};
+use checks::{Check, Verdict};
+use raykata::kit::{Door, Kit, KitError};
 use raykata::worker::send;
 use raykata_cli::kits::{Source, with_exercises};
-use raykata_cli::{queue, verdicts};
+use raykata_cli::queue;
+use raykata_cli::report::bar_of_steps;
+use raykata_cli::verdicts::CheckVerdict;
+use raykata_cli::worker::{CALL_PATIENCE, Worker};
 use std::io::Write;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A check and its verdict.
-pub struct Graded {
-    /// The check.
-    pub check: &'static Check,
-    /// The verdict.
-    pub verdict: Verdict,
-    /// The rubric's entry for the check.
-    pub entry: CheckEntry,
+struct Graded {
+    check: &'static Check,
+    verdict: Verdict,
+    entry: CheckEntry,
 }
 
 impl Graded {
@@ -31,46 +33,61 @@ impl Graded {
     }
 }
 
-/// Runs all checks of the stages for which `wanted` is true, each with a kit of its own, on all cores.
-pub fn run_checks(source: &Source, wanted: impl Fn(u8) -> bool) -> Result<Vec<Graded>> {
-    run_checks_on(queue::cores(), source, wanted, 0, &Inputs::default())
-}
-
-/// The same on this many threads, with the inputs of `seed` from `inputs`.
-pub fn run_checks_on(
-    threads: usize,
+/// Runs the checks of the stages for which `wanted` is true on all cores, each with a kit of its own, and hands each verdict to
+/// `report` as soon as it is known, with the error if this is the first call that does not end. From then on a call gets a tenth
+/// of the time, because most of them wait for the same function; the slowest call of the reference needs a hundredth.
+fn run_checks(
     source: &Source,
     wanted: impl Fn(u8) -> bool,
-    seed: u64,
-    inputs: &Inputs,
+    report: impl Fn(&Graded, Option<KitError>) -> Result<()> + Sync,
 ) -> Result<Vec<Graded>> {
-    let checks: Vec<&'static Check> =
-        STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter()).collect();
-    let grade = |_: &(), &check: &&'static Check| {
-        let examined = checks::examine_with(check, &source.fresh(), seed, inputs.clone());
-        let verdict = checks::verdict(check, examined);
-        Ok(Graded { check, verdict, entry: rubric::entry(check.stage, check.name) })
-    };
-    queue::run(&vec![(); threads], &checks, grade)
+    let of_stages = STAGES.iter().filter(|(stage, _)| wanted(*stage));
+    let checks: Vec<&'static Check> = of_stages.flat_map(|(_, checks)| checks.iter()).collect();
+    let has_hung = AtomicBool::new(false);
+    queue::run(&queue::one_a_core(), &checks, |(), &check| {
+        let patience = if has_hung.load(Ordering::Relaxed) { CALL_PATIENCE / 10 } else { CALL_PATIENCE };
+        let worker = Worker::new(source.program.clone(), patience).with_short_frames();
+        let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker));
+        let examined = checks::examine(check, &kit, 0);
+        let hangs = examined.as_ref().err().filter(|error| matches!(error, KitError::TimedOut { .. }));
+        let hangs = hangs.filter(|_| !has_hung.swap(true, Ordering::Relaxed)).cloned();
+        let (verdict, entry) = (checks::verdict(check, examined), rubric::entry(check.stage, check.name));
+        let graded = Graded { check, verdict, entry };
+        report(&graded, hangs)?;
+        Ok(graded)
+    })
+}
+
+/// The same, with a progress bar. It tells at once which check has found a call that does not end.
+fn run_checks_with_bar(source: &Source, wanted: impl Fn(u8) -> bool) -> Result<Vec<Graded>> {
+    let bar = bar_of_steps(0);
+    bar.set_message("checks");
+    bar.tick();
+    let graded = run_checks(source, wanted, |graded, hangs| {
+        bar.set_message(format!("checks of stage {}", graded.check.stage));
+        if let Some(error) = hangs {
+            bar.suspend(|| eprintln!("{}: {error}\nThe other checks go on.", graded.check.name));
+        }
+        Ok(())
+    });
+    bar.finish_and_clear();
+    graded
 }
 
 /// Writes the verdicts of a stage to `out` as messages, each as soon as it is known.
 pub fn tell(source: &Source, stage: u8, out: impl Write + Send) -> Result<()> {
     let out = Mutex::new(out);
-    let checks: Vec<&'static Check> =
-        STAGES.iter().filter(|(number, _)| *number == stage).flat_map(|(_, checks)| checks.iter()).collect();
-    queue::run(&queue::one_a_core(), &checks, |(), &check| {
-        let verdict = checks::run(check, &source.fresh(), 0);
-        let mut out = out.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(send(&mut *out, &verdicts::CheckVerdict { check: check.name.into(), verdict })?)
-    })?;
-    Ok(())
+    let report = |graded: &Graded, _| {
+        let (check, verdict) = (graded.check.name.into(), graded.verdict.clone());
+        Ok(send(&mut *out.lock().unwrap_or_else(PoisonError::into_inner), &CheckVerdict { check, verdict })?)
+    };
+    run_checks(source, |number| number == stage, report).map(drop)
 }
 
 /// Prints the scorecard; `Ok(true)` if all checks passed that are asked for.
 pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
     let wanted = |number| is_asked_for(number) && stage.is_none_or(|stage| stage == number);
-    let graded = run_checks(source, wanted)?;
+    let graded = run_checks_with_bar(source, wanted)?;
     for (number, _) in STAGES.iter().filter(|(number, _)| wanted(*number)) {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
         println!("{}", stage_line(*number, &of_stage));
@@ -139,7 +156,7 @@ fn stage_line(number: u8, graded: &[&Graded]) -> String {
 
 /// Prints the points of the student, and the next step.
 pub fn status(root: &Path, source: &Source) -> Result<()> {
-    let graded = run_checks(source, is_asked_for)?;
+    let graded = run_checks_with_bar(source, is_asked_for)?;
     let course = rubric::course();
     if !course.title.is_empty() {
         println!("{}\n", course.title);
@@ -163,10 +180,14 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
     let open =
         |asked_for| graded.iter().find(move |one| one.entry.is_asked_for() == asked_for && !one.passed());
     match open(true).or(open(false)) {
-        None => println!(
-            "Everything passes. `cargo run --release -- render scenes/showcase.toml{}` shows it.",
-            with_exercises(root)
-        ),
+        None => {
+            // A course may end before the stages that the showcase needs.
+            let last = rubric::stages().last().map_or(0, |(number, _)| *number);
+            let own = format!("scenes/stage{last}.toml");
+            let scene = if root.join(&own).is_file() { &own } else { "scenes/showcase.toml" };
+            let which = with_exercises(root);
+            println!("Everything passes. `cargo run --release -- render {scene}{which}` shows it.");
+        }
         Some(next) => {
             let (stage, name) = (next.check.stage, next.check.name);
             match &next.verdict {

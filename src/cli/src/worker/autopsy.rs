@@ -47,9 +47,14 @@ pub(super) fn cause_of_death(
     }
 }
 
-/// The last line that is not empty, shortened to the length of a message.
+/// The last line that says something, shortened to the length of a message. Below the reason of an abort the standard library
+/// prints a backtrace, whose lines are indented, and notes about it.
 pub fn last_words(stderr: &str) -> Option<String> {
-    let last = stderr.lines().rev().find(|line| !line.trim().is_empty())?;
+    let is_about_backtrace = |line: &&str| {
+        line.starts_with([' ', '\t']) || line.starts_with("note: ") || *line == "stack backtrace:"
+    };
+    let mut lines = stderr.lines().rev().filter(|line| !line.trim().is_empty());
+    let last = lines.clone().find(|line| !is_about_backtrace(line)).or_else(|| lines.next())?;
     Some(last.chars().take(160).collect())
 }
 
@@ -107,6 +112,13 @@ pub(super) fn show_start(output: impl Read) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_last_words_are_no_part_of_a_backtrace() {
+        let abort = "memory allocation of 9 bytes failed\nstack backtrace:\n   0: f\n\nnote: Some details are omitted\n";
+        assert_eq!(last_words(abort).as_deref(), Some("memory allocation of 9 bytes failed"));
+        assert_eq!(last_words("  indented\n\n").as_deref(), Some("  indented"));
+    }
 
     #[test]
     fn the_first_lines_of_a_program_are_shown_and_kept() {

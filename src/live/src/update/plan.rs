@@ -3,11 +3,11 @@
 use crate::exercise::{Merged, StubsOfFile, beside_unwritten, merge};
 use crate::kit::Kit;
 use anyhow::{Context, Result, bail};
-use raykata::film::write_atomically;
+use live::files::new_folder;
+use raykata_cli::report::{make_folder_of, write_file};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// The folder whose files belong to the student.
@@ -137,7 +137,7 @@ impl Plan {
             let Some(old) = read(root, path)? else { continue };
             let folder = match kept.take() {
                 Some(folder) => folder,
-                None => new_folder(root)?,
+                None => new_folder(root, "before-update")?,
             };
             write(&folder.join(path), &old)?;
             kept = Some(folder);
@@ -191,23 +191,6 @@ fn read(root: &Path, path: &str) -> Result<Option<Vec<u8>>> {
 }
 
 fn write(file: &Path, content: &[u8]) -> Result<()> {
-    let folder = file.parent().unwrap_or(Path::new("."));
-    fs::create_dir_all(folder)
-        .and_then(|()| write_atomically(file, |out| out.write_all(content)))
-        .with_context(|| format!("{} cannot be written", file.display()))
-}
-
-/// Makes a folder for the old files.
-fn new_folder(root: &Path) -> Result<PathBuf> {
-    let out = root.join("out");
-    fs::create_dir_all(&out).with_context(|| format!("{} cannot be made", out.display()))?;
-    for number in 1.. {
-        let folder = out.join(format!("before-update-{number}"));
-        match fs::create_dir(&folder) {
-            Ok(()) => return Ok(folder),
-            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
-            Err(error) => return Err(error).with_context(|| format!("{} cannot be made", folder.display())),
-        }
-    }
-    bail!("out/ is full")
+    make_folder_of(file)?;
+    write_file(file, content)
 }

@@ -7,15 +7,16 @@
 
 use super::quick_tree::quickly_built;
 use super::reference::{Origin, Reference};
-use super::studio::{Kit, PATIENCE, Pass, Studio, encoded, job, read_scene};
+use super::studio::{Kit, PATIENCE, Pass, Studio, job};
 use anyhow::{Context, Result, bail};
 use live::compiler::{Compiled, compile};
+use live::picture::{encoded, read_scene};
 use live::process::Process;
 use raykata::frame::{Tile, Watch};
 use raykata::kit::{Door, Frames, RenderJob, Rendering, View, kit_error};
 use raykata::scene::Scene;
 use raykata_cli::kits::{Need, Program, Which, cargo_build, profile};
-use raykata_cli::report::Thousands;
+use raykata_cli::report::{Thousands, words_of_building};
 use raykata_cli::worker::Worker;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -344,10 +345,8 @@ impl Watch for Tiles<'_> {
     fn progress(&self, _: u64, _: u64) {}
 
     fn building(&self, placed: u64, total: u64) {
-        let words =
-            format!("building the structure: {} of {} primitives", Thousands(placed), Thousands(total));
         if !(self.is_over)() {
-            self.work.studio.status(self.work.number, "building", &words);
+            self.work.studio.status(self.work.number, "building", &words_of_building(placed, total));
         }
     }
 

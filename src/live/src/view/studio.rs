@@ -6,13 +6,14 @@ use super::pixel;
 use super::reference::{Origin, Reference};
 use super::reports;
 use super::run::Run;
-use anyhow::{Context, Result, anyhow, ensure};
+use anyhow::{Context, Result, ensure};
 use live::compiler::CompilerError;
 use live::files::{Files, names_in};
+use live::picture::encoded;
 use raykata::film::{Film, encode_srgb};
 use raykata::frame::Tile;
-use raykata::kit::{Door, Frames, RenderJob, Shading, View, kit_error};
-use raykata::scene::{Encoding, Scene};
+use raykata::kit::{Door, Frames, RenderJob, View, kit_error};
+use raykata::scene::Scene;
 use raykata_cli::html::base64;
 use raykata_cli::report::render;
 use raykata_cli::worker::Worker;
@@ -380,20 +381,6 @@ pub fn job(scene: &Scene, view: View, count: bool) -> RenderJob {
     RenderJob { view, count, ..raykata_cli::report::job(scene.clone()) }
 }
 
-/// The colours as they are shown. Without a written `encode_gamma`, a scene with gamma 2 is shown in sRGB.
-pub fn encoded(scene: &Scene, film: &Film, kit: &Door<Worker>) -> Vec<u8> {
-    let toned = film.toned(scene.film.tone);
-    let srgb = toned.to_bytes(encode_srgb).rgb;
-    if scene.film.encoding == Encoding::Srgb {
-        return srgb;
-    }
-    let components: Vec<f32> = toned.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
-    match kit_error::catch(|| kit.encode_gamma(&components)) {
-        Ok(bytes) => bytes,
-        Err(_) => srgb,
-    }
-}
-
 fn errors_of(state: &State) -> Value {
     json!({ "errors": state.errors, "failure": state.failure })
 }
@@ -428,9 +415,4 @@ fn scenes(root: &Path) -> Vec<String> {
     let stage = |name: &str| name.strip_prefix("stage").and_then(|number| number.parse().ok());
     names.sort_by_key(|name| (stage(name).unwrap_or(u32::MAX), name.clone()));
     names
-}
-
-/// Reads the scene; the error shows the line that is wrong.
-pub fn read_scene(file: &Path) -> Result<Scene> {
-    raykata::scene::load::load(file).map_err(|error| anyhow!(raykata_cli::report::draw(&error)))
 }

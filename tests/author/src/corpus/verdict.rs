@@ -2,8 +2,7 @@
 
 use super::entry::{Claim, Entry};
 use super::records::MATRIX;
-use all_checks::STAGES;
-use checks::{Check, Verdict};
+use checks::Verdict;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -128,12 +127,6 @@ impl fmt::Display for TriedEntry {
 
 fn quoted(words: &[String]) -> String {
     words.iter().map(|words| format!("`{words}`")).collect::<Vec<_>>().join(", ")
-}
-
-/// Returns the check of this name in this stage, if there is one.
-pub fn check_named(stage: u8, name: &str) -> Option<&'static Check> {
-    let (_, checks) = STAGES.iter().find(|(number, _)| *number == stage)?;
-    checks.iter().find(|check| check.name == name)
 }
 
 /// Returns the message of a check that did not pass.

@@ -21,7 +21,7 @@ pub fn run(switchable: &Switchable, gaps: &[Gap], scenes: &Scenes, whole: &[Show
         let left_out: Vec<usize> =
             (0..gaps.len()).filter(|&number| stage_of(&gaps[number]) >= stage).collect();
         let worker = switchable.without(&format!("before_{stage}"), &left_out)?;
-        let shown = scenes.shown_by(&Door(Worker::hasty(worker, CALL_PATIENCE)));
+        let shown = scenes.shown_by(&Door(Worker::new(worker, CALL_PATIENCE).with_short_frames()));
         bar.inc(1);
         let faults = shown.iter().zip(whole).filter_map(|(one, whole)| {
             fault(one, whole).map(|fault| format!("stages before {stage}, {}: {fault}", one.scene))

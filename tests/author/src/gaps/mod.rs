@@ -171,7 +171,9 @@ pub fn lacks(
 fn differences(worker: PathBuf, scenes: &Scenes, whole: &[Shown]) -> String {
     // Each note, with the scenes that have it and the hashes of their pictures.
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
-    for (one, whole) in scenes.shown_by(&Door(Worker::hasty(worker, CALL_PATIENCE))).iter().zip(whole) {
+    for (one, whole) in
+        scenes.shown_by(&Door(Worker::new(worker, CALL_PATIENCE).with_short_frames())).iter().zip(whole)
+    {
         let (words, scene) = match &one.pixels {
             _ if one == whole => continue,
             Ok(_) => (without_lines(&one.notes.join("; ")), format!("{} ({})", one.scene, one.hash())),

@@ -254,7 +254,7 @@ fn first_failure(
 
 /// Tests a change that passes the checks of its stage by pictures, then by the other stages.
 fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) -> MutantVerdict {
-    let shown = Door(Worker::hasty(worker.to_owned(), CALL_PATIENCE));
+    let shown = Door(Worker::new(worker.to_owned(), CALL_PATIENCE).with_short_frames());
     if let Some(scene) = scenes.first_difference(&shown, expected) {
         return MutantVerdict::ByPicture(scene);
     }

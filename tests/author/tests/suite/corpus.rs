@@ -3,7 +3,6 @@
 
 use author::corpus::entry::{Claim, Entry, Original, read_all, read_files};
 use author::corpus::records::{Matrix, Messages};
-use author::corpus::verdict::check_named;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -39,7 +38,10 @@ fn every_check_that_is_to_catch_a_mistake_exists() {
     for entry in entries() {
         if let Claim::Wrong { caught_by, .. } = &entry.claim {
             let stage = entry.stage;
-            assert!(check_named(stage, caught_by).is_some(), "{entry}: stage {stage} has no `{caught_by}`");
+            assert!(
+                all_checks::find(stage, caught_by).is_some(),
+                "{entry}: stage {stage} has no `{caught_by}`"
+            );
         }
     }
 }

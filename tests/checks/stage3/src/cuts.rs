@@ -1,7 +1,7 @@
 //! The cheapest cut of the surface area heuristic, and the mistakes that give a more expensive one.
 
 use super::divided::{Fault, boxes, divided, judge_splits};
-use checks::broken::CheckResult;
+use checks::broken::{Broken, CheckResult};
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
@@ -36,6 +36,43 @@ pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -
     // Three large boxes on top of each other, for which a leaf is cheaper than any cut.
     let heap = cubes(&[(0.0, 0.0, 0.0, 9.0), (0.1, 0.2, 0.3, 9.0), (0.2, 0.1, 0.4, 9.0)]);
     trial.forall_and(&[scattered, row, heap], 500, boxes(16), judge)
+}
+
+/// The most calls of `union` per primitive, as the doc comment of the exercise states it. A pass from each side along each axis takes
+/// 6, and halving the primitives again and again takes 33 for 2,000 of them.
+const MOST_UNIONS: u64 = 64;
+
+pub(super) fn surface_area_heuristic_joins_no_side_again(trial: &Trial<'_>) -> CheckResult {
+    // Two heaps far apart, each of which is a side of the cheapest cut.
+    let n_near = trial.varied(700, 400..600_usize);
+    let spread = |i: usize, step: f32| 10.0 * (i as f32 * step).fract();
+    let cube = |i: usize| {
+        let x = if i < n_near { 0.0 } else { 1000.0 };
+        let corner = vec3(x + spread(i, 0.618), spread(i, 0.414), spread(i, 0.732));
+        Aabb::new(corner, corner + 0.1)
+    };
+    let [half, all] = [1000, 2000].map(|n| {
+        let boxes: Vec<Aabb> = (0..n).map(cube).collect();
+        trial.kit.split_surface_area(&[tree::references(&boxes)]).remove(0)
+    });
+    let input = format!("split_surface_area of 2,000 cubes, {n_near} of them far from the others");
+    // A split that is not the cheapest one may be cheap to find.
+    let is_near = |id: &u32| (*id as usize) < n_near;
+    let (left, right) = all.order.split_at(all.middle.unwrap_or(0).min(all.order.len()));
+    if left.is_empty() || left.iter().any(is_near) == right.iter().any(is_near) {
+        let (yours, expected) = (format!("a cut before {:?}", all.middle), "a cut between the two heaps");
+        return Err(Broken::with_texts(input, yours, expected, "the definition").explained_by([]));
+    }
+    let most = MOST_UNIONS * 2000;
+    if all.unions <= most {
+        return Ok(());
+    }
+    let [yours, expected] = [format!("{} calls of union", all.unions), format!("at most {most}")];
+    // Twice as many primitives make four times as many calls if each cut takes a number of calls that grows with them.
+    Err(Broken::with_texts(input, yours, expected, "counted").explained_by([(
+        10 * all.unions >= 35 * half.unions,
+        "the calls grow with the square of the number of primitives: your loop over the cuts joins a side again for each cut",
+    )]))
 }
 
 const AXES: [usize; 3] = [0, 1, 2];

@@ -45,7 +45,7 @@ pub(super) fn judge_splits(
     compare(&queries, trial.kit.split(&queries), |query, yours| {
         let n = query.primitives.len();
         let input = format!("{split:?} of {n} boxes\n{}", list(query.primitives.iter().map(|p| &p.bounds)));
-        let SplitAnswer { order, middle } = yours;
+        let SplitAnswer { order, middle, .. } = yours;
         let mut ids = order.clone();
         ids.sort_unstable();
         if ids != (0..n as u32).collect::<Vec<_>>() {

@@ -34,12 +34,12 @@ checks::stage! { ($ crate) 3 [
     splits::spatial_median_never_leaves_a_side_empty: turned
     cuts::surface_area_heuristic_finds_the_cheapest_cut
     splits::surface_area_heuristic_survives_zero_area: turned
+    cuts::surface_area_heuristic_joins_no_side_again: turned
     builds::build_holds_every_primitive_once
     builds::build_ends_where_all_centroids_are_one: turned
     builds::build_of_nothing_and_of_one: turned
     builds::build_isolates_what_is_not_a_number: turned
     builds::object_median_is_balanced: turned
-    stadium::surface_area_heuristic_is_cheap_in_a_stadium: turned
     builds::trees_of_eight_boxes: composed
     searches::closest_hit_both_agrees_with_brute_force
     searches::closest_hit_both_enters_only_boxes_it_meets
