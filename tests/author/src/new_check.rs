@@ -112,7 +112,7 @@ impl StageFiles {
 /// The module and the check of a line of the list, such as `slabs::slab_of_a_flat_box_is_hit: turned`.
 fn checked(line: &str) -> Option<(&str, &str)> {
     let (module, rest) = line.trim().split_once("::")?;
-    Some((module, rest.split(':').next().unwrap_or(rest)))
+    Some((module, rest.split([':', ' ']).next().unwrap_or(rest)))
 }
 
 /// Writes the check, its line in the list, its entry in the rubric and its entries in the corpus.

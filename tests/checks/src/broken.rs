@@ -19,18 +19,26 @@ pub struct Broken {
     pub source: &'static str,
     /// The known mistake that gives this answer, if there is one.
     pub diagnosis: Option<Box<str>>,
-    /// All known mistakes that give this answer, the most specific one first; `None` if the check does not
-    /// [list](Broken::explained_by) them.
-    pub mistakes: Option<Box<Mistakes>>,
+    /// All [known mistakes](Broken::explained_by) that give this answer, the most specific one first.
+    pub mistakes: Box<Mistakes>,
     /// Reference, yours and difference side by side, as a PNG file, if pictures were compared in a process that
     /// [writes no files](crate::golden::seal).
     pub picture: Option<Box<Png>>,
 }
 
-/// The known mistakes that give an answer: the text of each, and how many mistakes with this text precede it in its list.
-/// So mistakes that share a text stay apart.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mistakes(Vec<(&'static str, usize)>);
+/// Known mistakes that give an answer.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mistakes(pub(crate) Vec<Mistake>);
+
+/// A known mistake that gives an answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mistake {
+    text: &'static str,
+    /// The number of mistakes with this text before it in its list. So mistakes that share a text stay apart.
+    before: usize,
+    /// Whether it is a formula: the right answers of the batch refute those that differ from them.
+    is_formula: bool,
+}
 
 /// The bytes of a PNG file.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,9 +67,7 @@ impl Broken {
             yours: yours.into(),
             expected: expected.into(),
             source,
-            diagnosis: None,
-            mistakes: None,
-            picture: None,
+            ..Broken::default()
         }
     }
 
@@ -70,55 +76,47 @@ impl Broken {
         Broken { diagnosis: diagnosis.map(|text| text.into().into_boxed_str()), ..self }
     }
 
-    /// Adds the known mistakes that are proven for this answer, the most specific one first. Each is its text, and
-    /// whether the mistake gives exactly this answer to exactly this input.
+    /// Adds observations before the mistakes that are known already, the most specific one first. Each is its text, and whether
+    /// this wrong answer shows it. A wrong formula, which also computes an answer where the student's is right, belongs into the
+    /// list of [`compare_formulas`](crate::judge::compare_formulas), which right answers refute.
     ///
     /// One answer is weak evidence, so the message names a mistake only if it explains every failing input of the batch:
     /// see [`first_broken`]. Variants of a mistake are entries of their own, with the same text and in the same order for
     /// every input, because one variant must explain all.
     pub fn explained_by(self, mistakes: impl IntoIterator<Item = (bool, &'static str)>) -> Self {
-        let mistakes: Vec<_> = mistakes.into_iter().collect();
+        self.with_mistakes(mistakes.into_iter().collect(), false)
+    }
+
+    /// The same with wrong formulas.
+    pub(crate) fn computed_by(self, formulas: Vec<(bool, &'static str)>) -> Self {
+        self.with_mistakes(formulas, true)
+    }
+
+    fn with_mistakes(mut self, listed: Vec<(bool, &'static str)>, is_formula: bool) -> Self {
         let before =
-            |index: usize| mistakes[..index].iter().filter(|(_, text)| *text == mistakes[index].1).count();
-        let proven = (0..mistakes.len())
-            .filter(|&index| mistakes[index].0)
-            .map(|index| (mistakes[index].1, before(index)))
-            .collect();
-        Broken { mistakes: Some(Box::new(Mistakes(proven))), ..self }.most_specific()
+            |index: usize| listed[..index].iter().filter(|(_, text)| *text == listed[index].1).count();
+        let proven = (0..listed.len()).filter(|&index| listed[index].0);
+        let proven = proven.map(|index| Mistake { text: listed[index].1, before: before(index), is_formula });
+        self.mistakes.0.splice(..0, proven);
+        self.named()
     }
 
-    /// Adds mistakes before those that are known already, with other texts.
-    pub fn explained_first_by(self, mistakes: impl IntoIterator<Item = (bool, &'static str)>) -> Self {
-        let later = self.mistakes.as_ref().map_or_else(Vec::new, |mistakes| mistakes.0.clone());
-        let mut broken = self.explained_by(mistakes);
-        if let Some(mistakes) = &mut broken.mistakes {
-            mistakes.0.extend(later);
-        }
-        broken.most_specific()
-    }
-
-    /// Drops a mistake that other answers of the batch refute.
-    pub fn not_explained_by(mut self, mistake: &str) -> Self {
-        if let Some(mistakes) = &mut self.mistakes {
-            mistakes.0.retain(|(text, _)| *text != mistake);
-        }
-        self.most_specific()
-    }
-
-    /// With the first mistake as its diagnosis.
-    fn most_specific(self) -> Self {
-        let first = self.mistakes.as_ref().and_then(|mistakes| mistakes.0.first());
-        Broken { diagnosis: first.map(|(text, _)| (*text).into()), ..self }
-    }
-
-    /// The mistake that the message names, if it is one of a list.
-    pub(crate) fn named(&self) -> Option<(&'static str, usize)> {
-        self.mistakes.as_ref()?.0.first().copied()
+    /// With the first mistake as its diagnosis. Of formulas that no answer tells apart, the first two are named.
+    fn named(self) -> Self {
+        let known = &self.mistakes.0;
+        let diagnosis = known.first().map(|first| {
+            let is_other = |other: &&Mistake| other.is_formula && !other.text.contains(first.text);
+            match known.iter().find(is_other).filter(|_| first.is_formula) {
+                Some(second) => format!("{}\nor: {}", first.text, second.text).into(),
+                None => first.text.into(),
+            }
+        });
+        Broken { diagnosis, ..self }
     }
 
     /// Whether a mistake is proven for this answer.
-    pub(crate) fn is_explained_by(&self, mistake: (&str, usize)) -> bool {
-        self.mistakes.as_ref().is_some_and(|mistakes| mistakes.0.contains(&mistake))
+    pub(crate) fn is_explained_by(&self, mistake: &Mistake) -> bool {
+        self.mistakes.0.contains(mistake)
     }
 
     /// The whole message for the student: title, slide, input, both answers, the diagnosis and the next commands.
@@ -135,16 +133,42 @@ impl Broken {
 }
 
 /// The first broken law of a batch, and its index. Of the [mistakes](Broken::explained_by) that explain it, the message
-/// names the first one that explains all other failing inputs as well, and none if there is no such mistake.
+/// names the first one that explains all other failing inputs as well. If there is none, it names two that explain all
+/// of them together, because copied code often has two mistakes.
 pub fn first_broken(outcomes: Vec<CheckResult>) -> Option<(usize, Broken)> {
-    let mut failing =
+    let failing =
         outcomes.into_iter().enumerate().filter_map(|(index, outcome)| Some((index, outcome.err()?)));
-    let (index, mut first) = failing.next()?;
-    let Some(mistakes) = &mut first.mistakes else { return Some((index, first)) };
-    for (_, other) in failing {
-        mistakes.0.retain(|mistake| other.is_explained_by(*mistake));
+    let failing: Vec<(usize, Broken)> = failing.collect();
+    let (index, first) = failing.first()?.clone();
+    if first.mistakes.0.is_empty() {
+        return Some((index, first));
     }
-    Some((index, first.most_specific()))
+    let explains_all = |mistake: &&Mistake| failing.iter().all(|(_, other)| other.is_explained_by(mistake));
+    let mistakes: Vec<Mistake> = first.mistakes.0.iter().filter(explains_all).copied().collect();
+    if !mistakes.is_empty() {
+        return Some((index, Broken { mistakes: Box::new(Mistakes(mistakes)), ..first }.named()));
+    }
+    // A wrong formula may give one wrong answer by chance, and an observation is certain.
+    let suffices = |mistake: &Mistake, n_alone: usize| n_alone > usize::from(mistake.is_formula);
+    let pair = first.mistakes.0.iter().find_map(|one| {
+        let (with, without): (Vec<_>, Vec<_>) =
+            failing.iter().partition(|(_, other)| other.is_explained_by(one));
+        let explains_rest = |other: &&Mistake| {
+            let n_alone = with.iter().filter(|(_, broken)| !broken.is_explained_by(other)).count();
+            (one.is_formula || other.is_formula)
+                && other.text != one.text
+                && without.iter().all(|(_, broken)| broken.is_explained_by(other))
+                && suffices(one, n_alone)
+                && suffices(other, without.len())
+        };
+        let other = without.first()?.1.mistakes.0.iter().find(explains_rest)?;
+        Some((vec![*one, *other], format!("{}\nand: {}", one.text, other.text).into()))
+    });
+    let (mistakes, diagnosis) = pair.unzip();
+    Some((
+        index,
+        Broken { mistakes: mistakes.map(Mistakes).map(Box::new).unwrap_or_default(), diagnosis, ..first },
+    ))
 }
 
 /// The result for a batch: the law that [`first_broken`] returns.
@@ -192,6 +216,22 @@ mod tests {
         assert_eq!(named(vec![fails(&["a", "b"]), Ok(()), fails(&["b", "c"])]), Some((0, Some("b".into()))));
         assert_eq!(named(vec![fails(&["a"]), fails(&["b"])]), Some((0, None)));
         assert_eq!(named(vec![fails(&["a"]), fails(&[])]), Some((0, None)));
+    }
+
+    #[test]
+    fn two_mistakes_together_may_explain_every_failing_input() {
+        let fails = |formulas: [bool; 2], is_nan: bool| {
+            let broken = Broken::default().explained_by([(is_nan, "nan")]);
+            Err(broken.computed_by(vec![(formulas[0], "a"), (formulas[1], "b")]))
+        };
+        let named = |outcomes| first_broken(outcomes).and_then(|(_, broken)| broken.diagnosis);
+        let (a, b, nan) =
+            (|| fails([true, false], false), || fails([false, true], false), || fails([false; 2], true));
+        assert_eq!(named(vec![fails([true; 2], false)]).as_deref(), Some("a\nor: b"));
+        assert_eq!(named(vec![a(), b(), a(), b()]).as_deref(), Some("a\nand: b"));
+        // One answer of a formula may be chance, and an observation is certain.
+        assert_eq!(named(vec![a(), a(), b()]), None);
+        assert_eq!(named(vec![a(), a(), nan()]).as_deref(), Some("a\nand: nan"));
     }
 
     #[test]

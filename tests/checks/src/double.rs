@@ -1,6 +1,8 @@
 //! Reference answers in double precision, each with a tolerance. If single precision cannot decide between hit and
 //! miss, no answer is judged. (Stage 10 uses exact verdicts instead.)
 
+use crate::broken::{Broken, CheckResult};
+use crate::judge::compare_formulas;
 use glam::{DVec3, Vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::TriangleHit;
@@ -26,9 +28,25 @@ pub enum Expected {
     Open,
 }
 
-impl Expected {
+/// An answer with its tolerance.
+pub trait Tolerant<A> {
     /// Whether a correct method may give this answer.
-    pub fn accepts(&self, t: Option<f32>) -> bool {
+    fn accepts(&self, answer: A) -> bool;
+    /// Whether single precision cannot decide.
+    fn is_open(&self) -> bool;
+    /// The text for messages.
+    fn words(&self) -> String;
+}
+
+impl Expected {
+    /// Exactly this answer.
+    pub fn exactly(t: Option<f32>) -> Self {
+        t.map_or(Expected::Miss, |t| Expected::Hit { t: f64::from(t), tolerance: 0.0 })
+    }
+}
+
+impl Tolerant<Option<f32>> for Expected {
+    fn accepts(&self, t: Option<f32>) -> bool {
         match (self, t) {
             (Expected::Open, _) | (Expected::Miss, None) => true,
             (Expected::Hit { t: exact, tolerance }, Some(t)) => (f64::from(t) - exact).abs() <= *tolerance,
@@ -36,14 +54,45 @@ impl Expected {
         }
     }
 
-    /// The text for messages.
-    pub fn words(&self) -> String {
+    fn is_open(&self) -> bool {
+        *self == Expected::Open
+    }
+
+    fn words(&self) -> String {
         match self {
             Expected::Miss => "None".into(),
+            Expected::Hit { t, tolerance: 0.0 } => format!("{:?}", Some(*t as f32)),
             Expected::Hit { t, tolerance } => format!("Some({t}) ± {tolerance:.1e}"),
             Expected::Open => "either".into(),
         }
     }
+}
+
+/// Judges answers by their tolerance. `broken` gets the expected answer in words, `observations` are what a wrong answer
+/// shows, and `formulas` also get whether the answer is right. Where single precision cannot decide, each formula
+/// may give each answer.
+pub fn compare_tolerant<Q, A: Copy + PartialEq, E: Tolerant<A>, const N: usize>(
+    cases: &[(Q, E)],
+    answers: Vec<A>,
+    broken: impl Fn(&Q, A, String) -> Broken,
+    observations: impl Fn(&Q, A) -> [(bool, &'static str); N],
+    formulas: impl Fn(&Q, A, bool) -> Vec<(bool, &'static str)>,
+) -> Vec<CheckResult> {
+    let judge = |(query, expected): &(Q, E), yours: A| match expected.accepts(yours) {
+        true => Ok(()),
+        false => Err(broken(query, yours, expected.words())),
+    };
+    // Many formulas give no hit to many queries. A method that has one answer for a large batch is none of them.
+    let is_constant = cases.len() > 100 && answers.iter().all(|answer| *answer == answers[0]);
+    let given = |(query, expected): &(Q, E), yours: &A| {
+        let given = formulas(query, *yours, expected.accepts(*yours)).into_iter();
+        given.map(|(gives, text)| ((gives || expected.is_open()) && !is_constant, text)).collect()
+    };
+    let outcomes = compare_formulas(cases, answers.clone(), judge, given).into_iter();
+    let show = |((outcome, (query, _)), yours): ((CheckResult, &(Q, E)), A)| {
+        outcome.map_err(|broken| broken.explained_by(observations(query, yours)))
+    };
+    outcomes.zip(cases).zip(answers).map(show).collect()
 }
 
 /// Both roots of a line and a sphere.
@@ -174,22 +223,33 @@ pub struct TriangleExpected {
 }
 
 impl TriangleExpected {
-    /// Whether a correct method may give this answer.
-    pub fn accepts(&self, hit: Option<TriangleHit>) -> bool {
+    /// Exactly this answer.
+    pub fn exactly(hit: Option<TriangleHit>) -> Self {
+        let [beta, gamma] = hit.map_or([0.0; 2], |hit| [hit.beta, hit.gamma].map(f64::from));
+        TriangleExpected { t: Expected::exactly(hit.map(|hit| hit.t)), beta, gamma, tolerance: 0.0 }
+    }
+}
+
+impl Tolerant<Option<TriangleHit>> for TriangleExpected {
+    fn accepts(&self, hit: Option<TriangleHit>) -> bool {
         let near = |value: f32, exact: f64| (f64::from(value) - exact).abs() <= self.tolerance;
         self.t.accepts(hit.map(|hit| hit.t))
-            && (self.t == Expected::Open
+            && (self.is_open()
                 || hit.is_none_or(|hit| near(hit.beta, self.beta) && near(hit.gamma, self.gamma)))
     }
 
-    /// The text for messages.
-    pub fn words(&self) -> String {
+    fn is_open(&self) -> bool {
+        self.t.is_open()
+    }
+
+    fn words(&self) -> String {
+        let TriangleExpected { beta, gamma, tolerance, .. } = self;
         match self.t {
+            Expected::Hit { t, tolerance: 0.0 } => {
+                format!("t = {:?}, beta = {:?}, gamma = {:?}", t as f32, *beta as f32, *gamma as f32)
+            }
             Expected::Hit { t, .. } => {
-                format!(
-                    "t = {t:.7}, beta = {:.6}, gamma = {:.6} (± {:.0e})",
-                    self.beta, self.gamma, self.tolerance
-                )
+                format!("t = {t:.7}, beta = {beta:.6}, gamma = {gamma:.6} (± {tolerance:.0e})")
             }
             other => other.words(),
         }

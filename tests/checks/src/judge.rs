@@ -2,11 +2,6 @@
 
 use crate::broken::CheckResult;
 
-/// The diagnosis, or `None` if it is empty.
-pub fn known(diagnosis: &str) -> Option<&str> {
-    (!diagnosis.is_empty()).then_some(diagnosis)
-}
-
 /// Judges each answer with its query.
 pub fn compare<Q, A>(
     queries: &[Q],
@@ -25,20 +20,21 @@ pub fn compare_formulas<Q, A: Clone>(
     judge: impl Fn(&Q, A) -> CheckResult,
     formulas: impl Fn(&Q, &A) -> Vec<(bool, &'static str)>,
 ) -> Vec<CheckResult> {
+    let outcomes = compare(queries, answers.clone(), judge);
+    if outcomes.iter().all(CheckResult::is_ok) {
+        return outcomes;
+    }
     let given: Vec<_> = queries.iter().zip(&answers).map(|(query, answer)| formulas(query, answer)).collect();
-    let outcomes = compare(queries, answers, judge);
     // A formula that gives another answer than a right one of the student is not the student's.
     let is_refuted = |formula: usize| {
         let mut passed = outcomes.iter().zip(&given).filter(|(outcome, _)| outcome.is_ok());
         passed.any(|(_, given)| !given[formula].0)
     };
-    let n_formulas = given.first().map_or(0, Vec::len);
-    let refuted: Vec<bool> = (0..n_formulas).map(is_refuted).collect();
+    let refuted: Vec<bool> = (0..given[0].len()).map(is_refuted).collect();
     let explain = |(outcome, given): (CheckResult, Vec<(bool, &'static str)>)| {
         outcome.map_err(|broken| {
-            let proven =
-                given.into_iter().zip(&refuted).map(|((gives, text), refuted)| (gives && !refuted, text));
-            broken.explained_first_by(proven)
+            let proven = given.into_iter().zip(&refuted);
+            broken.computed_by(proven.map(|((gives, text), refuted)| (gives && !refuted, text)).collect())
         })
     };
     outcomes.into_iter().zip(given).map(explain).collect()

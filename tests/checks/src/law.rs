@@ -126,21 +126,22 @@ pub(crate) fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, input: &dyn Fn() -
 }
 
 /// Searches for a smaller input that breaks the law as well, by the same mistake if one is known.
-pub(crate) fn shrink(mut tree: Box<dyn Tree + '_>, mut smallest: Broken) -> Broken {
-    // All failing inputs together prove the mistake, so a smaller input keeps its diagnosis.
-    let (mistakes, diagnosis) = (smallest.mistakes.clone(), smallest.diagnosis.clone());
-    let mistake = smallest.named();
+pub(crate) fn shrink(mut tree: Box<dyn Tree + '_>, first: Broken) -> Broken {
+    // All failing inputs together prove the mistakes, so a smaller input keeps its diagnosis.
+    let Broken { mistakes, diagnosis, .. } = first.clone();
+    let named = mistakes.0.first();
+    let mut smallest = first;
     let mut steps = 0;
     let mut going = tree.simplify();
     while going && steps < SHRINK_STEPS {
         steps += 1;
         going = match judge_one(&|| tree.judge(), &|| tree.words()) {
-            Some(broken) if mistake.is_none_or(|mistake| broken.is_explained_by(mistake)) => {
+            Some(broken) if named.is_none_or(|mistake| broken.is_explained_by(mistake)) => {
                 smallest = broken;
                 tree.simplify()
             }
             _ => tree.complicate(),
         };
     }
-    if mistakes.is_some() { Broken { mistakes, diagnosis, ..smallest } } else { smallest }
+    Broken { mistakes, diagnosis, ..smallest }
 }

@@ -39,7 +39,8 @@ pub fn linked(functions: impl StudentKit) -> Arc<dyn Kit + Send + Sync> {
 /// Lists the checks of a stage in the crate of that stage, and makes the macro that turns them into tests of a kit:
 /// `stage1_checks::tests!(kit)`. A line is `module::check`, and the order is that of the lecture and of the rubric. The requests
 /// of a check with `: turned` or `: mirrored` are [turned](crate::symmetry) for hidden seeds. A check with `: composed` compares
-/// a text or a picture, and draws its scene by [`Trial::composed`](crate::Trial::composed) for hidden seeds.
+/// a text or a picture, and draws its scene by [`Trial::composed`](crate::Trial::composed) for hidden seeds. A check with
+/// `=> law(ARGUMENTS)` is the function `law` of its module with these arguments behind the trial.
 ///
 /// The leading `($ crate)` passes a dollar sign and the crate of the stage to the inner macro.
 #[macro_export]
@@ -48,13 +49,17 @@ macro_rules! stage {
     (@symmetries turned) => { $crate::symmetry::Symmetries::Turned };
     (@symmetries composed) => { $crate::symmetry::Symmetries::Composed };
     (@symmetries mirrored) => { $crate::symmetry::Symmetries::Mirrored };
-    (($d:tt $crate_of_stage:tt) $number:literal [$($module:ident::$name:ident $(: $symmetries:ident)?)*]) => {
+    (@law $module:ident $name:ident) => { $module::$name };
+    (@law $module:ident $name:ident $law:ident $($argument:expr),*) => { |trial| $module::$law(trial, $($argument),*) };
+    (($d:tt $crate_of_stage:tt) $number:literal [
+        $($module:ident::$name:ident $(=> $law:ident($($argument:expr),*))? $(: $symmetries:ident)?)*
+    ]) => {
         /// The checks of this stage, in the order of the lecture.
         pub const CHECKS: &[$crate::Check] =
             &[$($crate::Check {
                 stage: $number,
                 name: stringify!($name),
-                law: $module::$name,
+                law: $crate::stage!(@law $module $name $($law $($argument),*)?),
                 symmetries: $crate::stage!(@symmetries $($symmetries)?),
             }),*];
 

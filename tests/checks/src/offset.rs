@@ -14,6 +14,8 @@ pub struct Start {
     side: DVec3,
     /// The unit direction that the ray must have.
     direction: DVec3,
+    /// The start of the range, if the ray leaves the surface by it and starts at the point itself.
+    t_min: Option<f32>,
 }
 
 impl Start {
@@ -22,7 +24,8 @@ impl Start {
     pub fn new(surface: &Surface, side: Vec3, direction: Vec3, ray: &Ray) -> Self {
         let start = ray.origin.as_dvec3() + f64::from(ray.t_min) * ray.direction.as_dvec3();
         let moved = start - surface.point.as_dvec3();
-        Start { moved, surface: *surface, side: side.as_dvec3(), direction: direction.as_dvec3() }
+        let t_min = (ray.origin == surface.point && ray.t_min > 0.0).then_some(ray.t_min);
+        Start { moved, surface: *surface, side: side.as_dvec3(), direction: direction.as_dvec3(), t_min }
     }
 
     /// The distance from the point along the normal of the side.
@@ -110,8 +113,15 @@ impl Start {
         all.extend(lengths.flat_map(|length| [length, length + self.least()]).map(|length| {
             (along_the_side(length), "your offset has the same length at every scale: move by error·|n|")
         }));
+        all.extend((1..=7).map(|digits| {
+            let is_fixed = self.t_min == Some(10f32.powi(-digits));
+            (
+                is_fixed,
+                "your t_min is the same at every scale, as in One Weekend: move the origin by error·|n|",
+            )
+        }));
         all.push((
-            self.is_along(self.direction),
+            self.is_along(self.direction) && self.t_min.is_none(),
             "you move the origin along the ray: move it along the geometric normal",
         ));
         all

@@ -1,8 +1,9 @@
 //! Ray-plane intersection, and the normal on the side that the ray comes from.
 
+use crate::roots::T_ABOVE_0;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::{self, Expected, U};
+use checks::double::{self, Expected, U, compare_tolerant};
 use checks::generate::{direction, point, rough_point};
 use checks::judge::compare;
 use checks::nasty;
@@ -13,47 +14,42 @@ use raykata::kit::PlaneQuery;
 use raykata::ray::Ray;
 use raykata::shape::Plane;
 
+type Case = (PlaneQuery, Expected);
+
 fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<CheckResult> {
-    let answers = trial.kit.plane(queries);
-    let is_constant = queries.len() > 1 && answers.iter().all(Option::is_none);
-    let accepts = |query: &PlaneQuery, yours| double::plane(&query.ray, &query.plane).accepts(yours);
-    let loses_only =
-        queries.iter().zip(&answers).all(|(query, yours)| yours.is_none() || accepts(query, *yours));
-    compare(queries, answers, |query, yours| {
-        let expected = double::plane(&query.ray, &query.plane);
-        let outcome = judge_plane(query, yours, expected, "double precision", loses_only);
-        // Many mistakes give None to many queries, but none gives it to all.
-        if is_constant { outcome.map_err(|broken| broken.explained_by([])) } else { outcome }
-    })
+    let case = |query: &PlaneQuery| (*query, double::plane(&query.ray, &query.plane));
+    judge_cases(trial, &queries.iter().map(case).collect::<Vec<_>>(), "double precision")
 }
 
-fn judge_plane(
-    query: &PlaneQuery,
-    yours: Option<f32>,
-    expected: Expected,
-    source: &'static str,
-    loses_only: bool,
-) -> CheckResult {
-    if expected.accepts(yours) {
-        return Ok(());
-    }
-    let broken = Broken::with_texts(query.call("plane"), format!("{yours:?}"), expected.words(), source);
-    Err(broken.explained_by(mistakes(query, yours, loses_only)))
+fn judge_cases(trial: &Trial<'_>, cases: &[Case], source: &'static str) -> Vec<CheckResult> {
+    let queries: Vec<PlaneQuery> = cases.iter().map(|case| case.0).collect();
+    let broken = |query: &PlaneQuery, yours, expected| {
+        Broken::with_texts(query.call("plane"), format!("{yours:?}"), expected, source)
+    };
+    let shown = |query: &PlaneQuery, yours| observations(&query.ray, yours);
+    compare_tolerant(cases, trial.kit.plane(&queries), broken, shown, mistakes)
 }
 
 /// Fixed limits for `|n·d|`.
-const LIMITS: [(f64, &str); 6] = [
-    (1e-8, "you compare n·d with a limit of 0.00000001, but a ray is parallel only if n·d = 0"),
-    (1.2e-7, "you compare n·d with f32::EPSILON, but a ray is parallel only if n·d = 0"),
-    (1e-6, "you compare n·d with a limit of 0.000001, but a ray is parallel only if n·d = 0"),
-    (1e-4, "you compare n·d with a limit of 0.0001, but a ray is parallel only if n·d = 0"),
-    (1e-3, "you compare n·d with a limit of 0.001, but a ray is parallel only if n·d = 0"),
-    (1e-2, "you compare n·d with a limit of 0.01, but a ray is parallel only if n·d = 0"),
-];
+const LIMITS: [f64; 8] = [1e-12, 1e-8, f32::EPSILON as f64, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+
+/// Mistakes that a wrong answer alone shows.
+pub(super) fn observations(ray: &Ray, yours: Option<f32>) -> [(bool, &'static str); 3] {
+    [
+        (
+            yours.is_some_and(|t| !t.is_finite()),
+            "a ray along the plane makes t infinite or NaN (as a NaN in the input does), and neither counts: ask ray.contains(t)",
+        ),
+        (
+            yours.is_some_and(|t| t == ray.t_min || t == ray.t_max),
+            "the range is open: t_min (0 for a ray that starts in the plane) and t_max do not count",
+        ),
+        (yours.is_some_and(|t| !ray.contains(t)), "you return a t that ray.contains(t) refuses"),
+    ]
+}
 
 /// All known mistakes, each with whether it gives this answer.
-/// If `loses_only`, none of the student's answers is a wrong hit, so the sign of `t` is not the mistake.
-fn mistakes(query: &PlaneQuery, yours: Option<f32>, loses_only: bool) -> Vec<(bool, &'static str)> {
+fn mistakes(query: &PlaneQuery, yours: Option<f32>, is_right: bool) -> Vec<(bool, &'static str)> {
     let (ray, plane) = (&query.ray, &query.plane);
     let [o, d, p, n] = [ray.origin, ray.direction, plane.point, plane.normal].map(Vec3::as_dvec3);
     let slope = n.dot(d);
@@ -70,44 +66,49 @@ fn mistakes(query: &PlaneQuery, yours: Option<f32>, loses_only: bool) -> Vec<(bo
         None => !(low < t && t < high),
     };
     let range = (f64::from(ray.t_min), f64::from(ray.t_max));
-    let anywhere = (f64::NEG_INFINITY, f64::INFINITY);
-    let is_no_unit = (d.length() - 1.0).abs() > 1e-6;
     // The terms of the plane's equation are rounded at the size of the coordinates.
     let of_coordinates = 8.0 * U * n.abs().dot(o.abs() + p.abs()) / slope.abs();
-    let is_lost = yours.is_none();
-    let mut all = vec![
-        (
-            yours.is_some_and(|t| !t.is_finite()),
-            "n·d = 0 makes t infinite or NaN (as a NaN in the input does), and neither counts: ask ray.contains(t)",
-        ),
-        (
-            yours.is_some_and(|t| t == ray.t_min || t == ray.t_max),
-            "the range is open: t_min (0 for a ray that starts in the plane) and t_max do not count",
-        ),
-        (
-            yours.is_some_and(|t| !ray.contains(t)) && gives(t, anywhere),
-            "you return a t that ray.contains(t) refuses",
-        ),
-        (
-            is_no_unit && gives(t * d.length(), range),
-            "your t counts world units; it must count lengths of direction",
-        ),
-    ];
-    all.extend(LIMITS.map(|(limit, text)| (slope.abs() < limit && is_lost, text)));
+    let mut all = of_tests(ray, t, slope, yours, is_right, &gives);
     all.extend([
-        (slope > 0.0 && is_lost, "the plane can be hit from behind, too: do not demand n·d < 0"),
-        (slope < 0.0 && is_lost, "the plane can be hit from its front, too: do not demand n·d > 0"),
         (
-            yours.is_some_and(|yours| (f64::from(yours) - t).abs() <= of_coordinates)
-                || (is_lost && t <= of_coordinates),
+            is_right
+                || yours.is_some_and(|t1| ray.contains(t1) && (f64::from(t1) - t).abs() <= of_coordinates)
+                || (yours.is_none() && t <= of_coordinates),
             "-(D + n·o) cancels far from the origin; (p0 - o)·n does not",
         ),
         (
-            t < 0.0 && gives(-t, range),
+            gives(t.abs(), range),
             "you return |t| for a plane behind the ray: keep the signs of (p0 - o)·n and of n·d",
         ),
-        (!loses_only && gives(-t, range), "the sign of t is wrong: compute p0 - o, not o - p0"),
+        (gives(-t, range), "the sign of t is wrong: compute p0 - o, not o - p0"),
     ]);
+    all
+}
+
+/// Wrong tests of the right `t`, for either equation of a plane. `slope` is n·direction, and `gives` tells whether this `t` gives
+/// the answer if it counts in this range.
+pub(super) fn of_tests(
+    ray: &Ray,
+    t: f64,
+    slope: f64,
+    yours: Option<f32>,
+    is_right: bool,
+    gives: &dyn Fn(f64, (f64, f64)) -> bool,
+) -> Vec<(bool, &'static str)> {
+    let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
+    let lost_if = |is_lost: bool| if is_lost { yours.is_none() } else { is_right };
+    let in_world_units = gives(t * ray.direction.as_dvec3().length(), (t_min, t_max));
+    let mut all = vec![
+        (gives(t, (0.0, f64::INFINITY)), T_ABOVE_0),
+        (gives(t, (0.0, t_max)), T_ABOVE_0),
+        (in_world_units, "your t counts world units; it must count lengths of direction"),
+        (lost_if(slope > 0.0), "the plane can be hit from behind, too: do not demand n·direction < 0"),
+        (lost_if(slope < 0.0), "the plane can be hit from its front, too: do not demand n·direction > 0"),
+    ];
+    all.extend(LIMITS.map(|limit| {
+        let text = "you compare n·direction with a limit, but a ray is parallel only if it is 0";
+        (lost_if(slope.abs() < limit), text)
+    }));
     all
 }
 
@@ -163,17 +164,10 @@ fn judge_ends(trial: &Trial<'_>, inputs: &[(Vec3, Vec3, Vec3)]) -> Vec<CheckResu
     for (i, (query, t)) in queries.iter().zip(trial.kit.plane(&queries)).enumerate() {
         let Some(t) = t.filter(|&t| query.ray.contains(t)) else { continue };
         let cases = nasty::ranges(t).map(|((t_min, t_max), counts)| {
-            let expected = match counts {
-                true => Expected::Hit { t: f64::from(t), tolerance: 0.0 },
-                false => Expected::Miss,
-            };
-            (PlaneQuery { ray: query.ray.with_range(t_min, t_max), ..*query }, expected)
+            let ray = query.ray.with_range(t_min, t_max);
+            (PlaneQuery { ray, ..*query }, Expected::exactly(counts.then_some(t)))
         });
-        let answers = trial.kit.plane(&cases.map(|case| case.0));
-        let judged = cases.iter().zip(answers).map(|((query, expected), yours)| {
-            judge_plane(query, yours, *expected, "the t for the infinite ray", true)
-        });
-        outcomes[i] = all_hold(judged.collect());
+        outcomes[i] = all_hold(judge_cases(trial, &cases, "the t for the infinite ray"));
     }
     outcomes
 }
@@ -181,7 +175,7 @@ fn judge_ends(trial: &Trial<'_>, inputs: &[(Vec3, Vec3, Vec3)]) -> Vec<CheckResu
 pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> CheckResult {
     let plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let slanted = Plane { point: vec3(0.0, 1.0, 0.0), normal: vec3(1.0, 2.0, -1.0) };
-    let hit = |t| Expected::Hit { t, tolerance: 0.0 };
+    let hit = |t| Expected::exactly(Some(t));
     let cases = [
         (Ray::new(Vec3::Y, Vec3::X), plane, Expected::Miss),
         (Ray::new(Vec3::ZERO, Vec3::X), plane, Expected::Miss),
@@ -193,15 +187,8 @@ pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> CheckResult
         (Ray::new(Vec3::Y, Vec3::NEG_Y), plane, hit(1.0)),
         (Ray::new(2.0 * Vec3::NEG_Y, vec3(4.0, 0.5, 0.0)), plane, hit(4.0)),
     ];
-    let queries = cases.map(|(ray, plane, _)| PlaneQuery { ray, plane });
-    let judged = queries.iter().zip(trial.kit.plane(&queries)).zip(cases);
-    all_hold(
-        judged
-            .map(|((query, yours), (.., expected))| {
-                judge_plane(query, yours, expected, "the definition", true)
-            })
-            .collect(),
-    )
+    let cases = cases.map(|(ray, plane, expected)| (PlaneQuery { ray, plane }, expected));
+    all_hold(judge_cases(trial, &cases, "the definition"))
 }
 
 pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> CheckResult {

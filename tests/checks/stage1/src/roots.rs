@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
+use checks::judge::compare_formulas;
 use checks::nasty;
 use checks::paste::Arguments;
 use glam::Vec3;
@@ -12,26 +12,41 @@ use raykata::ray::Ray;
 
 const OPEN_AT_BOTH_ENDS: &str = "you return an end of the range, but the range is open at both ends";
 
+pub(super) const T_ABOVE_0: &str = "you ask t > 0 and not ray.contains(t): t_min and t_max count";
+
+const LARGER: &str = "you return the larger root, also if the smaller one counts";
+
 const SORTED_WITH_NAN: &str =
     "comparisons with NaN are false, so NaN takes the place of the other root: use f32::min and f32::max";
 
 fn judge(query: &RootQuery, yours: Option<f32>) -> CheckResult {
-    let ([first, second], ray) = (query.roots, query.ray);
-    let counting = |t: f32| ray.contains(t);
-    let expected = [first, second].into_iter().filter(|&t| counting(t)).reduce(f32::min);
+    let expected = expected(query);
     if yours == expected {
         return Ok(());
     }
+    Err(Broken::new(query.call("nearest_root"), yours, expected, "the definition").explained_by([
+        (yours.is_some_and(f32::is_nan), "you return NaN, which ray.contains(t) refuses"),
+        (yours.is_some_and(f32::is_infinite), "you return infinity, which ray.contains(t) refuses"),
+    ]))
+}
+
+fn expected(RootQuery { roots, ray }: &RootQuery) -> Option<f32> {
+    roots.iter().copied().filter(|&t| ray.contains(t)).reduce(f32::min)
+}
+
+/// Wrong choices, each with whether it gives this answer.
+fn formulas(query: &RootQuery, yours: Option<f32>) -> Vec<(bool, &'static str)> {
+    let ([first, second], ray) = (query.roots, query.ray);
+    let counting = |t: f32| ray.contains(t);
+    let is_right = yours == expected(query);
     let (near, far) = (first.min(second), first.max(second));
     let among = |counts: &dyn Fn(f32) -> bool| [near, far].into_iter().find(|&t| counts(t));
     // Whether the answer is the first root that counts, and whether it is the first root if that one counts.
     let first_that_counts = |roots: [f32; 2]| yours == roots.into_iter().find(|&t| counting(t));
     let first_if_it_counts = |roots: [f32; 2]| yours == Some(roots[0]).filter(|&t| counting(t));
-    let has_nan = first.is_nan() || second.is_nan();
-    let broken = Broken::new(query.call("nearest_root"), yours, expected, "the definition");
-    Err(broken.explained_by([
-        (yours.is_some_and(f32::is_nan), "you return NaN, which ray.contains(t) refuses"),
-        (yours.is_some_and(f32::is_infinite), "you return infinity, which ray.contains(t) refuses"),
+    // Each comparison with NaN is false, so a sort by an if-else always swaps the roots, or never.
+    let with_nan = |gives: bool| if first.is_nan() || second.is_nan() { gives } else { is_right };
+    vec![
         (
             yours == among(&|t| ray.t_min <= t && t <= ray.t_max),
             "you return an end of the range; the range is open: t_min and t_max do not count",
@@ -40,34 +55,34 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> CheckResult {
         (yours == among(&|t| ray.t_min <= t && t < ray.t_max), OPEN_AT_BOTH_ENDS),
         (yours == among(&|t| t > ray.t_min), "you return a root beyond t_max, which ray.contains(t) refuses"),
         (yours == among(&|t| t < ray.t_max), "you return a root before t_min, which ray.contains(t) refuses"),
-        (
-            yours == among(&|t| t > 0.0) && ray.t_min != 0.0,
-            "you ask t > 0 and not ray.contains(t): t_min and t_max count",
-        ),
+        (yours == among(&|t| t > 0.0), T_ABOVE_0),
+        (yours == among(&|t| t > 0.0 && t < ray.t_max), T_ABOVE_0),
         (yours == Some(near), "you return the smaller root, also if ray.contains(t) refuses it"),
         (
             yours == Some(near).filter(|&t| counting(t)),
             "you return None if the smaller root does not count, but the larger one may",
         ),
+        (first_if_it_counts([first, second]), "you only look at the first root, but they come in any order"),
         (
-            !has_nan && first_if_it_counts([first, second]),
-            "you only look at the first root, but they come in any order",
-        ),
-        (
-            !has_nan && first_that_counts([first, second]),
+            first_that_counts([first, second]),
             "you take the first root that counts for the smaller one, but they come in any order",
         ),
+        (yours == Some(far).filter(|&t| counting(t)), LARGER),
+        (first_that_counts([far, near]), LARGER),
         (
-            yours == Some(far).filter(|&t| counting(t)),
-            "you return the larger root, also if the smaller one counts",
+            first_that_counts(if near.abs() <= far.abs() { [near, far] } else { [far, near] }),
+            "you take the root with the smaller absolute value first, but -1 is smaller than 0.5",
         ),
-        // Each comparison with NaN is false, so a sort by an if-else always swaps the roots, or never.
-        (has_nan && first_if_it_counts([first, second]), SORTED_WITH_NAN),
-        (has_nan && first_that_counts([first, second]), SORTED_WITH_NAN),
-        (has_nan && first_if_it_counts([second, first]), SORTED_WITH_NAN),
-        (has_nan && first_that_counts([second, first]), SORTED_WITH_NAN),
-        (has_nan && yours.is_none(), "one root is NaN, but the other one may still count"),
-    ]))
+        (with_nan(first_if_it_counts([first, second])), SORTED_WITH_NAN),
+        (with_nan(first_that_counts([first, second])), SORTED_WITH_NAN),
+        (with_nan(first_if_it_counts([second, first])), SORTED_WITH_NAN),
+        (with_nan(first_that_counts([second, first])), SORTED_WITH_NAN),
+        (with_nan(yours.is_none()), "one root is NaN, but the other one may still count"),
+    ]
+}
+
+fn judge_all(trial: &Trial<'_>, queries: &[RootQuery]) -> Vec<CheckResult> {
+    compare_formulas(queries, trial.kit.nearest_root(queries), judge, |query, yours| formulas(query, *yours))
 }
 
 pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> CheckResult {
@@ -97,9 +112,7 @@ pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> 
             RootQuery { roots, ray: ray.with_range(range.0, range.1) }
         },
     );
-    trial.forall_and(&drawn, 3000, prop_oneof![coarse, fine], |queries| {
-        compare(queries, trial.kit.nearest_root(queries), judge)
-    })
+    trial.forall_and(&drawn, 3000, prop_oneof![coarse, fine], |queries| judge_all(trial, queries))
 }
 
 pub(super) fn nearest_root_of_nan_is_the_other_one(trial: &Trial<'_>) -> CheckResult {
@@ -115,5 +128,5 @@ pub(super) fn nearest_root_of_nan_is_the_other_one(trial: &Trial<'_>) -> CheckRe
         [f32::INFINITY, t],
     ];
     let queries = roots.map(|roots| RootQuery { roots, ray });
-    all_hold(compare(&queries, trial.kit.nearest_root(&queries), judge))
+    all_hold(judge_all(trial, &queries))
 }

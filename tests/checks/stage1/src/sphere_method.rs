@@ -1,10 +1,9 @@
 //! The two methods of intersecting a sphere, and how the checks judge their answers.
 
-use crate::sphere_mistakes::mistakes;
+use crate::sphere_mistakes::{mistakes, observations};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::{self, Expected, U};
-use checks::judge::compare;
+use checks::double::{self, Expected, U, compare_tolerant};
 use checks::paste::Arguments;
 use raykata::kit::{Kit, SphereQuery};
 
@@ -47,44 +46,29 @@ impl SphereFunction {
         queries: &[SphereQuery],
         accepts: Accepts,
     ) -> Vec<CheckResult> {
-        let answers = (self.ask)(trial.kit, queries);
-        // Many mistakes give None to many queries, but none gives it to all.
-        let is_constant = queries.len() > 1 && answers.iter().all(Option::is_none);
-        let loses_only = queries
-            .iter()
-            .zip(&answers)
-            .all(|(query, yours)| yours.is_none() || accepts.expected(query).accepts(*yours));
-        compare(queries, answers, |query, yours| {
-            let expected = accepts.expected(query);
-            if expected.accepts(yours) {
-                return Ok(());
-            }
-            let yours_in_words = format!("{yours:?}");
-            let broken = Broken::with_texts(
-                query.call(self.name),
-                yours_in_words,
-                expected.words(),
-                "double precision",
-            );
-            Err(broken.explained_by(if is_constant {
-                Vec::new()
-            } else {
-                mistakes(query, yours, accepts, loses_only)
-            }))
-        })
+        let cases: Vec<_> = queries.iter().map(|query| (*query, accepts.expected(query))).collect();
+        self.compare(trial, &cases, accepts, "double precision")
     }
 
     /// Compares answers with results that are known exactly.
     pub(super) fn judge_exact(self, trial: &Trial<'_>, cases: &[(SphereQuery, Option<f32>)]) -> CheckResult {
+        let cases: Vec<_> = cases.iter().map(|(query, t)| (*query, Expected::exactly(*t))).collect();
+        all_hold(self.compare(trial, &cases, Accepts::TheFormula, "exact arithmetic"))
+    }
+
+    fn compare(
+        self,
+        trial: &Trial<'_>,
+        cases: &[(SphereQuery, Expected)],
+        accepts: Accepts,
+        source: &'static str,
+    ) -> Vec<CheckResult> {
         let queries: Vec<SphereQuery> = cases.iter().map(|case| case.0).collect();
-        let answers = (self.ask)(trial.kit, &queries);
-        all_hold(compare(cases, answers, |(query, expected), yours| {
-            if yours == *expected {
-                return Ok(());
-            }
-            let broken = Broken::new(query.call(self.name), yours, expected, "exact arithmetic");
-            Err(broken.explained_by(mistakes(query, yours, Accepts::TheFormula, false)))
-        }))
+        let broken = |query: &SphereQuery, yours, expected| {
+            Broken::with_texts(query.call(self.name), format!("{yours:?}"), expected, source)
+        };
+        let formulas = |query: &SphereQuery, yours, is_right| mistakes(query, yours, is_right, accepts);
+        compare_tolerant(cases, (self.ask)(trial.kit, &queries), broken, observations, formulas)
     }
 }
 

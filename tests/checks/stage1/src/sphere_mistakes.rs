@@ -41,25 +41,35 @@ fn gives(
 /// The limits of `t` below which hits are lost.
 const EPSILONS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
-/// All known mistakes, each with whether it gives this answer. If `loses_only`, none of the student's answers is a wrong hit,
-/// so the sign of the roots is not the mistake.
+/// All known mistakes, each with whether it gives this answer.
 pub(super) fn mistakes(
     query: &SphereQuery,
     yours: Option<f32>,
+    is_right: bool,
     accepts: Accepts,
-    loses_only: bool,
 ) -> Vec<(bool, &'static str)> {
     let quadratic = match accepts {
         Accepts::TheFormula => Quadratic::of(query),
         Accepts::FewRoundings => Quadratic::stable(query),
     };
-    let mut all = of_values(query, yours);
+    let mut all = of_choices(query, yours, &quadratic);
+    all.extend(of_formulas(query, yours, &quadratic));
     if accepts == Accepts::FewRoundings {
         all.extend(of_cancellation(query, yours));
     }
-    all.extend(of_choices(query, yours, &quadratic, loses_only));
-    all.extend(of_formulas(query, yours, &quadratic, loses_only));
-    all
+    // All of them test the radius, except for one more.
+    let tests_radius = query.sphere.radius > 0.0;
+    let range = Within(f64::from(query.ray.t_min), f64::from(query.ray.t_max));
+    let Quadratic { a, b, .. } = quadratic;
+    let roots = |root: f64| [(b - root) / a, (b + root) / a];
+    let untested = gives(yours, &quadratic, roots, |roots| range.first(roots));
+    let of_radius = |is_tested: bool| {
+        let text = "a sphere of radius 0 or less cannot be hit: require radius > 0";
+        (if is_tested { is_right } else { untested }, text)
+    };
+    let is_given = |(gives, text)| (if tests_radius { gives } else { is_right }, text);
+    let radius = [of_radius(tests_radius), of_radius(query.sphere.radius != 0.0)];
+    all.into_iter().map(is_given).chain(radius).collect()
 }
 
 const ALGEBRAIC: &str = "b² - a c cancels for a distant or small sphere: use r² - |f⊥|²";
@@ -87,6 +97,8 @@ fn of_cancellation(query: &SphereQuery, yours: Option<f32>) -> Vec<(bool, &'stat
             is(twice * twice - 4.0 * a * c, &|root| [(twice - root) / (2.0 * a), (twice + root) / (2.0 * a)]),
             ALGEBRAIC,
         ),
+        (is(twice * twice - 4.0 * c, &|root| [(twice - root) / 2.0, (twice + root) / 2.0]), ALGEBRAIC),
+        (is(r_squared - (f.dot(f) - b * b), &|t_hc| [b - t_hc, b + t_hc]), GEOMETRIC),
     ];
     let t_ca = b / a;
     for squared in [
@@ -109,21 +121,13 @@ fn of_cancellation(query: &SphereQuery, yours: Option<f32>) -> Vec<(bool, &'stat
     all
 }
 
-/// Mistakes that the answer alone shows.
-fn of_values(query: &SphereQuery, yours: Option<f32>) -> Vec<(bool, &'static str)> {
-    let ray = query.ray;
+/// Mistakes that a wrong answer alone shows.
+pub(super) fn observations(query: &SphereQuery, yours: Option<f32>) -> [(bool, &'static str); 3] {
     let touches = Quadratic::of(query).discriminant == 0.0 && query.sphere.radius > 0.0;
-    let absolute = Quadratic::of(query);
-    let right = |roots| Within(f64::from(ray.t_min), f64::from(ray.t_max)).first(roots);
-    let roots = |root| [(absolute.b - root) / absolute.a, (absolute.b + root) / absolute.a];
-    vec![
+    [
         (yours.is_some_and(f32::is_nan), "you return NaN: compare so that NaN fails"),
         (
-            query.sphere.radius <= 0.0 && yours.is_some() && gives(yours, &absolute, roots, right),
-            "a sphere of radius 0 or less cannot be hit: require radius > 0",
-        ),
-        (
-            yours.is_some_and(|t| t == ray.t_min || t == ray.t_max),
+            yours.is_some_and(|t| t == query.ray.t_min || t == query.ray.t_max),
             "the range is open: a hit at t_min or at t_max does not count (t = 0 for a ray that starts on the sphere)",
         ),
         (
@@ -134,12 +138,7 @@ fn of_values(query: &SphereQuery, yours: Option<f32>) -> Vec<(bool, &'static str
 }
 
 /// Right roots of which the wrong one is returned.
-fn of_choices(
-    query: &SphereQuery,
-    yours: Option<f32>,
-    quadratic: &Quadratic,
-    loses_only: bool,
-) -> Vec<(bool, &'static str)> {
+fn of_choices(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -> Vec<(bool, &'static str)> {
     let Quadratic { a, b, .. } = *quadratic;
     let roots = |root: f64| [(b - root) / a, (b + root) / a];
     let (t_min, t_max) = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
@@ -173,7 +172,7 @@ fn of_choices(
             "you return t_max for a hit beyond it: that is a miss",
         ),
         (
-            !loses_only && is(&|[near, far]| range.first([-near, -far])),
+            is(&|[near, far]| range.first([-near, -far])),
             "the sign of b (or of t_ca) is wrong: both roots are negated",
         ),
         (
@@ -181,11 +180,14 @@ fn of_choices(
             "you return the t of the point nearest to the centre: half the chord is missing",
         ),
     ];
-    all.extend(EPSILONS.map(|epsilon| {
-        (
-            is(&|roots| Within(t_min.max(epsilon), t_max).first(roots)),
-            "you drop hits with a small t: compare with t_min, not with a fixed epsilon",
-        )
+    // The limit replaces t_min, or is asked before or after the root is chosen.
+    all.extend(EPSILONS.into_iter().flat_map(|epsilon| {
+        let text = "you drop hits with a small t: compare with t_min, not with a fixed epsilon";
+        [
+            (is(&|roots| Within(epsilon, t_max).first(roots)), text),
+            (is(&|roots| Within(t_min.max(epsilon), t_max).first(roots)), text),
+            (is(&|roots| range.first(roots).filter(|&t| t > epsilon)), text),
+        ]
     }));
     all
 }
@@ -193,12 +195,7 @@ fn of_choices(
 const A_IS_ONE: &str = "direction is not a unit vector here: you take a = d·d for 1";
 
 /// Wrong roots.
-fn of_formulas(
-    query: &SphereQuery,
-    yours: Option<f32>,
-    quadratic: &Quadratic,
-    loses_only: bool,
-) -> Vec<(bool, &'static str)> {
+fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -> Vec<(bool, &'static str)> {
     let Quadratic { a, b, .. } = *quadratic;
     let range = Within(f64::from(query.ray.t_min), f64::from(query.ray.t_max));
     let first = |roots| range.first(roots);
@@ -217,16 +214,19 @@ fn of_formulas(
         let q = b + root.copysign(b);
         [c / q, q]
     };
-    let is_no_unit = (a - 1.0).abs() > 1e-3;
     let radius = f64::from(query.sphere.radius);
     vec![
         (
-            is_no_unit && of(quadratic, a.sqrt()),
+            of(quadratic, a.sqrt()),
             "your t counts world units; it must count lengths of direction (which is no unit vector here)",
         ),
-        (is_no_unit && of(quadratic, a), "direction is not a unit vector here: divide by a = d·d"),
-        (is_no_unit && of(&a_is_one, 1.0), A_IS_ONE),
-        (is_no_unit && gives(yours, &chord, by_product, first), A_IS_ONE),
-        (!loses_only && of(&Quadratic::with_radius(query, radius.sqrt()), 1.0), "r stands where r² belongs"),
+        (of(quadratic, a), "direction is not a unit vector here: divide by a = d·d"),
+        (of(&a_is_one, 1.0), A_IS_ONE),
+        (gives(yours, &chord, by_product, first), A_IS_ONE),
+        (
+            gives(yours, &a_is_one, |root| [b - root, b + root], |roots| first(roots).filter(|_| b >= 0.0)),
+            "t_ca < 0 is not a miss: a ray that starts inside still hits the far side\nand: direction is not a unit vector here: you take a = d·d for 1",
+        ),
+        (of(&Quadratic::with_radius(query, radius.sqrt()), 1.0), "r stands where r² belongs"),
     ]
 }

@@ -136,7 +136,7 @@ fn hit_and_missed_boxes_differ(trial: &Trial<'_>, queries: &[SlabQuery]) -> Chec
             )),
             // A box whose exit overflows may be entered at infinity, which costs a visit.
             Some((enter, _)) if !enter.is_infinite() && !exact.verdict.is_hit() && exact.margin > STABLE => {
-                Err(broken("None: the ray passes by the box").explained_by([]))
+                Err(broken("None: the ray passes by the box"))
             }
             _ => Ok(()),
         }
@@ -210,8 +210,7 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> CheckResult
         let Some(exact) = overlap(&query.ray, &query.bounds) else { return Ok(()) };
         if yours.is_none() && exact.verdict.is_hit() && exact.margin > STABLE {
             let expected = "Some: the ray meets the box";
-            return Err(Broken::with_texts(query.call("conservative_slab"), "None", expected, "exactly")
-                .explained_by([]));
+            return Err(Broken::with_texts(query.call("conservative_slab"), "None", expected, "exactly"));
         }
         // Accept a hit that is wrong by a few roundings only: it costs a visit and loses no hit.
         if yours.is_none() || exact.verdict.is_hit() || exact.margin <= STABLE {
@@ -250,15 +249,14 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckRe
         match yours {
             None if is_clear => {
                 let expected = format!("at {t} or before: there the ray hits a triangle in the box");
-                Err(Broken::with_texts(query.call("conservative_slab"), "None", expected, "exactly").explained_by([]))
+                Err(Broken::with_texts(query.call("conservative_slab"), "None", expected, "exactly"))
             }
             // Where no rounding decides, the entry itself must be right, up to 64 roundings.
             Some((enter, _)) if is_clear && !is_entry(query, enter) => {
                 let (near, _) = double::slabs_interval(&query.ray, &query.bounds);
                 let expected = format!("enters at {}", near.max(f64::from(query.ray.t_min)));
                 let yours = format!("enters at {enter}");
-                Err(Broken::with_texts(query.call("conservative_slab"), yours, expected, "double precision")
-                    .explained_by([]))
+                Err(Broken::with_texts(query.call("conservative_slab"), yours, expected, "double precision"))
             }
             Some((enter, _)) if enter > t => Err(Broken::with_texts(
                 query.call("conservative_slab"),

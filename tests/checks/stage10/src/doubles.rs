@@ -345,8 +345,7 @@ pub(super) fn judge_ends(
         }
         let expected = if *counts { "a hit" } else { "None" };
         let yours_t = format!("{:?}", yours.map(|hit| hit.t));
-        Err(Broken::with_texts(query.call(function), yours_t, expected, "ray.contains of the rounded t")
-            .explained_by([]))
+        Err(Broken::with_texts(query.call(function), yours_t, expected, "ray.contains of the rounded t"))
     };
     let formulas = |(query, _): &(TriangleQuery, bool), yours: &Option<TriangleHit>| {
         let (t_min, t_max) = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
@@ -382,9 +381,7 @@ pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckRes
         let has_nan = [ray.origin, ray.direction, *a, *b, *c].iter().any(|vector| vector.is_nan());
         let input = || query.call("triangle_in_double");
         match yours {
-            None if *query == ordinary => {
-                Err(Broken::new(input(), yours, "a hit at t = 1", "exactly").explained_by([]))
-            }
+            None if *query == ordinary => Err(Broken::new(input(), yours, "a hit at t = 1", "exactly")),
             Some(hit) if has_nan || !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
                 let is_nan = hit.t.is_nan() || hit.beta.is_nan() || hit.gamma.is_nan();
                 let broken = Broken::with_texts(

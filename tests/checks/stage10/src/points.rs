@@ -73,44 +73,40 @@ fn mistakes(query: &OffsetQuery, origin: Vec3) -> Vec<(bool, &'static str)> {
     mistakes
 }
 
-pub(super) fn offsets_leave_the_surface_at_any_scale(trial: &Trial<'_>) -> CheckResult {
-    let judge = |queries: &[OffsetQuery]| {
-        compare(queries, trial.kit.offset_origin(queries), |query, origin| {
-            let start = start(query, origin);
-            if !start.is_too_low() {
-                return Ok(());
-            }
-            Err(Broken::with_texts(
-                describe(query),
-                format!("{:.3e} off the point", start.height()),
-                format!("{:.3e} or more, on the side of the direction", start.least()),
-                "closed form",
-            )
+/// Judges how far starts are from their points.
+fn judge_heights(
+    trial: &Trial<'_>,
+    queries: &[OffsetQuery],
+    is_right: impl Fn(&OffsetQuery, Vec3) -> bool,
+    expected: impl Fn(&Start) -> String,
+) -> Vec<CheckResult> {
+    compare(queries, trial.kit.offset_origin(queries), |query, origin| {
+        if is_right(query, origin) {
+            return Ok(());
+        }
+        let start = start(query, origin);
+        let yours = format!("{:.3e} off the point", start.height());
+        Err(Broken::with_texts(describe(query), yours, expected(&start), "closed form")
             .explained_by(mistakes(query, origin)))
-        })
-    };
+    })
+}
+
+pub(super) fn offsets_leave_the_surface_at_any_scale(trial: &Trial<'_>) -> CheckResult {
+    let is_right = |query: &OffsetQuery, origin| !start(query, origin).is_too_low();
+    let least = |start: &Start| format!("{:.3e} or more, on the side of the direction", start.least());
+    let judge = |queries: &[OffsetQuery]| judge_heights(trial, queries, is_right, least);
     trial.forall(4000, surfaces(), judge)?;
     all_hold(judge(&along_the_surface()))
 }
 
 pub(super) fn offsets_are_as_small_as_they_can_be(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(4000, surfaces(), |queries| {
-        compare(queries, trial.kit.offset_origin(queries), |query, origin| {
-            // The ray must hit objects that are farther away. A point that is not moved at all is not an offset.
-            let start = start(query, origin);
-            let moved = origin != query.point || start.least() == 0.0;
-            if !start.is_too_high() && moved {
-                return Ok(());
-            }
-            Err(Broken::with_texts(
-                describe(query),
-                format!("{:.3e} off the point", start.height()),
-                format!("at most {:.3e}, and not the point itself", start.most()),
-                "closed form",
-            )
-            .explained_by(mistakes(query, origin)))
-        })
-    })
+    // The ray must hit objects that are farther away. A point that is not moved at all is not an offset.
+    let is_right = |query: &OffsetQuery, origin| {
+        let start = start(query, origin);
+        !start.is_too_high() && (origin != query.point || start.least() == 0.0)
+    };
+    let most = |start: &Start| format!("at most {:.3e}, and not the point itself", start.most());
+    trial.forall(4000, surfaces(), |queries| judge_heights(trial, queries, is_right, most))
 }
 
 /// Whether a cause certainly acts on a vector, and whether it possibly does.
@@ -145,8 +141,7 @@ pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> C
         true => Ok(()),
         false => {
             let expected = query.as_dvec3().normalize();
-            Err(Broken::new(call("safe_normalize", &[query]), yours, expected, "double precision")
-                .explained_by([]))
+            Err(Broken::new(call("safe_normalize", &[query]), yours, expected, "double precision"))
         }
     };
     // A cause is proven if the answers are wrong exactly where it acts.
@@ -219,8 +214,7 @@ pub(super) fn zero_has_no_direction(trial: &Trial<'_>) -> CheckResult {
                     yours,
                     Some(expected),
                     "double precision",
-                )
-                .explained_by([])),
+                )),
             };
         }
         Err(Broken::new(call("safe_normalize", &[query]), yours, None::<Vec3>, "the definition")

@@ -276,8 +276,7 @@ pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> CheckResult 
         }
         let expected = if *counts { format!("Some({t:?})") } else { "None, or the other root".into() };
         let input = query.call("sphere_in_double");
-        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "ray.contains of the rounded t")
-            .explained_by([]))
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "ray.contains of the rounded t"))
     };
     let formulas = |(query, ..): &(SphereQuery, f32, bool), yours: &Option<f32>| {
         let (t_min, t_max) = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));

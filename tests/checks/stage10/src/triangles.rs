@@ -221,7 +221,7 @@ fn mesh_does_not_leak(trial: &Trial<'_>, mesh: &Closed) -> CheckResult {
         if yours.is_none() || !missed || !clear {
             return Ok(());
         }
-        Err(Broken::new(query.call("watertight"), yours, "None", "exactly").explained_by([]))
+        Err(Broken::new(query.call("watertight"), yours, "None", "exactly"))
     };
     all_hold(compare(&back, trial.kit.watertight(&back), judge))
 }
@@ -269,7 +269,7 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> CheckResult {
                 // Leave verdicts that roundings decide to another check.
                 let clear =
                     triangle::margin(&query.ray, &query.triangle).is_some_and(|margin| margin > STABLE);
-                let hit = || Broken::new(query.call("watertight"), "None", exact, "exactly").explained_by([]);
+                let hit = || Broken::new(query.call("watertight"), "None", exact, "exactly");
                 return if clear { Err(hit()) } else { Ok(()) };
             };
             let normal = {
@@ -339,9 +339,7 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
             let agrees = yours.is_some() == plain.is_some();
             if agrees && clear && yours.is_some() != is_hit {
                 let expected = if is_hit { "a hit" } else { "None" };
-                return Err(
-                    Broken::new(query.call("watertight"), yours, expected, "exactly").explained_by([])
-                );
+                return Err(Broken::new(query.call("watertight"), yours, expected, "exactly"));
             }
             if yours == **plain {
                 return Ok(());
@@ -371,11 +369,9 @@ pub(super) fn watertight_of_special_numbers_is_finite(trial: &Trial<'_>) -> Chec
     queries.extend([ordinary, beside]);
     let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| match yours {
         None if *query == ordinary => {
-            Err(Broken::new(query.call("watertight"), yours, "a hit at t = 1", "exactly").explained_by([]))
+            Err(Broken::new(query.call("watertight"), yours, "a hit at t = 1", "exactly"))
         }
-        Some(_) if *query == beside => {
-            Err(Broken::new(query.call("watertight"), yours, "None", "exactly").explained_by([]))
-        }
+        Some(_) if *query == beside => Err(Broken::new(query.call("watertight"), yours, "None", "exactly")),
         Some(hit) if !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
             let broken =
                 Broken::new(query.call("watertight"), hit, "finite numbers, or None", "the definition");

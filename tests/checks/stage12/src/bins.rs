@@ -182,7 +182,7 @@ fn judge_counts(query: &BinsQuery, yours: &Bins) -> CheckResult {
         let count = yours.0[axis][bin].count as usize;
         if count != expected {
             let of = |n: usize| format!("{n} primitives in bin {bin} of axis {axis}");
-            return Err(Broken::with_texts(input(query), of(count), of(expected), "counted").explained_by([]));
+            return Err(Broken::with_texts(input(query), of(count), of(expected), "counted"));
         }
     }
     Ok(())
@@ -195,7 +195,7 @@ fn judge_boxes(query: &BinsQuery, yours: &Bins) -> CheckResult {
         if bounds != expected {
             let of = |one: BoxA| format!("{:?}..{:?} in bin {bin} of axis {axis}", one.low, one.high);
             let source = "the box around its primitives";
-            return Err(Broken::with_texts(input(query), of(bounds), of(expected), source).explained_by([]));
+            return Err(Broken::with_texts(input(query), of(bounds), of(expected), source));
         }
     }
     Ok(())

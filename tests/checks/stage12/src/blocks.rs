@@ -71,9 +71,7 @@ fn causes(ray: &Ray, triangle: &Triangle, t: f32) -> [(bool, &'static str); 5] {
 /// Judges the lanes of one block: none that is hit may be rejected.
 fn judge_hits(four: &Four, mask: u32) -> CheckResult {
     if mask >> BLOCK != 0 {
-        return Err(
-            Broken::new("may_hit", format!("{mask:#x}"), "four bits", "the definition").explained_by([])
-        );
+        return Err(Broken::new("may_hit", format!("{mask:#x}"), "four bits", "the definition"));
     }
     for (lane, triangle) in four.triangles.iter().enumerate() {
         let Some(t) = exact(&four.ray, triangle) else { continue };

@@ -197,7 +197,7 @@ pub(super) fn build_binned_costs_little_more_than_a_sweep(trial: &Trial<'_>) -> 
             let input = format!("build_binned of {} boxes: {name}", boxes.len());
             let most = format!("at most {:.3}, 1.05 times that of a sweep", 1.05 * sweep);
             let source = "the surface area heuristic";
-            return Err(Broken::with_texts(input, format!("cost {yours:.3}"), most, source).explained_by([]));
+            return Err(Broken::with_texts(input, format!("cost {yours:.3}"), most, source));
         }
     }
     Ok(())
@@ -209,7 +209,7 @@ fn build(trial: &Trial<'_>, boxes: &[Aabb], input: String) -> Result<FlatTree, B
         Ok(tree) => Ok(tree),
         Err(KitError::Panicked { message, place }) => {
             let panic = format!("a panic at {place}: {message}");
-            Err(Broken::with_texts(input, panic, "a tree", "the definition").explained_by([]))
+            Err(Broken::with_texts(input, panic, "a tree", "the definition"))
         }
         Err(error) => kit_error::unwind(error),
     }

@@ -148,7 +148,7 @@ pub(super) fn build_parallel_logs_the_nodes_that_it_forks(trial: &Trial<'_>) -> 
 }
 
 /// Judges whether the span of a build of `n` boxes is at most the work divided by `share`.
-fn judge_span(trial: &Trial<'_>, n: usize, share: u64) -> CheckResult {
+pub(super) fn judge_span(trial: &Trial<'_>, n: usize, share: u64) -> CheckResult {
     let Forked { tree, ranges, forks } = build_many(trial, n)?;
     let known = forked_ranges(&forks);
     let (work, span) = work_and_span(&tree, &ranges, |index| known.contains(&ranges[index]));
@@ -215,12 +215,4 @@ pub(super) fn build_parallel_has_an_eighth_of_the_span(trial: &Trial<'_>) -> Che
             "too few nodes sort their primitives in pieces, or in too few pieces",
         ),
     ]))
-}
-
-pub(super) fn build_parallel_has_a_third_of_the_span(trial: &Trial<'_>) -> CheckResult {
-    judge_span(trial, 30_000, 3)
-}
-
-pub(super) fn build_parallel_has_a_fifth_of_the_span(trial: &Trial<'_>) -> CheckResult {
-    judge_span(trial, 100_000, 5)
 }

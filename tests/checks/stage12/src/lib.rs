@@ -35,7 +35,7 @@ checks::stage! { ($ crate) 12 [
     splits::cheapest_split_is_the_cheapest
     splits::cheapest_split_returns_its_cost
     splits::cheapest_split_leaves_no_side_empty
-    partitions::partition_bins_puts_the_left_side_first
+    partitions::partition_bins_puts_the_left_side_first => judge_all(&[], partitions::queries(true, 0..=0))
     partitions::partition_bins_agrees_with_the_bins
     partitions::partition_bins_of_one_side
     builds::build_binned_holds_every_primitive_once
@@ -47,8 +47,8 @@ checks::stage! { ($ crate) 12 [
     builds::build_binned_isolates_what_is_not_a_number
     forks::build_parallel_gives_the_same_tree
     forks::build_parallel_logs_the_nodes_that_it_forks
-    forks::build_parallel_has_a_third_of_the_span
-    forks::build_parallel_has_a_fifth_of_the_span
+    forks::build_parallel_has_a_third_of_the_span => judge_span(30_000, 3)
+    forks::build_parallel_has_a_fifth_of_the_span => judge_span(100_000, 5)
     wide_trees::collapse_keeps_every_leaf
     wide_trees::collapse_of_one_leaf_and_of_nothing
     wide_trees::collapse_opens_the_largest_child
@@ -70,10 +70,10 @@ checks::stage! { ($ crate) 12 [
     searches::wide_closest_hit_prefers_the_smaller_number
     searches::wide_closest_hit_enters_only_boxes_it_meets
     visits::wide_closest_hit_skips_what_lies_behind: turned
-    visits::wide_closest_hit_takes_180_percent_of_the_calls: turned
-    visits::wide_closest_hit_takes_155_percent_of_the_calls: turned
-    visits::wide_closest_hit_takes_130_percent_of_the_calls: turned
-    visits::wide_closest_hit_takes_105_percent_of_the_calls: turned
+    visits::wide_closest_hit_takes_180_percent_of_the_calls => judge_calls(180): turned
+    visits::wide_closest_hit_takes_155_percent_of_the_calls => judge_calls(155): turned
+    visits::wide_closest_hit_takes_130_percent_of_the_calls => judge_calls(130): turned
+    visits::wide_closest_hit_takes_105_percent_of_the_calls => judge_calls(105): turned
     searches::wide_any_hit_agrees_with_brute_force
     searches::wide_any_hit_stops_at_the_first
     searches::wide_any_hit_enters_only_boxes_it_meets

@@ -91,7 +91,7 @@ fn judge(query: &WideBoxesQuery, yours: &Entered) -> CheckResult {
         let beyond = yours.mask >> 8;
         let broken =
             || Broken::new("enter_boxes", format!("mask {:#x}", yours.mask), "eight bits", "the definition");
-        return if beyond == 0 { Ok(()) } else { Err(broken().explained_by([])) };
+        return if beyond == 0 { Ok(()) } else { Err(broken()) };
     };
     let bounds = match query.node.occupied >> place & 1 {
         1 => query.node.child_bounds(place).paste(),
@@ -99,7 +99,7 @@ fn judge(query: &WideBoxesQuery, yours: &Entered) -> CheckResult {
     };
     let input = format!("enter_boxes, place {place}: {}, {bounds}", query.ray.paste());
     let of = |entry: Option<f32>| entry.map_or("not entered".into(), |t| format!("entered at {t:?}"));
-    Err(Broken::with_texts(input, of(mine[place]), of(expected[place]), "one box at a time").explained_by([]))
+    Err(Broken::with_texts(input, of(mine[place]), of(expected[place]), "one box at a time"))
 }
 
 /// Judges `n` queries, without those that are `None`. `stream` is the number of their random numbers.

@@ -35,7 +35,7 @@ pub(super) fn block_cost_counts_whole_blocks(trial: &Trial<'_>) -> CheckResult {
             if yours == expected {
                 return Ok(());
             }
-            Err(Broken::new(format!("block_cost({n})"), yours, expected, "the definition").explained_by([]))
+            Err(Broken::new(format!("block_cost({n})"), yours, expected, "the definition"))
         };
         compare_formulas(numbers, trial.kit.block_cost(numbers), judge, |n, yours| {
             wrong_blocks(*n).map(|(blocks, text)| (*yours == BLOCK_COST * blocks as f32, text)).to_vec()
@@ -217,8 +217,7 @@ pub(super) fn cheapest_split_returns_its_cost(trial: &Trial<'_>) -> CheckResult 
             let Some(split) = yours else {
                 // Whether there is a split is decided by other checks, but `None` has no cost to judge.
                 let none = splits(query).is_empty();
-                let broken =
-                    || Broken::with_texts(input(query), "None", "a split", "each split").explained_by([]);
+                let broken = || Broken::with_texts(input(query), "None", "a split", "each split");
                 return if none { Ok(()) } else { Err(broken()) };
             };
             let expected = of(query, &split).map_or(f64::INFINITY, |sides| right_cost(&sides));
@@ -226,8 +225,7 @@ pub(super) fn cheapest_split_returns_its_cost(trial: &Trial<'_>) -> CheckResult 
                 return Ok(());
             }
             let expected = format!("the cost {expected} of this split");
-            Err(Broken::with_texts(input(query), describe(&yours), expected, "double precision")
-                .explained_by([]))
+            Err(Broken::with_texts(input(query), describe(&yours), expected, "double precision"))
         };
         let formulas = |query: &BinSplitQuery, yours: &Option<BinSplit>| {
             let sides = yours.as_ref().and_then(|split| of(query, split));

@@ -130,7 +130,7 @@ fn judge_hits(queries: &[WideQuery], answers: &[WideAnswer], what: &str) -> Chec
     for (query, answer) in queries.iter().zip(answers) {
         let (found, expected) = (answer.hit.map(|hit| (hit.primitive, hit.t)), closest(query));
         if found != expected {
-            return Err(Broken::new(what, found, expected, "brute force, (primitive, t)").explained_by([]));
+            return Err(Broken::new(what, found, expected, "brute force, (primitive, t)"));
         }
     }
     Ok(())
@@ -152,7 +152,7 @@ pub(super) fn wide_closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> Chec
 }
 
 /// Judges the number of calls: at most `percent` of those of the reference.
-fn judge_calls(trial: &Trial<'_>, percent: usize) -> CheckResult {
+pub(super) fn judge_calls(trial: &Trial<'_>, percent: usize) -> CheckResult {
     let queries = rays_through_a_cloud();
     let answers = trial.kit.wide_closest_hit(&queries);
     let what = format!("{} rays through a cloud of 600 spheres", queries.len());
@@ -165,20 +165,4 @@ fn judge_calls(trial: &Trial<'_>, percent: usize) -> CheckResult {
     let of = |n: usize| format!("{n} calls of `enter`, `candidates` and `hit`");
     let expected = format!("at most {}, {percent} % of the reference", of(most));
     Err(Broken::with_texts(what, of(yours), expected, "counted").explained_by(mistakes(&queries, yours)))
-}
-
-pub(super) fn wide_closest_hit_takes_180_percent_of_the_calls(trial: &Trial<'_>) -> CheckResult {
-    judge_calls(trial, 180)
-}
-
-pub(super) fn wide_closest_hit_takes_155_percent_of_the_calls(trial: &Trial<'_>) -> CheckResult {
-    judge_calls(trial, 155)
-}
-
-pub(super) fn wide_closest_hit_takes_130_percent_of_the_calls(trial: &Trial<'_>) -> CheckResult {
-    judge_calls(trial, 130)
-}
-
-pub(super) fn wide_closest_hit_takes_105_percent_of_the_calls(trial: &Trial<'_>) -> CheckResult {
-    judge_calls(trial, 105)
 }

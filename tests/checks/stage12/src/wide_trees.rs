@@ -255,7 +255,7 @@ fn judge_opened(tree: &FlatTree, wide: &WideTree) -> CheckResult {
     judge_leaves(tree, wide)?;
     let broken = meaning(tree, wide).ok().and_then(|meaning| broken_rule(tree, &meaning));
     let Some((yours, expected)) = broken else { return Ok(()) };
-    Err(Broken::with_texts(describe(tree), yours, expected, "the areas of the nodes").explained_by([]))
+    Err(Broken::with_texts(describe(tree), yours, expected, "the areas of the nodes"))
 }
 
 pub(super) fn collapse_opens_the_largest_child(trial: &Trial<'_>) -> CheckResult {

@@ -1,6 +1,6 @@
 //! Ray-triangle intersection: each check for all three methods.
 
-use super::method::{CHOICE, CRAMER, GRAM, TriangleFunction, aimed, describe};
+use super::method::{TriangleFunction, aimed, describe};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::{self, point, rough_point, triangle};
@@ -13,58 +13,9 @@ use raykata::kit::{TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-macro_rules! for_all_methods {
-    ($($cramer:ident $gram:ident $choice:ident $law:ident;)*) => {
-        $(pub(super) fn $cramer(trial: &Trial<'_>) -> CheckResult {
-            $law(trial, CRAMER)
-        }
-        pub(super) fn $gram(trial: &Trial<'_>) -> CheckResult {
-            $law(trial, GRAM)
-        }
-        pub(super) fn $choice(trial: &Trial<'_>) -> CheckResult {
-            $law(trial, CHOICE)
-        })*
-    };
-}
-
-for_all_methods! {
-    triangle_cramer_agrees_with_double_precision
-    triangle_gram_agrees_with_double_precision
-    triangle_choice_agrees_with_double_precision
-        triangle_agrees;
-    triangle_cramer_knows_inside_from_outside
-    triangle_gram_knows_inside_from_outside
-    triangle_choice_knows_inside_from_outside
-        triangle_regions;
-    triangle_cramer_is_hit_from_either_side
-    triangle_gram_is_hit_from_either_side
-    triangle_choice_is_hit_from_either_side
-        triangle_windings;
-    triangle_cramer_respects_the_range
-    triangle_gram_respects_the_range
-    triangle_choice_respects_the_range
-        triangle_in_range;
-    triangle_cramer_owns_its_edges
-    triangle_gram_owns_its_edges
-    triangle_choice_owns_its_edges
-        triangle_edges;
-    triangle_cramer_has_no_smallest_size
-    triangle_gram_has_no_smallest_size
-    triangle_choice_has_no_smallest_size
-        triangle_sizes;
-    triangle_cramer_far_from_the_origin
-    triangle_gram_far_from_the_origin
-    triangle_choice_far_from_the_origin
-        triangle_far;
-    triangle_cramer_misses_degenerate_triangles
-    triangle_gram_misses_degenerate_triangles
-    triangle_choice_misses_degenerate_triangles
-        triangle_missed;
-}
-
 const UNIT: Triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
 
-fn triangle_agrees(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
+pub(super) fn triangle_agrees(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     // Begin with simple rays at a simple triangle, because their messages are the easiest to read.
     let drawn = [
         TriangleQuery { ray: Ray::new(vec3(0.125, 0.5, 2.0), vec3(0.0, 0.0, -0.5)), triangle: UNIT },
@@ -84,7 +35,7 @@ fn slanted() -> TriangleQuery {
 
 /// The three regions beyond the sides and the three beyond the corners, for rays along an axis and for slanted rays. A test of
 /// the sum β + γ alone, and areas without a sign, accept points of some of these regions.
-fn triangle_regions(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
+pub(super) fn triangle_regions(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let places = [
         (0.25, 0.25),
         (2.0, -1.5),
@@ -108,7 +59,7 @@ fn triangle_regions(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult 
     all_hold(method.judge(trial, &queries))
 }
 
-fn triangle_windings(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
+pub(super) fn triangle_windings(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let sides = [1.0, -1.0].map(|way| TriangleQuery {
         ray: Ray::new(vec3(0.125, 0.5, 2.0 * way), vec3(0.0, 0.0, -way)),
         triangle: UNIT,
@@ -126,7 +77,7 @@ fn triangle_windings(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult
     })
 }
 
-fn triangle_in_range(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
+pub(super) fn triangle_in_range(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let triangle = Triangle { a: vec3(-2.0, -2.0, 0.0), b: vec3(2.0, -2.0, 0.0), c: vec3(-2.0, 2.0, 0.0) };
     let hit = |t| Some(TriangleHit { t, beta: 0.25, gamma: 0.25 });
     let at = |z: f32, t_min: f32, t_max: f32| TriangleQuery {
@@ -166,7 +117,7 @@ fn judge_ends(trial: &Trial<'_>, method: TriangleFunction, queries: &[TriangleQu
     outcomes
 }
 
-fn triangle_edges(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
+pub(super) fn triangle_edges(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     // The sides are powers of two and the ray runs along an axis, so every method computes β and γ exactly. Two places
     // are outside by less than a thousandth, and two clearly. The sizes are ordinary: limits of size are another check's matter.
     let beside = -(2f32.powi(-10));
@@ -203,7 +154,7 @@ fn triangle_edges(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
 }
 
 /// A scene a million times smaller or larger gives the same verdict, the same β and γ, and `t` times the factor.
-fn triangle_sizes(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
+pub(super) fn triangle_sizes(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let factors = (nasty::scale(-24..=24), nasty::scale(-16..=16));
     let inputs = (aimed(triangle(), point(8)), factors).prop_map(|(query, (size, length))| {
         let TriangleQuery { ray, triangle: Triangle { a, b, c } } = query;
@@ -214,7 +165,7 @@ fn triangle_sizes(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
 }
 
 /// Small triangles at (148376, 1234, -223423), with the ray's origin near them.
-fn triangle_far(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
+pub(super) fn triangle_far(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let place = vec3(148_376.0, 1_234.0, -223_423.0);
     let triangles = (rough_point(4.0), rough_point(4.0), rough_point(4.0))
         .prop_map(move |(a, b, c)| Triangle { a: place + a, b: place + b, c: place + c });
@@ -222,7 +173,7 @@ fn triangle_far(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     trial.forall(3000, aimed(triangles, origins), |queries| method.judge(trial, queries))
 }
 
-fn triangle_missed(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
+pub(super) fn triangle_missed(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let down = Ray::new(vec3(0.25, 0.25, 1.0), Vec3::NEG_Z);
     let along = |origin| TriangleQuery { ray: Ray::new(origin, Vec3::X), triangle: UNIT };
     let with = |a, b, c| TriangleQuery { ray: down, triangle: Triangle { a, b, c } };

@@ -1,10 +1,9 @@
 //! The three methods of intersecting a triangle, and how the checks judge their answers.
 
-use crate::triangle_mistakes::mistakes;
+use crate::triangle_mistakes::{mistakes, observations};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double;
-use checks::judge::compare;
+use checks::double::{self, TriangleExpected, compare_tolerant};
 use checks::paste::Arguments;
 use glam::Vec3;
 use proptest::prelude::*;
@@ -28,33 +27,13 @@ pub(super) const GRAM: TriangleFunction =
 pub(super) const CHOICE: TriangleFunction =
     TriangleFunction { name: "triangle_choice", ask: |kit, queries| kit.triangle_choice(queries) };
 
+type Case = (TriangleQuery, TriangleExpected);
+
 impl TriangleFunction {
     /// Compares answers with the result in double precision.
     pub(super) fn judge(self, trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<CheckResult> {
-        let answers = (self.ask)(trial.kit, queries);
-        let is_constant = queries.len() > 1 && answers.iter().all(Option::is_none);
-        let accepts =
-            |query: &TriangleQuery, yours| double::triangle(&query.ray, &query.triangle).accepts(yours);
-        let loses_only =
-            queries.iter().zip(&answers).all(|(query, yours)| yours.is_none() || accepts(query, *yours));
-        compare(queries, answers, |query, yours| {
-            let expected = double::triangle(&query.ray, &query.triangle);
-            if expected.accepts(yours) {
-                return Ok(());
-            }
-            let broken = Broken::with_texts(
-                query.call(self.name),
-                describe(yours),
-                expected.words(),
-                "double precision",
-            );
-            // Many mistakes give None to many queries, but none gives it to all.
-            Err(broken.explained_by(if is_constant {
-                Vec::new()
-            } else {
-                mistakes(query, yours, loses_only)
-            }))
-        })
+        let case = |query: &TriangleQuery| (*query, double::triangle(&query.ray, &query.triangle));
+        self.compare(trial, &queries.iter().map(case).collect::<Vec<_>>(), "double precision")
     }
 
     /// Compares answers with results that are known exactly.
@@ -63,17 +42,16 @@ impl TriangleFunction {
         trial: &Trial<'_>,
         cases: &[(TriangleQuery, Option<TriangleHit>)],
     ) -> CheckResult {
+        let case = |(query, hit): &(TriangleQuery, _)| (*query, TriangleExpected::exactly(*hit));
+        all_hold(self.compare(trial, &cases.iter().map(case).collect::<Vec<_>>(), "exact arithmetic"))
+    }
+
+    fn compare(self, trial: &Trial<'_>, cases: &[Case], source: &'static str) -> Vec<CheckResult> {
         let queries: Vec<TriangleQuery> = cases.iter().map(|case| case.0).collect();
-        let answers = (self.ask)(trial.kit, &queries);
-        all_hold(compare(cases, answers, |(query, expected), yours| {
-            if yours == *expected {
-                return Ok(());
-            }
-            let (yours_in_words, expected) = (describe(yours), describe(*expected));
-            let broken =
-                Broken::with_texts(query.call(self.name), yours_in_words, expected, "exact arithmetic");
-            Err(broken.explained_by(mistakes(query, yours, false)))
-        }))
+        let broken = |query: &TriangleQuery, yours, expected| {
+            Broken::with_texts(query.call(self.name), describe(yours), expected, source)
+        };
+        compare_tolerant(cases, (self.ask)(trial.kit, &queries), broken, observations, mistakes)
     }
 }
 

@@ -54,6 +54,7 @@ impl Line {
 struct Answer<'a> {
     query: &'a TriangleQuery,
     yours: Option<TriangleHit>,
+    is_right: bool,
     tolerance: f64,
     t_tolerance: f64,
 }
@@ -85,60 +86,55 @@ impl Answer<'_> {
 }
 
 /// Fixed limits for the determinant.
-const LIMITS: [(f64, &str); 5] = [
-    (1e-8, "you take |det| < 0.00000001 for 0, but a fixed limit rejects small triangles"),
-    (1.2e-7, "you take |det| < f32::EPSILON for 0, but a fixed limit rejects small triangles"),
-    (1e-6, "you take |det| < 0.000001 for 0, but a fixed limit rejects small triangles"),
-    (1e-5, "you take |det| < 0.00001 for 0, but a fixed limit rejects small triangles"),
-    (1e-4, "you take |det| < 0.0001 for 0, but a fixed limit rejects small triangles"),
-];
+const LIMITS: [f64; 6] = [1e-12, 1e-8, f32::EPSILON as f64, 1e-6, 1e-5, 1e-4];
 
 /// Fixed limits for `t`.
-const EPSILONS: [(f64, &str); 4] = [
-    (1e-6, "you drop hits with t below 0.000001: ask ray.contains(t)"),
-    (1e-5, "you drop hits with t below 0.00001: ask ray.contains(t)"),
-    (1e-4, "you drop hits with t below 0.0001: ask ray.contains(t)"),
-    (1e-3, "you drop hits with t below 0.001: ask ray.contains(t)"),
-];
+const EPSILONS: [f64; 5] = [f32::EPSILON as f64, 1e-6, 1e-5, 1e-4, 1e-3];
 
 /// All known mistakes, each with whether it gives this answer.
-/// If `loses_only`, none of the student's answers is a wrong hit, so values with a wrong sign are not the mistake.
 pub(super) fn mistakes(
     query: &TriangleQuery,
     yours: Option<TriangleHit>,
-    loses_only: bool,
+    is_right: bool,
 ) -> Vec<(bool, &'static str)> {
     let line = Line::of(query);
     // A wrong method may round in another way, so allow twice the tolerance of a right one.
     let tolerance = 2.0 * line.tolerance;
-    let answer = Answer { query, yours, tolerance, t_tolerance: tolerance * line.t_per_tolerance };
-    let mut all = of_special_values(query, yours, &line);
-    all.extend(of_tests(&answer, &line));
-    all.extend(of_values(&answer, &line, loses_only));
+    let answer = Answer { query, yours, is_right, tolerance, t_tolerance: tolerance * line.t_per_tolerance };
+    let mut all = of_tests(&answer, &line);
+    all.extend(of_values(&answer, &line));
     all
 }
 
-fn of_special_values(
-    query: &TriangleQuery,
-    yours: Option<TriangleHit>,
-    line: &Line,
-) -> Vec<(bool, &'static str)> {
+/// Mistakes that a wrong answer alone shows.
+pub(super) fn observations(query: &TriangleQuery, yours: Option<TriangleHit>) -> [(bool, &'static str); 5] {
     let TriangleQuery { ray, triangle } = query;
+    let line = Line::of(query);
     let [a, b, c] = [triangle.a, triangle.b, triangle.c];
     let input_is_nan = [a, b, c, ray.origin, ray.direction].iter().any(|v| v.is_nan());
     let on_an_edge = line.alpha.min(line.beta).min(line.gamma) == 0.0;
-    vec![
+    [
         (
             yours.is_some() && (line.determinant == 0.0 || input_is_nan),
             "a triangle without area, or a ray along its plane, divides by 0: that is a miss, and so is a NaN",
         ),
         (
-            yours.is_some_and(|hit| !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite())),
+            yours.is_some_and(|hit| ![hit.t, hit.beta, hit.gamma].into_iter().all(f32::is_finite)),
             "you return NaN or infinity: compare so that NaN fails",
         ),
         (
             yours.is_none() && on_an_edge && line.determinant != 0.0,
             "points on an edge belong to the triangle: compare with ≥ and ≤, not with > and <",
+        ),
+        (
+            yours.is_some_and(|hit| hit.t == ray.t_min || hit.t == ray.t_max),
+            "the range is open: a hit at t_min or t_max does not count (t = 0 for a ray that starts in the triangle)",
+        ),
+        (
+            yours.is_some_and(|TriangleHit { beta, gamma, .. }| {
+                (-0.01..0.0).contains(&beta.min(gamma).min(1.0 - beta - gamma))
+            }),
+            "you accept a point slightly outside: test β ≥ 0, γ ≥ 0 and β + γ ≤ 1 without a tolerance",
         ),
     ]
 }
@@ -150,14 +146,11 @@ fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
     let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
     let hit = [t, beta, gamma];
     let inside = alpha >= -answer.tolerance && beta >= -answer.tolerance && gamma >= -answer.tolerance;
-    let is_hit = answer.yours.is_some();
+    let (is_hit, is_right) = (answer.yours.is_some(), answer.is_right);
+    let lost_if = |lost: bool| if lost { !is_hit } else { is_right };
     let tests = |least: f64| answer.is_inside(hit, least);
     let within = |counts: bool| answer.is(hit, counts && inside);
     let mut all = vec![
-        (
-            answer.yours.is_some_and(|hit| hit.t == ray.t_min || hit.t == ray.t_max) && within(true),
-            "the range is open: a hit at t_min or t_max does not count (t = 0 for a ray that starts in the triangle)",
-        ),
         (within(t_min < t), "you return a hit beyond t_max: ask ray.contains(t)"),
         (within(t < t_max), "you return a hit behind the ray or before t_min: ask ray.contains(t)"),
         (within(0.0 < t), "you ask t > 0 and not ray.contains(t): t_min and t_max count"),
@@ -165,10 +158,6 @@ fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
         (
             tests(beta.min(gamma).min(1.0 - beta).min(1.0 - gamma)),
             "you test β ≤ 1 and γ ≤ 1, which makes a parallelogram: β + γ ≤ 1 is not tested",
-        ),
-        (
-            is_hit && (-0.01..0.0).contains(&alpha.min(beta).min(gamma)) && answer.is(hit, true),
-            "you accept a point slightly outside: test β ≥ 0, γ ≥ 0 and β + γ ≤ 1 without a tolerance",
         ),
         (tests(beta.min(gamma)), "you accept a point beyond the side b c: β + γ ≤ 1 is not tested"),
         (tests(beta.min(alpha)), "you accept a γ below 0: γ ≥ 0 is not tested"),
@@ -179,44 +168,59 @@ fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
         ),
         (tests(1.0), "you do not test whether the point is inside the triangle"),
         (
-            determinant < 0.0 && answer.yours.is_none(),
+            lost_if(determinant < 0.0),
             "you test the triangle from one side only: it is hit from the back as well",
         ),
         (
-            determinant > 0.0 && answer.yours.is_none(),
+            lost_if(determinant > 0.0),
             "you test the triangle from one side only: it is hit from the front as well",
         ),
     ];
-    let is_lost = !is_hit;
-    all.extend(LIMITS.map(|(limit, text)| (is_lost && determinant.abs() < limit, text)));
-    all.extend(EPSILONS.map(|(epsilon, text)| (is_lost && 0.0 < t && t < epsilon, text)));
+    // Rounding decides about a determinant next to the limit.
+    let is_next_to = |limit: f64| (determinant.abs() / limit - 1.0).abs() < 1e-3;
+    all.extend(LIMITS.map(|limit| {
+        let is_lost = is_next_to(limit) || lost_if(determinant.abs() < limit);
+        (is_lost, "you take a small |det| for 0, but a fixed limit rejects small triangles")
+    }));
+    // With the range of the ray, with its end, or with neither.
+    let ranges = |epsilon: f64| [(t_min.max(epsilon), t_max), (epsilon, t_max), (epsilon, f64::INFINITY)];
+    all.extend(EPSILONS.into_iter().flat_map(ranges).map(|(start, end)| {
+        (within(start < t && t < end), "you drop hits with a small t: ask ray.contains(t), not a fixed limit")
+    }));
     all
 }
 
 const UNSIGNED_AREAS: &str = "areas without a sign accept a β or γ below 0: measure them along the normal";
 
 /// Wrong values of `t`, β and γ.
-fn of_values(answer: &Answer<'_>, line: &Line, loses_only: bool) -> Vec<(bool, &'static str)> {
+fn of_values(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
     let &Line { t, alpha, beta, gamma, .. } = line;
     let least = alpha.min(beta).min(gamma);
     let sum = alpha.abs() + beta.abs() + gamma.abs();
     let length = answer.query.ray.direction.as_dvec3().length();
     let in_the_world = line.in_the_world;
-    let of_a_point = answer.yours.map_or(least.abs() <= in_the_world, |hit| {
-        let near = |value: f32, exact: f64| (f64::from(value) - exact).abs() <= in_the_world;
-        // Gram's coordinates do not depend on t as long as the point is in the plane, but t may be off as well.
-        let t_error = (f64::from(hit.t) - t).abs();
-        near(hit.beta, beta) && near(hit.gamma, gamma) && t_error <= in_the_world * line.t_per_tolerance
-    });
+    let of_a_point = |accepts: &dyn Fn(&TriangleHit) -> bool| {
+        answer.yours.map_or(least.abs() <= in_the_world, |hit| {
+            let near = |value: f32, exact: f64| (f64::from(value) - exact).abs() <= in_the_world;
+            // Gram's coordinates do not depend on t as long as the point is in the plane, but t may be off as well.
+            let is_near_t = (f64::from(hit.t) - t).abs() <= in_the_world * line.t_per_tolerance;
+            near(hit.beta, beta)
+                && near(hit.gamma, gamma)
+                && is_near_t
+                && answer.query.ray.contains(hit.t)
+                && accepts(&hit)
+        })
+    };
+    let is_in_sum = |hit: &TriangleHit| (0.0..=1.0).contains(&(hit.beta + hit.gamma));
     vec![
         (
-            slide_determinant(answer.query).is_some_and(|factor| {
+            slide_determinant(answer.query).map_or(answer.is_right, |factor| {
                 let hit = [t, beta, gamma].map(|value| factor * value);
                 answer.is_inside(hit, hit[1].min(hit[2]).min(1.0 - hit[1] - hit[2]))
             }),
             "you use the determinant as the slide prints it; it must be a(fk - gj) + b(gi - ek) + c(ej - fi)",
         ),
-        (!loses_only && answer.is_inside([t, gamma, beta], least), "β and γ look swapped"),
+        (answer.is_inside([t, gamma, beta], least), "β and γ look swapped"),
         (
             answer.is_inside([t, alpha, gamma], least),
             "you return (α, γ) with α, a weight of corner a: β belongs to b and γ to c",
@@ -234,19 +238,23 @@ fn of_values(answer: &Answer<'_>, line: &Line, loses_only: bool) -> Vec<(bool, &
             "you return (γ, α) with α, a weight of corner a: β belongs to b and γ to c",
         ),
         (
-            !loses_only && answer.is_inside([-t, -beta, -gamma], (-beta).min(-gamma).min(1.0 + beta + gamma)),
+            answer.is_inside([-t, -beta, -gamma], (-beta).min(-gamma).min(1.0 + beta + gamma)),
             "the right side a - o is turned around: t, β and γ have the wrong sign",
         ),
-        (!loses_only && answer.is_inside([-t, beta, gamma], least), "the sign of t is wrong"),
+        (answer.is_inside([-t, beta, gamma], least), "the sign of t is wrong"),
         (
-            (length - 1.0).abs() > 1e-3 && answer.is_inside([t * length, beta, gamma], least),
+            answer.is_inside([t * length, beta, gamma], least),
             "your t counts world units; it must count lengths of direction",
         ),
         (answer.is_inside([t, beta.abs() / sum, gamma.abs() / sum], 1.0), UNSIGNED_AREAS),
         (answer.is_inside([t, beta.abs(), gamma.abs()], 1.0 - beta.abs() - gamma.abs()), UNSIGNED_AREAS),
         (
-            of_a_point,
+            answer.is_right || of_a_point(&|hit| hit.beta.min(hit.gamma) >= 0.0),
             "your answer is off by the rounding of o + t d or of n·o, far from the origin: subtract o first",
+        ),
+        (
+            answer.is_right || of_a_point(&is_in_sum),
+            "you accept a β or γ below 0: 0 ≤ β + γ ≤ 1 is not enough, test β ≥ 0 and γ ≥ 0 as well\nand: your answer is off by the rounding of o + t d or of n·o, far from the origin: subtract o first",
         ),
     ]
 }

@@ -2,30 +2,54 @@
 
 use super::divided::boxes;
 use super::slabs::UNIT_BOX;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::golden::Table;
-use checks::judge::compare;
 use checks::paste::Arguments;
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
-use raykata::bvh::DEEPEST_SPLIT;
+use raykata::bvh::{Bvh, Contents, DEEPEST_SPLIT, Node};
 use raykata::kit::{BuildQuery, Kit, KitError, kit_error};
 use raykata::scene::Split;
 
-pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<CheckResult> {
-    compare(queries, trial.kit.build(queries), |query, yours| {
-        match tree::fault(&yours, &query.bounds, query.leaf_size) {
-            None => Ok(()),
-            Some((yours, expected)) => {
-                let mistakes = build_mistakes(&yours);
-                let broken =
-                    Broken::with_texts(query.call("build"), yours, expected, "the invariants of a hierarchy");
-                Err(broken.explained_by(mistakes))
-            }
+/// The tree of one query, or the message about a panic.
+fn built(trial: &Trial<'_>, query: &BuildQuery) -> Result<Bvh, Broken> {
+    let build = |query: BuildQuery| kit_error::catch(|| trial.kit.build(&[query]).remove(0));
+    match build(query.clone()) {
+        Ok(bvh) => Ok(bvh),
+        Err(KitError::Panicked { message, place }) => {
+            let panic = format!("a panic at {place}: {message}");
+            let broken =
+                Broken::with_texts(query.call("build"), panic, "a tree", "the invariants of a hierarchy");
+            // With n < leaf_size, leaves of at most two hold one primitive each, and leaves of one never end.
+            let two = BuildQuery { split: Split::ObjectMedian, leaf_size: 2, ..query.clone() };
+            let holds_one = |bvh: Bvh| {
+                let is_larger =
+                    |node: &Node| matches!(node.contents, Contents::Leaf { count, .. } if count > 1);
+                !bvh.nodes.iter().any(is_larger)
+            };
+            Err(broken.explained_by([(
+                query.leaf_size == 1 && build(two).is_ok_and(holds_one),
+                "this is the slide, e - s < N: exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size",
+            )]))
         }
-    })
+        Err(error) => kit_error::unwind(error),
+    }
+}
+
+pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<CheckResult> {
+    let judge = |query: &BuildQuery| {
+        let Some((yours, expected)) = tree::fault(&built(trial, query)?, &query.bounds, query.leaf_size)
+        else {
+            return Ok(());
+        };
+        let mistakes = build_mistakes(&yours);
+        let broken =
+            Broken::with_texts(query.call("build"), yours, expected, "the invariants of a hierarchy");
+        Err(broken.explained_by(mistakes))
+    };
+    queries.iter().map(judge).collect()
 }
 
 /// The faults of a tree in the words of a diagnosis.
@@ -61,23 +85,7 @@ pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> CheckResult 
     for split in Split::ALL {
         for leaf_size in [1, 4] {
             let query = BuildQuery { bounds: bounds.to_vec(), split, leaf_size };
-            match kit_error::catch(|| judge_builds(trial, std::slice::from_ref(&query))) {
-                Ok(outcomes) => outcomes.into_iter().collect::<CheckResult>()?,
-                Err(KitError::Panicked { message, place }) => {
-                    let panic = format!("a panic at {place}: {message}");
-                    let call = query.call("build");
-                    let broken = Broken::with_texts(call, panic, "a tree", "the invariants of a hierarchy");
-                    // With one more primitive per leaf the same code returns a tree.
-                    let larger = BuildQuery { leaf_size: leaf_size + 1, ..query };
-                    let fits = bounds.len() == leaf_size
-                        && kit_error::catch(|| trial.kit.build(std::slice::from_ref(&larger))).is_ok();
-                    return Err(broken.explained_by([(
-                        fits,
-                        "exactly leaf_size primitives fit into a leaf: stop at n ≤ leaf_size, not at n < leaf_size",
-                    )]));
-                }
-                Err(error) => kit_error::unwind(error),
-            }
+            all_hold(judge_builds(trial, &[query]))?;
         }
     }
     Ok(())
@@ -109,7 +117,7 @@ fn judge_depth(trial: &Trial<'_>, bounds: &[Aabb], what: &str) -> CheckResult {
     let most = DEEPEST_SPLIT + bounds.len().next_power_of_two().ilog2() as usize + 1;
     for split in Split::ALL {
         let query = BuildQuery { bounds: bounds.to_vec(), split, leaf_size: 1 };
-        let depth = trial.kit.build(std::slice::from_ref(&query)).remove(0).depth();
+        let depth = built(trial, &query)?.depth();
         if depth > most {
             let input = format!("build of {what}, {split:?}, leaf_size 1");
             let [yours, expected] = [depth, most].map(|n| format!("{n} levels"));
@@ -163,7 +171,7 @@ pub(super) fn object_median_is_balanced(trial: &Trial<'_>) -> CheckResult {
         })
         .collect();
     let query = BuildQuery { bounds, split: Split::ObjectMedian, leaf_size: 1 };
-    let bvh = &trial.kit.build(std::slice::from_ref(&query))[0];
+    let bvh = built(trial, &query)?;
     let (depth, nodes) = (bvh.depth(), bvh.nodes.len());
     if (depth, nodes) == (10, 1023) {
         return Ok(());
@@ -196,6 +204,7 @@ pub(super) fn trees_of_eight_boxes(trial: &Trial<'_>) -> CheckResult {
         let query = BuildQuery { bounds: bounds.clone(), split, leaf_size: 1 };
         let (name, input) =
             (format!("stage3_tree_{name}"), format!("build of eight boxes along x, {split:?}, leaf_size 1"));
+        built(trial, &query)?;
         let text = |kit: &dyn Kit| tree::as_text(&kit.build(std::slice::from_ref(&query))[0]);
         Table { name: &name, input: &input }.check(trial, text)?;
     }

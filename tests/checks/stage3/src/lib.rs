@@ -41,9 +41,9 @@ checks::stage! { ($ crate) 3 [
     builds::build_isolates_what_is_not_a_number: turned
     builds::object_median_is_balanced: turned
     builds::trees_of_eight_boxes: composed
-    searches::closest_hit_both_agrees_with_brute_force
+    searches::closest_hit_both_agrees_with_brute_force => agrees(|kit, queries| kit.closest_hit_both(queries))
     searches::closest_hit_both_enters_only_boxes_it_meets
-    searches::closest_hit_agrees_with_brute_force
+    searches::closest_hit_agrees_with_brute_force => agrees(|kit, queries| kit.closest_hit(queries))
     stadium::closest_hit_skips_what_lies_behind: turned
     searches::any_hit_agrees_with_brute_force
     searches::any_hit_stops_at_the_first

@@ -141,20 +141,23 @@ fn found_by(wrong: Wrong, query: &SearchQuery) -> Hit {
     Search { query, wrong }.below(query.bvh.root()?)
 }
 
-/// All known mistakes of a search for the closest hit, each with whether it gives this answer.
-pub(super) fn mistakes(query: &SearchQuery, yours: Hit, counts: &Counts) -> Vec<(bool, &'static str)> {
+/// Mistakes that a wrong answer alone shows.
+pub(super) fn observations(query: &SearchQuery, yours: Hit, counts: &Counts) -> [(bool, &'static str); 3] {
     let is_in_table = |(id, t): (u32, f32)| query.table.primitives.get(id as usize) == Some(&t);
-    let mut all = vec![
+    let nothing_is_opened = yours.is_none() && counts.node_visits == 0;
+    [
         (yours.is_some_and(|(_, t)| !query.ray.contains(t)), "you return a hit outside the ray's range"),
         (
             yours.is_some_and(|hit| !is_in_table(hit)),
             "the t of your hit is not that of its primitive: keep both together",
         ),
-    ];
-    all.extend(MISTAKES.map(|(wrong, text)| (yours == found_by(wrong, query), text)));
-    let nothing_is_opened = yours.is_none() && counts.node_visits == 0;
-    all.push((nothing_is_opened, "you open no node, although the ray enters the box of the root"));
-    all
+        (nothing_is_opened, "you open no node, although the ray enters the box of the root"),
+    ]
+}
+
+/// All known mistakes of a search for the closest hit, each with whether it gives this answer.
+pub(super) fn mistakes(query: &SearchQuery, yours: Hit) -> Vec<(bool, &'static str)> {
+    MISTAKES.map(|(wrong, text)| (yours == found_by(wrong, query), text)).into()
 }
 
 /// The number of nodes.
@@ -168,20 +171,13 @@ pub(super) fn any_mistakes(query: &SearchQuery, yours: bool) -> Vec<(bool, &'sta
         let ray = query.ray.with_range(t_min, t_max);
         found_by(Wrong::Nothing, &SearchQuery { ray, ..query.clone() }).is_some()
     };
-    let enters =
-        query.bvh.root().is_some_and(|root| Search { query, wrong: Wrong::Nothing }.enter(root).is_some());
-    let nothing = !query.table.primitives.iter().any(|t| t.is_finite());
     // A search that enters a leaf without asking its primitives.
     let mut all_hit = query.clone();
     all_hit.table.primitives.fill(query.ray.t_max.min(1e30).next_down());
     let enters_a_leaf = found_by(Wrong::Nothing, &all_hit).is_some();
     let is = |wrong: Wrong| yours == found_by(wrong, query).is_some();
     vec![
-        (
-            yours && nothing && enters && yours == enters_a_leaf,
-            "no primitive is hit: to enter a box is not yet a hit",
-        ),
-        (yours == (enters && enters_a_leaf), "you take a box for a hit: to enter a box is not yet a hit"),
+        (yours == enters_a_leaf, "you take a box for a hit: to enter a box is not yet a hit"),
         (yours == with_range(query.ray.t_min, f32::INFINITY), "you count a hit beyond t_max"),
         (yours == with_range(0.0, query.ray.t_max), "you count a hit before t_min"),
         (yours == with_range(0.0, f32::INFINITY), "you count a hit before t_min or beyond t_max"),

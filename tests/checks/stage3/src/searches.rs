@@ -1,16 +1,16 @@
 //! The three searches, compared with brute force. A table holds the answers of the probe.
 
-use super::search_mistakes::{any_mistakes, every_node, mistakes};
+use super::search_mistakes::{any_mistakes, every_node, mistakes, observations};
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::{point, unit};
-use checks::judge::compare;
+use checks::judge::{compare, compare_formulas};
 use checks::tree::closest_in_table;
 use checks::{Trial, tree};
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::bvh::Bvh;
-use raykata::kit::{SearchAnswer, SearchQuery, Table};
+use raykata::kit::{Kit, SearchAnswer, SearchQuery, Table};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -69,14 +69,31 @@ pub(super) fn describe_search(query: &SearchQuery) -> String {
     )
 }
 
-pub(super) fn judge_search(query: &SearchQuery, yours: &SearchAnswer) -> CheckResult {
-    let expected = closest_in_table(query);
-    let found = yours.hit.map(|hit| (hit.primitive, hit.t));
-    if found == expected {
-        return Ok(());
-    }
-    Err(Broken::new(describe_search(query), found, expected, "brute force, (primitive, t)")
-        .explained_by(mistakes(query, found, &yours.counts)))
+fn judge_searches(queries: &[SearchQuery], answers: Vec<SearchAnswer>) -> Vec<CheckResult> {
+    let found = |yours: &SearchAnswer| yours.hit.map(|hit| (hit.primitive, hit.t));
+    let judge = |query: &SearchQuery, yours: SearchAnswer| {
+        let (found, expected) = (found(&yours), closest_in_table(query));
+        if found == expected {
+            return Ok(());
+        }
+        Err(Broken::new(describe_search(query), found, expected, "brute force, (primitive, t)")
+            .explained_by(observations(query, found, &yours.counts)))
+    };
+    compare_formulas(queries, answers, judge, |query, yours| mistakes(query, found(yours)))
+}
+
+/// Whether each ray hits anything.
+fn judge_any(queries: &[SearchQuery], answers: Vec<(bool, SearchAnswer)>) -> Vec<CheckResult> {
+    let judge = |query: &SearchQuery, (yours, _)| {
+        let expected = closest_in_table(query).is_some();
+        if yours == expected {
+            return Ok(());
+        }
+        let nothing = !query.table.primitives.iter().any(|t| t.is_finite());
+        Err(Broken::new(describe_search(query), yours, expected, "brute force")
+            .explained_by([(nothing, "no primitive is hit: to enter a box is not yet a hit")]))
+    };
+    compare_formulas(queries, answers, judge, |query, (yours, _)| any_mistakes(query, *yours))
 }
 
 /// Trees so small that the answer shows the mistake: a leaf of four primitives, two boxes that overlap, and the same with a
@@ -107,9 +124,12 @@ fn drawn_searches() -> [SearchQuery; 4] {
     ]
 }
 
-pub(super) fn closest_hit_both_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
+pub(super) fn agrees(
+    trial: &Trial<'_>,
+    ask: fn(&dyn Kit, &[SearchQuery]) -> Vec<SearchAnswer>,
+) -> CheckResult {
     trial.forall_and(&drawn_searches(), 1500, searches(), |queries| {
-        compare(queries, trial.kit.closest_hit_both(queries), |query, yours| judge_search(query, &yours))
+        judge_searches(queries, ask(trial.kit, queries))
     })
 }
 
@@ -124,9 +144,7 @@ fn missed_and_hit() -> [SearchQuery; 2] {
 pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> CheckResult {
     // A search that opens nothing finds nothing.
     let simple = missed_and_hit();
-    all_hold(compare(&simple, trial.kit.closest_hit_both(&simple), |query, yours| {
-        judge_search(query, &yours)
-    }))?;
+    all_hold(judge_searches(&simple, trial.kit.closest_hit_both(&simple)))?;
     trial.forall(500, searches(), |queries| {
         compare(queries, trial.kit.closest_hit_both(queries), |query, yours| {
             let met = tree::overlapped(query).len() as u64;
@@ -149,41 +167,20 @@ pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> 
     })
 }
 
-pub(super) fn closest_hit_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&drawn_searches(), 1500, searches(), |queries| {
-        compare(queries, trial.kit.closest_hit(queries), |query, yours| judge_search(query, &yours))
-    })
-}
-
 pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    let judge = |queries: &[SearchQuery]| {
-        compare(queries, trial.kit.any_hit(queries), |query, (yours, _)| {
-            let expected = closest_in_table(query).is_some();
-            if yours == expected {
-                Ok(())
-            } else {
-                Err(Broken::new(describe_search(query), yours, expected, "brute force")
-                    .explained_by(any_mistakes(query, yours)))
-            }
-        })
-    };
     // First test a leaf that the ray enters without hitting any of its primitives.
     let drawn = drawn_searches();
     let mut nothing = drawn[0].clone();
     nothing.table.primitives.fill(f32::INFINITY);
-    trial.forall_and(&[nothing, drawn[1].clone()], 1500, searches(), judge)
+    trial.forall_and(&[nothing, drawn[1].clone()], 1500, searches(), |queries| {
+        judge_any(queries, trial.kit.any_hit(queries))
+    })
 }
 
 pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult {
     // A search that asks nothing finds nothing.
     let simple = missed_and_hit();
-    all_hold(compare(&simple, trial.kit.any_hit(&simple), |query, (yours, _)| {
-        match closest_in_table(query).is_some() {
-            expected if yours == expected => Ok(()),
-            expected => Err(Broken::new(describe_search(query), yours, expected, "brute force")
-                .explained_by(any_mistakes(query, yours))),
-        }
-    }))?;
+    all_hold(judge_any(&simple, trial.kit.any_hit(&simple)))?;
     trial.forall(500, searches(), |queries| {
         compare(queries, trial.kit.any_hit(queries), |query, (_, answer)| {
             let describe = |n: u64| format!("{n} primitive tests after the first hit");

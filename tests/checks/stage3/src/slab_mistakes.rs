@@ -11,8 +11,16 @@ enum Mistake {
     NotSwapped,
     /// The planes are swapped if `d < 0`, which is false for -0.0.
     SwappedByLess,
-    /// The two planes are sorted by min and max, which drop NaN.
+    /// The two planes are sorted by min and max, which drop NaN, or by a comparison, which is false for NaN.
     MinMax,
+    SwappedIfGreater,
+    SwappedUnlessLess,
+    /// All axes at once by the min and max of vectors.
+    Vectors,
+    /// The interval of the first axis is taken as it is.
+    FirstAxis,
+    /// A smaller component of the direction becomes this.
+    LeastDirection(f32),
     /// A NaN replaces the entry or the exit.
     NanTakenOver,
     /// A NaN replaces the entry, and the limit of the range replaces the NaN.
@@ -33,13 +41,24 @@ enum Mistake {
     StartIgnored,
     EndIgnored,
     RangeIgnored,
+    /// The interval of the line is returned if a part of it lies within the range.
+    OfTheLine,
     /// This axis is left out.
     LeftOut(usize),
     /// The smaller entry and the larger exit.
     Widest,
 }
 
-const MISTAKES: [(Mistake, &str); 20] = [
+const SORTED: &str = "0 · ∞ is NaN, and a comparison with NaN is false: choose the two planes by the sign of 1/d, and drop NaN";
+
+const PADDED_BOX: &str =
+    "you pad the box by a fixed length, which is rounded away far from the origin: use ≤ and no padding";
+
+const LEFT_OUT: &str = "an axis is left out: the ray must be between the planes of all three axes at once";
+
+const PADDED_DIRECTION: &str = "you replace a direction near 0 by an epsilon, so the ray bends: 1/d may be infinite, and 0 · ∞ is NaN and dropped";
+
+const MISTAKES: [(Mistake, &str); 19] = [
     (Mistake::NotSwapped, "for a negative direction component the ray enters at max: swap the two planes"),
     (Mistake::SwappedByLess, "-0.0 ≥ 0 is true, but 1 / -0.0 is -∞: swap the two planes by the sign of 1/d"),
     (
@@ -47,6 +66,16 @@ const MISTAKES: [(Mistake, &str); 20] = [
         "1/d is ∞ for d = 0, and ∞ - ∞ is NaN: subtract first, (b - o) · 1/d and not b/d - o/d",
     ),
     (Mistake::MinMax, "0 · ∞ is NaN, and min and max drop NaN: a ray within a face hits the closed box"),
+    (Mistake::SwappedIfGreater, SORTED),
+    (Mistake::SwappedUnlessLess, SORTED),
+    (
+        Mistake::Vectors,
+        "0 · ∞ is NaN, and Vec3::min and max may return NaN or drop it: a ray within a face hits",
+    ),
+    (
+        Mistake::FirstAxis,
+        "0 · ∞ is NaN, and your interval begins with that of x: begin with the range of the ray",
+    ),
     (
         Mistake::NanTakenOver,
         "0 · ∞ is NaN, and it becomes your entry or exit: order the comparison so that it drops NaN",
@@ -56,22 +85,6 @@ const MISTAKES: [(Mistake, &str); 20] = [
         "0 · ∞ is NaN, and it takes the place of your entry: order the comparison so that it drops NaN",
     ),
     (Mistake::Overflow, "1/d overflows to ∞ for a tiny d: divide by d there"),
-    (
-        Mistake::Padded(1e-3),
-        "you pad the box by 0.001, which is rounded away far from the origin: use ≤ and no padding",
-    ),
-    (
-        Mistake::Padded(1e-4),
-        "you pad the box by 0.0001, which is rounded away far from the origin: use ≤ and no padding",
-    ),
-    (
-        Mistake::Padded(1e-5),
-        "you pad the box by 0.00001, which is rounded away far from the origin: use ≤ and no padding",
-    ),
-    (
-        Mistake::Padded(1e-6),
-        "you pad the box by 0.000001, which is rounded away far from the origin: use ≤ and no padding",
-    ),
     (Mistake::ExitBehindStart, "the box is closed: an exit exactly at t_min is a hit"),
     (Mistake::Open, "entry equals exit in a flat box or at an edge: compare with ≤, not with <"),
     (
@@ -86,19 +99,9 @@ const MISTAKES: [(Mistake, &str); 20] = [
         Mistake::EndIgnored,
         "your entry or your exit is beyond t_max: only the part within t_min..t_max counts",
     ),
+    (Mistake::Widest, "you unite the intervals of the axes: intersect them"),
     (Mistake::RangeIgnored, "you do not limit the interval to t_min..t_max"),
-    (
-        Mistake::LeftOut(0),
-        "the axis x is left out: the ray must be between the planes of all three axes at once",
-    ),
-    (
-        Mistake::LeftOut(1),
-        "the axis y is left out: the ray must be between the planes of all three axes at once",
-    ),
-    (
-        Mistake::LeftOut(2),
-        "the axis z is left out: the ray must be between the planes of all three axes at once",
-    ),
+    (Mistake::OfTheLine, "you do not limit the interval to t_min..t_max"),
 ];
 
 /// The interval that the box of a wrong test has in common with the ray.
@@ -106,10 +109,21 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
     if bounds.is_empty() {
         return None;
     }
+    if mistake == Mistake::Vectors {
+        let inverse = ray.direction.recip();
+        let [p, q] = [bounds.min, bounds.max].map(|plane| (plane - ray.origin) * inverse);
+        let near = p.min(q).max_element().max(ray.t_min);
+        let far = p.max(q).min_element().min(ray.t_max);
+        return (near <= far).then_some((near, far));
+    }
     let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
     let pad = if let Mistake::Padded(pad) = mistake { pad } else { 0.0 };
     for axis in (0..3).filter(|&axis| mistake != Mistake::LeftOut(axis)) {
         let (o, d) = (ray.origin[axis], ray.direction[axis]);
+        let d = match mistake {
+            Mistake::LeastDirection(least) if d.abs() < least => least.copysign(d),
+            _ => d,
+        };
         let inverse = 1.0 / d;
         let t = |plane: f32| match mistake {
             Mistake::FastForm => plane * inverse - o * inverse,
@@ -121,6 +135,8 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
         let swapped = match mistake {
             Mistake::NotSwapped => false,
             Mistake::SwappedByLess => d < 0.0,
+            Mistake::SwappedIfGreater => ends[0] > ends[1],
+            Mistake::SwappedUnlessLess => !(ends[0] < ends[1]),
             _ => inverse.is_sign_negative(),
         };
         let (enter, leave) = match mistake {
@@ -134,15 +150,18 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
         } else if mistake == Mistake::NanEntry {
             near = if enter <= near { near } else { enter };
             far = if leave < far { leave } else { far };
+        } else if axis == 0 && matches!(mistake, Mistake::FirstAxis | Mistake::Widest) {
+            (near, far) = (enter, leave);
         } else if mistake == Mistake::Widest {
-            near = if axis == 0 { enter } else { near.min(enter) };
-            far = if axis == 0 { leave } else { far.max(leave) };
+            (near, far) = (near.min(enter), far.max(leave));
         } else {
             near = if enter > near { enter } else { near };
             far = if leave < far { leave } else { far };
         }
     }
-    if mistake == Mistake::NotFromInside && near < ray.t_min {
+    if (mistake == Mistake::NotFromInside && near < ray.t_min)
+        || (mistake == Mistake::FirstAxis && (near.is_nan() || far.is_nan()))
+    {
         return None;
     }
     if is_widened {
@@ -152,6 +171,7 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
     if mistake == Mistake::ExitBehindStart && far <= ray.t_min {
         return None;
     }
+    let line = (near, far);
     let is_open = matches!(mistake, Mistake::Open | Mistake::Padded(_));
     if !matches!(mistake, Mistake::StartIgnored | Mistake::RangeIgnored) {
         let is_dropped = near.is_nan() && mistake == Mistake::NanEntry;
@@ -160,27 +180,37 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
     if !matches!(mistake, Mistake::EndIgnored | Mistake::RangeIgnored) {
         far = if far > ray.t_max { ray.t_max } else { far };
     }
-    (if is_open { near < far } else { !(near > far) }).then_some((near, far))
+    (if is_open { near < far } else { !(near > far) }).then_some(if mistake == Mistake::OfTheLine {
+        line
+    } else {
+        (near, far)
+    })
 }
 
-/// Whether a test with this mistake gives this answer, up to a few roundings.
-fn gives(mistake: Mistake, is_widened: bool, query: &SlabQuery, yours: Option<(f32, f32)>) -> bool {
+/// Whether a test with this mistake gives this answer, up to a few roundings, or this verdict.
+fn gives(
+    mistake: Mistake,
+    is_widened: bool,
+    query: &SlabQuery,
+    yours: Option<(f32, f32)>,
+    only_verdict: bool,
+) -> bool {
     let same = |yours: f32, t: f32| {
         let (yours, t) = (f64::from(yours), f64::from(t));
         yours == t || (yours - t).abs() <= 32.0 * U * t.abs() || (yours.is_nan() && t.is_nan())
     };
     match (yours, slab(mistake, is_widened, query)) {
-        (Some((enter, leave)), Some((near, far))) => same(enter, near) && same(leave, far),
-        (yours, other) => yours.is_none() && other.is_none(),
+        (Some((enter, leave)), Some((near, far))) if !only_verdict => same(enter, near) && same(leave, far),
+        (yours, other) => yours.is_some() == other.is_some(),
     }
 }
 
-/// All known mistakes, each with whether it gives this answer.
-pub(super) fn mistakes(query: &SlabQuery, yours: Option<(f32, f32)>) -> Vec<(bool, &'static str)> {
+/// Mistakes that a wrong answer alone shows.
+pub(super) fn observations(query: &SlabQuery, yours: Option<(f32, f32)>) -> [(bool, &'static str); 3] {
     let is_lost_by_rounding = yours.is_none()
         && slab(Mistake::None, false, query).is_none()
         && slab(Mistake::None, true, query).is_some();
-    let mut all = vec![
+    [
         (
             query.bounds.is_empty() && yours.is_some(),
             "the empty box (inf, -inf) has no point, but sorted planes make it infinite: test is_empty()",
@@ -189,13 +219,27 @@ pub(super) fn mistakes(query: &SlabQuery, yours: Option<(f32, f32)>) -> Vec<(boo
             is_lost_by_rounding,
             "1/d, the difference and the product are rounded, so far may be slightly below near: multiply far by 1 + 2 γ₃",
         ),
-    ];
+        (
+            yours.is_some_and(|(enter, leave)| enter.is_nan() || leave.is_nan()),
+            "you return NaN: 0 · ∞ is NaN, so order the comparison so that it drops NaN",
+        ),
+    ]
+}
+
+/// All known mistakes, each with whether it gives this answer, or only this verdict.
+pub(super) fn mistakes(
+    query: &SlabQuery,
+    yours: Option<(f32, f32)>,
+    only_verdict: bool,
+) -> Vec<(bool, &'static str)> {
+    let lengths = [1e-12, 1e-8, 1e-6, 1e-5, 1e-4, 1e-3];
+    let all = (MISTAKES.into_iter())
+        .chain(lengths.map(|least| (Mistake::LeastDirection(least), PADDED_DIRECTION)))
+        .chain(lengths.map(|pad| (Mistake::Padded(pad), PADDED_BOX)))
+        .chain([0, 1, 2].map(|axis| (Mistake::LeftOut(axis), LEFT_OUT)));
     // A wrong test may widen the interval or not.
-    let variants =
-        |(mistake, text)| [false, true].map(|is_widened| (gives(mistake, is_widened, query, yours), text));
-    all.extend(MISTAKES.into_iter().flat_map(variants));
-    let is_nan = yours.is_some_and(|(enter, leave)| enter.is_nan() || leave.is_nan());
-    all.push((is_nan, "you return NaN: 0 · ∞ is NaN, so order the comparison so that it drops NaN"));
-    all.extend(variants((Mistake::Widest, "you unite the intervals of the axes: intersect them")));
-    all
+    let variants = |(mistake, text)| {
+        [false, true].map(|is_widened| (gives(mistake, is_widened, query, yours, only_verdict), text))
+    };
+    all.flat_map(variants).collect()
 }

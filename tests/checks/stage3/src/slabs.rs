@@ -1,12 +1,11 @@
 //! Ray-box intersection: `slab`.
 
 use super::boxes::aabb;
-use super::slab_mistakes::mistakes;
+use super::slab_mistakes::{mistakes, observations};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::{self, box_interval};
+use checks::double::{self, Tolerant, box_interval, compare_tolerant};
 use checks::generate::{direction, point, rough_point};
-use checks::judge::compare;
 use checks::nasty;
 use checks::paste::Arguments;
 use glam::{Vec3, vec3};
@@ -17,51 +16,71 @@ use raykata::ray::Ray;
 
 pub(super) const UNIT_BOX: Aabb = Aabb::new(Vec3::ZERO, Vec3::ONE);
 
-fn judge_slabs(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<CheckResult> {
-    let answers = trial.kit.slab(queries);
-    // Many mistakes give None to many queries, but none gives it to all.
-    let is_constant = queries.len() > 1 && answers.iter().all(Option::is_none);
-    compare(queries, answers, |query, yours| {
-        let (near, far) = box_interval(&query.ray, &query.bounds);
-        let (near, far) = (near.max(f64::from(query.ray.t_min)), far.min(f64::from(query.ray.t_max)));
-        // Allow for the roundings of a difference, a reciprocal and a product, and for methods that widen the box. A 0 that
-        // is rounded outwards is still smaller than each normal number.
-        let slack = |t: f64| {
-            if t.is_finite() { 32.0 * double::U * t.abs() + f64::from(f32::MIN_POSITIVE) } else { 0.0 }
-        };
-        let room = slack(near) + slack(far);
+/// What a slab test must return.
+enum Slab {
+    /// The entry and the exit within the range of the ray; a miss if the entry is larger.
+    Interval(f64, f64),
+    /// A hit or a miss, which is known exactly.
+    Verdict(bool),
+}
+
+/// Allows for the roundings of a difference, a reciprocal and a product, and for methods that widen the box. A 0 that is
+/// rounded outwards is still smaller than each normal number.
+fn slack(t: f64) -> f64 {
+    if t.is_finite() { 32.0 * double::U * t.abs() + f64::from(f32::MIN_POSITIVE) } else { 0.0 }
+}
+
+impl Tolerant<Option<(f32, f32)>> for Slab {
+    fn accepts(&self, yours: Option<(f32, f32)>) -> bool {
         let same = |yours: f32, exact: f64| {
             f64::from(yours) == exact || (f64::from(yours) - exact).abs() <= slack(exact)
         };
-        let right = match yours {
-            Some((enter, leave)) => near <= far + room && same(enter, near) && same(leave, far),
-            None => !(near <= far - room) || (near > far),
-        };
-        if right {
-            return Ok(());
+        match (self, yours) {
+            (Slab::Interval(near, far), Some((enter, leave))) => {
+                *near <= far + slack(*near) + slack(*far) && same(enter, *near) && same(leave, *far)
+            }
+            (Slab::Interval(near, far), None) => !(*near <= far - slack(*near) - slack(*far)) || (near > far),
+            (Slab::Verdict(is_hit), _) => {
+                yours.is_some() == *is_hit && yours.is_none_or(|(enter, leave)| enter <= leave)
+            }
         }
-        let expected = if near <= far { format!("Some(({near}, {far}))") } else { "None".into() };
-        let broken =
-            Broken::with_texts(query.call("slab"), format!("{yours:?}"), expected, "double precision");
-        Err(broken.explained_by(if is_constant { Vec::new() } else { mistakes(query, yours) }))
-    })
+    }
+
+    fn is_open(&self) -> bool {
+        matches!(self, Slab::Interval(near, far) if (near - far).abs() <= slack(*near) + slack(*far))
+    }
+
+    fn words(&self) -> String {
+        match self {
+            Slab::Interval(near, far) if near <= far => format!("Some(({near}, {far}))"),
+            Slab::Verdict(true) => "a hit".into(),
+            _ => "None".into(),
+        }
+    }
 }
 
-/// Judges rays whose verdict, a hit or a miss, is known exactly.
-fn judge_verdicts(trial: &Trial<'_>, cases: &[(Ray, Aabb, bool)]) -> CheckResult {
-    let queries: Vec<SlabQuery> = cases.iter().map(|&(ray, bounds, _)| SlabQuery { ray, bounds }).collect();
-    let answers = trial.kit.slab(&queries);
-    let judged = queries.iter().zip(answers).zip(cases).map(|((query, yours), (_, _, hit))| {
-        let sound = yours.is_none_or(|(enter, leave)| enter <= leave);
-        if yours.is_some() == *hit && sound {
-            return Ok(());
-        }
-        let expected = if *hit { "a hit" } else { "None" };
-        let broken =
-            Broken::with_texts(query.call("slab"), format!("{yours:?}"), expected, "exact arithmetic");
-        Err(broken.explained_by(mistakes(query, yours)))
-    });
-    all_hold(judged.collect())
+fn judge_cases(trial: &Trial<'_>, cases: &[(SlabQuery, Slab)], source: &'static str) -> Vec<CheckResult> {
+    let queries: Vec<SlabQuery> = cases.iter().map(|case| case.0).collect();
+    let broken = |query: &SlabQuery, yours, expected| {
+        Broken::with_texts(query.call("slab"), format!("{yours:?}"), expected, source)
+    };
+    let only_verdict = matches!(cases, [(_, Slab::Verdict(_)), ..]);
+    let formulas = |query: &SlabQuery, yours, _| mistakes(query, yours, only_verdict);
+    compare_tolerant(cases, trial.kit.slab(&queries), broken, observations, formulas)
+}
+
+fn judge_slabs(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<CheckResult> {
+    let case = |query: &SlabQuery| {
+        let (near, far) = box_interval(&query.ray, &query.bounds);
+        let (near, far) = (near.max(f64::from(query.ray.t_min)), far.min(f64::from(query.ray.t_max)));
+        (*query, Slab::Interval(near, far))
+    };
+    judge_cases(trial, &queries.iter().map(case).collect::<Vec<_>>(), "double precision")
+}
+
+fn judge_verdicts(trial: &Trial<'_>, cases: &[(Ray, Aabb, bool)]) -> Vec<CheckResult> {
+    let case = |&(ray, bounds, is_hit): &_| (SlabQuery { ray, bounds }, Slab::Verdict(is_hit));
+    judge_cases(trial, &cases.iter().map(case).collect::<Vec<_>>(), "exact arithmetic")
 }
 
 pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
@@ -132,7 +151,7 @@ pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> CheckResult 
     let creep = vec3(1.0, 1e-40, -1e-40);
     cases.push((Ray::new(vec3(-1.0, 0.5, 0.5), creep), UNIT_BOX, true));
     cases.push((Ray::new(vec3(-1.0, -0.5, 0.5), creep), UNIT_BOX, false));
-    judge_verdicts(trial, &cases)
+    all_hold(judge_verdicts(trial, &cases))
 }
 
 pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> CheckResult {
@@ -147,6 +166,7 @@ pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> CheckResul
                 direction[axis] = zero;
                 cases.push((Ray::new(origin, direction), UNIT_BOX, true));
                 cases.push((Ray::new(origin, -direction), UNIT_BOX, false));
+                cases.push((Ray::new(origin + 5.0 * direction, -direction), UNIT_BOX, true));
                 // Within the face, and beside it.
                 let mut along = Vec3::ZERO;
                 along[(axis + 1) % 3] = 1.0;
@@ -159,7 +179,7 @@ pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> CheckResul
             }
         }
     }
-    judge_verdicts(trial, &cases)
+    all_hold(judge_verdicts(trial, &cases))
 }
 
 pub(super) fn slab_of_a_flat_box_is_hit(trial: &Trial<'_>) -> CheckResult {
@@ -182,7 +202,7 @@ pub(super) fn slab_of_a_flat_box_is_hit(trial: &Trial<'_>) -> CheckResult {
     cases.push((Ray::new(Vec3::ZERO, Vec3::ONE), point, true));
     cases.push((Ray::new(vec3(0.5, 0.5, -1.0), Vec3::Z), point, true));
     cases.push((Ray::new(vec3(0.5, 0.25, -1.0), Vec3::Z), point, false));
-    judge_verdicts(trial, &cases)
+    all_hold(judge_verdicts(trial, &cases))
 }
 
 pub(super) fn slab_respects_the_range(trial: &Trial<'_>) -> CheckResult {
@@ -202,7 +222,7 @@ pub(super) fn slab_respects_the_range(trial: &Trial<'_>) -> CheckResult {
         (at_x(1.0), UNIT_BOX, true),
         (at_x(0.5), UNIT_BOX, true),
     ];
-    judge_verdicts(trial, &cases)?;
+    all_hold(judge_verdicts(trial, &cases))?;
     let ranges = [(2.25, 2.5), (0.0, 2.5), (2.5, 9.0), (1.0, 9.0), (0.0, f32::INFINITY)];
     let queries =
         ranges.map(|(t_min, t_max)| SlabQuery { ray: ray.with_range(t_min, t_max), bounds: UNIT_BOX });
@@ -225,19 +245,14 @@ pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> CheckRe
         SlabQuery { ray: Ray::new(origin, corner - origin), bounds }
     });
     trial.forall(3000, inputs, |queries| {
-        let answers = trial.kit.slab(queries);
-        let is_constant = queries.len() > 1 && answers.iter().all(Option::is_none);
-        compare(queries, answers, |query, yours| match yours {
-            Some(_) => Ok(()),
-            None => {
-                let broken = Broken::with_texts(query.call("slab"), "None", "a hit", "exact arithmetic");
-                Err(broken.explained_by(if is_constant { Vec::new() } else { mistakes(query, yours) }))
-            }
-        })
+        judge_verdicts(
+            trial,
+            &queries.iter().map(|query| (query.ray, query.bounds, true)).collect::<Vec<_>>(),
+        )
     })?;
     // Aimed beside the corner by a hundredth, the ray misses.
     let beside = |at: Vec3| (Ray::new(Vec3::splat(-1.0), at + Vec3::ONE), UNIT_BOX, false);
-    judge_verdicts(trial, &[beside(vec3(1.01, 0.0, -0.01)), beside(vec3(-0.01, 1.0, -0.01))])
+    all_hold(judge_verdicts(trial, &[beside(vec3(1.01, 0.0, -0.01)), beside(vec3(-0.01, 1.0, -0.01))]))
 }
 
 pub(super) fn slab_misses_the_empty_box(trial: &Trial<'_>) -> CheckResult {
@@ -245,5 +260,5 @@ pub(super) fn slab_misses_the_empty_box(trial: &Trial<'_>) -> CheckResult {
     let middle = Vec3::splat(0.5);
     let empty = dirs.map(|direction| (Ray::new(middle, direction), Aabb::EMPTY, false));
     let unit = dirs.map(|direction| (Ray::new(middle, direction), UNIT_BOX, true));
-    judge_verdicts(trial, &[empty, unit].concat())
+    all_hold(judge_verdicts(trial, &[empty, unit].concat()))
 }

@@ -78,9 +78,7 @@ pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> CheckR
         // A tree that leaves out primitives costs less.
         if let Some((yours, expected)) = tree::fault(&bvh, &bounds, query.leaf_size) {
             let input = format!("build of the 200 boxes of a stadium, {split:?}, leaf_size 4");
-            return Err(
-                Broken::with_texts(input, yours, expected, "the invariants of a hierarchy").explained_by([])
-            );
+            return Err(Broken::with_texts(input, yours, expected, "the invariants of a hierarchy"));
         }
         let yours = counted_cost(&bvh, &spheres);
         // The cost changes by a tenth with the axis of a nearly cubic box and with the side that gets one more.
@@ -94,7 +92,7 @@ pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> CheckR
                 format!("at most {}", describe(most)),
                 "the reference tree, plus a quarter",
             );
-            return Err(broken.explained_by([]));
+            return Err(broken);
         }
     }
     Ok(())
@@ -114,7 +112,7 @@ fn nothing_behind_in_a_row(trial: &Trial<'_>) -> CheckResult {
     // A search that finds nothing opens few nodes.
     let expected = tree::closest_in_table(&query);
     if found != expected {
-        return Err(Broken::new(input, found, expected, "brute force, (primitive, t)").explained_by([]));
+        return Err(Broken::new(input, found, expected, "brute force, (primitive, t)"));
     }
     // No two boxes overlap, so there is only one order of search and only one right count.
     if yours <= needed {

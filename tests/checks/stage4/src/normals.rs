@@ -80,8 +80,7 @@ pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> CheckResul
                 return if parallel {
                     Ok(())
                 } else {
-                    Err(Broken::new(paste_normal_query(query), yours, expected, "closed form")
-                        .explained_by([]))
+                    Err(Broken::new(paste_normal_query(query), yours, expected, "closed form"))
                 };
             }
             let expected = if geometric.dot(direction) > 0.0 { -geometric } else { geometric };

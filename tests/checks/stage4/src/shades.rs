@@ -86,15 +86,24 @@ fn tolerance(right: DVec3) -> f64 {
     1e-4 * (1.0 + right.abs().max_element())
 }
 
-/// A point with the student's own specular terms, one per light.
-type Judged = (ShadeQuery, Vec<f32>);
+/// A point with the student's own specular term per light, and whether the student's own `shadow_ray` returns a ray.
+type Judged = (ShadeQuery, Vec<(f32, bool)>);
 
-/// Adds the student's own specular terms. The formula of `shade` is judged with these as well as with the right ones, because
-/// other checks judge `specular_term`.
+fn shadow_queries(queries: &[ShadeQuery]) -> Vec<ShadowQuery> {
+    let of_lights = |query: &ShadeQuery| {
+        let surface = query.surface;
+        query.lights.iter().map(move |light| ShadowQuery { surface, light: *light }).collect::<Vec<_>>()
+    };
+    queries.iter().flat_map(of_lights).collect()
+}
+
+/// Adds the student's own specular terms and shadow rays. The formula of `shade` is judged with these as well as with the right
+/// ones, because other checks judge `specular_term` and `shadow_ray`.
 fn with_own_terms(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Judged> {
     let terms: Vec<TermQuery> =
         queries.iter().flat_map(|query| (0..query.lights.len()).map(|light| term(query, light))).collect();
-    let mut own = trial.kit.specular_term(&terms).into_iter();
+    let rays = trial.kit.shadow_ray(&shadow_queries(queries)).into_iter().map(|ray| ray.is_some());
+    let mut own = trial.kit.specular_term(&terms).into_iter().zip(rays);
     let mut of_query = |query: &ShadeQuery| own.by_ref().take(query.lights.len()).collect();
     queries.iter().map(|query| (query.clone(), of_query(query))).collect()
 }
@@ -119,24 +128,30 @@ fn judge_shade((query, own): &Judged, yours: &ShadeAnswer) -> CheckResult {
     // The right terms, and the student's own specular term.
     let diffuse = |light: usize| cosine(query, light, query.surface.shading_normal);
     let right = |light: usize| specular(&term(query, light));
-    let yours_of = |light: usize| f64::from(own[light]);
     let same = |other: DVec3| {
         let near = (color - other).abs().cmplt(DVec3::splat(tolerance(other)));
         (0..3).all(|channel| near.test(channel) || (color[channel].is_nan() && other[channel].is_nan()))
     };
-    // The colour that the lights of a list give with these specular terms.
-    let sum = |lights: &[usize], specular: &dyn Fn(usize) -> f64| {
-        ambient
-            + lights.iter().map(|&light| share(query, light, diffuse(light), specular(light))).sum::<DVec3>()
+    // The colour that the lights of a list give.
+    let sum = |lights: &[usize]| {
+        ambient + lights.iter().map(|&light| share(query, light, diffuse(light), right(light))).sum::<DVec3>()
     };
-    // Whether they give the student's colour with the right terms, and whether with the student's own.
-    let gives = |lights: &[usize]| [same(sum(lights, &right)), same(sum(lights, &yours_of))];
+    // The same with the student's own specular terms, and the lights to which the student's own `shadow_ray` returns a ray.
+    let own_sum = |lights: &[usize]| {
+        let of = |&light: &usize| match own[light] {
+            (term, true) => parts(query, light, diffuse(light).max(0.0), term.into()).iter().sum(),
+            (_, false) => DVec3::ZERO,
+        };
+        ambient + lights.iter().map(of).sum::<DVec3>()
+    };
+    // Whether they give the student's colour, and whether with the student's own functions.
+    let gives = |lights: &[usize]| [same(sum(lights)), same(own_sum(lights))];
     let (visible, occluded): (Vec<usize>, Vec<usize>) = lights.iter().partition(|light| seen(light));
     if gives(&visible).contains(&true) {
         return Ok(());
     }
 
-    let expected = sum(&visible, &right);
+    let expected = sum(&visible);
     let of_visible = |share: &dyn Fn(usize) -> DVec3| {
         visible.iter().filter(|&&light| is_in_front(query, light)).map(|&light| share(light)).sum::<DVec3>()
     };
@@ -250,12 +265,7 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
     });
     trial.forall(1000, queries, |queries| {
         // The rays that must be traced are those of the student's own `shadow_ray`, which other checks judge.
-        let of_lights = |query: &ShadeQuery| {
-            let of = |light: &LightSample| ShadowQuery { surface: query.surface, light: *light };
-            query.lights.iter().map(of).collect::<Vec<_>>()
-        };
-        let shadows: Vec<ShadowQuery> = queries.iter().flat_map(of_lights).collect();
-        let mut rays = trial.kit.shadow_ray(&shadows).into_iter();
+        let mut rays = trial.kit.shadow_ray(&shadow_queries(queries)).into_iter();
         let answers = trial.kit.shade(queries);
         let judge = |(query, yours): (&ShadeQuery, ShadeAnswer)| {
             let rays: Vec<_> = rays.by_ref().take(query.lights.len()).collect();
@@ -273,7 +283,8 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
                 )
                 .explained_by([(true, "you ask about another ray: pass the ray of shadow_ray to visible")]));
             }
-            judge_traced(query, &yours.traced)
+            let has_ray: Vec<bool> = rays.iter().map(Option::is_some).collect();
+            judge_traced(query, &has_ray, &yours.traced)
         };
         queries.iter().zip(answers).map(judge).collect()
     })
@@ -287,7 +298,7 @@ fn is_like(own: &raykata::ray::Ray, ray: &raykata::ray::Ray) -> bool {
     (own.origin - ray.origin).abs().max_element() <= step && own.direction == ray.direction && near_range
 }
 
-fn judge_traced(query: &ShadeQuery, traced: &[usize]) -> CheckResult {
+fn judge_traced(query: &ShadeQuery, has_ray: &[bool], traced: &[usize]) -> CheckResult {
     let count = query.lights.len();
     let right = |light: usize| {
         share(query, light, cosine(query, light, query.surface.shading_normal), specular(&term(query, light)))
@@ -299,8 +310,9 @@ fn judge_traced(query: &ShadeQuery, traced: &[usize]) -> CheckResult {
     let needed: Vec<usize> = (0..count).filter(needs).collect();
     // A light adds nothing if it is behind the surface, or if all products of its radiance with the material are 0. The
     // highlight is also 0 for a negative cosine.
-    let behind = |light: usize| lowest(&query.surface, query.lights[light].direction) < -1e-5;
-    let dark = |light: usize| query.lights[light].radiance == Vec3::ZERO;
+    let behind =
+        |light: usize| !has_ray[light] && lowest(&query.surface, query.lights[light].direction) < -1e-5;
+    let dark = |light: usize| !has_ray[light] && query.lights[light].radiance == Vec3::ZERO;
     let black = |light: usize| {
         let Material { diffuse, specular, .. } = &query.material;
         let radiance = query.lights[light].radiance;

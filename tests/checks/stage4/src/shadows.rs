@@ -55,7 +55,7 @@ fn judge_shadow_rays(
         let call = || query.call("shadow_ray");
         let Some(ray) = yours else {
             let expected = "a ray: the light is in front of the surface";
-            return Err(Broken::with_texts(call(), "None", expected, "the definition").explained_by([]));
+            return Err(Broken::with_texts(call(), "None", expected, "the definition"));
         };
         match law(query, &ray) {
             None => Ok(()),

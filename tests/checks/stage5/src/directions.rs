@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::compare;
+use checks::judge::{compare, compare_formulas};
 use checks::nasty;
 use checks::paste::call;
 use glam::{DVec3, Vec3, vec3};
@@ -25,29 +25,38 @@ fn off_reflection(direction: Vec3, normal: Vec3, yours: Vec3) -> f64 {
 pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> CheckResult {
     // Begin with a slanted ray: along the normal or the surface, several mistakes give the same answer.
     trial.forall_and(&[(vec3(0.6, -0.8, 0.0), Vec3::Y)], 2000, arrival(), |queries| {
-        compare(queries, trial.kit.reflect(queries), judge_reflection)
+        compare_formulas(queries, trial.kit.reflect(queries), judge_reflection, reflections)
     })
 }
 
 const ADDED: &str = "you add 2 n (d·n): subtract it, d - 2 n (d·n)";
 const SUBTRACTED_ONCE: &str = "you subtract n (d·n) once: subtract it twice";
 
-fn judge_reflection(query: &(Vec3, Vec3), yours: Vec3) -> CheckResult {
-    let (direction, normal) = query;
+/// The reflected direction in double precision.
+fn reflected((direction, normal): &(Vec3, Vec3)) -> DVec3 {
     let (d, n) = (direction.as_dvec3(), normal.as_dvec3());
-    let expected = (d - 2.0 * d.dot(n) * n).normalize();
-    let near = |v: DVec3, limit: f64| (yours.as_dvec3() - v).length() < limit;
+    (d - 2.0 * d.dot(n) * n).normalize()
+}
+
+fn judge_reflection(query: &(Vec3, Vec3), yours: Vec3) -> CheckResult {
+    let expected = reflected(query);
     // The tolerance covers a few roundings of numbers up to 2.
-    if near(expected, 1e-6) {
+    if (yours.as_dvec3() - expected).length() < 1e-6 {
         return Ok(());
     }
+    Err(Broken::new(call("reflect", &[&query.0, &query.1]), yours, expected.as_vec3(), "closed form"))
+}
+
+/// Wrong formulas, each with whether it gives this direction.
+fn reflections(query: &(Vec3, Vec3), yours: &Vec3) -> Vec<(bool, &'static str)> {
+    let (d, n) = (query.0.as_dvec3(), query.1.as_dvec3());
+    let near = |v: DVec3, limit: f64| (yours.as_dvec3() - v).length() < limit;
     let is = |v: DVec3| near(v, 1e-5);
     let (along, added) = (d - d.dot(n) * n, d + 2.0 * d.dot(n) * n);
-    let broken = Broken::new(call("reflect", &[direction, normal]), yours, expected.as_vec3(), "closed form");
-    Err(broken.explained_by([
+    vec![
         (is(d), "you return the direction unchanged"),
         (is(-d), "you reverse the whole direction: reverse only its part along n"),
-        (is(-expected), "your result is negated: it points into the surface"),
+        (is(-reflected(query)), "your result is negated: it points into the surface"),
         (is(added), ADDED),
         (is(added.normalize_or_zero()), ADDED),
         (is(along), SUBTRACTED_ONCE),
@@ -56,7 +65,7 @@ fn judge_reflection(query: &(Vec3, Vec3), yours: Vec3) -> CheckResult {
             near(along.normalize_or_zero(), 1e-5 + 1e-6 / along.length().max(1e-7)) || along.length() < 1e-5,
             SUBTRACTED_ONCE,
         ),
-    ]))
+    ]
 }
 
 pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> CheckResult {
@@ -70,7 +79,7 @@ pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> C
         // Another check judges the direction. Here it must only be a reflection.
         if !(off_reflection(direction, normal, reflected) < 1e-3) {
             let (input, expected) = (call("reflect", &[&direction, &normal]), "the reflected direction");
-            return Err(Broken::new(input, reflected, expected, "closed form").explained_by([]));
+            return Err(Broken::new(input, reflected, expected, "closed form"));
         }
         direction = reflected;
     }
@@ -118,6 +127,23 @@ const SLIDE: f64 = 4e-5;
 const ANGLE: &str = "you multiply the angle by n1 / n2: multiply its sine";
 const RATIO_NOT_SQUARED: &str = "you do not square the ratio: sin² θ2 = (n1 / n2)² sin² θ1";
 
+/// Mistakes that show near the normal: a sine from the rounded cosine, and a division by the sine.
+fn mistakes_near_normal(query: &RefractQuery, yours: Option<Vec3>) -> [(bool, &'static str); 2] {
+    let RefractQuery { direction, normal, n1, n2 } = *query;
+    let (is_nan, cosine) = (yours.is_some_and(Vec3::is_nan), direction.dot(normal));
+    let sine_squared = 1.0 - cosine * cosine;
+    let is_along = sine_squared == 0.0 || direction - cosine * normal == Vec3::ZERO;
+    let sine_2 = yours.map_or(0.0, |yours| yours.reject_from(normal).length());
+    let is_from_cosine = sine_squared < 1e-3 && (sine_2 - n1 / n2 * sine_squared.sqrt()).abs() < 1e-5;
+    [
+        (
+            is_from_cosine || (is_nan && sine_squared < 0.0),
+            "you compute sin θ1 as √(1 - cos² θ1): near the normal that is inexact, or NaN where cos² θ1 is rounded up",
+        ),
+        (is_nan && is_along, "you return NaN along the normal: do not divide by sin θ1, which gives 0 / 0"),
+    ]
+}
+
 fn judge_refraction(query: &RefractQuery, yours: Option<Vec3>, error: f64) -> CheckResult {
     let (expected, margin) = snell(query);
     // Near the critical angle the error grows with the root of the rounding, and both `None` and a direction pass.
@@ -132,32 +158,42 @@ fn judge_refraction(query: &RefractQuery, yours: Option<Vec3>, error: f64) -> Ch
     if right {
         return Ok(());
     }
-    let d = query.direction.as_dvec3();
-    let ratio = f64::from(query.n1) / f64::from(query.n2);
-    let sine =
-        (d - d.dot(query.normal.as_dvec3().normalize()) * query.normal.as_dvec3().normalize()).length();
+    let expected = expected.map(|v| v.as_vec3());
+    let is_nan = yours.is_some_and(Vec3::is_nan);
+    Err(Broken::new(paste(query), yours, expected, "Snell's law in double precision")
+        .explained_by([
+            (is_nan && expected.is_none(), "you return NaN beyond the critical angle: return None"),
+            (
+                yours.is_some_and(|yours| off_reflection(query.direction, query.normal, yours) < 1e-4),
+                "you return the reflected direction",
+            ),
+            (
+                expected.is_none() && margin < 0.0 && yours.is_some(),
+                "you return a ray beyond the critical angle: return None",
+            ),
+            (
+                yours.is_some_and(|yours| yours.dot(query.normal) > 1e-3),
+                "your refracted ray stays on the side that it came from",
+            ),
+        ])
+        .explained_by(mistakes_near_normal(query, yours)))
+}
+
+/// Wrong formulas, each with whether it gives this answer.
+fn refractions(query: &RefractQuery, yours: &Option<Vec3>) -> Vec<(bool, &'static str)> {
+    let (expected, margin) = snell(query);
     let swapped = snell(&RefractQuery { n1: query.n2, n2: query.n1, ..*query }).0;
     // A mistake gives this answer: the same direction, or also none.
-    let gives_within = |v: Option<DVec3>, limit: f64| match (yours, v) {
+    let gives_within = |v: Option<DVec3>, limit: f64| match (*yours, v) {
         (Some(yours), Some(v)) => (yours.as_dvec3() - v).length() < limit,
         (None, None) => true,
-        _ => false,
+        _ => margin.abs() < 1e-5,
     };
     let gives = |v: Option<DVec3>| gives_within(v, 1e-4);
-    let is_nan = yours.is_some_and(Vec3::is_nan);
-    let is = |v: DVec3| yours.is_some_and(|yours| (yours.as_dvec3() - v).length() < 1e-4);
-    let expected = expected.map(|v| v.as_vec3());
-    Err(Broken::new(paste(query), yours, expected, "Snell's law in double precision").explained_by([
-        (is_nan && sine == 0.0, "you return NaN along the normal: do not divide by sin θ1"),
-        (is_nan && expected.is_none(), "you return NaN beyond the critical angle: return None"),
-        (is_nan && sine < 1e-3, "you return NaN near the normal: do not compute sin θ1 from the cosine"),
+    vec![
         (gives(swapped), "you exchange n1 and n2: sin θ2 = n1 / n2 · sin θ1"),
-        (is(d), "you return the direction unchanged"),
-        (
-            yours.is_some_and(|yours| off_reflection(query.direction, query.normal, yours) < 1e-4),
-            "you return the reflected direction",
-        ),
-        (expected.is_some_and(|v| is(-v.as_dvec3())), "your refracted ray is negated"),
+        (gives(Some(query.direction.as_dvec3())), "you return the direction unchanged"),
+        (gives(expected.map(|v| -v)), "your refracted ray is negated"),
         (
             gives(turned(query, |sine, ratio| -ratio * sine)),
             "you negate the part along the surface: keep its sign",
@@ -183,15 +219,7 @@ fn judge_refraction(query: &RefractQuery, yours: Option<Vec3>, error: f64) -> Ch
             RATIO_NOT_SQUARED,
         ),
         (gives(turned(query, |sine, ratio| ratio.sqrt() * sine)), RATIO_NOT_SQUARED),
-        (
-            expected.is_none() && ratio * sine > 1.0 && yours.is_some(),
-            "you return a ray beyond the critical angle: return None",
-        ),
-        (
-            yours.is_some_and(|yours| yours.dot(query.normal) > 1e-3),
-            "your refracted ray stays on the side that it came from",
-        ),
-    ]))
+    ]
 }
 
 /// Indices of refraction from 1/2 to 3, and pairs that are equal or almost equal.
@@ -220,7 +248,8 @@ pub(super) fn refract_obeys_snell(trial: &Trial<'_>) -> CheckResult {
         snell(query).1 > 1e-4 && query.direction.cross(query.normal).length() > 0.1
     });
     trial.forall_and(&chosen, 1500, bent, |queries| {
-        compare(queries, trial.kit.refract(queries), |query, yours| judge_refraction(query, yours, SLIDE))
+        let judge = |query: &RefractQuery, yours| judge_refraction(query, yours, SLIDE);
+        compare_formulas(queries, trial.kit.refract(queries), judge, refractions)
     })
 }
 
@@ -260,17 +289,14 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> CheckRes
             }
             let broken = Broken::new(paste(query), yours, Some(query.direction), "unchanged");
             let along = query.direction == -query.normal;
-            Err(broken.explained_by([
-                (
-                    along && yours.is_none_or(Vec3::is_nan),
-                    "a ray along the normal keeps its direction: do not divide by sin θ1, which gives 0 / 0",
-                ),
+            let broken = broken.explained_by([
                 (along, "a ray along the normal keeps its direction, and sin θ1 is 0 there"),
                 (
                     query.n1 == query.n2 && !along && yours.is_none(),
                     "with equal indices every ray goes straight on",
                 ),
-            ]))
+            ]);
+            Err(broken.explained_by(mistakes_near_normal(query, yours)))
         })
     })
 }
@@ -291,15 +317,16 @@ pub(super) fn refract_beyond_the_critical_angle_is_none(trial: &Trial<'_>) -> Ch
         let slanted = query.direction.cross(query.normal).length() > 0.1;
         (slanted && if beyond { margin < -1e-3 } else { margin > 1e-3 }).then_some(query)
     });
+    let judge = |query: &RefractQuery, yours: Option<Vec3>| {
+        let beyond = snell(query).0.is_none();
+        // Another check judges the angle. Here a ray below the critical angle must only be refracted.
+        if !beyond && yours.is_some_and(|yours| yours.is_finite() && yours.dot(query.normal) < 1e-3) {
+            return Ok(());
+        }
+        judge_refraction(query, yours, SLIDE)
+    };
     trial.forall_and(&chosen, 400, inputs, |queries| {
-        compare(queries, trial.kit.refract(queries), |query, yours| {
-            let beyond = snell(query).0.is_none();
-            // Another check judges the angle. Here a ray below the critical angle must only be refracted.
-            if !beyond && yours.is_some_and(|yours| yours.is_finite() && yours.dot(query.normal) < 1e-3) {
-                return Ok(());
-            }
-            judge_refraction(query, yours, SLIDE)
-        })
+        compare_formulas(queries, trial.kit.refract(queries), judge, refractions)
     })
 }
 
@@ -314,6 +341,7 @@ pub(super) fn refract_survives_rounded_directions(trial: &Trial<'_>) -> CheckRes
             RefractQuery { direction, normal, n1, n2 }
         });
     trial.forall(2000, inputs, |queries| {
-        compare(queries, trial.kit.refract(queries), |query, yours| judge_refraction(query, yours, CAREFUL))
+        let judge = |query: &RefractQuery, yours| judge_refraction(query, yours, CAREFUL);
+        compare_formulas(queries, trial.kit.refract(queries), judge, refractions)
     })
 }

@@ -116,13 +116,13 @@ fn colors(kit: &dyn Kit, rays: &[Ray], spheres: &[Sphere]) -> Vec<Vec3> {
     pixels
 }
 
+/// Clear glass.
+pub(super) fn glass(index_of_refraction: f32) -> Material {
+    let fresnel = Fresnel::Exact;
+    Material { transmission: Vec3::ONE, index_of_refraction, fresnel, ..Material::default() }
+}
+
 pub(super) fn picture_of_a_mirror_and_glass(trial: &Trial<'_>) -> CheckResult {
-    let glass = |index_of_refraction: f32| Material {
-        transmission: Vec3::ONE,
-        index_of_refraction,
-        fresnel: Fresnel::Exact,
-        ..Material::default()
-    };
     let mirror = |mirror: Vec3| Material { mirror, fresnel: Fresnel::None, ..Material::default() };
     let spheres = |x: f32, z: f32, index: f32, gold: Vec3| {
         let sphere = |center: Vec3, material: Material| Sphere { center, radius: center.y, material };

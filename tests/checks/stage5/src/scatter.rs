@@ -123,12 +123,18 @@ pub(super) fn scatter_weighs_rays_by_the_material(trial: &Trial<'_>) -> CheckRes
     // Another check judges total internal reflection and angles close to it.
     let below =
         queries().prop_filter("below the critical angle", |query| snell(&refract_query(query)).1 > 1e-3);
-    trial.forall_and(&drawn(), 1000, below, |queries| {
-        let own = own_functions(trial, queries);
-        let answers = trial.kit.scatter(queries);
-        let judge = |((query, own), yours)| judge_weights(query, own, yours);
-        queries.iter().zip(own).zip(answers).map(judge).collect()
-    })
+    trial.forall_and(&drawn(), 1000, below, |queries| judge_with_own(trial, queries, judge_weights))
+}
+
+/// Judges rays together with the answers of the student's own functions.
+fn judge_with_own(
+    trial: &Trial<'_>,
+    queries: &[ScatterQuery],
+    judge: fn(&ScatterQuery, Own, Vec<SecondaryRay>) -> CheckResult,
+) -> Vec<CheckResult> {
+    let own = own_functions(trial, queries);
+    let answers = trial.kit.scatter(queries);
+    queries.iter().zip(own).zip(answers).map(|((query, own), yours)| judge(query, own, yours)).collect()
 }
 
 /// A surface that reflects and transmits; glass that reflects by Fresnel alone; and one channel per secondary ray.
@@ -259,12 +265,7 @@ pub(super) fn scatter_swaps_indices_when_leaving_glass(trial: &Trial<'_>) -> Che
         let direction = vec3(0.6, -0.8, 0.0);
         ScatterQuery { direction, entering, ..slanted.clone() }
     });
-    trial.forall_and(&chosen, 300, inputs, |queries| {
-        let own = own_functions(trial, queries);
-        let answers = trial.kit.scatter(queries);
-        let judge = |((query, own), yours)| judge_directions(query, own, yours);
-        queries.iter().zip(own).zip(answers).map(judge).collect()
-    })
+    trial.forall_and(&chosen, 300, inputs, |queries| judge_with_own(trial, queries, judge_directions))
 }
 
 fn judge_directions(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> CheckResult {
@@ -330,20 +331,22 @@ pub(super) fn scatter_refracts_nothing_in_total_reflection(trial: &Trial<'_>) ->
     });
     let beyond =
         queries().prop_filter("beyond the critical angle", |query| snell(&refract_query(query)).1 < -1e-3);
-    trial.forall_and(&chosen, 150, beyond, |queries| {
-        compare(queries, trial.kit.scatter(queries), judge_total_reflection)
-    })
+    trial.forall_and(&chosen, 150, beyond, |queries| judge_with_own(trial, queries, judge_total_reflection))
 }
 
-fn judge_total_reflection(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> CheckResult {
+fn judge_total_reflection(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> CheckResult {
     let [weight, mirror, transmission] = [query.weight, query.material.mirror, query.material.transmission];
     let share = if query.material.fresnel == Fresnel::None { 0.0 } else { 1.0 };
     let expected = weight * (mirror + share * transmission);
     let reflected = find(&yours, Bounce::Reflection).map_or(Vec3::ZERO, |child| child.weight);
-    let refracted = find(&yours, Bounce::Transmission);
-    let sound = yours.iter().all(|child| child.weight.is_finite() && child.direction.is_finite());
+    // Another check judges a ray that the student's own `refract` returns here, and the reflectance of the student's own
+    // functions, which may be NaN.
+    let refracted = find(&yours, Bounce::Transmission).filter(|_| own.refracted.is_none());
+    let is_own = own.refracted.is_some() || !own.reflectance.is_finite();
+    let sound = is_own || yours.iter().all(|child| child.weight.is_finite() && child.direction.is_finite());
     let is = |v: Vec3| (reflected - v).abs().max_element() <= 1e-5;
-    if refracted.is_none() && sound && is(expected) {
+    let own_share = weight * (mirror + own.reflectance as f32 * transmission);
+    if refracted.is_none() && sound && (is(expected) || is(own_share) || own_share.is_nan()) {
         return Ok(());
     }
     let text = format!("Reflection of weight {expected}, and no Transmission");

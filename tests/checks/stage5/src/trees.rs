@@ -1,5 +1,6 @@
 //! Whole ray trees, counted in scenes so simple that the number of rays is known.
 
+use super::picture::glass;
 use super::scatter::{FAR, paste};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -7,7 +8,7 @@ use checks::golden::Table;
 use checks::judge::compare_formulas;
 use glam::{Vec3, vec3};
 use raykata::kit::{Bounce, Kit, Limits, ScatterQuery};
-use raykata::material::{Fresnel, Material};
+use raykata::material::Material;
 
 /// A tree with more rays than this is reported as infinite.
 const TOO_MANY: usize = 20_000;
@@ -120,7 +121,7 @@ fn judge(trial: &Trial<'_>, rooms: &[Room], allows: impl Fn(&Room, usize) -> boo
             return Ok(());
         }
         let input = format!("a closed room, with every secondary ray traced, from\n{}", paste(&first));
-        Err(Broken::with_texts(input, describe(rays), describe(expected), "counted").explained_by([]))
+        Err(Broken::with_texts(input, describe(rays), describe(expected), "counted"))
     };
     let answers = rooms.iter().map(grow).collect();
     all_hold(compare_formulas(rooms, answers, judge, |room, (rays, _)| {
@@ -172,12 +173,7 @@ pub(super) fn facing_mirrors_end(trial: &Trial<'_>) -> CheckResult {
 pub(super) fn tree_of_a_glass_sphere(trial: &Trial<'_>) -> CheckResult {
     // Another index and another angle for a hidden seed.
     let (index_of_refraction, sine) = trial.composed((1.5, 0.5), (1.2..1.8f32, 0.2..0.8f32));
-    let glass = Material {
-        transmission: Vec3::ONE,
-        index_of_refraction,
-        fresnel: Fresnel::Exact,
-        ..Material::default()
-    };
+    let glass = glass(index_of_refraction);
     let start = vec3(-1.0, 0.0, 0.0);
     let direction = vec3((1.0 - sine * sine).sqrt(), sine, 0.0);
     let input = "a ray into a sphere of glass (index 1.5, Fresnel::Exact) at 30°, depth 4";

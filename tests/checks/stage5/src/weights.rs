@@ -65,7 +65,7 @@ fn judge_own_weight(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> CheckResu
         format!("{kind} of weight {weight} {}", if traced { "traced" } else { "not traced" })
     };
     let (yours, expected) = (verdict(found[off]), verdict(counts[off]));
-    Err(Broken::with_texts(paste(query), yours, expected, "its own weight and the limit").explained_by([]))
+    Err(Broken::with_texts(paste(query), yours, expected, "its own weight and the limit"))
 }
 
 /// What other rules trace. Each rule gets the own weight of a ray and that of the other ray, and may also test that the own

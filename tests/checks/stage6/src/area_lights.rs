@@ -178,13 +178,15 @@ struct Seen {
     local: Vec<DVec3>,
 }
 
+/// How many of these numbers differ by a thousandth.
+pub(super) fn n_thousandths(shares: impl Iterator<Item = f64>) -> usize {
+    shares.map(|share| (share * 1e3) as u64).collect::<std::collections::BTreeSet<u64>>().len()
+}
+
 impl Seen {
     /// How many different angles to the axis there are, of those of the first sphere, up to a thousandth.
     fn n_angles(&self) -> usize {
-        let mut angles: Vec<u64> = self.shares.iter().map(|(share, _)| (share * 1e3) as u64).collect();
-        angles.sort_unstable();
-        angles.dedup();
-        angles.len()
+        n_thousandths(self.shares.iter().map(|(share, _)| *share))
     }
 
     /// What a wrong formula for 1 - cos θ gives: `share` computes it from a random number and that of the rim.

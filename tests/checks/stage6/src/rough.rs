@@ -1,5 +1,6 @@
 //! Glossy reflection: samples of a Phong lobe.
 
+use super::area_lights::n_thousandths;
 use super::pixels::unit_number;
 use crate::unit_arrival;
 use checks::Trial;
@@ -69,10 +70,7 @@ impl Lobe {
 
     /// How many different angles to `ideal` there are, up to a thousandth of the distribution.
     fn n_angles(&self) -> usize {
-        let mut angles: Vec<u64> = self.shares.iter().map(|(share, _)| (share * 1e3) as u64).collect();
-        angles.sort_unstable();
-        angles.dedup();
-        angles.len()
+        n_thousandths(self.shares.iter().map(|(share, _)| *share))
     }
 }
 

@@ -195,8 +195,7 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> CheckResult {
             }
             match yours == sum {
                 true => Ok(()),
-                false => Err(broken(query, yours, sum, "the sum of your counts for single hits and samples")
-                    .explained_by([])),
+                false => Err(broken(query, yours, sum, "the sum of your counts for single hits and samples")),
             }
         };
         queries.iter().zip(&parts).zip(whole).map(judge).collect()

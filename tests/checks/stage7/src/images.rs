@@ -239,7 +239,7 @@ fn judge_stretch(stretch: &Stretch, queries: &[TextureQuery], yours: &[Vec3]) ->
             let [begin, end] = ends;
             broken.input +=
                 &format!(",\nin the middle between {begin:?} and {end:?}: the colour must be {law}");
-            return Err(broken.explained_by([]));
+            return Err(broken);
         }
     }
     Ok(())
@@ -324,8 +324,7 @@ fn judge_strange(trial: &Trial<'_>, image: &Texture, u: f32, v: f32) -> CheckRes
         let expected = at(image, 1, if v == 0.75 { 0 } else { 1 });
         return match apart(yours, expected) < NEAR {
             true => Ok(()),
-            false => Err(Broken::new(input, yours, expected.as_vec3(), "the pixel's colour, at its centre")
-                .explained_by([])),
+            false => Err(Broken::new(input, yours, expected.as_vec3(), "the pixel's colour, at its centre")),
         };
     }
     let finite = |share: f32| if share.is_finite() { share } else { 0.0 };

@@ -153,7 +153,7 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> CheckResult {
                 return Ok(());
             }
             let input = format!("light_effects of {query:?}");
-            Err(Broken::new(input, yours, *expected, "the definition").explained_by([]))
+            Err(Broken::new(input, yours, *expected, "the definition"))
         })
     })
 }

@@ -254,7 +254,7 @@ fn compare_effects(
         return Ok(());
     }
     // Which of the two answers is wrong is not known, so no mistake is.
-    Err(Broken::new(describe(query), yours, expected, source).explained_by([]))
+    Err(Broken::new(describe(query), yours, expected, source))
 }
 
 fn color() -> impl Strategy<Value = Vec3> + Clone {

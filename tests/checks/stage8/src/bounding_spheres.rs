@@ -4,7 +4,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
 use checks::generate::{direction, point, sphere};
-use checks::judge::compare;
+use checks::judge::{compare, compare_formulas};
 use checks::nasty;
 use checks::paste::{call, list};
 use glam::{DVec3, Vec3};
@@ -138,8 +138,7 @@ struct Entry {
 
 impl Entry {
     fn asked(&self) -> BoundingSphereQuery {
-        let BoundingSphereQuery { ray, sphere } = self.plain;
-        let t_scale = self.size / self.speed;
+        let (BoundingSphereQuery { ray, sphere }, t_scale) = (self.plain, self.size / self.speed);
         let scaled = Ray { origin: self.size * ray.origin, direction: self.speed * ray.direction, ..ray };
         BoundingSphereQuery {
             ray: scaled.with_range(t_scale * ray.t_min, t_scale * ray.t_max),
@@ -158,23 +157,23 @@ fn roots(ray: &Ray, sphere: &Sphere, squared_radius: f64) -> Option<[f64; 2]> {
 
 fn judge_entries(trial: &Trial<'_>, queries: &[Entry]) -> Vec<CheckResult> {
     let asked: Vec<BoundingSphereQuery> = queries.iter().map(Entry::asked).collect();
-    let outcomes = compare(queries, trial.kit.enter_bounding_sphere(&asked), |entry, yours| {
+    // All sizes are powers of two, so the answers for the plain queries are exactly these.
+    let plain = |(entry, yours): (&Entry, Option<f32>)| yours.map(|t| t * entry.speed / entry.size);
+    let answers = queries.iter().zip(trial.kit.enter_bounding_sphere(&asked)).map(plain).collect();
+    let judge = |entry: &Entry, yours: Option<f32>| {
         let BoundingSphereQuery { ray, sphere } = entry.plain;
-        // All sizes are powers of two, so the answer for the plain query is exactly this.
-        let t_scale = entry.size / entry.speed;
-        let yours = yours.map(|t| t / t_scale);
         let first =
             |radius: f32| meet(&ray, Body::Sphere(Sphere { radius, ..sphere })).and_then(|meeting| meeting.t);
         let starts_inside = |radius: f32| (ray.at(ray.t_min) - sphere.center).length() < radius;
         let near = |t: f32, right: f32| (t - right).abs() <= 1e-4 * right.abs().max(1.0);
         let (smaller, larger) = (0.999 * sphere.radius, 1.001 * sphere.radius);
-        let describe = |t: Option<f32>| format!("{:?}", t.map(|t| t_scale * t));
+        let describe = |t: Option<f32>| format!("{:?}", t.map(|t| entry.size / entry.speed * t));
         let broken = |right: Option<f32>, remark: &str| {
             let asked = entry.asked();
             let input = call("enter_bounding_sphere", &[&asked.ray, &asked.sphere]);
             let expected = format!("{}{remark}", describe(right));
             Err(Broken::with_texts(input, describe(yours), expected, "exact arithmetic")
-                .explained_by(mistakes(entry, yours, right)))
+                .explained_by(observations(entry, yours, right)))
         };
         if starts_inside(smaller) {
             return match yours {
@@ -198,26 +197,20 @@ fn judge_entries(trial: &Trial<'_>, queries: &[Entry]) -> Vec<CheckResult> {
             (None, None, Some(_)) if !starts_inside(larger) => broken(None, ""),
             _ => Ok(()),
         }
-    });
-    // A `t` in another unit is sometimes a wrong `t`, and not always a lost one.
-    let loses_only = outcomes.iter().all(|outcome| outcome.as_ref().err().is_none_or(|b| b.yours == "None"));
-    let without_unit = |broken: Broken| broken.not_explained_by(ANOTHER_UNIT);
-    outcomes
-        .into_iter()
-        .map(|outcome| if loses_only { outcome.map_err(without_unit) } else { outcome })
-        .collect()
+    };
+    compare_formulas(queries, answers, judge, |entry, yours| formulas(entry, *yours))
 }
 
-const ANOTHER_UNIT: &str = "your t has another unit, that of the world: it counts lengths of direction";
+/// Whether a wrong method gives this `t`. It may round in another way; single precision has errors of some roundings.
+fn near(t: f64, wrong: f64) -> bool {
+    (t - wrong).abs() <= 1e-4 * wrong.abs().max(1.0)
+}
 
-/// The known mistakes, each with whether it gives the answer `yours` in place of `right`.
-fn mistakes(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(bool, &'static str)> {
+/// Wrong formulas, each with whether it gives the answer `yours`.
+fn formulas(entry: &Entry, yours: Option<f32>) -> Vec<(bool, &'static str)> {
     let BoundingSphereQuery { ray, sphere } = entry.plain;
     let radius = f64::from(sphere.radius);
     let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
-    let ends = roots(&ray, &sphere, radius * radius);
-    // Wrong methods may round in another way; single precision has errors of some roundings.
-    let near = |t: f64, wrong: f64| (t - wrong).abs() <= 1e-4 * wrong.abs().max(1.0);
     let is = |wrong: Option<f64>| match (yours, wrong) {
         (None, None) => true,
         (Some(t), Some(wrong)) => near(f64::from(t), wrong),
@@ -226,7 +219,30 @@ fn mistakes(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(bool,
     let entered = |ends: Option<[f64; 2]>| {
         ends.and_then(|[enter, leave]| (leave >= t_min && enter <= t_max).then(|| enter.max(t_min)))
     };
+    let ends = roots(&ray, &sphere, radius * radius);
     let length = f64::from(entry.speed) * ray.direction.as_dvec3().length();
+    vec![
+        (
+            is(entered(ends.map(|ends| ends.map(|end| length * end)))),
+            "your t has another unit, that of the world: it counts lengths of direction",
+        ),
+        (
+            is(entered(roots(&ray, &sphere, radius / f64::from(entry.size)))),
+            "you use the radius in place of its square: the distance from the centre is squared, too",
+        ),
+        (
+            is(entered(roots(&ray, &sphere, 4.0 * radius * radius))),
+            "your sphere is too large: you compare with twice the radius",
+        ),
+    ]
+}
+
+/// Mistakes that the wrong answer `yours` shows where `right` is right.
+fn observations(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(bool, &'static str)> {
+    let BoundingSphereQuery { ray, sphere } = entry.plain;
+    let radius = f64::from(sphere.radius);
+    let ends = roots(&ray, &sphere, radius * radius);
+    let is = |end: usize| matches!((yours, ends), (Some(t), Some(ends)) if near(t.into(), ends[end].min(ray.t_max.into())));
     let starts_inside = right == Some(ray.t_min);
     let found = yours.is_some() && right.is_none();
     let late = matches!((yours, right), (Some(yours), Some(right)) if yours > right && near(yours.into(), right.into()));
@@ -237,39 +253,27 @@ fn mistakes(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(bool,
              earlier t",
         ),
         (
-            (length - 1.0).abs() > 1e-6 && is(entered(ends.map(|ends| ends.map(|end| length * end)))),
-            ANOTHER_UNIT,
-        ),
-        (
-            is(entered(roots(&ray, &sphere, radius / f64::from(entry.size)))),
-            "you use the radius in place of its square: the distance from the centre is squared, too",
-        ),
-        (
-            starts_inside && is(ends.map(|ends| ends[0])),
+            starts_inside && is(0),
             "you return a t before t_min: a ray that starts inside the sphere enters it at t_min",
         ),
         (
-            starts_inside && is(ends.map(|ends| ends[1].min(t_max))),
+            starts_inside && is(1),
             "you return where the ray leaves: a ray that starts inside the sphere enters it at t_min",
         ),
         (
             starts_inside && yours.is_none(),
             "you return None for a ray that starts inside: a ray that starts inside the sphere enters it at t_min",
         ),
-        (is(ends.map(|ends| ends[1].min(t_max))), "your t is later than the entry, which is the nearer root"),
         (
-            found && ends.is_some_and(|ends| ends[1] < t_min),
+            found && ends.is_some_and(|ends| ends[1] < ray.t_min.into()),
             "you return an entry for a sphere that lies behind the ray: the ray leaves it before t_min",
         ),
         (
-            found && ends.is_some_and(|ends| ends[0] > t_max),
+            found && ends.is_some_and(|ends| ends[0] > ray.t_max.into()),
             "you return an entry for a sphere that lies beyond t_max",
         ),
-        (
-            is(entered(roots(&ray, &sphere, 4.0 * radius * radius))),
-            "your sphere is too large: you compare with twice the radius",
-        ),
         (found && ends.is_none(), "you return an entry for a sphere that lies beside the ray"),
+        (is(1), "your t is later than the entry, which is the nearer root"),
     ]
 }
 

@@ -111,8 +111,7 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> CheckResult {
             "None, twice",
             "a hit of at least one of them",
             "they share the edge",
-        )
-        .explained_by([])),
+        )),
         _ => Ok(()),
     });
     // The share of the rays that pass between the polygons shows whether rounding decides, or the edge is left out.

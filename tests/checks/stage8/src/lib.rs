@@ -73,8 +73,8 @@ checks::stage! { ($ crate) 8 [
     splines::nurbs_point_is_the_weighted_mean_of_its_net
     splines::nurbs_arcs_are_exact
     subdivision::loop_makes_four_triangles_of_each
-    loop_weights::loop_places_vertices_by_the_rule
-    loop_weights::loop_borders_depend_on_borders
+    loop_weights::loop_places_vertices_by_the_rule => judge_weights(false)
+    loop_weights::loop_borders_depend_on_borders => judge_weights(true)
     table::table_of_curved_surfaces: composed
     picture::picture_of_placed_solids: composed
 ] }

@@ -260,17 +260,9 @@ impl<'a> Step<'a> {
 }
 
 /// Measures the weights: moves each old vertex a little and compares the answers.
-fn judge_weights(trial: &Trial<'_>, border: bool) -> CheckResult {
+pub(super) fn judge_weights(trial: &Trial<'_>, border: bool) -> CheckResult {
     judge(trial, |mesh, yours| {
         let moved = trial.kit.loop_subdivide(&moved(mesh));
         Step::new(mesh, yours, &moved).judge(border)
     })
-}
-
-pub(super) fn loop_places_vertices_by_the_rule(trial: &Trial<'_>) -> CheckResult {
-    judge_weights(trial, false)
-}
-
-pub(super) fn loop_borders_depend_on_borders(trial: &Trial<'_>) -> CheckResult {
-    judge_weights(trial, true)
 }

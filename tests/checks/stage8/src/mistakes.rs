@@ -145,7 +145,10 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>) -> M
         (only(&[top], &side), "you leave out the end at `base`: a ray can enter or leave through it"),
         (only(&[base, top], &[]), "you leave out the side: only the ends are hit"),
         (
-            yours.is_none() && endless.first().is_none_or(|enter| *enter <= f64::from(ray.t_min)),
+            match endless.first().is_none_or(|enter| *enter <= f64::from(ray.t_min)) {
+                true => yours.is_none(),
+                false => only(&[base, top], &side),
+            },
             "you give up because the ray enters the infinite cylinder before t_min: it can still enter through an end, or \
              leave",
         ),
@@ -212,20 +215,19 @@ pub(super) fn normals_of_cone(cone: &Cone, at: DVec3) -> WrongNormals {
     ]
 }
 
+pub(super) const OUTSIDE: &str = "you return a point of the plane that lies outside of the shape";
+
 /// What flat shapes have in common: `t` in the plane, which side the ray comes from, and whether the point is inside.
 fn of_flat(ray: &Ray, yours: Option<f32>, t: f64, slope: f64, inside: bool) -> Mistakes {
-    let lost = yours.is_none() && inside;
+    let found_if = |is_found: bool| is(ray, yours, first(ray, [t]).filter(|_| is_found));
     vec![
+        (found_if(true), OUTSIDE),
         (
-            !inside && yours.is_some_and(|yours| is_near(ray, yours, t)),
-            "you return a point of the plane that lies outside of the shape",
-        ),
-        (
-            lost && slope < 0.0,
+            found_if(inside && slope > 0.0),
             "you lose one of its two sides, the one to which its normal points: a ray can hit it from both",
         ),
         (
-            lost && slope > 0.0,
+            found_if(inside && slope < 0.0),
             "you lose one of its two sides, the one behind its normal: a ray can hit it from both",
         ),
     ]
@@ -283,7 +285,7 @@ pub(super) fn of_polygon(query: &SolidQuery<Polygon>, yours: Option<f32>) -> Mis
             "you subtract a corner twice: the plane of an edge passes through the ray's origin",
         ),
         (
-            yours.is_none() && inside && normal.z.abs() < 0.1 * normal.length(),
+            wrong(inside) || (yours.is_none() && normal.z.abs() < 0.1 * normal.length()),
             "you lose upright polygons: drop the axis along which the normal is longest, not always z",
         ),
     ];

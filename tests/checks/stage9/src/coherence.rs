@@ -248,7 +248,7 @@ fn judge_opened(what: &str, yours: &PacketAnswer, singles: &[SearchQuery], most:
     if hits(&yours.hits) != expected || opened.is_empty() {
         let yours = format!("{} hits, {}", hits(&yours.hits), describe(opened.len() as u64));
         let broken = Broken::with_texts(input, yours, format!("{expected} hits"), "brute force");
-        return Err(broken.explained_by([]));
+        return Err(broken);
     }
     if let Some(pair) = again {
         let broken = Broken::with_texts(

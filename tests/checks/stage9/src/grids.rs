@@ -3,7 +3,7 @@
 use super::lists::{Fault, listing_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scales, Scene, Thing, along, lattice, rays, scales, sphere, straight, wall};
-use super::searches::{Described, GRID, agrees, grid_queries};
+use super::searches::{Described, GRID, grid_queries};
 use super::structures::{around_loosely, filled};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -47,10 +47,6 @@ fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<Fault> {
     }
     let listed = |(number, at, cell): (u32, UVec3, Cell)| (at, cell, grid.primitives(number).to_vec());
     listing_fault("cell", &grid.bounds, &query.bounds, &parts::numbered(grid).map(listed).collect::<Vec<_>>())
-}
-
-pub(super) fn grid_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    agrees(trial, &GRID)
 }
 
 /// A large sphere of the first cell is hit in the third cell, and a small one in the second cell is nearer.

@@ -4,7 +4,7 @@ use super::lists::{
     Fault, below, ended, fact, infinite, judge_references, leaves, listing_fault, some_boxes, too_deep,
 };
 use super::scenes::{Scene, Thing, along, wall};
-use super::searches::{Described, GRID, KD_TREE, agrees, queries, spheres_and_rays};
+use super::searches::{Described, GRID, KD_TREE, queries, spheres_and_rays};
 use super::structures::{filled, kd_tree};
 use checks::Trial;
 use checks::broken::CheckResult;
@@ -100,10 +100,6 @@ pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> CheckResult {
         }
     }
     Ok(())
-}
-
-pub(super) fn kd_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    agrees(trial, &KD_TREE)
 }
 
 /// A tree of one cut across an axis, with these primitives on the two sides.

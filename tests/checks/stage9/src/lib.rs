@@ -34,7 +34,7 @@ checks::stage! { ($ crate) 9 [
     resolutions::grid_resolution_makes_cubes
     resolutions::grid_resolution_of_flat_and_empty_boxes: turned
     grids::grid_lists_what_reaches_into_cells
-    grids::grid_search_agrees_with_brute_force
+    searches::grid_search_agrees_with_brute_force => agrees(&searches::GRID)
     grids::grid_hit_beyond_its_cell_waits: turned
     grids::grid_visits_cells_in_order_and_stops
     grids::grid_steps_do_not_add_up_roundings: turned
@@ -42,13 +42,13 @@ checks::stage! { ($ crate) 9 [
     octrees::octree_lists_what_reaches_into_leaves
     octrees::octree_divides_where_there_is_much
     octrees::octree_build_ends: turned
-    octrees::octree_by_cells_agrees_with_brute_force
-    octrees::octree_by_cells_goes_along_edges: turned
-    octrees::octree_by_neighbours_agrees_with_brute_force
-    octrees::octree_by_neighbours_goes_along_edges: turned
+    searches::octree_by_cells_agrees_with_brute_force => agrees(&searches::OCTREE_BY_CELLS)
+    octrees::octree_by_cells_goes_along_edges => along_edges(&searches::OCTREE_BY_CELLS): turned
+    searches::octree_by_neighbours_agrees_with_brute_force => agrees(&searches::OCTREE_BY_NEIGHBOURS)
+    octrees::octree_by_neighbours_goes_along_edges => along_edges(&searches::OCTREE_BY_NEIGHBOURS): turned
     octrees::octree_by_neighbours_visits_no_node_again: turned
-    octrees::octree_search_agrees_with_brute_force
-    octrees::octree_sorts_octants_that_are_entered_at_one_t: turned
+    searches::octree_search_agrees_with_brute_force => agrees(&searches::OCTREE)
+    octrees::octree_sorts_octants_that_are_entered_at_one_t => along_edges(&searches::OCTREE): turned
     octrees::octree_hit_beyond_its_octant_waits: turned
     octrees::octree_visits_what_the_ray_enters_before_its_hit: turned
     kd_trees::kd_tree_lists_what_reaches_into_leaves
@@ -58,7 +58,7 @@ checks::stage! { ($ crate) 9 [
     heuristics::kd_avoids_straddlers: mirrored
     heuristics::kd_cuts_off_empty_space: mirrored
     heuristics::kd_stops_at_overlap: mirrored
-    kd_trees::kd_search_agrees_with_brute_force
+    searches::kd_search_agrees_with_brute_force => agrees(&searches::KD_TREE)
     kd_trees::kd_finds_a_wall_on_the_face_of_the_box: turned
     kd_trees::hits_at_a_face_are_compared_with_each_other: turned
     kd_trees::kd_hit_beyond_its_leaf_waits: turned

@@ -7,8 +7,7 @@ use super::lists::{
 use super::parts;
 use super::scenes::{Scene, Thing, along, lattice, straight};
 use super::searches::{
-    Described, OCTREE, OCTREE_BY_CELLS, OCTREE_BY_NEIGHBOURS, Search, Searched, agrees, queries,
-    spheres_and_rays,
+    Described, OCTREE, OCTREE_BY_CELLS, OCTREE_BY_NEIGHBOURS, Search, Searched, queries, spheres_and_rays,
 };
 use super::structures::octree;
 use checks::Trial;
@@ -117,20 +116,8 @@ pub(super) fn octree_build_ends(trial: &Trial<'_>) -> CheckResult {
     Ok(())
 }
 
-pub(super) fn octree_by_cells_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    agrees(trial, &OCTREE_BY_CELLS)
-}
-
-pub(super) fn octree_by_neighbours_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    agrees(trial, &OCTREE_BY_NEIGHBOURS)
-}
-
-pub(super) fn octree_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    agrees(trial, &OCTREE)
-}
-
 /// Rays along the edges and through the corners at which octants meet, with zeros of both signs in their directions.
-fn along_edges(trial: &Trial<'_>, search: &Search<Octree>) -> CheckResult {
+pub(super) fn along_edges(trial: &Trial<'_>, search: &Search<Octree>) -> CheckResult {
     let mut things = lattice(4.0);
     // Leave out the sphere in the middle, where octants meet.
     things.remove(13);
@@ -155,18 +142,6 @@ fn along_edges(trial: &Trial<'_>, search: &Search<Octree>) -> CheckResult {
         }
         Err(error) => kit_error::unwind(error),
     }
-}
-
-pub(super) fn octree_by_cells_goes_along_edges(trial: &Trial<'_>) -> CheckResult {
-    along_edges(trial, &OCTREE_BY_CELLS)
-}
-
-pub(super) fn octree_by_neighbours_goes_along_edges(trial: &Trial<'_>) -> CheckResult {
-    along_edges(trial, &OCTREE_BY_NEIGHBOURS)
-}
-
-pub(super) fn octree_sorts_octants_that_are_entered_at_one_t(trial: &Trial<'_>) -> CheckResult {
-    along_edges(trial, &OCTREE)
 }
 
 /// A large sphere that overlaps the first octant is hit in the second, behind a small one.
@@ -237,6 +212,6 @@ pub(super) fn octree_by_neighbours_visits_no_node_again(trial: &Trial<'_>) -> Ch
         );
         let outcome =
             OCTREE_BY_NEIGHBOURS.judge_visits("octree over 128 spheres, by neighbours", query, &yours);
-        outcome.map_err(|broken| broken.explained_first_by([mistake]))
+        outcome.map_err(|broken| broken.explained_by([mistake]))
     })
 }

@@ -35,9 +35,7 @@ impl<S> Search<S> {
             let found = yours.hit.map(|hit| (hit.primitive, hit.t));
             let expected = format!("{:?} after at least one visit", closest(&query.hits, ray));
             let yours = format!("{found:?} after {} visits", yours.visits.len());
-            return Err(
-                Broken::with_texts(input(), yours, expected, "brute force, (primitive, t)").explained_by([])
-            );
+            return Err(Broken::with_texts(input(), yours, expected, "brute force, (primitive, t)"));
         }
         let end = yours.hit.map_or(f64::INFINITY, |hit| f64::from(hit.t)).min(f64::from(ray.t_max));
         // Allow 2⁻¹⁴, which is far more than rounding errors and far less than a cell.
