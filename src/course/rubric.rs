@@ -5,7 +5,7 @@
 //! entry of the rubric into the course file and edits it there.
 
 pub use super::score::{Level, Score};
-pub use super::stage::{CheckEntry, Stage, Visibility};
+pub use super::stage::{CheckEntry, Stage};
 use super::stage::{PLAIN, RUBRIC_FILES};
 use super::{Course, parse, parse_language};
 use std::collections::BTreeMap;

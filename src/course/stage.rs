@@ -32,20 +32,6 @@ pub struct CheckEntry {
     pub slide: String,
     /// Three hints, from a first thought to nearly the answer.
     pub hints: [String; 3],
-    /// Whether students see the inputs of the check; the default is [`Visibility::Visible`].
-    #[serde(default)]
-    pub visibility: Visibility,
-}
-
-/// How much of a check students see.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Visibility {
-    /// Its inputs and its full report.
-    #[default]
-    Visible,
-    /// Only that the check exists and whether it passes.
-    Hidden,
 }
 
 /// The rubric's entry for a stage: its title, its file and its checks.

@@ -1,7 +1,7 @@
 //! The text about a check that a student reads. It is the same in every format.
 
 use crate::grade::result::{self, CheckResult, Graded, Outcome, Session, in_words};
-use checks::rubric::{self, CheckEntry, Visibility};
+use checks::rubric::{self, CheckEntry};
 
 /// Returns the rubric entry of a check.
 pub fn entry(check: &CheckResult) -> CheckEntry {
@@ -15,9 +15,6 @@ pub fn message(check: &CheckResult) -> String {
     }
     if check.outcome == Outcome::WrongOnHidden {
         return "wrong on hidden inputs: right on the inputs that you have, wrong on others".to_owned();
-    }
-    if entry(check).visibility == Visibility::Hidden {
-        return format!("a hidden check: {}", check.outcome.words());
     }
     match check.message.trim() {
         "" => in_a_sentence(check.outcome).to_owned(),

@@ -6,7 +6,7 @@ use super::{messages, tally};
 use crate::grade::result::{CheckResult, Graded, Outcome, Picture, Session, score};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
-use checks::rubric::{Level, Visibility};
+use checks::rubric::Level;
 use maud::{Markup, html};
 
 /// Returns the page of a student as HTML.
@@ -165,7 +165,7 @@ fn heading(check: &CheckResult) -> Markup {
 }
 
 fn shows_pictures(check: &CheckResult) -> bool {
-    check.outcome != Outcome::WrongOnHidden && messages::entry(check).visibility == Visibility::Visible
+    check.outcome != Outcome::WrongOnHidden
 }
 
 /// Embeds a picture in the page if its data is valid.
