@@ -16,7 +16,7 @@ use crate::quality_options::{QualityOptions, THREADS, threads};
 use crate::report::{make_folder, name_of, with_at_most, write_file};
 use anyhow::Result;
 pub use drawing::{heat_color, projected, with_edges};
-use measure::Bench;
+use measure::{Bench, Measured};
 use raykata::scene::Accelerator;
 use rows::Comparison;
 use std::collections::BTreeMap;
@@ -97,18 +97,19 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     }
     let rows = rows::rows(of, &only, &scene);
     let mut measured = Bench { kit, rounds, threads }.measure(&scene, &rows)?;
-    // A row that lacks what another row has measures something else: its functions are not written yet.
-    let in_all = |note: &String| measured.iter().all(|row| row.notes.contains(note));
-    let in_all: Vec<String> = measured[0].notes.iter().filter(|note| in_all(note)).cloned().collect();
-    let left_out: Vec<_> = measured.extract_if(.., |row| row.notes.len() > in_all.len()).collect();
+    // A row that lacks what another row has, because its functions are not written yet, measures something else.
+    let mut in_all = measured[0].notes.clone();
+    in_all.retain(|note| measured.iter().all(|row| row.notes.contains(note)));
+    let lacks = |row: &Measured| {
+        row.notes.iter().find(|note| note.contains("not written yet") && !in_all.contains(note)).cloned()
+    };
+    let mut left_out: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for row in measured.extract_if(.., |row| lacks(row).is_some()) {
+        left_out.entry(lacks(&row).unwrap_or_default()).or_default().push(row.name);
+    }
     let title = format!("{name}.toml, {} × {} pixels", scene.film.width, scene.film.height);
     table::print(&title, &measured);
-    let mut left_out_by_reason: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for row in &left_out {
-        let why = row.notes.iter().find(|note| !in_all.contains(note)).map_or("", String::as_str);
-        left_out_by_reason.entry(why).or_default().push(&row.name);
-    }
-    for (why, names) in left_out_by_reason {
+    for (why, names) in left_out {
         println!("{}", wrapped(&format!("left out: {}: {why}", names.join(" · ")), 2));
     }
     if !given.has("--table") {
