@@ -294,7 +294,8 @@ fn without_times(text: &str) -> String {
         for cell in cells.iter().filter(|cell| times.contains(&cell.end) && begins_number(&cell.text)) {
             blank(cell.start, cell.end);
         }
-        if !line.split(' ').any(begins_number) {
+        // `1e-14` may be a heading.
+        if !line.split(' ').any(|word| begins_number(word) && !word.contains('e')) {
             times.extend(TIMES.iter().flat_map(|heading| ends(line, heading)));
         }
         // A number before a unit of time.
