@@ -30,28 +30,21 @@ impl Level {
     }
 }
 
-/// The earned and the possible points of some checks. As text: `35 of 35 core · 12 deeper`, and ` · 4 bonus` if any were earned.
+/// The earned and the possible points of some checks, by level. As text: `35 of 35 core · 12 deeper`, and ` · 4 bonus` if any were earned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Score {
-    core: (u32, u32),
-    deeper: (u32, u32),
-    bonus: (u32, u32),
+    /// Of [`Level::Core`].
+    pub core: (u32, u32),
+    /// Of [`Level::Deeper`] and [`Level::Elective`].
+    pub deeper: (u32, u32),
+    /// Of [`Level::Bonus`]. They are not in [`points`](Score::points).
+    pub bonus: (u32, u32),
 }
 
 impl Score {
     /// The earned and the possible points, without bonus points.
     pub fn points(&self) -> (u32, u32) {
         (self.core.0 + self.deeper.0, self.core.1 + self.deeper.1)
-    }
-
-    /// The earned and the possible points of the core.
-    pub fn core(&self) -> (u32, u32) {
-        self.core
-    }
-
-    /// The earned bonus points.
-    pub fn bonus(&self) -> u32 {
-        self.bonus.0
     }
 }
 

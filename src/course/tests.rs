@@ -78,7 +78,7 @@ fn a_course_may_grade_the_core_alone() {
     let stages = rubric(&course(&format!(
         "core_only = true\n[stage1.checks.{NEAREST}]\npoints = 2\n[stage2]\npoints = 40\n"
     )));
-    let before = PLAIN["stage1"].score().core().1;
+    let before = PLAIN["stage1"].score().core.1;
     assert_eq!(stages["stage1"].score().to_string(), format!("0 of {before} core · 0 deeper"));
     assert_eq!(stages["stage1"].points(), before + 2);
     assert_eq!(stages["stage2"].score().to_string(), "0 of 40 core");

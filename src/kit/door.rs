@@ -55,42 +55,18 @@ impl<T: Transport + Send> Transport for Arc<T> {
 /// A [`Kit`] whose functions run at the other end of a transport.
 pub struct Door<T>(pub T);
 
-/// All functions that students write, by stage, and the frames that are rendered with them.
-pub trait Kit:
-    Shapes
-    + Triangles
-    + Hierarchies
-    + Shading
-    + Recursion
-    + Distribution
-    + EffectsAnalysis
-    + SceneGraph
-    + Partitions
-    + Stability
-    + LightTransport
-    + Speed
-    + Frames
-    + Hosted
-    + Sync
-{
+/// Defines [`Kit`] as the sum of these traits.
+macro_rules! kit {
+    ($First:ident $($Trait:ident)+) => {
+        /// All functions that students write, by stage, and the frames that are rendered with them.
+        pub trait Kit: $First $(+ $Trait)+ {}
+        impl<T: $First $(+ $Trait)+> Kit for T {}
+    };
 }
-impl<T> Kit for T where
-    T: Shapes
-        + Triangles
-        + Hierarchies
-        + Shading
-        + Recursion
-        + Distribution
-        + EffectsAnalysis
-        + SceneGraph
-        + Partitions
-        + Stability
-        + LightTransport
-        + Speed
-        + Frames
-        + Hosted
-        + Sync
-{
+
+kit! {
+    Shapes Triangles Hierarchies Shading Recursion Distribution EffectsAnalysis SceneGraph Partitions Stability
+    LightTransport Speed Frames Hosted Sync
 }
 
 /// What is known of the process that runs the functions.

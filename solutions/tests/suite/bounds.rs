@@ -85,8 +85,8 @@ fn rays(triangles: &[Triangle]) -> Vec<Ray> {
     (0..40).map(|_| ray()).collect()
 }
 
-/// Demands that the structure `what` has at most `most_nodes` nodes and 16 references per triangle, that each ray visits a node
-/// at most once and tests no more primitives than there are references, and that it finds what brute force finds.
+/// Fails if a structure has more than `most_nodes` nodes or more than 16 references per triangle, or if a ray visits more nodes or
+/// tests more primitives than it has, or finds another hit than brute force. Messages name the structure by `what`.
 fn judge(
     hard: &Hard,
     bvh: &Bvh,

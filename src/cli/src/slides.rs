@@ -78,7 +78,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     }
     let index = out.join("index.html");
     write_file(&index, page(&chosen, pdf).as_bytes())?;
-    println!("{} decks: {}", chosen.len(), index.display());
+    println!("decks: {}, in {}", chosen.len(), index.display());
     Ok(ExitCode::SUCCESS)
 }
 

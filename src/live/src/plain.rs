@@ -23,9 +23,9 @@ pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
             drop(run.take());
             run = Some(Run::start(paths.clone(), task));
         }
-        let event = run.as_ref().and_then(|run| run.events.try_recv().ok());
+        let event = run.as_ref().map(|run: &Run| run.events.recv_timeout(PAUSE));
         action = match event {
-            Some(event) => {
+            Some(Ok(event)) => {
                 let has_ended = match &event {
                     Event::Verdict(_) | Event::Compiled(_) | Event::Progress(_) => false,
                     Event::Checked(number, _) => *number == app.stage().number,
@@ -41,11 +41,8 @@ pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
                 }
                 action
             }
-            None if files.have_changed() => app.saved(),
-            None => {
-                std::thread::sleep(PAUSE);
-                Action::Nothing
-            }
+            _ if files.have_changed() => app.saved(),
+            _ => Action::Nothing,
         };
     }
 }

@@ -19,7 +19,7 @@ use std::io::{BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
 /// What a run reports.
@@ -64,6 +64,8 @@ pub struct Run {
     process: Arc<Process>,
     /// What it reports. Each run has its own events, so those of a cancelled run are gone.
     pub events: Receiver<Event>,
+    /// Keeps the channel open, so that a reader can wait for a time without events.
+    _sender: Sender<Event>,
 }
 
 impl Run {
@@ -71,7 +73,7 @@ impl Run {
     pub fn start(paths: Paths, task: Task) -> Run {
         let process = Arc::new(Process::default());
         let (sender, events) = channel();
-        let own = process.clone();
+        let (own, _sender) = (process.clone(), sender.clone());
         std::thread::spawn(move || {
             // The receiver is gone if the run was cancelled.
             let report = |event| _ = sender.send(event);
@@ -79,7 +81,7 @@ impl Run {
                 report(Event::Broken(format!("{error:#}")));
             }
         });
-        Run { process, events }
+        Run { process, events, _sender }
     }
 }
 

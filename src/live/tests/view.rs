@@ -243,7 +243,7 @@ fn the_page_works_in_a_browser() {
         .wait_for("document.getElementById('summary').textContent.includes('primitive tests per pixel')")
         .unwrap();
     browser.evaluate("document.getElementById('level').click()").unwrap();
-    browser.wait_for("document.getElementById('summary').textContent.includes('1 line segments')").unwrap();
+    browser.wait_for("document.getElementById('summary').textContent.includes('1 line segment.')").unwrap();
     browser.evaluate("document.getElementById('in').click()").unwrap();
 
     // A picture without new tiles asks about an infinite loop. The timer does not wait here.

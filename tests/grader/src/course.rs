@@ -165,7 +165,7 @@ pub fn show(file: &Path) -> Result<()> {
     ));
     let (mut total, mut total_core) = (0, 0);
     for (number, stage) in rubric::stages() {
-        let (points, core) = (stage.points(), stage.score().core().1);
+        let (points, core) = (stage.points(), stage.score().core.1);
         (total, total_core) = (total + points, total_core + core);
         let due = course.due.get(&number).map_or("-".to_owned(), Moment::to_string);
         let n = stage.checks.len();

@@ -28,6 +28,11 @@ impl Graded {
         self.verdict == Verdict::Passed
     }
 
+    /// Whether the course asks for the check, and it does not pass.
+    fn is_open(&self) -> bool {
+        self.entry.is_asked_for() && !self.passed()
+    }
+
     fn earned(&self) -> u32 {
         if self.passed() { self.entry.points } else { 0 }
     }
@@ -113,7 +118,7 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
     }
     let passed = graded.iter().filter(|one| one.passed()).count();
     println!("\n{}\n{passed} passed, {} failed", score(&graded), graded.len() - passed);
-    Ok(graded.iter().all(|one| !one.entry.is_asked_for() || one.passed()))
+    Ok(!graded.iter().any(Graded::is_open))
 }
 
 /// Whether the course asks for this stage.
@@ -167,19 +172,14 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
     for (number, _) in STAGES.iter().filter(|(number, _)| is_asked_for(*number)) {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
         println!("{}", stage_line(*number, &of_stage));
-        if let Some(due) = course
-            .due
-            .get(number)
-            .filter(|_| of_stage.iter().any(|one| one.entry.is_asked_for() && !one.passed()))
-        {
+        if let Some(due) = course.due.get(number).filter(|_| of_stage.iter().any(|one| one.is_open())) {
             println!("           {} {due}", course.text("due"));
         }
     }
     println!();
     // What is not asked for comes after everything else.
-    let open =
-        |asked_for| graded.iter().find(move |one| one.entry.is_asked_for() == asked_for && !one.passed());
-    match open(true).or(open(false)) {
+    let next = graded.iter().find(|one| one.is_open());
+    match next.or(graded.iter().find(|one| !one.passed())) {
         None => {
             // A course may end before the stages that the showcase needs.
             let last = rubric::stages().last().map_or(0, |(number, _)| *number);

@@ -66,10 +66,9 @@ impl Explained<'_> {
     /// The analysis of `scene` by the kit.
     fn new<'a>(scene: &'a Scene, kit: &'a dyn Kit) -> Result<Explained<'a>> {
         let effects = match kit_error::catch(|| kit.effects(std::slice::from_ref(scene))) {
-            Err(KitError::NotWritten { place, .. }) => bail!(
-                "explain works from stage 7 on: it prints what your own analysis of the effects says, and {place} is not \
-                 written yet"
-            ),
+            Err(KitError::NotWritten { place, .. }) => {
+                bail!("explain works from stage 7 on, and {place} is not written yet")
+            }
             effects => effects?.remove(0),
         };
         let paths = match kit_error::catch(|| kit.paths_called_for(std::slice::from_ref(scene))) {

@@ -113,6 +113,17 @@ pub fn longest_axes(bounds: &Aabb) -> Vec<usize> {
     (0..3).filter(|&axis| size[axis] >= size.max_element() * (1.0 - 1e-6)).collect()
 }
 
+/// The expected cost of a tree for a ray that enters its root: each node is weighted with its area divided by the area
+/// of the root.
+pub fn expected_cost(bvh: &Bvh) -> f64 {
+    let area = |node: usize| half_area(&bvh.nodes[node].bounds);
+    let cost = |node: usize| match bvh.nodes[node].contents {
+        Contents::Inner { .. } => f64::from(TRAVERSAL_COST),
+        Contents::Leaf { count, .. } => f64::from(INTERSECTION_COST) * f64::from(count),
+    };
+    (0..bvh.nodes.len()).map(|node| area(node) * cost(node)).sum::<f64>() / area(0)
+}
+
 /// The first fault of a tree over `boxes`: `(yours, expected)`.
 pub fn fault(bvh: &Bvh, boxes: &[Aabb], leaf_size: usize) -> Option<(String, String)> {
     let wrong = |yours: String, expected: &str| Some((yours, expected.to_owned()));

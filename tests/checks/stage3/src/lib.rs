@@ -40,6 +40,7 @@ checks::stage! { ($ crate) 3 [
     builds::build_of_nothing_and_of_one: turned
     builds::build_isolates_what_is_not_a_number: turned
     builds::object_median_is_balanced: turned
+    stadium::surface_area_heuristic_is_cheap_in_a_stadium: turned
     builds::trees_of_eight_boxes: composed
     searches::closest_hit_both_agrees_with_brute_force => agrees(|kit, queries| kit.closest_hit_both(queries))
     searches::closest_hit_both_enters_only_boxes_it_meets

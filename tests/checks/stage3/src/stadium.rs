@@ -42,6 +42,12 @@ pub(super) fn stadium_searches() -> Vec<SearchQuery> {
     stadium_rays().iter().map(|ray| tree::search_query(&bvh, &spheres, ray)).collect()
 }
 
+/// The expected cost of a tree over the stadium with at most four primitives per leaf, split by the object median.
+const EXPECTED_BY_MEDIAN: f64 = 7.947;
+
+/// The same, split by the cheapest cut at every node.
+const EXPECTED_BY_AREA: f64 = 5.341;
+
 /// [`counted_cost`] of the reference's tree over the stadium by each split strategy, at most four primitives per leaf.
 fn counted(split: Split) -> u64 {
     match split {
@@ -58,6 +64,26 @@ pub(super) fn total(answers: &[SearchAnswer]) -> Counts {
     let mut sum = Counts::default();
     answers.iter().for_each(|answer| sum += answer.counts);
     sum
+}
+
+pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) -> CheckResult {
+    let bounds = stadium().iter().map(tree::sphere_box).collect();
+    let query = BuildQuery { bounds, split: Split::SurfaceArea, leaf_size: 4 };
+    let yours = tree::expected_cost(&trial.kit.build(&[query])[0]);
+    // Equally cheap cuts may lead to different trees below. Variants of the reference are within 1 %.
+    let (median, most) = (EXPECTED_BY_MEDIAN, 1.05 * EXPECTED_BY_AREA);
+    if yours <= most {
+        return Ok(());
+    }
+    // Variants of an object median are within 5 % of each other.
+    let is_a_median = (yours - median).abs() <= 0.05 * median;
+    Err(Broken::with_texts(
+        "build of the 200 boxes of a stadium, SurfaceArea, leaf_size 4",
+        format!("expected cost {yours:.3} per ray"),
+        format!("at most {most:.3} (object median: {median:.3})"),
+        "the cheapest cut at every node",
+    )
+    .explained_by([(is_a_median, "your tree costs as much as one by object median")]))
 }
 
 /// The number of nodes and primitives that the rays through the stadium have to visit in this tree.

@@ -173,7 +173,7 @@ pub fn score<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> Score {
 
 /// Returns a score as reports write it: `17 of 33 points (12 of 12 core · 5 deeper)`.
 pub fn in_words(score: Score) -> String {
-    match (score.points(), score.core()) {
+    match (score.points(), score.core) {
         (_, (_, 0)) => score.to_string(),
         ((earned, of), _) => format!("{earned} of {of} points ({score})"),
     }

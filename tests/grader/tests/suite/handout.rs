@@ -149,37 +149,35 @@ static COMMANDS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
 
 /// What a text names that is not in the hand-out: links, paths, commands, and parts of the kit that only authors have.
 fn dead(path: &str, text: &str) -> Vec<String> {
-    let folder = handed_out();
-    let mut dead = Vec::new();
-    let is_there = |path: &str| folder.join(path).exists() || path.contains(['*', 'N', '…']);
+    let (folder, mut dead) = (handed_out(), Vec::new());
+    let mut demand = |kind, name: &str, is_there: bool| {
+        if !is_there {
+            dead.push(format!("{kind} {name}"));
+        }
+    };
+    let is_there = |path: &str| {
+        folder.join(path).exists() || ["*", "…", "stageN", "NAME"].iter().any(|any| path.contains(any))
+    };
     if path.ends_with(".md") {
-        let beside = Path::new(path).parent().expect("a folder");
+        let beside = folder.join(path).parent().expect("a folder").to_owned();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next()) {
-            let is_local = !link.is_empty() && !link.contains("://");
-            dead.extend(
-                (is_local && !folder.join(beside).join(link).exists()).then(|| format!("link {link}")),
-            );
+            demand("link", link, link.contains("://") || beside.join(link).exists());
         }
     }
     // Names of files in code, and commands, which end at the end of the line or of the code.
     for code in text.lines().flat_map(|line| line.split('`')) {
-        let is_path =
-            ["exercises/", "scenes/", "slides/", "src/", "tests/"].iter().any(|top| code.starts_with(top));
         let name = code.split([' ', ':']).next().unwrap_or_default();
-        dead.extend((is_path && !is_there(name)).then(|| format!("path {name}")));
+        let tops = ["exercises/", "scenes/", "slides/", "src/", "tests/"];
+        demand("path", name, is_there(name) || !tops.iter().any(|top| code.starts_with(top)));
         for command in code.split("cargo run ").skip(1).filter_map(|rest| rest.split("-- ").nth(1)) {
-            let word = command.split([' ', '"', '\n']).next().unwrap_or_default();
-            let is_known = COMMANDS.contains(word) || ["COMMAND", "…"].contains(&word);
-            dead.extend((!is_known).then(|| format!("command {word}")));
-            let scene =
-                command.split(' ').find(|word| word.starts_with("scenes/") && word.ends_with(".toml"));
-            dead.extend(scene.filter(|scene| !is_there(scene)).map(|scene| format!("scene {scene}")));
+            let word = command.split([' ', '"']).next().unwrap_or_default();
+            demand("command", word, COMMANDS.contains(word) || ["COMMAND", "…"].contains(&word));
+            let is_scene = |word: &&str| word.starts_with("scenes/") && word.ends_with(".toml");
+            command.split(' ').filter(is_scene).for_each(|scene| demand("scene", scene, is_there(scene)));
         }
-        let of_authors =
-            ["-p author", "-p grader", "-p solutions", "solutions/", "cases.toml", "CONTRIBUTING"];
-        dead.extend(
-            of_authors.iter().filter(|word| code.contains(**word)).map(|word| format!("word {word}")),
-        );
+        for word in ["-p author", "-p grader", "-p solutions", "solutions/", "cases.toml", "CONTRIBUTING"] {
+            demand("word", word, !code.contains(word));
+        }
     }
     dead
 }

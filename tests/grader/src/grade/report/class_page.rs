@@ -155,7 +155,7 @@ fn stages(tallies: &[Tally]) -> Markup {
                         @for tally in tallies.iter().filter(|tally| tally.stage == stage) {
                             tr {
                                 td { (with_code(&tally.entry.title)) div.name { (tally.name) } }
-                                td.number { (tally.points) " " (tally.level.word()) }
+                                td.number { (tally.points) " " (tally.entry.level().word()) }
                                 td.number { (tally.passed()) " of " (tally.of()) span.unit { " pass" } }
                                 td.wide { (chart::outcomes(tally)) (failures(tally)) }
                             }

@@ -62,9 +62,9 @@ fn suite(graded: &Graded) -> TestSuite {
     let (earned, of) = score.points();
     suite.add_property(("points", earned.to_string().as_str()));
     suite.add_property(("of", of.to_string().as_str()));
-    suite.add_property(("core", score.core().0.to_string().as_str()));
-    if score.bonus() > 0 {
-        suite.add_property(("bonus", score.bonus().to_string().as_str()));
+    suite.add_property(("core", score.core.0.to_string().as_str()));
+    if score.bonus.0 > 0 {
+        suite.add_property(("bonus", score.bonus.0.to_string().as_str()));
     }
     suite.add_test_cases(graded.checks.iter().map(case));
     if !graded.trouble.is_empty() {

@@ -34,7 +34,7 @@ pub(super) fn results(session: &Session, each: &Each<'_>, out: &mut dyn Write) -
     let mut before = "";
     each(&mut |graded| {
         let score = graded.score();
-        let ((earned, of), (core, core_of)) = (score.points(), score.core());
+        let ((earned, of), (core, core_of)) = (score.points(), score.core);
         let without_picture = |check: &CheckResult| CheckResult { picture: None, ..check.clone() };
         let view = GradedView {
             student: &graded.student,
@@ -43,7 +43,7 @@ pub(super) fn results(session: &Session, each: &Each<'_>, out: &mut dyn Write) -
             of,
             core,
             core_of,
-            bonus: score.bonus(),
+            bonus: score.bonus.0,
             checks: graded.checks.iter().map(without_picture).collect(),
             remarks: &graded.remarks,
             compiler: &graded.compiler,

@@ -12,7 +12,6 @@ pub(super) struct Tally {
     pub stage: u8,
     pub name: String,
     pub points: u32,
-    pub level: Level,
     /// The rubric entry of the check.
     pub entry: CheckEntry,
     /// The number of submissions per outcome, in the order of [`Outcome::ALL`].
@@ -21,14 +20,8 @@ pub(super) struct Tally {
 
 impl Tally {
     fn new(check: &CheckResult) -> Self {
-        Tally {
-            stage: check.stage,
-            name: check.name.clone(),
-            points: check.points,
-            level: check.level,
-            entry: messages::entry(check),
-            counts: [0; Outcome::ALL.len()],
-        }
+        let (stage, name, points) = (check.stage, check.name.clone(), check.points);
+        Tally { stage, name, points, entry: messages::entry(check), counts: [0; Outcome::ALL.len()] }
     }
 
     /// Returns how many submissions passed.
@@ -93,17 +86,17 @@ pub(super) fn stages(tallies: &[Tally]) -> Vec<u8> {
 
 /// Returns the sum of all possible points, without bonus points.
 pub(super) fn of<'a>(tallies: impl IntoIterator<Item = &'a Tally>) -> u32 {
-    tallies.into_iter().filter(|tally| tally.level != Level::Bonus).map(|tally| tally.points).sum()
+    tallies.into_iter().filter(|tally| tally.entry.level() != Level::Bonus).map(|tally| tally.points).sum()
 }
 
 /// Returns the sum of the possible points of the core.
 pub(super) fn of_core(tallies: &[Tally]) -> u32 {
-    tallies.iter().filter(|tally| tally.level == Level::Core).map(|tally| tally.points).sum()
+    tallies.iter().filter(|tally| tally.entry.level() == Level::Core).map(|tally| tally.points).sum()
 }
 
 /// Returns whether any check is worth bonus points.
 pub(super) fn has_bonus(tallies: &[Tally]) -> bool {
-    tallies.iter().any(|tally| tally.level == Level::Bonus)
+    tallies.iter().any(|tally| tally.entry.level() == Level::Bonus)
 }
 
 /// Returns the percentage of the points, rounded to the nearest integer; 0 of 0 points are 0 %.

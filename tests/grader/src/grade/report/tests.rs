@@ -191,7 +191,7 @@ fn points_are_the_same_in_every_format() -> Result<()> {
     for (graded, row) in back.students.iter().zip(&rows) {
         let (earned, of) = graded.score().points();
         let [page, core] = [3, 2].map(|place| &row[row.len() - place]);
-        assert_eq!(core, graded.score().core().0.to_string());
+        assert_eq!(core, graded.score().core.0.to_string());
         assert_eq!(row[1], earned.to_string());
         assert_eq!(&row[2], "17");
         let stages: u32 = row[4].parse::<u32>()? + row[5].parse::<u32>()?;
@@ -226,7 +226,7 @@ fn bonus_points_stand_apart() -> Result<()> {
     let mut graded = student("Anna", [(Outcome::Passed, ""); 4]);
     let bonus = check(12, "build_parallel_has_an_eighth_of_the_span", Outcome::Passed, 2, "");
     graded.checks.push(bonus);
-    assert_eq!((graded.score().points(), graded.score().bonus()), ((17, 17), 2));
+    assert_eq!((graded.score().points(), graded.score().bonus.0), ((17, 17), 2));
     let session = class().session;
     let files = files_of(&Class { session, students: vec![graded] })?;
     assert!(files["grades.csv"].contains("\"Anna\",17,17,100,"), "{}", files["grades.csv"]);
