@@ -55,8 +55,8 @@ pub fn closest_hit_cached<P: Cells>(
 ///
 /// Exactly:
 ///
-/// - One result per ray, in order, the same as alone: each ray keeps its range and best hit, and
-///   at equal `t` the smaller number wins.
+/// - One result per ray, in order, the same as alone: each ray keeps its range and best hit. At
+///   equal `t` any of the primitives counts.
 /// - Open a node at most once per packet, and only if at least one ray enters it before its best
 ///   hit.
 ///

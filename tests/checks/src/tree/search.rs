@@ -18,6 +18,25 @@ pub fn closest_of(primitives: &[f32], ray: &Ray) -> Option<(u32, f32)> {
     hits.min_by(|(_, p), (_, q)| p.total_cmp(q)).map(|(primitive, t)| (primitive as u32, *t))
 }
 
+/// Moves hits apart that are nearer to each other than `step`, or equal. So a search need not choose between hits at the same
+/// `t`; checks of their own judge that choice by [`tied`] queries.
+pub fn move_apart(hits: &mut [f32], step: f32) {
+    let mut order: Vec<usize> = (0..hits.len()).filter(|&i| hits[i].is_finite()).collect();
+    order.sort_by(|&i, &j| hits[i].total_cmp(&hits[j]).then(i.cmp(&j)));
+    for pair in order.windows(2) {
+        hits[pair[1]] = hits[pair[1]].max((hits[pair[0]] + step).max(hits[pair[0]].next_up()));
+    }
+}
+
+/// The same query with all hits at `t` = 5. In some of these queries all boxes begin there as well.
+pub fn tied(mut query: SearchQuery) -> SearchQuery {
+    query.ray = query.ray.with_range(0.5, f32::INFINITY);
+    let near = if query.bvh.nodes.len() % 4 == 1 { 1.0 } else { 5.0 };
+    query.table.primitives.iter_mut().filter(|t| t.is_finite()).for_each(|t| *t = 5.0);
+    query.table.boxes.iter_mut().filter(|(near, far)| near <= far).for_each(|entry| *entry = (near, 9.0));
+    query
+}
+
 /// A box around a sphere, widened by 1e-4 of the radius for rounding.
 pub fn sphere_box(sphere: &Sphere) -> Aabb {
     let reach = Vec3::splat(1.0001 * sphere.radius);
@@ -26,7 +45,8 @@ pub fn sphere_box(sphere: &Sphere) -> Aabb {
 
 /// The query for the closest of `spheres` along `ray`, with a table of all answers, computed in double precision.
 pub fn search_query(bvh: &Bvh, spheres: &[Sphere], ray: &Ray) -> SearchQuery {
-    let primitives: Vec<f32> = spheres.iter().map(|sphere| sphere_t(ray, sphere)).collect();
+    let mut primitives: Vec<f32> = spheres.iter().map(|sphere| sphere_t(ray, sphere)).collect();
+    move_apart(&mut primitives, 1.0 / 64.0);
     let mut boxes: Vec<(f32, f32)> = bvh.nodes.iter().map(|node| interval(ray, &node.bounds)).collect();
     // Go from the leaves up, because a parent comes before its children: widen each interval such that no box begins
     // behind its contents.
@@ -45,7 +65,7 @@ pub fn search_query(bvh: &Bvh, spheres: &[Sphere], ray: &Ray) -> SearchQuery {
     SearchQuery { bvh: bvh.clone(), ray: *ray, table: Table { boxes, primitives } }
 }
 
-/// The nearest hit in front of the ray, rounded to a 64th, so that ties are common.
+/// The nearest hit in front of the ray, rounded to a 64th.
 fn sphere_t(ray: &Ray, sphere: &Sphere) -> f32 {
     match crate::double::sphere(&Ray::new(ray.origin, ray.direction), sphere) {
         crate::double::Expected::Hit { t, .. } => ((64.0 * t).ceil() / 64.0) as f32,

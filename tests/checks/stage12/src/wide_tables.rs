@@ -1,6 +1,7 @@
 //! Wide trees whose boxes and primitives are tables of answers, and searches of them.
 
 use super::trees::shuffled;
+use checks::tree::move_apart;
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::bvh::PrimitiveHit;
@@ -91,14 +92,15 @@ fn query(hits: &[f32], sizes: &[usize], choices: &[u16], ray: Ray) -> WideQuery 
     WideQuery { tree: parts.tree, ray, entries: parts.entries, hits: hits.to_vec() }
 }
 
-/// Searches with up to `most` primitives. Their `t` are whole quarters, so ties are common.
+/// Searches with up to `most` primitives. Their `t` are near whole quarters, and no two are equal.
 pub(super) fn searches(most: usize) -> impl Strategy<Value = WideQuery> + Clone {
     let t =
         prop_oneof![2 => (1..=40i32).prop_map(|quarters| quarters as f32 / 4.0), 1 => Just(f32::INFINITY)];
     let hits = prop::collection::vec(t, 1..=most);
     let sizes = prop::collection::vec(1..=9usize, 1..6);
     let choices = prop::collection::vec(any::<u16>(), 1..30);
-    (hits, sizes, choices, 0..=6i32, 0..=12i32).prop_map(|(hits, sizes, choices, t_min, t_max)| {
+    (hits, sizes, choices, 0..=6i32, 0..=12i32).prop_map(|(mut hits, sizes, choices, t_min, t_max)| {
+        move_apart(&mut hits, 1.0 / 64.0);
         let t_max = if t_max < 4 { f32::INFINITY } else { t_max as f32 };
         // Half of the rays begin at 0.
         let t_min = (t_min - 3).max(0) as f32;
@@ -106,21 +108,22 @@ pub(super) fn searches(most: usize) -> impl Strategy<Value = WideQuery> + Clone 
     })
 }
 
-/// Small searches in which each mistake shows: a leaf of five, two leaves with hits at the same `t`, of which the second is
-/// entered exactly there, two with a hit in one of them, and a hit before the range.
+/// A tree of two leaves with one primitive each, and the `t` at which they are entered and hit.
+pub(super) fn two_leaves(entries: [f32; 2], hits: [f32; 2]) -> WideQuery {
+    let mut two = query(&hits, &[1], &[0, 1], Ray::new(Vec3::ZERO, Vec3::X));
+    two.entries[0][..2].copy_from_slice(&entries);
+    two
+}
+
+/// Small searches in which each mistake shows: a leaf of five, two leaves of which the second one has the nearer hit, two with
+/// a hit in one of them, and a hit before the range.
 pub(super) fn small_searches() -> Vec<WideQuery> {
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     let leaf = query(&[3.0, 5.0, 4.0, 6.0, 2.0], &[5], &[0], ray);
-    let pair = |entries: [f32; 2], hits: [f32; 2]| {
-        let mut two = query(&hits, &[1], &[0, 1], ray);
-        two.entries[0][..2].copy_from_slice(&entries);
-        two
-    };
-    let miss = f32::INFINITY;
+    let (miss, pair) = (f32::INFINITY, two_leaves);
     let before = query(&[1.0], &[1], &[0], ray.with_range(2.0, miss));
     vec![
         leaf,
-        pair([3.0, 2.0], [3.0, 3.0]),
         pair([1.0, 2.0], [6.0, 4.0]),
         pair([1.0, 2.0], [miss, 4.0]),
         pair([1.0, 2.0], [6.0, miss]),

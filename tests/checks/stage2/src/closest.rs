@@ -1,8 +1,9 @@
 //! Brute force: the closest hit of many primitives.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
+use checks::tree::move_apart;
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::kit::{SearchAnswer, SearchQuery, Table};
@@ -26,6 +27,7 @@ fn mistakes(query: &SearchQuery, yours: Hit, tests: u64) -> [(bool, &'static str
     let (without_last, without_first) = (&all[..all.len().saturating_sub(1)], all.get(1..).unwrap_or(&[]));
     let stopped = tests < all.len() as u64;
     [
+        (is(later), "of two hits at the same t the primitive with the smaller number wins"),
         (
             is(best(&hits(without_last))) && (!is(best(&counting)) || tests + 1 == all.len() as u64),
             "the last primitive is left out: their numbers are 0..n_primitives",
@@ -46,7 +48,6 @@ fn mistakes(query: &SearchQuery, yours: Hit, tests: u64) -> [(bool, &'static str
             is(counting.last().copied()),
             "the closest hit is not kept: each hit replaces the one before (do you assign it to another variable?)",
         ),
-        (is(later), "of two hits at the same t the primitive with the smaller number wins"),
         (is(farthest), "you keep the farther one of two hits"),
         (is(best(&counting).map(|(_, t)| (0, t))), "you return primitive 0 in any case"),
     ]
@@ -82,14 +83,29 @@ pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> CheckRe
         ray,
         table: Table { boxes: Vec::new(), primitives: primitives.to_vec() },
     };
-    let drawn = [query(&[5.0]), query(&[3.0, 1.0, 2.0]), query(&[1.0, 3.0]), query(&[4.0, 2.0, 2.0])];
+    let drawn = [query(&[5.0]), query(&[3.0, 1.0, 2.0]), query(&[1.0, 3.0])];
     let t = prop_oneof![Just(f32::INFINITY), (0..=20i32).prop_map(|t| t as f32 / 2.0 - 1.0)];
     let inputs =
-        (prop::collection::vec(t, 0..12), 0..=4i32, 0..=3i32).prop_map(move |(primitives, t_min, long)| {
+        (prop::collection::vec(t, 0..12), 0..=4i32, 0..=3i32).prop_map(move |(mut primitives, t_min, long)| {
+            move_apart(&mut primitives, 0.25);
             let t_max = if long == 0 { f32::INFINITY } else { 8.0 };
             SearchQuery { ray: ray.with_range(t_min as f32 / 2.0, t_max), ..query(&primitives) }
         });
     trial.forall_and(&drawn, 2000, inputs, |queries| {
         compare(queries, trial.kit.brute_force(queries), |query, yours| judge(query, &yours))
     })
+}
+
+pub(super) fn brute_force_prefers_the_smaller_number(trial: &Trial<'_>) -> CheckResult {
+    let ray = Ray::new(Vec3::ZERO, Vec3::X);
+    // All tables of one to six primitives, each of which is missed or hit at t = 2.
+    let hit = |set: u32, primitive: u32| if set >> primitive & 1 == 1 { 2.0 } else { f32::INFINITY };
+    let tables = (1..=6).flat_map(|n| (0..1 << n).map(move |set| (0..n).map(|i| hit(set, i)).collect()));
+    let query = |primitives| SearchQuery {
+        bvh: Default::default(),
+        ray,
+        table: Table { boxes: Vec::new(), primitives },
+    };
+    let queries: Vec<SearchQuery> = tables.map(query).collect();
+    all_hold(compare(&queries, trial.kit.brute_force(&queries), |query, yours| judge(query, &yours)))
 }

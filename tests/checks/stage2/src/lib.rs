@@ -51,6 +51,7 @@ checks::stage! { ($ crate) 2 [
     vertex_normals::vertex_normals_average_their_faces
     vertex_normals::vertex_normals_that_cancel_are_still_normals: turned
     closest::brute_force_finds_the_closest_of_all
+    closest::brute_force_prefers_the_smaller_number: turned
     golden::hit_table_of_a_fan: composed
     golden::picture_of_an_octahedron: composed
 ] }

@@ -46,6 +46,7 @@ checks::stage! { ($ crate) 3 [
     searches::closest_hit_both_enters_only_boxes_it_meets
     searches::closest_hit_agrees_with_brute_force => agrees(|kit, queries| kit.closest_hit(queries))
     stadium::closest_hit_skips_what_lies_behind: turned
+    searches::hits_at_one_t_prefer_the_smaller_number
     searches::any_hit_agrees_with_brute_force
     searches::any_hit_stops_at_the_first
     stadium::each_split_strategy_is_worth_its_cost: turned

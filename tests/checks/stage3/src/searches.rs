@@ -4,7 +4,7 @@ use super::search_mistakes::{any_mistakes, every_node, mistakes, observations};
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::{point, unit};
 use checks::judge::{compare, compare_formulas};
-use checks::tree::closest_in_table;
+use checks::tree::{closest_in_table, tied};
 use checks::{Trial, tree};
 use glam::Vec3;
 use proptest::prelude::*;
@@ -21,14 +21,14 @@ pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
         |(spheres, origin, direction, leaf_size, t_min, t_max)| {
             let spheres: Vec<Sphere> =
                 spheres.into_iter().map(|(center, r)| Sphere { center, radius: r as f32 / 4.0 }).collect();
-            // Some scenes have each sphere twice, for two hits at the same t.
+            // Some scenes have each sphere twice.
             let times = if t_min % 3 == 0 { 2 } else { 1 };
             let spheres: Vec<Sphere> =
                 spheres.into_iter().flat_map(|sphere| std::iter::repeat_n(sphere, times)).collect();
             let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
             let mut bvh = tree::joined(&boxes, leaf_size);
             if t_min % 2 == 0 {
-                // Number the primitives from the other end: of two hits at the same t the larger number may come first.
+                // Number the primitives from the other end.
                 let last = spheres.len() as u32;
                 bvh.order.iter_mut().for_each(|id| *id = last - 1 - *id);
             }
@@ -130,6 +130,20 @@ pub(super) fn agrees(
 ) -> CheckResult {
     trial.forall_and(&drawn_searches(), 1500, searches(), |queries| {
         judge_searches(queries, ask(trial.kit, queries))
+    })
+}
+
+pub(super) fn hits_at_one_t_prefer_the_smaller_number(trial: &Trial<'_>) -> CheckResult {
+    let drawn = drawn_searches().map(tied);
+    // The same with the larger numbers first in the leaf, and in the left child.
+    let turned = drawn.clone().map(|mut query| {
+        query.bvh.order.reverse();
+        query
+    });
+    trial.forall_and(&[drawn, turned].concat(), 300, searches().prop_map(tied), |queries| {
+        let both = judge_searches(queries, trial.kit.closest_hit_both(queries));
+        let ordered = judge_searches(queries, trial.kit.closest_hit(queries));
+        both.into_iter().zip(ordered).map(|(both, ordered)| both.and(ordered)).collect()
     })
 }
 

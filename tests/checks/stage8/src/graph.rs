@@ -3,7 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
-use checks::tree::closest_of;
+use checks::tree::{closest_of, move_apart};
 use glam::Vec3;
 use oracle::splitmix::Random;
 use proptest::prelude::*;
@@ -19,7 +19,7 @@ pub(super) const SKIP: GraphOptimisations = GraphOptimisations { volumes: true, 
 pub(super) const SORT: GraphOptimisations = GraphOptimisations { volumes: true, skip: false, sort: true };
 pub(super) const ALL: GraphOptimisations = GraphOptimisations { volumes: true, skip: true, sort: true };
 
-/// A tree of up to a dozen nodes with hits at multiples of 1/2, so that there are ties, and volumes that contain their
+/// A tree of up to a dozen nodes with hits near multiples of 1/2, of which no two are equal, and volumes that contain their
 /// hits.
 pub(super) fn random_query(random: &mut Random, savings: GraphOptimisations) -> GraphQuery {
     let n_nodes = 1 + random.below(12) as usize;
@@ -36,6 +36,7 @@ pub(super) fn random_query(random: &mut Random, savings: GraphOptimisations) -> 
             primitives.push(if random.below(3) == 0 { f32::INFINITY } else { hit });
         }
     }
+    move_apart(&mut primitives, 0.125);
     let mut boxes = vec![(f32::INFINITY, f32::NEG_INFINITY); n_nodes];
     for index in (0..n_nodes).rev() {
         let hits = nodes[index].primitives.iter().map(|&p| primitives[p as usize]).filter(|t| t.is_finite());
@@ -96,6 +97,26 @@ pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> CheckResult {
         savings: ALL,
         table: Table::default(),
     });
+    judge_hits(trial, queries)
+}
+
+pub(super) fn graph_prefers_the_smaller_number(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 4);
+    let mut queries: Vec<GraphQuery> = Vec::new();
+    // All hits are at the same t, and the volumes begin exactly there, or before.
+    for _ in 0..60 {
+        for (savings, near) in [(NOTHING, 1.0), (VOLUMES, 3.0), (SKIP, 1.0), (SKIP, 3.0), (ALL, 1.0), (ALL, 3.0)] {
+            let mut query = random_query(&mut random, savings);
+            query.ray = query.ray.with_range(0.0, f32::INFINITY);
+            query.table.primitives.iter_mut().filter(|t| t.is_finite()).for_each(|t| *t = 3.0);
+            query.table.boxes.iter_mut().filter(|(near, far)| near <= far).for_each(|one| *one = (near, 9.0));
+            queries.push(query);
+        }
+    }
+    judge_hits(trial, queries)
+}
+
+fn judge_hits(trial: &Trial<'_>, mut queries: Vec<GraphQuery>) -> CheckResult {
     plainest_first(&mut queries);
     let judge = |query: &GraphQuery, yours: GraphAnswer| {
         let expected = closest_of(&query.table.primitives, &query.ray)
@@ -131,6 +152,14 @@ fn lost_hits(
         (
             is_tested && found.is_some_and(|found| found.t == right.t && found.primitive > right.primitive),
             "of two hits at the same t you return the larger number: the smaller one wins",
+        ),
+        (
+            !is_tested && found.is_some_and(|found| found.t == right.t),
+            "you skip a volume that begins exactly at the closest hit: it may contain a hit at the same t",
+        ),
+        (
+            found.is_some_and(|found| found.t == right.t),
+            "you lose a hit at the t of the closest one so far: the smaller number wins",
         ),
         (
             is_tested && found.is_some(),
@@ -315,17 +344,7 @@ pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> Check
         you are about to visit it";
     let sorted = "you sort the children although `sort` is off: visit them as listed";
     let always = "you skip a volume although `skip` is off";
-    let at_the_hit =
-        "you skip a volume that begins exactly at the closest hit: it may contain a hit at the same t";
     let row = Row::new(trial);
-    let mut meets_again = row.query(&[0, 1], SKIP);
-    // The second volume begins at the t of the first hit and has a hit at the same t, so it must be visited.
-    for (node, bounds) in meets_again.graph.nodes.iter().zip(&mut meets_again.table.boxes) {
-        if node.primitives == [1] {
-            *bounds = (1.5 * row.step, 2.0 * row.step);
-        }
-    }
-    meets_again.table.primitives[1] = 1.5 * row.step;
     judge_orders(
         trial,
         &[
@@ -333,7 +352,6 @@ pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> Check
             (row.query(&[3, 2, 1, 0], SKIP), &[3, 2, 1, 0], &[(&[0], sorted), (&[0, 1, 2, 3], never)]),
             (row.query(&[1, 3, 0, 2], SKIP), &[1, 0], &[(&[1, 3, 0, 2], never), (&[0], sorted)]),
             (row.query(&[2, 0, 3, 1], VOLUMES), &[2, 0, 3, 1], &[(&[2, 0], always), (&[0, 1, 2, 3], sorted)]),
-            (meets_again, &[0, 1], &[(&[0], at_the_hit)]),
         ],
     )
 }

@@ -43,6 +43,7 @@ checks::stage! { ($ crate) 8 [
     graph::graph_asks_for_volumes_first
     graph::graph_skips_what_begins_beyond_the_hit
     graph::graph_looks_into_the_nearest_first
+    graph::graph_prefers_the_smaller_number
     child_cache::child_cache_changes_no_answer
     child_cache::child_cache_goes_first
     child_cache::child_cache_stores_the_way_to_the_hit

@@ -4,7 +4,7 @@ use super::lists::{
     Fault, below, ended, fact, infinite, judge_references, leaves, listing_fault, some_boxes, too_deep,
 };
 use super::scenes::{Scene, Thing, along, wall};
-use super::searches::{Described, GRID, KD_TREE, queries, spheres_and_rays};
+use super::searches::{Described, GRID, KD_TREE, OCTREE, queries, spheres_and_rays};
 use super::structures::{filled, kd_tree};
 use checks::Trial;
 use checks::broken::CheckResult;
@@ -13,7 +13,7 @@ use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsQuery, KdQuery};
-use raykata::partition::{KdHeuristics, KdNode, KdTree, MOST_REFERENCES};
+use raykata::partition::{KdHeuristics, KdNode, KdTree, MOST_REFERENCES, Octree};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -180,6 +180,38 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
     }
     trees.judge(trial.kit, &KD_TREE)?;
     grids.judge(trial.kit, &GRID)
+}
+
+/// Primitives with hits at the same `t`: in one cell, whose list begins with the larger number or with the smaller one, and in
+/// two cells, at the face between them.
+pub(super) fn hits_at_one_t_in_cells_prefer_the_smaller_number(trial: &Trial<'_>) -> CheckResult {
+    let (mut trees, mut grids, mut octrees) = (Described::new(), Described::new(), Described::new());
+    for axis in 0..3 {
+        let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
+        let ray = Ray::new(along(axis, vec3(-2.0, 1.0, 1.0)), along(axis, Vec3::X));
+        let resolution = along(axis, vec3(2.0, 1.0, 1.0)).as_uvec3();
+        let cases: [(_, [&[u32]; 2]); 6] = [
+            ("in one cell, the smaller number first", [&[0, 1, 2], &[]]),
+            ("in one cell, the larger number first", [&[2, 1, 0], &[]]),
+            ("in one cell, the smallest number second", [&[2, 0, 1], &[]]),
+            ("at the face between two cells", [&[0], &[1, 2]]),
+            ("at the face between two cells, the smaller number behind", [&[2, 1], &[0]]),
+            ("at the face between two cells, one in both", [&[1, 2], &[2, 0]]),
+        ];
+        for (what, lists) in cases {
+            let hits = vec![2.0; 3];
+            let tree = two_leaves(bounds, (axis, 0.0), lists[0], lists[1]);
+            trees.add(format!("kd-tree; {what}"), CellsQuery { cells: tree, ray, hits: hits.clone() });
+            let grid = filled(bounds, resolution, &lists.map(<[u32]>::to_vec));
+            grids.add(format!("grid; {what}"), CellsQuery { cells: grid, ray, hits: hits.clone() });
+            let mut octree = Octree::new(bounds);
+            octree.set_leaf(0, &lists.concat());
+            octrees.add(format!("octree of one leaf; {what}"), CellsQuery { cells: octree, ray, hits });
+        }
+    }
+    trees.judge(trial.kit, &KD_TREE)?;
+    grids.judge(trial.kit, &GRID)?;
+    octrees.judge(trial.kit, &OCTREE)
 }
 
 pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> CheckResult {

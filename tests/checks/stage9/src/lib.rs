@@ -61,6 +61,7 @@ checks::stage! { ($ crate) 9 [
     searches::kd_search_agrees_with_brute_force => agrees(&searches::KD_TREE)
     kd_trees::kd_finds_a_wall_on_the_face_of_the_box: turned
     kd_trees::hits_at_a_face_are_compared_with_each_other: turned
+    kd_trees::hits_at_one_t_in_cells_prefer_the_smaller_number: turned
     kd_trees::kd_hit_beyond_its_leaf_waits: turned
     kd_trees::kd_rays_in_the_plane_search_both_sides: turned
     kd_trees::kd_search_visits_what_the_ray_enters_before_its_hit: turned

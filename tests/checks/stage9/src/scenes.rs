@@ -4,6 +4,7 @@
 use checks::double::sphere_roots;
 use checks::generate::point;
 use checks::nasty;
+use checks::tree::{closest_of, move_apart};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
@@ -87,7 +88,7 @@ impl Scene {
         self.things.iter().map(hull).collect()
     }
 
-    /// The `t` of the nearest hit in front of the ray per primitive; `inf` if there is none.
+    /// The `t` of the nearest hit in front of the ray per primitive; `inf` if there is none. No two are equal.
     pub(super) fn hits(&self, ray: &Ray) -> Vec<f32> {
         let hit = |(index, thing): (usize, &Thing)| {
             let t = match thing {
@@ -104,14 +105,10 @@ impl Scene {
                 Some(t) => t as f32,
             }
         };
-        self.things.iter().enumerate().map(hit).collect()
+        let mut hits: Vec<f32> = self.things.iter().enumerate().map(hit).collect();
+        move_apart(&mut hits, 0.0);
+        hits
     }
-}
-
-/// `(primitive, t)` of the smallest `t` in the range of the ray; of equal ones the first.
-pub(super) fn closest(hits: &[f32], ray: &Ray) -> Option<(u32, f32)> {
-    let counting = hits.iter().enumerate().filter(|(_, t)| ray.contains(**t));
-    counting.min_by(|(_, p), (_, q)| p.total_cmp(q)).map(|(primitive, t)| (primitive as u32, *t))
 }
 
 fn bounds(thing: &Thing) -> Aabb {
@@ -190,7 +187,7 @@ pub(super) fn scenes() -> impl Strategy<Value = (Scene, Ray)> + Clone {
         }
         let (scene, ray) = (Scene { things, rough }, scales.of_ray(&ray));
         // A quarter of these numbers choose a range.
-        let at_hit = closest(&scene.hits(&ray), &ray).and_then(|(_, t)| nasty::ranges(t).get(range).copied());
+        let at_hit = closest_of(&scene.hits(&ray), &ray).and_then(|(_, t)| nasty::ranges(t).get(range).copied());
         let ray = at_hit.map_or(ray, |((t_min, t_max), _)| ray.with_range(t_min, t_max));
         (scene, ray)
     })

@@ -2,7 +2,7 @@
 //! named only if its search gives exactly the student's answer.
 
 use super::parts::Leaf;
-use super::scenes::closest;
+use checks::tree::closest_of;
 use raykata::ray::Ray;
 
 pub(super) type Hit = Option<(u32, f32)>;
@@ -147,7 +147,7 @@ pub(super) fn facts<'a>(
     (ray, hits): (&Ray, &[f32]),
     listed: impl Fn(u32) -> &'a [u32],
 ) -> Mistakes {
-    let expected = closest(hits, ray);
+    let expected = closest_of(hits, ray);
     let Some((best, best_t)) = expected else { return vec![out_of_range(found, ray)] };
     let is_tested = tests.contains(&best);
     let is_visited = visits.iter().any(|&node| listed(node).contains(&best));

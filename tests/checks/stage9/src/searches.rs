@@ -3,7 +3,7 @@
 use super::octant_mistakes::of_octree;
 use super::parts::{self, Leaf, Parts};
 use super::plane_mistakes::{Planes, at_planes};
-use super::scenes::{Scene, Thing, closest, odd_scenes, scenes, sphere};
+use super::scenes::{Scene, Thing, odd_scenes, scenes, sphere};
 use super::search_mistakes::{FIRST_CELL_ONLY, Hit, Mistakes, facts, in_cells};
 use super::structures;
 use checks::Trial;
@@ -11,6 +11,7 @@ use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare_formulas;
 use checks::paste::Paste;
 use glam::{UVec3, Vec3, vec3};
+use checks::tree::closest_of;
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsAnswer, CellsQuery, Kit};
 use raykata::partition::{Bsp, CutPlane, Grid, KdNode, KdTree, Octree, PlaneNode, PolygonBsp};
@@ -190,7 +191,7 @@ impl<S: Clone> Described<S> {
     fn judge_each(&self, kit: &dyn Kit, search: &Search<S>) -> Vec<CheckResult> {
         let answers = (search.ask)(kit, &self.queries);
         let found = |answer: &CellsAnswer| answer.hit.map(|hit| (hit.primitive, hit.t));
-        let expected = |query: &CellsQuery<S>| closest(&query.hits, &query.ray);
+        let expected = |query: &CellsQuery<S>| closest_of(&query.hits, &query.ray);
         // The wrong searches, which go through each structure once per mistake, are needed for wrong answers only.
         if self.queries.iter().zip(&answers).all(|(query, answer)| found(answer) == expected(query)) {
             return vec![Ok(()); answers.len()];

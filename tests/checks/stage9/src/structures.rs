@@ -4,9 +4,10 @@
 //! from its hits.
 
 use super::parts;
-use super::scenes::{Scene, Thing, closest};
+use super::scenes::{Scene, Thing};
 use checks::tree::around;
 use glam::{DVec3, UVec3, Vec3, vec3};
+use checks::tree::closest_of;
 use raykata::aabb::Aabb;
 use raykata::partition::{Bsp, BspNode, Cell, CutPlane, Grid, KdTree, Octree, PolygonBsp, PolygonBspNode};
 use raykata::ray::Ray;
@@ -70,7 +71,7 @@ pub(super) fn filled(bounds: Aabb, resolution: UVec3, lists: &[Vec<u32>]) -> Gri
 pub(super) fn grid_for(ray: &Ray, scene: &Scene, (bounds, room): (Aabb, f64), resolution: UVec3) -> Grid {
     // Compute the hits without the rounding of different formulas.
     let hits = Scene { rough: false, ..scene.clone() }.hits(ray);
-    let first = closest(&scene.hits(ray), ray).map(|(primitive, _)| primitive);
+    let first = closest_of(&scene.hits(ray), ray).map(|(primitive, _)| primitive);
     let n_cells = resolution.element_product();
     let mut lists = vec![Vec::new(); n_cells as usize];
     // Find the cells along the ray.

@@ -1,16 +1,16 @@
 //! Judges which cells a search visits, and which primitives it tests.
 
-use super::scenes::closest;
 use super::searches::Search;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
 use checks::paste::Paste;
+use checks::tree::closest_of;
 use raykata::kit::{CellsAnswer, CellsQuery, Kit};
 
 impl<S> Search<S> {
     /// Judges the visits of the searches for these rays, each of which is aimed at a primitive.
     pub(super) fn visits(&self, kit: &dyn Kit, what: &str, queries: &[CellsQuery<S>]) -> CheckResult {
-        assert!(queries.iter().all(|query| closest(&query.hits, &query.ray).is_some()), "a ray hits nothing");
+        assert!(queries.iter().all(|query| closest_of(&query.hits, &query.ray).is_some()), "a ray hits nothing");
         self.all_visits(kit, queries, |query, yours| self.judge_visits(what, query, &yours))
     }
 
@@ -33,7 +33,7 @@ impl<S> Search<S> {
         // A search that visits nothing is not a search.
         if yours.hit.is_none() || yours.visits.is_empty() {
             let found = yours.hit.map(|hit| (hit.primitive, hit.t));
-            let expected = format!("{:?} after at least one visit", closest(&query.hits, ray));
+            let expected = format!("{:?} after at least one visit", closest_of(&query.hits, ray));
             let yours = format!("{found:?} after {} visits", yours.visits.len());
             return Err(Broken::with_texts(input(), yours, expected, "brute force, (primitive, t)"));
         }
