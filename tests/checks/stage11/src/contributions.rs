@@ -210,12 +210,15 @@ pub(super) fn emission_counts_by_its_weight(trial: &Trial<'_>) -> CheckResult {
         compare_formulas(
             queries,
             answers,
-            |query, (yours, (weight, _))| {
+            |query, (yours, (own, _))| {
                 // These two cases follow from the definition alone.
                 let is_whole = query.pdf == f32::INFINITY || query.light_pdf == 0.0;
-                let weight = if is_whole { 1.0 } else { f64::from(weight) };
+                let weight = if is_whole { 1.0 } else { f64::from(own) };
                 let expected = weight * query.emission.as_dvec3();
-                if near(yours, expected) {
+                // A wrong weight of a certain direction is judged by a check of mis_weight.
+                let by_own_weight = own * query.emission;
+                let is_by_own_weight = yours == by_own_weight || yours.is_nan() && by_own_weight.is_nan();
+                if near(yours, expected) || is_by_own_weight {
                     return Ok(());
                 }
                 let input = call("emitted_contribution", &[&query.emission, &query.pdf, &query.light_pdf]);

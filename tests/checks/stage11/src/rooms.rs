@@ -1,5 +1,6 @@
 //! Rooms for paths, in double precision: the judge holds the geometry, and `step` gets one surface at a time.
 
+use super::steps::CERTAIN;
 use checks::broken::Broken;
 use checks::statistics::pairs;
 use glam::{DVec3, Vec3};
@@ -235,7 +236,7 @@ pub(super) fn follow(
             direction: direction.as_vec3(),
             weight: Vec3::ONE,
             bounces: 0,
-            pdf: f32::INFINITY,
+            pdf: CERTAIN,
         };
         Path { index, origin: *origin, direction: *direction, state }
     };
@@ -306,7 +307,7 @@ pub(super) fn follow(
                     direction: next.direction,
                     weight: next.weight,
                     bounces: path.state.bounces + 1,
-                    pdf: next.pdf,
+                    pdf: next.pdf.min(CERTAIN),
                 };
                 paths.push(Path { index: path.index, origin: point, direction, state });
             }
