@@ -42,9 +42,11 @@ pub fn ray() -> impl Strategy<Value = Ray> + Clone {
     (point(8), unit()).prop_map(|(origin, direction)| Ray::new(origin, direction))
 }
 
-/// A triangle near the origin; some have no area.
+/// A triangle near the origin, with an area.
 pub fn triangle() -> impl Strategy<Value = Triangle> + Clone {
-    (point(4), point(4), point(4)).prop_map(|(a, b, c)| Triangle { a, b, c })
+    let corners = (point(4), point(4), point(4));
+    let has_area = |(a, b, c): &(Vec3, Vec3, Vec3)| (*b - *a).cross(*c - *a) != Vec3::ZERO;
+    corners.prop_filter("no area", has_area).prop_map(|(a, b, c)| Triangle { a, b, c })
 }
 
 /// A positive number between `10^low` and `10^high`, uniform in its logarithm.

@@ -17,7 +17,7 @@ use raykata::scene::Split;
 pub(super) fn boxes(most: usize) -> impl Strategy<Value = Vec<Aabb>> + Clone {
     let small = (rough_point(8.0), point(1)).prop_map(|(p, size)| Aabb::new(p, p + size.abs()));
     let coarse = point(1).prop_map(|p| Aabb::new(p.round(), p.round() + 1.0));
-    let flat = (0..9i32).prop_map(|i| Aabb::new(Vec3::ZERO, vec3(i as f32, 0.0, 0.0)));
+    let nested = (0..9i32).prop_map(|i| Aabb::new(Vec3::ZERO, vec3(i as f32, 0.5, 0.25)));
     let long = (rough_point(2.0), 0..4i32).prop_map(|(p, length)| {
         Aabb::new(p - vec3(0.0, 0.0, 12.0 + length as f32), p + vec3(0.25, 0.25, 12.0))
     });
@@ -25,7 +25,7 @@ pub(super) fn boxes(most: usize) -> impl Strategy<Value = Vec<Aabb>> + Clone {
         1 => prop::collection::vec(long, 2..most),
         3 => prop::collection::vec(small, 2..most),
         1 => prop::collection::vec(coarse, 2..most),
-        1 => prop::collection::vec(flat, 2..most),
+        1 => prop::collection::vec(nested, 2..most),
     ]
 }
 
