@@ -38,6 +38,7 @@ checks::stage! { ($ crate) 8 [
     bounding_spheres::sphere_is_small
     bounding_spheres::enter_bounding_sphere_finds_what_is_met
     bounding_spheres::enter_bounding_sphere_passes_what_is_missed
+    boxes::volumes_are_rounded_outwards
     graph::graph_finds_the_closest_hit
     graph::graph_asks_for_everything_without_savings
     graph::graph_asks_for_volumes_first
