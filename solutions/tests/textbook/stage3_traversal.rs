@@ -6,13 +6,7 @@ use raykata::ray::Ray;
 fn closer(first: Option<PrimitiveHit>, second: Option<PrimitiveHit>) -> Option<PrimitiveHit> {
     match (first, second) {
         (None, hit) | (hit, None) => hit,
-        (Some(a), Some(b)) => {
-            if b.t < a.t || (b.t == a.t && b.primitive < a.primitive) {
-                second
-            } else {
-                first
-            }
-        }
+        (Some(a), Some(b)) => Some(if b.t < a.t { b } else { a }),
     }
 }
 
