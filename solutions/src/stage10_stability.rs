@@ -274,7 +274,6 @@ fn upper_half(product: f64) -> f64 {
 /// - A box with a hit at `t` is entered at `t` or before.
 /// - The entry is right up to 64 roundings, where the ray clearly meets the box.
 /// - A box passed by at more than 64 roundings gives `None`, and so does the empty box.
-/// - Neither result is ever NaN.
 ///
 /// Source: Ize, "Robust BVH Ray Traversal", JCGT 2013.
 pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
@@ -386,8 +385,6 @@ pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
 /// - A ray that starts inside hits the far side; one that touches the sphere hits it.
 /// - `t` is within 0.51 units in the last place, if the ray starts a millionth of the radius or
 ///   more away from the sphere.
-/// - A sphere whose radius is 0, negative or NaN is never hit.
-/// - `None` for NaN in the input, and every `t` is finite.
 ///
 /// Source: "Ray-Sphere Intersection".
 pub fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {

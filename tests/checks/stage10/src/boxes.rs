@@ -1,6 +1,5 @@
 //! The laws of `conservative_slab`.
 
-use super::Odd;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double;
@@ -272,32 +271,4 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckRe
         }
     };
     all_hold(compare(&drawn, trial.kit.conservative_slab(&queries), judge))
-}
-
-pub(super) fn slab_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
-    let mut odd = Odd::new(trial, 9);
-    let around = Aabb::new(Vec3::NEG_ONE, Vec3::ONE);
-    let from_middle = Ray::new(Vec3::ZERO, Vec3::X);
-    let mut queries = [Aabb::EMPTY, around].map(|bounds| SlabQuery { ray: from_middle, bounds }).to_vec();
-    queries.extend(
-        (0..3000).map(|_| SlabQuery { ray: odd.ray(), bounds: Aabb::new(odd.vector(), odd.vector()) }),
-    );
-    let judge = |query: &SlabQuery, yours: Option<(f32, f32)>| {
-        let broken = |expected: &str, law| {
-            let call = query.call("conservative_slab");
-            Err(Broken::with_texts(call, format!("{yours:?}"), expected, law))
-        };
-        match yours {
-            Some((enter, leave)) if enter.is_nan() || leave.is_nan() => {
-                broken("numbers, or None", "neither result is ever NaN")
-            }
-            Some(_) if query.bounds == Aabb::EMPTY => broken("None", "the box is empty"),
-            // Drawn rays may pass this box.
-            None if query.bounds == around && query.ray == from_middle => {
-                broken("Some", "the ray starts in the box")
-            }
-            _ => Ok(()),
-        }
-    };
-    all_hold(compare(&queries, trial.kit.conservative_slab(&queries), judge))
 }

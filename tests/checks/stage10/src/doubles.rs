@@ -1,7 +1,7 @@
 //! The laws of `triangle_in_double`, and special numbers as input of both functions in double precision.
 
+use super::Odd;
 use super::triangles::{aim_again, draw};
-use super::{Odd, SPECIAL};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
@@ -13,9 +13,9 @@ use oracle::STABLE;
 use oracle::exact::{Body, meet, t_error_in_ulps, t_in_double, triangle, verdict};
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
 use oracle::splitmix::Random;
-use raykata::kit::{SphereQuery, TriangleHit, TriangleQuery};
+use raykata::kit::{TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
-use raykata::shape::{Sphere, Triangle};
+use raykata::shape::Triangle;
 
 /// The largest margin, in roundings of single precision, at which a verdict in double precision may be wrong. A
 /// rounding in double precision is 2^-29 of one in single precision. Of 192,000 inputs, the method of plane and Gram
@@ -367,9 +367,7 @@ pub(super) fn judge_ends(
     compare_formulas(&at_ends, ask(&only), judge, formulas)
 }
 
-const NAN_IS_NO_HIT: &str = "NaN is no hit: test the conditions of a hit, which are false for NaN";
-
-pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
+pub(super) fn double_triangle_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
     let mut odd = Odd::new(trial, 16);
     let mut triangles = odd.triangles();
     // One ordinary hit.
@@ -390,47 +388,13 @@ pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckRes
                     "finite numbers, or None",
                     "the definition",
                 );
-                Err(broken.explained_by([(has_nan || is_nan, NAN_IS_NO_HIT)]))
+                Err(broken.explained_by([(
+                    has_nan || is_nan,
+                    "NaN is no hit: test the conditions of a hit, which are false for NaN",
+                )]))
             }
             _ => Ok(()),
         }
     };
-    all_hold(compare(&triangles, trial.kit.triangle_in_double(&triangles), judge))?;
-
-    // Aim at the centre, so that only the radius decides.
-    let centred = |radius: f32| {
-        let sphere = Sphere { center: Vec3::ZERO, radius };
-        SphereQuery { ray: Ray::new(Vec3::new(0.0, 0.0, -4.0), Vec3::Z), sphere }
-    };
-    let mut spheres: Vec<SphereQuery> =
-        [-1.0, -2.0, 0.0, -0.0].into_iter().chain(SPECIAL).map(centred).collect();
-    spheres.extend((0..3000).map(|_| {
-        let sphere = Sphere { center: odd.vector(), radius: odd.vector().x };
-        SphereQuery { ray: odd.ray(), sphere }
-    }));
-    let judge = |query: &SphereQuery, yours: Option<f32>| {
-        let SphereQuery { ray, sphere } = query;
-        let has_nan =
-            ray.origin.is_nan() || ray.direction.is_nan() || sphere.center.is_nan() || sphere.radius.is_nan();
-        let broken = |expected: &str, mistakes: &[(bool, &'static str)]| {
-            let input = query.call("sphere_in_double");
-            Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition")
-                .explained_by(mistakes.iter().copied()))
-        };
-        match yours {
-            None if *query == centred(1.0) => broken("Some(3.0)", &[]),
-            Some(t) if has_nan || !t.is_finite() => {
-                broken("a finite number, or None", &[(has_nan || t.is_nan(), NAN_IS_NO_HIT)])
-            }
-            Some(_) if sphere.radius <= 0.0 => broken(
-                "None",
-                &[(
-                    true,
-                    "you return a hit for a radius of 0 or below: r² has no sign, so test the radius itself",
-                )],
-            ),
-            _ => Ok(()),
-        }
-    };
-    all_hold(compare(&spheres, trial.kit.sphere_in_double(&spheres), judge))
+    all_hold(compare(&triangles, trial.kit.triangle_in_double(&triangles), judge))
 }

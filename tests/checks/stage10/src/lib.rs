@@ -24,7 +24,7 @@ use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
 /// Numbers for which formulas often fail.
-pub const SPECIAL: [f32; 10] =
+const SPECIAL: [f32; 10] =
     [0.0, -0.0, 1.0, -1.0, 1e-40, f32::MIN_POSITIVE, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
 
 /// Inputs made of [`SPECIAL`] numbers.
@@ -70,7 +70,6 @@ checks::stage! { ($ crate) 10 [
     boxes::slab_misses_no_box_in_any_range
     boxes::slab_meets_no_box_that_is_passed
     boxes::slab_is_entered_before_what_it_holds
-    boxes::slab_of_special_numbers_is_finite
     points::offsets_leave_the_surface_at_any_scale
     points::offsets_are_as_small_as_they_can_be
     points::directions_have_length_one_at_every_length
@@ -79,7 +78,7 @@ checks::stage! { ($ crate) 10 [
     doubles::double_triangle_has_the_nearest_t
     rims::double_sphere_is_right_at_rims
     rims::double_sphere_has_the_nearest_t
-    doubles::double_of_special_numbers_is_finite
+    doubles::double_triangle_of_special_numbers_is_finite
     table::table_of_seven_scales: composed
     picture::picture_at_three_scales: composed
 ] }
