@@ -31,10 +31,14 @@ pub fn move_apart(hits: &mut [f32], step: f32) {
 /// The same query with all hits at `t` = 5. In some of these queries all boxes begin there as well.
 pub fn tied(mut query: SearchQuery) -> SearchQuery {
     query.ray = query.ray.with_range(0.5, f32::INFINITY);
-    let near = if query.bvh.nodes.len() % 4 == 1 { 1.0 } else { 5.0 };
-    query.table.primitives.iter_mut().filter(|t| t.is_finite()).for_each(|t| *t = 5.0);
-    query.table.boxes.iter_mut().filter(|(near, far)| near <= far).for_each(|entry| *entry = (near, 9.0));
+    tie(&mut query.table, if query.bvh.nodes.len() % 4 == 1 { 1.0 } else { 5.0 });
     query
+}
+
+/// Moves all hits to `t` = 5, in boxes that begin at `near`.
+pub fn tie(table: &mut Table, near: f32) {
+    table.primitives.iter_mut().filter(|t| t.is_finite()).for_each(|t| *t = 5.0);
+    table.boxes.iter_mut().filter(|(near, far)| near <= far).for_each(|entry| *entry = (near, 9.0));
 }
 
 /// A box around a sphere, widened by 1e-4 of the radius for rounding.

@@ -75,38 +75,33 @@ fn judge(query: &SearchQuery, yours: &SearchAnswer) -> CheckResult {
     Err(broken.explained_by(mistakes(query, found, tests)))
 }
 
+/// A search in a table of hits.
+fn query(primitives: Vec<f32>) -> SearchQuery {
+    let table = Table { boxes: Vec::new(), primitives };
+    SearchQuery { bvh: Default::default(), ray: Ray::new(Vec3::ZERO, Vec3::X), table }
+}
+
 pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> CheckResult {
     // Begin with small tables, on which each mistake gives another answer.
-    let ray = Ray::new(Vec3::ZERO, Vec3::X);
-    let query = |primitives: &[f32]| SearchQuery {
-        bvh: Default::default(),
-        ray,
-        table: Table { boxes: Vec::new(), primitives: primitives.to_vec() },
-    };
-    let drawn = [query(&[5.0]), query(&[3.0, 1.0, 2.0]), query(&[1.0, 3.0])];
+    let drawn = [vec![5.0], vec![3.0, 1.0, 2.0], vec![1.0, 3.0]].map(query);
     let t = prop_oneof![Just(f32::INFINITY), (0..=20i32).prop_map(|t| t as f32 / 2.0 - 1.0)];
-    let inputs = (prop::collection::vec(t, 0..12), 0..=4i32, 0..=3i32).prop_map(
-        move |(mut primitives, t_min, long)| {
+    let inputs =
+        (prop::collection::vec(t, 0..12), 0..=4i32, 0..=3i32).prop_map(|(mut primitives, t_min, long)| {
             move_apart(&mut primitives, 0.25);
             let t_max = if long == 0 { f32::INFINITY } else { 8.0 };
-            SearchQuery { ray: ray.with_range(t_min as f32 / 2.0, t_max), ..query(&primitives) }
-        },
-    );
+            let query = query(primitives);
+            SearchQuery { ray: query.ray.with_range(t_min as f32 / 2.0, t_max), ..query }
+        });
     trial.forall_and(&drawn, 2000, inputs, |queries| {
         compare(queries, trial.kit.brute_force(queries), |query, yours| judge(query, &yours))
     })
 }
 
 pub(super) fn brute_force_prefers_the_smaller_number(trial: &Trial<'_>) -> CheckResult {
-    let ray = Ray::new(Vec3::ZERO, Vec3::X);
-    // All tables of one to six primitives, each of which is missed or hit at t = 2.
-    let hit = |set: u32, primitive: u32| if set >> primitive & 1 == 1 { 2.0 } else { f32::INFINITY };
+    // All tables of one to six primitives, each of which is missed or hit at the same t.
+    let t = trial.varied(2.0, 0.5f32..8.0);
+    let hit = |set: u32, primitive: u32| if set >> primitive & 1 == 1 { t } else { f32::INFINITY };
     let tables = (1..=6).flat_map(|n| (0..1 << n).map(move |set| (0..n).map(|i| hit(set, i)).collect()));
-    let query = |primitives| SearchQuery {
-        bvh: Default::default(),
-        ray,
-        table: Table { boxes: Vec::new(), primitives },
-    };
     let queries: Vec<SearchQuery> = tables.map(query).collect();
     all_hold(compare(&queries, trial.kit.brute_force(&queries), |query, yours| judge(query, &yours)))
 }

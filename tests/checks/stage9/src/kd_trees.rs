@@ -9,7 +9,7 @@ use super::structures::{filled, kd_tree};
 use checks::Trial;
 use checks::broken::CheckResult;
 use checks::judge::compare;
-use glam::{Vec3, vec3};
+use glam::{UVec3, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsQuery, KdQuery};
@@ -186,28 +186,25 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
 /// two cells, at the face between them.
 pub(super) fn hits_at_one_t_in_cells_prefer_the_smaller_number(trial: &Trial<'_>) -> CheckResult {
     let (mut trees, mut grids, mut octrees) = (Described::new(), Described::new(), Described::new());
-    for axis in 0..3 {
-        let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
-        let ray = Ray::new(along(axis, vec3(-2.0, 1.0, 1.0)), along(axis, Vec3::X));
-        let resolution = along(axis, vec3(2.0, 1.0, 1.0)).as_uvec3();
-        let cases: [(_, [&[u32]; 2]); 6] = [
-            ("in one cell, the smaller number first", [&[0, 1, 2], &[]]),
-            ("in one cell, the larger number first", [&[2, 1, 0], &[]]),
-            ("in one cell, the smallest number second", [&[2, 0, 1], &[]]),
-            ("at the face between two cells", [&[0], &[1, 2]]),
-            ("at the face between two cells, the smaller number behind", [&[2, 1], &[0]]),
-            ("at the face between two cells, one in both", [&[1, 2], &[2, 0]]),
-        ];
-        for (what, lists) in cases {
-            let hits = vec![2.0; 3];
-            let tree = two_leaves(bounds, (axis, 0.0), lists[0], lists[1]);
-            trees.add(format!("kd-tree; {what}"), CellsQuery { cells: tree, ray, hits: hits.clone() });
-            let grid = filled(bounds, resolution, &lists.map(<[u32]>::to_vec));
-            grids.add(format!("grid; {what}"), CellsQuery { cells: grid, ray, hits: hits.clone() });
-            let mut octree = Octree::new(bounds);
-            octree.set_leaf(0, &lists.concat());
-            octrees.add(format!("octree of one leaf; {what}"), CellsQuery { cells: octree, ray, hits });
-        }
+    let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
+    let ray = Ray::new(vec3(-2.0, 1.0, 1.0), Vec3::X);
+    let cases: [(_, [&[u32]; 2]); 6] = [
+        ("in one cell, the smaller number first", [&[0, 1, 2], &[]]),
+        ("in one cell, the larger number first", [&[2, 1, 0], &[]]),
+        ("in one cell, the smallest number second", [&[2, 0, 1], &[]]),
+        ("at the face between two cells", [&[0], &[1, 2]]),
+        ("at the face between two cells, the smaller number behind", [&[2, 1], &[0]]),
+        ("at the face between two cells, one in both", [&[1, 2], &[2, 0]]),
+    ];
+    for (what, lists) in cases {
+        let hits = vec![2.0; 3];
+        let cells = two_leaves(bounds, (0, 0.0), lists[0], lists[1]);
+        trees.add(format!("kd-tree; {what}"), CellsQuery { cells, ray, hits: hits.clone() });
+        let cells = filled(bounds, UVec3::new(2, 1, 1), &lists.map(<[u32]>::to_vec));
+        grids.add(format!("grid; {what}"), CellsQuery { cells, ray, hits: hits.clone() });
+        let mut cells = Octree::new(bounds);
+        cells.set_leaf(0, &lists.concat());
+        octrees.add(format!("octree of one leaf; {what}"), CellsQuery { cells, ray, hits });
     }
     trees.judge(trial.kit, &KD_TREE)?;
     grids.judge(trial.kit, &GRID)?;
