@@ -1,10 +1,11 @@
 //! The same in lines, one after the other: for screen readers, pipes and terminals without a screen. It ends when the
 //! program is interrupted.
 
-use crate::app::{Action, App, Phase};
+use crate::app::{Action, App, Page, Phase};
 use crate::run::{Event, Paths, Run};
 use anyhow::Result;
 use live::files::Files;
+use raykata_cli::finish::next_step;
 use raykata_cli::report::say;
 use raykata_cli::verdicts::Verdict;
 use std::time::Duration;
@@ -33,7 +34,8 @@ pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
                 };
                 let before = app.regression();
                 let action = app.event(event);
-                if has_ended && action == Action::Nothing {
+                let is_finish = matches!(app.page, Page::Picture { is_finish: true, .. });
+                if has_ended && (action == Action::Nothing || is_finish) {
                     say(format_args!("{}\n", lines(&app)));
                 }
                 if let Some(words) = app.regression().filter(|words| before.as_ref() != Some(words)) {
@@ -66,5 +68,12 @@ fn lines(app: &App) -> String {
         (_, Some(Verdict::Passed)) if stage.is_done() => format!("Stage {} is done.\n", stage.number),
         _ => String::new(),
     };
-    head + &body
+    let lines = match &app.page {
+        Page::Picture { picture: Some(picture), .. } => {
+            picture.lines.iter().chain([&next_step(stage.number)]).map(|line| format!("{line}\n")).collect()
+        }
+        Page::Picture { picture: None, .. } => "its picture is being rendered …\n".to_owned(),
+        _ => String::new(),
+    };
+    head + &body + &lines
 }

@@ -24,7 +24,7 @@ pub fn of_kit(root: &Path, which: Which) -> Result<Racer> {
     let racer = Racer { name: which.package().into(), folder: root.join(which.package()) };
     if !is_kit(&racer.folder) {
         bail!(
-            "there are no {} in {}: give another folder of exercises, as in `--against ../other/exercises`",
+            "there are no {} in {}: name an opponent, which is another folder of exercises, as in `--against ../other/exercises`",
             racer.name,
             root.display()
         );

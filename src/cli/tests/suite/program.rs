@@ -3,6 +3,8 @@
 use super::program_runs::{complaint, printed, raykata, root, said};
 use raykata::scene::load;
 use std::path::PathBuf;
+use std::process::Command;
+use std::time::{Duration, Instant};
 
 fn scene_files() -> Vec<PathBuf> {
     let folder = std::fs::read_dir(root().join("scenes")).expect("the folder scenes/");
@@ -71,6 +73,18 @@ fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_reported() {
     let one = said("check 1 --kit solutions");
     assert!(one.contains("stage  1 ·") && !one.contains("stage  2 ·"), "{one}");
     assert_eq!(one, said("check stage1 --kit solutions"));
+    // The stage is done: its picture is in the album, and the next stage begins.
+    let (_, finish) = one.split_once("\nStage 1 is done.\n").expect("the finish of the stage");
+    let words = finish.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.starts_with("10 primitives, ") && words.contains(" primary rays and "), "{words}");
+    for part in
+        ["kept in out/album/stage1.png.", "Next: stage 2 · triangles. Read slides/stage02.md, then write"]
+    {
+        assert!(words.contains(part), "{words}");
+    }
+    assert!(!finish.contains('\u{1b}'), "a file gets no half blocks: {finish}");
+    let picture = std::fs::read(root().join("out/album/stage1.png")).expect("a picture");
+    assert!(picture.starts_with(b"\x89PNG"));
     for wrong in ["77", "0", "stage13", "one"] {
         for command in ["check", "list"] {
             let refused = complaint(&format!("{command} {wrong}"), 2);
@@ -135,6 +149,46 @@ fn a_worker_that_is_up_to_date_is_not_mentioned() {
     let said: Vec<String> =
         (0..100).map(|_| printed(&tree()).1).take_while(|said| !said.is_empty()).collect();
     assert!(said.len() < 100, "{}", said.concat());
+}
+
+/// The workers that a process has started, by their numbers.
+#[cfg(target_os = "linux")]
+fn children(parent: u32) -> Vec<String> {
+    let children = std::fs::read_to_string(format!("/proc/{parent}/task/{parent}/children"));
+    let is_worker = |child: &&str| {
+        let name = std::fs::read_to_string(format!("/proc/{child}/comm"));
+        name.is_ok_and(|name| name.starts_with("solutions-frame"))
+    };
+    children.unwrap_or_default().split_whitespace().filter(is_worker).map(str::to_owned).collect()
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_killed_render_ends_its_worker() {
+    // Build the worker first.
+    let out = tempfile::tempdir().expect("a folder");
+    let line =
+        |size: &str| format!("render scenes/cornell.toml --size {size} --out {}/a.png", out.path().display());
+    said(&line("8x8"));
+    for signal in ["TERM", "KILL"] {
+        let mut render = Command::new(env!("CARGO_BIN_EXE_raykata"));
+        let mut render =
+            render.current_dir(root()).args(line("4000x4000").split(' ')).spawn().expect("it starts");
+        let wait_until = |what: &str, is_so: &dyn Fn() -> bool| {
+            let begin = Instant::now();
+            while !is_so() {
+                assert!(begin.elapsed() < Duration::from_secs(60), "SIG{signal}: {what}");
+                std::thread::sleep(Duration::from_millis(50));
+            }
+        };
+        wait_until("no worker", &|| !children(render.id()).is_empty());
+        let workers = children(render.id());
+        let kill = Command::new("kill").args([&format!("-{signal}"), &render.id().to_string()]).status();
+        assert!(kill.expect("`kill` starts").success());
+        render.wait().expect("it ends");
+        let is_over = |worker: &String| !PathBuf::from(format!("/proc/{worker}")).exists();
+        wait_until("the worker goes on", &|| workers.iter().all(is_over));
+    }
 }
 
 #[test]
