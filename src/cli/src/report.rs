@@ -225,22 +225,25 @@ impl Watch for FrameBar {
 /// The text in lines of at most `columns` columns. Later lines are indented like the first one, and two columns more.
 pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
     let indent = text.len() - text.trim_start().len();
+    lines(text, columns.max(indent + 12), indent + 2)
+}
+
+/// The text in lines of at most `columns` columns; all but the first begin with `indent` spaces. A word that is longer than a line
+/// is cut.
+pub fn lines(text: &str, columns: usize, indent: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
-    let columns = columns.max(indent + 12);
+    let length = |lines: &[String]| lines.last().map_or(0, |line| line.chars().count());
     for word in text.split_inclusive(' ') {
-        let last = lines.last_mut().map_or(0, |line| line.chars().count());
-        let length = word.trim_end().chars().count();
-        if last > indent && last + length > columns {
-            lines.push(" ".repeat(indent + 2));
+        let is_begun = lines.last().is_some_and(|line| !line.trim().is_empty());
+        if is_begun && length(&lines) + word.trim_end().chars().count() > columns {
+            lines.push(" ".repeat(indent));
         }
-        // Cut a word that is longer than a line.
         for sign in word.chars() {
-            if lines.last().map_or(0, |line| line.chars().count()) == columns && sign != ' ' {
-                lines.push(" ".repeat(indent + 2));
+            if length(&lines) == columns && sign != ' ' {
+                lines.push(" ".repeat(indent));
             }
-            if let Some(line) = lines.last_mut().filter(|line| line.chars().count() < columns) {
-                line.push(sign);
-            }
+            let is_full = length(&lines) == columns;
+            lines.last_mut().filter(|_| !is_full).into_iter().for_each(|line| line.push(sign));
         }
     }
     lines.into_iter().map(|line| line.trim_end().to_owned()).collect()

@@ -1,26 +1,16 @@
 //! Every measured table on a slide names the command that makes it, every command exists, and no slide is too long.
 
-use std::fs;
+use raykata_cli::slides::{Deck, decks};
 use std::path::Path;
 use std::process::Command;
 
-/// All slides: the file and number of each, and its text.
+/// All slides: the deck and number of each, and its text.
 fn slides(root: &Path) -> Vec<(String, String)> {
-    let mut slides = Vec::new();
-    for file in fs::read_dir(root.join("slides")).unwrap().map(|file| file.unwrap().path()) {
-        if file.extension().is_none_or(|ending| ending != "md") {
-            continue;
-        }
-        let text = fs::read_to_string(&file).unwrap();
-        // Other files in the folder are for readers: `curriculum.rs` tests one.
-        if !text.starts_with("---\nmarp: true") {
-            continue;
-        }
-        let name = file.file_name().unwrap().to_string_lossy().into_owned();
-        let numbered = text.split("\n---\n").enumerate();
-        slides.extend(numbered.map(|(number, slide)| (format!("{name}, slide {number}"), slide.to_owned())));
-    }
-    slides
+    let place = |name: &str, number| format!("{name}.md, slide {number}");
+    let decks = decks(&root.join("slides")).unwrap().into_iter();
+    let of_deck =
+        |deck: Deck| (1..).zip(deck.slides).map(move |(number, slide)| (place(&deck.name, number), slide));
+    decks.flat_map(of_deck).collect()
 }
 
 /// The commands in backticks and in blocks of commands.

@@ -1,18 +1,18 @@
-//! Differences as `diff -u` prints them: the patches of a course, and the changes of cargo-mutants.
+//! Differences as `diff -u` prints them: the changes of cargo-mutants.
 
 use super::entry::Sign;
 use anyhow::{Context, Result, bail};
 
 /// A part of a patch: lines that go, come and stay.
-pub struct Hunk {
+struct Hunk {
     /// The line of the old file at which it begins, from 0.
-    pub start: usize,
+    start: usize,
     /// Its lines.
-    pub lines: Vec<(Sign, String)>,
+    lines: Vec<(Sign, String)>,
 }
 
-/// Reads the parts of a patch. Each line is changed by `renamed`.
-pub fn hunks(diff: &str, renamed: impl Fn(&str) -> String) -> Result<Vec<Hunk>> {
+/// Reads the parts of a patch.
+fn hunks(diff: &str) -> Result<Vec<Hunk>> {
     let mut hunks: Vec<Hunk> = Vec::new();
     for line in diff.lines().skip(2) {
         if let Some(rest) = line.strip_prefix("@@ -") {
@@ -26,7 +26,7 @@ pub fn hunks(diff: &str, renamed: impl Fn(&str) -> String) -> Result<Vec<Hunk>> 
                 false => Sign::of(line).with_context(|| format!("`{line}` is no line of a patch"))?,
             };
             let hunk = hunks.last_mut().with_context(|| format!("`{line}` stands before the first `@@`"))?;
-            hunk.lines.push((sign, renamed(text)));
+            hunk.lines.push((sign, text.to_owned()));
         }
     }
     Ok(hunks)
@@ -34,7 +34,7 @@ pub fn hunks(diff: &str, renamed: impl Fn(&str) -> String) -> Result<Vec<Hunk>> 
 
 impl Hunk {
     /// The line at which the old lines stand: the nearest to the place that the patch names.
-    pub fn find(&self, lines: &[&str]) -> Result<usize> {
+    fn find(&self, lines: &[&str]) -> Result<usize> {
         let old: Vec<&str> = self
             .lines
             .iter()
@@ -62,7 +62,7 @@ impl Hunk {
 /// Returns a text with a difference applied.
 pub fn apply(diff: &str, text: &str) -> Result<String> {
     let mut lines: Vec<&str> = text.split('\n').collect();
-    let hunks = hunks(diff, str::to_owned)?;
+    let hunks = hunks(diff)?;
     // From the last part on, so that the lines of those before keep their places.
     for hunk in hunks.iter().rev() {
         let at = hunk.find(&lines)?;

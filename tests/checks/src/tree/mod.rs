@@ -3,7 +3,9 @@
 
 mod search;
 
-pub use search::{closest_in_table, closest_of, move_apart, needed, overlapped, search_query, sphere_box, tied};
+pub use search::{
+    closest_in_table, closest_of, move_apart, needed, overlapped, search_query, sphere_box, tied,
+};
 
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};

@@ -1,6 +1,8 @@
 //! `wide_closest_hit` and `wide_any_hit`: what they find, and which boxes they enter.
 
-use super::wide_tables::{Flaw, closest, describe, flawed_search, overlapped, searches, small_searches, two_leaves};
+use super::wide_tables::{
+    Flaw, closest, describe, flawed_search, overlapped, searches, small_searches, two_leaves,
+};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, compare_formulas};
@@ -85,9 +87,7 @@ pub(super) fn wide_closest_hit_prefers_the_smaller_number(trial: &Trial<'_>) -> 
     });
     // Both leaves have a hit at the same t, and the second one is entered exactly there, or before.
     let drawn = [two_leaves([3.0, 2.0], [3.0, 3.0]), two_leaves([2.0, 3.0], [3.0, 3.0])];
-    trial.forall_and(&drawn, 300, tied, |queries| {
-        judge_hits(queries, trial.kit.wide_closest_hit(queries))
-    })
+    trial.forall_and(&drawn, 300, tied, |queries| judge_hits(queries, trial.kit.wide_closest_hit(queries)))
 }
 
 /// Judges whether a search visits only nodes that the ray enters, each at most once.

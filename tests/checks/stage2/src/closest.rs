@@ -85,12 +85,13 @@ pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> CheckRe
     };
     let drawn = [query(&[5.0]), query(&[3.0, 1.0, 2.0]), query(&[1.0, 3.0])];
     let t = prop_oneof![Just(f32::INFINITY), (0..=20i32).prop_map(|t| t as f32 / 2.0 - 1.0)];
-    let inputs =
-        (prop::collection::vec(t, 0..12), 0..=4i32, 0..=3i32).prop_map(move |(mut primitives, t_min, long)| {
+    let inputs = (prop::collection::vec(t, 0..12), 0..=4i32, 0..=3i32).prop_map(
+        move |(mut primitives, t_min, long)| {
             move_apart(&mut primitives, 0.25);
             let t_max = if long == 0 { f32::INFINITY } else { 8.0 };
             SearchQuery { ray: ray.with_range(t_min as f32 / 2.0, t_max), ..query(&primitives) }
-        });
+        },
+    );
     trial.forall_and(&drawn, 2000, inputs, |queries| {
         compare(queries, trial.kit.brute_force(queries), |query, yours| judge(query, &yours))
     })

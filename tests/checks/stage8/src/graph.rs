@@ -105,7 +105,9 @@ pub(super) fn graph_prefers_the_smaller_number(trial: &Trial<'_>) -> CheckResult
     let mut queries: Vec<GraphQuery> = Vec::new();
     // All hits are at the same t, and the volumes begin exactly there, or before.
     for _ in 0..60 {
-        for (savings, near) in [(NOTHING, 1.0), (VOLUMES, 3.0), (SKIP, 1.0), (SKIP, 3.0), (ALL, 1.0), (ALL, 3.0)] {
+        for (savings, near) in
+            [(NOTHING, 1.0), (VOLUMES, 3.0), (SKIP, 1.0), (SKIP, 3.0), (ALL, 1.0), (ALL, 3.0)]
+        {
             let mut query = random_query(&mut random, savings);
             query.ray = query.ray.with_range(0.0, f32::INFINITY);
             query.table.primitives.iter_mut().filter(|t| t.is_finite()).for_each(|t| *t = 3.0);

@@ -187,7 +187,8 @@ pub(super) fn scenes() -> impl Strategy<Value = (Scene, Ray)> + Clone {
         }
         let (scene, ray) = (Scene { things, rough }, scales.of_ray(&ray));
         // A quarter of these numbers choose a range.
-        let at_hit = closest_of(&scene.hits(&ray), &ray).and_then(|(_, t)| nasty::ranges(t).get(range).copied());
+        let at_hit =
+            closest_of(&scene.hits(&ray), &ray).and_then(|(_, t)| nasty::ranges(t).get(range).copied());
         let ray = at_hit.map_or(ray, |((t_min, t_max), _)| ray.with_range(t_min, t_max));
         (scene, ray)
     })

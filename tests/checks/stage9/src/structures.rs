@@ -6,8 +6,8 @@
 use super::parts;
 use super::scenes::{Scene, Thing};
 use checks::tree::around;
-use glam::{DVec3, UVec3, Vec3, vec3};
 use checks::tree::closest_of;
+use glam::{DVec3, UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::partition::{Bsp, BspNode, Cell, CutPlane, Grid, KdTree, Octree, PolygonBsp, PolygonBspNode};
 use raykata::ray::Ray;

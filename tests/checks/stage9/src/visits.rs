@@ -10,7 +10,10 @@ use raykata::kit::{CellsAnswer, CellsQuery, Kit};
 impl<S> Search<S> {
     /// Judges the visits of the searches for these rays, each of which is aimed at a primitive.
     pub(super) fn visits(&self, kit: &dyn Kit, what: &str, queries: &[CellsQuery<S>]) -> CheckResult {
-        assert!(queries.iter().all(|query| closest_of(&query.hits, &query.ray).is_some()), "a ray hits nothing");
+        assert!(
+            queries.iter().all(|query| closest_of(&query.hits, &query.ray).is_some()),
+            "a ray hits nothing"
+        );
         self.all_visits(kit, queries, |query, yours| self.judge_visits(what, query, &yours))
     }
 
