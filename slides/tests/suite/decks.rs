@@ -92,12 +92,9 @@ fn a_deck_has_twenty_to_forty_slides() {
 
 #[test]
 fn every_row_of_the_lectures_stands_on_a_slide() {
-    let notes: Vec<String> = decks()
-        .iter()
-        .flat_map(|deck| {
-            deck.slides.iter().filter_map(|slide| note(slide).map(str::to_owned)).collect::<Vec<_>>()
-        })
-        .collect();
+    let decks = decks();
+    let notes: Vec<&str> =
+        decks.iter().flat_map(|deck| &deck.slides).filter_map(|slide| note(slide)).collect();
     let rows = [('R', 10), ('X', 15), ('M', 8), ('C', 12)];
     let missing: Vec<String> = rows
         .iter()
@@ -291,7 +288,7 @@ fn lines_of_rubric() -> String {
     let mut text = String::new();
     for (stage, entries) in raykata::rubric::stages() {
         for (name, entry) in entries.in_order() {
-            text += &format!("stage {stage} · {}\n  slides: {}\n", entry.title, entry.slide);
+            text += &entry.header();
             text += &format!(
                 "  again: cargo test --test stage{stage} {name}\n  print: cargo run -- try {name}\n  stuck: cargo run -- hint {name}\n"
             );

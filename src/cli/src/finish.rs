@@ -127,7 +127,7 @@ pub fn show(root: &Path, which: Which, stage: u8, columns: usize) -> Result<()> 
     let picture = picture.with_context(|| format!("stage {stage} is done, but its picture fails"))?;
     println!("\nStage {stage} is done.\n");
     let look = Look::of_environment();
-    if look.without_pictures().is_none() {
+    if look.shows_pictures() {
         for row in cells(&picture.rgb, picture.width, columns.min(MOST_COLUMNS), columns) {
             println!("{}", look.line(&row));
         }

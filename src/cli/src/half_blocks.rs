@@ -34,13 +34,9 @@ impl Look {
         }
     }
 
-    /// Why the terminal shows no picture, if it shows none.
-    pub fn without_pictures(self) -> Option<&'static str> {
-        match (self.has_colours, self.has_unicode) {
-            (true, true) => None,
-            (true, false) => Some("This terminal shows no pictures, because LANG names no UTF-8."),
-            (false, _) => Some("This terminal shows no pictures, because it shows no colours."),
-        }
+    /// Whether it shows pictures.
+    pub fn shows_pictures(self) -> bool {
+        self.has_colours && self.has_unicode
     }
 
     /// The codes of a colour: 38 for the character or 48 for its background, then the colour itself, or the nearest one of the

@@ -6,7 +6,7 @@ use crossterm::event::KeyCode;
 use live::compiler::CompilerError;
 use live::course::{Check, Stage, keep, stages};
 use live::files::names_in;
-use raykata_cli::finish::Picture;
+use raykata_cli::finish::{Picture, file_of};
 use raykata_cli::verdicts::{CheckVerdict, Verdict};
 use std::path::Path;
 use std::time::Duration;
@@ -174,7 +174,7 @@ impl App {
         self.phase = Phase::Compiling;
         let stage = self.stage().number;
         Action::Start(match self.page {
-            Page::Picture { .. } => Task::Render { stage, is_done: self.stage().is_done() },
+            Page::Picture { .. } => Task::Render(stage, file_of(stage, self.stage().is_done())),
             _ => Task::Check([stage].into_iter().chain(self.others().map(|other| other.number)).collect()),
         })
     }
@@ -543,7 +543,7 @@ mod tests {
         tell(&mut app, 2, failed());
         assert_eq!(end(&mut app), Action::Nothing);
         tell(&mut app, 2, Verdict::Passed);
-        assert_eq!(end(&mut app), Action::Start(Task::Render { stage: 1, is_done: true }));
+        assert_eq!(end(&mut app), Action::Start(Task::Render(1, "out/album/stage1.png".into())));
         app.event(Event::Picture(Picture::default()));
         assert!(matches!(app.page, Page::Picture { picture: Some(_), is_finish: true }));
         assert_eq!(app.saved(), Action::Start(Task::Check(vec![1])), "a save leads back to the checks");
@@ -586,7 +586,7 @@ mod tests {
     #[test]
     fn the_picture_is_rendered_again_at_each_save() {
         let (mut app, _) = App::new(Some(4), (80, 24));
-        let render = Action::Start(Task::Render { stage: 4, is_done: false });
+        let render = Action::Start(Task::Render(4, "out/watch.png".into()));
         assert_eq!(app.key(KeyCode::Char('v')), render);
         assert_eq!(app.saved(), render);
         app.event(Event::Picture(Picture::default()));

@@ -1,13 +1,13 @@
 //! The same in lines, one after the other: for screen readers, pipes and terminals without a screen. It ends when the
 //! program is interrupted.
 
-use crate::app::{Action, App, Page, Phase};
+use crate::app::{Action, App, Page};
 use crate::run::{Event, Paths, Run};
+use crate::screen::{Row, body};
 use anyhow::Result;
 use live::files::Files;
-use raykata_cli::finish::next_step;
+use raykata_cli::half_blocks::Look;
 use raykata_cli::report::say;
-use raykata_cli::verdicts::Verdict;
 use std::time::Duration;
 
 /// The time between two looks at the files.
@@ -54,26 +54,7 @@ fn lines(app: &App) -> String {
     let stage = app.stage();
     let (checks, points) = stage.earned();
     let head = format!("\nstage {} · {}: {checks} pass, {points}\n", stage.number, stage.entry.title);
-    let body = match (&app.phase, &app.check().verdict) {
-        (Phase::Errors(errors), _) => {
-            let error = |error: &live::compiler::CompilerError| {
-                let notes: String = error.notes.iter().map(|note| format!("  {note}\n")).collect();
-                format!("{}\n  {}\n  {}\n{notes}", error.place, error.what, error.code)
-            };
-            return format!("\ndoes not compile\n{}", errors.iter().map(error).collect::<String>());
-        }
-        (Phase::Broken(why), _) => return format!("\n{why}\n"),
-        (_, Some(Verdict::NotWritten { task, place })) => format!("not written yet: {place}\n  {task}\n"),
-        (_, Some(Verdict::Failed(message))) => message.clone(),
-        (_, Some(Verdict::Passed)) if stage.is_done() => format!("Stage {} is done.\n", stage.number),
-        _ => String::new(),
-    };
-    let lines = match &app.page {
-        Page::Picture { picture: Some(picture), .. } => {
-            picture.lines.iter().chain([&next_step(stage.number)]).map(|line| format!("{line}\n")).collect()
-        }
-        Page::Picture { picture: None, .. } => "its picture is being rendered …\n".to_owned(),
-        _ => String::new(),
-    };
-    head + &body + &lines
+    let look = Look { has_colours: false, ..Look::of_environment() };
+    let line = |row| if let Row::Words(_, text) = row { text + "\n" } else { String::new() };
+    head + &body(app, look, usize::MAX).into_iter().map(line).collect::<String>()
 }

@@ -40,13 +40,8 @@ pub enum Event {
 pub enum Task {
     /// Runs the checks of these stages, one stage after the other.
     Check(Vec<u8>),
-    /// Renders the scene of a stage. The picture of a stage that is done belongs to the album.
-    Render {
-        /// The stage.
-        stage: u8,
-        /// Whether it is done.
-        is_done: bool,
-    },
+    /// Renders the scene of a stage to this file, from the root of the kit.
+    Render(u8, String),
 }
 
 /// Where the kit and its programs are.
@@ -96,7 +91,7 @@ fn work(paths: &Paths, task: Task, process: &Process, report: &(impl Fn(Event) +
     let begin = Instant::now();
     let need = match task {
         Task::Check(_) => Need::Checks,
-        Task::Render { .. } => Need::Frames,
+        Task::Render(..) => Need::Frames,
     };
     let worker = Program::worker(Which::Exercises, need);
     let mut cargo = cargo_build(&paths.root, &[worker])?;
@@ -122,9 +117,8 @@ fn work(paths: &Paths, task: Task, process: &Process, report: &(impl Fn(Event) +
             }
             Ok(())
         }),
-        Task::Render { stage, is_done } => {
+        Task::Render(stage, file) => {
             let kit = process.start_kit(Worker::new(worker, CALL_PATIENCE).with_short_frames());
-            let file = finish::file_of(stage, is_done);
             let picture = finish::render(&paths.root, stage, &file, &*kit, &FrameProgress(report));
             if !process.is_over() {
                 report(Event::Picture(picture?));

@@ -86,15 +86,7 @@ pub fn rows(app: &App, look: Look) -> Vec<Row> {
     };
     let foot = [foot(app, columns), wrapped(keys, columns)].concat();
     let room = height.saturating_sub(rows.len() + foot.len() + 1);
-    let body = match (&app.phase, &app.page) {
-        (_, Page::List { word, is_typing, at }) => list(app, look, word, *is_typing, *at, room),
-        (_, Page::Reset { file, name }) => question(file, name),
-        (Phase::Errors(errors), _) => compiler(errors),
-        (_, Page::Picture { picture, is_finish }) => shown(app, look, picture.as_ref(), *is_finish, room),
-        (Phase::Broken(why), _) => broken(why, columns),
-        (_, Page::Check { hints, unfolded }) => check(app, *hints, *unfolded, columns),
-    };
-    rows.extend(body.into_iter().take(room));
+    rows.extend(body(app, look, room).into_iter().take(room));
     rows.truncate(height.saturating_sub(foot.len()));
     while rows.len() + foot.len() < height {
         rows.push(Row::Words(Tone::Plain, String::new()));
@@ -105,6 +97,19 @@ pub fn rows(app: &App, look: Look) -> Vec<Row> {
         Row::Pixels(cells) => Row::Pixels(cells.into_iter().take(columns).collect()),
     };
     rows.into_iter().take(height).map(fitted).collect()
+}
+
+/// The middle of the screen, for which there is room in so many rows.
+pub fn body(app: &App, look: Look, room: usize) -> Vec<Row> {
+    let columns = app.size.0;
+    match (&app.phase, &app.page) {
+        (_, Page::List { word, is_typing, at }) => list(app, look, word, *is_typing, *at, room),
+        (_, Page::Reset { file, name }) => question(file, name),
+        (Phase::Errors(errors), _) => compiler(errors),
+        (_, Page::Picture { picture, is_finish }) => shown(app, look, picture.as_ref(), *is_finish, room),
+        (Phase::Broken(why), _) => broken(why, columns),
+        (_, Page::Check { hints, unfolded }) => check(app, *hints, *unfolded, columns),
+    }
 }
 
 /// The stage, its points, and a sign for each check.
@@ -174,24 +179,20 @@ fn check(app: &App, hints: usize, unfolded: bool, columns: usize) -> Vec<Row> {
 /// The picture, or why there is none, and what it cost; also what comes next, if it is shown because the stage is done.
 fn shown(app: &App, look: Look, picture: Option<&Picture>, is_finish: bool, room: usize) -> Vec<Row> {
     let columns = app.size.0;
-    let (stage, next) = (app.stage().number, next_step(app.stage().number));
-    let (done, next) = match is_finish {
-        true => (Some(Row::Words(Tone::Good, format!("Stage {stage} is done."))), Some(&next)),
-        false => (None, None),
-    };
+    let stage = app.stage().number;
+    let done = is_finish.then(|| Row::Words(Tone::Good, format!("Stage {stage} is done.")));
+    let next = is_finish.then(|| next_step(stage));
     let lines = picture.map_or(&[][..], |picture| &picture.lines);
-    let text = lines.iter().chain(next).flat_map(|line| wrapped(line, columns));
+    let text = lines.iter().chain(&next).flat_map(|line| wrapped(line, columns));
     let text: Vec<Row> = text.map(|line| Row::Words(Tone::Plain, line)).collect();
     let room = room.saturating_sub(text.len() + usize::from(is_finish));
-    let middle = match (&app.phase, picture, look.without_pictures()) {
-        (Phase::Broken(why), ..) => broken(why, columns),
-        (_, None, _) => vec![Row::Words(Tone::Quiet, "the picture is being rendered …".into())],
-        (.., Some(why)) => {
-            wrapped(why, columns).into_iter().map(|line| Row::Words(Tone::Quiet, line)).collect()
-        }
-        (_, Some(picture), None) => {
+    let middle = match (&app.phase, picture) {
+        (Phase::Broken(why), _) => broken(why, columns),
+        (_, None) => vec![Row::Words(Tone::Quiet, "the picture is being rendered …".into())],
+        (_, Some(picture)) if look.shows_pictures() => {
             cells(&picture.rgb, picture.width, columns, room).into_iter().map(Row::Pixels).collect()
         }
+        _ => Vec::new(),
     };
     done.into_iter().chain(middle).chain(text).collect()
 }

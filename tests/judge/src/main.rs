@@ -24,9 +24,8 @@ fn run() -> Result<bool> {
     }
     let source = |worker: &str| {
         let program = PathBuf::from(worker);
-        let name = program.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let of_solutions = name.starts_with(Which::Solutions.package());
-        Source { which: if of_solutions { Which::Solutions } else { Which::Exercises }, program }
+        let is_reference = program.file_stem().is_some_and(|name| name == "solutions-worker");
+        Source { which: if is_reference { Which::Solutions } else { Which::Exercises }, program }
     };
     match words[..] {
         ["check", root, worker] => scorecard::scorecard(Path::new(root), &source(worker), None),

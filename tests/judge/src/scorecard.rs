@@ -226,8 +226,8 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
         None => {
             // A course may end before the stages that the showcase needs.
             let last = rubric::stages().last().map_or(0, |(number, _)| *number);
-            let own = format!("scenes/stage{last}.toml");
-            let scene = if root.join(&own).is_file() { &own } else { "scenes/showcase.toml" };
+            let scene = finish::scene_of(root, last);
+            let scene = scene.strip_prefix(root).unwrap_or(&scene).display();
             let which = with_exercises(root);
             println!("Everything passes. `cargo run --release -- render {scene}{which}` shows it.");
         }

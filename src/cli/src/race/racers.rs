@@ -175,6 +175,12 @@ mod tests {
     }
 
     #[test]
+    fn a_race_without_a_reference_asks_for_an_opponent() {
+        let error = of_kit(Path::new("a_hand_out"), Which::Solutions).expect_err("no reference").to_string();
+        assert!(error.starts_with("there are no solutions in a_hand_out: name an opponent"), "{error}");
+    }
+
+    #[test]
     fn all_racers_have_the_options_of_the_solutions() {
         if !repository().join("solutions").is_dir() {
             return println!("a hand-out has no solutions, whose options racers get");

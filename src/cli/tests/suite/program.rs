@@ -151,43 +151,32 @@ fn a_worker_that_is_up_to_date_is_not_mentioned() {
     assert!(said.len() < 100, "{}", said.concat());
 }
 
-/// The workers that a process has started, by their numbers.
-#[cfg(target_os = "linux")]
-fn children(parent: u32) -> Vec<String> {
-    let children = std::fs::read_to_string(format!("/proc/{parent}/task/{parent}/children"));
-    let is_worker = |child: &&str| {
-        let name = std::fs::read_to_string(format!("/proc/{child}/comm"));
-        name.is_ok_and(|name| name.starts_with("solutions-frame"))
-    };
-    children.unwrap_or_default().split_whitespace().filter(is_worker).map(str::to_owned).collect()
-}
-
 #[test]
 #[cfg(target_os = "linux")]
 fn a_killed_render_ends_its_worker() {
-    // Build the worker first.
+    let file = |name: String| std::fs::read_to_string(format!("/proc/{name}")).unwrap_or_default();
+    let is_worker = |process: &str| file(format!("{process}/comm")).starts_with("solutions-frame");
     let out = tempfile::tempdir().expect("a folder");
-    let line =
-        |size: &str| format!("render scenes/cornell.toml --size {size} --out {}/a.png", out.path().display());
-    said(&line("8x8"));
-    for signal in ["TERM", "KILL"] {
+    for signal in ["-TERM", "-KILL"] {
+        let line =
+            format!("render scenes/cornell.toml --size 4000x4000 --out {}/a.png", out.path().display());
         let mut render = Command::new(env!("CARGO_BIN_EXE_raykata"));
-        let mut render =
-            render.current_dir(root()).args(line("4000x4000").split(' ')).spawn().expect("it starts");
-        let wait_until = |what: &str, is_so: &dyn Fn() -> bool| {
-            let begin = Instant::now();
-            while !is_so() {
-                assert!(begin.elapsed() < Duration::from_secs(60), "SIG{signal}: {what}");
-                std::thread::sleep(Duration::from_millis(50));
+        let mut render = render.current_dir(root()).args(line.split(' ')).spawn().expect("it starts");
+        let id = render.id().to_string();
+        let begin = Instant::now();
+        let worker = loop {
+            let children = file(format!("{id}/task/{id}/children"));
+            match children.split_whitespace().find(|child| is_worker(child)) {
+                Some(worker) => break worker.to_owned(),
+                None => assert!(begin.elapsed() < Duration::from_secs(300), "no worker is started"),
             }
         };
-        wait_until("no worker", &|| !children(render.id()).is_empty());
-        let workers = children(render.id());
-        let kill = Command::new("kill").args([&format!("-{signal}"), &render.id().to_string()]).status();
-        assert!(kill.expect("`kill` starts").success());
+        assert!(Command::new("kill").args([signal, &id]).status().expect("`kill` starts").success());
         render.wait().expect("it ends");
-        let is_over = |worker: &String| !PathBuf::from(format!("/proc/{worker}")).exists();
-        wait_until("the worker goes on", &|| workers.iter().all(is_over));
+        let begin = Instant::now();
+        while is_worker(&worker) {
+            assert!(begin.elapsed() < Duration::from_secs(60), "{signal}: the worker goes on");
+        }
     }
 }
 

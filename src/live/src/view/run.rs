@@ -12,7 +12,7 @@ use anyhow::{Context, Result, bail};
 use live::compiler::{Compiled, compile};
 use live::course::{judge, keep, stages};
 use live::process::Process;
-use raykata::frame::{Tile, Watch};
+use raykata::frame::{Tile, Unwatched, Watch};
 use raykata::kit::{Door, Frames, RenderJob, Rendering, View, kit_error};
 use raykata::scene::Scene;
 use raykata_cli::finish::{self, encoded};
@@ -273,7 +273,7 @@ impl Work {
             None => return Ok(()),
         };
         let kit = self.start_kits(&program, &|| self.is_over()).renderer;
-        let rendered = kit_error::catch(|| kit.render(job, &Silent(self)));
+        let rendered = kit_error::catch(|| kit.render(job, &Unwatched));
         if self.is_over() {
             return Ok(());
         }
@@ -359,17 +359,6 @@ fn facts(rendering: &Rendering, compiled: Duration) -> serde_json::Value {
             ["render", format!("{:.2} s", rendering.render_seconds)],
         ],
     })
-}
-
-/// Shows nothing, and cancels a frame when the run is over.
-struct Silent<'a>(&'a Work);
-
-impl Watch for Silent<'_> {
-    fn progress(&self, _: u64, _: u64) {}
-
-    fn cancelled(&self) -> bool {
-        self.0.is_over()
-    }
 }
 
 /// Passes tiles on to the studio.

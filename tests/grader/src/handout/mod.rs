@@ -233,16 +233,10 @@ fn name_course(files: &mut BTreeMap<String, Vec<u8>>, course: &CourseFiles) -> R
                     || line.contains(&format!("scenes/stage{stage}.toml"))
                     || (stage == 7 && line.contains("-- explain ")))
         };
-        !(1..=12).any(is_left_out)
+        // The ways through the stages, of four and of twelve weeks, need all of them.
+        !(1..=12).any(is_left_out) && (of_course.stages.is_empty() || !line.contains(" weeks**: "))
     };
-    let mut text = std::str::from_utf8(readme)?.to_owned();
-    // The two ways through the stages need all of them.
-    if let (false, Some(ways), Some(table)) =
-        (of_course.stages.is_empty(), text.find(" Two ways through the stages:"), text.find("\n\n| stage |"))
-    {
-        text.replace_range(ways..table, "");
-    }
-    let lines = text.lines().filter(is_kept);
+    let lines = std::str::from_utf8(readme)?.lines().filter(is_kept);
     let lines = lines.map(|line| format!("{line}\n")).collect::<String>();
     *readme = match of_course.title.is_empty() {
         true => lines,
