@@ -132,6 +132,20 @@ fn every_check_is_taught_on_a_page_of_the_deck_of_its_stage() {
 }
 
 #[test]
+fn exercises_name_the_deck_of_their_stage() {
+    for file in fs::read_dir(root().join("exercises/src")).unwrap().map(|file| file.unwrap().path()) {
+        let stage = file
+            .file_name()
+            .and_then(|name| name.to_str()?.strip_prefix("stage")?.split('_').next()?.parse().ok());
+        let text = fs::read_to_string(&file).unwrap();
+        for named in between(&text, "//! Slides: ", "\n") {
+            let deck = format!("`{}`", checks::rubric::deck(stage.unwrap()));
+            assert!(named.starts_with(&deck), "{}: {named}", file.display());
+        }
+    }
+}
+
+#[test]
 fn signatures_are_those_of_the_exercises() {
     let without_spaces = |text: &str| text.split_whitespace().collect::<String>().replace(",)", ")");
     let mut exercises = String::new();
