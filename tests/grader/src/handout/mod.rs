@@ -268,8 +268,8 @@ fn readme(of_kit: &str) -> Result<String> {
         rest.split_once("\n## As a student\n").context("README.md lacks a chapter `As a student`")?;
     let (student, _) = rest.split_once("\n## ").context("README.md lacks a chapter after `As a student`")?;
     let mut student = student.replace(" --kit exercises", "");
-    // The names of the numbers in the text are for authors.
-    while let Some((before, after)) = student.split_once("<!--=") {
+    // The names of numbers and the sources of quotes are for authors.
+    while let Some((before, after)) = student.split_once("<!--") {
         student = format!("{before}{}", after.split_once("-->").map_or("", |(_, rest)| rest));
     }
     Ok(README.replace("{greeting}", greeting.trim()).replace("{student}", student.trim()))
