@@ -1,6 +1,6 @@
 //! Stage 1 · shapes: the `t` at which a ray hits a sphere or a plane.
 //!
-//! Slides: "Ray-Sphere Intersection" I and II, "Ray-plane intersection", "Negate Normal Vector".
+//! Slides: `slides/stage01.md`.
 //!
 //! Given: [`Ray`] with `origin`, `direction` and `ray.contains(t)`. A hit at `t` counts if
 //! `ray.contains(t)` is true, which means `t_min < t < t_max`. Both ends are open, and NaN never

@@ -1,6 +1,6 @@
 //! Stage 3 · bounding boxes: the box around a shape, and where a ray enters and leaves it.
 //!
-//! Slides: "Bounding Volume Hierarchy" and the box intersection with `t_b = t_x ∩ t_y ∩ t_z`.
+//! Slides: `slides/stage03.md`.
 //!
 //! Given: [`gamma`], the bound γₙ on the relative error of `n` roundings.
 

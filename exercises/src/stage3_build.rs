@@ -1,8 +1,7 @@
 //! Stage 3 · building a bounding volume hierarchy: three strategies that split the primitives of a
 //! node.
 //!
-//! Slides: "Bounding Volume Hierarchy", "Object Median", "Spatial Median", "Surface Area
-//! Heuristic".
+//! Slides: `slides/stage03.md`.
 //!
 //! Given: [`Bvh`] with `add_node`, `set_leaf` and `set_children`; [`PrimitiveRef`] with the number,
 //! the box and the centroid of a primitive; the costs [`TRAVERSAL_COST`] and [`INTERSECTION_COST`];

@@ -1,7 +1,7 @@
 //! Stage 3 · traversing a bounding volume hierarchy: with its boxes, a ray tests only a small part
 //! of a scene.
 //!
-//! Slides: "Bounding Volume Hierarchy", "Sort Bounding Volume Intersections".
+//! Slides: `slides/stage03.md`.
 //!
 //! Given: [`Probe`] with `open` (the contents of a node), `enter` (the `t` at which the ray enters
 //! its box) and `hit` (the `t` at which the ray hits a primitive). The searches take all boxes and

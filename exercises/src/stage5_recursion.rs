@@ -1,7 +1,6 @@
 //! Stage 5 · recursion: reflection and refraction, and the limits that end the recursion.
 //!
-//! Slides: "Perfect reflection direction", "Snell's law", "Refraction direction", "Illumination in
-//! ray tracing", "Ray tree depth".
+//! Slides: `slides/stage05.md`.
 //!
 //! Directions and normals have unit length, and a normal is on the side that the ray comes from.
 //! [`scatter`] returns the secondary rays of a surface. The tracer follows them and adds up the

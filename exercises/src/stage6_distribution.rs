@@ -1,8 +1,7 @@
 //! Stage 6 · distribution: distributed ray tracing. Many rays replace one; they are distributed
 //! over the pixel, the lens, the area light, the glossy reflection and the time.
 //!
-//! Slides: "Antialiasing", "Generate pixel samples", "Distributed Ray Tracing", "Depth of Field",
-//! "Soft shadows", "Temporal Jittering Sampling".
+//! Slides: `slides/stage06.md`.
 //!
 //! These functions draw no random numbers: random numbers are arguments, `u` in `0.0..1.0` each. If
 //! `u` is uniformly distributed, your results must have the distribution that the doc comment

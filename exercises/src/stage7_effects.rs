@@ -1,7 +1,7 @@
 //! Stage 7 · effects: analyse the scene first, and compute only what it needs.
 //!
-//! Slides: "Cost of shadow computation", "Distributed Ray Tracing", "Each vertex holds … texture
-//! coordinates". This kit promises that an effect costs nothing where it is not visible.
+//! Slides: `slides/stage07.md`. This kit promises that an effect costs nothing where it is not
+//! visible.
 //!
 //! The tracer does what your functions return. If they return too much, the picture is right but
 //! costs too many rays; if they return too little, something is missing in the picture.

@@ -1,8 +1,7 @@
 //! Stage 8 · the scene graph with a cache in each node: the child that the previous ray hit is
 //! searched first.
 //!
-//! Slides: "Ray-Scene Intersection" (coherence: "for each node, store closest child from previous
-//! ray and check that node first").
+//! Slides: `slides/stage08.md`.
 //!
 //! Given: [`Graph`]; [`ChildCache`] with `get` and `set`; [`Probe`] with `enter` and `hit`.
 

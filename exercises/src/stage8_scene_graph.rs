@@ -1,8 +1,7 @@
 //! Stage 8 · scene graph: each shape has its own space, and one mesh can have a hundred thousand
 //! instances.
 //!
-//! Slides: "Scene Graph", "Ray-Scene Intersection", "Bounding Volumes", "Transformations" (meshes),
-//! "Rotate Bounding Boxes", "Combine Transformations".
+//! Slides: `slides/stage08.md`.
 //!
 //! Given: [`Graph`], whose nodes have children and primitives; [`Probe`] with `enter` (where the
 //! ray enters the bounding volume of a node) and `hit` (where it hits a primitive).

@@ -1,7 +1,6 @@
 //! Stage 8 · solids: boxes, cylinders, cones, disks and polygons, each in its own space.
 //!
-//! Slides: "Ray-Box Intersection", "Other Ray-Primitive Intersections" (cone, cylinder: similar to
-//! sphere, must also check end caps; convex polygon: same as triangle).
+//! Slides: `slides/stage08.md`.
 //!
 //! A convex solid is the intersection of simpler convex sets: a box of three slabs, a cylinder of
 //! an infinite cylinder and a slab. A line lies in each of them for one interval of `t`, so it lies

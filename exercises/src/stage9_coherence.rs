@@ -1,8 +1,7 @@
 //! Stage 9 · coherence: neighbouring rays often hit the same primitive. A ray first tests the
 //! primitive that the previous ray hit, and a packet of rays traverses the tree together.
 //!
-//! Slides: "Cache Node Intersections", "Other Accelerations" (screen space coherence: check > 1 ray
-//! at once).
+//! Slides: `slides/stage09.md`.
 //!
 //! Given: [`Probe`] with `enter`, `open` and `hit`, as in stage 3; [`Cells`] with `hit`.
 

@@ -1,9 +1,7 @@
 //! Stage 9 · the octree: cells with many primitives are divided into eight octants. It has two
 //! searches.
 //!
-//! Slides: "Octree" (recursively subdivide box-shaped cells into 8 octants; trace rays through
-//! neighbor cells; "Or, check rays versus octree boxes hierarchically": sort eight boxes
-//! front-to-back at each level).
+//! Slides: `slides/stage09.md`.
 //!
 //! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`;
 //! [`ListGrowth`], whose `divide` returns `None` where all leaves together would list more than

@@ -1,9 +1,8 @@
 //! Stage 10 · stability: intersection tests of earlier stages, for inputs where rounding errors
 //! decide the answer.
 //!
-//! Slides: "Ray-Sphere Intersection", "Inside Test", "Numerical precision", "Bounding Volumes";
-//! Woop, Benthin and Wald 2013; Ize 2013; Pharr, Jakob and Humphreys, "Physically Based Rendering",
-//! 4th edition, section 6.8.
+//! Slides: `slides/stage10.md`. Sources: Woop, Benthin and Wald 2013; Ize 2013; Pharr, Jakob and
+//! Humphreys, "Physically Based Rendering", 4th edition, section 6.8.
 //!
 //! Your functions of earlier stages may already be good enough.
 //! `cargo run --release -- gauntlet --kit exercises` shows what they cost and where they fail.

@@ -1,9 +1,9 @@
 //! Stage 11 · light transport: the parts of a path tracer. Light reaches the camera by any number
 //! of reflections, and each path is a random sample of one way that it takes.
 //!
-//! This stage goes beyond the slides, which end with "Next: Global Illumination". Its sources are
-//! Kajiya, "The Rendering Equation" (1986), Veach, "Robust Monte Carlo Methods for Light Transport
-//! Simulation" (1997), and the book "Physically Based Rendering" (pbr-book.org).
+//! Slides: `slides/stage11.md`, which go beyond the lectures. Sources: Kajiya, "The Rendering
+//! Equation" (1986), Veach, "Robust Monte Carlo Methods for Light Transport Simulation" (1997), and
+//! the book "Physically Based Rendering" (pbr-book.org).
 //!
 //! These functions draw no random numbers: random numbers are arguments, `u` in `0.0..1.0` each. A
 //! density (pdf) is per steradian, the unit of solid angle. Any formula passes whose samples have

@@ -1,8 +1,8 @@
 //! Stage 12 · a builder that is as fast as its trees: bins in place of sorting, leaves that pay for
 //! whole blocks, and work that several threads share.
 //!
-//! Slides: "Surface Area Heuristic". Source: Wald, "On fast Construction of SAH-based Bounding
-//! Volume Hierarchies", 2007.
+//! Slides: `slides/stage12.md`. Source: Wald, "On fast Construction of SAH-based Bounding Volume
+//! Hierarchies", 2007.
 //!
 //! Given: [`PrimitiveBox`], a primitive with its box in 32 bytes; [`BinGrid`] and [`Bins`];
 //! [`Forks`], which makes these boxes, runs two pieces of work in parallel and logs it; the costs

@@ -1,8 +1,7 @@
 //! Stage 12 · searching a tree with eight children per node: nearest child first, without
 //! recursion.
 //!
-//! Slides: "Sort Bounding Volume Intersections". Source: Wald, Benthin and Boulos, "Getting Rid of
-//! Packets", 2008.
+//! Slides: `slides/stage12.md`. Source: Wald, Benthin and Boulos, "Getting Rid of Packets", 2008.
 //!
 //! Given: [`WideProbe`] with `enter` (which children of a node the ray enters, and where),
 //! `children`, `candidates` (which lanes of a block may be hit) and `hit` (the exact test of one

@@ -1,8 +1,8 @@
 //! Stage 12 · eight boxes at once, and four triangles at once.
 //!
-//! Slides: the box intersection with `t_b = t_x ∩ t_y ∩ t_z`; "Cramer's Rule". Sources: Ize,
-//! "Robust BVH Ray Traversal", JCGT 2013; Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle
-//! Intersection", 1997; Higham, "Accuracy and Stability of Numerical Algorithms", 2002.
+//! Slides: `slides/stage12.md`. Sources: Ize, "Robust BVH Ray Traversal", JCGT 2013; Möller and
+//! Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997; Higham, "Accuracy and
+//! Stability of Numerical Algorithms", 2002.
 //!
 //! Given: [`gamma`] and [`UNIT_ROUNDOFF`]; [`F32x8`] and [`F32x4`] with `+`, `-`, `*`, `min`,
 //! `max`, `abs`, `le`, `lt` per lane; masks with `&`, `|` and `bits`; [`WideRay`] with

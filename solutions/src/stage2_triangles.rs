@@ -1,9 +1,7 @@
 //! Stage 2 · triangles: three methods of ray-triangle intersection, three inside tests, and the
 //! normals of meshes.
 //!
-//! Slides: "Finding the intersection", "Cramer's Rule", "Ray-triangle intersection
-//! precomputations", "Ray-Triangle Intersection" I, II, III, "Smooth Shading", "Normals of
-//! Vertices".
+//! Slides: `slides/stage02.md`.
 //!
 //! A hit is `(t, β, γ)` with `o + t d = a + β (b - a) + γ (c - a)`, where `β ≥ 0`, `γ ≥ 0` and
 //! `β + γ ≤ 1`. With `α = 1 - β - γ`, the numbers `(α, β, γ)` are the barycentric coordinates of

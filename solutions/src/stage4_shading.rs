@@ -1,7 +1,6 @@
 //! Stage 4 · shading: the Phong model, shadow rays and gamma correction.
 //!
-//! Slides: "Local illumination", "Shadow ray", "Cost of shadow computation", "Coloured Lights",
-//! "Smooth Shading", "Gamma Correction".
+//! Slides: `slides/stage04.md`.
 //!
 //! All directions have unit length and point away from the surface, unless a function says
 //! otherwise. [`Surface`] has the point, its two unit normals (both on the viewer's side) and a

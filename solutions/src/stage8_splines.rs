@@ -1,8 +1,8 @@
 //! Stage 8 · B-spline and NURBS surfaces: many control points with a low degree, and weights that
 //! make arcs of circles exact.
 //!
-//! Slides: "Types of primitives" (splines, NURBS). Cox, "The Numerical Evaluation of B-Splines",
-//! 1972; de Boor, "On Calculating with B-Splines", 1972; Piegl and Tiller, "The NURBS Book", 1997.
+//! Slides: `slides/stage08.md`. Sources: Cox, "The Numerical Evaluation of B-Splines", 1972; de
+//! Boor, "On Calculating with B-Splines", 1972; Piegl and Tiller, "The NURBS Book", 1997.
 //!
 //! Given: [`NurbsPatch`] with its degrees, knots, control points and weights.
 

@@ -1,8 +1,8 @@
 //! Stage 8 · curved surfaces: surfaces without a simple formula for ray hits are approximated by
 //! triangles.
 //!
-//! Slides: "Ray-tracing other primitives" (surfaces by subdivision); Loop, "Smooth Subdivision
-//! Surfaces Based on Triangles", 1987; Hoppe et al. 1994 for its borders.
+//! Slides: `slides/stage08.md`. Sources: Loop, "Smooth Subdivision Surfaces Based on Triangles",
+//! 1987; Hoppe et al. 1994 for its borders.
 
 use glam::{Vec2, Vec3};
 use raykata::mesh::Mesh;

@@ -1,8 +1,7 @@
 //! Stage 9 · the BSP tree: planes of any direction divide space, above all the planes of the
 //! polygons themselves.
 //!
-//! Slides: "Binary Space Partition (BSP) Tree" (recursively partition space by planes; traverse
-//! nodes front-to-back).
+//! Slides: `slides/stage09.md`.
 //!
 //! Given: [`Bsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance` and
 //! `across`; [`ListGrowth`], whose `divide` returns `None` where all leaves together would list

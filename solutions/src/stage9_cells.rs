@@ -2,7 +2,7 @@
 //! overlap it. This file has the functions that all partitions share. The grid, the octree, the
 //! kd-tree, the BSP tree and the coherence of rays have a file each.
 //!
-//! Slides: "Kd-Trees", "Uniform Grid", "Octree", "Binary Space Partition (BSP) Tree".
+//! Slides: `slides/stage09.md`.
 //!
 //! Given: [`Cells`] with `visit` (call it once per node or cell that the search visits) and `hit`
 //! (the `t` at which the ray hits a primitive); [`Cell`], a closed box in double precision, with

@@ -1,8 +1,7 @@
 //! Stage 9 · the uniform grid: cells of equal size, and a search that steps along the ray from cell
 //! to cell.
 //!
-//! Slides: "Uniform Grid" (index primitives according to overlaps; trace rays through grid cells;
-//! "How choose suitable grid resolution?").
+//! Slides: `slides/stage09.md`.
 //!
 //! Given: [`Grid`] with `plane` (the coordinate at which a cell begins), `number` and `primitives`.
 //!

@@ -1,7 +1,7 @@
 //! Stage 9 · the kd-tree: planes across the axes divide space, and five heuristics choose the
 //! planes.
 //!
-//! Slides: "Kd-Trees", "Heuristics" 1 to 5, "kd-Tree Traversal" with `t` and `t'`.
+//! Slides: `slides/stage09.md`.
 //!
 //! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`; [`ListGrowth`], whose `divide`
 //! returns `None` where all leaves together would list more than

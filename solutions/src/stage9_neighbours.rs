@@ -1,8 +1,8 @@
 //! Stage 9 · the octree from neighbour to neighbour: the search goes up only as far as it must, and
 //! then down again.
 //!
-//! Slides: "Octree" (trace rays through neighbor cells; generally fewer cells). Samet,
-//! "Implementing Ray Tracing with Octrees and Neighbor Finding", 1989.
+//! Slides: `slides/stage09.md`. Source: Samet, "Implementing Ray Tracing with Octrees and Neighbor
+//! Finding", 1989.
 //!
 //! Given: [`Octree`]; [`Cell`] with `octant` and `middle`.
 //!

@@ -1,9 +1,7 @@
 //! Stage 9 · the BSP tree of the slide: the polygons lie in its nodes, and a polygon that crosses a
 //! plane is split.
 //!
-//! Slides: "Binary Space Partition (BSP) Tree" ("BSP tree nodes store partition plane and set of
-//! polygons lying on that partition plane"; "every part of every polygon lies on a partition
-//! plane"; `ComputeBSPIntersection`).
+//! Slides: `slides/stage09.md`.
 //!
 //! Given: [`PolygonBsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with
 //! `distance`, `across` and `keep`, which clips a polygon; [`ListGrowth`], whose `divide` returns

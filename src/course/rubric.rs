@@ -8,6 +8,7 @@ pub use super::score::{Level, Score};
 pub use super::stage::{CheckEntry, Stage};
 use super::stage::{PLAIN, RUBRIC_FILES};
 use super::{Course, parse, parse_language};
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{LazyLock, OnceLock};
@@ -15,8 +16,48 @@ use std::sync::{LazyLock, OnceLock};
 static FILE: LazyLock<BTreeMap<String, Stage>> = LazyLock::new(|| {
     let mut stages = PLAIN.clone();
     course().apply(&mut stages);
+    for stage in stages.values_mut() {
+        let deck = deck(stage.checks.values().next().map_or(0, |entry| entry.stage));
+        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(&deck));
+        let text = text.unwrap_or_default();
+        // Without the deck, and where the course names slides of its own, the text stays.
+        for (name, entry) in &mut stage.checks {
+            if let Some(page) = page_of(&text, &entry.slide, name) {
+                entry.slide = format!("{deck}, page {page}");
+            }
+        }
+    }
     stages
 });
+
+/// The path of a stage's deck, from the root of the kit.
+pub fn deck(stage: u8) -> String {
+    format!("slides/stage{stage:02}.md")
+}
+
+/// The page of a deck that teaches what a check tests, as `12: Object median`. A speaker note refers to checks by the beginning of
+/// their names (`check "bounds_of_"`) and to slides of the lectures (`slide "RTGI: Object Median"`). The longest beginning decides,
+/// then the slide, then the signature of the function with whose name the check begins, and then the first page. `None` if no note
+/// refers to either.
+fn page_of(deck: &str, slide: &str, check: &str) -> Option<String> {
+    let longest = |text: &str, before: &str, after: &[char]| {
+        let names = text.split(before).skip(1).filter_map(|rest| rest.split(after).next());
+        names.filter(|name| check.starts_with(name)).map(str::len).max()
+    };
+    let fit = |page: &str| {
+        let note = page.rsplit("<!--").next().unwrap_or_default();
+        let named = longest(note, "check \"", &['"']);
+        let is_of_slide = note.contains(&format!("slide \"{slide}\""));
+        let fit = (named, is_of_slide, longest(page, "pub fn ", &['(', '<']));
+        (named.is_some() || is_of_slide).then_some(fit)
+    };
+    // The text before the first page is about the whole deck.
+    let pages = deck.split("\n---\n").enumerate().skip(1);
+    let best = pages.filter_map(|(number, page)| Some((fit(page)?, Reverse(number), page))).max();
+    let (_, Reverse(number), page) = best?;
+    let heading = page.lines().find_map(|line| line.trim_start_matches('#').strip_prefix(' '))?;
+    Some(format!("{number}: {heading}"))
+}
 
 /// The course of this program: that of [`use_course`], or that of the kit, which is the default outside of hand-outs.
 static COURSE: OnceLock<Course> = OnceLock::new();
@@ -105,6 +146,17 @@ pub fn bar(stage: u8, name: &str) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_check_is_taught_on_the_page_that_fits_best() {
+        let deck = "---\nmarp: true\n---\n\n# One\n\n<!-- slide \"a: b\". -->\n\n---\n\n## Two\n\npub fn slab(\n\n<!-- slide \
+                    \"a: b\". -->\n\n---\n\n## Three\n\n<!-- check \"slab_of_\". -->\n";
+        let page = |slide: &str, check: &str| page_of(deck, slide, check);
+        assert_eq!(page("a: b", "union_holds").as_deref(), Some("1: One"));
+        assert_eq!(page("a: b", "slab_agrees").as_deref(), Some("2: Two"));
+        assert_eq!(page("a: b", "slab_of_a_flat_box").as_deref(), Some("3: Three"));
+        assert_eq!(page("a slide of another lecture", "slab_agrees"), None);
+    }
 
     #[test]
     fn stages_and_checks_have_the_order_of_the_lecture() {

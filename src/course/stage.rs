@@ -28,7 +28,7 @@ pub struct CheckEntry {
     pub(super) bonus: bool,
     /// The law that the check tests, in one sentence.
     pub title: String,
-    /// The lecture and the slide that teach it.
+    /// The page of the kit's deck that teaches it. The file has the slide of the lecture, to which that page refers.
     pub slide: String,
     /// Three hints, from a first thought to nearly the answer.
     pub hints: [String; 3],

@@ -92,12 +92,9 @@ fn a_deck_has_twenty_to_forty_slides() {
 
 #[test]
 fn every_row_of_the_lectures_stands_on_a_slide() {
-    let notes: Vec<String> = decks()
-        .iter()
-        .flat_map(|deck| {
-            deck.slides.iter().filter_map(|slide| note(slide).map(str::to_owned)).collect::<Vec<_>>()
-        })
-        .collect();
+    let decks = decks();
+    let notes: Vec<&str> =
+        decks.iter().flat_map(|deck| &deck.slides).filter_map(|slide| note(slide)).collect();
     let rows = [('R', 10), ('X', 15), ('M', 8), ('C', 12)];
     let missing: Vec<String> = rows
         .iter()
@@ -114,22 +111,38 @@ fn names_row(note: &str, row: &str) -> bool {
     list.split([',', ' ']).any(|one| one == row)
 }
 
+/// The rubric names the slide of the lecture, and a speaker note refers to it, so that messages name a page of the kit's own deck.
 #[test]
-fn every_slide_that_a_check_refers_to_is_in_the_deck_of_its_stage() {
+fn every_check_is_taught_on_a_page_of_the_deck_of_its_stage() {
     let decks = decks();
-    let mut missing = BTreeSet::new();
-    for (stage, list) in all_checks::STAGES {
-        let deck = decks.iter().find(|deck| deck.stage() == Some(*stage));
-        let deck = deck.unwrap_or_else(|| panic!("stage {stage} has no deck"));
-        let text = deck.text();
-        for check in *list {
-            let slide = &checks::rubric::entry(*stage, check.name).slide;
-            if !text.contains(&format!("slide \"{slide}\"")) {
-                missing.insert(format!("{}: slide \"{slide}\"", deck.name));
-            }
+    let page = |stage: u8, slide: &str| {
+        let number = slide.strip_prefix(&format!("{}, page ", checks::rubric::deck(stage)))?;
+        let (number, title) = number.split_once(": ")?;
+        let deck = decks.iter().find(|deck| deck.stage() == Some(stage))?;
+        let page = deck.slides.get(number.parse::<usize>().ok()?.checked_sub(1)?)?;
+        (heading(page)? == title && number != "1").then_some(())
+    };
+    let all =
+        all_checks::STAGES.iter().flat_map(|(stage, list)| list.iter().map(move |check| (*stage, check)));
+    let of_check =
+        |(stage, check): (u8, &checks::Check)| (stage, checks::rubric::entry(stage, check.name).slide);
+    let missing: BTreeSet<_> =
+        all.map(of_check).filter(|(stage, slide)| page(*stage, slide).is_none()).collect();
+    assert_eq!(missing, BTreeSet::new());
+}
+
+#[test]
+fn exercises_name_the_deck_of_their_stage() {
+    for file in fs::read_dir(root().join("exercises/src")).unwrap().map(|file| file.unwrap().path()) {
+        let stage = file
+            .file_name()
+            .and_then(|name| name.to_str()?.strip_prefix("stage")?.split('_').next()?.parse().ok());
+        let text = fs::read_to_string(&file).unwrap();
+        for named in between(&text, "//! Slides: ", "\n") {
+            let deck = format!("`{}`", checks::rubric::deck(stage.unwrap()));
+            assert!(named.starts_with(&deck), "{}: {named}", file.display());
         }
     }
-    assert_eq!(missing, BTreeSet::new());
 }
 
 #[test]
@@ -205,16 +218,18 @@ fn letters_of_diagrams_have_eighteen_pixels_or_more() {
     assert!(n_figures > 50, "{n_figures} figures");
 }
 
-/// The quoted outputs: the deck, the source, and the text.
+/// The quoted outputs of the decks and of the README: the name of the file, the source, and the text.
 fn quotes() -> Vec<(String, String, String)> {
     let mut quotes = Vec::new();
-    for deck in &decks() {
-        for rest in deck.text().split("<!-- from: ").skip(1) {
-            let (source, rest) = rest.split_once(" -->\n").unwrap_or_else(|| panic!("{}: {rest}", deck.name));
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let texts = decks().into_iter().map(|deck| (deck.text(), deck.name));
+    for (text, name) in texts.chain([(readme, "README.md".to_owned())]) {
+        for rest in text.split("<!-- from: ").skip(1) {
+            let (source, rest) = rest.split_once(" -->\n").unwrap_or_else(|| panic!("{name}: {rest}"));
             // A table is quoted from a command; only blocks of text are compared.
             if let Some((text, _)) = rest.strip_prefix("```text\n").and_then(|rest| rest.split_once("\n```"))
             {
-                quotes.push((deck.name.clone(), source.to_owned(), text.to_owned()));
+                quotes.push((name.clone(), source.to_owned(), text.to_owned()));
             }
         }
     }
@@ -270,12 +285,24 @@ fn quoted_messages_are_those_of_the_kit() {
     }
 }
 
+#[test]
+fn only_the_readme_says_how_long_the_first_build_takes() {
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let texts =
+        decks().into_iter().map(|deck| (deck.text(), deck.name)).chain([(readme, "README.md".to_owned())]);
+    let about =
+        |text: &str| text.matches("irst build takes ").count() + text.matches("irst build is").count();
+    let found: Vec<_> =
+        texts.filter(|(text, _)| about(text) > 0).map(|(text, name)| (name, about(&text))).collect();
+    assert_eq!(found, [("README.md".to_owned(), 1)]);
+}
+
 /// The lines that messages take from the rubric.
 fn lines_of_rubric() -> String {
     let mut text = String::new();
     for (stage, entries) in raykata::rubric::stages() {
         for (name, entry) in entries.in_order() {
-            text += &format!("stage {stage} · {}\n  slides: {}\n", entry.title, entry.slide);
+            text += &entry.header();
             text += &format!(
                 "  again: cargo test --test stage{stage} {name}\n  print: cargo run -- try {name}\n  stuck: cargo run -- hint {name}\n"
             );

@@ -266,21 +266,7 @@ pub fn entry(head: &str, words: &str) -> String {
 
 /// `words` wrapped to lines that end before column 80; all lines but the first begin at `column`.
 pub fn wrapped(words: &str, column: usize) -> String {
-    let mut text = String::new();
-    let mut at = column;
-    for word in words.split(' ') {
-        let length = word.chars().count();
-        if at > column && at + 1 + length > WIDTH {
-            let _ = write!(text, "\n{:column$}", "");
-            at = column;
-        } else if at > column {
-            text.push(' ');
-            at += 1;
-        }
-        text += word;
-        at += length;
-    }
-    text
+    crate::report::lines(words, WIDTH - column, 0).join(&format!("\n{:column$}", ""))
 }
 
 /// `; did you mean …?`, if a known name is close.

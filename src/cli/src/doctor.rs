@@ -1,6 +1,7 @@
 //! `raykata doctor`: looks for what the kit needs on this machine, and says what to install.
 
 use crate::args::{Given, Spec};
+use crate::half_blocks::Look;
 use crate::kits::root;
 use crate::program::exit_code;
 use crate::report::Bytes;
@@ -182,19 +183,14 @@ fn set(why: &str, name: &str, value: &str) -> String {
 }
 
 fn terminal() -> Finding {
-    let value = |name: &str| std::env::var(name).unwrap_or_default();
-    let locale = ["LC_ALL", "LC_CTYPE", "LANG"].map(value).into_iter().find(|name| !name.is_empty());
-    let is_utf8 = cfg!(windows)
-        || locale.is_some_and(|name| {
-            name.to_lowercase().contains("utf-8") || name.to_lowercase().contains("utf8")
-        });
     if !std::io::stdout().is_terminal() {
         return optional("the output is no terminal", "`raykata watch` prints lines there, and no screen");
     }
-    match (is_utf8, ["truecolor", "24bit"].contains(&value("COLORTERM").as_str())) {
+    let look = Look::of_environment();
+    match (look.has_unicode, look.has_true_colour) {
         (true, true) => good("Unicode and 24-bit colours"),
         (true, false) => optional(
-            "it names no 24-bit colours: `watch` shows no pictures",
+            "it names no 24-bit colours: pictures have 216 colours",
             set("if it has them, run", "COLORTERM", "truecolor"),
         ),
         (false, _) => {

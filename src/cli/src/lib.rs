@@ -15,6 +15,8 @@ pub mod cost;
 pub mod doctor;
 pub mod explain;
 pub mod fingerprint;
+pub mod finish;
+pub mod half_blocks;
 pub mod html;
 pub mod journal;
 pub mod judge;

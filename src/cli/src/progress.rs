@@ -124,7 +124,8 @@ impl State {
     fn draw(&mut self) {
         self.drawn = Some(Instant::now());
         let line = self.line(self.began.elapsed());
-        let _ = write!(std::io::stderr(), "\r{line}\u{1b}[K");
+        // The terminal cuts a line that is longer than its rows, because a line that is continued below would stay there.
+        let _ = write!(std::io::stderr(), "\r\u{1b}[?7l{line}\u{1b}[K\u{1b}[?7h");
     }
 
     fn line(&self, gone: Duration) -> String {

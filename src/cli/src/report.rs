@@ -89,6 +89,11 @@ pub fn load_scene(file: &Path, limits: Limits) -> Result<Scene> {
     Ok(scene)
 }
 
+/// The same without warnings.
+pub fn read_scene(file: &Path) -> Result<Scene> {
+    load::load(file).map_err(|error| anyhow!(draw(&error)))
+}
+
 /// A scene of the kit, for tests.
 #[cfg(test)]
 pub fn scene_of_kit(name: &str) -> Scene {
@@ -217,6 +222,33 @@ impl Watch for FrameBar {
     }
 }
 
+/// The text in lines of at most `columns` columns. Later lines are indented like the first one, and two columns more.
+pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
+    let indent = text.len() - text.trim_start().len();
+    lines(text, columns.max(indent + 12), indent + 2)
+}
+
+/// The text in lines of at most `columns` columns; all but the first begin with `indent` spaces. A word that is longer than a line
+/// is cut.
+pub fn lines(text: &str, columns: usize, indent: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    let length = |lines: &[String]| lines.last().map_or(0, |line| line.chars().count());
+    for word in text.split_inclusive(' ') {
+        let is_begun = lines.last().is_some_and(|line| !line.trim().is_empty());
+        if is_begun && length(&lines) + word.trim_end().chars().count() > columns {
+            lines.push(" ".repeat(indent));
+        }
+        for sign in word.chars() {
+            if length(&lines) == columns && sign != ' ' {
+                lines.push(" ".repeat(indent));
+            }
+            let is_full = length(&lines) == columns;
+            lines.last_mut().filter(|_| !is_full).into_iter().for_each(|line| line.push(sign));
+        }
+    }
+    lines.into_iter().map(|line| line.trim_end().to_owned()).collect()
+}
+
 /// The lower quartile, the median and the upper quartile; for an even number of values the median is the
 /// lower of the two in the middle.
 pub fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
@@ -236,6 +268,13 @@ mod tests {
         assert_eq!(Thousands(1_000).to_string(), "1,000");
         assert_eq!(Thousands(99_532_800_000_000).to_string(), "99,532,800,000,000");
     }
+    #[test]
+    fn long_words_are_cut_and_lines_are_indented() {
+        assert_eq!(wrapped("  ab cd efgh", 14), ["  ab cd efgh"]);
+        assert_eq!(wrapped("aaaa bbbb cccc dddd", 12), ["aaaa bbbb", "  cccc dddd"]);
+        assert_eq!(wrapped(&"x".repeat(15), 12), ["x".repeat(12), format!("  {}", "x".repeat(3))]);
+    }
+
     #[test]
     fn quartiles_are_measured_values() {
         assert_eq!(quartiles(vec![]), [0.0; 3]);

@@ -7,6 +7,7 @@ use crate::html::escape;
 use crate::kits::root;
 use crate::report::{make_folder, write_file};
 use anyhow::{Context, Error, Result, bail};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
@@ -22,11 +23,36 @@ pub static SPEC: Spec = Spec {
     ]],
 };
 
-/// A deck: its name, and what its first lines say.
-struct Deck {
-    name: String,
-    title: String,
-    minutes: Option<u32>,
+/// A deck: its name, the settings at its top, and its slides.
+pub struct Deck {
+    /// The name of its file, without the ending.
+    pub name: String,
+    /// The settings, by their keys, without quotation marks.
+    pub head: BTreeMap<String, String>,
+    /// The text of each slide, with its speaker note.
+    pub slides: Vec<String>,
+}
+
+impl Deck {
+    /// The stage that it teaches; 0 for the introduction.
+    pub fn stage(&self) -> Option<u8> {
+        self.head.get("stage")?.parse().ok()
+    }
+
+    /// The minutes that it takes.
+    pub fn minutes(&self) -> Option<usize> {
+        self.head.get("minutes")?.parse().ok()
+    }
+
+    /// The title; empty if it has none.
+    pub fn title(&self) -> &str {
+        self.head.get("title").map_or("", String::as_str)
+    }
+
+    /// The text of all slides.
+    pub fn text(&self) -> String {
+        self.slides.concat()
+    }
 }
 
 /// Builds the decks, and prints where they are.
@@ -94,8 +120,8 @@ fn without_names(deck: &str) -> String {
     parts.fold(first, |text, part| text + part.split_once("-->").map_or(part, |(_, rest)| rest))
 }
 
-/// All decks in this folder, in the order of the course.
-fn decks(slides: &Path) -> Result<Vec<Deck>> {
+/// All decks in this folder, in the order of the course: the introduction, the stages, and the others.
+pub fn decks(slides: &Path) -> Result<Vec<Deck>> {
     let mut found = Vec::new();
     for file in fs::read_dir(slides).with_context(|| format!("{} cannot be read", slides.display()))? {
         let file = file?.path();
@@ -106,29 +132,16 @@ fn decks(slides: &Path) -> Result<Vec<Deck>> {
             found.extend(deck(name, &text));
         }
     }
-    // The introduction comes first, then the stages, then everything else.
-    let place = |name: &str| match name {
-        "introduction" => 0,
-        name if name.starts_with("stage") => 1,
-        _ => 2,
-    };
-    found.sort_by(|a, b| (place(&a.name), &a.name).cmp(&(place(&b.name), &b.name)));
+    found.sort_by_key(|deck| (deck.stage().unwrap_or(u8::MAX), deck.name.clone()));
     Ok(found)
 }
 
 /// The deck with this text; `None` for a file that is no deck.
 fn deck(name: String, text: &str) -> Option<Deck> {
-    let (head, _) = text.strip_prefix("---\n")?.split_once("\n---\n")?;
-    let value = |key: &str| {
-        let line = head.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(':'));
-        line.map(|value| value.trim().trim_matches('"').to_owned())
-    };
-    (value("marp")? == "true").then_some(())?;
-    Some(Deck {
-        title: value("title")?,
-        minutes: value("minutes").and_then(|minutes| minutes.parse().ok()),
-        name,
-    })
+    let (head, slides) = text.strip_prefix("---\nmarp: true\n")?.split_once("\n---\n")?;
+    let pairs = head.lines().filter_map(|line| line.split_once(": "));
+    let head = pairs.map(|(key, value)| (key.to_owned(), value.trim_matches('"').to_owned())).collect();
+    Some(Deck { name, head, slides: slides.split("\n---\n").map(str::to_owned).collect() })
 }
 
 /// The program `marp`, which npm installs the first time.
@@ -156,12 +169,12 @@ fn installed(slides: &Path) -> Result<PathBuf> {
 /// The page that links to all decks.
 fn page(decks: &[&Deck], pdf: bool) -> String {
     let row = |deck: &&Deck| {
-        let minutes = deck.minutes.map_or(String::new(), |minutes| format!("{minutes} min"));
+        let minutes = deck.minutes().map_or(String::new(), |minutes| format!("{minutes} min"));
         let pdf = if pdf { format!("<a href=\"{}.pdf\">PDF</a>", deck.name) } else { String::new() };
         format!(
             "<tr><td><a href=\"{}.html\">{}</a></td><td>{minutes}</td><td>{pdf}</td></tr>\n",
             deck.name,
-            escape(&deck.title)
+            escape(deck.title())
         )
     };
     format!(
@@ -181,7 +194,7 @@ mod tests {
     fn a_deck_says_what_it_is() {
         let text = "---\nmarp: true\ntitle: \"Stage 1: rays & shapes\"\nminutes: 60\n---\n\n# Rays\n";
         let deck = deck("stage01".into(), text).unwrap();
-        assert_eq!((&*deck.title, deck.minutes), ("Stage 1: rays & shapes", Some(60)));
+        assert_eq!((deck.title(), deck.minutes()), ("Stage 1: rays & shapes", Some(60)));
         assert!(page(&[&deck], true).contains("<a href=\"stage01.html\">Stage 1: rays &amp; shapes</a>"));
         assert!(super::deck("README".into(), "# Slides\n").is_none());
         assert_eq!(
@@ -193,8 +206,10 @@ mod tests {
     #[test]
     fn the_introduction_comes_first_and_cost_after_the_stages() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["stage10", "cost", "stage02", "introduction"] {
-            let text = "---\nmarp: true\ntitle: x\n---\n";
+        for (name, stage) in
+            [("stage10", "stage: 10"), ("cost", ""), ("stage02", "stage: 2"), ("introduction", "stage: 0")]
+        {
+            let text = format!("---\nmarp: true\ntitle: x\n{stage}\n---\n");
             fs::write(folder.path().join(format!("{name}.md")), text).unwrap();
         }
         fs::write(folder.path().join("plan.md"), "# Plan\n").unwrap();

@@ -1,12 +1,12 @@
 //! What is shown, and what keys, saves and events do to it.
 
-use crate::course::{Check, Stage, keep, stages};
-use crate::pixels::Pixels;
 use crate::reset::{function_at, reset};
 use crate::run::{Event, Task};
 use crossterm::event::KeyCode;
 use live::compiler::CompilerError;
+use live::course::{Check, Stage, keep, stages};
 use live::files::names_in;
+use raykata_cli::finish::{Picture, file_of};
 use raykata_cli::verdicts::{CheckVerdict, Verdict};
 use std::path::Path;
 use std::time::Duration;
@@ -65,8 +65,13 @@ pub enum Page {
         /// The chosen one of these checks.
         at: usize,
     },
-    /// The picture of the stage, when it is finished.
-    Picture(Option<Pixels>),
+    /// The picture of the stage.
+    Picture {
+        /// The picture, when it is rendered.
+        picture: Option<Picture>,
+        /// Whether it is shown because the last check of the stage passes now. The next save then leads back to the checks.
+        is_finish: bool,
+    },
     /// A question: shall this function, in this file, be reset?
     Reset {
         /// The file, from the root of the kit.
@@ -150,6 +155,9 @@ impl App {
     /// A file of the student has changed.
     pub fn saved(&mut self) -> Action {
         self.note.clear();
+        if matches!(self.page, Page::Picture { is_finish: true, .. }) {
+            self.page = Page::CHECK;
+        }
         self.run()
     }
 
@@ -165,14 +173,8 @@ impl App {
     fn run(&mut self) -> Action {
         self.phase = Phase::Compiling;
         let stage = self.stage().number;
-        let (columns, rows) = self.size;
         Action::Start(match self.page {
-            // A character is two pixels high.
-            Page::Picture(_) => {
-                let rows = 2 * rows.saturating_sub(6).max(4);
-                let width = (rows * 16 / 9).min(columns).max(16);
-                Task::Render(stage, width as u32, (width * 9 / 16) as u32)
-            }
+            Page::Picture { .. } => Task::Render(stage, file_of(stage, self.stage().is_done())),
             _ => Task::Check([stage].into_iter().chain(self.others().map(|other| other.number)).collect()),
         })
     }
@@ -220,20 +222,27 @@ impl App {
             Event::Broken(why) => self.phase = Phase::Broken(why),
             Event::Verdict(verdict) => self.judged(verdict),
             Event::Progress(words) => self.note = words,
-            Event::Picture(pixels) => {
+            Event::Picture(new) => {
                 self.phase = Phase::Ended { compiled: self.compiled, checked: Duration::ZERO };
                 self.note.clear();
-                if let Page::Picture(shown) = &mut self.page {
-                    *shown = Some(pixels);
+                if let Page::Picture { picture, .. } = &mut self.page {
+                    *picture = Some(new);
                 }
             }
             Event::Checked(number, checked) => {
+                let is_finished = self.stage().was_open && !self.stage().was_done && self.stage().is_done();
                 for stage in self.stages.iter_mut().filter(|stage| stage.number == number) {
                     stage.was_done |= stage.is_done();
+                    stage.was_open |= !stage.is_done();
                 }
                 if number == self.stage().number {
                     self.phase = Phase::Ended { compiled: self.compiled, checked };
-                    return self.checked();
+                    let action = self.checked();
+                    if is_finished && matches!(self.page, Page::Check { .. }) {
+                        self.page = Page::Picture { picture: None, is_finish: true };
+                        return self.run();
+                    }
+                    return action;
                 }
             }
         }
@@ -284,11 +293,10 @@ impl App {
             KeyCode::Char('o') => return Action::Edit,
             KeyCode::Char('r') => return Action::AskReset,
             KeyCode::Char('v') => {
-                if matches!(self.page, Page::Picture(_)) {
-                    self.page = Page::CHECK;
-                } else {
-                    self.page = Page::Picture(None);
-                }
+                self.page = match self.page {
+                    Page::Picture { .. } => Page::CHECK,
+                    _ => Page::Picture { picture: None, is_finish: false },
+                };
                 return self.run();
             }
             KeyCode::Char('h') => {
@@ -529,6 +537,21 @@ mod tests {
     }
 
     #[test]
+    fn the_last_check_of_a_stage_leads_to_its_picture_once() {
+        let (mut app, _) = App::new(Some(1), (80, 24));
+        all(&mut app, &Verdict::Passed);
+        tell(&mut app, 2, failed());
+        assert_eq!(end(&mut app), Action::Nothing);
+        tell(&mut app, 2, Verdict::Passed);
+        assert_eq!(end(&mut app), Action::Start(Task::Render(1, "out/album/stage1.png".into())));
+        app.event(Event::Picture(Picture::default()));
+        assert!(matches!(app.page, Page::Picture { picture: Some(_), is_finish: true }));
+        assert_eq!(app.saved(), Action::Start(Task::Check(vec![1])), "a save leads back to the checks");
+        assert_eq!(end(&mut app), Action::Nothing, "it was done before");
+        assert_eq!(app.key(KeyCode::Char('n')), Action::Start(Task::Check(vec![2, 1])));
+    }
+
+    #[test]
     fn the_list_is_searched_and_leads_to_a_check() {
         let (mut app, _) = App::new(Some(1), (80, 24));
         app.key(KeyCode::Char('l'));
@@ -563,13 +586,11 @@ mod tests {
     #[test]
     fn the_picture_is_rendered_again_at_each_save() {
         let (mut app, _) = App::new(Some(4), (80, 24));
-        let Action::Start(Task::Render(4, width, height)) = app.key(KeyCode::Char('v')) else {
-            panic!("no picture")
-        };
-        assert!(width <= 80 && height <= 36, "{width} × {height}");
-        assert!(matches!(app.saved(), Action::Start(Task::Render(4, ..))));
-        app.event(Event::Picture(Pixels(vec![vec![([1; 3], [2; 3])]])));
-        assert!(matches!(app.page, Page::Picture(Some(_))));
+        let render = Action::Start(Task::Render(4, "out/watch.png".into()));
+        assert_eq!(app.key(KeyCode::Char('v')), render);
+        assert_eq!(app.saved(), render);
+        app.event(Event::Picture(Picture::default()));
+        assert!(matches!(app.page, Page::Picture { picture: Some(_), .. }));
         assert_eq!(
             app.key(KeyCode::Char('v')),
             Action::Start(Task::Check(vec![4, 1, 2, 3])),

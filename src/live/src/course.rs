@@ -1,21 +1,33 @@
-//! The course as it stands: its stages, their checks, and the last verdict of each.
+//! The course as it stands: its stages, their checks, the last verdict of each, and the judge that gives it.
 
+use crate::process::Process;
+use anyhow::{Context, Result, bail};
 use raykata::rubric::{self, CheckEntry, Score};
+use raykata::worker::receive;
 use raykata_cli::verdicts::{CheckVerdict, Verdict};
+use std::io::{BufReader, ErrorKind};
+use std::path::Path;
+use std::process::Command;
 
 /// A stage.
 pub struct Stage {
+    /// Its number.
     pub number: u8,
+    /// Its entry in the rubric.
     pub entry: &'static rubric::Stage,
     /// Its checks, in the order of the lecture.
     pub checks: Vec<Check>,
     /// Whether it was done once since the program has started.
     pub was_done: bool,
+    /// Whether it was not done once, when all its checks had a verdict.
+    pub was_open: bool,
 }
 
 /// A check.
 pub struct Check {
+    /// Its name.
     pub name: &'static str,
+    /// Its entry in the rubric.
     pub entry: &'static CheckEntry,
     /// The last verdict.
     pub verdict: Option<Verdict>,
@@ -68,6 +80,7 @@ pub fn stages() -> Vec<Stage> {
         entry,
         checks: entry.in_order().into_iter().map(check).collect(),
         was_done: false,
+        was_open: false,
     };
     rubric::stages().into_iter().map(stage).collect()
 }
@@ -77,5 +90,32 @@ pub fn keep(stages: &mut [Stage], of_check: CheckVerdict) {
     let mut checks = stages.iter_mut().flat_map(|stage| &mut stage.checks);
     if let Some(check) = checks.find(|check| check.name == of_check.check) {
         check.verdict = Some(of_check.verdict);
+    }
+}
+
+/// Lets the judge run the checks of a stage, with the worker of the kit at `root`, and reports each verdict. `false` if the run is over.
+///
+/// # Errors
+///
+/// The judge fails, or is not understood.
+pub fn judge(
+    process: &Process,
+    judge: &Path,
+    [root, worker]: [&Path; 2],
+    stage: u8,
+    mut report: impl FnMut(CheckVerdict),
+) -> Result<bool> {
+    let mut command = Command::new(judge);
+    command.arg("verdicts").arg(root).arg(worker).arg(stage.to_string());
+    let verdicts = |out: &mut BufReader<_>| loop {
+        match receive::<CheckVerdict>(out) {
+            Ok(verdict) => report(verdict),
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(()),
+            Err(error) => return Err(error).context("the judge is not understood"),
+        }
+    };
+    match process.follow(command, verdicts)? {
+        Some((false, words)) => bail!("the judge has failed: {}", words.trim()),
+        ended => Ok(ended.is_some()),
     }
 }

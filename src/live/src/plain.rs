@@ -1,12 +1,13 @@
 //! The same in lines, one after the other: for screen readers, pipes and terminals without a screen. It ends when the
 //! program is interrupted.
 
-use crate::app::{Action, App, Phase};
+use crate::app::{Action, App, Page};
 use crate::run::{Event, Paths, Run};
+use crate::screen::{Row, body};
 use anyhow::Result;
 use live::files::Files;
+use raykata_cli::half_blocks::Look;
 use raykata_cli::report::say;
-use raykata_cli::verdicts::Verdict;
 use std::time::Duration;
 
 /// The time between two looks at the files.
@@ -33,7 +34,8 @@ pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
                 };
                 let before = app.regression();
                 let action = app.event(event);
-                if has_ended && action == Action::Nothing {
+                let is_finish = matches!(app.page, Page::Picture { is_finish: true, .. });
+                if has_ended && (action == Action::Nothing || is_finish) {
                     say(format_args!("{}\n", lines(&app)));
                 }
                 if let Some(words) = app.regression().filter(|words| before.as_ref() != Some(words)) {
@@ -52,19 +54,7 @@ fn lines(app: &App) -> String {
     let stage = app.stage();
     let (checks, points) = stage.earned();
     let head = format!("\nstage {} · {}: {checks} pass, {points}\n", stage.number, stage.entry.title);
-    let body = match (&app.phase, &app.check().verdict) {
-        (Phase::Errors(errors), _) => {
-            let error = |error: &live::compiler::CompilerError| {
-                let notes: String = error.notes.iter().map(|note| format!("  {note}\n")).collect();
-                format!("{}\n  {}\n  {}\n{notes}", error.place, error.what, error.code)
-            };
-            return format!("\ndoes not compile\n{}", errors.iter().map(error).collect::<String>());
-        }
-        (Phase::Broken(why), _) => return format!("\n{why}\n"),
-        (_, Some(Verdict::NotWritten { task, place })) => format!("not written yet: {place}\n  {task}\n"),
-        (_, Some(Verdict::Failed(message))) => message.clone(),
-        (_, Some(Verdict::Passed)) if stage.is_done() => format!("Stage {} is done.\n", stage.number),
-        _ => String::new(),
-    };
-    head + &body
+    let look = Look { has_colours: false, ..Look::of_environment() };
+    let line = |row| if let Row::Words(_, text) = row { text + "\n" } else { String::new() };
+    head + &body(app, look, usize::MAX).into_iter().map(line).collect::<String>()
 }

@@ -1,23 +1,17 @@
 //! One run: compile the exercises, then run the checks of a stage, or render its picture. Everything happens in processes of
 //! its own, so that a save can end a run at any time, also if the code of the student never ends.
 
-use crate::pixels::Pixels;
-use anyhow::{Context, Result, bail};
-use image::RgbImage;
+use anyhow::Result;
 use live::compiler::{Compiled, CompilerError, compile};
-use live::picture::{encoded, read_scene};
+use live::course::judge;
 use live::process::Process;
-use live::scene_of;
 use raykata::frame::Watch;
-use raykata::kit::{Frames, kit_error};
-use raykata::worker::receive;
+use raykata_cli::finish::{self, Picture};
 use raykata_cli::kits::{Need, Program, Which, cargo_build, profile};
-use raykata_cli::report::{job, make_folder_of, words_of_building};
+use raykata_cli::report::words_of_building;
 use raykata_cli::verdicts::CheckVerdict;
 use raykata_cli::worker::{CALL_PATIENCE, Worker};
-use std::io::{BufReader, ErrorKind};
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
@@ -36,7 +30,7 @@ pub enum Event {
     /// How far a picture is, in words.
     Progress(String),
     /// A picture is finished.
-    Picture(Pixels),
+    Picture(Picture),
     /// The run cannot go on, for this reason.
     Broken(String),
 }
@@ -46,8 +40,8 @@ pub enum Event {
 pub enum Task {
     /// Runs the checks of these stages, one stage after the other.
     Check(Vec<u8>),
-    /// Renders the scene of a stage, with this many pixels in width and height.
-    Render(u8, u32, u32),
+    /// Renders the scene of a stage to this file, from the root of the kit.
+    Render(u8, String),
 }
 
 /// Where the kit and its programs are.
@@ -116,57 +110,22 @@ fn work(paths: &Paths, task: Task, process: &Process, report: &(impl Fn(Event) +
     report(Event::Compiled(begin.elapsed()));
     match task {
         Task::Check(stages) => stages.iter().try_for_each(|&stage| {
-            if process.is_over() { Ok(()) } else { check(paths, &worker, stage, process, report) }
+            let begin = Instant::now();
+            let verdict = |verdict| report(Event::Verdict(verdict));
+            if judge(process, &paths.judge, [&paths.root, &worker], stage, verdict)? {
+                report(Event::Checked(stage, begin.elapsed()));
+            }
+            Ok(())
         }),
-        Task::Render(stage, width, height) => {
-            render(&paths.root, &worker, (stage, width, height), process, report)
+        Task::Render(stage, file) => {
+            let kit = process.start_kit(Worker::new(worker, CALL_PATIENCE).with_short_frames());
+            let picture = finish::render(&paths.root, stage, &file, &*kit, &FrameProgress(report));
+            if !process.is_over() {
+                report(Event::Picture(picture?));
+            }
+            Ok(())
         }
     }
-}
-
-/// Lets the judge run the checks of a stage.
-fn check(paths: &Paths, worker: &Path, stage: u8, process: &Process, report: &impl Fn(Event)) -> Result<()> {
-    let begin = Instant::now();
-    let mut command = Command::new(&paths.judge);
-    command.arg("verdicts").arg(&paths.root).arg(worker).arg(stage.to_string());
-    let verdicts = |out: &mut BufReader<_>| loop {
-        match receive::<CheckVerdict>(out) {
-            Ok(verdict) => report(Event::Verdict(verdict)),
-            Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(()),
-            Err(error) => return Err(error).context("the judge is not understood"),
-        }
-    };
-    match process.follow(command, verdicts)? {
-        None => {}
-        Some((true, _)) => report(Event::Checked(stage, begin.elapsed())),
-        Some((false, words)) => bail!("the judge has failed: {}", words.trim()),
-    }
-    Ok(())
-}
-
-/// Renders the scene of a stage in the size of the terminal, with one sample per pixel.
-fn render(
-    root: &Path,
-    worker: &Path,
-    (stage, width, height): (u8, u32, u32),
-    process: &Process,
-    report: &(impl Fn(Event) + Sync),
-) -> Result<()> {
-    let mut scene = read_scene(&scene_of(root, stage))?;
-    (scene.film.width, scene.film.height, scene.quality.samples_per_pixel) = (width, height, 1);
-    let kit = process.start_kit(Worker::new(worker.to_owned(), CALL_PATIENCE).with_short_frames());
-    let rendered = kit_error::catch(|| kit.render(&job(scene.clone()), &FrameProgress(report)));
-    if process.is_over() {
-        return Ok(());
-    }
-    let film = rendered?.context("the frame was cancelled")?.film;
-    let rgb = encoded(&scene, &film, &kit);
-    let picture = RgbImage::from_raw(width, height, rgb).context("the picture has another size")?;
-    let file = root.join("out/watch.png");
-    make_folder_of(&file)?;
-    picture.save(&file).with_context(|| format!("{} cannot be written", file.display()))?;
-    report(Event::Picture(Pixels::of(&picture, width)));
-    Ok(())
 }
 
 /// Reports the progress of a frame in words.

@@ -1,10 +1,11 @@
 //! The rows of the screen, from the state of the program. Meaning is never in the colour alone.
 
 use crate::app::{App, Page, Phase};
-use crate::course::Check;
-use crate::pixels::Rgb;
-use crossterm::style::Color;
 use live::compiler::CompilerError;
+use live::course::Check;
+use raykata_cli::finish::{Picture, next_step};
+use raykata_cli::half_blocks::{Look, Rgb, cells};
+use raykata_cli::report::wrapped;
 use raykata_cli::verdicts::Verdict;
 
 /// The colour of a row.
@@ -29,70 +30,41 @@ pub enum Row {
     Pixels(Vec<(Rgb, Rgb)>),
 }
 
-/// What the terminal can show.
-#[derive(Clone, Copy, Debug)]
-pub struct Look {
-    /// Whether it shows more than ASCII.
-    pub has_unicode: bool,
-    /// Whether it shows 24-bit colours. Otherwise pictures have the 216 colours that every terminal with colours has.
-    pub has_true_colour: bool,
+/// The sign of a check: passed, failed, not written, not known.
+fn sign(look: Look, check: &Check) -> char {
+    match (&check.verdict, look.has_unicode) {
+        (Some(Verdict::Passed), true) => '✓',
+        (Some(Verdict::Passed), false) => '+',
+        (Some(Verdict::Failed(_)), true) => '✗',
+        (Some(Verdict::Failed(_)), false) => 'x',
+        (Some(Verdict::NotWritten { .. }), true) => '·',
+        (Some(Verdict::NotWritten { .. }), false) => '.',
+        (None, _) => '?',
+    }
 }
 
-impl Look {
-    /// Asks the variables of the environment by which terminals and users say what they can show.
-    pub fn of_environment() -> Look {
-        let value = |name: &str| std::env::var(name).unwrap_or_default().to_lowercase();
-        let locale = ["LC_ALL", "LC_CTYPE", "LANG"].map(value).into_iter().find(|name| !name.is_empty());
-        let is_utf8 = locale.is_some_and(|name| name.contains("utf-8") || name.contains("utf8"));
-        let has_colours = ["truecolor", "24bit"].contains(&value("COLORTERM").as_str());
-        Look { has_unicode: is_utf8 || cfg!(windows), has_true_colour: has_colours }
+/// The text in signs that the terminal has. What has no other sign becomes a question mark.
+fn plain(look: Look, text: &str) -> String {
+    if look.has_unicode {
+        return text.to_owned();
     }
-
-    /// The colour of a pixel, or the nearest one of the cube of 6 × 6 × 6 colours of a terminal with 256.
-    pub fn colour(self, [r, g, b]: Rgb) -> Color {
-        let level = |channel: u8| (channel / 51) + u8::from(channel % 51 > 25);
-        match self.has_true_colour {
-            true => Color::Rgb { r, g, b },
-            false => Color::AnsiValue(16 + 36 * level(r) + 6 * level(g) + level(b)),
-        }
-    }
-
-    /// The sign of a check: passed, failed, not written, not known.
-    fn sign(self, check: &Check) -> char {
-        match (&check.verdict, self.has_unicode) {
-            (Some(Verdict::Passed), true) => '✓',
-            (Some(Verdict::Passed), false) => '+',
-            (Some(Verdict::Failed(_)), true) => '✗',
-            (Some(Verdict::Failed(_)), false) => 'x',
-            (Some(Verdict::NotWritten { .. }), true) => '·',
-            (Some(Verdict::NotWritten { .. }), false) => '.',
-            (None, _) => '?',
-        }
-    }
-
-    /// The text in signs that the terminal has. What has no other sign becomes a question mark.
-    fn plain(self, text: &str) -> String {
-        if self.has_unicode {
-            return text.to_owned();
-        }
-        let other = |sign: char| match sign {
-            '·' | '×' => '*',
-            '≤' | '⟨' => '<',
-            '≥' | '⟩' => '>',
-            '…' => '.',
-            '–' | '—' | '−' => '-',
-            '±' => '~',
-            '²' => '2',
-            '³' => '3',
-            'θ' => 't',
-            'γ' => 'g',
-            'β' => 'b',
-            'π' => 'p',
-            _ if sign.is_ascii() => sign,
-            _ => '?',
-        };
-        text.chars().map(other).collect()
-    }
+    let other = |sign: char| match sign {
+        '·' | '×' => '*',
+        '≤' | '⟨' => '<',
+        '≥' | '⟩' => '>',
+        '…' => '.',
+        '–' | '—' | '−' => '-',
+        '±' => '~',
+        '²' => '2',
+        '³' => '3',
+        'θ' => 't',
+        'γ' => 'g',
+        'β' => 'b',
+        'π' => 'p',
+        _ if sign.is_ascii() => sign,
+        _ => '?',
+    };
+    text.chars().map(other).collect()
 }
 
 /// The keys of a check and of the picture.
@@ -114,26 +86,30 @@ pub fn rows(app: &App, look: Look) -> Vec<Row> {
     };
     let foot = [foot(app, columns), wrapped(keys, columns)].concat();
     let room = height.saturating_sub(rows.len() + foot.len() + 1);
-    let body = match (&app.phase, &app.page) {
-        (_, Page::List { word, is_typing, at }) => list(app, look, word, *is_typing, *at, room),
-        (_, Page::Reset { file, name }) => question(file, name),
-        (Phase::Errors(errors), _) => compiler(errors),
-        (Phase::Broken(why), _) => broken(why, columns),
-        (_, Page::Picture(Some(pixels))) => pixels.0.iter().cloned().map(Row::Pixels).collect(),
-        (_, Page::Picture(None)) => vec![Row::Words(Tone::Quiet, "the picture is being rendered …".into())],
-        (_, Page::Check { hints, unfolded }) => check(app, *hints, *unfolded, columns),
-    };
-    rows.extend(body.into_iter().take(room));
+    rows.extend(body(app, look, room).into_iter().take(room));
     rows.truncate(height.saturating_sub(foot.len()));
     while rows.len() + foot.len() < height {
         rows.push(Row::Words(Tone::Plain, String::new()));
     }
     rows.extend(foot.into_iter().map(|line| Row::Words(Tone::Quiet, line)));
     let fitted = |row| match row {
-        Row::Words(tone, text) => Row::Words(tone, clipped(&look.plain(&text), columns, look)),
+        Row::Words(tone, text) => Row::Words(tone, clipped(&plain(look, &text), columns, look)),
         Row::Pixels(cells) => Row::Pixels(cells.into_iter().take(columns).collect()),
     };
     rows.into_iter().take(height).map(fitted).collect()
+}
+
+/// The middle of the screen, for which there is room in so many rows.
+pub fn body(app: &App, look: Look, room: usize) -> Vec<Row> {
+    let columns = app.size.0;
+    match (&app.phase, &app.page) {
+        (_, Page::List { word, is_typing, at }) => list(app, look, word, *is_typing, *at, room),
+        (_, Page::Reset { file, name }) => question(file, name),
+        (Phase::Errors(errors), _) => compiler(errors),
+        (_, Page::Picture { picture, is_finish }) => shown(app, look, picture.as_ref(), *is_finish, room),
+        (Phase::Broken(why), _) => broken(why, columns),
+        (_, Page::Check { hints, unfolded }) => check(app, *hints, *unfolded, columns),
+    }
 }
 
 /// The stage, its points, and a sign for each check.
@@ -141,10 +117,10 @@ fn head(app: &App, look: Look) -> Vec<Row> {
     let stage = app.stage();
     let (checks, points) = stage.earned();
     let name = format!("stage {} · {}", stage.number, stage.entry.title);
-    let head = wrapped(&format!("{name:<38}  {checks}   {points}"), app.size.0);
+    let head = wrapped(&format!("{name:<34}  {checks}   {points}"), app.size.0);
     let signs = stage.checks.iter().enumerate().map(|(index, check)| match index == app.check {
-        true => format!("[{}]", look.sign(check)),
-        false => look.sign(check).to_string(),
+        true => format!("[{}]", sign(look, check)),
+        false => sign(look, check).to_string(),
     });
     let tone = if stage.is_done() { Tone::Good } else { Tone::Plain };
     let signs = [signs.collect(), String::new()].map(|line| Row::Words(Tone::Plain, line));
@@ -169,10 +145,7 @@ fn check(app: &App, hints: usize, unfolded: bool, columns: usize) -> Vec<Row> {
             if stage.is_done() {
                 rows.push(plain(String::new()));
                 rows.push(Row::Words(Tone::Good, format!("Stage {} is done.", stage.number)));
-                rows.push(plain(match app.stages.get(app.stage + 1) {
-                    Some(next) => format!("n goes on to stage {}: {}", next.number, next.entry.file),
-                    None => "It was the last stage.".into(),
-                }));
+                rows.extend(wrapped(&next_step(stage.number), columns).into_iter().map(plain));
                 rows.push(plain("v shows the picture.".into()));
             }
         }
@@ -201,6 +174,27 @@ fn check(app: &App, hints: usize, unfolded: bool, columns: usize) -> Vec<Row> {
         rows.extend(text.into_iter().map(plain));
     }
     rows
+}
+
+/// The picture, or why there is none, and what it cost; also what comes next, if it is shown because the stage is done.
+fn shown(app: &App, look: Look, picture: Option<&Picture>, is_finish: bool, room: usize) -> Vec<Row> {
+    let columns = app.size.0;
+    let stage = app.stage().number;
+    let done = is_finish.then(|| Row::Words(Tone::Good, format!("Stage {stage} is done.")));
+    let next = is_finish.then(|| next_step(stage));
+    let lines = picture.map_or(&[][..], |picture| &picture.lines);
+    let text = lines.iter().chain(&next).flat_map(|line| wrapped(line, columns));
+    let text: Vec<Row> = text.map(|line| Row::Words(Tone::Plain, line)).collect();
+    let room = room.saturating_sub(text.len() + usize::from(is_finish));
+    let middle = match (&app.phase, picture) {
+        (Phase::Broken(why), _) => broken(why, columns),
+        (_, None) => vec![Row::Words(Tone::Quiet, "the picture is being rendered …".into())],
+        (_, Some(picture)) if look.shows_pictures() => {
+            cells(&picture.rgb, picture.width, columns, room).into_iter().map(Row::Pixels).collect()
+        }
+        _ => Vec::new(),
+    };
+    done.into_iter().chain(middle).chain(text).collect()
 }
 
 /// The question before a reset.
@@ -246,7 +240,7 @@ fn list(app: &App, look: Look, word: &str, is_typing: bool, at: usize, room: usi
         let (number, check) = (app.stages[stage].number, &app.stages[stage].checks[check]);
         let mark = if index == at { '>' } else { ' ' };
         let tone = if index == at { Tone::Plain } else { Tone::Quiet };
-        rows.push(Row::Words(tone, format!("{mark} {number:>2} {} {}", look.sign(check), check.name)));
+        rows.push(Row::Words(tone, format!("{mark} {number:>2} {} {}", sign(look, check), check.name)));
     }
     rows
 }
@@ -255,11 +249,11 @@ fn list(app: &App, look: Look, word: &str, is_typing: bool, at: usize, room: usi
 fn foot(app: &App, columns: usize) -> Vec<String> {
     let run = match &app.phase {
         // The first picture waits for the renderer.
-        Phase::Compiling if matches!(app.page, Page::Picture(None)) => {
-            "compiling with optimisation … (about a minute)".to_owned()
+        Phase::Compiling if matches!(app.page, Page::Picture { picture: None, .. }) => {
+            "compiling with optimisation …".to_owned()
         }
         Phase::Compiling => "compiling …".to_owned(),
-        Phase::Working if matches!(app.page, Page::Picture(_)) => "rendering …".to_owned(),
+        Phase::Working if matches!(app.page, Page::Picture { .. }) => "rendering …".to_owned(),
         Phase::Working => "checking …".to_owned(),
         Phase::Ended { compiled, checked } if checked.is_zero() => {
             format!("compiled in {:.1} s", compiled.as_secs_f64())
@@ -286,30 +280,6 @@ fn clipped(text: &str, columns: usize, look: Look) -> String {
     text.chars().take(columns.saturating_sub(1)).chain(end.chars()).collect()
 }
 
-/// The text in lines of at most `columns` columns. Later lines are indented like the first one, and two columns more.
-fn wrapped(text: &str, columns: usize) -> Vec<String> {
-    let indent = text.len() - text.trim_start().len();
-    let mut lines = vec![String::new()];
-    let columns = columns.max(indent + 12);
-    for word in text.split_inclusive(' ') {
-        let last = lines.last_mut().map_or(0, |line| line.chars().count());
-        let length = word.trim_end().chars().count();
-        if last > indent && last + length > columns {
-            lines.push(" ".repeat(indent + 2));
-        }
-        // Cut a word that is longer than a line.
-        for sign in word.chars() {
-            if lines.last().map_or(0, |line| line.chars().count()) == columns && sign != ' ' {
-                lines.push(" ".repeat(indent + 2));
-            }
-            if let Some(line) = lines.last_mut().filter(|line| line.chars().count() < columns) {
-                line.push(sign);
-            }
-        }
-    }
-    lines.into_iter().map(|line| line.trim_end().to_owned()).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -319,7 +289,7 @@ mod tests {
     use raykata_cli::verdicts::CheckVerdict;
     use std::time::Duration;
 
-    const LOOK: Look = Look { has_unicode: true, has_true_colour: true };
+    const LOOK: Look = Look { has_unicode: true, has_colours: true, has_true_colour: true };
 
     fn text(app: &App, look: Look) -> String {
         let words = |row| match row {
@@ -371,6 +341,24 @@ mod tests {
     }
 
     #[test]
+    fn a_stage_that_is_done_shows_its_picture_or_where_it_is() {
+        let mut app = app();
+        let checks: Vec<String> = app.stage().checks.iter().map(|check| check.name.to_owned()).collect();
+        for check in checks {
+            app.event(Event::Verdict(CheckVerdict { check, verdict: Verdict::Passed }));
+        }
+        let action = app.event(Event::Checked(1, Duration::from_millis(310)));
+        assert!(matches!(action, Action::Start(_)));
+        let lines =
+            vec!["9 primitives.".to_owned(), "The picture is kept in out/album/stage1.png.".to_owned()];
+        let rgb = vec![0; 3 * 64 * 40];
+        app.event(Event::Picture(Picture { rgb, width: 64, lines, notes: Vec::new() }));
+        insta::assert_snapshot!("finish", text(&app, LOOK));
+        app.size = (40, 24);
+        insta::assert_snapshot!("finish_without_pictures", text(&app, Look { has_colours: false, ..LOOK }));
+    }
+
+    #[test]
     fn a_low_and_narrow_terminal_shows_less_and_never_fails() {
         let mut app = app();
         for (columns, height) in [(1, 1), (10, 3), (20, 6), (40, 12), (200, 60)] {
@@ -388,7 +376,7 @@ mod tests {
         let mut app = app();
         for key in ['h', 'h', 'h', 'e', 'l'] {
             app.key(KeyCode::Char(key));
-            assert!(text(&app, Look { has_unicode: false, has_true_colour: false }).is_ascii());
+            assert!(text(&app, Look { has_unicode: false, ..LOOK }).is_ascii());
         }
     }
 
@@ -402,12 +390,5 @@ mod tests {
             notes: vec!["expected `Option<f32>`, found `f32`".into()],
         }]));
         insta::assert_snapshot!("compiler", text(&app, LOOK));
-    }
-
-    #[test]
-    fn long_words_are_cut_and_lines_are_indented() {
-        assert_eq!(wrapped("  ab cd efgh", 14), ["  ab cd efgh"]);
-        assert_eq!(wrapped("aaaa bbbb cccc dddd", 12), ["aaaa bbbb", "  cccc dddd"]);
-        assert_eq!(wrapped(&"x".repeat(15), 12), ["x".repeat(12), format!("  {}", "x".repeat(3))]);
     }
 }

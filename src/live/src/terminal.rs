@@ -3,14 +3,15 @@
 use crate::app::{Action, App};
 use crate::editor;
 use crate::run::{Paths, Run};
-use crate::screen::{Look, Row, Tone, rows};
+use crate::screen::{Row, Tone, rows};
 use anyhow::Result;
 use crossterm::cursor::{Hide, MoveTo, Show};
 use crossterm::event::{Event, KeyCode, KeyEventKind, KeyModifiers, poll, read};
-use crossterm::style::{Color, Print, ResetColor, SetBackgroundColor, SetForegroundColor};
+use crossterm::style::{Color, Print, ResetColor, SetForegroundColor};
 use crossterm::terminal::{self, Clear, ClearType, EnterAlternateScreen, LeaveAlternateScreen};
 use crossterm::{execute, queue};
 use live::files::Files;
+use raykata_cli::half_blocks::Look;
 use std::io::{Write, stdout};
 use std::time::Duration;
 
@@ -40,7 +41,6 @@ impl Drop for Screen {
 pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
     let root = &paths.root;
     let look = Look::of_environment();
-    let has_colours = std::env::var_os("NO_COLOR").is_none();
     let mut files = Files::new(live::exercises(root));
     let (mut app, mut action) = App::new(stage, size());
     let mut run = None;
@@ -73,7 +73,7 @@ pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {
         // Draw only what is new, because a screen reader may read each drawing aloud.
         let new = rows(&app, look);
         if new != shown {
-            draw(&new, look, has_colours)?;
+            draw(&new, look)?;
             shown = new;
         }
         // Wait for a key, and look at the files and the reports in between.
@@ -113,28 +113,18 @@ fn size() -> (usize, usize) {
 }
 
 /// Draws all rows. Each one is overwritten and not cleared first, so that nothing flickers.
-fn draw(rows: &[Row], look: Look, has_colours: bool) -> Result<()> {
+fn draw(rows: &[Row], look: Look) -> Result<()> {
     let mut out = stdout().lock();
     for (y, row) in rows.iter().enumerate() {
         queue!(out, MoveTo(0, y as u16))?;
         match row {
             Row::Words(tone, text) => {
-                if let Some(colour) = colour(*tone).filter(|_| has_colours) {
+                if let Some(colour) = colour(*tone).filter(|_| look.has_colours) {
                     queue!(out, SetForegroundColor(colour))?;
                 }
                 queue!(out, Print(text))?;
             }
-            Row::Pixels(_) if !(has_colours && look.has_unicode) => {
-                if y == 3 {
-                    queue!(out, Print("this terminal shows no pictures; look at out/watch.png"))?;
-                }
-            }
-            Row::Pixels(cells) => {
-                for (upper, lower) in cells {
-                    let [upper, lower] = [*upper, *lower].map(|pixel| look.colour(pixel));
-                    queue!(out, SetForegroundColor(upper), SetBackgroundColor(lower), Print('▀'))?;
-                }
-            }
+            Row::Pixels(cells) => queue!(out, Print(look.line(cells)))?,
         }
         queue!(out, ResetColor, Clear(ClearType::UntilNewLine))?;
     }

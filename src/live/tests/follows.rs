@@ -123,7 +123,7 @@ fn without_a_terminal_each_save_gives_lines() {
     output.wait_for("stage 1 · shapes: ");
     output.wait_for("  yours     None");
     save(&kit, "// an error");
-    output.wait_for("does not compile\nexercises/src/stage1_shapes.rs:1:4\n  mismatched types");
+    output.wait_for("does not compile: 1 error\n\nmismatched types\n  exercises/src/stage1_shapes.rs:1:4\n");
     // A run that never ends is ended by the next save.
     save(&kit, "// a loop");
     let looping = kit.wait_for_file("looping");

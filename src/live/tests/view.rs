@@ -126,6 +126,23 @@ fn messages_show_the_picture_from_coarse_to_fine() {
 }
 
 #[test]
+fn the_picture_of_a_stage_that_is_done_is_kept() {
+    let kit = new_kit();
+    let view = view(&kit);
+    let mut events = view.events();
+    view.data("open?scene=stage1");
+    let facts = events.wait_for("facts", |facts| !facts["done"].is_null());
+    let lines: Vec<&str> =
+        facts["done"]["lines"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    assert_eq!(facts["done"]["stage"], 1);
+    assert_eq!(lines[0], "5 primitives, 0.0 primitive tests per ray: 7 primary rays.");
+    assert_eq!(lines[1], "The picture is kept in out/album/stage1.png.");
+    assert!(lines[2].starts_with("Next: stage 2 · "), "{lines:?}");
+    let picture = image::open(kit.path("out/album/stage1.png")).unwrap().to_rgb8();
+    assert_eq!((picture.dimensions(), picture.get_pixel(9, 9).0), ((64, 40), [0, 255, 0]));
+}
+
+#[test]
 fn each_save_renders_again_and_ends_what_is_stale() {
     let kit = new_kit();
     let view = view(&kit);

@@ -26,7 +26,6 @@ const COMMANDS: &[Command] = &[
     (&sync::SPEC, |given| done(in_kit(sync::SyncOptions::read(given), sync::run))),
     (&new_check::SPEC, |given| in_kit(new_check::NewCheckOptions::read(given), new_check::run)),
     (&corpus::SPEC, |given| in_kit(corpus::CorpusOptions::read(given), corpus::run)),
-    (&corpus::import::SPEC, |given| in_kit(corpus::import::ImportOptions::read(given), corpus::import::run)),
     (&gaps::SPEC, |given| gaps::run(&gaps::GapsOptions::read(given)?)),
     (&mutants::SPEC, |given| in_kit(mutants::MutantsOptions::read(given), mutants::run)),
     (&weaken::SPEC, |given| in_kit(weaken::WeakenOptions::read(given), weaken::run)),

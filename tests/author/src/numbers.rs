@@ -13,6 +13,7 @@ use checks::rubric::{self, Level};
 use checks::symmetry::Symmetries;
 use grader::exercises::{self, Exercise};
 use grader::files_below::{files_below, last_part};
+use raykata_cli::slides::decks;
 use std::cell::OnceCell;
 use std::fmt::Write as _;
 use std::fs;
@@ -240,12 +241,13 @@ impl Values<'_> {
                 .to_owned();
         let mut minutes = 0;
         for deck in decks(&self.root.join("slides"))? {
-            minutes += deck.minutes;
-            let of_stage = match deck.stage.filter(|stage| *stage > 0) {
+            let its_minutes = deck.minutes().with_context(|| format!("{} has no `minutes`", deck.name))?;
+            minutes += its_minutes;
+            let of_stage = match deck.stage().filter(|stage| *stage > 0) {
                 Some(stage) => self.of_stages(&format!(" {stage}"))?,
                 None => Default::default(),
             };
-            table += &row(format!("[{}]({})", deck.title, deck.file), deck.minutes, of_stage);
+            table += &row(format!("[{}]({}.md)", deck.title(), deck.name), its_minutes, of_stage);
         }
         Ok(table + &row("**all**".to_owned(), minutes, self.of_stages("")?))
     }
@@ -303,41 +305,6 @@ fn thousands(number: usize) -> String {
         0..1000 => number.to_string(),
         _ => format!("{},{:03}", thousands(number / 1000), number % 1000),
     }
-}
-
-/// What the first lines of a deck say.
-struct Deck {
-    file: String,
-    title: String,
-    stage: Option<u8>,
-    minutes: usize,
-}
-
-/// The decks in the folder of the slides: those of the stages in order, then the others.
-fn decks(folder: &Path) -> Result<Vec<Deck>> {
-    let mut decks = Vec::new();
-    for path in markdown(folder)? {
-        let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
-        let Some(head) = text.strip_prefix("---\nmarp: true\n").and_then(|rest| rest.split("\n---\n").next())
-        else {
-            continue;
-        };
-        let value = |key: &str| head.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(": "));
-        let number = |key: &str| -> Result<Option<usize>> {
-            let parse =
-                |text: &str| text.parse().with_context(|| format!("{}: {key}: {text}", path.display()));
-            value(key).map(parse).transpose()
-        };
-        let needed = |key: &str| format!("{} has no `{key}` in its first lines", path.display());
-        decks.push(Deck {
-            file: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            title: value("title").with_context(|| needed("title"))?.trim_matches('"').to_owned(),
-            stage: number("stage")?.map(u8::try_from).transpose()?,
-            minutes: number("minutes")?.with_context(|| needed("minutes"))?,
-        });
-    }
-    decks.sort_by_key(|deck| (deck.stage.unwrap_or(u8::MAX), deck.file.clone()));
-    Ok(decks)
 }
 
 #[cfg(test)]

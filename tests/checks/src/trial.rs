@@ -277,12 +277,14 @@ pub fn verdict(check: &Check, examined: Result<CheckResult, KitError>) -> Verdic
         Ok(Ok(())) => Verdict::Passed,
         Ok(Err(broken)) => Verdict::Failed(broken.message(check.name, &entry)),
         Err(KitError::NotWritten { task, place, .. }) => Verdict::NotWritten { task, place },
-        Err(error) => Verdict::Failed(format!(
-            "{}  {error}\n{}",
-            entry.header(),
-            broken::next_commands(check.stage, check.name)
-        )),
+        Err(error) => without_answer(check, error),
     }
+}
+
+/// The verdict on a check that has no answer, for this reason.
+pub fn without_answer(check: &Check, why: impl std::fmt::Display) -> Verdict {
+    let header = rubric::entry(check.stage, check.name).header();
+    Verdict::Failed(format!("{header}  {why}\n{}", broken::next_commands(check.stage, check.name)))
 }
 
 /// Whether no test of this process has printed this gap before. Several checks wait for one function, and the harness prints

@@ -7,7 +7,7 @@ use judge::{again, boxes_and_offsets, gauntlet, hits, pixel, scorecard, trials};
 use raykata::worker::end_with_parent;
 use raykata_cli::kits::{Source, Which};
 use raykata_cli::program::ended;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -22,10 +22,16 @@ fn run() -> Result<bool> {
     if let ["verdicts" | "hits" | "trials", ..] = words[..] {
         end_with_parent();
     }
-    let source = |worker: &str| Source { which: Which::Exercises, program: worker.into() };
+    let source = |worker: &str| {
+        let program = PathBuf::from(worker);
+        let is_reference = program.file_stem().is_some_and(|name| name == "solutions-worker");
+        Source { which: if is_reference { Which::Solutions } else { Which::Exercises }, program }
+    };
     match words[..] {
-        ["check", _, worker] => scorecard::scorecard(&source(worker), None),
-        ["check", _, worker, stage] => scorecard::scorecard(&source(worker), Some(stage.parse()?)),
+        ["check", root, worker] => scorecard::scorecard(Path::new(root), &source(worker), None),
+        ["check", root, worker, stage] => {
+            scorecard::scorecard(Path::new(root), &source(worker), Some(stage.parse()?))
+        }
         ["pixel", _, worker, check, at] => pixel::replay(&source(worker), check, at),
         ["try", _, worker, check] => again::again(&source(worker), check),
         ["status", root, worker] => scorecard::status(Path::new(root), &source(worker)).map(|()| true),

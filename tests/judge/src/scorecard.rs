@@ -3,9 +3,10 @@
 use all_checks::STAGES;
 use anyhow::Result;
 use checks::rubric::{self, CheckEntry, RUBRIC, Score};
-use checks::{Check, Verdict};
+use checks::{Check, CheckResult, Verdict};
 use raykata::kit::{Door, Kit, KitError};
 use raykata::worker::send;
+use raykata_cli::finish;
 use raykata_cli::kits::{Source, with_exercises};
 use raykata_cli::queue;
 use raykata_cli::report::bar_of_steps;
@@ -13,8 +14,11 @@ use raykata_cli::verdicts::CheckVerdict;
 use raykata_cli::worker::{CALL_PATIENCE, Worker};
 use std::io::Write;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Duration;
+
+/// The longest time of a call after another call that does not end. The slowest call of the reference needs a tenth of it.
+const SHORT_PATIENCE: Duration = Duration::from_secs(1);
 
 /// A check and its verdict.
 struct Graded {
@@ -40,7 +44,7 @@ impl Graded {
 
 /// Runs the checks of the stages for which `wanted` is true on all cores, each with a kit of its own, and hands each verdict to
 /// `report` as soon as it is known, with the error if this is the first call that does not end. From then on a call gets a tenth
-/// of the time, because most of them wait for the same function; the slowest call of the reference needs a hundredth.
+/// of the time, because most of them wait for the same function. One that exceeds it may be slow and right: it is not judged.
 fn run_checks(
     source: &Source,
     wanted: impl Fn(u8) -> bool,
@@ -48,19 +52,36 @@ fn run_checks(
 ) -> Result<Vec<Graded>> {
     let of_stages = STAGES.iter().filter(|(stage, _)| wanted(*stage));
     let checks: Vec<&'static Check> = of_stages.flat_map(|(_, checks)| checks.iter()).collect();
-    let has_hung = AtomicBool::new(false);
+    let first_endless = OnceLock::new();
     queue::run(&queue::one_a_core(), &checks, |(), &check| {
-        let patience = if has_hung.load(Ordering::Relaxed) { CALL_PATIENCE / 10 } else { CALL_PATIENCE };
+        let endless = first_endless.get().copied();
+        let patience = if endless.is_some() { SHORT_PATIENCE } else { CALL_PATIENCE };
         let worker = Worker::new(source.program.clone(), patience).with_short_frames();
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker));
         let examined = checks::examine(check, &kit, 0);
         let hangs = examined.as_ref().err().filter(|error| matches!(error, KitError::TimedOut { .. }));
-        let hangs = hangs.filter(|_| !has_hung.swap(true, Ordering::Relaxed)).cloned();
-        let (verdict, entry) = (checks::verdict(check, examined), rubric::entry(check.stage, check.name));
+        let hangs = hangs.filter(|_| first_endless.set(check.name).is_ok()).cloned();
+        let (verdict, entry) = (verdict(check, examined, endless), rubric::entry(check.stage, check.name));
         let graded = Graded { check, verdict, entry };
         report(&graded, hangs)?;
         Ok(graded)
     })
+}
+
+/// The verdict on a check that ran after the check `endless` has found a call that does not end, or with the whole time.
+fn verdict(check: &Check, examined: Result<CheckResult, KitError>, endless: Option<&str>) -> Verdict {
+    let short = SHORT_PATIENCE.as_secs();
+    match (endless, &examined) {
+        (Some(endless), Err(KitError::TimedOut { seconds })) if *seconds == short => checks::without_answer(
+            check,
+            format_args!(
+                "not judged: no answer after {short} s, and a call of the check {endless} does not end.\n  Repair that \
+                 call first: then each call has {} s again.",
+                CALL_PATIENCE.as_secs()
+            ),
+        ),
+        _ => checks::verdict(check, examined),
+    }
 }
 
 /// The same, with a progress bar. It tells at once which check has found a call that does not end.
@@ -89,8 +110,19 @@ pub fn tell(source: &Source, stage: u8, out: impl Write + Send) -> Result<()> {
     run_checks(source, |number| number == stage, report).map(drop)
 }
 
-/// Prints the scorecard; `Ok(true)` if all checks passed that are asked for.
-pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
+/// The columns of the terminal.
+fn columns() -> usize {
+    #[cfg(unix)]
+    if let Ok(size) = rustix::termios::tcgetwinsize(std::io::stdout())
+        && size.ws_col > 0
+    {
+        return size.ws_col.into();
+    }
+    80
+}
+
+/// Prints the scorecard, and the finish of the stage if all its checks passed that are asked for; `Ok(true)` if all passed.
+pub fn scorecard(root: &Path, source: &Source, stage: Option<u8>) -> Result<bool> {
     let wanted = |number| is_asked_for(number) && stage.is_none_or(|stage| stage == number);
     let graded = run_checks_with_bar(source, wanted)?;
     for (number, _) in STAGES.iter().filter(|(number, _)| wanted(*number)) {
@@ -118,7 +150,14 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
     }
     let passed = graded.iter().filter(|one| one.passed()).count();
     println!("\n{}\n{passed} passed, {} failed", score(&graded), graded.len() - passed);
-    Ok(!graded.iter().any(Graded::is_open))
+    let is_done = !graded.iter().any(Graded::is_open);
+    // The verdict does not depend on the picture.
+    if let Some(stage) = stage.filter(|_| is_done)
+        && let Err(error) = finish::show(root, source.which, stage, columns())
+    {
+        eprintln!("{error:#}");
+    }
+    Ok(is_done)
 }
 
 /// Whether the course asks for this stage.
@@ -177,14 +216,18 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
         }
     }
     println!();
+    let album = std::fs::read_dir(root.join(finish::ALBUM)).map_or(0, Iterator::count);
+    if album > 0 {
+        println!("{}: {album} of your pictures\n", finish::ALBUM);
+    }
     // What is not asked for comes after everything else.
     let next = graded.iter().find(|one| one.is_open());
     match next.or(graded.iter().find(|one| !one.passed())) {
         None => {
             // A course may end before the stages that the showcase needs.
             let last = rubric::stages().last().map_or(0, |(number, _)| *number);
-            let own = format!("scenes/stage{last}.toml");
-            let scene = if root.join(&own).is_file() { &own } else { "scenes/showcase.toml" };
+            let scene = finish::scene_of(root, last);
+            let scene = scene.strip_prefix(root).unwrap_or(&scene).display();
             let which = with_exercises(root);
             println!("Everything passes. `cargo run --release -- render {scene}{which}` shows it.");
         }
@@ -194,7 +237,7 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
                 Verdict::NotWritten { task, place } => {
                     let slide = &next.entry.slide;
                     let (next, slides) = (course.text("next"), course.text("slides"));
-                    println!("{next}: {place}\n  {task}\n  {slides}: {slide} (slides/stage{stage:02}.md)\n");
+                    println!("{next}: {place}\n  {task}\n  {slides}: {slide}\n");
                 }
                 Verdict::Failed(message) => println!("{}, `{name}` fails:\n{message}", course.text("next")),
                 Verdict::Passed => {}
@@ -205,4 +248,32 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slow_code_is_not_called_endless_after_an_endless_loop() {
+        let check = &STAGES[0].1[0];
+        let message = |seconds, endless| match verdict(check, Err(KitError::TimedOut { seconds }), endless) {
+            Verdict::Failed(message) => message,
+            other => panic!("{other:?}"),
+        };
+        let endless = Some("sphere_algebraic_touches");
+        let short = message(SHORT_PATIENCE.as_secs(), endless);
+        assert!(
+            short.contains(
+                "  not judged: no answer after 1 s, and a call of the check sphere_algebraic_touches"
+            )
+        );
+        assert!(!short.contains("infinite"), "{short}");
+        for endless in [endless, None] {
+            assert!(
+                message(CALL_PATIENCE.as_secs(), endless)
+                    .contains("no answer after 10 s: is there an infinite")
+            );
+        }
+    }
 }

@@ -24,7 +24,7 @@ pub fn of_kit(root: &Path, which: Which) -> Result<Racer> {
     let racer = Racer { name: which.package().into(), folder: root.join(which.package()) };
     if !is_kit(&racer.folder) {
         bail!(
-            "there are no {} in {}: give another folder of exercises, as in `--against ../other/exercises`",
+            "there are no {} in {}: name an opponent, which is another folder of exercises, as in `--against ../other/exercises`",
             racer.name,
             root.display()
         );
@@ -172,6 +172,12 @@ mod tests {
 
     fn repository() -> PathBuf {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    }
+
+    #[test]
+    fn a_race_without_a_reference_asks_for_an_opponent() {
+        let error = of_kit(Path::new("a_hand_out"), Which::Solutions).expect_err("no reference").to_string();
+        assert!(error.starts_with("there are no solutions in a_hand_out: name an opponent"), "{error}");
     }
 
     #[test]

@@ -3,6 +3,8 @@
 use super::program_runs::{complaint, printed, raykata, root, said};
 use raykata::scene::load;
 use std::path::PathBuf;
+use std::process::Command;
+use std::time::{Duration, Instant};
 
 fn scene_files() -> Vec<PathBuf> {
     let folder = std::fs::read_dir(root().join("scenes")).expect("the folder scenes/");
@@ -71,6 +73,18 @@ fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_reported() {
     let one = said("check 1 --kit solutions");
     assert!(one.contains("stage  1 ·") && !one.contains("stage  2 ·"), "{one}");
     assert_eq!(one, said("check stage1 --kit solutions"));
+    // The stage is done: its picture is in the album, and the next stage begins.
+    let (_, finish) = one.split_once("\nStage 1 is done.\n").expect("the finish of the stage");
+    let words = finish.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.starts_with("10 primitives, ") && words.contains(" primary rays and "), "{words}");
+    for part in
+        ["kept in out/album/stage1.png.", "Next: stage 2 · triangles. Read slides/stage02.md, then write"]
+    {
+        assert!(words.contains(part), "{words}");
+    }
+    assert!(!finish.contains('\u{1b}'), "a file gets no half blocks: {finish}");
+    let picture = std::fs::read(root().join("out/album/stage1.png")).expect("a picture");
+    assert!(picture.starts_with(b"\x89PNG"));
     for wrong in ["77", "0", "stage13", "one"] {
         for command in ["check", "list"] {
             let refused = complaint(&format!("{command} {wrong}"), 2);
@@ -135,6 +149,35 @@ fn a_worker_that_is_up_to_date_is_not_mentioned() {
     let said: Vec<String> =
         (0..100).map(|_| printed(&tree()).1).take_while(|said| !said.is_empty()).collect();
     assert!(said.len() < 100, "{}", said.concat());
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_killed_render_ends_its_worker() {
+    let file = |name: String| std::fs::read_to_string(format!("/proc/{name}")).unwrap_or_default();
+    let is_worker = |process: &str| file(format!("{process}/comm")).starts_with("solutions-frame");
+    let out = tempfile::tempdir().expect("a folder");
+    for signal in ["-TERM", "-KILL"] {
+        let line =
+            format!("render scenes/cornell.toml --size 4000x4000 --out {}/a.png", out.path().display());
+        let mut render = Command::new(env!("CARGO_BIN_EXE_raykata"));
+        let mut render = render.current_dir(root()).args(line.split(' ')).spawn().expect("it starts");
+        let id = render.id().to_string();
+        let begin = Instant::now();
+        let worker = loop {
+            let children = file(format!("{id}/task/{id}/children"));
+            match children.split_whitespace().find(|child| is_worker(child)) {
+                Some(worker) => break worker.to_owned(),
+                None => assert!(begin.elapsed() < Duration::from_secs(300), "no worker is started"),
+            }
+        };
+        assert!(Command::new("kill").args([signal, &id]).status().expect("`kill` starts").success());
+        render.wait().expect("it ends");
+        let begin = Instant::now();
+        while is_worker(&worker) {
+            assert!(begin.elapsed() < Duration::from_secs(60), "{signal}: the worker goes on");
+        }
+    }
 }
 
 #[test]

@@ -1,26 +1,16 @@
 //! Every measured table on a slide names the command that makes it, every command exists, and no slide is too long.
 
-use std::fs;
-use std::path::Path;
+use super::program_runs::root;
+use raykata_cli::slides::{Deck, decks};
 use std::process::Command;
 
-/// All slides: the file and number of each, and its text.
-fn slides(root: &Path) -> Vec<(String, String)> {
-    let mut slides = Vec::new();
-    for file in fs::read_dir(root.join("slides")).unwrap().map(|file| file.unwrap().path()) {
-        if file.extension().is_none_or(|ending| ending != "md") {
-            continue;
-        }
-        let text = fs::read_to_string(&file).unwrap();
-        // Other files in the folder are for readers: `curriculum.rs` tests one.
-        if !text.starts_with("---\nmarp: true") {
-            continue;
-        }
-        let name = file.file_name().unwrap().to_string_lossy().into_owned();
-        let numbered = text.split("\n---\n").enumerate();
-        slides.extend(numbered.map(|(number, slide)| (format!("{name}, slide {number}"), slide.to_owned())));
-    }
-    slides
+/// All slides: the deck and number of each, and its text.
+fn slides() -> Vec<(String, String)> {
+    let place = |name: &str, number| format!("{name}.md, slide {number}");
+    let decks = decks(&root().join("slides")).unwrap().into_iter();
+    let of_deck =
+        |deck: Deck| (1..).zip(deck.slides).map(move |(number, slide)| (place(&deck.name, number), slide));
+    decks.flat_map(of_deck).collect()
 }
 
 /// The commands in backticks and in blocks of commands.
@@ -42,8 +32,7 @@ fn has_numbers(slide: &str) -> bool {
 
 #[test]
 fn measured_tables_say_how_to_make_them() {
-    let root = raykata_cli::kits::root().unwrap();
-    let slides = slides(&root);
+    let slides = slides();
     // Most tables of other decks follow from a formula.
     let measured = |(place, slide): &&(String, String)| place.starts_with("cost.md") && has_numbers(slide);
     assert!(slides.iter().filter(measured).count() > 3);
@@ -54,8 +43,7 @@ fn measured_tables_say_how_to_make_them() {
 
 #[test]
 fn slides_are_short_enough() {
-    let root = raykata_cli::kits::root().unwrap();
-    for (place, slide) in slides(&root) {
+    for (place, slide) in slides() {
         // A 16:9 page at the usual font size has room for 18 lines. The note and the settings at the top are not on it.
         let shown =
             slide.split("<!--").map(|part| part.rsplit("-->").next().unwrap_or_default()).collect::<String>();
@@ -66,8 +54,7 @@ fn slides_are_short_enough() {
 
 #[test]
 fn commands_are_understood() {
-    let root = raykata_cli::kits::root().unwrap();
-    for (place, slide) in slides(&root) {
+    for (place, slide) in slides() {
         for command in commands(&slide) {
             let words: Vec<&str> = command.split_whitespace().collect();
             let words = match words[..] {
@@ -82,11 +69,11 @@ fn commands_are_understood() {
             };
             let mut asked = Command::new(env!("CARGO_BIN_EXE_raykata"));
             // `--help` prints the help in place of the work, after all words before it were understood.
-            let output = asked.args(words).arg("--help").current_dir(&root).output().unwrap();
+            let output = asked.args(words).arg("--help").current_dir(root()).output().unwrap();
             let said = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "{place}: {command}: {said}");
             for scene in words.iter().filter(|word| word.starts_with("scenes/")) {
-                assert!(root.join(scene).is_file(), "{place}: there is no {scene}");
+                assert!(root().join(scene).is_file(), "{place}: there is no {scene}");
             }
         }
     }

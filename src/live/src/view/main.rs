@@ -78,5 +78,5 @@ fn first_scene(root: &Path) -> PathBuf {
     let mut stages: Vec<u8> = names_in(&folder).into_iter().filter(open).filter_map(stage).collect();
     stages.retain(|stage| asked.iter().any(|(number, _)| number == stage));
     stages.sort_unstable();
-    live::scene_of(root, stages.first().copied().unwrap_or(u8::MAX))
+    raykata_cli::finish::scene_of(root, stages.first().copied().unwrap_or(u8::MAX))
 }

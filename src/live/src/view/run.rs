@@ -10,13 +10,14 @@ use super::reference::{Origin, Reference};
 use super::studio::{Kit, PATIENCE, Pass, Studio, job};
 use anyhow::{Context, Result, bail};
 use live::compiler::{Compiled, compile};
-use live::picture::{encoded, read_scene};
+use live::course::{judge, keep, stages};
 use live::process::Process;
-use raykata::frame::{Tile, Watch};
+use raykata::frame::{Tile, Unwatched, Watch};
 use raykata::kit::{Door, Frames, RenderJob, Rendering, View, kit_error};
 use raykata::scene::Scene;
+use raykata_cli::finish::{self, encoded};
 use raykata_cli::kits::{Need, Program, Which, cargo_build, profile};
-use raykata_cli::report::{Thousands, words_of_building};
+use raykata_cli::report::{Thousands, read_scene, words_of_building};
 use raykata_cli::worker::Worker;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -145,9 +146,9 @@ impl Work {
         // Compile them with optimisation, after the coarse picture or a moment.
         let (coarse_is_there, wait) = channel();
         let other = self.clone();
-        let other_scene = scene.clone();
+        let (other_file, other_scene) = (file.to_owned(), scene.clone());
         std::thread::spawn(move || {
-            if let Err(error) = other.fully(&wait, &other_scene, compiled) {
+            if let Err(error) = other.fully(&wait, &other_file, &other_scene, compiled) {
                 other.fail(&error);
             }
         });
@@ -185,8 +186,9 @@ impl Work {
         Ok(())
     }
 
-    /// Compiles with optimisation, renders the finished picture, and then the reference if there are solutions.
-    fn fully(&self, wait: &Receiver<()>, scene: &Scene, compiled: Duration) -> Result<()> {
+    /// Compiles with optimisation, renders the finished picture, runs the checks of its stage, and then renders the reference if
+    /// there are solutions.
+    fn fully(&self, wait: &Receiver<()>, file: &Path, scene: &Scene, compiled: Duration) -> Result<()> {
         let _ = wait.recv_timeout(HEAD_START);
         let Some(program) = self.compile(false)? else { return Ok(()) };
         if self.is_over() {
@@ -202,10 +204,47 @@ impl Work {
         let job = job(scene, View::Shaded, true);
         let rendered = self.render(&kits, &job, FINAL, &|| self.is_over())?;
         let Some(rendering) = rendered else { return Ok(()) };
-        self.studio.finished(self.number, facts(&rendering, compiled));
+        let facts = facts(&rendering, compiled);
+        self.studio.finished(self.number, facts.clone());
+        if let Err(error) = self.finish(file, &program, (&job.scene, &rendering), &kits.helper, facts) {
+            let words = format!("the picture is finished, but its stage is not checked: {error:#}");
+            self.studio.status(self.number, "done", &words);
+        }
         if !self.studio.rendered_reference(self.number) && self.studio.root.join("solutions").is_dir() {
             self.reference(&job)?;
         }
+        Ok(())
+    }
+
+    /// Runs the checks of the stage that the scene belongs to. If all pass, the picture is kept in the album, and the page says
+    /// what it cost and what comes next.
+    fn finish(
+        &self,
+        file: &Path,
+        program: &Path,
+        (scene, rendering): (&Scene, &Rendering),
+        kit: &Door<Worker>,
+        mut facts: serde_json::Value,
+    ) -> Result<()> {
+        let root = &self.studio.root;
+        let is_shown =
+            |stage: u8| finish::scene_of(root, stage).canonicalize().ok() == file.canonicalize().ok();
+        let mut stages = stages();
+        let Some(at) = stages.iter().position(|stage| is_shown(stage.number)) else { return Ok(()) };
+        let number = stages[at].number;
+        let working = format!("the picture is finished, and the checks of stage {number} run");
+        self.studio.status(self.number, "checking", &working);
+        let (process, cargo) = (&self.builds[1], cargo_build(root, &[Program::JUDGE])?);
+        if let Some(Compiled::Program(path)) = compile(process, cargo, Program::JUDGE)?
+            && judge(process, &path, [root, program], number, |verdict| keep(&mut stages, verdict))?
+            && stages[at].is_done()
+        {
+            let album = finish::file_of(number, true);
+            let picture = finish::keep(root, &album, scene, rendering, kit)?;
+            let lines = picture.lines.into_iter().chain([finish::next_step(number)]);
+            facts["done"] = json!({ "stage": number, "lines": lines.collect::<Vec<_>>() });
+        }
+        self.studio.finished(self.number, facts);
         Ok(())
     }
 
@@ -234,12 +273,12 @@ impl Work {
             None => return Ok(()),
         };
         let kit = self.start_kits(&program, &|| self.is_over()).renderer;
-        let rendered = kit_error::catch(|| kit.render(job, &Silent(self)));
+        let rendered = kit_error::catch(|| kit.render(job, &Unwatched));
         if self.is_over() {
             return Ok(());
         }
         if let Some(Rendering { film, .. }) = rendered? {
-            let rgb = encoded(&job.scene, &film, &kit);
+            let rgb = encoded(&job.scene, &film, &*kit);
             let (width, height) = (film.width, film.height);
             self.studio
                 .reference(self.number, Reference { width, height, scale: 1, rgb, origin: Origin::Rendered });
@@ -320,17 +359,6 @@ fn facts(rendering: &Rendering, compiled: Duration) -> serde_json::Value {
             ["render", format!("{:.2} s", rendering.render_seconds)],
         ],
     })
-}
-
-/// Shows nothing, and cancels a frame when the run is over.
-struct Silent<'a>(&'a Work);
-
-impl Watch for Silent<'_> {
-    fn progress(&self, _: u64, _: u64) {}
-
-    fn cancelled(&self) -> bool {
-        self.0.is_over()
-    }
 }
 
 /// Passes tiles on to the studio.

@@ -8,7 +8,8 @@ use raykata::frame::{CameraSample, FrameSettings, Watch};
 use raykata::kit::{
     Answer, RayKind, RayVisits, RenderJob, Rendering, Request, TestedBox, TracedRay, WeightedColor,
 };
-use raykata::worker::serve_with;
+use raykata::worker::{send, serve_with};
+use raykata_cli::verdicts::{CheckVerdict, Verdict};
 use serde_json::Value;
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -23,6 +24,7 @@ case "$(head -n 1 exercises/src/stage1_shapes.rs)" in
     *error*) cat error.json; exit 101 ;;
 esac
 echo '{"reason":"compiler-artifact","target":{"name":"exercises-frames"},"executable":"'"$PWD"'/target/debug/exercises-frames"}'
+echo '{"reason":"compiler-artifact","target":{"name":"judge"},"executable":"'"$PWD"'/target/debug/judge"}'
 "#;
 
 const ERROR: &str = r#"{"reason":"compiler-message","message":{"level":"error","message":"expected one of `;` or `}`, found `<b>`","spans":[{"is_primary":true,"file_name":"exercises/src/stage1_shapes.rs","line_start":7,"column_start":4,"label":"expected `;`","text":[{"text":"let x = <b>1</b>"}]}],"children":[]}}"#;
@@ -114,6 +116,14 @@ pub fn new_kit() -> KitFolder {
     kit.write("error.json", ERROR);
     kit.write("scenes/a.toml", SCENE);
     kit.write("scenes/b.toml", SCENE);
+    kit.write("scenes/stage1.toml", SCENE);
+    // All checks of stage 1 pass.
+    let mut verdicts = Vec::new();
+    for (check, _) in raykata::rubric::stages()[0].1.in_order() {
+        send(&mut verdicts, &CheckVerdict { check: check.into(), verdict: Verdict::Passed }).unwrap();
+    }
+    fs::write(kit.path("verdicts"), verdicts).unwrap();
+    kit.script("target/debug/judge", "#!/bin/sh\ncat \"$2/verdicts\"\n");
     kit.write("out/a-cost/cost.html", "<title>cost</title>");
     kit.write("secret.png", "not for the page");
     kit.script("cargo", CARGO);

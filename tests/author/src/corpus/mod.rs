@@ -3,12 +3,10 @@
 //!
 //! `entry` (reads `tests/corpus`) · `source` (the functions of a file) · `schemata` (many entries in one file) · `program` (the
 //! program of all entries) · `plan` (which checks are tried with which entries) · `verdict` (the result of an entry) · `records` (the
-//! stored results) · `build_folder` (the folder in which solutions are built) · `patch`, `import` (patches of a course)
+//! stored results) · `build_folder` (the folder in which solutions are built)
 
 pub mod build_folder;
 pub mod entry;
-pub mod import;
-pub mod patch;
 pub mod plan;
 pub mod program;
 pub mod records;

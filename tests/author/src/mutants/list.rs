@@ -1,8 +1,7 @@
 //! Lists the changes that the tool cargo-mutants makes.
 
 use crate::corpus::build_folder::BuildFolder;
-use crate::corpus::patch;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use serde::Deserialize;
 use std::fmt;
 use std::path::Path;
@@ -38,7 +37,7 @@ impl Mutant {
     /// Returns the text of the file with the change.
     pub fn apply(&self, build_folder: &BuildFolder) -> Result<String> {
         let original = build_folder.original(&self.file)?;
-        patch::apply(&self.diff, &original).with_context(|| format!("{self}\n    does not fit {}", self.file))
+        applied(&self.diff, &original).with_context(|| format!("{self}\n    does not fit {}", self.file))
     }
 
     /// Returns the lines that the change removes.
@@ -68,6 +67,26 @@ impl fmt::Display for Mutant {
     }
 }
 
+/// Returns a text with a difference applied, as `diff -u` prints it.
+fn applied(diff: &str, text: &str) -> Result<String> {
+    let mut lines: Vec<&str> = text.split('\n').collect();
+    // From the last part on, so that the lines of those before keep their places.
+    for part in diff.split("\n@@ -").skip(1).collect::<Vec<_>>().into_iter().rev() {
+        let (place, part) = part.split_once('\n').unwrap_or((part, ""));
+        let first = place.split([',', ' ']).next().unwrap_or_default().parse::<usize>();
+        let first = first.with_context(|| format!("`{place}` names no line"))?.saturating_sub(1);
+        let without = |sign: char| {
+            let lines = part.lines().filter(move |line| !line.starts_with([sign, '\\']));
+            lines.map(|line| line.get(1..).unwrap_or_default())
+        };
+        let old: Vec<&str> = without('+').collect();
+        let is_there = lines.get(first..).is_some_and(|rest| rest.starts_with(&old));
+        ensure!(is_there, "its lines are not in the file:\n    {}", old.join("\n    "));
+        lines.splice(first..first + old.len(), without('-'));
+    }
+    Ok(lines.join("\n"))
+}
+
 /// Lists all changes of these packages.
 pub fn all(root: &Path, packages: &[String]) -> Result<Vec<Mutant>> {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
@@ -86,4 +105,16 @@ pub fn all(root: &Path, packages: &[String]) -> Result<Vec<Mutant>> {
     let mutants: Vec<Mutant> = serde_json::from_slice(&output.stdout)
         .context("the list of cargo-mutants cannot be read; its version may be too new")?;
     Ok(mutants)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::applied;
+
+    #[test]
+    fn a_difference_is_applied_where_it_fits() {
+        let diff = "--- a/a.rs\n+++ b/a.rs\n@@ -1,2 +1,3 @@\n one\n-two\n+zwei\n+drei\n";
+        assert_eq!(applied(diff, "one\ntwo\n").unwrap(), "one\nzwei\ndrei\n");
+        assert!(applied(diff, "one\nthree\n").unwrap_err().to_string().contains("not in the file"));
+    }
 }

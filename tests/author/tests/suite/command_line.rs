@@ -3,7 +3,7 @@ use super::program_runs::{does_not_understand, explains};
 use std::process::Command;
 
 /// The commands with their arguments and options.
-const COMMANDS: [(&str, &[&str]); 13] = [
+const COMMANDS: [(&str, &[&str]); 12] = [
     ("gauntlet", &["--kit", "--inputs", "--seed", "--out", "20000"]),
     ("cost", &["[SCENE]", "--headline", "--rounds", "--set"]),
     ("attacks", &["[NAME]...", "--shard"]),
@@ -25,7 +25,6 @@ const COMMANDS: [(&str, &[&str]); 13] = [
             "--seed",
         ],
     ),
-    ("corpus import", &["FOLDER", "--renames", "--check"]),
     ("weaken", &["--sample", "--seed", "--file", "--resume"]),
     ("gaps", &["--check", "--bless"]),
     ("mutants", &["[FILE]", "--resume", "--again", "--jobs"]),
@@ -47,8 +46,6 @@ fn what_is_not_understood_ends_with_2() {
         ("corpus --bless --reword", "`--bless` cannot be used with `--reword`"),
         ("corpus --seed 1 --bless", "`--seed` cannot be used with `--bless`"),
         ("corpus --stage 256", "a whole number from 0 to 255"),
-        ("corpus import", "FOLDER is missing"),
-        ("corpus import a --renames b", "b: No such file"),
         ("gaps --check --bless", "cannot be used with"),
         ("sync --check --force", "cannot be used with"),
         ("mutants --again --resume", "cannot be used with"),

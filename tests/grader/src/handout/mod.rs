@@ -233,7 +233,8 @@ fn name_course(files: &mut BTreeMap<String, Vec<u8>>, course: &CourseFiles) -> R
                     || line.contains(&format!("scenes/stage{stage}.toml"))
                     || (stage == 7 && line.contains("-- explain ")))
         };
-        !(1..=12).any(is_left_out)
+        // The ways through the stages, of four and of twelve weeks, need all of them.
+        !(1..=12).any(is_left_out) && (of_course.stages.is_empty() || !line.contains(" weeks**: "))
     };
     let lines = std::str::from_utf8(readme)?.lines().filter(is_kept);
     let lines = lines.map(|line| format!("{line}\n")).collect::<String>();
@@ -267,8 +268,8 @@ fn readme(of_kit: &str) -> Result<String> {
         rest.split_once("\n## As a student\n").context("README.md lacks a chapter `As a student`")?;
     let (student, _) = rest.split_once("\n## ").context("README.md lacks a chapter after `As a student`")?;
     let mut student = student.replace(" --kit exercises", "");
-    // The names of the numbers in the text are for authors.
-    while let Some((before, after)) = student.split_once("<!--=") {
+    // The names of numbers and the sources of quotes are for authors.
+    while let Some((before, after)) = student.split_once("<!--") {
         student = format!("{before}{}", after.split_once("-->").map_or("", |(_, rest)| rest));
     }
     Ok(README.replace("{greeting}", greeting.trim()).replace("{student}", student.trim()))

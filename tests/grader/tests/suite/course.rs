@@ -143,6 +143,7 @@ fn a_hand_out_and_exports_contain_the_course_file() {
     let readme = text(folder.path(), "kit/README.md");
     assert!(readme.starts_with("# Computergrafik: Raykata\n"), "{readme}");
     assert!(readme.contains("\n| 1 | ") && !readme.contains("\n| 2 | "), "{readme}");
+    assert!(!readme.contains("weeks"), "{readme}");
     // The title and the stages alone need no file.
     grader_succeeds(&["handout", &at("plain"), "--title", "Graphics \"1\"", "--stages", "1-2"]);
     assert_eq!(
