@@ -83,7 +83,7 @@ fn a_course_may_grade_the_core_alone() {
     assert_eq!(stages["stage1"].points(), before + 2);
     assert_eq!(stages["stage2"].score().to_string(), "0 of 40 core");
     let error = error("core_only = true\n[stage3]\npoints = 3\n");
-    assert!(error.contains("3 points cannot be divided among 23 checks"), "{error}");
+    assert!(error.contains("3 points cannot be divided among 24 checks"), "{error}");
 }
 
 #[test]
