@@ -1,6 +1,7 @@
 //! A law over random inputs: they are drawn and judged together, and an input that breaks the law shrinks to a smaller one.
 
 use crate::broken::{Broken, CheckResult};
+use crate::calls::Calls;
 use crate::drawn::Values;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
@@ -113,35 +114,42 @@ impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<CheckResult>> Tree for JudgedTree<'
     }
 }
 
-/// The broken law of one input, if it breaks one. A panic counts.
-pub(crate) fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, input: &dyn Fn() -> String) -> Option<Broken> {
-    match kit_error::catch(judge) {
-        Ok(outcomes) => outcomes.into_iter().find_map(Result::err),
+/// The broken law of one input, if it breaks one, with the call that breaks it. A panic counts.
+pub(crate) fn judge_one(
+    judge: &dyn Fn() -> Vec<CheckResult>,
+    input: &dyn Fn() -> String,
+    calls: &Calls,
+) -> Option<Broken> {
+    calls.batches().clear();
+    let mut broken = match kit_error::catch(judge) {
+        Ok(outcomes) => outcomes.into_iter().find_map(Result::err)?,
         Err(KitError::Panicked { message, place }) => {
             let panic = format!("a panic at {place}: {message}");
-            Some(Broken::with_texts(input(), panic, "an answer", "the definition"))
+            Broken::with_texts(input(), panic, "an answer", "the definition")
         }
         Err(error) => kit_error::unwind(error),
-    }
+    };
+    broken.details.call = calls.of(&broken, true);
+    Some(broken)
 }
 
 /// Searches for a smaller input that breaks the law as well, by the same mistake if one is known.
-pub(crate) fn shrink(mut tree: Box<dyn Tree + '_>, first: Broken) -> Broken {
+pub(crate) fn shrink(mut tree: Box<dyn Tree + '_>, first: Broken, calls: &Calls) -> Broken {
     // All failing inputs together prove the mistakes, so a smaller input keeps its diagnosis.
-    let Broken { mistakes, diagnosis, .. } = first.clone();
-    let named = mistakes.0.first();
+    let (mistakes, diagnosis) = (first.details.mistakes.clone(), first.diagnosis.clone());
     let mut smallest = first;
     let mut steps = 0;
     let mut going = tree.simplify();
     while going && steps < SHRINK_STEPS {
         steps += 1;
-        going = match judge_one(&|| tree.judge(), &|| tree.words()) {
-            Some(broken) if named.is_none_or(|mistake| broken.is_explained_by(mistake)) => {
+        going = match judge_one(&|| tree.judge(), &|| tree.words(), calls) {
+            Some(broken) if mistakes.first().is_none_or(|mistake| broken.is_explained_by(mistake)) => {
                 smallest = broken;
                 tree.simplify()
             }
             _ => tree.complicate(),
         };
     }
-    Broken { mistakes, diagnosis, ..smallest }
+    smallest.details.mistakes = mistakes;
+    Broken { diagnosis, ..smallest }
 }

@@ -6,6 +6,7 @@
 //! `Ok(())` or a [`Broken`] law with the smallest input that breaks it.
 
 pub mod broken;
+pub mod calls;
 pub mod double;
 mod drawn;
 pub mod generate;
@@ -17,6 +18,7 @@ pub mod offset;
 pub mod paste;
 mod patience;
 pub mod picture;
+mod process;
 pub mod radiosity;
 pub mod rubric;
 pub mod statistics;

@@ -1,15 +1,18 @@
 //! Running a check: on a thread with a large stack, with a time limit, and with the same inputs in each run.
 
-use crate::broken::{self, CheckResult};
+use crate::broken::{self, Broken, CheckResult};
+use crate::calls::{Calls, Recorder};
 use crate::drawn::{Drawn, Values};
 use crate::law::{Judged, Law, judge_one, shrink};
 use crate::patience::{self, PATIENCE};
 use crate::picture::Replay;
+use crate::process;
 use crate::rubric;
 use crate::symmetry::{Symmetries, Symmetry, TurnedKit};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 pub use raykata::course::Verdict;
+use raykata::frame::Unwatched;
 use raykata::kit::{Door, Kit, KitError, kit_error};
 use raykata::worker::Thread;
 use std::cell::Cell;
@@ -64,11 +67,13 @@ pub struct Inputs {
     pub reference: Option<Arc<dyn Kit + Send + Sync>>,
     /// If there is a pixel, a check of a picture asks for this pixel alone.
     pub pixel: Option<Arc<Replay>>,
+    /// Where the calls are kept.
+    pub calls: Calls,
 }
 
 impl Default for Inputs {
     fn default() -> Self {
-        Inputs { drawn: None, one_in: 1, reference: None, pixel: None }
+        Inputs { drawn: None, one_in: 1, reference: None, pixel: None, calls: Calls::default() }
     }
 }
 
@@ -163,17 +168,24 @@ impl<'a> Trial<'a> {
             // The code panicked on an input of the batch: judge the inputs one by one to find it.
             Err(KitError::Panicked { .. }) => (0..law.count(&*values)).find_map(|i| {
                 let (judge, input) = (|| law.judge_one(&*values, i), || law.words(&*values, i));
-                Some((i, judge_one(&judge, &input)?))
+                Some((i, judge_one(&judge, &input, &self.inputs.calls)?))
             }),
             Err(error) => kit_error::unwind(error),
         };
-        let Some((index, broken)) = broken else { return Ok(()) };
+        let Some((index, mut broken)) = broken else {
+            self.inputs.calls.batches().clear();
+            return Ok(());
+        };
         if !self.shrinks {
             return Err(broken);
         }
+        // Find the call of this input.
+        let (judge, input) = (|| law.judge_one(&*values, index), || law.words(&*values, index));
+        broken.details.call =
+            judge_one(&judge, &input, &self.inputs.calls).and_then(|alone| alone.details.call);
         // Draw the inputs again with their trees of smaller inputs, which only this step needs.
         match law.tree(cases, &mut self.runner(), index) {
-            Some(tree) => Err(shrink(tree, broken)),
+            Some(tree) => Err(shrink(tree, broken, &self.inputs.calls)),
             None => Err(broken),
         }
     }
@@ -251,16 +263,24 @@ fn on_a_thread(
         .stack_size(raykata::worker::STACK_BYTES)
         .spawn(move || {
             let _ = itself.set(Thread::current());
-            let kit = its_kit;
-            let trial = Trial { inputs, shrinks, ..Trial::new(&*kit, check.name, seed) };
+            let calls = inputs.calls.clone();
+            let recorder = Door(Recorder { kit: &*its_kit, calls: calls.clone() });
+            let kit: &dyn Kit = if shrinks { &recorder } else { &*its_kit };
+            let trial = Trial { inputs, shrinks, ..Trial::new(kit, check.name, seed) };
             // A scene that is drawn needs no turn.
             let is_drawn = check.symmetries == Symmetries::Composed && trial.reference().is_some();
             let symmetries = if is_drawn { Symmetries::None } else { check.symmetries };
             let symmetry = trial.varied(Symmetry::IDENTITY, symmetries.strategy());
-            let turned = Door(TurnedKit { kit: &*kit, symmetry });
+            let turned = Door(TurnedKit { kit, symmetry });
             let is_turned = symmetry != Symmetry::IDENTITY;
             let trial = if is_turned { Trial { kit: &turned, ..trial } } else { trial };
-            let _ = send.send(kit_error::catch(|| (check.law)(&trial)));
+            let mut outcome = kit_error::catch(|| (check.law)(&trial));
+            if let Ok(Err(broken)) = &mut outcome
+                && broken.details.call.is_none()
+            {
+                broken.details.call = calls.of(broken, false);
+            }
+            let _ = send.send(outcome);
         });
     if let Err(error) = spawned {
         return Err(KitError::Crashed { how: format!("the check could not be started: {error}") });
@@ -287,25 +307,38 @@ pub fn verdict(check: &Check, examined: Result<CheckResult, KitError>) -> Verdic
 
 /// Whether no test of this process has printed this gap before. Several checks wait for one function, and the harness prints
 /// nothing about a failed test that prints nothing itself.
-fn is_first(place: &str) -> bool {
+fn is_first(gap: &str) -> bool {
     static PRINTED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
-    PRINTED.lock().unwrap_or_else(PoisonError::into_inner).insert(place.to_owned())
+    PRINTED.lock().unwrap_or_else(PoisonError::into_inner).insert(gap.to_owned())
 }
 
 /// Runs the check of this name as a test of `kit`: prints the message for the student if the check fails, and ends the
-/// test.
+/// test. The code prints in every call, so the check runs in a process of its own, and only what one call prints is shown.
+/// With `--nocapture` it runs here, and everything is shown.
 pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
     let Some(check) = checks.iter().find(|check| check.name == name) else {
         panic!("there is no check `{name}` in this stage");
     };
-    match run(check, &kit, PUBLIC_SEED) {
-        Verdict::Passed => return,
-        Verdict::NotWritten { task, place } => {
-            if is_first(&place) {
-                println!("not written yet: {place}\n  {task}");
-            }
+    let is_alone = process::is_alone();
+    let shows_all = std::env::args().any(|argument| argument == "--nocapture" || argument == "--no-capture");
+    let message = if is_alone || shows_all {
+        let examined = examine(check, &kit, PUBLIC_SEED);
+        if let (true, Ok(Err(Broken { details, .. }))) = (is_alone, &examined) {
+            process::show(|| details.call.iter().for_each(|call| _ = call.answer(&*kit, &Unwatched)));
         }
-        Verdict::Failed(message) => println!("{message}"),
+        match verdict(check, examined) {
+            Verdict::Passed => None,
+            Verdict::NotWritten { task, place } => Some(format!("not written yet: {place}\n  {task}")),
+            Verdict::Failed(message) => Some(message),
+        }
+    } else {
+        process::message_of(check)
+    };
+    let Some(message) = message else { return };
+    if is_alone {
+        process::show(|| println!("{message}"));
+    } else if !message.starts_with("not written yet") || is_first(&message) {
+        println!("{}", message.trim_end());
     }
     // End the test without the text and the backtrace of a panic, because the message is complete.
     std::panic::resume_unwind(Box::new("the check failed"));

@@ -2,6 +2,7 @@
 
 use all_checks::STAGES;
 use anyhow::Result;
+use checks::broken::with_output;
 use checks::rubric::{self, CheckEntry, RUBRIC, Score};
 use checks::{Check, Verdict};
 use raykata::kit::{Door, Kit, KitError};
@@ -54,9 +55,17 @@ fn run_checks(
         let worker = Worker::new(source.program.clone(), patience).with_short_frames();
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker));
         let examined = checks::examine(check, &kit, 0);
+        let call = match &examined {
+            Ok(Err(broken)) => broken.details.call.clone(),
+            _ => None,
+        };
         let hangs = examined.as_ref().err().filter(|error| matches!(error, KitError::TimedOut { .. }));
         let hangs = hangs.filter(|_| !has_hung.swap(true, Ordering::Relaxed)).cloned();
-        let (verdict, entry) = (checks::verdict(check, examined), rubric::entry(check.stage, check.name));
+        let (mut verdict, entry) = (checks::verdict(check, examined), rubric::entry(check.stage, check.name));
+        if let (Verdict::Failed(message), Some(call)) = (&mut verdict, call) {
+            let (_, printed) = Worker::alone(source.program.clone(), CALL_PATIENCE, call);
+            *message = with_output(message, &printed);
+        }
         let graded = Graded { check, verdict, entry };
         report(&graded, hangs)?;
         Ok(graded)
