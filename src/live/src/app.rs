@@ -67,6 +67,8 @@ pub enum Page {
     },
     /// The picture of the stage, when it is finished.
     Picture(Option<Pixels>),
+    /// The call of the check alone, when it has answered.
+    Tried(String),
     /// A question: shall this function, in this file, be reset?
     Reset {
         /// The file, from the root of the kit.
@@ -173,6 +175,7 @@ impl App {
                 let width = (rows * 16 / 9).min(columns).max(16);
                 Task::Render(stage, width as u32, (width * 9 / 16) as u32)
             }
+            Page::Tried(_) => Task::Try(self.check().name),
             _ => Task::Check([stage].into_iter().chain(self.others().map(|other| other.number)).collect()),
         })
     }
@@ -220,6 +223,10 @@ impl App {
             Event::Broken(why) => self.phase = Phase::Broken(why),
             Event::Verdict(verdict) => self.judged(verdict),
             Event::Progress(words) => self.note = words,
+            Event::Tried(text) => {
+                self.phase = Phase::Ended { compiled: self.compiled, checked: Duration::ZERO };
+                self.page = Page::Tried(text);
+            }
             Event::Picture(pixels) => {
                 self.phase = Phase::Ended { compiled: self.compiled, checked: Duration::ZERO };
                 self.note.clear();
@@ -291,6 +298,10 @@ impl App {
                 }
                 return self.run();
             }
+            KeyCode::Char('t') => {
+                self.page = Page::Tried(String::new());
+                return self.run();
+            }
             KeyCode::Char('h') => {
                 let hints = match self.page {
                     Page::Check { hints, .. } => hints % 3 + 1,
@@ -301,6 +312,10 @@ impl App {
             KeyCode::Char('e') => {
                 let unfolded = !matches!(self.page, Page::Check { unfolded: true, .. });
                 self.page = Page::Check { hints: 0, unfolded };
+            }
+            KeyCode::Esc if matches!(self.page, Page::Tried(_)) => {
+                self.page = Page::CHECK;
+                return self.run();
             }
             KeyCode::Esc => self.page = Page::CHECK,
             _ => {}

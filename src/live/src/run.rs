@@ -15,7 +15,7 @@ use raykata_cli::kits::{Need, Program, Which, cargo_build, profile};
 use raykata_cli::report::{job, make_folder_of, words_of_building};
 use raykata_cli::verdicts::CheckVerdict;
 use raykata_cli::worker::{CALL_PATIENCE, Worker};
-use std::io::{BufReader, ErrorKind};
+use std::io::{BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
@@ -37,6 +37,8 @@ pub enum Event {
     Progress(String),
     /// A picture is finished.
     Picture(Pixels),
+    /// What `raykata try` prints.
+    Tried(String),
     /// The run cannot go on, for this reason.
     Broken(String),
 }
@@ -48,6 +50,8 @@ pub enum Task {
     Check(Vec<u8>),
     /// Renders the scene of a stage, with this many pixels in width and height.
     Render(u8, u32, u32),
+    /// Repeats the call of the message of a check, as `raykata try` does.
+    Try(&'static str),
 }
 
 /// Where the kit and its programs are.
@@ -96,13 +100,13 @@ fn work(paths: &Paths, task: Task, process: &Process, report: &(impl Fn(Event) +
     // Compile the exercises.
     let begin = Instant::now();
     let need = match task {
-        Task::Check(_) => Need::Checks,
+        Task::Check(_) | Task::Try(_) => Need::Checks,
         Task::Render(..) => Need::Frames,
     };
     let worker = Program::worker(Which::Exercises, need);
     let mut cargo = cargo_build(&paths.root, &[worker])?;
     // Compile for checks as `cargo test` does: without optimisation and incrementally, which takes a fifth of the time.
-    if matches!(task, Task::Check(_)) && profile().is_none() {
+    if !matches!(task, Task::Render(..)) && profile().is_none() {
         cargo.args(["--profile", "test"]);
     }
     let worker = match compile(process, cargo, worker)? {
@@ -118,6 +122,14 @@ fn work(paths: &Paths, task: Task, process: &Process, report: &(impl Fn(Event) +
         Task::Check(stages) => stages.iter().try_for_each(|&stage| {
             if process.is_over() { Ok(()) } else { check(paths, &worker, stage, process, report) }
         }),
+        Task::Try(check) => {
+            let mut command = Command::new(&paths.judge);
+            command.arg("try").arg(&paths.root).arg(&worker).arg(check);
+            let mut tried = String::new();
+            process.follow(command, |out| Ok(_ = out.read_to_string(&mut tried)?))?;
+            report(Event::Tried(tried));
+            Ok(())
+        }
         Task::Render(stage, width, height) => {
             render(&paths.root, &worker, (stage, width, height), process, report)
         }

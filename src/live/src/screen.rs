@@ -96,7 +96,7 @@ impl Look {
 }
 
 /// The keys of a check and of the picture.
-const KEYS: &str = "h hint  n next  p previous  l list  o open  r reset  e more  v picture  q quit";
+const KEYS: &str = "h hint  t try  n next  p previous  l list  o open  r reset  e more  v picture  q quit";
 /// The keys of the list.
 const LIST_KEYS: &str = "enter go there  / search  n next  p previous  esc back  q quit";
 
@@ -118,9 +118,10 @@ pub fn rows(app: &App, look: Look) -> Vec<Row> {
         (_, Page::List { word, is_typing, at }) => list(app, look, word, *is_typing, *at, room),
         (_, Page::Reset { file, name }) => question(file, name),
         (Phase::Errors(errors), _) => compiler(errors),
-        (Phase::Broken(why), _) => broken(why, columns),
+        (Phase::Broken(why), _) => lines(Tone::Bad, why, columns),
         (_, Page::Picture(Some(pixels))) => pixels.0.iter().cloned().map(Row::Pixels).collect(),
         (_, Page::Picture(None)) => vec![Row::Words(Tone::Quiet, "the picture is being rendered …".into())],
+        (_, Page::Tried(text)) => lines(Tone::Plain, text, columns),
         (_, Page::Check { hints, unfolded }) => check(app, *hints, *unfolded, columns),
     };
     rows.extend(body.into_iter().take(room));
@@ -185,8 +186,9 @@ fn check(app: &App, hints: usize, unfolded: bool, columns: usize) -> Vec<Row> {
         Some(Verdict::Failed(message)) => {
             law(Tone::Bad, "FAILS");
             // The head of the message is shown above, and its last lines are commands, for which there are keys.
-            let is_key =
-                |line: &str| ["again:", "stuck:"].iter().any(|word| line.trim_start().starts_with(word));
+            let is_key = |line: &str| {
+                ["again:", "print:", "stuck:"].iter().any(|word| line.trim_start().starts_with(word))
+            };
             for line in message.lines().skip(2).filter(|line| !is_key(line)) {
                 match unfolded {
                     true => rows.extend(wrapped(line, columns).into_iter().map(plain)),
@@ -228,8 +230,8 @@ fn compiler(errors: &[CompilerError]) -> Vec<Row> {
     rows
 }
 
-fn broken(why: &str, columns: usize) -> Vec<Row> {
-    why.lines().flat_map(|line| wrapped(line, columns)).map(|line| Row::Words(Tone::Bad, line)).collect()
+fn lines(tone: Tone, text: &str, columns: usize) -> Vec<Row> {
+    text.lines().flat_map(|line| wrapped(line, columns)).map(|line| Row::Words(tone, line)).collect()
 }
 
 /// The list of checks, with the chosen one in sight.
@@ -375,7 +377,7 @@ mod tests {
         let mut app = app();
         for (columns, height) in [(1, 1), (10, 3), (20, 6), (40, 12), (200, 60)] {
             app.size = (columns, height);
-            for key in ['h', 'e', 'l', 'l', 'v', 'v'] {
+            for key in ['h', 'e', 'l', 'l', 'v', 'v', 't'] {
                 app.key(KeyCode::Char(key));
                 let rows = rows(&app, LOOK);
                 assert!(rows.len() <= height, "{columns} × {height}");
