@@ -4,6 +4,9 @@ use crate::rubric::CheckEntry;
 use raykata::kit::Request;
 use std::fmt::Write;
 
+/// The longest call that a message shows, in bytes: a search in a tree over four primitives.
+const LONGEST_CALL: usize = 1200;
+
 /// The most lines of what the student's code prints in a call that a message shows.
 const MOST_PRINTED: usize = 30;
 
@@ -133,7 +136,24 @@ impl Broken {
     /// The whole message for the student: title, slide, input, both answers, the diagnosis and the next commands.
     pub fn message(&self, check: &str, rubric: &CheckEntry) -> String {
         let mut message = rubric.header();
-        let _ = writeln!(message, "  input     {}", shorten(&self.input, 3));
+        // An input in words is followed by the call.
+        let is_in_words = |call: &&Request| {
+            call.queries().is_some_and(|(function, _)| !self.input.contains(&format!("{function}(")))
+        };
+        match self.details.call.as_ref().filter(is_in_words).and_then(Request::call) {
+            None => _ = writeln!(message, "  input     {}", shorten(&self.input, 3)),
+            Some(call) => {
+                let _ = writeln!(message, "  input     {}", shorten(&self.input, 2));
+                let length = call.len();
+                let _ = match length {
+                    ..=LONGEST_CALL => writeln!(message, "  call      {call}"),
+                    _ => writeln!(
+                        message,
+                        "  call      {length} characters: `cargo run -- try {check}` prints it"
+                    ),
+                };
+            }
+        }
         let _ = writeln!(message, "  yours     {}", shorten(&self.yours, 1));
         let _ = writeln!(message, "  expected  {} ({})", shorten(&self.expected, 1), self.source);
         if let Some(diagnosis) = &self.diagnosis {

@@ -22,8 +22,6 @@ pub(crate) trait Law {
     fn judge(&self, values: &AnyValues) -> Vec<CheckResult>;
     /// Judges one input.
     fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<CheckResult>;
-    /// The text of one input for a message.
-    fn words(&self, values: &AnyValues, index: usize) -> String;
     /// The tree of smaller inputs to which the input with this index can shrink.
     fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>>;
 }
@@ -36,8 +34,6 @@ pub(crate) trait Tree {
     fn complicate(&mut self) -> bool;
     /// Judges the current input.
     fn judge(&self) -> Vec<CheckResult>;
-    /// The text of the current input for a message.
-    fn words(&self) -> String;
 }
 
 /// Inputs of one type with the function that judges them.
@@ -77,12 +73,6 @@ where
         values.map_or_else(Vec::new, |values| (self.judge)(&values[index..=index]))
     }
 
-    fn words(&self, values: &AnyValues, index: usize) -> String {
-        values
-            .downcast_ref::<Vec<S::Value>>()
-            .map_or_else(String::new, |values| format!("{:?}", values[index]))
-    }
-
     fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>> {
         // A chosen input is small already.
         let drawn = index.checked_sub(self.chosen.len())?;
@@ -108,24 +98,16 @@ impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<CheckResult>> Tree for JudgedTree<'
     fn judge(&self) -> Vec<CheckResult> {
         (self.judge)(&[self.tree.current()])
     }
-
-    fn words(&self) -> String {
-        format!("{:?}", self.tree.current())
-    }
 }
 
 /// The broken law of one input, if it breaks one, with the call that breaks it. A panic counts.
-pub(crate) fn judge_one(
-    judge: &dyn Fn() -> Vec<CheckResult>,
-    input: &dyn Fn() -> String,
-    calls: &Calls,
-) -> Option<Broken> {
+pub(crate) fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, calls: &Calls) -> Option<Broken> {
     calls.batches().clear();
     let mut broken = match kit_error::catch(judge) {
         Ok(outcomes) => outcomes.into_iter().find_map(Result::err)?,
         Err(KitError::Panicked { message, place }) => {
             let panic = format!("a panic at {place}: {message}");
-            Broken::with_texts(input(), panic, "an answer", "the definition")
+            Broken::with_texts("one with which your code panics", panic, "an answer", "the definition")
         }
         Err(error) => kit_error::unwind(error),
     };
@@ -142,7 +124,7 @@ pub(crate) fn shrink(mut tree: Box<dyn Tree + '_>, first: Broken, calls: &Calls)
     let mut going = tree.simplify();
     while going && steps < SHRINK_STEPS {
         steps += 1;
-        going = match judge_one(&|| tree.judge(), &|| tree.words(), calls) {
+        going = match judge_one(&|| tree.judge(), calls) {
             Some(broken) if mistakes.first().is_none_or(|mistake| broken.is_explained_by(mistake)) => {
                 smallest = broken;
                 tree.simplify()

@@ -154,12 +154,8 @@ fn paste(query: &LensQuery) -> String {
         up.paste(),
         2.0 * half_height.atan().to_degrees()
     );
-    let lens = format!(
-        "Lens {{ aperture: {}, focal_distance: {} }}",
-        query.lens.aperture.paste(),
-        query.lens.focal_distance.paste()
-    );
-    format!("{camera}\nlens_ray(&camera, {}, &{lens}, {})", query.pinhole.paste(), query.on_lens.paste())
+    let [pinhole, lens, on_lens] = [query.pinhole.paste(), query.lens.paste(), query.on_lens.paste()];
+    format!("{camera}\nlens_ray(&camera, {pinhole}, {lens}, {on_lens})")
 }
 
 /// The start of the ray relative to the camera, in double precision.

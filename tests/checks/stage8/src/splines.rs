@@ -6,7 +6,7 @@ use checks::double::U;
 use checks::generate::point;
 use checks::judge::{compare, compare_formulas};
 use checks::nasty;
-use checks::paste::{Paste, list};
+use checks::paste::{Paste, call, list};
 use glam::{DVec3, Vec3, vec2};
 use proptest::prelude::*;
 use raykata::kit::{BasisQuery, NurbsQuery};
@@ -236,15 +236,8 @@ fn surface() -> impl Strategy<Value = NurbsQuery> + Clone {
 
 fn describe(query: &NurbsQuery) -> String {
     // Write three lines, because a message shows three lines of the input.
-    let NurbsPatch { degrees, knots, rows, weights } = &query.patch;
-    let rows = rows.iter().map(|row| format!("vec!{}", list(row))).collect::<Vec<_>>().join(", ");
-    let weights = weights.iter().map(|row| format!("vec!{}", list(row))).collect::<Vec<_>>().join(", ");
-    let knots = knots.each_ref().map(|knots| format!("vec!{}", list(knots))).join(", ");
-    format!(
-        "nurbs_point(&NurbsPatch {{ degrees: {degrees:?}, knots: [{knots}],\nrows: vec![{rows}],\nweights: \
-         vec![{weights}] }}, {})",
-        query.uv.paste()
-    )
+    let text = call("nurbs_point", &[&query.patch, &query.uv]);
+    text.replace(", rows: ", ",\nrows: ").replace(", weights: ", ",\nweights: ")
 }
 
 /// How the weights are used.
