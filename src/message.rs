@@ -217,33 +217,25 @@ impl<T: Message> Message for Option<T> {
     }
 }
 
-impl<T: Message> Message for Box<T> {
-    fn write(&self, bytes: &mut Vec<u8>) {
-        (**self).write(bytes);
-    }
+macro_rules! pointers {
+    ($($Pointer:ident)*) => {
+        $(impl<T: Message> Message for $Pointer<T> {
+            fn write(&self, bytes: &mut Vec<u8>) {
+                (**self).write(bytes);
+            }
 
-    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-        T::read(bytes).map(Box::new)
-    }
+            fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
+                T::read(bytes).map($Pointer::new)
+            }
 
-    fn rust(&self) -> String {
-        format!("Box::new({})", (**self).rust())
-    }
+            fn rust(&self) -> String {
+                format!(concat!(stringify!($Pointer), "::new({})"), (**self).rust())
+            }
+        })*
+    };
 }
 
-impl<T: Message> Message for Arc<T> {
-    fn write(&self, bytes: &mut Vec<u8>) {
-        (**self).write(bytes);
-    }
-
-    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-        T::read(bytes).map(Arc::new)
-    }
-
-    fn rust(&self) -> String {
-        format!("Arc::new({})", (**self).rust())
-    }
-}
+pointers! { Box Arc }
 
 impl<T: Message, const N: usize> Message for [T; N] {
     fn write(&self, bytes: &mut Vec<u8>) {

@@ -9,16 +9,14 @@ pub use crate::emitter::{AreaEmitter, EmitterSample, EmitterShape};
 pub use crate::film::{Tone, ToneCurve};
 pub use crate::graph::*;
 pub use crate::light_path::*;
-pub use crate::material::{
-    AreaShape, Cone as SpotCone, Emitter, Falloff, Fresnel, Light, Material, Texture, Wrap,
-};
+pub use crate::material::{Cone as SpotCone, *};
 pub use crate::mesh::Mesh;
 pub use crate::partition::*;
 pub use crate::random::Stratum;
 pub use crate::ray::Ray;
 pub use crate::rows::Rows;
 pub use crate::scene::{Node as SceneNode, *};
-pub use crate::shape::*;
+pub use crate::shape::{Cone, *};
 pub use crate::wide::simd::{Instructions, Level, Vectorized};
 pub use crate::wide::*;
 pub use glam::{Affine3A, UVec3, Vec2, Vec3};

@@ -97,13 +97,9 @@ impl Worker {
     }
 
     /// The answer to `request` by a process of its own, and the beginning of what the student's code prints meanwhile.
-    pub fn alone(
-        program: PathBuf,
-        patience: Duration,
-        request: Request,
-    ) -> (Result<Answer, KitError>, String) {
+    pub fn alone(program: PathBuf, request: Request) -> (Result<Answer, KitError>, String) {
         let output = Output::default();
-        let worker = Worker { output: Some(output.clone()), ..Worker::new(program, patience) };
+        let worker = Worker { output: Some(output.clone()), ..Worker::new(program, CALL_PATIENCE) };
         let answer = kit_error::catch(|| worker.call(request, &Unwatched));
         // The process ends here, so that its last line is known.
         drop(worker);

@@ -313,10 +313,6 @@ impl App {
                 let unfolded = !matches!(self.page, Page::Check { unfolded: true, .. });
                 self.page = Page::Check { hints: 0, unfolded };
             }
-            KeyCode::Esc if matches!(self.page, Page::Tried(_)) => {
-                self.page = Page::CHECK;
-                return self.run();
-            }
             KeyCode::Esc => self.page = Page::CHECK,
             _ => {}
         }

@@ -137,23 +137,18 @@ impl Broken {
     pub fn message(&self, check: &str, rubric: &CheckEntry) -> String {
         let mut message = rubric.header();
         // An input in words is followed by the call.
-        let is_in_words = |call: &&Request| {
-            call.queries().is_some_and(|(function, _)| !self.input.contains(&format!("{function}(")))
-        };
-        match self.details.call.as_ref().filter(is_in_words).and_then(Request::call) {
-            None => _ = writeln!(message, "  input     {}", shorten(&self.input, 3)),
-            Some(call) => {
-                let _ = writeln!(message, "  input     {}", shorten(&self.input, 2));
-                let length = call.len();
-                let _ = match length {
-                    ..=LONGEST_CALL => writeln!(message, "  call      {call}"),
-                    _ => writeln!(
-                        message,
-                        "  call      {length} characters: `cargo run -- try {check}` prints it"
-                    ),
-                };
+        let is_in_words = |(function, _): (&str, _)| !self.input.contains(&format!("{function}("));
+        let call = self.details.call.as_ref().filter(|call| call.queries().is_some_and(is_in_words));
+        let call = call.and_then(Request::call);
+        let lines = if call.is_some() { 2 } else { 3 };
+        let _ = writeln!(message, "  input     {}", shorten(&self.input, lines));
+        let _ = match call.map(|call| (call.len(), call)) {
+            None => Ok(()),
+            Some((..=LONGEST_CALL, call)) => writeln!(message, "  call      {call}"),
+            Some((n, _)) => {
+                writeln!(message, "  call      {n} characters: `cargo run -- try {check}` prints it")
             }
-        }
+        };
         let _ = writeln!(message, "  yours     {}", shorten(&self.yours, 1));
         let _ = writeln!(message, "  expected  {} ({})", shorten(&self.expected, 1), self.source);
         if let Some(diagnosis) = &self.diagnosis {

@@ -7,6 +7,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use raykata::kit::{KitError, kit_error};
 use std::any::Any;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The largest number of smaller inputs that are tried when a law is broken.
@@ -18,23 +19,16 @@ pub(crate) trait Law {
     fn draw(&self, cases: usize, runner: &mut TestRunner) -> Values;
     /// The number of inputs.
     fn count(&self, values: &AnyValues) -> usize;
-    /// Judges all inputs.
-    fn judge(&self, values: &AnyValues) -> Vec<CheckResult>;
-    /// Judges one input.
-    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<CheckResult>;
-    /// The tree of smaller inputs to which the input with this index can shrink.
-    fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>>;
+    /// Judges the inputs with these indices.
+    fn judge(&self, values: &AnyValues, range: Range<usize>) -> Vec<CheckResult>;
+    /// Searches for a smaller input than the one with this index that `fails` as well. It gets the judge of each input.
+    fn shrink(&self, cases: usize, runner: &mut TestRunner, index: usize, fails: &mut Fails<'_>);
 }
 
 pub(crate) type AnyValues = dyn Any + Send + Sync;
 
-/// A tree of smaller inputs, for code that does not know their type.
-pub(crate) trait Tree {
-    fn simplify(&mut self) -> bool;
-    fn complicate(&mut self) -> bool;
-    /// Judges the current input.
-    fn judge(&self) -> Vec<CheckResult>;
-}
+/// Whether the input fails that this function judges.
+type Fails<'a> = dyn FnMut(&dyn Fn() -> Vec<CheckResult>) -> bool + 'a;
 
 /// Inputs of one type with the function that judges them.
 pub(crate) struct Judged<S: Strategy, J> {
@@ -64,39 +58,25 @@ where
         values.downcast_ref::<Vec<S::Value>>().map_or(0, Vec::len)
     }
 
-    fn judge(&self, values: &AnyValues) -> Vec<CheckResult> {
-        values.downcast_ref::<Vec<S::Value>>().map_or_else(Vec::new, |values| (self.judge)(values))
-    }
-
-    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<CheckResult> {
+    fn judge(&self, values: &AnyValues, range: Range<usize>) -> Vec<CheckResult> {
         let values = values.downcast_ref::<Vec<S::Value>>();
-        values.map_or_else(Vec::new, |values| (self.judge)(&values[index..=index]))
+        values.map_or_else(Vec::new, |values| (self.judge)(&values[range]))
     }
 
-    fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>> {
+    fn shrink(&self, cases: usize, runner: &mut TestRunner, index: usize, fails: &mut Fails<'_>) {
         // A chosen input is small already.
-        let drawn = index.checked_sub(self.chosen.len())?;
-        let tree = (0..cases).filter_map(|_| self.inputs.new_tree(runner).ok()).nth(drawn)?;
-        Some(Box::new(JudgedTree { tree, judge: &self.judge }))
-    }
-}
-
-struct JudgedTree<'a, T, J> {
-    tree: T,
-    judge: &'a J,
-}
-
-impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<CheckResult>> Tree for JudgedTree<'_, T, J> {
-    fn simplify(&mut self) -> bool {
-        self.tree.simplify()
-    }
-
-    fn complicate(&mut self) -> bool {
-        self.tree.complicate()
-    }
-
-    fn judge(&self) -> Vec<CheckResult> {
-        (self.judge)(&[self.tree.current()])
+        let Some(drawn) = index.checked_sub(self.chosen.len()) else { return };
+        // Draw the inputs again with their trees of smaller inputs, which only this step needs.
+        let tree = (0..cases).filter_map(|_| self.inputs.new_tree(runner).ok()).nth(drawn);
+        let Some(mut tree) = tree else { return };
+        let mut is_new = tree.simplify();
+        for _ in 0..SHRINK_STEPS {
+            is_new = match is_new {
+                true if fails(&|| (self.judge)(&[tree.current()])) => tree.simplify(),
+                true => tree.complicate(),
+                false => return,
+            };
+        }
     }
 }
 
@@ -113,25 +93,4 @@ pub(crate) fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, calls: &Calls) -> 
     };
     broken.details.call = calls.of(&broken, true);
     Some(broken)
-}
-
-/// Searches for a smaller input that breaks the law as well, by the same mistake if one is known.
-pub(crate) fn shrink(mut tree: Box<dyn Tree + '_>, first: Broken, calls: &Calls) -> Broken {
-    // All failing inputs together prove the mistakes, so a smaller input keeps its diagnosis.
-    let (mistakes, diagnosis) = (first.details.mistakes.clone(), first.diagnosis.clone());
-    let mut smallest = first;
-    let mut steps = 0;
-    let mut going = tree.simplify();
-    while going && steps < SHRINK_STEPS {
-        steps += 1;
-        going = match judge_one(&|| tree.judge(), calls) {
-            Some(broken) if mistakes.first().is_none_or(|mistake| broken.is_explained_by(mistake)) => {
-                smallest = broken;
-                tree.simplify()
-            }
-            _ => tree.complicate(),
-        };
-    }
-    smallest.details.mistakes = mistakes;
-    Broken { diagnosis, ..smallest }
 }

@@ -31,7 +31,7 @@ use std::sync::Arc;
 
 pub use broken::{Broken, CheckResult};
 pub use drawn::Drawn;
-pub use trial::{Check, Inputs, Trial, Verdict, examine, examine_with, grade, passes, run, verdict};
+pub use trial::{Check, Inputs, Trial, Verdict, examine, grade, passes, run, verdict};
 
 /// The functions of a crate as a kit that checks can call.
 pub fn linked(functions: impl StudentKit) -> Arc<dyn Kit + Send + Sync> {

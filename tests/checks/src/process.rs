@@ -29,17 +29,15 @@ pub(crate) fn show(work: impl FnOnce()) {
 
 /// The message of the test of this check, which runs in another process; `None` if it passes.
 pub(crate) fn message_of(check: &Check) -> Option<String> {
-    let failed = |error: io::Error| vec![error.to_string()];
-    let shown = shown(check.name).unwrap_or_else(|error| Some(failed(error)))?;
-    Some(match &shown[..] {
-        [_, printed, _, message, _] => with_output(message, printed),
-        [_, message, _] => message.clone(),
+    let shown = shown(check.name).unwrap_or_else(|error| Some(vec![error.to_string()]))?;
+    match &shown[..] {
+        [_, printed, _, message, _] => Some(with_output(message, printed)),
         // The process has ended before there was a message.
         others => match verdict(check, Err(KitError::Crashed { how: others.concat() })) {
-            Verdict::Failed(message) => message,
-            _ => String::new(),
+            Verdict::Failed(message) => Some(message),
+            _ => None,
         },
-    })
+    }
 }
 
 /// The output of the process, divided at the marks. Between shown parts it has only its last line. `None` if the test passes.

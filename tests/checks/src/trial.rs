@@ -1,9 +1,9 @@
 //! Running a check: on a thread with a large stack, with a time limit, and with the same inputs in each run.
 
 use crate::broken::{self, Broken, CheckResult};
-use crate::calls::{Calls, Recorder};
+use crate::calls::{Calls, Recorder, breaking_call};
 use crate::drawn::{Drawn, Values};
-use crate::law::{Judged, Law, judge_one, shrink};
+use crate::law::{Judged, Law, judge_one};
 use crate::patience::{self, PATIENCE};
 use crate::picture::Replay;
 use crate::process;
@@ -163,11 +163,11 @@ impl<'a> Trial<'a> {
             Some(drawn) => drawn.get(key, &draw),
             None => draw(),
         };
-        let broken = match kit_error::catch(|| law.judge(&*values)) {
+        let broken = match kit_error::catch(|| law.judge(&*values, 0..law.count(&*values))) {
             Ok(outcomes) => broken::first_broken(outcomes),
             // The code panicked on an input of the batch: judge the inputs one by one to find it.
             Err(KitError::Panicked { .. }) => (0..law.count(&*values))
-                .find_map(|i| Some((i, judge_one(&|| law.judge_one(&*values, i), &self.inputs.calls)?))),
+                .find_map(|i| Some((i, judge_one(&|| law.judge(&*values, i..i + 1), &self.inputs.calls)?))),
             Err(error) => kit_error::unwind(error),
         };
         let Some((index, mut broken)) = broken else {
@@ -178,13 +178,17 @@ impl<'a> Trial<'a> {
             return Err(broken);
         }
         // Find the call of this input.
-        let alone = judge_one(&|| law.judge_one(&*values, index), &self.inputs.calls);
+        let alone = judge_one(&|| law.judge(&*values, index..index + 1), &self.inputs.calls);
         broken.details.call = alone.and_then(|alone| alone.details.call);
-        // Draw the inputs again with their trees of smaller inputs, which only this step needs.
-        match law.tree(cases, &mut self.runner(), index) {
-            Some(tree) => Err(shrink(tree, broken, &self.inputs.calls)),
-            None => Err(broken),
-        }
+        // All failing inputs together prove the mistakes, so a smaller input has one of them and keeps the diagnosis.
+        let (mistakes, diagnosis) = (broken.details.mistakes.clone(), broken.diagnosis.clone());
+        law.shrink(cases, &mut self.runner(), index, &mut |judge| {
+            let smaller = judge_one(judge, &self.inputs.calls);
+            let same = |smaller: &Broken| mistakes.first().is_none_or(|one| smaller.is_explained_by(one));
+            smaller.filter(same).map(|smaller| broken = smaller).is_some()
+        });
+        broken.details.mistakes = mistakes;
+        Err(Broken { diagnosis, ..broken })
     }
 
     /// Only one in so many rows of a picture is judged.
@@ -220,7 +224,7 @@ fn fingerprint(name: &str) -> u64 {
 
 /// Runs one check.
 pub fn run(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Verdict {
-    verdict(check, examine(check, kit, seed))
+    verdict(check, examine(check, kit, seed, Inputs::default()))
 }
 
 /// Whether `kit` passes a check. Faster than [`run`] if it fails, because there is no message with a small input.
@@ -228,13 +232,8 @@ pub fn passes(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> boo
     matches!(on_a_thread(check, kit, seed, Inputs::default(), false), Ok(Ok(())))
 }
 
-/// Whether the law holds, or the error that prevented an answer.
-pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Result<CheckResult, KitError> {
-    examine_with(check, kit, seed, Inputs::default())
-}
-
-/// The same as [`examine`], with these inputs.
-pub fn examine_with(
+/// Whether the law holds for these inputs, or the error that prevented an answer.
+pub fn examine(
     check: &Check,
     kit: &Arc<dyn Kit + Send + Sync>,
     seed: u64,
@@ -319,9 +318,10 @@ pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
     let is_alone = process::is_alone();
     let shows_all = std::env::args().any(|argument| argument == "--nocapture" || argument == "--no-capture");
     let message = if is_alone || shows_all {
-        let examined = examine(check, &kit, PUBLIC_SEED);
-        if let (true, Ok(Err(Broken { details, .. }))) = (is_alone, &examined) {
-            process::show(|| details.call.iter().for_each(|call| _ = call.answer(&*kit, &Unwatched)));
+        let examined = examine(check, &kit, PUBLIC_SEED, Inputs::default());
+        if is_alone {
+            let answer = |call: Request| _ = call.answer(&*kit, &Unwatched);
+            process::show(|| breaking_call(&examined).into_iter().for_each(answer));
         }
         match verdict(check, examined) {
             Verdict::Passed => None,

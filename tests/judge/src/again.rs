@@ -3,23 +3,20 @@
 use crate::pixel::{find, shorten};
 use anyhow::Result;
 use checks::broken::with_output;
-use checks::calls::Calls;
-use checks::{Inputs, Verdict, examine_with, verdict};
+use checks::calls::{Calls, breaking_call};
+use checks::{Inputs, Verdict, examine, verdict};
 use raykata::kit::{Answer, Function, KitError, Request};
 use raykata_cli::args::wrapped;
 use raykata_cli::kits::Source;
-use raykata_cli::worker::{CALL_PATIENCE, Worker};
+use raykata_cli::worker::Worker;
 
 /// Repeats the call of the message of the check `name`; `Ok(true)` if the check passes.
 pub fn again(source: &Source, name: &str) -> Result<bool> {
     let check = find(name)?;
     let calls = Calls::default();
     let inputs = Inputs { calls: calls.clone(), ..Inputs::default() };
-    let examined = examine_with(check, &source.fresh(), 0, inputs);
-    let request = match &examined {
-        Ok(outcome) => outcome.as_ref().err().and_then(|broken| broken.details.call.clone()),
-        Err(_) => unanswered(&calls, source),
-    };
+    let examined = examine(check, &source.fresh(), 0, inputs);
+    let request = if examined.is_ok() { breaking_call(&examined) } else { unanswered(&calls, source) };
     match (verdict(check, examined), request) {
         (Verdict::Passed, _) => {
             println!("`{name}` passes, so there is no input to try");
@@ -27,7 +24,7 @@ pub fn again(source: &Source, name: &str) -> Result<bool> {
         }
         (Verdict::NotWritten { task, place }, _) => println!("not written yet: {place}\n  {task}"),
         (Verdict::Failed(message), Some(request)) => {
-            let (answer, printed) = Worker::alone(source.program.clone(), CALL_PATIENCE, request.clone());
+            let (answer, printed) = Worker::alone(source.program.clone(), request.clone());
             println!("{}\n{}", with_output(&message, &printed), report(&request, check.stage, &answer));
         }
         (Verdict::Failed(message), None) => println!(
@@ -60,7 +57,6 @@ fn report(request: &Request, stage: u8, answer: &Result<Answer, KitError>) -> St
 /// The first call of the last batch without an answer that has none when it is made alone.
 fn unanswered(calls: &Calls, source: &Source) -> Option<Request> {
     let (batch, _) = calls.batches().iter().rev().find(|(_, answer)| answer.is_none())?.clone();
-    let n_queries = batch.queries()?.1.len();
-    let alone = |call: &Request| Worker::alone(source.program.clone(), CALL_PATIENCE, call.clone()).0;
-    (0..n_queries).filter_map(|index| batch.only(index)).find(|call| alone(call).is_err())
+    let alone = |call: &Request| Worker::alone(source.program.clone(), call.clone()).0;
+    (0..).map_while(|index| batch.only(index)).find(|call| alone(call).is_err())
 }

@@ -5,7 +5,7 @@ use anyhow::{Context, Result, bail};
 use checks::calls::{Batch, Calls};
 use checks::paste::Paste;
 use checks::picture::{Replay, Replayed};
-use checks::{Check, Inputs, examine_with};
+use checks::{Check, Inputs, examine};
 use raykata::kit::{Answer, Kit, KitError};
 use raykata_cli::kits::Source;
 use std::fmt::{Debug, Write};
@@ -42,7 +42,7 @@ fn report(check: &Check, kit: Arc<dyn Kit + Send + Sync>, x: u32, y: u32) -> Res
     let replay = Arc::new(Replay::new(x, y));
     let calls = Calls::default();
     let inputs = Inputs { pixel: Some(Arc::clone(&replay)), calls: calls.clone(), ..Inputs::default() };
-    let outcome = examine_with(check, &kit, 0, inputs);
+    let outcome = examine(check, &kit, 0, inputs);
     let Some(result) = replay.result() else {
         match outcome {
             Ok(Err(broken)) if broken.source == "the golden picture" => {

@@ -3,6 +3,7 @@
 use all_checks::STAGES;
 use anyhow::Result;
 use checks::broken::with_output;
+use checks::calls::breaking_call;
 use checks::rubric::{self, CheckEntry, RUBRIC, Score};
 use checks::{Check, Verdict};
 use raykata::kit::{Door, Kit, KitError};
@@ -54,17 +55,13 @@ fn run_checks(
         let patience = if has_hung.load(Ordering::Relaxed) { CALL_PATIENCE / 10 } else { CALL_PATIENCE };
         let worker = Worker::new(source.program.clone(), patience).with_short_frames();
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker));
-        let examined = checks::examine(check, &kit, 0);
-        let call = match &examined {
-            Ok(Err(broken)) => broken.details.call.clone(),
-            _ => None,
-        };
+        let examined = checks::examine(check, &kit, 0, checks::Inputs::default());
+        let call = breaking_call(&examined);
         let hangs = examined.as_ref().err().filter(|error| matches!(error, KitError::TimedOut { .. }));
         let hangs = hangs.filter(|_| !has_hung.swap(true, Ordering::Relaxed)).cloned();
         let (mut verdict, entry) = (checks::verdict(check, examined), rubric::entry(check.stage, check.name));
         if let (Verdict::Failed(message), Some(call)) = (&mut verdict, call) {
-            let (_, printed) = Worker::alone(source.program.clone(), CALL_PATIENCE, call);
-            *message = with_output(message, &printed);
+            *message = with_output(message, &Worker::alone(source.program.clone(), call).1);
         }
         let graded = Graded { check, verdict, entry };
         report(&graded, hangs)?;

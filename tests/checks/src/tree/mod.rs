@@ -4,7 +4,7 @@
 mod search;
 
 pub use search::{
-    closest_in_table, closest_of, move_apart, needed, overlapped, search_query, sphere_box, tied,
+    closest_in_table, closest_of, hits_of, move_apart, needed, overlapped, search_query, sphere_box, tied,
 };
 
 use raykata::aabb::Aabb;

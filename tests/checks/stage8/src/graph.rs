@@ -3,6 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
+use checks::paste::Paste;
 use checks::tree::{closest_of, move_apart};
 use glam::Vec3;
 use oracle::splitmix::Random;
@@ -65,9 +66,8 @@ fn plainest_first(queries: &mut [GraphQuery]) {
 
 pub(super) fn describe(query: &GraphQuery) -> String {
     let GraphQuery { graph, ray, savings: GraphOptimisations { volumes, skip, sort }, table } = query;
-    let [nodes, primitives] = [graph.nodes.len(), table.primitives.len()];
-    let range = format!("t in {}..{}, volumes {volumes}, skip {skip}, sort {sort}", ray.t_min, ray.t_max);
-    format!("closest_hit_in_graph, {range}, {nodes} nodes and {primitives} primitives")
+    let sizes = format!("{} nodes and {} primitives", graph.nodes.len(), table.primitives.len());
+    format!("closest_hit_in_graph, volumes {volumes}, skip {skip}, sort {sort}, {sizes}\n{}", ray.paste())
 }
 
 pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> CheckResult {
