@@ -13,7 +13,7 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 pub use raykata::course::Verdict;
 use raykata::frame::Unwatched;
-use raykata::kit::{Door, Kit, KitError, kit_error};
+use raykata::kit::{Door, Kit, KitError, Request, kit_error};
 use raykata::worker::Thread;
 use std::cell::Cell;
 use std::collections::BTreeSet;

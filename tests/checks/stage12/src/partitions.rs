@@ -61,7 +61,6 @@ fn middle(yours: &SplitAnswer) -> usize {
 fn judge(query: &PartitionQuery, yours: &SplitAnswer) -> CheckResult {
     let split = &query.split;
     let left = before_split(query, Rounding::Right);
-    let right_bin = |primitive: &PrimitiveBox| bin(query, primitive, Rounding::Right);
     let input = format!("partition_bins before bin {} of axis {}", split.bin, split.axis);
     let (first, second) = yours.order.split_at(middle(yours));
     let text = format!("{first:?} and {second:?}");
