@@ -49,6 +49,8 @@ pub struct Trial<'a> {
     draws: Cell<u32>,
     /// Where the inputs come from.
     inputs: Inputs,
+    /// The calls so far.
+    calls: Calls,
     /// Whether a failing input is replaced by a smaller one, which only a message needs.
     shrinks: bool,
 }
@@ -67,20 +69,28 @@ pub struct Inputs {
     pub reference: Option<Arc<dyn Kit + Send + Sync>>,
     /// If there is a pixel, a check of a picture asks for this pixel alone.
     pub pixel: Option<Arc<Replay>>,
-    /// Where the calls are kept.
-    pub calls: Calls,
+    /// Where the calls are kept for the caller.
+    pub calls: Option<Calls>,
 }
 
 impl Default for Inputs {
     fn default() -> Self {
-        Inputs { drawn: None, one_in: 1, reference: None, pixel: None, calls: Calls::default() }
+        Inputs { drawn: None, one_in: 1, reference: None, pixel: None, calls: None }
     }
 }
 
 impl<'a> Trial<'a> {
     /// A trial of `kit` by the check `name`, with the inputs of `seed`.
     pub fn new(kit: &'a dyn Kit, name: &'static str, seed: u64) -> Self {
-        Trial { kit, name, seed, draws: Cell::new(0), inputs: Inputs::default(), shrinks: true }
+        Trial {
+            kit,
+            name,
+            seed,
+            draws: Cell::new(0),
+            inputs: Inputs::default(),
+            calls: Calls::default(),
+            shrinks: true,
+        }
     }
 
     /// `public` for the seed that students have, and a value drawn from `hidden` for any other seed.
@@ -167,23 +177,23 @@ impl<'a> Trial<'a> {
             Ok(outcomes) => broken::first_broken(outcomes),
             // The code panicked on an input of the batch: judge the inputs one by one to find it.
             Err(KitError::Panicked { .. }) => (0..law.count(&*values))
-                .find_map(|i| Some((i, judge_one(&|| law.judge(&*values, i..i + 1), &self.inputs.calls)?))),
+                .find_map(|i| Some((i, judge_one(&|| law.judge(&*values, i..i + 1), &self.calls)?))),
             Err(error) => kit_error::unwind(error),
         };
         let Some((index, mut broken)) = broken else {
-            self.inputs.calls.batches().clear();
+            self.calls.batches().clear();
             return Ok(());
         };
         if !self.shrinks {
             return Err(broken);
         }
         // Find the call of this input.
-        let alone = judge_one(&|| law.judge(&*values, index..index + 1), &self.inputs.calls);
+        let alone = judge_one(&|| law.judge(&*values, index..index + 1), &self.calls);
         broken.details.call = alone.and_then(|alone| alone.details.call);
         // All failing inputs together prove the mistakes, so a smaller input has one of them and keeps the diagnosis.
         let (mistakes, diagnosis) = (broken.details.mistakes.clone(), broken.diagnosis.clone());
         law.shrink(cases, &mut self.runner(), index, &mut |judge| {
-            let smaller = judge_one(judge, &self.inputs.calls);
+            let smaller = judge_one(judge, &self.calls);
             let same = |smaller: &Broken| mistakes.first().is_none_or(|one| smaller.is_explained_by(one));
             smaller.filter(same).map(|smaller| broken = smaller).is_some()
         });
@@ -259,10 +269,10 @@ fn on_a_thread(
         .stack_size(raykata::worker::STACK_BYTES)
         .spawn(move || {
             let _ = itself.set(Thread::current());
-            let calls = inputs.calls.clone();
+            let calls = inputs.calls.clone().unwrap_or_default();
             let recorder = Door(Recorder { kit: &*its_kit, calls: calls.clone() });
             let kit: &dyn Kit = if shrinks { &recorder } else { &*its_kit };
-            let trial = Trial { inputs, shrinks, ..Trial::new(kit, check.name, seed) };
+            let trial = Trial { inputs, shrinks, calls: calls.clone(), ..Trial::new(kit, check.name, seed) };
             // A scene that is drawn needs no turn.
             let is_drawn = check.symmetries == Symmetries::Composed && trial.reference().is_some();
             let symmetries = if is_drawn { Symmetries::None } else { check.symmetries };

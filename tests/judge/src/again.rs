@@ -14,7 +14,7 @@ use raykata_cli::worker::Worker;
 pub fn again(source: &Source, name: &str) -> Result<bool> {
     let check = find(name)?;
     let calls = Calls::default();
-    let inputs = Inputs { calls: calls.clone(), ..Inputs::default() };
+    let inputs = Inputs { calls: Some(calls.clone()), ..Inputs::default() };
     let examined = examine(check, &source.fresh(), 0, inputs);
     let request = if examined.is_ok() { breaking_call(&examined) } else { unanswered(&calls, source) };
     match (verdict(check, examined), request) {

@@ -41,7 +41,7 @@ pub(crate) fn find(name: &str) -> Result<&'static Check> {
 fn report(check: &Check, kit: Arc<dyn Kit + Send + Sync>, x: u32, y: u32) -> Result<(String, bool)> {
     let replay = Arc::new(Replay::new(x, y));
     let calls = Calls::default();
-    let inputs = Inputs { pixel: Some(Arc::clone(&replay)), calls: calls.clone(), ..Inputs::default() };
+    let inputs = Inputs { pixel: Some(Arc::clone(&replay)), calls: Some(calls.clone()), ..Inputs::default() };
     let outcome = examine(check, &kit, 0, inputs);
     let Some(result) = replay.result() else {
         match outcome {
