@@ -42,7 +42,7 @@ fn printed_calls_can_be_pasted() {
     if std::env::var("INSTA_UPDATE").is_ok_and(|how| how == "always") {
         write();
     }
-    #[allow(unused_imports, clippy::useless_vec)]
+    #[allow(unused_imports, clippy::useless_vec, clippy::type_complexity, clippy::init_numbered_fields)]
     let pasted: Vec<(&str, fn(&dyn Kit) -> String)> = {
         use glam::*;
         use raykata::kit::types::*;

@@ -49,7 +49,7 @@ fn report(request: &Request, stage: u8, answer: &Result<Answer, KitError>) -> St
     format!(
         "{function}, with this input alone, {answer}\n\nTo call it yourself, paste this at the end of \
          exercises/src/{file}.rs:\n\n  #[test]\n  fn again() {{\n      use glam::*;\n      use raykata::kit::types::*;\n      \
-         dbg!(crate::Kit.door().{});\n  }}\n\nand run\n\n  cargo test -p exercises --lib -- --nocapture",
+         println!(\"{{:?}}\", crate::Kit.door().{});\n  }}\n\nand run\n\n  cargo test -p exercises --lib -- --nocapture",
         wrapped(&request.call().unwrap_or_default(), 10)
     )
 }
