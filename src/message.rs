@@ -35,6 +35,27 @@ pub trait Message: Sized {
     ///
     /// If `bytes` does not begin with a value of this type.
     fn read(bytes: &mut &[u8]) -> Result<Self, Malformed>;
+
+    /// The value as a Rust expression with all digits, to paste into a test. The names are those of
+    /// [`types`](crate::kit::types) and of `glam`.
+    fn rust(&self) -> String;
+}
+
+/// Expressions between two brackets, such as `vec3(` and `)`.
+#[doc(hidden)]
+pub fn listed(open: &str, items: &[String], close: &str) -> String {
+    format!("{open}{}{close}", items.join(", "))
+}
+
+fn each<T: Message>(items: &[T]) -> Vec<String> {
+    items.iter().map(Message::rust).collect()
+}
+
+/// The fields of a structure with their values.
+#[doc(hidden)]
+pub fn fields(fields: &[(&str, String)]) -> String {
+    let fields: Vec<String> = fields.iter().map(|(name, value)| format!("{name}: {value}")).collect();
+    listed(" { ", &fields, " }")
 }
 
 /// Bytes that are no message, and why.
@@ -75,6 +96,16 @@ macro_rules! numbers {
             fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
                 take(bytes).map(<$Type>::from_le_bytes)
             }
+
+            fn rust(&self) -> String {
+                let digits = format!("{self:?}");
+                match &*digits {
+                    "NaN" => concat!(stringify!($Type), "::NAN").into(),
+                    "inf" => concat!(stringify!($Type), "::INFINITY").into(),
+                    "-inf" => concat!(stringify!($Type), "::NEG_INFINITY").into(),
+                    _ => digits,
+                }
+            }
         })*
     };
 }
@@ -83,7 +114,7 @@ numbers! { u8 u32 u64 i64 f32 f64 }
 
 /// Types that are written as another one.
 macro_rules! like {
-    ($($Type:ty: |$value:ident| $to:expr, $Other:ty, |$other:ident| $from:expr;)*) => {
+    ($($Type:ty: |$value:ident| $to:expr, $Other:ty, |$other:ident| $from:expr, $rust:expr;)*) => {
         $(impl Message for $Type {
             fn write(&self, bytes: &mut Vec<u8>) {
                 let $value = self;
@@ -94,25 +125,33 @@ macro_rules! like {
                 let $other = <$Other>::read(bytes)?;
                 $from
             }
+
+            fn rust(&self) -> String {
+                let $value = self;
+                $rust
+            }
         })*
     };
 }
 
 like! {
-    usize: |n| (*n as u64), u64, |n| n.try_into().map_err(|_| Malformed("a number is too large"));
+    usize: |n| (*n as u64), u64, |n| n.try_into().map_err(|_| Malformed("a number is too large")), n.to_string();
     bool: |truth| u8::from(*truth), u8, |byte| match byte {
         0 => Ok(false),
         1 => Ok(true),
         _ => Err(Malformed("a truth value is neither 0 nor 1")),
+    }, truth.to_string();
+    Vec2: |v| v.to_array(), [f32; 2], |v| Ok(v.into()), listed("vec2(", &each(&v.to_array()), ")");
+    Vec3: |v| v.to_array(), [f32; 3], |v| Ok(v.into()), listed("vec3(", &each(&v.to_array()), ")");
+    Vec3A: |v| v.to_array(), [f32; 3], |v| Ok(v.into()), listed("vec3a(", &each(&v.to_array()), ")");
+    DVec3: |v| v.to_array(), [f64; 3], |v| Ok(v.into()), listed("dvec3(", &each(&v.to_array()), ")");
+    UVec2: |v| v.to_array(), [u32; 2], |v| Ok(v.into()), listed("uvec2(", &each(&v.to_array()), ")");
+    UVec3: |v| v.to_array(), [u32; 3], |v| Ok(v.into()), listed("uvec3(", &each(&v.to_array()), ")");
+    PathBuf: |path| path.to_string_lossy().into_owned(), String, |path| Ok(path.into()), format!("{path:?}.into()");
+    Affine3A: |transform| transform.to_cols_array(), [f32; 12], |columns| Ok(Affine3A::from_cols_array(&columns)), {
+        let columns = [transform.matrix3.x_axis, transform.matrix3.y_axis, transform.matrix3.z_axis];
+        listed("Affine3A::from_cols(", &each(&[&columns[..], &[transform.translation]].concat()), ")")
     };
-    Vec2: |v| v.to_array(), [f32; 2], |v| Ok(v.into());
-    Vec3: |v| v.to_array(), [f32; 3], |v| Ok(v.into());
-    Vec3A: |v| v.to_array(), [f32; 3], |v| Ok(v.into());
-    DVec3: |v| v.to_array(), [f64; 3], |v| Ok(v.into());
-    UVec2: |v| v.to_array(), [u32; 2], |v| Ok(v.into());
-    UVec3: |v| v.to_array(), [u32; 3], |v| Ok(v.into());
-    PathBuf: |path| path.to_string_lossy().into_owned(), String, |path| Ok(path.into());
-    Affine3A: |transform| transform.to_cols_array(), [f32; 12], |columns| Ok(Affine3A::from_cols_array(&columns));
 }
 
 impl Message for String {
@@ -126,6 +165,10 @@ impl Message for String {
         let (text, rest) = bytes.split_at_checked(length).ok_or(Malformed("it ends too early"))?;
         *bytes = rest;
         String::from_utf8(text.into()).map_err(|_| Malformed("a text is not UTF-8"))
+    }
+
+    fn rust(&self) -> String {
+        format!("{self:?}.into()")
     }
 }
 
@@ -151,6 +194,10 @@ impl<T: Message> Message for Vec<T> {
         }
         Ok(items)
     }
+
+    fn rust(&self) -> String {
+        listed("vec![", &each(self), "]")
+    }
 }
 
 impl<T: Message> Message for Option<T> {
@@ -164,27 +211,31 @@ impl<T: Message> Message for Option<T> {
     fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
         if bool::read(bytes)? { T::read(bytes).map(Some) } else { Ok(None) }
     }
-}
 
-impl<T: Message> Message for Box<T> {
-    fn write(&self, bytes: &mut Vec<u8>) {
-        (**self).write(bytes);
-    }
-
-    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-        T::read(bytes).map(Box::new)
+    fn rust(&self) -> String {
+        self.as_ref().map_or("None".into(), |value| format!("Some({})", value.rust()))
     }
 }
 
-impl<T: Message> Message for Arc<T> {
-    fn write(&self, bytes: &mut Vec<u8>) {
-        (**self).write(bytes);
-    }
+macro_rules! pointers {
+    ($($Pointer:ident)*) => {
+        $(impl<T: Message> Message for $Pointer<T> {
+            fn write(&self, bytes: &mut Vec<u8>) {
+                (**self).write(bytes);
+            }
 
-    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-        T::read(bytes).map(Arc::new)
-    }
+            fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
+                T::read(bytes).map($Pointer::new)
+            }
+
+            fn rust(&self) -> String {
+                format!(concat!(stringify!($Pointer), "::new({})"), (**self).rust())
+            }
+        })*
+    };
 }
+
+pointers! { Box Arc }
 
 impl<T: Message, const N: usize> Message for [T; N] {
     fn write(&self, bytes: &mut Vec<u8>) {
@@ -201,6 +252,10 @@ impl<T: Message, const N: usize> Message for [T; N] {
             None => Ok(parts.map(|part: Option<T>| part.expect("there was no error"))),
         }
     }
+
+    fn rust(&self) -> String {
+        listed("[", &each(self), "]")
+    }
 }
 
 macro_rules! tuples {
@@ -213,6 +268,10 @@ macro_rules! tuples {
             fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
                 Ok(($($T::read(bytes)?,)*))
             }
+
+            fn rust(&self) -> String {
+                listed("(", &[$(self.$part.rust()),*], ")")
+            }
         })*
     };
 }
@@ -221,7 +280,8 @@ tuples! { (A 0, B 1) (A 0, B 1, C 2) (A 0, B 1, C 2, D 3) }
 
 /// Implements [`Message`] for a structure, `Ray { origin, direction }` or `Child { 0 }` for one without names of fields, or for
 /// an enumeration, `enum Shape { Sphere(sphere), Box { min, max }, Nothing }`. The order is that of the bytes. A field after a
-/// semicolon is not sent, and read as its default.
+/// semicolon is not sent, and read as its default. `Cone as SpotCone { … }` has another name in [`Message::rust`], because two
+/// types share a name.
 #[macro_export]
 #[doc(hidden)]
 macro_rules! message {
@@ -260,9 +320,25 @@ macro_rules! message {
                 )*
                 Err($crate::message::no_such_variant())
             }
+
+            fn rust(&self) -> String {
+                $(
+                    if let $Name::$Variant $(($($part),+))? $({ $($field,)+ .. })? = self {
+                        return [
+                            concat!(stringify!($Name), "::", stringify!($Variant)).to_owned(),
+                            $($crate::message::listed("(", &[$($crate::message::Message::rust($part)),+], ")"),)?
+                            $($crate::message::fields(&[
+                                $((stringify!($field), $crate::message::Message::rust($field)),)+
+                                $((stringify!($unsent), "Default::default()".into()))?
+                            ]),)?
+                        ].concat();
+                    }
+                )*
+                String::new()
+            }
         }
     };
-    ($Name:ident $(<$T:ident>)? { $($field:tt),* $(,)? }) => {
+    ($Name:ident $(as $Rust:ident)? $(<$T:ident>)? { $($field:tt),* $(,)? }) => {
         impl$(<$T: $crate::message::Message>)? $crate::message::Message for $Name$(<$T>)? {
             fn write(&self, bytes: &mut Vec<u8>) {
                 $($crate::message::Message::write(&self.$field, bytes);)*
@@ -270,6 +346,12 @@ macro_rules! message {
 
             fn read(bytes: &mut &[u8]) -> Result<Self, $crate::message::Malformed> {
                 Ok($Name { $($field: $crate::message::Message::read(bytes)?),* })
+            }
+
+            fn rust(&self) -> String {
+                let fields = [$((stringify!($field), $crate::message::Message::rust(&self.$field))),*];
+                let names = [stringify!($Name) $(, stringify!($Rust))?];
+                [names[names.len() - 1].to_owned(), $crate::message::fields(&fields)].concat()
             }
         }
     };

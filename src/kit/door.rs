@@ -212,6 +212,17 @@ macro_rules! door {
                 }
             }
 
+            /// The call of a [`Kit`] as Rust, to paste into a test; `None` for frames and their rays.
+            pub fn call(&self) -> Option<String> {
+                match self {
+                    $($(Request::$Message(queries) => {
+                        Some(format!("{}(&{})", stringify!($name), message::Message::rust(queries)))
+                    })*)*
+                    Request::Withheld(request) => request.call(),
+                    _ => None,
+                }
+            }
+
             /// The request with one of its queries only; `None` for frames and their rays, and if there is no such query.
             pub fn only(&self, index: usize) -> Option<Request> {
                 match self {

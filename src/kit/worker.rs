@@ -231,6 +231,8 @@ fn answer_all(
             Ok(answer) => Reply::Answer(Box::new(answer)),
             Err(error) => Reply::KitError(error),
         };
+        // A line without an end would be lost with the process.
+        let _ = io::stdout().flush();
         say(&reply)?;
     }
 }

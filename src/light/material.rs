@@ -223,7 +223,7 @@ pub struct Cone {
     pub none: f32,
 }
 
-message! { Cone { axis, full, none } }
+message! { Cone as SpotCone { axis, full, none } }
 
 impl Cone {
     /// The share of the light that is sent in the unit vector `direction`, `0..=1`. Between the two angles it follows a cubic

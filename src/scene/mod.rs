@@ -101,7 +101,7 @@ pub struct Node {
     pub children: Vec<usize>,
 }
 
-message! { Node { name, transform, transform_end, shape, material, children } }
+message! { Node as SceneNode { name, transform, transform_end, shape, material, children } }
 
 impl Scene {
     /// A scene without shapes and lights, seen by `camera`. Its film is 1 by 1 pixel, its background is

@@ -80,7 +80,8 @@ pub struct Bvh {
     pub nodes: Vec<Node>,
     /// The numbers of all primitives, each exactly once. The primitives of a leaf are adjacent.
     pub order: Vec<u32>,
-    most_nodes: usize,
+    /// The most nodes that [`Bvh::add_node`] adds.
+    pub most_nodes: usize,
 }
 
 message! { Bvh { nodes, order, most_nodes } }

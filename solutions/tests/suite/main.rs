@@ -24,6 +24,7 @@ mod partitions;
 mod pieces;
 mod pixels;
 mod precision;
+mod printed_calls;
 mod recorded;
 mod scales;
 mod scene;

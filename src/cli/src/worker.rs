@@ -10,10 +10,10 @@ mod watchdog;
 mod withheld;
 
 pub use autopsy::last_words;
-use autopsy::{cause_of_death, keep_start, shortened, show_start, wait_briefly};
+use autopsy::{cause_of_death, keep_start, shortened, wait_briefly};
 use launcher::lock;
 pub use launcher::{Death, Launcher};
-use raykata::frame::Watch;
+use raykata::frame::{Unwatched, Watch};
 use raykata::kit::{Answer, KitError, Request, Transport, kit_error};
 use raykata::worker::{self, LONGEST_MESSAGE, Reply};
 use std::io::{self, BufReader, BufWriter, Read, Write};
@@ -58,8 +58,8 @@ pub struct Worker {
     launcher: Option<Arc<dyn Launcher>>,
     call_patience: Duration,
     frame_patience: Duration,
-    /// Whether the output of the program is shown.
-    shows: bool,
+    /// What the program has written, for a call whose output is asked for.
+    output: Option<Output>,
     /// Whether the tables of searches stay here, so that the worker must ask for each entry.
     withholds: AtomicBool,
     process: Mutex<Option<Process>>,
@@ -79,7 +79,7 @@ impl Worker {
             launcher: None,
             call_patience,
             frame_patience: FRAME_PATIENCE,
-            shows: false,
+            output: None,
             withholds: AtomicBool::new(false),
             process: Mutex::new(None),
             running: Mutex::new(None),
@@ -96,9 +96,14 @@ impl Worker {
         Worker { launcher: Some(launcher), ..Worker::new(program, patience).with_short_frames() }
     }
 
-    /// The same for a student who looks at one call: the first lines that the program writes are shown.
-    pub fn showing(program: PathBuf, patience: Duration) -> Self {
-        Worker { shows: true, ..Worker::new(program, patience) }
+    /// The answer to `request` by a process of its own, and the beginning of what the student's code prints meanwhile.
+    pub fn alone(program: PathBuf, request: Request) -> (Result<Answer, KitError>, String) {
+        let output = Output::default();
+        let worker = Worker { output: Some(output.clone()), ..Worker::new(program, CALL_PATIENCE) };
+        let answer = kit_error::catch(|| worker.call(request, &Unwatched));
+        // The process ends here, so that its last line is known.
+        drop(worker);
+        (answer, std::mem::take(&mut *lock(&output)))
     }
 
     /// The same, but a frame without progress has no more time than a call: for pictures that are small or may never end.
@@ -142,7 +147,7 @@ impl Worker {
 
     fn ask(&self, request: &Request, watch: &dyn Watch, patience: Duration) -> Result<Answer, KitError> {
         let mut slot = lock(&self.process);
-        let start = || Process::start(&self.program, self.launcher.clone(), self.shows);
+        let start = || Process::start(&self.program, self.launcher.clone(), self.output.clone());
         let mut process = match slot.take().map_or_else(start, Ok) {
             Ok(process) => process,
             Err(error) => return Err(KitError::Crashed { how: format!("it cannot be started: {error}") }),
@@ -200,34 +205,47 @@ impl Transport for Worker {
     }
 }
 
+/// What a program has written to standard output and standard error.
+type Output = Arc<Mutex<String>>;
+
 struct Process {
     child: Arc<Mutex<Child>>,
     to_worker: Box<dyn Write + Send>,
     from_worker: Box<dyn Read + Send>,
     watchdog: Arc<Watchdog>,
     stderr: std::thread::JoinHandle<String>,
-    shows: bool,
+    output: Option<Output>,
     launcher: Option<Arc<dyn Launcher>>,
 }
 
 impl Process {
-    fn start(program: &Path, launcher: Option<Arc<dyn Launcher>>, shows: bool) -> io::Result<Process> {
+    fn start(
+        program: &Path,
+        launcher: Option<Arc<dyn Launcher>>,
+        output: Option<Output>,
+    ) -> io::Result<Process> {
         let mut command = match &launcher {
             Some(launcher) => launcher.command(program),
             None => Command::new(program),
         };
-        let (errors, output) = io::pipe()?;
-        let shown = if shows { Stdio::from(output.try_clone()?) } else { Stdio::null() };
-        command.stdout(shown).stderr(output);
+        let (errors, stderr) = io::pipe()?;
+        let stdout = if output.is_some() { Stdio::from(stderr.try_clone()?) } else { Stdio::null() };
+        command.stdout(stdout).stderr(stderr);
         let (child, to_worker, from_worker) = spawn(command, launcher.as_deref())?;
         let child = Arc::new(Mutex::new(child));
+        let kept = output.clone();
+        let keep = move || {
+            let start = keep_start(errors);
+            kept.inspect(|kept| lock(kept).clone_from(&start));
+            start
+        };
         Ok(Process {
             watchdog: Watchdog::guard(&child, launcher.clone()),
             child,
             to_worker,
             from_worker,
-            stderr: std::thread::spawn(move || if shows { show_start(errors) } else { keep_start(errors) }),
-            shows,
+            stderr: std::thread::spawn(keep),
+            output,
             launcher,
         })
     }
@@ -323,8 +341,7 @@ impl Drop for Process {
         let _ = child.wait();
         drop(child);
         self.watchdog.retire();
-        // The last lines are shown before the caller writes more.
-        if self.shows {
+        if self.output.is_some() {
             let _ = std::mem::replace(&mut self.stderr, std::thread::spawn(String::new)).join();
         }
     }

@@ -72,6 +72,8 @@ pub enum Page {
         /// Whether it is shown because the last check of the stage passes now. The next save then leads back to the checks.
         is_finish: bool,
     },
+    /// The call of the check alone, when it has answered.
+    Tried(String),
     /// A question: shall this function, in this file, be reset?
     Reset {
         /// The file, from the root of the kit.
@@ -175,6 +177,7 @@ impl App {
         let stage = self.stage().number;
         Action::Start(match self.page {
             Page::Picture { .. } => Task::Render(stage, file_of(stage, self.stage().is_done())),
+            Page::Tried(_) => Task::Try(self.check().name),
             _ => Task::Check([stage].into_iter().chain(self.others().map(|other| other.number)).collect()),
         })
     }
@@ -222,6 +225,10 @@ impl App {
             Event::Broken(why) => self.phase = Phase::Broken(why),
             Event::Verdict(verdict) => self.judged(verdict),
             Event::Progress(words) => self.note = words,
+            Event::Tried(text) => {
+                self.phase = Phase::Ended { compiled: self.compiled, checked: Duration::ZERO };
+                self.page = Page::Tried(text);
+            }
             Event::Picture(new) => {
                 self.phase = Phase::Ended { compiled: self.compiled, checked: Duration::ZERO };
                 self.note.clear();
@@ -297,6 +304,10 @@ impl App {
                     Page::Picture { .. } => Page::CHECK,
                     _ => Page::Picture { picture: None, is_finish: false },
                 };
+                return self.run();
+            }
+            KeyCode::Char('t') => {
+                self.page = Page::Tried(String::new());
                 return self.run();
             }
             KeyCode::Char('h') => {

@@ -11,7 +11,9 @@ use raykata_cli::kits::{Need, Program, Which, cargo_build, profile};
 use raykata_cli::report::words_of_building;
 use raykata_cli::verdicts::CheckVerdict;
 use raykata_cli::worker::{CALL_PATIENCE, Worker};
+use std::io::Read;
 use std::path::PathBuf;
+use std::process::Command;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
@@ -31,6 +33,8 @@ pub enum Event {
     Progress(String),
     /// A picture is finished.
     Picture(Picture),
+    /// What `raykata try` prints.
+    Tried(String),
     /// The run cannot go on, for this reason.
     Broken(String),
 }
@@ -42,6 +46,8 @@ pub enum Task {
     Check(Vec<u8>),
     /// Renders the scene of a stage to this file, from the root of the kit.
     Render(u8, String),
+    /// Repeats the call of the message of a check, as `raykata try` does.
+    Try(&'static str),
 }
 
 /// Where the kit and its programs are.
@@ -90,13 +96,13 @@ fn work(paths: &Paths, task: Task, process: &Process, report: &(impl Fn(Event) +
     // Compile the exercises.
     let begin = Instant::now();
     let need = match task {
-        Task::Check(_) => Need::Checks,
+        Task::Check(_) | Task::Try(_) => Need::Checks,
         Task::Render(..) => Need::Frames,
     };
     let worker = Program::worker(Which::Exercises, need);
     let mut cargo = cargo_build(&paths.root, &[worker])?;
     // Compile for checks as `cargo test` does: without optimisation and incrementally, which takes a fifth of the time.
-    if matches!(task, Task::Check(_)) && profile().is_none() {
+    if !matches!(task, Task::Render(..)) && profile().is_none() {
         cargo.args(["--profile", "test"]);
     }
     let worker = match compile(process, cargo, worker)? {
@@ -117,6 +123,14 @@ fn work(paths: &Paths, task: Task, process: &Process, report: &(impl Fn(Event) +
             }
             Ok(())
         }),
+        Task::Try(check) => {
+            let mut command = Command::new(&paths.judge);
+            command.arg("try").arg(&paths.root).arg(&worker).arg(check);
+            let mut tried = String::new();
+            process.follow(command, |out| Ok(_ = out.read_to_string(&mut tried)?))?;
+            report(Event::Tried(tried));
+            Ok(())
+        }
         Task::Render(stage, file) => {
             let kit = process.start_kit(Worker::new(worker, CALL_PATIENCE).with_short_frames());
             let picture = finish::render(&paths.root, stage, &file, &*kit, &FrameProgress(report));

@@ -68,7 +68,7 @@ fn plain(look: Look, text: &str) -> String {
 }
 
 /// The keys of a check and of the picture.
-const KEYS: &str = "h hint  n next  p previous  l list  o open  r reset  e more  v picture  q quit";
+const KEYS: &str = "h hint  t try  n next  p previous  l list  o open  r reset  e more  v picture  q quit";
 /// The keys of the list.
 const LIST_KEYS: &str = "enter go there  / search  n next  p previous  esc back  q quit";
 
@@ -107,7 +107,8 @@ pub fn body(app: &App, look: Look, room: usize) -> Vec<Row> {
         (_, Page::Reset { file, name }) => question(file, name),
         (Phase::Errors(errors), _) => compiler(errors),
         (_, Page::Picture { picture, is_finish }) => shown(app, look, picture.as_ref(), *is_finish, room),
-        (Phase::Broken(why), _) => broken(why, columns),
+        (Phase::Broken(why), _) => lines(Tone::Bad, why, columns),
+        (_, Page::Tried(text)) => lines(Tone::Plain, text, columns),
         (_, Page::Check { hints, unfolded }) => check(app, *hints, *unfolded, columns),
     }
 }
@@ -158,8 +159,9 @@ fn check(app: &App, hints: usize, unfolded: bool, columns: usize) -> Vec<Row> {
         Some(Verdict::Failed(message)) => {
             law(Tone::Bad, "FAILS");
             // The head of the message is shown above, and its last lines are commands, for which there are keys.
-            let is_key =
-                |line: &str| ["again:", "stuck:"].iter().any(|word| line.trim_start().starts_with(word));
+            let is_key = |line: &str| {
+                ["again:", "print:", "stuck:"].iter().any(|word| line.trim_start().starts_with(word))
+            };
             for line in message.lines().skip(2).filter(|line| !is_key(line)) {
                 match unfolded {
                     true => rows.extend(wrapped(line, columns).into_iter().map(plain)),
@@ -187,7 +189,7 @@ fn shown(app: &App, look: Look, picture: Option<&Picture>, is_finish: bool, room
     let text: Vec<Row> = text.map(|line| Row::Words(Tone::Plain, line)).collect();
     let room = room.saturating_sub(text.len() + usize::from(is_finish));
     let middle = match (&app.phase, picture) {
-        (Phase::Broken(why), _) => broken(why, columns),
+        (Phase::Broken(why), _) => self::lines(Tone::Bad, why, columns),
         (_, None) => vec![Row::Words(Tone::Quiet, "the picture is being rendered …".into())],
         (_, Some(picture)) if look.shows_pictures() => {
             cells(&picture.rgb, picture.width, columns, room).into_iter().map(Row::Pixels).collect()
@@ -222,8 +224,8 @@ fn compiler(errors: &[CompilerError]) -> Vec<Row> {
     rows
 }
 
-fn broken(why: &str, columns: usize) -> Vec<Row> {
-    why.lines().flat_map(|line| wrapped(line, columns)).map(|line| Row::Words(Tone::Bad, line)).collect()
+fn lines(tone: Tone, text: &str, columns: usize) -> Vec<Row> {
+    text.lines().flat_map(|line| wrapped(line, columns)).map(|line| Row::Words(tone, line)).collect()
 }
 
 /// The list of checks, with the chosen one in sight.
@@ -363,7 +365,7 @@ mod tests {
         let mut app = app();
         for (columns, height) in [(1, 1), (10, 3), (20, 6), (40, 12), (200, 60)] {
             app.size = (columns, height);
-            for key in ['h', 'e', 'l', 'l', 'v', 'v'] {
+            for key in ['h', 'e', 'l', 'l', 'v', 'v', 't'] {
                 app.key(KeyCode::Char(key));
                 let rows = rows(&app, LOOK);
                 assert!(rows.len() <= height, "{columns} × {height}");

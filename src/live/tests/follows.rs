@@ -28,6 +28,7 @@ const ERROR: &str = r#"{"reason":"compiler-message","message":{"level":"error","
 
 /// The script in place of the judge: it sends the verdicts for the first line of the exercise.
 const JUDGE: &str = r#"#!/bin/sh
+[ "$1" = try ] && echo "$4 returns None" && exit 1
 case "$(head -n 1 "$2/exercises/src/stage1_shapes.rs")" in
     *right*) cat "$2/right" ;;
     *) cat "$2/wrong" ;;
@@ -147,6 +148,10 @@ fn on_a_screen_keys_change_what_is_shown() {
     output.wait_for("  yours     None");
     keys.write_all(b"h").unwrap();
     output.wait_for("hint 1: ");
+    keys.write_all(b"t").unwrap();
+    output.wait_for(" returns None");
+    keys.write_all(b"\x1b").unwrap();
+    output.wait_for("FAILS: ");
     keys.write_all(b"l/refract").unwrap();
     output.wait_for("search: refract_");
     keys.write_all(b"\x1b").unwrap();

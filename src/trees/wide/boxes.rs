@@ -11,8 +11,10 @@ use glam::{Vec3A, Vec4};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
 pub struct PrimitiveBox {
-    low: [f32; 4],
-    high: [f32; 4],
+    /// The smallest coordinates, and the bits of the number.
+    pub low: [f32; 4],
+    /// The largest coordinates, and 0.
+    pub high: [f32; 4],
 }
 
 message! { PrimitiveBox { low, high } }

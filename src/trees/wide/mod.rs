@@ -89,7 +89,7 @@ pub const MAX_LEAF: usize = 32;
 /// A leaf is its first block of triangles and its number of primitives, which fill the blocks in order: only the last block
 /// may have free lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Child(u32);
+pub struct Child(pub u32);
 
 message! { Child { 0 } }
 

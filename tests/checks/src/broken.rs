@@ -1,7 +1,14 @@
 //! A broken law and its message: at most twelve lines, with the next command last.
 
 use crate::rubric::CheckEntry;
+use raykata::kit::Request;
 use std::fmt::Write;
+
+/// The longest call that a message shows, in bytes: a search in a tree over four primitives.
+const LONGEST_CALL: usize = 1200;
+
+/// The most lines of what the student's code prints in a call that a message shows.
+const MOST_PRINTED: usize = 30;
 
 /// The result of a check.
 pub type CheckResult = Result<(), Broken>;
@@ -19,16 +26,23 @@ pub struct Broken {
     pub source: &'static str,
     /// The known mistake that gives this answer, if there is one.
     pub diagnosis: Option<Box<str>>,
-    /// All [known mistakes](Broken::explained_by) that give this answer, the most specific one first.
-    pub mistakes: Box<Mistakes>,
+    /// What the message is made from, and what `raykata try` repeats.
+    pub details: Box<Details>,
     /// Reference, yours and difference side by side, as a PNG file, if pictures were compared in a process that
     /// [writes no files](crate::golden::seal).
     pub picture: Option<Box<Png>>,
 }
 
-/// Known mistakes that give an answer.
+/// What else is known of a broken law.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mistakes(pub(crate) Vec<Mistake>);
+pub struct Details {
+    /// All [known mistakes](Broken::explained_by) that give this answer, the most specific one first.
+    pub(crate) mistakes: Vec<Mistake>,
+    /// The index of the input in its batch, and the number of inputs in the batch.
+    pub(crate) index: Option<(usize, usize)>,
+    /// The call of the student's function that breaks the law, if it is a single one.
+    pub call: Option<Request>,
+}
 
 /// A known mistake that gives an answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,13 +111,13 @@ impl Broken {
             |index: usize| listed[..index].iter().filter(|(_, text)| *text == listed[index].1).count();
         let proven = (0..listed.len()).filter(|&index| listed[index].0);
         let proven = proven.map(|index| Mistake { text: listed[index].1, before: before(index), is_formula });
-        self.mistakes.0.splice(..0, proven);
+        self.details.mistakes.splice(..0, proven);
         self.named()
     }
 
     /// With the first mistake as its diagnosis. Of formulas that no answer tells apart, the first two are named.
     fn named(self) -> Self {
-        let known = &self.mistakes.0;
+        let known = &self.details.mistakes;
         let diagnosis = known.first().map(|first| {
             let is_other = |other: &&Mistake| other.is_formula && !other.text.contains(first.text);
             match known.iter().find(is_other).filter(|_| first.is_formula) {
@@ -116,13 +130,25 @@ impl Broken {
 
     /// Whether a mistake is proven for this answer.
     pub(crate) fn is_explained_by(&self, mistake: &Mistake) -> bool {
-        self.mistakes.0.contains(mistake)
+        self.details.mistakes.contains(mistake)
     }
 
     /// The whole message for the student: title, slide, input, both answers, the diagnosis and the next commands.
     pub fn message(&self, check: &str, rubric: &CheckEntry) -> String {
         let mut message = rubric.header();
-        let _ = writeln!(message, "  input     {}", shorten(&self.input, 3));
+        // An input in words is followed by the call.
+        let is_in_words = |(function, _): (&str, _)| !self.input.contains(&format!("{function}("));
+        let call = self.details.call.as_ref().filter(|call| call.queries().is_some_and(is_in_words));
+        let call = call.and_then(Request::call);
+        let lines = if call.is_some() { 2 } else { 3 };
+        let _ = writeln!(message, "  input     {}", shorten(&self.input, lines));
+        let _ = match call.map(|call| (call.len(), call)) {
+            None => Ok(()),
+            Some((..=LONGEST_CALL, call)) => writeln!(message, "  call      {call}"),
+            Some((n, _)) => {
+                writeln!(message, "  call      {n} characters: `cargo run -- try {check}` prints it")
+            }
+        };
         let _ = writeln!(message, "  yours     {}", shorten(&self.yours, 1));
         let _ = writeln!(message, "  expected  {} ({})", shorten(&self.expected, 1), self.source);
         if let Some(diagnosis) = &self.diagnosis {
@@ -136,21 +162,24 @@ impl Broken {
 /// names the first one that explains all other failing inputs as well. If there is none, it names two that explain all
 /// of them together, because copied code often has two mistakes.
 pub fn first_broken(outcomes: Vec<CheckResult>) -> Option<(usize, Broken)> {
+    let n_inputs = outcomes.len();
     let failing =
         outcomes.into_iter().enumerate().filter_map(|(index, outcome)| Some((index, outcome.err()?)));
     let failing: Vec<(usize, Broken)> = failing.collect();
-    let (index, first) = failing.first()?.clone();
-    if first.mistakes.0.is_empty() {
+    let (index, mut first) = failing.first()?.clone();
+    first.details.index.get_or_insert((index, n_inputs));
+    let known = std::mem::take(&mut first.details.mistakes);
+    if known.is_empty() {
         return Some((index, first));
     }
     let explains_all = |mistake: &&Mistake| failing.iter().all(|(_, other)| other.is_explained_by(mistake));
-    let mistakes: Vec<Mistake> = first.mistakes.0.iter().filter(explains_all).copied().collect();
-    if !mistakes.is_empty() {
-        return Some((index, Broken { mistakes: Box::new(Mistakes(mistakes)), ..first }.named()));
+    first.details.mistakes = known.iter().filter(explains_all).copied().collect();
+    if !first.details.mistakes.is_empty() {
+        return Some((index, first.named()));
     }
     // A wrong formula may give one wrong answer by chance, and an observation is certain.
     let suffices = |mistake: &Mistake, n_alone: usize| n_alone > usize::from(mistake.is_formula);
-    let pair = first.mistakes.0.iter().find_map(|one| {
+    let pair = known.iter().find_map(|one| {
         let (with, without): (Vec<_>, Vec<_>) =
             failing.iter().partition(|(_, other)| other.is_explained_by(one));
         let explains_rest = |other: &&Mistake| {
@@ -161,19 +190,26 @@ pub fn first_broken(outcomes: Vec<CheckResult>) -> Option<(usize, Broken)> {
                 && suffices(one, n_alone)
                 && suffices(other, without.len())
         };
-        let other = without.first()?.1.mistakes.0.iter().find(explains_rest)?;
+        let other = without.first()?.1.details.mistakes.iter().find(explains_rest)?;
         Some((vec![*one, *other], format!("{}\nand: {}", one.text, other.text).into()))
     });
     let (mistakes, diagnosis) = pair.unzip();
-    Some((
-        index,
-        Broken { mistakes: mistakes.map(Mistakes).map(Box::new).unwrap_or_default(), diagnosis, ..first },
-    ))
+    first.details.mistakes = mistakes.unwrap_or_default();
+    Some((index, Broken { diagnosis, ..first }))
 }
 
 /// The result for a batch: the law that [`first_broken`] returns.
 pub fn all_hold(outcomes: Vec<CheckResult>) -> CheckResult {
     first_broken(outcomes).map_or(Ok(()), |(_, broken)| Err(broken))
+}
+
+/// The message with what the student's code `printed` in the call that it is about, before the next commands.
+pub fn with_output(message: &str, printed: &str) -> String {
+    let (about, commands) = message.split_at(message.find("  again: ").unwrap_or(message.len()));
+    match printed.trim_end() {
+        "" => message.to_owned(),
+        printed => format!("{about}  printed   {}\n{commands}", shorten(printed, MOST_PRINTED)),
+    }
 }
 
 /// The last lines of every failure.

@@ -1,11 +1,13 @@
 //! A law over random inputs: they are drawn and judged together, and an input that breaks the law shrinks to a smaller one.
 
 use crate::broken::{Broken, CheckResult};
+use crate::calls::Calls;
 use crate::drawn::Values;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use raykata::kit::{KitError, kit_error};
 use std::any::Any;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The largest number of smaller inputs that are tried when a law is broken.
@@ -17,27 +19,16 @@ pub(crate) trait Law {
     fn draw(&self, cases: usize, runner: &mut TestRunner) -> Values;
     /// The number of inputs.
     fn count(&self, values: &AnyValues) -> usize;
-    /// Judges all inputs.
-    fn judge(&self, values: &AnyValues) -> Vec<CheckResult>;
-    /// Judges one input.
-    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<CheckResult>;
-    /// The text of one input for a message.
-    fn words(&self, values: &AnyValues, index: usize) -> String;
-    /// The tree of smaller inputs to which the input with this index can shrink.
-    fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>>;
+    /// Judges the inputs with these indices.
+    fn judge(&self, values: &AnyValues, range: Range<usize>) -> Vec<CheckResult>;
+    /// Searches for a smaller input than the one with this index that `fails` as well. It gets the judge of each input.
+    fn shrink(&self, cases: usize, runner: &mut TestRunner, index: usize, fails: &mut Fails<'_>);
 }
 
 pub(crate) type AnyValues = dyn Any + Send + Sync;
 
-/// A tree of smaller inputs, for code that does not know their type.
-pub(crate) trait Tree {
-    fn simplify(&mut self) -> bool;
-    fn complicate(&mut self) -> bool;
-    /// Judges the current input.
-    fn judge(&self) -> Vec<CheckResult>;
-    /// The text of the current input for a message.
-    fn words(&self) -> String;
-}
+/// Whether the input fails that this function judges.
+type Fails<'a> = dyn FnMut(&dyn Fn() -> Vec<CheckResult>) -> bool + 'a;
 
 /// Inputs of one type with the function that judges them.
 pub(crate) struct Judged<S: Strategy, J> {
@@ -67,81 +58,39 @@ where
         values.downcast_ref::<Vec<S::Value>>().map_or(0, Vec::len)
     }
 
-    fn judge(&self, values: &AnyValues) -> Vec<CheckResult> {
-        values.downcast_ref::<Vec<S::Value>>().map_or_else(Vec::new, |values| (self.judge)(values))
-    }
-
-    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<CheckResult> {
+    fn judge(&self, values: &AnyValues, range: Range<usize>) -> Vec<CheckResult> {
         let values = values.downcast_ref::<Vec<S::Value>>();
-        values.map_or_else(Vec::new, |values| (self.judge)(&values[index..=index]))
+        values.map_or_else(Vec::new, |values| (self.judge)(&values[range]))
     }
 
-    fn words(&self, values: &AnyValues, index: usize) -> String {
-        values
-            .downcast_ref::<Vec<S::Value>>()
-            .map_or_else(String::new, |values| format!("{:?}", values[index]))
-    }
-
-    fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>> {
+    fn shrink(&self, cases: usize, runner: &mut TestRunner, index: usize, fails: &mut Fails<'_>) {
         // A chosen input is small already.
-        let drawn = index.checked_sub(self.chosen.len())?;
-        let tree = (0..cases).filter_map(|_| self.inputs.new_tree(runner).ok()).nth(drawn)?;
-        Some(Box::new(JudgedTree { tree, judge: &self.judge }))
+        let Some(drawn) = index.checked_sub(self.chosen.len()) else { return };
+        // Draw the inputs again with their trees of smaller inputs, which only this step needs.
+        let tree = (0..cases).filter_map(|_| self.inputs.new_tree(runner).ok()).nth(drawn);
+        let Some(mut tree) = tree else { return };
+        let mut is_new = tree.simplify();
+        for _ in 0..SHRINK_STEPS {
+            is_new = match is_new {
+                true if fails(&|| (self.judge)(&[tree.current()])) => tree.simplify(),
+                true => tree.complicate(),
+                false => return,
+            };
+        }
     }
 }
 
-struct JudgedTree<'a, T, J> {
-    tree: T,
-    judge: &'a J,
-}
-
-impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<CheckResult>> Tree for JudgedTree<'_, T, J> {
-    fn simplify(&mut self) -> bool {
-        self.tree.simplify()
-    }
-
-    fn complicate(&mut self) -> bool {
-        self.tree.complicate()
-    }
-
-    fn judge(&self) -> Vec<CheckResult> {
-        (self.judge)(&[self.tree.current()])
-    }
-
-    fn words(&self) -> String {
-        format!("{:?}", self.tree.current())
-    }
-}
-
-/// The broken law of one input, if it breaks one. A panic counts.
-pub(crate) fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, input: &dyn Fn() -> String) -> Option<Broken> {
-    match kit_error::catch(judge) {
-        Ok(outcomes) => outcomes.into_iter().find_map(Result::err),
+/// The broken law of one input, if it breaks one, with the call that breaks it. A panic counts.
+pub(crate) fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, calls: &Calls) -> Option<Broken> {
+    calls.batches().clear();
+    let mut broken = match kit_error::catch(judge) {
+        Ok(outcomes) => outcomes.into_iter().find_map(Result::err)?,
         Err(KitError::Panicked { message, place }) => {
             let panic = format!("a panic at {place}: {message}");
-            Some(Broken::with_texts(input(), panic, "an answer", "the definition"))
+            Broken::with_texts("one with which your code panics", panic, "an answer", "the definition")
         }
         Err(error) => kit_error::unwind(error),
-    }
-}
-
-/// Searches for a smaller input that breaks the law as well, by the same mistake if one is known.
-pub(crate) fn shrink(mut tree: Box<dyn Tree + '_>, first: Broken) -> Broken {
-    // All failing inputs together prove the mistakes, so a smaller input keeps its diagnosis.
-    let Broken { mistakes, diagnosis, .. } = first.clone();
-    let named = mistakes.0.first();
-    let mut smallest = first;
-    let mut steps = 0;
-    let mut going = tree.simplify();
-    while going && steps < SHRINK_STEPS {
-        steps += 1;
-        going = match judge_one(&|| tree.judge(), &|| tree.words()) {
-            Some(broken) if named.is_none_or(|mistake| broken.is_explained_by(mistake)) => {
-                smallest = broken;
-                tree.simplify()
-            }
-            _ => tree.complicate(),
-        };
-    }
-    Broken { mistakes, diagnosis, ..smallest }
+    };
+    broken.details.call = calls.of(&broken, true);
+    Some(broken)
 }

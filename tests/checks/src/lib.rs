@@ -6,6 +6,7 @@
 //! `Ok(())` or a [`Broken`] law with the smallest input that breaks it.
 
 pub mod broken;
+pub mod calls;
 pub mod double;
 mod drawn;
 pub mod generate;
@@ -17,6 +18,7 @@ pub mod offset;
 pub mod paste;
 mod patience;
 pub mod picture;
+mod process;
 pub mod radiosity;
 pub mod rubric;
 pub mod statistics;
@@ -29,9 +31,7 @@ use std::sync::Arc;
 
 pub use broken::{Broken, CheckResult};
 pub use drawn::Drawn;
-pub use trial::{
-    Check, Inputs, Trial, Verdict, examine, examine_with, grade, passes, run, verdict, without_answer,
-};
+pub use trial::{Check, Inputs, Trial, Verdict, examine, grade, passes, run, verdict, without_answer};
 
 /// The functions of a crate as a kit that checks can call.
 pub fn linked(functions: impl StudentKit) -> Arc<dyn Kit + Send + Sync> {

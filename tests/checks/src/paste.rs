@@ -1,13 +1,18 @@
 //! Inputs as Rust expressions that can be pasted into a test. Every number has all its digits.
 
-use glam::{Affine3A, UVec2, Vec2, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 use raykata::aabb::Aabb;
-use raykata::emitter::{AreaEmitter, EmitterShape};
+use raykata::camera::{Lens, Shutter};
+use raykata::emitter::{AreaEmitter, EmitterSample};
+use raykata::film::WeightedColor;
 use raykata::kit::{
     BuildQuery, EmitterPdfQuery, EmitterQuery, InsideQuery, LightSample, PlaneEquationQuery, PlaneQuery,
-    RootQuery, ShadeQuery, ShadowQuery, SlabQuery, SphereQuery, Surface, TriangleQuery,
+    RootQuery, SecondaryRay, ShadeQuery, ShadowQuery, SlabQuery, SphereQuery, Surface, TriangleQuery,
 };
+use raykata::light_path::Scattering;
 use raykata::material::Material;
+use raykata::message::Message;
+use raykata::partition::KdHeuristics;
 use raykata::random::Stratum;
 use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
@@ -22,42 +27,6 @@ pub trait Paste {
 pub fn call(function: &str, arguments: &[&dyn Paste]) -> String {
     let arguments: Vec<String> = arguments.iter().map(|argument| argument.paste()).collect();
     format!("{function}({})", arguments.join(", "))
-}
-
-impl Paste for f32 {
-    fn paste(&self) -> String {
-        if self.is_nan() {
-            "f32::NAN".into()
-        } else if self.is_infinite() {
-            if *self > 0.0 { "f32::INFINITY".into() } else { "f32::NEG_INFINITY".into() }
-        } else {
-            format!("{self:?}")
-        }
-    }
-}
-
-impl Paste for Vec3 {
-    fn paste(&self) -> String {
-        format!("vec3({}, {}, {})", self.x.paste(), self.y.paste(), self.z.paste())
-    }
-}
-
-impl Paste for Vec2 {
-    fn paste(&self) -> String {
-        format!("vec2({}, {})", self.x.paste(), self.y.paste())
-    }
-}
-
-impl Paste for Stratum {
-    fn paste(&self) -> String {
-        let whole = |v: UVec2| format!("uvec2({}, {})", v.x, v.y);
-        format!(
-            "&Stratum {{ cell: {}, grid: {}, u: {} }}",
-            whole(self.cell),
-            whole(self.grid),
-            self.u.paste()
-        )
-    }
 }
 
 impl Paste for Ray {
@@ -77,27 +46,21 @@ impl Paste for Aabb {
     }
 }
 
-/// Structs with all of their fields; `&` stands before those that functions borrow.
-macro_rules! structs {
-    ($($borrow:literal $Type:ident { $($field:ident),* })*) => {
-        $(impl Paste for $Type {
+/// Types whose text is that of their [message](Message::rust), behind `&` if functions borrow them.
+macro_rules! pasted {
+    ($($borrow:literal $($Type:ty)*;)*) => {
+        $($(impl Paste for $Type {
             fn paste(&self) -> String {
-                let fields = [$(format!("{}: {}", stringify!($field), self.$field.paste())),*];
-                format!("{}{} {{ {} }}", $borrow, stringify!($Type), fields.join(", "))
+                format!(concat!($borrow, "{}"), self.rust())
             }
-        })*
+        })*)*
     };
 }
 
-structs! {
-    "&" Triangle { a, b, c }
-    "&" Surface { point, error, geometric_normal, shading_normal }
-    "" LightSample { direction, distance, radiance }
-    "&" Sphere { center, radius }
-    "&" Cuboid { min, max }
-    "&" Cylinder { base, top, radius }
-    "&" Cone { base, apex, radius }
-    "&" Disk { center, normal, radius }
+pasted! {
+    "" (Vec3, Vec3) f32 Vec2 Vec3 Option<Vec3> LightSample WeightedColor;
+    "&" Stratum Triangle Surface Sphere Cuboid Cylinder Cone Disk Polygon Affine3A Scattering EmitterSample SecondaryRay AreaEmitter
+        Shutter Lens KdHeuristics;
 }
 
 /// The fields of a material that stage 4 uses.
@@ -109,40 +72,6 @@ impl Paste for Material {
             self.diffuse.paste(),
             self.specular.paste(),
             self.exponent.paste()
-        )
-    }
-}
-
-impl Paste for Affine3A {
-    fn paste(&self) -> String {
-        let columns = [self.matrix3.x_axis, self.matrix3.y_axis, self.matrix3.z_axis, self.translation]
-            .map(|column| Vec3::from(column).paste().replace("vec3", "vec3a"));
-        format!("&Affine3A::from_cols({})", columns.join(", "))
-    }
-}
-
-impl Paste for Polygon {
-    fn paste(&self) -> String {
-        format!("&Polygon {{ corners: vec!{} }}", list(&self.corners))
-    }
-}
-
-impl Paste for AreaEmitter {
-    fn paste(&self) -> String {
-        let unborrowed = |text: String| text.trim_start_matches('&').to_owned();
-        let shape = match &self.shape {
-            EmitterShape::Sphere(sphere) => format!("Sphere({})", unborrowed(sphere.paste())),
-            EmitterShape::Triangle(triangle) => format!("Triangle({})", unborrowed(triangle.paste())),
-            EmitterShape::Parallelogram { corner, edges: (first, second) } => format!(
-                "Parallelogram {{ corner: {}, edges: ({}, {}) }}",
-                corner.paste(),
-                first.paste(),
-                second.paste()
-            ),
-        };
-        let (radiance, two_sided) = (self.radiance.paste(), self.two_sided);
-        format!(
-            "&AreaEmitter {{ shape: EmitterShape::{shape},\nradiance: {radiance}, two_sided: {two_sided} }}"
         )
     }
 }
@@ -231,10 +160,5 @@ mod tests {
             ray.paste(),
             "&Ray::new(vec3(0.1, -0.0, f32::INFINITY), vec3(1.0, 0.0, 0.0)).with_range(1e-7, 3.0)"
         );
-        let boxes = [Aabb::new(Vec3::ZERO, Vec3::ONE); 2];
-        assert_eq!(list(&boxes[..1]), "[Aabb::new(vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0))]");
-        let query =
-            BuildQuery { bounds: boxes.to_vec(), split: raykata::scene::Split::SurfaceArea, leaf_size: 2 };
-        assert!(query.call("build").ends_with("vec3(1.0, 1.0, 1.0))], Split::SurfaceArea, 2)"));
     }
 }

@@ -1,16 +1,19 @@
 //! Running a check: on a thread with a large stack, with a time limit, and with the same inputs in each run.
 
-use crate::broken::{self, CheckResult};
+use crate::broken::{self, Broken, CheckResult};
+use crate::calls::{Calls, Recorder, breaking_call};
 use crate::drawn::{Drawn, Values};
-use crate::law::{Judged, Law, judge_one, shrink};
+use crate::law::{Judged, Law, judge_one};
 use crate::patience::{self, PATIENCE};
 use crate::picture::Replay;
+use crate::process;
 use crate::rubric;
 use crate::symmetry::{Symmetries, Symmetry, TurnedKit};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 pub use raykata::course::Verdict;
-use raykata::kit::{Door, Kit, KitError, kit_error};
+use raykata::frame::Unwatched;
+use raykata::kit::{Door, Kit, KitError, Request, kit_error};
 use raykata::worker::Thread;
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -46,6 +49,8 @@ pub struct Trial<'a> {
     draws: Cell<u32>,
     /// Where the inputs come from.
     inputs: Inputs,
+    /// The calls so far.
+    calls: Calls,
     /// Whether a failing input is replaced by a smaller one, which only a message needs.
     shrinks: bool,
 }
@@ -64,18 +69,28 @@ pub struct Inputs {
     pub reference: Option<Arc<dyn Kit + Send + Sync>>,
     /// If there is a pixel, a check of a picture asks for this pixel alone.
     pub pixel: Option<Arc<Replay>>,
+    /// Where the calls are kept for the caller.
+    pub calls: Option<Calls>,
 }
 
 impl Default for Inputs {
     fn default() -> Self {
-        Inputs { drawn: None, one_in: 1, reference: None, pixel: None }
+        Inputs { drawn: None, one_in: 1, reference: None, pixel: None, calls: None }
     }
 }
 
 impl<'a> Trial<'a> {
     /// A trial of `kit` by the check `name`, with the inputs of `seed`.
     pub fn new(kit: &'a dyn Kit, name: &'static str, seed: u64) -> Self {
-        Trial { kit, name, seed, draws: Cell::new(0), inputs: Inputs::default(), shrinks: true }
+        Trial {
+            kit,
+            name,
+            seed,
+            draws: Cell::new(0),
+            inputs: Inputs::default(),
+            calls: Calls::default(),
+            shrinks: true,
+        }
     }
 
     /// `public` for the seed that students have, and a value drawn from `hidden` for any other seed.
@@ -158,24 +173,32 @@ impl<'a> Trial<'a> {
             Some(drawn) => drawn.get(key, &draw),
             None => draw(),
         };
-        let broken = match kit_error::catch(|| law.judge(&*values)) {
+        let broken = match kit_error::catch(|| law.judge(&*values, 0..law.count(&*values))) {
             Ok(outcomes) => broken::first_broken(outcomes),
             // The code panicked on an input of the batch: judge the inputs one by one to find it.
-            Err(KitError::Panicked { .. }) => (0..law.count(&*values)).find_map(|i| {
-                let (judge, input) = (|| law.judge_one(&*values, i), || law.words(&*values, i));
-                Some((i, judge_one(&judge, &input)?))
-            }),
+            Err(KitError::Panicked { .. }) => (0..law.count(&*values))
+                .find_map(|i| Some((i, judge_one(&|| law.judge(&*values, i..i + 1), &self.calls)?))),
             Err(error) => kit_error::unwind(error),
         };
-        let Some((index, broken)) = broken else { return Ok(()) };
+        let Some((index, mut broken)) = broken else {
+            self.calls.batches().clear();
+            return Ok(());
+        };
         if !self.shrinks {
             return Err(broken);
         }
-        // Draw the inputs again with their trees of smaller inputs, which only this step needs.
-        match law.tree(cases, &mut self.runner(), index) {
-            Some(tree) => Err(shrink(tree, broken)),
-            None => Err(broken),
-        }
+        // Find the call of this input.
+        let alone = judge_one(&|| law.judge(&*values, index..index + 1), &self.calls);
+        broken.details.call = alone.and_then(|alone| alone.details.call);
+        // All failing inputs together prove the mistakes, so a smaller input has one of them and keeps the diagnosis.
+        let (mistakes, diagnosis) = (broken.details.mistakes.clone(), broken.diagnosis.clone());
+        law.shrink(cases, &mut self.runner(), index, &mut |judge| {
+            let smaller = judge_one(judge, &self.calls);
+            let same = |smaller: &Broken| mistakes.first().is_none_or(|one| smaller.is_explained_by(one));
+            smaller.filter(same).map(|smaller| broken = smaller).is_some()
+        });
+        broken.details.mistakes = mistakes;
+        Err(Broken { diagnosis, ..broken })
     }
 
     /// Only one in so many rows of a picture is judged.
@@ -211,7 +234,7 @@ fn fingerprint(name: &str) -> u64 {
 
 /// Runs one check.
 pub fn run(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Verdict {
-    verdict(check, examine(check, kit, seed))
+    verdict(check, examine(check, kit, seed, Inputs::default()))
 }
 
 /// Whether `kit` passes a check. Faster than [`run`] if it fails, because there is no message with a small input.
@@ -219,13 +242,8 @@ pub fn passes(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> boo
     matches!(on_a_thread(check, kit, seed, Inputs::default(), false), Ok(Ok(())))
 }
 
-/// Whether the law holds, or the error that prevented an answer.
-pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Result<CheckResult, KitError> {
-    examine_with(check, kit, seed, Inputs::default())
-}
-
-/// The same as [`examine`], with these inputs.
-pub fn examine_with(
+/// Whether the law holds for these inputs, or the error that prevented an answer.
+pub fn examine(
     check: &Check,
     kit: &Arc<dyn Kit + Send + Sync>,
     seed: u64,
@@ -251,16 +269,24 @@ fn on_a_thread(
         .stack_size(raykata::worker::STACK_BYTES)
         .spawn(move || {
             let _ = itself.set(Thread::current());
-            let kit = its_kit;
-            let trial = Trial { inputs, shrinks, ..Trial::new(&*kit, check.name, seed) };
+            let calls = inputs.calls.clone().unwrap_or_default();
+            let recorder = Door(Recorder { kit: &*its_kit, calls: calls.clone() });
+            let kit: &dyn Kit = if shrinks { &recorder } else { &*its_kit };
+            let trial = Trial { inputs, shrinks, calls: calls.clone(), ..Trial::new(kit, check.name, seed) };
             // A scene that is drawn needs no turn.
             let is_drawn = check.symmetries == Symmetries::Composed && trial.reference().is_some();
             let symmetries = if is_drawn { Symmetries::None } else { check.symmetries };
             let symmetry = trial.varied(Symmetry::IDENTITY, symmetries.strategy());
-            let turned = Door(TurnedKit { kit: &*kit, symmetry });
+            let turned = Door(TurnedKit { kit, symmetry });
             let is_turned = symmetry != Symmetry::IDENTITY;
             let trial = if is_turned { Trial { kit: &turned, ..trial } } else { trial };
-            let _ = send.send(kit_error::catch(|| (check.law)(&trial)));
+            let mut outcome = kit_error::catch(|| (check.law)(&trial));
+            if let Ok(Err(broken)) = &mut outcome
+                && broken.details.call.is_none()
+            {
+                broken.details.call = calls.of(broken, false);
+            }
+            let _ = send.send(outcome);
         });
     if let Err(error) = spawned {
         return Err(KitError::Crashed { how: format!("the check could not be started: {error}") });
@@ -289,25 +315,39 @@ pub fn without_answer(check: &Check, why: impl std::fmt::Display) -> Verdict {
 
 /// Whether no test of this process has printed this gap before. Several checks wait for one function, and the harness prints
 /// nothing about a failed test that prints nothing itself.
-fn is_first(place: &str) -> bool {
+fn is_first(gap: &str) -> bool {
     static PRINTED: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
-    PRINTED.lock().unwrap_or_else(PoisonError::into_inner).insert(place.to_owned())
+    PRINTED.lock().unwrap_or_else(PoisonError::into_inner).insert(gap.to_owned())
 }
 
 /// Runs the check of this name as a test of `kit`: prints the message for the student if the check fails, and ends the
-/// test.
+/// test. The code prints in every call, so the check runs in a process of its own, and only what one call prints is shown.
+/// With `--nocapture` it runs here, and everything is shown.
 pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
     let Some(check) = checks.iter().find(|check| check.name == name) else {
         panic!("there is no check `{name}` in this stage");
     };
-    match run(check, &kit, PUBLIC_SEED) {
-        Verdict::Passed => return,
-        Verdict::NotWritten { task, place } => {
-            if is_first(&place) {
-                println!("not written yet: {place}\n  {task}");
-            }
+    let is_alone = process::is_alone();
+    let shows_all = std::env::args().any(|argument| argument == "--nocapture" || argument == "--no-capture");
+    let message = if is_alone || shows_all {
+        let examined = examine(check, &kit, PUBLIC_SEED, Inputs::default());
+        if is_alone {
+            let answer = |call: Request| _ = call.answer(&*kit, &Unwatched);
+            process::show(|| breaking_call(&examined).into_iter().for_each(answer));
         }
-        Verdict::Failed(message) => println!("{message}"),
+        match verdict(check, examined) {
+            Verdict::Passed => None,
+            Verdict::NotWritten { task, place } => Some(format!("not written yet: {place}\n  {task}")),
+            Verdict::Failed(message) => Some(message),
+        }
+    } else {
+        process::message_of(check)
+    };
+    let Some(message) = message else { return };
+    if is_alone {
+        process::show(|| println!("{message}"));
+    } else if !message.starts_with("not written yet") || is_first(&message) {
+        println!("{}", message.trim_end());
     }
     // End the test without the text and the backtrace of a panic, because the message is complete.
     std::panic::resume_unwind(Box::new("the check failed"));
@@ -350,11 +390,13 @@ mod tests {
     #[test]
     fn a_panic_is_traced_to_the_smallest_input_that_makes_it() {
         let law = |values: &[i32]| {
-            values.iter().map(|value| if *value < 42 { Ok(()) } else { panic!("too large") }).collect()
+            values
+                .iter()
+                .map(|value| if *value < 42 { Ok(()) } else { panic!("{value} is too large") })
+                .collect()
         };
         let broken = with_trial(|trial| trial.forall(200, 0..1000i32, law)).unwrap_err();
-        assert_eq!(broken.input, "42");
-        assert!(broken.yours.ends_with(": too large"), "{}", broken.yours);
+        assert!(broken.yours.ends_with(": 42 is too large"), "{}", broken.yours);
     }
 
     #[test]

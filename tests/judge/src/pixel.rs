@@ -2,50 +2,20 @@
 
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
+use checks::calls::{Batch, Calls};
 use checks::paste::Paste;
 use checks::picture::{Replay, Replayed};
-use checks::{Check, Inputs, examine_with};
-use raykata::frame::Watch;
-use raykata::kit::{Answer, Door, Kit, KitError, Request, Transport};
+use checks::{Check, Inputs, examine};
+use raykata::kit::{Answer, Kit, KitError};
 use raykata_cli::kits::Source;
 use std::fmt::{Debug, Write};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::sync::Arc;
 
 /// The largest number of calls that are printed for one batch; a cell of a picture of random samples has hundreds.
 const MOST_CALLS: usize = 16;
 
 /// The longest text of an input or an answer, in characters: a tree with all its nodes is longer.
 const LONGEST: usize = 600;
-
-/// A batch of calls, and their answers once they are known.
-pub(crate) type Batch = (Request, Option<Answer>);
-
-/// Passes each request on, and keeps it with its answer.
-pub(crate) struct Recorder {
-    pub(crate) kit: Arc<dyn Kit + Send + Sync>,
-    pub(crate) batches: Arc<Mutex<Vec<Batch>>>,
-}
-
-impl Transport for Recorder {
-    fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
-        let lock = || self.batches.lock().unwrap_or_else(PoisonError::into_inner);
-        let index = {
-            let mut batches = lock();
-            batches.push((request.clone(), None));
-            batches.len() - 1
-        };
-        let answer = request.answer(&*self.kit, watch);
-        if let Some(batch) = lock().get_mut(index) {
-            batch.1 = Some(answer.clone());
-        }
-        answer
-    }
-
-    fn waited(&self) -> Duration {
-        self.kit.waited()
-    }
-}
 
 /// Prints the calls for the pixel `at`, such as `12,7`, of the picture of the check `name`; `Ok(true)` if its colour is right.
 pub fn replay(source: &Source, name: &str, at: &str) -> Result<bool> {
@@ -70,10 +40,9 @@ pub(crate) fn find(name: &str) -> Result<&'static Check> {
 /// The report about a pixel, and whether its colour is right.
 fn report(check: &Check, kit: Arc<dyn Kit + Send + Sync>, x: u32, y: u32) -> Result<(String, bool)> {
     let replay = Arc::new(Replay::new(x, y));
-    let batches = Arc::default();
-    let recorder = Arc::new(Door(Recorder { kit, batches: Arc::clone(&batches) }));
-    let inputs = Inputs { pixel: Some(Arc::clone(&replay)), ..Inputs::default() };
-    let outcome = examine_with(check, &(recorder as Arc<dyn Kit + Send + Sync>), 0, inputs);
+    let calls = Calls::default();
+    let inputs = Inputs { pixel: Some(Arc::clone(&replay)), calls: Some(calls.clone()), ..Inputs::default() };
+    let outcome = examine(check, &kit, 0, inputs);
     let Some(result) = replay.result() else {
         match outcome {
             Ok(Err(broken)) if broken.source == "the golden picture" => {
@@ -95,8 +64,7 @@ fn report(check: &Check, kit: Arc<dyn Kit + Send + Sync>, x: u32, y: u32) -> Res
             size.height
         );
     }
-    let batches = batches.lock().unwrap_or_else(PoisonError::into_inner);
-    Ok((text(&result, (x, y), &batches, outcome.err()), !result.differs()))
+    Ok((text(&result, (x, y), &calls.batches(), outcome.err()), !result.differs()))
 }
 
 fn text(result: &Replayed, (x, y): (u32, u32), batches: &[Batch], error: Option<KitError>) -> String {

@@ -2,6 +2,8 @@
 
 use all_checks::STAGES;
 use anyhow::Result;
+use checks::broken::with_output;
+use checks::calls::breaking_call;
 use checks::rubric::{self, CheckEntry, RUBRIC, Score};
 use checks::{Check, CheckResult, Verdict};
 use raykata::kit::{Door, Kit, KitError};
@@ -58,10 +60,15 @@ fn run_checks(
         let patience = if endless.is_some() { SHORT_PATIENCE } else { CALL_PATIENCE };
         let worker = Worker::new(source.program.clone(), patience).with_short_frames();
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker));
-        let examined = checks::examine(check, &kit, 0);
+        let examined = checks::examine(check, &kit, 0, checks::Inputs::default());
+        let call = breaking_call(&examined);
         let hangs = examined.as_ref().err().filter(|error| matches!(error, KitError::TimedOut { .. }));
         let hangs = hangs.filter(|_| first_endless.set(check.name).is_ok()).cloned();
-        let (verdict, entry) = (verdict(check, examined, endless), rubric::entry(check.stage, check.name));
+        let (mut verdict, entry) =
+            (verdict(check, examined, endless), rubric::entry(check.stage, check.name));
+        if let (Verdict::Failed(message), Some(call)) = (&mut verdict, call) {
+            *message = with_output(message, &Worker::alone(source.program.clone(), call).1);
+        }
         let graded = Graded { check, verdict, entry };
         report(&graded, hangs)?;
         Ok(graded)

@@ -2,7 +2,7 @@
 
 use super::launcher::{Death, Launcher, lock};
 use raykata::kit::KitError;
-use std::io::{self, BufRead, Read};
+use std::io::{self, Read};
 use std::process::{Child, ExitStatus};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -85,30 +85,6 @@ pub(super) fn keep_start(mut stderr: impl Read) -> String {
     String::from_utf8_lossy(&kept).into_owned()
 }
 
-/// The most lines of a program that are shown.
-const MOST_LINES: usize = 30;
-
-/// Shows the first lines as they come, says how many follow, and keeps the beginning.
-pub(super) fn show_start(output: impl Read) -> String {
-    let mut kept = String::new();
-    let mut n_lines = 0;
-    for line in io::BufReader::new(output).split(b'\n').map_while(Result::ok) {
-        let line = String::from_utf8_lossy(&line);
-        n_lines += 1;
-        if n_lines <= MOST_LINES {
-            crate::report::say(format_args!("  | {line}\n"));
-            kept += &format!("{line}\n");
-        }
-    }
-    if n_lines == 0 {
-        crate::report::say(format_args!("  (nothing)\n"));
-    }
-    if n_lines > MOST_LINES {
-        crate::report::say(format_args!("  … and {} more lines\n", n_lines - MOST_LINES));
-    }
-    kept
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,12 +94,5 @@ mod tests {
         let abort = "memory allocation of 9 bytes failed\nstack backtrace:\n   0: f\n\nnote: Some details are omitted\n";
         assert_eq!(last_words(abort).as_deref(), Some("memory allocation of 9 bytes failed"));
         assert_eq!(last_words("  indented\n\n").as_deref(), Some("  indented"));
-    }
-
-    #[test]
-    fn the_first_lines_of_a_program_are_shown_and_kept() {
-        assert_eq!(show_start("a\nlast words".as_bytes()), "a\nlast words\n");
-        let many = "line\n".repeat(MOST_LINES + 5);
-        assert_eq!(show_start(many.as_bytes()).lines().count(), MOST_LINES);
     }
 }

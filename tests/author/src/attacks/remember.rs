@@ -138,7 +138,7 @@ fn learned(name: &str) -> Result<Known> {
     let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Listener { reference, recorded: recorded.clone() }));
     let of_function = if name == "block_cost" { 12 } else { 1 };
     for check in STAGES.iter().filter(|(stage, _)| *stage == of_function).flat_map(|(_, checks)| *checks) {
-        match checks::examine(check, &kit, 0) {
+        match checks::examine(check, &kit, 0, checks::Inputs::default()) {
             Ok(Ok(())) => {}
             other => bail!("the reference fails {}: {other:?}", check.name),
         }

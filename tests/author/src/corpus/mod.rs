@@ -225,8 +225,7 @@ fn try_all(
                     }
                 }
                 _ => {
-                    let examined =
-                        checks::examine_with(check, &kit(), options.seed.unwrap_or(0), inputs.clone());
+                    let examined = checks::examine(check, &kit(), options.seed.unwrap_or(0), inputs.clone());
                     let failure = verdict::failure(checks::verdict(check, examined));
                     failures.extend(failure.map(|message| (check.name, message)));
                 }

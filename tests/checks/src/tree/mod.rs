@@ -4,7 +4,8 @@
 mod search;
 
 pub use search::{
-    closest_in_table, closest_of, move_apart, needed, overlapped, search_query, sphere_box, tie, tied,
+    closest_in_table, closest_of, hits_of, move_apart, needed, overlapped, search_query, sphere_box, tie,
+    tied,
 };
 
 use raykata::aabb::Aabb;

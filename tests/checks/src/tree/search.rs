@@ -1,5 +1,6 @@
 //! Tables with the answers to all queries of a search, and the nodes that a search needs.
 
+use crate::paste::Paste;
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents};
@@ -39,6 +40,13 @@ pub fn tied(mut query: SearchQuery) -> SearchQuery {
 pub fn tie(table: &mut Table, near: f32) {
     table.primitives.iter_mut().filter(|t| t.is_finite()).for_each(|t| *t = 5.0);
     table.boxes.iter_mut().filter(|(near, far)| near <= far).for_each(|entry| *entry = (near, 9.0));
+}
+
+/// The ray of a search and the primitives that it hits, in words.
+pub fn hits_of(ray: &Ray, hits: &[f32]) -> String {
+    let hits = hits.iter().enumerate().filter(|(_, t)| t.is_finite()).take(8);
+    let hits: Vec<String> = hits.map(|(i, t)| format!("{i} at t = {t}")).collect();
+    format!("{}, hits: {}", ray.paste(), hits.join(", "))
 }
 
 /// A box around a sphere, widened by 1e-4 of the radius for rounding.

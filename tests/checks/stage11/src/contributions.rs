@@ -6,7 +6,7 @@ use checks::broken::{Broken, CheckResult};
 use checks::generate::magnitude;
 use checks::judge::{compare, compare_formulas};
 use checks::nasty;
-use checks::paste::{Paste, call};
+use checks::paste::call;
 use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::emitter::EmitterSample;
@@ -23,24 +23,8 @@ fn density() -> impl Strategy<Value = f32> + Clone {
     prop_oneof![1 => Just(0.0f32), 2 => (1..=32i32).prop_map(|n| n as f32 / 8.0), 2 => magnitude(-3.0, 5.0)]
 }
 
-pub(super) fn paste_sample(sample: &EmitterSample) -> String {
-    format!(
-        "&EmitterSample {{ direction: {}, distance: {}, radiance: {}, pdf: {} }}",
-        sample.direction.paste(),
-        sample.distance.paste(),
-        sample.radiance.paste(),
-        sample.pdf.paste()
-    )
-}
-
 fn paste(query: &LightContributionQuery) -> String {
-    format!(
-        "sample_light_contribution({}, {}, {}, {})",
-        query.diffuse.paste(),
-        query.normal.paste(),
-        paste_sample(&query.sample),
-        query.bsdf_pdf.paste()
-    )
+    call("sample_light_contribution", &[&query.diffuse, &query.normal, &query.sample, &query.bsdf_pdf])
 }
 
 /// Queries with a direction at an angle to the normal.

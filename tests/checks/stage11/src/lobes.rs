@@ -5,7 +5,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, compare_formulas};
 use checks::nasty;
-use checks::paste::Paste;
+use checks::paste::{Paste, call};
 use checks::statistics::{SAMPLES, covers_evenly, has_mean, pairs};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
@@ -13,27 +13,8 @@ use raykata::kit::{Bounce, BsdfPdfQuery, BsdfQuery, SecondaryRay};
 use raykata::light_path::{BsdfSample, Lobe, Scattering};
 use std::f64::consts::{PI, TAU};
 
-/// A surface as Rust.
-pub(super) fn paste_scattering(scattering: &Scattering) -> String {
-    let ray = |ray: &SecondaryRay| {
-        format!(
-            "SecondaryRay {{ bounce: Bounce::{:?}, direction: {}, weight: {} }}",
-            ray.bounce,
-            ray.direction.paste(),
-            ray.weight.paste()
-        )
-    };
-    let secondary: Vec<String> = scattering.secondary.iter().map(ray).collect();
-    format!(
-        "&Scattering {{ diffuse: {}, normal: {}, secondary: vec![{}] }}",
-        scattering.diffuse.paste(),
-        scattering.normal.paste(),
-        secondary.join(", ")
-    )
-}
-
 fn paste(query: &BsdfQuery) -> String {
-    format!("sample_bsdf({}, {})", paste_scattering(&query.scattering), query.u.paste())
+    call("sample_bsdf", &[&query.scattering, &query.u])
 }
 
 /// A surface with this normal and the reflectances of the three lobes. A lobe of reflectance 0 has a secondary ray, too.
@@ -289,7 +270,7 @@ pub(super) fn diffuse_samples_use_fresh_numbers(trial: &Trial<'_>) -> CheckResul
         .collect();
     // Each lobe is chosen with a probability of at least a quarter of 1/4, and each cell expects more than 20 samples.
     if places.len() < 64 * 20 {
-        let input = format!("sample_bsdf of {} for {} numbers u", paste_scattering(&scattering), 2 * SAMPLES);
+        let input = format!("sample_bsdf of {} for {} numbers u", scattering.paste(), 2 * SAMPLES);
         let yours = format!("{} diffuse samples", places.len());
         return Err(Broken::with_texts(input, yours, "at least a sixteenth", "the definition"));
     }
@@ -342,8 +323,7 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
                 if near(yours, expected) && near(sample.pdf, expected) {
                     return Ok(());
                 }
-                let input =
-                    format!("bsdf_pdf({}, {})", paste_scattering(&query.scattering), query.direction.paste());
+                let input = call("bsdf_pdf", &[&query.scattering, &query.direction]);
                 let yours = format!("{yours:?}, and pdf {:?} of sample_bsdf", sample.pdf);
                 Err(Broken::with_texts(
                     input,
@@ -395,7 +375,7 @@ pub(super) fn bsdf_pdf_of_other_directions_is_zero(trial: &Trial<'_>) -> CheckRe
             if if reflects { yours > 0.0 && yours.is_finite() } else { yours == 0.0 } {
                 return Ok(());
             }
-            let input = format!("bsdf_pdf({}, {})", paste_scattering(scattering), query.direction.paste());
+            let input = call("bsdf_pdf", &[scattering, &query.direction]);
             let expected = if reflects { "a density above 0" } else { "0.0" };
             Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
                 (yours.is_nan(), "you return NaN: a black surface has no probabilities"),

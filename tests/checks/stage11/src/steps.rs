@@ -14,32 +14,11 @@ use glam::{DVec3, Vec2, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::{BsdfQuery, EmitterPdfQuery, RouletteQuery, StepQuery, Surface};
 use raykata::light_path::{
-    BsdfSample, ChosenEmitter, LightCandidate, Lobe, NextRay, PathState, PathStep, PathVertex, Scattering,
-    StepNumbers,
+    BsdfSample, ChosenEmitter, Lobe, NextRay, PathState, PathStep, PathVertex, Scattering, StepNumbers,
 };
 
-/// A query for a message: the parts that matter here.
 pub(super) fn describe(query: &StepQuery) -> String {
-    let StepQuery { path, vertex, max_depth, .. } = query;
-    let PathVertex { surface, scattering, emission, emitter, light } = vertex;
-    format!(
-        "step of a path with weight {}, {} bounces and pdf {:?}, with max_depth {max_depth},\nat a surface with diffuse {}, {} secondary rays, emission {emission} ({}), normals {} and {},\nwith {}",
-        path.weight,
-        path.bounces,
-        path.pdf,
-        scattering.diffuse,
-        scattering.secondary.len(),
-        if emitter.is_some() { "of an emitter that is sampled" } else { "not sampled" },
-        surface.geometric_normal,
-        surface.shading_normal,
-        match light {
-            None => "no light to sample".to_owned(),
-            Some(LightCandidate::Environment(sample)) =>
-                format!("a sample of the environment map along {}", sample.direction),
-            Some(LightCandidate::Emitter(chosen)) =>
-                format!("a light to sample with probability {}", chosen.probability),
-        }
-    )
+    format!("step of a path after {} bounces, with max_depth {}", query.path.bounces, query.max_depth)
 }
 
 pub(super) fn color() -> impl Strategy<Value = Vec3> + Clone {

@@ -155,13 +155,7 @@ fn all_bins() -> impl Iterator<Item = (usize, usize)> {
 }
 
 fn input(query: &BinsQuery) -> String {
-    let boxes: Vec<String> = query
-        .primitives
-        .iter()
-        .map(|p| format!("{:?}..{:?}", Vec3::from(p.low()).to_array(), Vec3::from(p.high()).to_array()))
-        .collect();
-    let BinGrid { low, scale, n_bins } = query.grid;
-    format!("fill_bins of [{}]\nwith low {low:?}, scale {scale:?}, {n_bins} bins", boxes.join(", "))
+    format!("fill_bins of {} boxes, {} bins", query.primitives.len(), query.grid.n_bins)
 }
 
 /// The mistakes of a bin's number that give exactly these counts.

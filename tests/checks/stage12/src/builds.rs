@@ -16,10 +16,7 @@ use raykata::kit::{KitError, kit_error};
 use raykata::wide::{BLOCK, FlatNode, FlatTree};
 
 pub(super) fn describe(boxes: &[Aabb]) -> String {
-    let shown: Vec<String> =
-        boxes.iter().take(6).map(|b| format!("{:?}..{:?}", b.min.to_array(), b.max.to_array())).collect();
-    let more = if boxes.len() > 6 { format!(" and {} more", boxes.len() - 6) } else { String::new() };
-    format!("build_binned of {} boxes: {}{more}", boxes.len(), shown.join(", "))
+    format!("build_binned of {} boxes", boxes.len())
 }
 
 /// Judges a tree by its layout and its boxes.

@@ -61,15 +61,7 @@ fn middle(yours: &SplitAnswer) -> usize {
 fn judge(query: &PartitionQuery, yours: &SplitAnswer) -> CheckResult {
     let split = &query.split;
     let left = before_split(query, Rounding::Right);
-    let right_bin = |primitive: &PrimitiveBox| bin(query, primitive, Rounding::Right);
-    let bins: Vec<String> =
-        query.primitives.iter().map(|one| format!("{}: {}", one.id(), right_bin(one))).collect();
-    let input = format!(
-        "partition_bins before bin {} of axis {}, primitives with their bins: {}",
-        split.bin,
-        split.axis,
-        bins.join(", ")
-    );
+    let input = format!("partition_bins before bin {} of axis {}", split.bin, split.axis);
     let (first, second) = yours.order.split_at(middle(yours));
     let text = format!("{first:?} and {second:?}");
     if sorted(&yours.order) != left_side(query, |_| true) {

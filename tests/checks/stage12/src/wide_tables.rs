@@ -142,16 +142,12 @@ pub fn n_calls(answer: &WideAnswer) -> usize {
 }
 
 pub(super) fn describe(query: &WideQuery) -> String {
-    let hits = query.hits.iter().enumerate().filter(|(_, t)| t.is_finite());
-    let hits: Vec<String> = hits.map(|(i, t)| format!("{i} at {t}")).collect();
+    let WideQuery { tree, hits, .. } = query;
+    let [nodes, blocks] = [tree.nodes.len(), tree.blocks.len()];
     format!(
-        "a tree of {} nodes and {} blocks over {} primitives, range {:?}..{:?}, hits: {}",
-        query.tree.nodes.len(),
-        query.tree.blocks.len(),
-        query.hits.len(),
-        query.ray.t_min,
-        query.ray.t_max,
-        hits.join(", ")
+        "a tree of {nodes} nodes and {blocks} blocks over {} primitives\n{}",
+        hits.len(),
+        checks::tree::hits_of(&query.ray, hits)
     )
 }
 

@@ -5,7 +5,7 @@ use checks::double;
 use checks::generate::{magnitude, point, rough_point, sphere, triangle};
 use checks::judge::compare;
 use checks::nasty;
-use checks::paste::{Paste, call};
+use checks::paste::call;
 use checks::{Trial, tree};
 use glam::Vec3;
 use proptest::prelude::*;
@@ -66,11 +66,7 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
             let near = |yours: Vec3, exact: glam::DVec3| (yours.as_dvec3() - exact).abs().cmple(slack).all();
             let right = near(yours.min, center - radius) && near(yours.max, center + radius);
             let expected = Aabb::new((center - radius).as_vec3(), (center + radius).as_vec3());
-            let input = format!(
-                "sphere_bounds(&Sphere {{ center: {}, radius: {} }})",
-                sphere.center.paste(),
-                sphere.radius.paste()
-            );
+            let input = call("sphere_bounds", &[sphere]);
             if right {
                 Ok(())
             } else {

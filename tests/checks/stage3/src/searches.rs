@@ -51,21 +51,10 @@ pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
 }
 
 pub(super) fn describe_search(query: &SearchQuery) -> String {
-    let hits: Vec<String> = query
-        .table
-        .primitives
-        .iter()
-        .enumerate()
-        .filter(|(_, t)| t.is_finite())
-        .map(|(i, t)| format!("{i} at t = {t}"))
-        .collect();
+    let [primitives, nodes] = [query.table.primitives.len(), query.bvh.nodes.len()];
     format!(
-        "{} primitives in {} nodes, ray range {:?}..{:?}, hits: {}",
-        query.table.primitives.len(),
-        query.bvh.nodes.len(),
-        query.ray.t_min,
-        query.ray.t_max,
-        hits.join(", ")
+        "{primitives} primitives in {nodes} nodes\n{}",
+        tree::hits_of(&query.ray, &query.table.primitives)
     )
 }
 

@@ -4,15 +4,14 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::compare;
 use checks::nasty;
-use checks::paste::Paste;
+use checks::paste::call;
 use glam::Vec3;
 use proptest::prelude::*;
 
 type Query = (Vec3, Option<Vec3>, Vec3);
 
 pub(super) fn paste_normal_query((geometric, interpolated, direction): &Query) -> String {
-    let interpolated = interpolated.map_or("None".into(), |n| format!("Some({})", n.paste()));
-    format!("shading_normal({}, {interpolated}, {})", geometric.paste(), direction.paste())
+    call("shading_normal", &[geometric, interpolated, direction])
 }
 
 /// Pairs of normals at an angle below 1, seen from all directions. The interpolated normal has any length and either sign.

@@ -6,7 +6,6 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::point;
 use checks::judge::compare;
-use checks::paste::Paste;
 use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::{Bounce, FresnelQuery, Limits, RefractQuery, ScatterQuery, SecondaryRay};
@@ -16,20 +15,8 @@ use raykata::material::{Fresnel, Material};
 pub(super) const FAR: Limits = Limits { max_depth: 100, min_contribution: 0.0 };
 
 pub(super) fn paste(query: &ScatterQuery) -> String {
-    let material = &query.material;
-    format!(
-        "scatter({}, {}, {}, &Material {{ mirror: {}, transmission: {}, index_of_refraction: {}, fresnel: Fresnel::{:?}, ..Material::default() }},\n{}, {}, &{:?})",
-        query.direction.paste(),
-        query.normal.paste(),
-        query.entering,
-        material.mirror.paste(),
-        material.transmission.paste(),
-        material.index_of_refraction.paste(),
-        material.fresnel,
-        query.weight.paste(),
-        query.depth,
-        query.limits
-    )
+    let ScatterQuery { entering, depth, material: Material { mirror, transmission, .. }, .. } = query;
+    format!("scatter, entering: {entering}, depth {depth}, mirror {mirror}, transmission {transmission}")
 }
 
 fn describe(children: &[SecondaryRay]) -> String {

@@ -5,7 +5,7 @@ use checks::broken::{Broken, CheckResult};
 use checks::judge::compare;
 use checks::nasty;
 use checks::offset::Start;
-use checks::paste::Paste;
+use checks::paste::call;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::{Bounce, SecondaryRay, Surface};
@@ -37,12 +37,7 @@ fn inputs() -> impl Strategy<Value = Leaving> + Clone {
 }
 
 fn describe((surface, child): &Leaving) -> String {
-    let direction = child.direction.paste();
-    let child = format!(
-        "&SecondaryRay {{ bounce: Bounce::{:?}, direction: {direction}, weight: Vec3::ONE }}",
-        child.bounce
-    );
-    format!("spawn_ray({}, {child})", surface.paste())
+    call("spawn_ray", &[surface, child])
 }
 
 /// The slide starts the ray at `hit.Point()`, which is rounded, so about half of the rays hit their own surface.

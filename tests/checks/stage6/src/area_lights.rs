@@ -76,13 +76,7 @@ fn judge_rectangle_point(query: &RectangleQuery, point: Vec3, shares: &mut Vec<(
     }
     let is = |place: DVec3| (point.as_dvec3() - place).length() <= slack * size;
     let (x, y) = (f64::from(query.u.x), f64::from(query.u.y));
-    let input = format!(
-        "sample_rectangle({}, ({}, {}), {})",
-        query.corner.paste(),
-        query.edges.0.paste(),
-        query.edges.1.paste(),
-        query.u.paste()
-    );
+    let input = call("sample_rectangle", &[&query.corner, &query.edges, &query.u]);
     Err(Broken::new(input, point, "a point of the rectangle", "the definition").explained_by([
         (
             is((1.0 - x - y) * corner + x * first + y * second),

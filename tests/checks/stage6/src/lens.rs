@@ -146,20 +146,8 @@ fn lens_query(position: Vec3) -> impl Strategy<Value = LensQuery> + Clone {
 }
 
 fn paste(query: &LensQuery) -> String {
-    let Camera { position, towards, up, half_height, aspect, .. } = &query.camera;
-    let camera = format!(
-        "let camera = Camera::new({}, {}, {}, {:?}, {aspect:?}).unwrap();",
-        position.paste(),
-        towards.paste(),
-        up.paste(),
-        2.0 * half_height.atan().to_degrees()
-    );
-    let lens = format!(
-        "Lens {{ aperture: {}, focal_distance: {} }}",
-        query.lens.aperture.paste(),
-        query.lens.focal_distance.paste()
-    );
-    format!("{camera}\nlens_ray(&camera, {}, &{lens}, {})", query.pinhole.paste(), query.on_lens.paste())
+    let Lens { aperture, focal_distance } = query.lens;
+    format!("lens_ray, aperture {aperture:?}, focal distance {focal_distance:?}, {}", query.on_lens.paste())
 }
 
 /// The start of the ray relative to the camera, in double precision.

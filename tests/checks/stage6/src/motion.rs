@@ -68,14 +68,8 @@ fn judge_slot((x, y): (u32, u32), slot: u32, twice: bool) -> CheckResult {
 }
 
 fn paste(query: &TimeQuery) -> String {
-    format!(
-        "time_in_shutter(&Shutter {{ open: {}, close: {} }}, {}, {}, {})",
-        query.shutter.open.paste(),
-        query.shutter.close.paste(),
-        query.slot,
-        query.slots,
-        query.u.paste()
-    )
+    let TimeQuery { shutter, slot, slots, u } = query;
+    format!("time_in_shutter({}, {slot}, {slots}, {})", shutter.paste(), u.paste())
 }
 
 pub(super) fn times_lie_in_their_slots(trial: &Trial<'_>) -> CheckResult {

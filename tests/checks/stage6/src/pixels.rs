@@ -4,7 +4,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::rough_point;
 use checks::judge::compare;
-use checks::paste::{Paste, call};
+use checks::paste::{Paste, call, list};
 use checks::statistics::{SAMPLES, covers_evenly, pairs, unused_number};
 use glam::{DVec2, DVec3, Vec2, Vec2Swizzles, Vec3, uvec2, vec2, vec3};
 use proptest::prelude::*;
@@ -195,10 +195,7 @@ fn judge_weight(offset: Vec2, yours: f32) -> CheckResult {
 }
 
 fn paste_samples(samples: &[WeightedColor]) -> String {
-    let one = |sample: &WeightedColor| {
-        format!("WeightedColor {{ color: {}, weight: {} }}", sample.color.paste(), sample.weight.paste())
-    };
-    format!("filter_pixel(&[{}])", samples.iter().map(one).collect::<Vec<_>>().join(", "))
+    format!("filter_pixel(&{})", list(samples))
 }
 
 pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> CheckResult {

@@ -3,6 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
+use checks::paste::Paste;
 use checks::tree::{closest_of, move_apart, tie};
 use glam::Vec3;
 use oracle::splitmix::Random;
@@ -64,23 +65,9 @@ fn plainest_first(queries: &mut [GraphQuery]) {
 }
 
 pub(super) fn describe(query: &GraphQuery) -> String {
-    let node = |(index, node): (usize, &GraphNode)| {
-        let (enter, leave) = query.table.boxes[index];
-        let hits: Vec<String> = node
-            .primitives
-            .iter()
-            .map(|&primitive| format!("#{primitive} at {}", query.table.primitives[primitive as usize]))
-            .collect();
-        format!("{index} ({enter}..{leave}): [{}] children {:?}", hits.join(", "), node.children)
-    };
-    let nodes: Vec<String> = query.graph.nodes.iter().enumerate().map(node).collect();
-    let GraphOptimisations { volumes, skip, sort } = query.savings;
-    format!(
-        "closest_hit_in_graph, t in {}..{}, volumes {volumes}, skip {skip}, sort {sort}, nodes\n{}",
-        query.ray.t_min,
-        query.ray.t_max,
-        nodes.join("; ")
-    )
+    let GraphQuery { graph, ray, savings: GraphOptimisations { volumes, skip, sort }, table } = query;
+    let sizes = format!("{} nodes and {} primitives", graph.nodes.len(), table.primitives.len());
+    format!("closest_hit_in_graph, volumes {volumes}, skip {skip}, sort {sort}, {sizes}\n{}", ray.paste())
 }
 
 pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> CheckResult {

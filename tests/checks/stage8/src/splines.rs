@@ -235,16 +235,7 @@ fn surface() -> impl Strategy<Value = NurbsQuery> + Clone {
 }
 
 fn describe(query: &NurbsQuery) -> String {
-    // Write three lines, because a message shows three lines of the input.
-    let NurbsPatch { degrees, knots, rows, weights } = &query.patch;
-    let rows = rows.iter().map(|row| format!("vec!{}", list(row))).collect::<Vec<_>>().join(", ");
-    let weights = weights.iter().map(|row| format!("vec!{}", list(row))).collect::<Vec<_>>().join(", ");
-    let knots = knots.each_ref().map(|knots| format!("vec!{}", list(knots))).join(", ");
-    format!(
-        "nurbs_point(&NurbsPatch {{ degrees: {degrees:?}, knots: [{knots}],\nrows: vec![{rows}],\nweights: \
-         vec![{weights}] }}, {})",
-        query.uv.paste()
-    )
+    format!("nurbs_point of a patch of degrees {:?} at {}", query.patch.degrees, query.uv.paste())
 }
 
 /// How the weights are used.

@@ -7,10 +7,8 @@ use raykata::aabb::Aabb;
 use raykata::kit::BspQuery;
 use raykata::partition::{MOST_REFERENCES, corners};
 
-/// The call of a builder, as source code.
-pub(super) fn describe(query: &BspQuery) -> String {
-    let hulls: Vec<String> = query.hulls.iter().map(checks::paste::list).collect();
-    format!("build(&[{}], {}, {})", hulls.join(", "), query.leaf_size, query.max_depth)
+pub(super) fn describe(BspQuery { hulls, leaf_size, max_depth }: &BspQuery) -> String {
+    format!("build over {} hulls, leaf_size {leaf_size}, max_depth {max_depth}", hulls.len())
 }
 
 /// Whether a tree must contain a hull: it has corners, and all are finite.

@@ -23,8 +23,8 @@ use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
 fn describe(query: &OctreeQuery) -> String {
-    let boxes = checks::paste::list(&query.bounds);
-    format!("build(&{boxes}, {}, {})", query.leaf_size, query.max_depth)
+    let OctreeQuery { bounds, leaf_size, max_depth } = query;
+    format!("build over {} boxes, leaf_size {leaf_size}, max_depth {max_depth}", bounds.len())
 }
 
 const WHAT_MAKES_IT: &str = "the definition of an octree";

@@ -9,7 +9,6 @@ use super::structures;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare_formulas;
-use checks::paste::Paste;
 use checks::tree::closest_of;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
@@ -222,9 +221,7 @@ impl<S: Clone> Described<S> {
 }
 
 fn describe<S>(what: &str, query: &CellsQuery<S>) -> String {
-    let hits = query.hits.iter().enumerate().filter(|(_, t)| t.is_finite()).take(8);
-    let hits: Vec<String> = hits.map(|(i, t)| format!("{i} at t = {t}")).collect();
-    format!("{what}\n{}\nhits: {}", query.ray.paste(), hits.join(", "))
+    format!("{what}\n{}", checks::tree::hits_of(&query.ray, &query.hits))
 }
 
 /// One query per ray.

@@ -253,7 +253,7 @@ impl Judge {
         let over = Arc::new(AtomicBool::new(false));
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(StoppableWorker { worker, over: over.clone() }));
         let inputs = inputs(seed, &self.drawn, &self.reference);
-        let examined = checks::examine_with(prepared.check, &kit, seed, inputs);
+        let examined = checks::examine(prepared.check, &kit, seed, inputs);
         // A check that hangs continues on its own thread. It ends there, because it gets no more answers.
         over.store(true, Ordering::Relaxed);
         examined
@@ -367,7 +367,7 @@ fn asked(reference: &Arc<Worker>, check: &Check, seed: u64, inputs: Inputs) -> (
     let record = Arc::<Mutex<AskedQuestions>>::default();
     let recording = RecordingWorker { reference: reference.clone(), record: record.clone() };
     let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(recording));
-    let passes = matches!(checks::examine_with(check, &kit, seed, inputs), Ok(Ok(())));
+    let passes = matches!(checks::examine(check, &kit, seed, inputs), Ok(Ok(())));
     let record = record.lock().unwrap_or_else(PoisonError::into_inner).clone();
     (record, passes)
 }
