@@ -127,8 +127,7 @@ pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
 ///   last place off; β and γ, well inside, two roundings.
 /// - Points on edges belong to the triangle, if no product of three numbers is rounded.
 /// - The range of the ray contains the rounded `t`.
-/// - `None` for a NaN, or a determinant of 0.
-/// - Every hit is finite.
+/// - `None` for a determinant of 0. Every hit is finite.
 ///
 /// Source: "Cramer's Rule".
 pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {

@@ -1,6 +1,5 @@
 //! The laws of `triangle_in_double`, and special numbers as input of both functions in double precision.
 
-use super::Odd;
 use super::triangles::{aim_again, draw};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -365,36 +364,4 @@ pub(super) fn judge_ends(
         ]
     };
     compare_formulas(&at_ends, ask(&only), judge, formulas)
-}
-
-pub(super) fn double_triangle_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
-    let mut odd = Odd::new(trial, 16);
-    let mut triangles = odd.triangles();
-    // One ordinary hit.
-    let triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
-    let ordinary = TriangleQuery { ray: Ray::new(Vec3::new(0.25, 0.25, 1.0), Vec3::NEG_Z), triangle };
-    triangles.push(ordinary);
-    let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
-        let TriangleQuery { ray, triangle: Triangle { a, b, c } } = query;
-        let has_nan = [ray.origin, ray.direction, *a, *b, *c].iter().any(|vector| vector.is_nan());
-        let input = || query.call("triangle_in_double");
-        match yours {
-            None if *query == ordinary => Err(Broken::new(input(), yours, "a hit at t = 1", "exactly")),
-            Some(hit) if has_nan || !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
-                let is_nan = hit.t.is_nan() || hit.beta.is_nan() || hit.gamma.is_nan();
-                let broken = Broken::with_texts(
-                    input(),
-                    format!("{hit:?}"),
-                    "finite numbers, or None",
-                    "the definition",
-                );
-                Err(broken.explained_by([(
-                    has_nan || is_nan,
-                    "NaN is no hit: test the conditions of a hit, which are false for NaN",
-                )]))
-            }
-            _ => Ok(()),
-        }
-    };
-    all_hold(compare(&triangles, trial.kit.triangle_in_double(&triangles), judge))
 }

@@ -65,7 +65,7 @@ checks::stage! { ($ crate) 10 [
     triangles::watertight_walls_seen_edge_on_do_not_leak
     triangles::watertight_has_a_good_t
     triangles::watertight_sees_size_alike
-    triangles::watertight_of_special_numbers_is_finite
+    triangles::watertight_of_special_numbers_is_finite => finite_hits(triangles::WATERTIGHT)
     boxes::slab_misses_no_box_that_is_met
     boxes::slab_misses_no_box_in_any_range
     boxes::slab_meets_no_box_that_is_passed
@@ -78,7 +78,7 @@ checks::stage! { ($ crate) 10 [
     doubles::double_triangle_has_the_nearest_t
     rims::double_sphere_is_right_at_rims
     rims::double_sphere_has_the_nearest_t
-    doubles::double_triangle_of_special_numbers_is_finite
+    triangles::double_triangle_of_special_numbers_is_finite => finite_hits(triangles::IN_DOUBLE)
     table::table_of_seven_scales: composed
     picture::picture_at_three_scales: composed
 ] }

@@ -15,7 +15,7 @@ use oracle::gauntlet::families::families;
 use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::gauntlet::meshes::{Closed, closed};
 use oracle::splitmix::Random;
-use raykata::kit::{TriangleHit, TriangleQuery};
+use raykata::kit::{Kit, TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
@@ -360,7 +360,14 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
     Ok(())
 }
 
-pub(super) fn watertight_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
+/// A triangle test of the student, and its name.
+pub(super) type TriangleTest = (&'static str, fn(&dyn Kit, &[TriangleQuery]) -> Vec<Option<TriangleHit>>);
+
+pub(super) const WATERTIGHT: TriangleTest = ("watertight", |kit, queries| kit.watertight(queries));
+pub(super) const IN_DOUBLE: TriangleTest =
+    ("triangle_in_double", |kit, queries| kit.triangle_in_double(queries));
+
+pub(super) fn finite_hits(trial: &Trial<'_>, (name, ask): TriangleTest) -> CheckResult {
     let mut queries = Odd::new(trial, 6).triangles();
     // One ordinary hit and one ordinary miss.
     let triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
@@ -368,13 +375,10 @@ pub(super) fn watertight_of_special_numbers_is_finite(trial: &Trial<'_>) -> Chec
     let (ordinary, beside) = (at(0.25), at(4.0));
     queries.extend([ordinary, beside]);
     let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| match yours {
-        None if *query == ordinary => {
-            Err(Broken::new(query.call("watertight"), yours, "a hit at t = 1", "exactly"))
-        }
-        Some(_) if *query == beside => Err(Broken::new(query.call("watertight"), yours, "None", "exactly")),
+        None if *query == ordinary => Err(Broken::new(query.call(name), yours, "a hit at t = 1", "exactly")),
+        Some(_) if *query == beside => Err(Broken::new(query.call(name), yours, "None", "exactly")),
         Some(hit) if !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
-            let broken =
-                Broken::new(query.call("watertight"), hit, "finite numbers, or None", "the definition");
+            let broken = Broken::new(query.call(name), hit, "finite numbers, or None", "the definition");
             Err(broken.explained_by([(
                 hit.t.is_nan() || hit.beta.is_nan() || hit.gamma.is_nan(),
                 "NaN is no hit: test the conditions of a hit, which are false for NaN",
@@ -382,5 +386,5 @@ pub(super) fn watertight_of_special_numbers_is_finite(trial: &Trial<'_>) -> Chec
         }
         _ => Ok(()),
     };
-    all_hold(compare(&queries, trial.kit.watertight(&queries), judge))
+    all_hold(compare(&queries, ask(trial.kit, &queries), judge))
 }
