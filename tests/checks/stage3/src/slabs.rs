@@ -177,8 +177,8 @@ pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> CheckResul
         }
     }
     all_hold(judge_verdicts(trial, &cases))?;
-    let hits = cases.iter().filter(|(.., is_hit)| *is_hit);
-    let queries: Vec<SlabQuery> = hits.map(|&(ray, bounds, _)| SlabQuery { ray, bounds }).collect();
+    let query = |&(ray, bounds, is_hit): &(Ray, Aabb, bool)| is_hit.then_some(SlabQuery { ray, bounds });
+    let queries: Vec<SlabQuery> = cases.iter().filter_map(query).collect();
     all_hold(judge_slabs(trial, &queries))
 }
 

@@ -35,19 +35,19 @@ fn reach(points: &[Vec3]) -> f64 {
 
 pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> CheckResult {
     let corner = vec![Vec3::ZERO, Vec3::new(4.0, 2.0, 1.0), Vec3::X];
-    trial.forall_and(&[corner], 1300, clouds(), |queries| {
-        let judge = |points: &Vec<Vec3>, sphere| judge_cover(points, sphere, ROUNDINGS);
-        compare(queries, trial.kit.bounding_sphere(queries), judge)
-    })
+    trial.forall_and(&[corner], 1300, clouds(), |queries| judge_covers(trial, queries, ROUNDINGS))
 }
 
 /// Spheres without the tolerance of other checks, and rays that enter spheres.
 pub(super) fn are_rounded_outwards(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(500, clouds(), |queries| {
-        let judge = |points: &Vec<Vec3>, sphere| judge_cover(points, sphere, 0.0);
-        compare(queries, trial.kit.bounding_sphere(queries), judge)
-    })?;
+    trial.forall(500, clouds(), |queries| judge_covers(trial, queries, 0.0))?;
     trial.forall(2000, entries(true), |queries| judge_entries(trial, queries, true))
+}
+
+/// Judges whether spheres hold their points, up to an error relative to the largest coordinate.
+fn judge_covers(trial: &Trial<'_>, queries: &[Vec<Vec3>], allowed: f64) -> Vec<CheckResult> {
+    let judge = |points: &Vec<Vec3>, sphere| judge_cover(points, sphere, allowed);
+    compare(queries, trial.kit.bounding_sphere(queries), judge)
 }
 
 fn judge_cover(points: &Vec<Vec3>, sphere: Sphere, allowed: f64) -> CheckResult {

@@ -148,15 +148,11 @@ pub(super) fn facts<'a>(
     listed: impl Fn(u32) -> &'a [u32],
 ) -> Mistakes {
     let expected = closest_of(hits, ray);
-    let Some((best, best_t)) = expected else { return vec![out_of_range(found, ray)] };
+    let Some((best, _)) = expected else { return vec![out_of_range(found, ray)] };
     let is_tested = tests.contains(&best);
     let is_visited = visits.iter().any(|&node| listed(node).contains(&best));
     vec![
         out_of_range(found, ray),
-        (
-            found.is_some_and(|(_, t)| t == best_t),
-            "of two hits at the same t the smaller primitive number wins",
-        ),
         (
             found.is_some() && is_tested,
             "you keep the farther of two hits: you test the primitive with the nearer hit, but return another one",
