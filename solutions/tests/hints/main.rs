@@ -10,8 +10,6 @@ mod stage3_build {
     pub use crate::textbook_build::*;
     pub use solutions::stage3_build::build;
 }
-#[path = "../textbook/stage3_traversal.rs"]
-mod stage3_traversal;
 mod stage4_shading;
 mod stage5_recursion;
 mod stage6_distribution;

@@ -387,7 +387,7 @@ pub(super) const WRONG: &[Wrong] = &[
         stepped(
             r,
             |query| {
-                if query.path.bounces > 0 && query.path.pdf == f32::INFINITY {
+                if query.path.bounces > 0 && query.path.pdf >= 1e18 {
                     query.path.pdf = 1.0;
                 }
             },

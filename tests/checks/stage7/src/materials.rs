@@ -4,6 +4,7 @@ use super::scenes::light;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
+use checks::paste::list;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::effects::MaterialEffects;
@@ -280,8 +281,15 @@ fn material_query() -> impl Strategy<Value = MaterialQuery> + Clone {
 }
 
 fn describe(query: &MaterialQuery) -> String {
-    let MaterialQuery { lights, quality, .. } = query;
-    format!("material_effects of a material under {} lights, max_depth {}", lights.len(), quality.max_depth)
+    let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
+    let Material { index_of_refraction, fresnel, roughness, coat, texture, .. } = query.material;
+    let max_depth = query.quality.max_depth;
+    let lights = list(query.lights.iter().map(|light| light.radiance()).collect::<Vec<_>>().iter());
+    format!(
+        "material_effects of ambient {ambient}, diffuse {diffuse}, specular {specular}, mirror {mirror}, \
+         transmission {transmission}, index {index_of_refraction}, fresnel {fresnel:?}, roughness {roughness}, \
+         coat {coat}, texture {texture:?}, max_depth {max_depth},\nunder lights of radiance {lights}"
+    )
 }
 
 /// Compares simple materials with recorded answers, and other materials with the student's own answers for simpler

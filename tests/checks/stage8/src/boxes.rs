@@ -63,17 +63,13 @@ fn describe(query: &BoundsQuery) -> String {
 /// sums of this size in single precision.
 pub(super) const ROUNDINGS: f64 = 16.0 * U;
 
-pub(super) fn boxes_hold_what_they_should_after_transforms(trial: &Trial<'_>) -> CheckResult {
-    judge_contents(trial, ROUNDINGS)
-}
-
 pub(super) fn volumes_are_rounded_outwards(trial: &Trial<'_>) -> CheckResult {
     judge_contents(trial, 0.0)?;
     bounding_spheres::are_rounded_outwards(trial)
 }
 
 /// Judges whether boxes contain what they should, up to an error relative to the sum of the terms.
-fn judge_contents(trial: &Trial<'_>, allowed: f64) -> CheckResult {
+pub(super) fn judge_contents(trial: &Trial<'_>, allowed: f64) -> CheckResult {
     let queries = moved(trial);
     let judge = |query: &BoundsQuery, yours: Aabb| {
         for row in 0..3 {

@@ -32,7 +32,7 @@ checks::stage! { ($ crate) 8 [
     spaces::normals_stay_outside_in_a_mirror
     placements::placement_multiplies_in_the_right_order
     placements::placement_refuses_what_cannot_be_undone
-    boxes::boxes_hold_what_they_should_after_transforms
+    boxes::boxes_hold_what_they_should_after_transforms => judge_contents(boxes::ROUNDINGS)
     boxes::boxes_have_little_room_after_transforms
     bounding_spheres::sphere_holds_all_points
     bounding_spheres::sphere_is_small
