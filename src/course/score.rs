@@ -30,7 +30,7 @@ impl Level {
     }
 }
 
-/// The earned and the possible points of some checks, by level. As text: `35 of 35 core · 12 deeper`, and ` · 4 bonus` if any were earned.
+/// The earned and the possible points of some checks, by level. As text: `35 of 35 core · 12 deeper`, with ` · 4 bonus` if any.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Score {
     /// Of [`Level::Core`].

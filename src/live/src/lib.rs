@@ -1,5 +1,4 @@
-//! What the programs `watch`, `view` and `update` share: the stages with their verdicts, which files have changed, the functions of a file, the errors of the
-//! compiler, and processes that a save ends.
+//! What the programs `watch`, `view` and `update` share.
 
 pub mod compiler;
 pub mod course;

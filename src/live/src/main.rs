@@ -1,8 +1,8 @@
 //! The program that `raykata watch` starts: `watch ROOT JUDGE [STAGE]`. It compiles the exercises and runs the checks of a stage
 //! whenever a file of the student changes.
 //!
-//! `run` (one run, which a save cancels) · `app` (what keys and events do) · `screen` (the text of the screen) · `terminal` (draws, and reads keys) · `plain` (lines, without a terminal) · `editor` · `reset` (one
-//! function as it was before it was written)
+//! `run` (one run, which a save cancels) · `app` (what keys and events do) · `screen` (the text of the screen) · `terminal`
+//! (draws, and reads keys) · `plain` (lines, without a terminal) · `editor` · `reset` (one function as before it was written)
 
 mod app;
 mod editor;

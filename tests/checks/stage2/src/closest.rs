@@ -24,10 +24,11 @@ fn mistakes(query: &SearchQuery, yours: Hit, tests: u64) -> [(bool, &'static str
     let later = counting.iter().copied().reduce(|best, hit| if hit.1 <= best.1 { hit } else { best });
     let farthest = counting.iter().copied().reduce(|best, hit| if hit.1 > best.1 { hit } else { best });
     let is = |hit: Hit| yours == hit;
+    let is_tie = is(later) && !is(best(&counting));
     let (without_last, without_first) = (&all[..all.len().saturating_sub(1)], all.get(1..).unwrap_or(&[]));
     let stopped = tests < all.len() as u64;
     [
-        (is(later), "of two hits at the same t the primitive with the smaller number wins"),
+        (is_tie, "of two hits at the same t the primitive with the smaller number wins"),
         (
             is(best(&hits(without_last))) && (!is(best(&counting)) || tests + 1 == all.len() as u64),
             "the last primitive is left out: their numbers are 0..n_primitives",

@@ -284,11 +284,12 @@ fn describe(query: &MaterialQuery) -> String {
     let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
     let Material { index_of_refraction, fresnel, roughness, coat, texture, .. } = query.material;
     let max_depth = query.quality.max_depth;
-    let lights = list(query.lights.iter().map(|light| light.radiance()).collect::<Vec<_>>().iter());
+    let radiances: Vec<Vec3> = query.lights.iter().map(Light::radiance).collect();
     format!(
         "material_effects of ambient {ambient}, diffuse {diffuse}, specular {specular}, mirror {mirror}, \
          transmission {transmission}, index {index_of_refraction}, fresnel {fresnel:?}, roughness {roughness}, \
-         coat {coat}, texture {texture:?}, max_depth {max_depth},\nunder lights of radiance {lights}"
+         coat {coat}, texture {texture:?}, max_depth {max_depth},\nunder lights of radiance {}",
+        list(&radiances)
     )
 }
 

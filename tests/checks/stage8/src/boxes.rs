@@ -59,8 +59,7 @@ fn describe(query: &BoundsQuery) -> String {
     call("bounds_to_world", &[&query.to_world, &query.bounds])
 }
 
-/// The rounding errors that volumes may lack where a check judges the method and not its rounding: those of a few products and
-/// sums of this size in single precision.
+/// What a box may lack, relative to its terms, where its rounding is not judged: the errors of a few products and sums.
 pub(super) const ROUNDINGS: f64 = 16.0 * U;
 
 pub(super) fn volumes_are_rounded_outwards(trial: &Trial<'_>) -> CheckResult {

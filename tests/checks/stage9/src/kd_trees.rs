@@ -186,7 +186,7 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
 pub(super) fn hits_at_one_t_in_cells_prefer_the_smaller_number(trial: &Trial<'_>) -> CheckResult {
     let (mut trees, mut grids, mut octrees) = (Described::new(), Described::new(), Described::new());
     let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
-    let ray = Ray::new(vec3(-2.0, 1.0, 1.0), Vec3::X);
+    let (ray, hits) = (Ray::new(vec3(-2.0, 1.0, 1.0), Vec3::X), vec![2.0; 3]);
     let cases: [(_, [&[u32]; 2]); 4] = [
         ("in one cell, the smaller number first", [&[0, 1, 2], &[]]),
         ("in one cell, the smaller number second", [&[2, 0, 1], &[]]),
@@ -195,14 +195,13 @@ pub(super) fn hits_at_one_t_in_cells_prefer_the_smaller_number(trial: &Trial<'_>
     ];
     trees.control("kd-tree", two_leaves(bounds, (0, 0.0), &[0, 1, 2], &[]), ray, (0.0, 2.0));
     for (what, lists) in cases {
-        let hits = vec![2.0; 3];
         let cells = two_leaves(bounds, (0, 0.0), lists[0], lists[1]);
         trees.add(format!("kd-tree; {what}"), CellsQuery { cells, ray, hits: hits.clone() });
         let cells = filled(bounds, UVec3::new(2, 1, 1), &lists.map(<[u32]>::to_vec));
         grids.add(format!("grid; {what}"), CellsQuery { cells, ray, hits: hits.clone() });
         let mut cells = Octree::new(bounds);
         cells.set_leaf(0, &lists.concat());
-        octrees.add(format!("octree of one leaf; {what}"), CellsQuery { cells, ray, hits });
+        octrees.add(format!("octree of one leaf; {what}"), CellsQuery { cells, ray, hits: hits.clone() });
     }
     trees.judge(trial.kit, &KD_TREE)?;
     grids.judge(trial.kit, &GRID)?;
