@@ -24,9 +24,9 @@ use raykata::rounding::exact_sum;
 use raykata::shape::Triangle;
 
 // <solution>
-use crate::{stage1_shapes::nearest_root, stage3_boxes::slab, stage4_shading::off_surface};
+use crate::{stage1_shapes::nearest_root, stage4_shading::off_surface};
 use glam::DVec2;
-use raykata::rounding::two_sum;
+use raykata::rounding::{gamma, two_sum};
 // </solution>
 
 /// The real roots of `a t² + b t + c = 0`, whose product is `c / a`. The usual formula gives 0 for
@@ -277,15 +277,43 @@ fn upper_half(product: f64) -> f64 {
 /// Source: Ize, "Robust BVH Ray Traversal", JCGT 2013.
 pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>
-    // Call the slab test of stage 3, which is conservative: it moves the exit later by 2 γ₃ |t|,
-    // the bound on its three rounding errors, and the entry earlier by as much, because a search
-    // compares the entry with the t of hits, which are rounded differently. A factor of 1 + 2 γ₃
-    // would move a negative exit the wrong way, and a fixed width of 1e-5 has no effect at
-    // coordinates of 1000 and more.
-    slab(ray, inverse_direction, bounds)
+    let (mut near, mut far) = (ray.t_min, ray.t_max);
+    for axis in 0..3 {
+        // Compute the t of both planes as in stage 3.
+        let inverse = inverse_direction[axis];
+        let t_at = |plane: f32| {
+            let distance = plane - ray.origin[axis];
+            if inverse.is_finite() { distance * inverse } else { distance / ray.direction[axis] }
+        };
+        let [low, high] = [bounds.min[axis], bounds.max[axis]].map(t_at);
+        let (enter, leave) = if inverse.is_sign_negative() { (high, low) } else { (low, high) };
+        // Move the exit later and the entry earlier by 2 γ₃ |t|. One factor is not enough: it would
+        // move a negative t the wrong way. A fixed width of 1e-5 has no effect at coordinates of
+        // 1000 and more.
+        let enter = (enter * LESS).min(enter * MORE);
+        let leave = (leave * LESS).max(leave * MORE);
+        // Intersect the intervals. The comparison is false for NaN, a ray within a face.
+        if enter > near {
+            near = enter;
+        }
+        if leave < far {
+            far = leave;
+        }
+    }
+    (near <= far).then_some((near, far))
     // <stub> todo!("compare so that NaN changes nothing; then widen the interval at both ends, on both sides of 0")
     // </solution>
 }
+
+// <solution>
+/// The factors by which `conservative_slab` moves entry and exit. An exit that is later by the error
+/// of both ends loses no box. An entry that is earlier matters to a search, which compares it with
+/// the `t` of the best hit, rounded in another way: without it 1 of 500 rays in a room of flat
+/// walls, and 2 or 3 of 500 in a stadium with a small object, find another triangle than brute
+/// force (measured).
+const MORE: f32 = 1.0 + 2.0 * gamma(3);
+const LESS: f32 = 1.0 - 2.0 * gamma(3);
+// </solution>
 
 /// The origin of a ray that leaves a surface and must not hit it again (shadow acne).
 ///

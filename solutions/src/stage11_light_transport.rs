@@ -13,20 +13,9 @@
 use glam::{Vec2, Vec3};
 use raykata::emitter::{AreaEmitter, EmitterSample, EmitterShape};
 // <solution>
-use raykata::shape::Sphere;
+use crate::stage6_distribution::around;
+use raykata::shape::{Sphere, Triangle};
 use std::f32::consts::{PI, TAU};
-// </solution>
-
-// <solution>
-/// The unit vector at the angle θ to `axis`, turned around `axis` by the fraction `turn` of a full
-/// turn. For a small angle `cos θ` is imprecise, so θ is given as `1 - cos θ`, from which `sin θ`
-/// follows without cancellation.
-fn around(axis: Vec3, one_minus_cos: f32, turn: f32) -> Vec3 {
-    let sin_theta = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
-    let (x, y) = axis.any_orthonormal_pair();
-    let (sin_phi, cos_phi) = (TAU * turn).sin_cos();
-    ((1.0 - one_minus_cos) * axis + sin_theta * (cos_phi * x + sin_phi * y)).normalize()
-}
 // </solution>
 
 /// A random direction around `normal` with the density `cos θ / π`, where θ is the angle between
@@ -131,15 +120,21 @@ fn sphere_pdf(sphere: &Sphere, two_sided: bool, from: Vec3) -> Option<f32> {
     (pdf.is_finite() && (two_sided || one_minus_cos < 2.0)).then_some(pdf)
 }
 
-/// The triangle or parallelogram of an emitter, or its sphere.
-fn flat(shape: &EmitterShape) -> Result<Flat, Sphere> {
+/// The two kinds of emitters: the area of a flat one is sampled, and the cone of a sphere.
+enum Kind {
+    Flat(Flat),
+    Sphere(Sphere),
+}
+
+fn kind_of(shape: &EmitterShape) -> Kind {
     match *shape {
-        EmitterShape::Sphere(sphere) => Err(sphere),
-        EmitterShape::Triangle(triangle) => {
-            let edges = (triangle.b - triangle.a, triangle.c - triangle.a);
-            Ok(Flat { corner: triangle.a, edges, is_triangle: true })
+        EmitterShape::Sphere(sphere) => Kind::Sphere(sphere),
+        EmitterShape::Triangle(Triangle { a, b, c }) => {
+            Kind::Flat(Flat { corner: a, edges: (b - a, c - a), is_triangle: true })
         }
-        EmitterShape::Parallelogram { corner, edges } => Ok(Flat { corner, edges, is_triangle: false }),
+        EmitterShape::Parallelogram { corner, edges } => {
+            Kind::Flat(Flat { corner, edges, is_triangle: false })
+        }
     }
 }
 // </solution>
@@ -164,8 +159,8 @@ pub fn sample_light(emitter: &AreaEmitter, from: Vec3, u: Vec2) -> Option<Emitte
     if radiance == Vec3::ZERO {
         return None;
     }
-    match flat(&shape) {
-        Ok(flat) => {
+    match kind_of(&shape) {
+        Kind::Flat(flat) => {
             // Sample the area uniformly, and convert the density to solid angle.
             let to_point = flat.sample(u) - from;
             let pdf = flat.pdf(to_point, two_sided)?;
@@ -176,7 +171,7 @@ pub fn sample_light(emitter: &AreaEmitter, from: Vec3, u: Vec2) -> Option<Emitte
                 pdf,
             })
         }
-        Err(sphere) => {
+        Kind::Sphere(sphere) => {
             let pdf = sphere_pdf(&sphere, two_sided, from)?;
             // Choose 1 - cos θ uniformly, because slices of a sphere of equal height have equal
             // area (Archimedes).
@@ -210,9 +205,9 @@ pub fn light_pdf(emitter: &AreaEmitter, from: Vec3, direction: Vec3) -> f32 {
     if radiance == Vec3::ZERO {
         return 0.0;
     }
-    let pdf = match flat(&shape) {
-        Ok(flat) => flat.hit(from, direction).and_then(|to_point| flat.pdf(to_point, two_sided)),
-        Err(sphere) => {
+    let pdf = match kind_of(&shape) {
+        Kind::Flat(flat) => flat.hit(from, direction).and_then(|to_point| flat.pdf(to_point, two_sided)),
+        Kind::Sphere(sphere) => {
             // From outside, directions in the cone pass the centre at less than the radius, and go
             // to its side.
             let to_center = sphere.center - from;

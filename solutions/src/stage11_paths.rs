@@ -242,21 +242,11 @@ pub fn paths_called_for(scene: &Scene) -> PathEffects {
     // <solution>
     // Find the channels in which anything emits light.
     let shown = scene.shown();
-    let is_lit = |color: Vec3| color.cmpne(Vec3::ZERO);
     let has = |shape: &Shown, material: usize| shape.materials.contains(&material);
     let is_shown = |material: usize| shown.iter().any(|shape| has(shape, material));
-    let mut lit = match scene.background {
-        Background::Color(color) => is_lit(color),
-        Background::Gradient(gradient) => is_lit(gradient.zenith + gradient.horizon + gradient.nadir),
-        Background::Map(map) => BVec3::splat(map.scale != 0.0),
-    };
-    for light in &scene.lights {
-        lit |= is_lit(light.radiance());
-    }
     let emission = |material: usize| is_lit(scene.materials[material].emission);
-    for material in (0..scene.materials.len()).filter(|&material| is_shown(material)) {
-        lit |= emission(material);
-    }
+    let shown_materials = (0..scene.materials.len()).filter(|&material| is_shown(material));
+    let lit = shown_materials.fold(light_from_outside(scene), |lit, material| lit | emission(material));
 
     // Diffuse rays leave the materials that reflect light of such a channel: a red light adds
     // nothing to a green wall.
@@ -289,3 +279,20 @@ pub fn paths_called_for(scene: &Scene) -> PathEffects {
     // <stub> todo!("find the channels with light; then the materials that reflect it, and the emitters they see")
     // </solution>
 }
+
+// <solution>
+/// The channels of a colour that are not 0.
+fn is_lit(color: Vec3) -> BVec3 {
+    color.cmpne(Vec3::ZERO)
+}
+
+/// The channels in which the background or a light of the scene emits light.
+fn light_from_outside(scene: &Scene) -> BVec3 {
+    let background = match scene.background {
+        Background::Color(color) => is_lit(color),
+        Background::Gradient(gradient) => is_lit(gradient.zenith + gradient.horizon + gradient.nadir),
+        Background::Map(map) => BVec3::splat(map.scale != 0.0),
+    };
+    scene.lights.iter().fold(background, |lit, light| lit | is_lit(light.radiance()))
+}
+// </solution>

@@ -199,10 +199,51 @@ pub fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &B
 ///   full sweep, unless sizes differ a millionfold.
 pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
     // <solution>
-    build_parallel(bounds, &mut Forks::new(false))
+    if bounds.is_empty() {
+        return FlatTree::default();
+    }
+    let mut primitives: Vec<_> = (0..).zip(bounds).map(|(id, one)| PrimitiveBox::new(id, one)).collect();
+    // The root comes first, and is known last.
+    let mut nodes = vec![LEAF];
+    nodes[0] = build_node(&mut primitives, 0, 0, &mut nodes);
+    FlatTree { nodes, order: primitives.iter().map(PrimitiveBox::id).collect() }
     // <stub> todo!("make a leaf or fill bins, choose a split, partition, and build both sides")
     // </solution>
 }
+
+// <solution>
+const LEAF: FlatNode = FlatNode { low: Vec3::ZERO, first: 0, high: Vec3::ZERO, count: 0 };
+
+/// The node over these primitives, of which the first is at position `first` of the finished order.
+/// All nodes below it are appended to `nodes`.
+fn build_node(
+    primitives: &mut [PrimitiveBox],
+    first: u32,
+    depth: usize,
+    nodes: &mut Vec<FlatNode>,
+) -> FlatNode {
+    // Find the box around all primitives, and the box around their centroids.
+    let (bounds, centroids) = bounds_of(primitives);
+    // Make a leaf, or divide the primitives.
+    let Some(middle) = divide(primitives, &bounds, &centroids, depth, fill_bins) else {
+        return node(&bounds, first, primitives.len());
+    };
+    // Build both sides. The two children come first, then all nodes below the left one, then those
+    // below the right one.
+    let (below, above) = primitives.split_at_mut(middle);
+    let pair = nodes.len();
+    nodes.extend([LEAF, LEAF]);
+    nodes[pair] = build_node(below, first, depth + 1, nodes);
+    nodes[pair + 1] = build_node(above, first + middle as u32, depth + 1, nodes);
+    node(&bounds, pair as u32, 0)
+}
+
+/// A leaf of `count` primitives, the first at position `first`, or an inner node whose children are
+/// at `first` and behind it.
+fn node(bounds: &BoxA, first: u32, count: usize) -> FlatNode {
+    FlatNode { low: bounds.low.into(), first, high: bounds.high.into(), count: count as u32 }
+}
+// </solution>
 
 /// Builds the tree of [`build_binned`], both sides of large nodes in parallel by [`Forks::join`].
 /// The *work* is the time on one thread, the *span* that on any number. What happens to indices
@@ -233,9 +274,8 @@ pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {
 
     // Reserve what a tree with leaves of three primitives needs, which is usual.
     let mut nodes = Vec::with_capacity(2 * bounds.len() / 3 + 1);
-    // The root comes first, and is known last.
     nodes.push(LEAF);
-    nodes[0] = build_node(&mut primitives, 0, 0, &mut nodes, forks, fork_from);
+    nodes[0] = fork_node(&mut primitives, 0, 0, &mut nodes, forks, fork_from);
     FlatTree { nodes, order: primitives.iter().map(PrimitiveBox::id).collect() }
     // <stub> todo!("build as before; where both sides are large, join them by a fork")
     // </solution>
@@ -246,12 +286,8 @@ pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {
 /// time than a fork.
 const FORK_FROM: usize = 2048;
 
-const LEAF: FlatNode = FlatNode { low: Vec3::ZERO, first: 0, high: Vec3::ZERO, count: 0 };
-
-/// The node over these primitives, of which the first is at position `first` of the finished order.
-/// All nodes below it are appended to `nodes`. From `fork_from` primitives on, the two sides of a
-/// node are built in parallel.
-fn build_node(
+/// The node of [`build_node`]. From `fork_from` primitives on, its two sides are built in parallel.
+fn fork_node(
     primitives: &mut [PrimitiveBox],
     first: u32,
     depth: usize,
@@ -259,47 +295,49 @@ fn build_node(
     forks: &mut Forks,
     fork_from: usize,
 ) -> FlatNode {
-    // Find the box around all primitives, and the box around their centroids.
-    let (bounds, centroids) = bounds_of(primitives);
-    let node =
-        |first: u32, count: u32| FlatNode { low: bounds.low.into(), first, high: bounds.high.into(), count };
-
-    // Make a leaf, or divide the primitives.
-    let Some(middle) = divide(primitives, first, &bounds, &centroids, depth, forks) else {
-        return node(first, primitives.len() as u32);
-    };
+    if primitives.len() < fork_from {
+        return build_node(primitives, first, depth, nodes);
+    }
+    // Divide the primitives. So many are never a leaf.
     let fork = Fork { first, count: primitives.len() as u32, kind: ForkKind::Children };
-    let in_parallel = primitives.len() >= fork_from;
+    let (bounds, centroids) = bounds_of(primitives);
+    let bins = |primitives: &[PrimitiveBox], grid: &BinGrid| fill_in_pieces(primitives, grid, first, forks);
+    let Some(middle) = divide(primitives, &bounds, &centroids, depth, bins) else {
+        return node(&bounds, first, primitives.len());
+    };
     let (below, above) = primitives.split_at_mut(middle);
     let first_above = first + middle as u32;
 
-    // Build both sides. The two children come first, then all nodes below the left one, then those
-    // below the right one.
+    // The left side appends its nodes to this array, the right side to one of its own.
     let pair = nodes.len();
     nodes.extend([LEAF, LEAF]);
-    if in_parallel {
-        // The left side appends its nodes to this array, the right side to one of its own.
-        let (left, (mut right, mut nodes_right)) = forks.join(
-            fork,
-            |forks| build_node(below, first, depth + 1, nodes, forks, fork_from),
-            |forks| {
-                let mut nodes = Vec::with_capacity(2 * above.len() / 3 + 1);
-                (build_node(above, first_above, depth + 1, &mut nodes, forks, fork_from), nodes)
-            },
-        );
-        // Indices start at 0 in the array of the right side: add the number of nodes in front of
-        // it.
-        let shift = nodes.len() as u32;
-        for inner in nodes_right.iter_mut().chain([&mut right]).filter(|node| !node.is_leaf()) {
-            inner.first += shift;
-        }
-        nodes.append(&mut nodes_right);
-        (nodes[pair], nodes[pair + 1]) = (left, right);
-    } else {
-        nodes[pair] = build_node(below, first, depth + 1, nodes, forks, fork_from);
-        nodes[pair + 1] = build_node(above, first_above, depth + 1, nodes, forks, fork_from);
+    let (left, (mut right, mut nodes_right)) = forks.join(
+        fork,
+        |forks| fork_node(below, first, depth + 1, nodes, forks, fork_from),
+        |forks| {
+            let mut nodes = Vec::with_capacity(2 * above.len() / 3 + 1);
+            (fork_node(above, first_above, depth + 1, &mut nodes, forks, fork_from), nodes)
+        },
+    );
+    // Indices start at 0 in the array of the right side: add the number of nodes in front of it.
+    let shift = nodes.len() as u32;
+    for inner in nodes_right.iter_mut().chain([&mut right]).filter(|node| !node.is_leaf()) {
+        inner.first += shift;
     }
-    node(pair as u32, 0)
+    nodes.append(&mut nodes_right);
+    (nodes[pair], nodes[pair + 1]) = (left, right);
+    node(&bounds, pair as u32, 0)
+}
+
+/// The bins of [`fill_bins`], of large nodes in pieces.
+fn fill_in_pieces(primitives: &[PrimitiveBox], grid: &BinGrid, first: u32, forks: &mut Forks) -> Bins {
+    let count = primitives.len();
+    if count < BIN_IN_PIECES_FROM {
+        return fill_bins(primitives, grid);
+    }
+    let pieces = primitives.chunks(count.div_ceil(BINNING_PIECES)).collect();
+    let bins = forks.each(first, count as u32, pieces, |piece| fill_bins(piece, grid));
+    bins.into_iter().fold(Bins::EMPTY, |sum, of_piece| sum_of(sum, &of_piece))
 }
 
 /// The box around all primitives, and the box around twice their centroids.
@@ -316,14 +354,13 @@ fn bounds_of(primitives: &[PrimitiveBox]) -> (BoxA, BoxA) {
 }
 
 /// Divides the primitives of a node in two and returns the number of the first side; `None` for a
-/// leaf. The first primitive is at position `first` of the finished order.
+/// leaf. `fill` sorts them into bins.
 fn divide(
     primitives: &mut [PrimitiveBox],
-    first: u32,
     bounds: &BoxA,
     centroids: &BoxA,
     depth: usize,
-    forks: &mut Forks,
+    fill: impl FnOnce(&[PrimitiveBox], &BinGrid) -> Bins,
 ) -> Option<usize> {
     let count = primitives.len();
     if count <= BLOCK {
@@ -342,14 +379,7 @@ fn divide(
         if scale.is_finite() { scale } else { 0.0 }
     });
     let grid = BinGrid { low: centroids.low, scale: scale.into(), n_bins };
-    let bins = if count < BIN_IN_PIECES_FROM {
-        fill_bins(primitives, &grid)
-    } else {
-        let pieces = primitives.chunks(count.div_ceil(BINNING_PIECES)).collect();
-        let bins = forks.each(first, count as u32, pieces, |piece| fill_bins(piece, &grid));
-        bins.into_iter().fold(Bins::EMPTY, |sum, of_piece| sum_of(sum, &of_piece))
-    };
-    let split = cheapest_split(&bins, n_bins);
+    let split = cheapest_split(&fill(primitives, &grid), n_bins);
     let Some(split) = split else { return if count <= MAX_LEAF { None } else { in_half } };
 
     // A leaf is better if it is not more expensive.

@@ -76,51 +76,26 @@ pub fn wide_closest_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> Option<Primit
 fn nearest_child(probe: &mut impl WideProbe, node: u32, t_max: f32, stack: &mut Stack) -> Option<Child> {
     let entered = probe.enter(node, t_max);
     let children = probe.children(node);
-    let mut mask = entered.mask;
-    // The key of the next child in the mask, which is then removed.
-    let mut next = || {
+    // Sort the keys of the children that the ray enters by insertion, the farthest first.
+    let (mut keys, mut n, mut mask) = ([0; 8], 0, entered.mask);
+    while mask != 0 {
         let i = mask.trailing_zeros() as usize & 7;
         mask &= mask - 1;
-        (children[i].key(entered.t[i]), mask == 0)
-    };
-    if entered.mask == 0 {
-        return None;
-    }
-    // With one child there is nothing to compare.
-    let (first, was_last) = next();
-    if was_last {
-        return Some(Child::of_key(first).0);
-    }
-    // With two children one comparison is enough.
-    let (second, was_last) = next();
-    let (mut near, far) = if first < second { (first, second) } else { (second, first) };
-    if was_last {
-        stack.push(far);
-        return Some(Child::of_key(near).0);
-    }
-    // Sort three or more by insertion, the farthest first.
-    let mut keys = [0; 8];
-    keys[0] = far;
-    let mut n = 1;
-    loop {
-        let (key, was_last) = next();
-        let other = key.max(near);
-        near = key.min(near);
+        let key = children[i].key(entered.t[i]);
         let mut place = n;
-        while place > 0 && keys[(place - 1) & 7] < other {
+        while place > 0 && keys[(place - 1) & 7] < key {
             keys[place & 7] = keys[(place - 1) & 7];
             place -= 1;
         }
-        keys[place & 7] = other;
+        keys[place & 7] = key;
         n += 1;
-        if was_last {
-            break;
-        }
     }
-    for &key in &keys[..n.min(8)] {
+    // Push all but the nearest.
+    let (nearest, others) = keys[..n.min(8)].split_last()?;
+    for &key in others {
         stack.push(key);
     }
-    Some(Child::of_key(near).0)
+    Some(Child::of_key(*nearest).0)
 }
 
 /// The blocks of a leaf, each with the number of its primitives.

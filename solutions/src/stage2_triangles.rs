@@ -142,18 +142,21 @@ pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     if determinant == 0.0 {
         return None;
     }
-    // Compute β from the vector from corner a to the ray's origin.
+    // Compute β from the vector from corner a to the ray's origin. Most rays miss, and most misses
+    // end here. NaN makes each comparison false.
     let tvec = ray.origin - triangle.a;
     let beta = tvec.dot(pvec) / determinant;
+    if !(0.0..=1.0).contains(&beta) {
+        return None;
+    }
     // Compute γ and t, which share a second cross product.
     let qvec = tvec.cross(edge1);
     let gamma = ray.direction.dot(qvec) / determinant;
+    if !(gamma >= 0.0 && beta + gamma <= 1.0) {
+        return None;
+    }
     let t = edge2.dot(qvec) / determinant;
-
-    // Reject points outside the triangle and hits outside the ray's range. NaN makes each
-    // comparison false.
-    let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
-    (inside && ray.contains(t)).then_some(TriangleHit { t, beta, gamma })
+    ray.contains(t).then_some(TriangleHit { t, beta, gamma })
     // <stub> todo!("any method that you like: Möller–Trumbore, Plücker, watertight …")
     // </solution>
 }
@@ -280,7 +283,9 @@ pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
 /// - A vertex without such a triangle gets any unit vector.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     // <solution>
-    // Start with a sum of zero for each vertex, and with a normal to fall back on.
+    // Start with a sum of zero for each vertex, and with a normal to fall back on. The lecture counts
+    // each triangle once, so the normal depends on how a face is cut into triangles; with the angle
+    // at the vertex as weight it would not (Thürmer and Wüthrich 1998).
     let mut sums = vec![Vec3::ZERO; mesh.positions.len()];
     let mut of_one_face = vec![Vec3::Z; mesh.positions.len()];
     // Add the unit normal of each triangle that has an area to its three vertices.

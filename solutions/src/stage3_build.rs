@@ -16,6 +16,7 @@ use raykata::scene::Split;
 
 // <solution>
 use crate::stage3_boxes::longest_axis;
+use std::cmp::Ordering;
 // </solution>
 
 /// Object median: order the primitives by centroid along the longest axis of the box around all of
@@ -34,9 +35,7 @@ pub fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize {
     // Move the smaller half to the front. A complete sort is not necessary. The id breaks ties, so
     // that the same scene always gives the same tree.
     let middle = primitives.len() / 2;
-    primitives.select_nth_unstable_by(middle, |p, q| {
-        p.centroid[axis].total_cmp(&q.centroid[axis]).then(p.id.cmp(&q.id))
-    });
+    primitives.select_nth_unstable_by(middle, along(axis));
     middle
     // <stub> todo!("order the primitives by centroid along the longest axis and split in half")
     // </solution>
@@ -98,7 +97,7 @@ pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
     // Find the cheapest cut of all three axes.
     let mut best: Option<Cut> = None;
     for axis in 0..3 {
-        sort_along(primitives, axis);
+        primitives.sort_unstable_by(along(axis));
 
         // Compute the areas of all right sides in one pass: area_right[i] belongs to the box around
         // primitives[i..].
@@ -131,8 +130,9 @@ pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
     if !(TRAVERSAL_COST * area + INTERSECTION_COST * cost < as_leaf) {
         return None;
     }
-    // Sort along the best axis again, because the last sort was along z.
-    sort_along(primitives, axis);
+    // Move the left side to the front. The last sort was along z, and here a selection is enough,
+    // which is linear.
+    primitives.select_nth_unstable_by(middle, along(axis));
     Some(middle)
     // <stub> todo!("find the cut with the least A(L) n(L) + A(R) n(R) over all three axes")
     // </solution>
@@ -153,9 +153,9 @@ fn bounds_of(primitives: &[PrimitiveRef]) -> Aabb {
     primitives.iter().fold(Aabb::EMPTY, |all, primitive| union(&all, &primitive.bounds))
 }
 
-/// Sorts by centroid along an axis. The id breaks ties.
-fn sort_along(primitives: &mut [PrimitiveRef], axis: usize) {
-    primitives.sort_unstable_by(|p, q| p.centroid[axis].total_cmp(&q.centroid[axis]).then(p.id.cmp(&q.id)));
+/// The order of primitives by centroid along an axis. The id breaks ties.
+fn along(axis: usize) -> impl Fn(&PrimitiveRef, &PrimitiveRef) -> Ordering {
+    move |p, q| p.centroid[axis].total_cmp(&q.centroid[axis]).then(p.id.cmp(&q.id))
 }
 // </solution>
 

@@ -111,10 +111,15 @@ pub fn fresnel_schlick(cos_theta: f32, n1: f32, n2: f32) -> f32 {
 pub fn fresnel_exact(cos_theta: f32, n1: f32, n2: f32) -> f32 {
     // <solution>
     let Some(cos_2) = cos_behind(cos_theta, n1, n2) else { return 1.0 };
-    // The reflectance of one polarisation. It is 0 / 0 if both cosines are 0, along the surface,
-    // where all light is reflected.
+    // The squared ratio is 0 / 0 if both cosines are 0, along the surface, where all light is
+    // reflected.
     let ratio = |p: f32, q: f32| if p + q > 0.0 { ((p - q) / (p + q)).powi(2) } else { 1.0 };
-    0.5 * (ratio(n1 * cos_theta, n2 * cos_2) + ratio(n1 * cos_2, n2 * cos_theta))
+    // Compute the reflectance of light whose electric field oscillates across the plane of the two
+    // rays (s), and of light that oscillates within it (p). Half of unpolarised light is of each
+    // kind. At Brewster's angle, tan θ1 = n2 / n1, the p part is 0: hence polarising sunglasses.
+    let s = ratio(n1 * cos_theta, n2 * cos_2);
+    let p = ratio(n1 * cos_2, n2 * cos_theta);
+    0.5 * (s + p)
     // <stub> todo!("the mean of the two squared ratios")
     // </solution>
 }

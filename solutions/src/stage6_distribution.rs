@@ -209,7 +209,7 @@ pub fn sample_sphere(sphere: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
 /// The unit vector at the angle θ to `axis`, turned around `axis` by the fraction `turn` of a full
 /// turn. For a small angle `cos θ` is imprecise, so θ is given as `1 - cos θ`, from which `sin θ`
 /// follows without cancellation.
-fn around(axis: Vec3, one_minus_cos: f32, turn: f32) -> Vec3 {
+pub fn around(axis: Vec3, one_minus_cos: f32, turn: f32) -> Vec3 {
     let sin_theta = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
     let (x, y) = axis.any_orthonormal_pair();
     let (sin_phi, cos_phi) = (TAU * turn).sin_cos();

@@ -30,23 +30,32 @@ use glam::DVec3;
 /// Source: Cox 1972; de Boor 1972.
 pub fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32 {
     // <solution>
-    let (first, last) = (knots[index], knots[index + degree + 1]);
-    // Return 0 outside the support. This also ends most of the recursion early.
-    if !(first <= u && u <= last) {
-        return 0.0;
-    }
-    // End the recursion: the span is half open, but the last one that is not empty is closed.
-    if degree == 0 {
+    // Fill a triangular table column by column. The column of degree 0 says which of the spans below
+    // N(index, degree) contains u: a span is half open, but the last one that is not empty is
+    // closed. N(1, 2), for example, needs
+    //
+    //     N(1, 0)
+    //             N(1, 1)
+    //     N(2, 0)         N(1, 2)
+    //             N(2, 1)
+    //     N(3, 0)
+    let is_in_span = |i: usize| {
+        let (first, last) = (knots[i], knots[i + 1]);
         let is_end = u == last && knots.last() == Some(&last);
-        return if first < last && (u < last || is_end) { 1.0 } else { 0.0 };
+        first < last && first <= u && (u < last || is_end)
+    };
+    let mut basis: Vec<f32> = (index..=index + degree).map(|i| f32::from(is_in_span(i))).collect();
+    // Blend two functions of one degree less: the factor of one rises from 0 to 1, that of the other
+    // falls. A term whose denominator is 0 is left out.
+    for p in 1..=degree {
+        for i in 0..=degree - p {
+            let k = &knots[index + i..];
+            let rising = if k[0] < k[p] { (u - k[0]) / (k[p] - k[0]) } else { 0.0 };
+            let falling = if k[1] < k[p + 1] { (k[p + 1] - u) / (k[p + 1] - k[1]) } else { 0.0 };
+            basis[i] = rising * basis[i] + falling * basis[i + 1];
+        }
     }
-    // Blend two functions of one degree less: the factor of one rises from 0 to 1, that of the
-    // other falls.
-    let (before_last, second) = (knots[index + degree], knots[index + 1]);
-    let rising = if first < before_last { (u - first) / (before_last - first) } else { 0.0 };
-    let falling = if second < last { (last - u) / (last - second) } else { 0.0 };
-    rising * bspline_basis(knots, degree - 1, index, u)
-        + falling * bspline_basis(knots, degree - 1, index + 1, u)
+    basis[0]
     // <stub> todo!("return 1 or 0 for degree 0; else blend the basis functions index and index + 1 of one degree less")
     // </solution>
 }

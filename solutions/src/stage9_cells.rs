@@ -17,7 +17,7 @@ use raykata::rounding::UNIT_ROUNDOFF;
 
 // <solution>
 use crate::stage3_traversal::keep_closest;
-use glam::DVec3;
+use glam::Vec3;
 use raykata::partition::CutPlane;
 // </solution>
 
@@ -49,32 +49,33 @@ pub struct PaddedBoxes {
 /// - The result stays within ±`f32::MAX`.
 pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     // <solution>
-    // Compute the box around all boxes that are not empty.
-    let usable = |(_, one): &(usize, &Aabb)| !one.is_empty();
-    let around = |boxes: &mut dyn Iterator<Item = &Aabb>| {
-        boxes.fold(Aabb::EMPTY, |all, one| Aabb::new(all.min.min(one.min), all.max.max(one.max)))
-    };
-    let all = around(&mut bounds.iter().enumerate().filter(usable).map(|(_, one)| one));
+    // Keep the boxes that a ray can hit.
+    let usable = (0..).zip(bounds).filter(|(_, one)| !one.is_empty());
+    let mut boxes: Vec<(u32, Aabb)> = usable.map(|(id, one)| (id, *one)).collect();
 
     // Compute the room in double precision, because the extent of huge boxes overflows in single
-    // precision.
+    // precision. A test in single precision has an error of about 2⁻²³ of the distance to the ray's
+    // origin, and cameras are usually within 32 extents.
+    let all = around(&boxes);
     let (min, max) = (all.min.as_dvec3(), all.max.as_dvec3());
-    // A test in single precision has an error of about 2⁻²³ of the distance to the ray's origin, and
-    // cameras are usually within 32 extents.
     let extent = (max - min).max_element() * (-18f64).exp2();
     let step = min.abs().max_element().max(max.abs().max_element()) * (-22f64).exp2();
     let room = extent.max(step).min(f64::from(f32::MAX)) as f32;
-    // Widen each box, and clamp its corners to finite numbers.
-    let widen = |one: &Aabb| {
-        // Infinite corners would give cells without a middle.
-        Aabb::new((one.min - room).map(|x| x.max(f32::MIN)), (one.max + room).map(|x| x.min(f32::MAX)))
-    };
-    let boxes: Vec<(u32, Aabb)> =
-        bounds.iter().enumerate().filter(usable).map(|(id, one)| (id as u32, widen(one))).collect();
-    PaddedBoxes { around: around(&mut boxes.iter().map(|(_, one)| one)), boxes }
+    // Widen each box. Infinite corners would give cells without a middle.
+    for (_, one) in &mut boxes {
+        *one = Aabb::new((one.min - room).max(Vec3::MIN), (one.max + room).min(Vec3::MAX));
+    }
+    PaddedBoxes { around: around(&boxes), boxes }
     // <stub> todo!("leave out boxes that are empty or NaN, and widen every other box a little")
     // </solution>
 }
+
+// <solution>
+/// The box around boxes with numbers.
+pub fn around(boxes: &[(u32, Aabb)]) -> Aabb {
+    boxes.iter().fold(Aabb::EMPTY, |all, (_, one)| Aabb::new(all.min.min(one.min), all.max.max(one.max)))
+}
+// </solution>
 
 /// The height of a ray above a plane is `height + rate · t`. It is at least `-room` from some `t`
 /// on, up to some `t`, always or never. On which side is a ray that runs in the plane, or starts in
@@ -202,24 +203,13 @@ pub fn near_and_far(
     if rate > 0.0 { [behind, before] } else { [before, behind] }
 }
 
-/// The face through which a ray leaves a cell.
-pub struct Exit {
-    /// The axis that the face is across.
-    pub axis: usize,
-    /// Where the ray reaches the face.
-    pub t: f64,
+/// The `t` at which a ray crosses the plane at a coordinate; infinite without a direction.
+pub fn crossing(origin: f64, direction: f64, plane: f64) -> f64 {
+    if direction == 0.0 { f64::INFINITY } else { (plane - origin) / direction }
 }
 
-/// Finds the first of the three faces at the coordinates `far`, which are the faces of a cell on
-/// the sides to which the ray goes. For a ray without a direction `t` is infinite.
-pub fn first_exit(origin: DVec3, direction: DVec3, far: DVec3) -> Exit {
-    let mut exit = Exit { axis: 0, t: f64::INFINITY };
-    for axis in 0..3 {
-        let t = (far[axis] - origin[axis]) / direction[axis];
-        if direction[axis] != 0.0 && t < exit.t {
-            exit = Exit { axis, t };
-        }
-    }
-    exit
+/// The axis of the first of the planes that a ray crosses at `t[axis]`.
+pub fn first_axis(t: [f64; 3]) -> usize {
+    (1..3).fold(0, |first, axis| if t[axis] < t[first] { axis } else { first })
 }
 // </solution>

@@ -17,7 +17,7 @@ use raykata::partition::{Cell, Cells, Grid, MOST_CELLS_ALONG};
 use raykata::ray::Ray;
 
 // <solution>
-use crate::stage9_cells::{Exit, first_exit};
+use crate::stage9_cells::{crossing, first_axis};
 // </solution>
 
 /// Coarse grids skip little, fine ones take many steps. A rule: about `density · n_primitives`
@@ -155,6 +155,13 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
     let start = (origin + enter * direction).clamp(bounds.min, bounds.max);
     let mut cell = UVec3::from_array([0, 1, 2].map(|axis| index(grid, axis, start[axis])));
 
+    // Compute where the ray crosses the far plane of the cell on each axis. Compute t from the
+    // index of the cell: a sum of steps accumulates rounding errors.
+    let cross = |axis: usize, cell: UVec3| {
+        let far = grid.plane(axis, cell[axis] + u32::from(direction[axis] > 0.0));
+        crossing(origin[axis], direction[axis], far)
+    };
+    let mut exits = [0, 1, 2].map(|axis| cross(axis, cell));
     let mut ray = *ray;
     let mut best = None;
     loop {
@@ -163,22 +170,22 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
         probe.visit(number);
         test_cell(grid.primitives(number), probe, &mut ray, &mut best);
 
-        // Compute t from the index of the cell: a sum of steps accumulates rounding errors.
-        // Find the face through which the ray leaves the cell.
-        let far = |axis: usize| grid.plane(axis, cell[axis] + u32::from(direction[axis] > 0.0));
-        let Exit { axis, t: exit } = first_exit(origin, direction, DVec3::new(far(0), far(1), far(2)));
-        // Stop at the end of the grid or of the ray, or if the best hit lies before the exit.
+        // The ray leaves the cell through the first of the three planes. Stop at the end of the grid
+        // or of the ray, or if the best hit lies before the exit.
+        let axis = first_axis(exits);
+        let exit = exits[axis];
         let at_the_end =
             if direction[axis] > 0.0 { cell[axis] + 1 == grid.resolution[axis] } else { cell[axis] == 0 };
         if exit.is_infinite() || exit > leave || at_the_end || may_stop_before(&best, exit) {
             return best;
         }
-        // Step across the face.
+        // Step across the face. Only this axis gets another plane.
         if direction[axis] > 0.0 {
             cell[axis] += 1;
         } else {
             cell[axis] -= 1;
         }
+        exits[axis] = cross(axis, cell);
     }
     // <stub> todo!("test the cell's primitives, find the nearest of its three far planes, and step across it")
     // </solution>

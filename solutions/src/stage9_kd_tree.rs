@@ -52,6 +52,8 @@ pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> Kd
 }
 
 // <solution>
+use crate::stage9_cells::around;
+
 struct Rules {
     heuristics: KdHeuristics,
     leaf_size: usize,
@@ -139,9 +141,7 @@ fn sides(boxes: &[(u32, Aabb)], Cut { axis, position }: Cut) -> Sides {
 
 /// The cut that removes the widest empty margin, if it is wider than a tenth of the cell.
 fn widest_margin(boxes: &[(u32, Aabb)], cell: &Aabb) -> Option<Cut> {
-    // Compute the box around the primitives.
-    let around =
-        boxes.iter().fold(Aabb::EMPTY, |all, (_, one)| Aabb::new(all.min.min(one.min), all.max.max(one.max)));
+    let around = around(boxes);
     let mut widest = (0.1, None);
     for axis in 0..3 {
         let [low, high] = [cell.min[axis], cell.max[axis]].map(f64::from);
@@ -171,27 +171,38 @@ fn position(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeur
         return Some(middle).filter(inside);
     }
 
-    // Try the middle between neighbouring ends of boxes: counts change only at these ends, and a
-    // plane between them touches no box.
-    let sorted = |side: fn(&Aabb) -> glam::Vec3| {
-        let mut sorted: Vec<f32> = boxes.iter().map(|(_, one)| side(one)[axis]).collect();
-        sorted.sort_by(f32::total_cmp);
-        sorted
-    };
-    let (begins, ends) = (sorted(|one| one.min), sorted(|one| one.max));
-    let mut edges: Vec<f32> = begins.iter().chain(&ends).copied().collect();
-    edges.sort_by(f32::total_cmp);
-    let gaps = edges.windows(2).map(|pair| midpoint(pair[0], pair[1]));
-
-    // Take the plane with the lowest cost; of equal ones the one nearest to the middle of the cell.
-    let cost = |at: f32| {
-        let n_left = begins.partition_point(|begin| *begin <= at);
-        let n_right = boxes.len() - ends.partition_point(|end| *end < at);
+    // Compute the cost of a plane from the numbers of boxes on its two sides.
+    let cost = |n_left: usize, n_right: usize| {
         let balance = if heuristics.balanced_counts { n_left.abs_diff(n_right) } else { 0 };
         balance + if heuristics.few_straddlers { n_left + n_right - boxes.len() } else { 0 }
     };
-    let off = |at: f32| (f64::from(at) - f64::from(middle)).abs();
-    gaps.chain([middle]).filter(inside).min_by(|&p, &q| cost(p).cmp(&cost(q)).then(off(p).total_cmp(&off(q))))
+    // Try the middle of the cell first: of equal planes the one nearest to it wins.
+    let Sides { n_left, n_right, .. } = sides(boxes, Cut { axis, position: middle });
+    let mut best = inside(&middle).then_some((cost(n_left, n_right), 0.0, middle));
+
+    // Sort where boxes begin and end: counts change only there. Begins come first at equal
+    // coordinates, so that a plane between them and the ends touches all of these boxes.
+    let mut edges: Vec<(f32, bool)> =
+        boxes.iter().flat_map(|(_, one)| [(one.min[axis], false), (one.max[axis], true)]).collect();
+    edges.sort_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
+    // Move a plane from edge to edge. Behind a begin one more box is on the left, behind an end one
+    // less on the right.
+    let (mut n_left, mut n_right) = (0, boxes.len());
+    for pair in edges.windows(2) {
+        let [(low, is_end), (high, next_is_end)] = [pair[0], pair[1]];
+        if is_end {
+            n_right -= 1
+        } else {
+            n_left += 1
+        }
+        let at = midpoint(low, high);
+        let is_between = (low < at && at < high) || (low == high && !is_end && next_is_end);
+        let this = (cost(n_left, n_right), (f64::from(at) - f64::from(middle)).abs(), at);
+        if is_between && inside(&at) && best.is_none_or(|best| (this.0, this.1) < (best.0, best.1)) {
+            best = Some(this);
+        }
+    }
+    best.map(|(_, _, at)| at)
 }
 // </solution>
 

@@ -17,7 +17,7 @@ use raykata::partition::{Cell, Cells, Octree, OctreeNode};
 use raykata::ray::Ray;
 
 // <solution>
-use crate::stage9_cells::{Exit, first_exit};
+use crate::stage9_cells::{crossing, first_axis};
 use crate::stage9_octree::octant_at;
 // </solution>
 
@@ -60,7 +60,9 @@ pub fn closest_hit_by_neighbours(octree: &Octree, probe: &mut impl Cells, ray: &
         // Find the face through which the ray leaves the leaf. Stop at the end of the ray, or if
         // the best hit lies before.
         let far = DVec3::select(direction.cmpgt(DVec3::ZERO), cell.max, cell.min);
-        let Exit { axis, t: exit } = first_exit(origin, direction, far);
+        let exits = [0, 1, 2].map(|axis| crossing(origin[axis], direction[axis], far[axis]));
+        let axis = first_axis(exits);
+        let exit = exits[axis];
         if exit.is_infinite() || exit > leave || may_stop_before(&best, exit) {
             break;
         }

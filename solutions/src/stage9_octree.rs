@@ -20,7 +20,7 @@ use raykata::partition::{Cell, Cells, ListGrowth, Octree, OctreeNode};
 use raykata::ray::Ray;
 
 // <solution>
-use crate::stage9_cells::{Exit, first_exit};
+use crate::stage9_cells::{ROUNDING, crossing, first_axis, part_above};
 // </solution>
 
 /// Makes a cube of the box around all primitives, and divides every cell with too many of them into
@@ -117,8 +117,9 @@ pub fn closest_hit_by_cells(octree: &Octree, probe: &mut impl Cells, ray: &Ray) 
 
         // Find the face through which the ray leaves the leaf.
         let far = DVec3::select(direction.cmpgt(DVec3::ZERO), cell.max, cell.min);
-        let Exit { axis, t: exit } = first_exit(origin, direction, far);
-        let face = far[axis];
+        let exits = [0, 1, 2].map(|axis| crossing(origin[axis], direction[axis], far[axis]));
+        let axis = first_axis(exits);
+        let (exit, face) = (exits[axis], far[axis]);
         // Stop at the end of the root cell or of the ray, or if the best hit lies before the exit.
         let outside = if direction[axis] > 0.0 { face == root.max[axis] } else { face == root.min[axis] };
         if exit.is_infinite() || exit > leave || outside || may_stop_before(&best, exit) {
@@ -174,57 +175,59 @@ pub fn closest_hit(octree: &Octree, probe: &mut impl Cells, ray: &Ray) -> Option
         return None;
     }
     let root = Cell::new(&octree.bounds);
-    span(ray, &root)?;
+    let part = span(ray, &root)?;
     let mut ray = *ray;
     let mut best = None;
-    search(octree, 0, &root, probe, &mut ray, &mut best);
+    search(octree, (0, root), part, probe, &mut ray, &mut best);
     best
     // <stub> todo!("sort the octants by where the ray enters them, and search them in that order")
     // </solution>
 }
 
 // <solution>
-/// An octant that the ray enters at `t`.
-#[derive(Clone, Copy)]
-struct Entered {
-    t: f64,
-    node: u32,
-    cell: Cell,
-}
-
+/// Searches below `node` with its cell, in which the ray is for `part`.
 fn search(
     octree: &Octree,
-    node: u32,
-    cell: &Cell,
+    (node, cell): (u32, Cell),
+    part: (f64, f64),
     probe: &mut impl Cells,
     ray: &mut Ray,
     best: &mut Option<PrimitiveHit>,
 ) {
+    // Stop if the best hit lies before this node.
+    if may_stop_before(best, part.0) {
+        return;
+    }
     probe.visit(node);
-    match octree.nodes[node as usize] {
-        OctreeNode::Leaf { first, count } => test_cell(octree.primitives(first, count), probe, ray, best),
-        OctreeNode::Inner { first } => {
-            // Collect the octants that the ray enters.
-            let mut entered = [Entered { t: 0.0, node: first, cell: *cell }; 8];
-            let mut n_entered = 0;
-            for octant in 0..8 {
-                let cell = cell.octant(octant);
-                if let Some((t, _)) = span(ray, &cell) {
-                    entered[n_entered] = Entered { t, node: first + octant as u32, cell };
-                    n_entered += 1;
-                }
-            }
-            // Sort them by entry. The sort is stable, so octants with the same entry stay in the
-            // order of their numbers.
-            entered[..n_entered].sort_by(|p, q| p.t.total_cmp(&q.t));
-            // Search them in this order, and stop where the best hit lies before an octant.
-            for octant in &entered[..n_entered] {
-                if may_stop_before(best, octant.t) {
-                    break;
-                }
-                search(octree, octant.node, &octant.cell, probe, ray, best);
-            }
+    let first = match octree.nodes[node as usize] {
+        OctreeNode::Leaf { first, count } => {
+            return test_cell(octree.primitives(first, count), probe, ray, best);
+        }
+        OctreeNode::Inner { first } => first,
+    };
+    // Find the parts of the ray on both sides of the three middle planes. They are enough for all
+    // eight octants, each of which is on one side of each plane.
+    let (origin, direction, middle) = (ray.origin.as_dvec3(), ray.direction.as_dvec3(), cell.middle());
+    let sides = [0, 1, 2].map(|axis| {
+        let (height, rate) = (origin[axis] - middle[axis], direction[axis]);
+        let room = ROUNDING * height.abs();
+        [part_above(-height, -rate, room, part), part_above(height, rate, room, part)]
+    });
+    // Visit the octants from front to back, without sorting: a ray that ascends along all axes
+    // passes them in the order of their numbers, and each axis along which it descends exchanges its
+    // two sides.
+    let descends: usize = (0..3).map(|axis| usize::from(direction[axis] < 0.0) << axis).sum();
+    for octant in (0..8).map(|i| i ^ descends) {
+        let Some([x, y, z]) = sides_of(octant, &sides) else { continue };
+        let part = (x.0.max(y.0).max(z.0), x.1.min(y.1).min(z.1));
+        if part.0 <= part.1 {
+            search(octree, (first + octant as u32, cell.octant(octant)), part, probe, ray, best);
         }
     }
+}
+
+/// The parts of a ray on the three sides on which an octant lies; `None` if it is never on one.
+fn sides_of(octant: usize, sides: &[[Option<(f64, f64)>; 2]; 3]) -> Option<[(f64, f64); 3]> {
+    Some([sides[0][octant & 1]?, sides[1][octant >> 1 & 1]?, sides[2][octant >> 2]?])
 }
 // </solution>

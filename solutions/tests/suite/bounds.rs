@@ -2,19 +2,20 @@
 //! counted; no clock is read.
 
 use super::adversarial::{Hard, hard_lists};
+use super::partitions::{SceneProbe, Thing, Things};
 use glam::Vec3;
 use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, Contents, DEEPEST_SPLIT, PrimitiveHit, Probe};
+use raykata::bvh::{Bvh, DEEPEST_SPLIT, PrimitiveHit};
 use raykata::partition::{
-    Bsp, BspNode, Cells, KdHeuristics, KdNode, KdTree, MOST_REFERENCES, Octree, OctreeNode, PolygonBsp,
+    Bsp, BspNode, KdHeuristics, KdNode, KdTree, MOST_REFERENCES, Octree, OctreeNode, PolygonBsp,
 };
 use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::shape::Triangle;
 use solutions::{
-    stage2_triangles, stage3_boxes, stage3_build, stage3_traversal, stage9_bsp, stage9_kd_tree,
-    stage9_neighbours, stage9_octree, stage9_polygon_bsp,
+    stage2_triangles, stage3_build, stage3_traversal, stage9_bsp, stage9_kd_tree, stage9_neighbours,
+    stage9_octree, stage9_polygon_bsp,
 };
 
 /// Triangles per list. `N=50000 cargo test -p solutions --test suite bounds` takes more.
@@ -28,48 +29,10 @@ const LEAF_SIZE: usize = 4;
 const OCTREE_DEPTH: usize = 20;
 
 /// The search of a structure.
-type Search<'a> = &'a dyn Fn(&mut Counting<'_>, &Ray) -> Option<PrimitiveHit>;
+type Search<'a> = &'a dyn Fn(&mut SceneProbe<'_>, &Ray) -> Option<PrimitiveHit>;
 
-/// Tests rays against triangles, and counts.
-struct Counting<'a> {
-    triangles: &'a [Triangle],
-    bvh: &'a Bvh,
-    n_visits: usize,
-    n_tests: usize,
-}
-
-impl Counting<'_> {
-    fn test(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
-        self.n_tests += 1;
-        stage2_triangles::triangle_choice(ray, &self.triangles[primitive as usize]).map(|hit| hit.t)
-    }
-}
-
-impl Cells for Counting<'_> {
-    fn visit(&mut self, _: u32) {
-        self.n_visits += 1;
-    }
-    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
-        self.test(primitive, ray)
-    }
-}
-
-impl Probe for Counting<'_> {
-    fn open(&mut self, node: u32) -> Contents {
-        self.n_visits += 1;
-        self.bvh.nodes[node as usize].contents
-    }
-    fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
-        let bounds = &self.bvh.nodes[node as usize].bounds;
-        stage3_boxes::slab(ray, ray.direction.recip(), bounds).map(|(enter, _)| enter)
-    }
-    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
-        self.test(primitive, ray)
-    }
-}
-
-fn boxes(hard: &Hard) -> Vec<Aabb> {
-    hard.triangles.iter().map(stage3_boxes::triangle_bounds).collect()
+fn things(hard: &Hard) -> Things {
+    Things(hard.triangles.iter().copied().map(Thing::Tile).collect())
 }
 
 /// Rays at the triangles, from a distance of about three times their size.
@@ -100,13 +63,13 @@ fn judge(
     assert!(n_nodes <= most_nodes, "{what} over {n} {name}: {n_nodes} nodes, more than {most_nodes}");
     let most = MOST_REFERENCES * n;
     assert!(n_references <= most, "{what} over {n} {name}: {n_references} references, more than {most}");
+    let things = things(hard);
     for ray in rays(&hard.triangles) {
-        let counting = || Counting { triangles: &hard.triangles, bvh, n_visits: 0, n_tests: 0 };
-        let mut probe = counting();
+        let mut probe = SceneProbe::new(&things, bvh);
         let found = search(&mut probe, &ray);
-        assert!(probe.n_visits <= n_nodes, "{what} over {name}: {} visits, {ray:?}", probe.n_visits);
-        assert!(probe.n_tests <= n_references, "{what} over {name}: {} tests, {ray:?}", probe.n_tests);
-        let expected = stage2_triangles::brute_force(n as u32, &mut counting(), &ray);
+        assert!(probe.visits <= n_nodes as u64, "{what} over {name}: {} visits, {ray:?}", probe.visits);
+        assert!(probe.tests <= n_references as u64, "{what} over {name}: {} tests, {ray:?}", probe.tests);
+        let expected = stage2_triangles::brute_force(n as u32, &mut SceneProbe::new(&things, bvh), &ray);
         assert_eq!(found, expected, "{what} over {name}, {ray:?}");
     }
 }
@@ -116,12 +79,12 @@ fn hierarchies_over_hard_triangles_are_shallow() {
     for hard in hard_lists(n_triangles()) {
         let n = hard.triangles.len();
         for split in Split::ALL {
-            let bvh = stage3_build::build(&boxes(&hard), split, LEAF_SIZE);
+            let bvh = stage3_build::build(&things(&hard).boxes(), split, LEAF_SIZE);
             let most = DEEPEST_SPLIT + n.next_power_of_two().ilog2() as usize + 1;
             let depth = bvh.depth();
             assert!(depth <= most, "{split:?} over {n} {}: {depth} levels, more than {most}", hard.name);
             let search =
-                |probe: &mut Counting<'_>, ray: &Ray| stage3_traversal::closest_hit(&bvh, probe, ray);
+                |probe: &mut SceneProbe<'_>, ray: &Ray| stage3_traversal::closest_hit(&bvh, probe, ray);
             let what = format!("a hierarchy by {split:?}");
             judge(&hard, &bvh, &what, (bvh.nodes.len(), 2 * n - 1), bvh.order.len(), &search);
         }
@@ -137,20 +100,20 @@ fn most_nodes(n: usize, n_children: usize, depth: usize) -> usize {
 #[test]
 fn octrees_over_hard_triangles_are_small() {
     for hard in hard_lists(n_triangles()) {
-        let octree: Octree = stage9_octree::build(&boxes(&hard), LEAF_SIZE, OCTREE_DEPTH);
+        let octree: Octree = stage9_octree::build(&things(&hard).boxes(), LEAF_SIZE, OCTREE_DEPTH);
         let n_references = octree.items.len();
-        let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_octree::closest_hit(&octree, probe, ray);
+        let search = |probe: &mut SceneProbe<'_>, ray: &Ray| stage9_octree::closest_hit(&octree, probe, ray);
         let nodes = (octree.nodes.len(), most_nodes(hard.triangles.len(), 8, OCTREE_DEPTH));
         judge(&hard, &Bvh::default(), "an octree", nodes, n_references, &search);
         // The search by neighbours visits each node at most once.
-        let by_neighbours = |probe: &mut Counting<'_>, ray: &Ray| {
+        let by_neighbours = |probe: &mut SceneProbe<'_>, ray: &Ray| {
             stage9_neighbours::closest_hit_by_neighbours(&octree, probe, ray)
         };
         judge(&hard, &Bvh::default(), "an octree, by neighbours,", nodes, n_references, &by_neighbours);
         // The search by cells visits the nodes above a leaf again for each leaf.
         let leaves = octree.nodes.iter().filter(|node| matches!(node, OctreeNode::Leaf { .. })).count();
         let by_cells =
-            |probe: &mut Counting<'_>, ray: &Ray| stage9_octree::closest_hit_by_cells(&octree, probe, ray);
+            |probe: &mut SceneProbe<'_>, ray: &Ray| stage9_octree::closest_hit_by_cells(&octree, probe, ray);
         let n_visits = leaves * octree.depth();
         judge(&hard, &Bvh::default(), "an octree, by cells,", (n_visits, n_visits), n_references, &by_cells);
     }
@@ -173,9 +136,10 @@ fn kd_trees_over_hard_triangles_are_small() {
             without(|all| all.cut_off_empty_space = false),
             without(|all| all.stop_at_overlap = false),
         ] {
-            let tree = stage9_kd_tree::build(&boxes(&hard), &heuristics, LEAF_SIZE);
+            let tree = stage9_kd_tree::build(&things(&hard).boxes(), &heuristics, LEAF_SIZE);
             let n = hard.triangles.len();
-            let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_kd_tree::closest_hit(&tree, probe, ray);
+            let search =
+                |probe: &mut SceneProbe<'_>, ray: &Ray| stage9_kd_tree::closest_hit(&tree, probe, ray);
             let what = format!("a kd-tree with {heuristics:?}");
             let nodes = (tree.nodes.len(), most_nodes(n, 2, KdTree::most_depth(n)));
             judge(&hard, &Bvh::default(), &what, nodes, tree.items.len(), &search);
@@ -186,15 +150,16 @@ fn kd_trees_over_hard_triangles_are_small() {
 #[test]
 fn bsp_trees_over_hard_triangles_are_small() {
     for hard in hard_lists(n_triangles()) {
-        let hulls: Vec<Vec<Vec3>> = hard.triangles.iter().map(|t| vec![t.a, t.b, t.c]).collect();
+        let hulls = things(&hard).hulls();
         let depth = KdTree::most_depth(hulls.len());
         let bsp: Bsp = stage9_bsp::build(&hulls, LEAF_SIZE, depth);
-        let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_bsp::closest_hit(&bsp, probe, ray);
+        let search = |probe: &mut SceneProbe<'_>, ray: &Ray| stage9_bsp::closest_hit(&bsp, probe, ray);
         let nodes = (bsp.nodes.len(), most_nodes(hulls.len(), 2, depth));
         judge(&hard, &Bvh::default(), "a BSP tree", nodes, bsp.items.len(), &search);
         let depth = 2 * depth;
         let bsp: PolygonBsp = stage9_polygon_bsp::build(&hulls, LEAF_SIZE, depth);
-        let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_polygon_bsp::closest_hit(&bsp, probe, ray);
+        let search =
+            |probe: &mut SceneProbe<'_>, ray: &Ray| stage9_polygon_bsp::closest_hit(&bsp, probe, ray);
         let nodes = (bsp.nodes.len(), most_nodes(hulls.len(), 2, depth));
         judge(&hard, &Bvh::default(), "a BSP tree of polygons", nodes, bsp.items.len(), &search);
     }

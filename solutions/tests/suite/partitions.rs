@@ -11,7 +11,7 @@ use raykata::scene::Split;
 use raykata::shape::{Sphere, Triangle};
 use solutions::{
     stage1_shapes, stage2_triangles, stage3_boxes, stage3_build, stage9_bsp, stage9_cells, stage9_coherence,
-    stage9_grid, stage9_kd_tree, stage9_neighbours, stage9_octree,
+    stage9_grid, stage9_kd_tree, stage9_neighbours, stage9_octree, stage10_stability,
 };
 
 /// The number of rays per scene. `RAYS=1000000 cargo test --release -p solutions --test suite partitions --
@@ -20,15 +20,15 @@ fn n_rays() -> u64 {
     std::env::var("RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1500)
 }
 
-enum Thing {
+pub enum Thing {
     Tile(Triangle),
     Sphere(Sphere),
 }
 
-struct Things(Vec<Thing>);
+pub struct Things(pub Vec<Thing>);
 
 impl Things {
-    fn boxes(&self) -> Vec<Aabb> {
+    pub fn boxes(&self) -> Vec<Aabb> {
         let bounds = |thing: &Thing| match thing {
             Thing::Tile(tile) => stage3_boxes::triangle_bounds(tile),
             Thing::Sphere(sphere) => stage3_boxes::sphere_bounds(sphere),
@@ -36,7 +36,7 @@ impl Things {
         self.0.iter().map(bounds).collect()
     }
 
-    fn hulls(&self) -> Vec<Vec<Vec3>> {
+    pub fn hulls(&self) -> Vec<Vec<Vec3>> {
         let hull = |thing: &Thing| match thing {
             Thing::Tile(Triangle { a, b, c }) => vec![*a, *b, *c],
             Thing::Sphere(sphere) => corners(&stage3_boxes::sphere_bounds(sphere)),
@@ -45,16 +45,22 @@ impl Things {
     }
 }
 
-/// Tests rays against things, in cells or in boxes of a hierarchy.
+/// Tests rays against things, in cells or in boxes of a hierarchy, and counts.
 #[derive(Clone, Copy)]
-struct SceneProbe<'a> {
+pub struct SceneProbe<'a> {
     things: &'a Things,
     bvh: &'a Bvh,
-    visits: u64,
+    pub visits: u64,
+    pub tests: u64,
 }
 
-impl SceneProbe<'_> {
-    fn meet(&self, primitive: u32, ray: &Ray) -> Option<f32> {
+impl<'a> SceneProbe<'a> {
+    pub fn new(things: &'a Things, bvh: &'a Bvh) -> SceneProbe<'a> {
+        SceneProbe { things, bvh, visits: 0, tests: 0 }
+    }
+
+    fn meet(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.tests += 1;
         match &self.things.0[primitive as usize] {
             Thing::Tile(tile) => stage2_triangles::triangle_choice(ray, tile).map(|hit| hit.t),
             Thing::Sphere(sphere) => stage1_shapes::sphere_algebraic(ray, sphere.center, sphere.radius),
@@ -73,11 +79,12 @@ impl Cells for SceneProbe<'_> {
 
 impl Probe for SceneProbe<'_> {
     fn open(&mut self, node: u32) -> Contents {
+        self.visits += 1;
         self.bvh.nodes[node as usize].contents
     }
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         let bounds = &self.bvh.nodes[node as usize].bounds;
-        stage3_boxes::slab(ray, ray.direction.recip(), bounds).map(|(enter, _)| enter)
+        stage10_stability::conservative_slab(ray, ray.direction.recip(), bounds).map(|(enter, _)| enter)
     }
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         self.meet(primitive, ray)
@@ -153,7 +160,7 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
     let mut visits = [0; 8];
     for case in 0..n_rays() {
         let ray = ray(&mut random, &things, size, at);
-        let mut asked = SceneProbe { things: &things, bvh: &bvh, visits: 0 };
+        let mut asked = SceneProbe::new(&things, &bvh);
         let expected = stage2_triangles::brute_force(boxes.len() as u32, &mut asked, &ray);
         let near = |asked: &mut SceneProbe<'_>, ray: &Ray| stage9_kd_tree::closest_hit(&trees[0], asked, ray);
         let mut judge =
@@ -251,7 +258,7 @@ fn room_for_rounding_costs_next_to_no_visits() {
         let ray = ray(&mut random, &things, 1.0, Vec3::ZERO);
         let mut entries = vec![None; tree.nodes.len()];
         tree.walk(usize::MAX, |node, cell, _| entries[node as usize] = entry(&ray, &cell));
-        let asked = SceneProbe { things: &things, bvh: &bvh, visits: 0 };
+        let asked = SceneProbe::new(&things, &bvh);
         let mut probe = Saved { asked, entries, best: f64::INFINITY, saved: 0 };
         stage9_kd_tree::closest_hit(&tree, &mut probe, &ray);
         visits += probe.asked.visits;

@@ -15,8 +15,8 @@ use raykata::wide::{
     BLOCK, Child, ChildContents, FlatTree, Fork, Forks, LARGEST, MAX_LEAF, NO_PRIMITIVE, TriangleBlock,
     WideNode, WideTree,
 };
-use solutions::stage3_boxes::slab;
 use solutions::stage3_build::build;
+use solutions::stage10_stability::conservative_slab as slab;
 use solutions::stage10_stability::watertight;
 use solutions::stage12_build::{build_binned, build_parallel};
 use solutions::stage12_wide::{collapse, flatten};

@@ -249,23 +249,36 @@ pub(super) fn build_binned_is_not_too_deep(trial: &Trial<'_>) -> CheckResult {
     let corner = |i: i32| Aabb::new(Vec3::ZERO, Vec3::splat(x * 1.35f32.powi(i)));
     let what = "200 boxes with a common corner, each 1.35 times as large as the one before";
     build_of(trial, what, (0..200).map(corner).collect())?;
-    // A split across an axis separates four points at most, because the next one has a sixteenth of the coordinate. Without a
-    // limit, the tree has about 150 levels.
-    let point = |i: i32| {
-        let at = x * 2f32.powi(60 - i / 3) * Vec3::AXES[i as usize % 3];
-        Aabb::new(at, at)
-    };
-    let what = "600 points on the three axes, each at half the distance of the one before";
-    let points: Vec<Aabb> = (0..600).map(point).collect();
-    build_of(trial, what, points.clone())?;
     // On the other side of the origin, the many points are the second side of each split.
-    let mirrored = |points: &[Aabb]| points.iter().map(|point| Aabb::new(-point.max, -point.min)).collect();
+    let points = points_on_axes(x);
+    build_of(
+        trial,
+        "600 points on the three axes, each at half the distance of the one before",
+        points.clone(),
+    )?;
     build_of(trial, "these points on the other side of the origin", mirrored(&points))?;
-    // With so many points at the origin, each of these splits is one of a large node, which a student may fork. All costs are
-    // finite: the largest 60 points are left out.
-    let crowd = [&points[60..], &vec![Aabb::new(Vec3::ZERO, Vec3::ZERO); 4000]].concat();
-    build_of(trial, "540 of these points, and 4000 at the origin", crowd.clone())?;
-    build_of(trial, "4540 such points on the other side of the origin", mirrored(&crowd))
+    let [crowd, other] = crowds(x);
+    build_of(trial, "540 of these points, and 4000 at the origin", crowd)?;
+    build_of(trial, "4540 such points on the other side of the origin", other)
+}
+
+/// 600 points. A split across an axis separates four at most, because the next one has a sixteenth of the coordinate. Without a
+/// limit, the tree has about 150 levels.
+fn points_on_axes(x: f32) -> Vec<Aabb> {
+    let at = |i: i32| x * 2f32.powi(60 - i / 3) * Vec3::AXES[i as usize % 3];
+    (0..600).map(at).map(|at| Aabb::new(at, at)).collect()
+}
+
+fn mirrored(points: &[Aabb]) -> Vec<Aabb> {
+    points.iter().map(|point| Aabb::new(-point.max, -point.min)).collect()
+}
+
+/// 540 of these points with 4000 at the origin, so that each of the splits is one of a large node, which a student may fork; and
+/// their mirror images. All costs are finite: the largest 60 points are left out.
+pub(super) fn crowds(x: f32) -> [Vec<Aabb>; 2] {
+    let crowd = [&points_on_axes(x)[60..], &[Aabb::new(Vec3::ZERO, Vec3::ZERO); 4000]].concat();
+    let other = mirrored(&crowd);
+    [crowd, other]
 }
 
 pub(super) fn build_binned_isolates_what_is_not_a_number(trial: &Trial<'_>) -> CheckResult {

@@ -1,6 +1,6 @@
 //! `build_parallel`: the tree, and the work and the span that follow from the log of its forks.
 
-use super::builds::judge_tree;
+use super::builds::{crowds, judge_tree};
 use super::scenes::scenes;
 use super::trees::{broken_by, fault, from_leaves};
 use checks::Trial;
@@ -19,6 +19,7 @@ fn cloud(seed: u64, n: usize) -> Vec<Aabb> {
 pub(super) fn build_parallel_gives_the_same_tree(trial: &Trial<'_>) -> CheckResult {
     let mut sets = vec![cloud(trial.seed, 6), Vec::new(), cloud(trial.seed, 1), cloud(trial.seed, 10_000)];
     sets.push(scenes().swap_remove(2).1);
+    sets.extend(crowds(trial.varied(1.0, 0.25..8f32)));
     let alone = trial.kit.build_binned(&sets);
     let answers = trial.kit.build_parallel(&sets);
     let judge = |((boxes, alone), forked): ((&Vec<Aabb>, &FlatTree), &ForkedTree)| {
