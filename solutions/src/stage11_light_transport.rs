@@ -60,6 +60,10 @@ struct Flat {
 }
 
 impl Flat {
+    fn from(Triangle { a, b, c }: Triangle) -> Flat {
+        Flat { corner: a, edges: (b - a, c - a), is_triangle: true }
+    }
+
     /// The unit normal on the front, and the area.
     fn normal_and_area(&self) -> (Vec3, f32) {
         let cross = self.edges.0.cross(self.edges.1);
@@ -119,24 +123,6 @@ fn sphere_pdf(sphere: &Sphere, two_sided: bool, from: Vec3) -> Option<f32> {
     let pdf = 1.0 / (TAU * one_minus_cos);
     (pdf.is_finite() && (two_sided || one_minus_cos < 2.0)).then_some(pdf)
 }
-
-/// The two kinds of emitters: the area of a flat one is sampled, and the cone of a sphere.
-enum Kind {
-    Flat(Flat),
-    Sphere(Sphere),
-}
-
-fn kind_of(shape: &EmitterShape) -> Kind {
-    match *shape {
-        EmitterShape::Sphere(sphere) => Kind::Sphere(sphere),
-        EmitterShape::Triangle(Triangle { a, b, c }) => {
-            Kind::Flat(Flat { corner: a, edges: (b - a, c - a), is_triangle: true })
-        }
-        EmitterShape::Parallelogram { corner, edges } => {
-            Kind::Flat(Flat { corner, edges, is_triangle: false })
-        }
-    }
-}
 // </solution>
 
 /// A random point of `emitter`, seen from `from`. A piece dA of the light fills the solid angle
@@ -159,19 +145,17 @@ pub fn sample_light(emitter: &AreaEmitter, from: Vec3, u: Vec2) -> Option<Emitte
     if radiance == Vec3::ZERO {
         return None;
     }
-    match kind_of(&shape) {
-        Kind::Flat(flat) => {
-            // Sample the area uniformly, and convert the density to solid angle.
-            let to_point = flat.sample(u) - from;
-            let pdf = flat.pdf(to_point, two_sided)?;
-            Some(EmitterSample {
-                direction: to_point.normalize(),
-                distance: to_point.length(),
-                radiance,
-                pdf,
-            })
-        }
-        Kind::Sphere(sphere) => {
+    // Sample the area of a flat emitter uniformly, and convert the density to solid angle.
+    let of_area = |flat: Flat| {
+        let to_point = flat.sample(u) - from;
+        let pdf = flat.pdf(to_point, two_sided)?;
+        let (direction, distance) = (to_point.normalize(), to_point.length());
+        Some(EmitterSample { direction, distance, radiance, pdf })
+    };
+    match shape {
+        EmitterShape::Triangle(triangle) => of_area(Flat::from(triangle)),
+        EmitterShape::Parallelogram { corner, edges } => of_area(Flat { corner, edges, is_triangle: false }),
+        EmitterShape::Sphere(sphere) => {
             let pdf = sphere_pdf(&sphere, two_sided, from)?;
             // Choose 1 - cos θ uniformly, because slices of a sphere of equal height have equal
             // area (Archimedes).
@@ -205,9 +189,11 @@ pub fn light_pdf(emitter: &AreaEmitter, from: Vec3, direction: Vec3) -> f32 {
     if radiance == Vec3::ZERO {
         return 0.0;
     }
-    let pdf = match kind_of(&shape) {
-        Kind::Flat(flat) => flat.hit(from, direction).and_then(|to_point| flat.pdf(to_point, two_sided)),
-        Kind::Sphere(sphere) => {
+    let of_area = |flat: Flat| flat.pdf(flat.hit(from, direction)?, two_sided);
+    let pdf = match shape {
+        EmitterShape::Triangle(triangle) => of_area(Flat::from(triangle)),
+        EmitterShape::Parallelogram { corner, edges } => of_area(Flat { corner, edges, is_triangle: false }),
+        EmitterShape::Sphere(sphere) => {
             // From outside, directions in the cone pass the centre at less than the radius, and go
             // to its side.
             let to_center = sphere.center - from;

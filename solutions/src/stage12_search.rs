@@ -115,10 +115,19 @@ fn blocks(first: u32, count: u32) -> impl Iterator<Item = (u32, u32)> {
 pub fn wide_any_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> bool {
     // <solution>
     let mut stack = Stack::new();
-    let mut next = Some(Child::ROOT);
-    while let Some(child) = next {
-        next = match child.contents() {
-            ChildContents::Inner(node) => last_child(probe, node, ray.t_max, &mut stack),
+    stack.push(Child::ROOT.key(0.0));
+    while let Some(key) = stack.pop() {
+        match Child::of_key(key).0.contents() {
+            // Push all children that the ray enters.
+            ChildContents::Inner(node) => {
+                let mut mask = probe.enter(node, ray.t_max).mask;
+                let children = probe.children(node);
+                while mask != 0 {
+                    stack.push(children[mask.trailing_zeros() as usize & 7].key(0.0));
+                    mask &= mask - 1;
+                }
+            }
+            // Test the primitives of a leaf, and stop at the first hit.
             ChildContents::Leaf { block, count } => {
                 for (block, n) in blocks(block, count) {
                     let mut lanes = probe.candidates(block, n, ray.t_max);
@@ -129,35 +138,10 @@ pub fn wide_any_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> bool {
                         lanes &= lanes - 1;
                     }
                 }
-                None
             }
-        };
-        // Where the search goes no deeper, take the child on top of the stack.
-        if next.is_none() {
-            next = stack.pop().map(|key| Child::of_key(key).0);
         }
     }
     false
     // <stub> todo!("push all children that the ray enters, and stop at the first hit")
     // </solution>
 }
-
-// <solution>
-/// The last child of `node` that the ray enters, or `None`. The others are pushed.
-#[inline(always)]
-fn last_child(probe: &mut impl WideProbe, node: u32, t_max: f32, stack: &mut Stack) -> Option<Child> {
-    let mut mask = probe.enter(node, t_max).mask;
-    let children = probe.children(node);
-    let mut last = None;
-    while mask != 0 {
-        let child = children[mask.trailing_zeros() as usize & 7];
-        mask &= mask - 1;
-        if mask == 0 {
-            last = Some(child);
-        } else {
-            stack.push(child.key(0.0));
-        }
-    }
-    last
-}
-// </solution>

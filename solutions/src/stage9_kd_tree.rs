@@ -190,11 +190,8 @@ fn position(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeur
     let (mut n_left, mut n_right) = (0, boxes.len());
     for pair in edges.windows(2) {
         let [(low, is_end), (high, next_is_end)] = [pair[0], pair[1]];
-        if is_end {
-            n_right -= 1
-        } else {
-            n_left += 1
-        }
+        n_left += usize::from(!is_end);
+        n_right -= usize::from(is_end);
         let at = midpoint(low, high);
         let is_between = (low < at && at < high) || (low == high && !is_end && next_is_end);
         let this = (cost(n_left, n_right), (f64::from(at) - f64::from(middle)).abs(), at);

@@ -205,29 +205,25 @@ fn search(
         }
         OctreeNode::Inner { first } => first,
     };
-    // Find the parts of the ray on both sides of the three middle planes. They are enough for all
-    // eight octants, each of which is on one side of each plane.
+    // Find the parts of the ray on both sides of the three middle planes, empty where it never is.
+    // They are enough for all eight octants, each of which is on one side of each plane.
+    const NEVER: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
     let (origin, direction, middle) = (ray.origin.as_dvec3(), ray.direction.as_dvec3(), cell.middle());
     let sides = [0, 1, 2].map(|axis| {
         let (height, rate) = (origin[axis] - middle[axis], direction[axis]);
         let room = ROUNDING * height.abs();
-        [part_above(-height, -rate, room, part), part_above(height, rate, room, part)]
+        [(-height, -rate), (height, rate)].map(|(h, r)| part_above(h, r, room, part).unwrap_or(NEVER))
     });
     // Visit the octants from front to back, without sorting: a ray that ascends along all axes
     // passes them in the order of their numbers, and each axis along which it descends exchanges its
     // two sides.
     let descends: usize = (0..3).map(|axis| usize::from(direction[axis] < 0.0) << axis).sum();
     for octant in (0..8).map(|i| i ^ descends) {
-        let Some([x, y, z]) = sides_of(octant, &sides) else { continue };
+        let [x, y, z] = [0, 1, 2].map(|axis| sides[axis][octant >> axis & 1]);
         let part = (x.0.max(y.0).max(z.0), x.1.min(y.1).min(z.1));
         if part.0 <= part.1 {
             search(octree, (first + octant as u32, cell.octant(octant)), part, probe, ray, best);
         }
     }
-}
-
-/// The parts of a ray on the three sides on which an octant lies; `None` if it is never on one.
-fn sides_of(octant: usize, sides: &[[Option<(f64, f64)>; 2]; 3]) -> Option<[(f64, f64); 3]> {
-    Some([sides[0][octant & 1]?, sides[1][octant >> 1 & 1]?, sides[2][octant >> 2]?])
 }
 // </solution>

@@ -146,18 +146,17 @@ fn on_a_screen_keys_change_what_is_shown() {
     let mut output = Output::of(fs::File::from(pty.master));
     output.wait_for("FAILS: ");
     output.wait_for("  yours     None");
-    keys.write_all(b"h").unwrap();
-    output.wait_for("hint 1: ");
-    keys.write_all(b"t").unwrap();
-    output.wait_for(" returns None");
-    keys.write_all(b"\x1b").unwrap();
-    output.wait_for("FAILS: ");
-    keys.write_all(b"l/refract").unwrap();
-    output.wait_for("search: refract_");
-    keys.write_all(b"\x1b").unwrap();
-    output.wait_for("search: \x1b");
-    keys.write_all(b"l").unwrap();
-    output.wait_for("FAILS: ");
+    for (typed, answer) in [
+        ("h", "hint 1: "),
+        ("t", " returns None"),
+        ("\x1b", "FAILS: "),
+        ("l/refract", "search: refract_"),
+        ("\x1b", "search: \x1b"),
+        ("l", "FAILS: "),
+    ] {
+        keys.write_all(typed.as_bytes()).unwrap();
+        output.wait_for(answer);
+    }
     save(&kit, "// it is right");
     output.wait_for("Stage 1 is done.");
     // The screen that was there before comes back.

@@ -189,41 +189,31 @@ impl<F: StudentFunctions> Frame<'_, F> {
         at: &SurfaceInteraction,
         tally: &mut T,
     ) -> Cow<'_, Material> {
-        let material = self.uncoated_material(path, hit, at, tally);
+        let world = &self.intersector.scene.world;
+        let mut material = Cow::Borrowed(&world.materials[at.material]);
+        if let Some(texture) = material.texture
+            && self.plan.effects.materials[at.material].texture
+        {
+            // Look up the colour of the image at the hit, or around it.
+            let uv =
+                texture_coordinates::<F>(world, self.surface_options.tests, &path.ray, hit, at.surface.point);
+            let color = match &self.pyramids {
+                Some(pyramids) => self.filtered_color(pyramids, (texture, uv), path, hit, at, tally),
+                None => {
+                    tally.note(Event::TextureRead);
+                    let image = &world.textures[texture];
+                    let uv = if is_sphere(world, hit) { between_poles(uv, image.height) } else { uv };
+                    F::texture_color(image, uv)
+                }
+            };
+            let textured = material.to_mut();
+            textured.ambient *= color;
+            textured.diffuse *= color;
+        }
         match self.plan.coats && material.coat != 1.0 && at.entering {
             true => Cow::Owned(self.coated(path.ray.direction, at, &material)),
             false => material,
         }
-    }
-
-    #[inline(always)]
-    fn uncoated_material<T: Tally>(
-        &self,
-        path: &Path,
-        hit: &Hit,
-        at: &SurfaceInteraction,
-        tally: &mut T,
-    ) -> Cow<'_, Material> {
-        let world = &self.intersector.scene.world;
-        let material = &world.materials[at.material];
-        let texture = match material.texture {
-            Some(texture) if self.plan.effects.materials[at.material].texture => texture,
-            _ => return Cow::Borrowed(material),
-        };
-        // Look up the colour of the image at the hit, or around it.
-        let uv =
-            texture_coordinates::<F>(world, self.surface_options.tests, &path.ray, hit, at.surface.point);
-        let color = match &self.pyramids {
-            Some(pyramids) => self.filtered_color(pyramids, (texture, uv), path, hit, at, tally),
-            None => {
-                tally.note(Event::TextureRead);
-                let image = &world.textures[texture];
-                let uv = if is_sphere(world, hit) { between_poles(uv, image.height) } else { uv };
-                F::texture_color(image, uv)
-            }
-        };
-        let (ambient, diffuse) = (color * material.ambient, color * material.diffuse);
-        Cow::Owned(Material { ambient, diffuse, ..material.clone() })
     }
 
     /// The material under its coat: what the coat reflects is added to `mirror`, and what lies below gets the rest.

@@ -13,7 +13,8 @@ fn the_reference_loses_no_box_and_a_fixed_offset_is_wrong() {
         let rows = boxes.rows.iter().chain(&offsets.rows);
         rows.clone().find(|row| row.0 == name).unwrap_or_else(|| panic!("no row {name}")).1.join(", ")
     };
-    assert_eq!(row("kit: slab"), "0, 0");
+    // The slab test of stage 3 widens its exit for hits in front of the ray only.
+    assert_eq!(row("kit: slab"), "0, 19.07");
     assert_eq!(row("kit: conservative_slab"), "0, 0");
     assert_eq!(row("kit: offset_origin"), "0 / 0, 0 / 0, 0 / 0, 0 / 0");
     // A distance of 0.0001 is far at coordinates of 0.001 and 1. At a million it is less than a float, so about half of the
