@@ -67,12 +67,16 @@ pub struct CheckChange {
 }
 
 /// The texts of the start page that a language file may translate, with their keys.
-pub const TEXTS: [(&str, &str); 7] = [
+pub const TEXTS: [(&str, &str); 8] = [
     (
         "welcome",
         "Welcome. You build a ray tracer: you write its functions in exercises/src, one\nat a time. A check passes for each \
-         law of light and geometry that they obey.\nThe core of stages 1 to 6 is a course of four weeks, all stages are one of\n\
-         twelve (README.md). Nothing is written yet.",
+         law of light and geometry that they obey.\nIts points count as core or as deeper. Nothing is written yet.",
+    ),
+    // Only where the course has all stages.
+    (
+        "weeks",
+        "The core of stages 1 to 6 is a course of four weeks, all stages are one of\ntwelve (README.md).",
     ),
     ("due", "due"),
     ("next", "Next"),

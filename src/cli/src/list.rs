@@ -36,7 +36,10 @@ pub fn stage(given: &Given) -> Result<Option<u8>, Misuse> {
         let number = text.strip_prefix("stage").unwrap_or(text).parse().ok();
         number.filter(|number| known.contains(number)).ok_or_else(|| {
             let (first, last) = (known.first().unwrap_or(&0), known.last().unwrap_or(&0));
-            format!("there is no such stage; there are stages {first} to {last}")
+            match rubric::stages().iter().find(|(_, stage)| stage.checks.contains_key(text)) {
+                Some((of, _)) => format!("this is a check; run it by `cargo test --test stage{of} {text}`"),
+                None => format!("there is no such stage; there are stages {first} to {last}"),
+            }
         })
     })
 }

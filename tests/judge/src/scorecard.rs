@@ -213,7 +213,8 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
         println!("{}\n", course.title);
     }
     if graded.iter().all(|one| matches!(one.verdict, Verdict::NotWritten { .. })) {
-        println!("{}\n", course.text("welcome"));
+        let weeks = if course.stages.is_empty() { course.text("weeks") } else { "" };
+        println!("{}\n", format!("{}\n{weeks}", course.text("welcome")).trim_end());
     }
     for (number, _) in STAGES.iter().filter(|(number, _)| is_asked_for(*number)) {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();

@@ -237,7 +237,12 @@ fn name_course(files: &mut BTreeMap<String, Vec<u8>>, course: &CourseFiles) -> R
         !(1..=12).any(is_left_out) && (of_course.stages.is_empty() || !line.contains(" weeks**: "))
     };
     let lines = std::str::from_utf8(readme)?.lines().filter(is_kept);
-    let lines = lines.map(|line| format!("{line}\n")).collect::<String>();
+    let mut lines = lines.map(|line| format!("{line}\n")).collect::<String>();
+    // The table lists what the stages of the course ask for.
+    if let (false, Some(list)) = (of_course.stages.is_empty(), lines.find(": ray–sphere")) {
+        let end = lines.find("\nThe kit provides").context("README.md lacks what the kit provides")?;
+        lines.replace_range(list..end, ".");
+    }
     *readme = match of_course.title.is_empty() {
         true => lines,
         false => lines.replacen("# Raykata\n", &format!("# {}: Raykata\n", of_course.title), 1),

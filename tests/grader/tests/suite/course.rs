@@ -141,6 +141,7 @@ fn a_hand_out_and_exports_contain_the_course_file() {
     assert_eq!(text(folder.path(), "kit/tests/course.toml"), COURSE);
     assert_eq!(text(folder.path(), "kit/tests/language.toml"), GERMAN);
     let readme = text(folder.path(), "kit/README.md");
+    assert!(!readme.contains("kd-trees"), "stage 9 is left out");
     assert!(readme.starts_with("# Computergrafik: Raykata\n"), "{readme}");
     assert!(readme.contains("\n| 1 | ") && !readme.contains("\n| 2 | "), "{readme}");
     assert!(!readme.contains("weeks"), "{readme}");
