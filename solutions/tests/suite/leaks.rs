@@ -32,14 +32,10 @@ fn no_ray_leaks_in_any_structure() {
         let mut random = Random::new(1, mesh.positions.len() as u64);
         let rays: Vec<Ray> = (0..n_rays()).map(|n| aimed(&mesh, Aim::ALL[n % 2], &mut random).0).collect();
         for &quality in &structures {
-            let started = std::time::Instant::now();
             let Quality { accelerator, split, .. } = quality;
             let hits = solutions::kit().first_hits(&job(&mesh.all(), quality), &rays);
             let lost: Vec<&Ray> =
                 rays.iter().zip(&hits).filter(|(_, hit)| hit.is_none()).map(|(ray, _)| ray).collect();
-            if std::env::var("TIMES").is_ok() {
-                println!("{} {accelerator:?} {split:?} {} ms", mesh.name, started.elapsed().as_millis());
-            }
             if let Some(ray) = lost.first() {
                 leaks.push(format!(
                     "{}, {accelerator:?}, {split:?}: {} rays, for example {ray:?}",
