@@ -1,4 +1,5 @@
-//! A ray tracer, stage by stage: one module per exercise file. The macro call below connects the modules with the kit.
+//! A ray tracer, stage by stage: one module per exercise file. The macro call below connects the
+//! modules with the kit.
 
 pub mod stage10_stability;
 pub mod stage11_light_transport;

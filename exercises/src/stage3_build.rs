@@ -5,8 +5,8 @@
 //!
 //! Given: [`Bvh`] with `add_node`, `set_leaf` and `set_children`; [`PrimitiveRef`] with the number,
 //! the box and the centroid of a primitive; the costs [`TRAVERSAL_COST`] and [`INTERSECTION_COST`];
-//! [`DEEPEST_SPLIT`]; your own functions for boxes. `counted::union` calls your `union`, and a check
-//! counts the calls.
+//! [`DEEPEST_SPLIT`]; your own functions for boxes. `counted::union` calls your `union`, and a
+//! check counts the calls.
 
 use crate::counted::union;
 use crate::stage3_boxes::{centroid, surface_area};

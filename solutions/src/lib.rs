@@ -1,4 +1,5 @@
-//! A ray tracer, stage by stage: one module per exercise file. The macro call below connects the modules with the kit.
+//! A ray tracer, stage by stage: one module per exercise file. The macro call below connects the
+//! modules with the kit.
 
 pub mod stage10_stability;
 pub mod stage11_light_transport;
@@ -32,7 +33,8 @@ pub mod stage9_polygon_bsp;
 
 raykata::student_kit!();
 // <solution>
-/// The functions as a kit. It is compiled once, here, and not again in each program and test that calls it.
+/// The functions as a kit. It is compiled once, here, and not again in each program and test that
+/// calls it.
 pub fn kit() -> std::sync::Arc<dyn raykata::kit::Kit + Send + Sync> {
     raykata::kit::StudentKit::door(Kit)
 }

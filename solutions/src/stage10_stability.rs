@@ -306,9 +306,9 @@ pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> O
 }
 
 // <solution>
-/// The factors by which `conservative_slab` moves entry and exit. An exit that is later by the error
-/// of both ends loses no box. An entry that is earlier matters to a search, which compares it with
-/// the `t` of the best hit, rounded in another way: without it 1 of 500 rays in a room of flat
+/// The factors by which `conservative_slab` moves entry and exit. An exit that is later by the
+/// error of both ends loses no box. An entry that is earlier matters to a search, which compares it
+/// with the `t` of the best hit, rounded in another way: without it 1 of 500 rays in a room of flat
 /// walls, and 2 or 3 of 500 in a stadium with a small object, find another triangle than brute
 /// force (measured).
 const MORE: f32 = 1.0 + 2.0 * gamma(3);

@@ -283,9 +283,9 @@ pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
 /// - A vertex without such a triangle gets any unit vector.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     // <solution>
-    // Start with a sum of zero for each vertex, and with a normal to fall back on. The lecture counts
-    // each triangle once, so the normal depends on how a face is cut into triangles; with the angle
-    // at the vertex as weight it would not (Thürmer and Wüthrich 1998).
+    // Start with a sum of zero for each vertex, and with a normal to fall back on. The lecture
+    // counts each triangle once, so the normal depends on how a face is cut into triangles; with
+    // the angle at the vertex as weight it would not (Thürmer and Wüthrich 1998).
     let mut sums = vec![Vec3::ZERO; mesh.positions.len()];
     let mut of_one_face = vec![Vec3::Z; mesh.positions.len()];
     // Add the unit normal of each triangle that has an area to its three vertices.

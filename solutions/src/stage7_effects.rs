@@ -175,7 +175,10 @@ pub fn most_rays(scene: &Scene, effects: &Effects) -> RayCounts {
         most_shadows = most_shadows.max(shadow_places(takes, &effects.lights));
     }
 
-    // Add up the secondary rays bounce by bounce, until their weight is too small.
+    // Add up the secondary rays bounce by bounce, until their weight is too small. With two
+    // reflected rays and a refracted one per hit, the rays of a pixel are
+    //
+    //     1 primary ─ 3 ─ 9 ─ 27 …    (level: the rays of this bounce; hits: their sum so far)
     let mut rays = RayCounts { primary, ..RayCounts::default() };
     let (mut level, mut hits, mut weight) = (primary, primary, 1.0);
     for _ in 0..quality.max_depth {

@@ -30,8 +30,8 @@ use glam::DVec3;
 /// Source: Cox 1972; de Boor 1972.
 pub fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32 {
     // <solution>
-    // Fill a triangular table column by column. The column of degree 0 says which of the spans below
-    // N(index, degree) contains u: a span is half open, but the last one that is not empty is
+    // Fill a triangular table column by column. The column of degree 0 says which of the spans
+    // below N(index, degree) contains u: a span is half open, but the last one that is not empty is
     // closed. N(1, 2), for example, needs
     //
     //     N(1, 0)
@@ -45,8 +45,8 @@ pub fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32 
         first < last && first <= u && (u < last || is_end)
     };
     let mut basis: Vec<f32> = (index..=index + degree).map(|i| f32::from(is_in_span(i))).collect();
-    // Blend two functions of one degree less: the factor of one rises from 0 to 1, that of the other
-    // falls. A term whose denominator is 0 is left out.
+    // Blend two functions of one degree less: the factor of one rises from 0 to 1, that of the
+    // other falls. A term whose denominator is 0 is left out.
     for p in 1..=degree {
         for i in 0..=degree - p {
             let k = &knots[index + i..];

@@ -145,8 +145,9 @@ impl Scene<'_> {
     }
 }
 
-/// The cost of a primitive on both sides, relative to one on the fuller side. With 0, 8 and 30 a ray
-/// makes fewer and fewer visits (`raykata compare scenes/showcase.toml --only bsp` counts them).
+/// The cost of a primitive on both sides, relative to one on the fuller side. With 0, 8 and 30 a
+/// ray makes fewer and fewer visits (`raykata compare scenes/showcase.toml --only bsp` counts
+/// them).
 const STRADDLER: usize = 30;
 
 fn divide(bsp: &mut Bsp, scene: &Scene<'_>, ids: &[u32], (depth, growth): (usize, ListGrowth)) -> u32 {

@@ -170,8 +170,8 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
         probe.visit(number);
         test_cell(grid.primitives(number), probe, &mut ray, &mut best);
 
-        // The ray leaves the cell through the first of the three planes. Stop at the end of the grid
-        // or of the ray, or if the best hit lies before the exit.
+        // The ray leaves the cell through the first of the three planes. Stop at the end of the
+        // grid or of the ray, or if the best hit lies before the exit.
         let axis = first_axis(exits);
         let exit = exits[axis];
         let at_the_end =

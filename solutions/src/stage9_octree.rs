@@ -215,8 +215,8 @@ fn search(
         [(-height, -rate), (height, rate)].map(|(h, r)| part_above(h, r, room, part).unwrap_or(NEVER))
     });
     // Visit the octants from front to back, without sorting: a ray that ascends along all axes
-    // passes them in the order of their numbers, and each axis along which it descends exchanges its
-    // two sides.
+    // passes them in the order of their numbers, and each axis along which it descends exchanges
+    // its two sides.
     let descends: usize = (0..3).map(|axis| usize::from(direction[axis] < 0.0) << axis).sum();
     for octant in (0..8).map(|i| i ^ descends) {
         let [x, y, z] = [0, 1, 2].map(|axis| sides[axis][octant >> axis & 1]);

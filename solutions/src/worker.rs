@@ -1,4 +1,5 @@
-//! The program that answers questions about the code in this folder. `raykata` and the grader start it.
+//! The program that answers questions about the code in this folder. `raykata` and the grader start
+//! it.
 
 fn main() {
     // <solution>
