@@ -54,6 +54,15 @@ pub struct Mistake {
     is_formula: bool,
 }
 
+impl Mistake {
+    /// The mistakes of a list, each with whether it gives the answer.
+    pub(crate) fn listed(listed: Vec<(bool, &'static str)>, is_formula: bool) -> Vec<(bool, Self)> {
+        let before = |n: usize| listed[..n].iter().filter(|(_, text)| *text == listed[n].1).count();
+        let mistake = |n: usize| Mistake { text: listed[n].1, before: before(n), is_formula };
+        (0..listed.len()).map(|n| (listed[n].0, mistake(n))).collect()
+    }
+}
+
 /// The bytes of a PNG file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Png(pub Vec<u8>);
@@ -92,7 +101,7 @@ impl Broken {
 
     /// Adds observations before the mistakes that are known already, the most specific one first. Each is its text, and whether
     /// this wrong answer shows it. A wrong formula, which also computes an answer where the student's is right, belongs into the
-    /// list of [`compare_formulas`](crate::judge::compare_formulas), which right answers refute.
+    /// list of [`unless`](crate::judge::unless), which right answers refute.
     ///
     /// One answer is weak evidence, so the message names a mistake only if it explains every failing input of the batch:
     /// see [`first_broken`]. Variants of a mistake are entries of their own, with the same text and in the same order for
@@ -107,12 +116,15 @@ impl Broken {
     }
 
     fn with_mistakes(mut self, listed: Vec<(bool, &'static str)>, is_formula: bool) -> Self {
-        let before =
-            |index: usize| listed[..index].iter().filter(|(_, text)| *text == listed[index].1).count();
-        let proven = (0..listed.len()).filter(|&index| listed[index].0);
-        let proven = proven.map(|index| Mistake { text: listed[index].1, before: before(index), is_formula });
-        self.details.mistakes.splice(..0, proven);
+        let proven = Mistake::listed(listed, is_formula).into_iter().filter(|(gives, _)| *gives);
+        self.details.mistakes.splice(..0, proven.map(|(_, mistake)| mistake));
         self.named()
+    }
+
+    /// Without the formulas that a right answer refutes.
+    pub(crate) fn without(mut self, refuted: &[Mistake]) -> Self {
+        self.details.mistakes.retain(|mistake| !refuted.contains(mistake));
+        if refuted.is_empty() { self } else { self.named() }
     }
 
     /// With the first mistake as its diagnosis. Of formulas that no answer tells apart, the first two are named.

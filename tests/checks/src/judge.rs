@@ -1,19 +1,77 @@
 //! Helper functions with which every stage judges answers.
 
-use crate::broken::CheckResult;
+use crate::broken::{Broken, CheckResult, Mistake, all_hold};
 
-/// Judges each answer with its query.
-pub fn compare<Q, A>(
-    queries: &[Q],
-    answers: Vec<A>,
-    judge: impl Fn(&Q, A) -> CheckResult,
-) -> Vec<CheckResult> {
-    queries.iter().zip(answers).map(|(query, answer)| judge(query, answer)).collect()
+/// The wrong formulas that a right answer refutes, because they give another one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Refuted(Vec<Mistake>);
+
+impl Refuted {
+    fn by(formulas: Vec<(bool, &'static str)>) -> Self {
+        let wrong = Mistake::listed(formulas, true).into_iter().filter(|(gives, _)| !gives);
+        Refuted(wrong.map(|(_, mistake)| mistake).collect())
+    }
 }
 
-/// Judges each answer with its query, and proves mistakes by all answers, right ones too. `formulas` lists wrong formulas in
-/// the same order for each query: whether the formula gives this answer, and its text. A formula explains the failing answers
-/// only if it also gives the right ones.
+/// The judgement of one answer, with the formulas that it refutes.
+pub type Judged = Result<Refuted, Broken>;
+
+impl From<()> for Refuted {
+    fn from((): ()) -> Self {
+        Refuted::default()
+    }
+}
+
+/// Judges each answer with its query. A formula that gives another answer than a right one of the student is not the student's.
+pub fn compare<Q, A, R: Into<Refuted>>(
+    queries: &[Q],
+    answers: Vec<A>,
+    judge: impl Fn(&Q, A) -> Result<R, Broken>,
+) -> Vec<CheckResult> {
+    proven(queries.iter().zip(answers).map(|(query, answer)| judge(query, answer)))
+}
+
+/// The outcomes of a batch without the formulas that its right answers refute.
+pub fn proven<R: Into<Refuted>>(outcomes: impl Iterator<Item = Result<R, Broken>>) -> Vec<CheckResult> {
+    let outcomes: Vec<Judged> = outcomes.map(|outcome| outcome.map(Into::into)).collect();
+    let mut refuted: Vec<Mistake> = Vec::new();
+    for Refuted(mistakes) in outcomes.iter().flatten() {
+        refuted.extend(
+            mistakes.iter().filter(|mistake| !refuted.contains(mistake)).copied().collect::<Vec<_>>(),
+        );
+    }
+    let show = |outcome: Judged| match outcome {
+        Ok(_) => Ok(()),
+        Err(broken) => Err(broken.without(&refuted)),
+    };
+    outcomes.into_iter().map(show).collect()
+}
+
+/// Whether an answer is right, and the error if it is not.
+pub struct Unless<B>(bool, B);
+
+/// Judges one answer: an error unless it is right.
+pub fn unless<B: FnOnce() -> Broken>(is_right: bool, broken: B) -> Unless<B> {
+    Unless(is_right, broken)
+}
+
+impl<B: FnOnce() -> Broken> Unless<B> {
+    /// Adds wrong formulas in the same order for each query: whether the formula gives this answer, and its text. [`compare`] and
+    /// [`proven`] name a formula only if it also gives the right answers of the batch.
+    pub fn formulas(self, formulas: impl IntoIterator<Item = (bool, &'static str)>) -> Judged {
+        let (Unless(is_right, broken), formulas) = (self, formulas.into_iter().collect());
+        if is_right { Ok(Refuted::by(formulas)) } else { Err(broken().computed_by(formulas)) }
+    }
+}
+
+/// Judges an answer that has several parts.
+pub fn all_parts(parts: impl Iterator<Item = Judged>) -> Judged {
+    let parts: Vec<Judged> = parts.collect();
+    let refuted = parts.iter().flatten().flat_map(|part| part.0.clone()).collect();
+    all_hold(proven(parts.into_iter())).map(|()| Refuted(refuted))
+}
+
+/// The same as [`compare`] with formulas that are computed only if an answer is wrong.
 pub fn compare_formulas<Q, A: Clone>(
     queries: &[Q],
     answers: Vec<A>,
@@ -24,18 +82,9 @@ pub fn compare_formulas<Q, A: Clone>(
     if outcomes.iter().all(CheckResult::is_ok) {
         return outcomes;
     }
-    let given: Vec<_> = queries.iter().zip(&answers).map(|(query, answer)| formulas(query, answer)).collect();
-    // A formula that gives another answer than a right one of the student is not the student's.
-    let is_refuted = |formula: usize| {
-        let mut passed = outcomes.iter().zip(&given).filter(|(outcome, _)| outcome.is_ok());
-        passed.any(|(_, given)| !given[formula].0)
-    };
-    let refuted: Vec<bool> = (0..given[0].len()).map(is_refuted).collect();
-    let explain = |(outcome, given): (CheckResult, Vec<(bool, &'static str)>)| {
-        outcome.map_err(|broken| {
-            let proven = given.into_iter().zip(&refuted);
-            broken.computed_by(proven.map(|((gives, text), refuted)| (gives && !refuted, text)).collect())
-        })
-    };
-    outcomes.into_iter().zip(given).map(explain).collect()
+    let given = queries.iter().zip(&answers).map(|(query, answer)| formulas(query, answer));
+    proven(outcomes.into_iter().zip(given).map(|(outcome, given)| match outcome {
+        Ok(()) => Ok(Refuted::by(given)),
+        Err(broken) => Err(broken.computed_by(given)),
+    }))
 }

@@ -73,13 +73,12 @@ impl Start {
         along >= -slack && (self.moved - along * way).abs().max_element() <= slack
     }
 
-    /// The known mistakes, each with whether it gives this start.
+    /// Wrong formulas, each with whether it gives this start.
     pub fn mistakes(&self) -> Vec<(bool, &'static str)> {
         let error = self.surface.error.as_dvec3();
         // The shading normal on the same side.
         let shading = self.surface.shading_normal.as_dvec3();
         let shading = shading * self.side.dot(shading).signum();
-        let smooth = self.surface.shading_normal != self.surface.geometric_normal;
         let along_the_side = |distance: f64| self.is(distance * self.side);
         let mut all = vec![
             (
@@ -103,10 +102,7 @@ impl Start {
                 along_the_side(error.element_sum()),
                 "you add up the errors of all axes: along the normal it is error·|n|",
             ),
-            (
-                smooth && self.is_along(shading),
-                "you move along the shading normal: move along the geometric normal",
-            ),
+            (self.is_along(shading), "you move along the shading normal: move along the geometric normal"),
         ];
         // A round number, alone or in addition to the bound.
         let lengths = (0..=7).flat_map(|digits| [1.0, 2.0, 5.0].map(|n| n * 10f64.powi(-digits)));

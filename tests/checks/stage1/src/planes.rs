@@ -5,7 +5,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::{self, Expected, U, compare_tolerant};
 use checks::generate::{direction, point, rough_point};
-use checks::judge::compare;
+use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::paste::{Arguments, Paste};
 use glam::{Vec3, vec3};
@@ -214,20 +214,19 @@ pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Che
             let expected = if n.dot(d) > 0.0 { -*normal } else { *normal };
             // Where the rounding of the dot product decides, and at a right angle, both sides are accepted.
             let open = n.dot(d).abs() <= 4.0 * U * n.abs().dot(d.abs());
-            if yours == expected || (open && yours == -expected) {
-                return Ok(());
-            }
-            let input = format!("face_forward({}, {})", normal.paste(), direction.paste());
-            Err(Broken::new(input, yours, expected, "the definition").explained_by([
-                (yours == *normal, "you return the normal as it is, also if it points away from the viewer"),
-                (yours == -*normal && *normal == expected, "your normal points away from the viewer"),
-                (yours == -expected, "your normal points away from the viewer"),
-                (
-                    yours != expected
-                        && (yours.normalize_or_zero() - expected.normalize_or_zero()).length() < 1e-6,
-                    "the length of the normal must not change: do not normalize it",
-                ),
-            ]))
+            let input = || format!("face_forward({}, {})", normal.paste(), direction.paste());
+            let broken = || {
+                let along = yours.is_normalized()
+                    && (yours.as_dvec3() - expected.as_dvec3().normalize()).length() < 1e-6;
+                Broken::new(input(), yours, expected, "the definition").explained_by([
+                    (yours == -expected, "your normal points away from the viewer"),
+                    (along, "the length of the normal must not change: do not normalize it"),
+                ])
+            };
+            unless(yours == expected || (open && yours == -expected), broken).formulas([(
+                yours == *normal || (open && yours == -*normal),
+                "you return the normal as it is, also if it points away from the viewer",
+            )])
         })
     })
 }

@@ -4,7 +4,7 @@ use crate::sphere_method::{Accepts, SphereFunction};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::{direction, magnitude, point, ray, rough_point, sphere, unit};
-use checks::judge::compare;
+use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::paste::{Arguments, call};
 use glam::{DVec3, Vec3, vec3};
@@ -263,18 +263,17 @@ pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> CheckResult {
             let expected = outwards.normalize_or_zero();
             // Every unit vector is right at the centre.
             let anywhere = outwards == DVec3::ZERO && (yours.length() - 1.0).abs() < 1e-6;
-            if near(expected) || anywhere {
-                return Ok(());
-            }
-            let input = call("sphere_normal", &[&sphere.center, point]);
-            Err(Broken::new(input, yours, expected.as_vec3(), "double precision").explained_by([
-                (near(-expected), "your normal points inwards"),
-                (
-                    near(point.as_dvec3().normalize_or_zero()),
-                    "you return the direction from the world's origin: subtract the centre first",
-                ),
-                (near(outwards), "your normal is not of unit length"),
-            ]))
+            let input = || call("sphere_normal", &[&sphere.center, point]);
+            let broken = || {
+                Broken::new(input(), yours, expected.as_vec3(), "double precision").explained_by([
+                    (near(-expected), "your normal points inwards"),
+                    (near(outwards), "your normal is not of unit length"),
+                ])
+            };
+            unless(near(expected) || anywhere, broken).formulas([(
+                near(point.as_dvec3().normalize_or_zero()),
+                "you return the direction from the world's origin: subtract the centre first",
+            )])
         })
     })
 }

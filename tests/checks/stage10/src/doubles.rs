@@ -4,7 +4,7 @@ use super::triangles::{aim_again, draw};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{compare, compare_formulas, unless};
 use checks::nasty;
 use checks::paste::Arguments;
 use glam::Vec3;
@@ -295,29 +295,28 @@ pub(super) fn judge_weights(
         let (Some(yours), Some([beta, gamma])) =
             (yours, triangle::weights(&query.ray, &query.triangle).flatten())
         else {
-            return Ok(());
+            return Ok(().into());
         };
         let is = |b: f64, g: f64| {
             (f64::from(yours.beta) - b).abs() <= tolerance && (f64::from(yours.gamma) - g).abs() <= tolerance
         };
-        if is(beta, gamma) {
-            return Ok(());
-        }
         let describe = |beta: f64, gamma: f64| format!("β = {beta}, γ = {gamma}");
         let alpha = 1.0 - beta - gamma;
-        Err(Broken::with_texts(
-            query.call(function),
-            describe(yours.beta.into(), yours.gamma.into()),
-            describe(beta, gamma),
-            "exactly",
-        )
-        .explained_by([
+        unless(is(beta, gamma), || {
+            Broken::with_texts(
+                query.call(function),
+                describe(yours.beta.into(), yours.gamma.into()),
+                describe(beta, gamma),
+                "exactly",
+            )
+        })
+        .formulas([
             (is(gamma, beta), "you exchange β and γ: β belongs to corner b, and γ to corner c"),
             (is(alpha, beta), HAS_ALPHA),
             (is(alpha, gamma), HAS_ALPHA),
             (is(beta, alpha), HAS_ALPHA),
             (is(gamma, alpha), HAS_ALPHA),
-        ]))
+        ])
     })
 }
 

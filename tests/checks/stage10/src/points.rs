@@ -3,7 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{compare, compare_formulas, unless};
 use checks::nasty;
 use checks::offset::Start;
 use checks::paste::call;
@@ -45,7 +45,7 @@ fn start(query: &OffsetQuery, origin: Vec3) -> Start {
 }
 
 /// The known mistakes, each with whether it gives this origin.
-fn mistakes(query: &OffsetQuery, origin: Vec3) -> Vec<(bool, &'static str)> {
+fn observations(query: &OffsetQuery, origin: Vec3) -> [(bool, &'static str); 5] {
     let start = start(query, origin);
     let along = query.normal.as_dvec3().dot(query.direction.as_dvec3());
     let (height, point) = (start.height(), query.point.as_dvec3());
@@ -53,24 +53,25 @@ fn mistakes(query: &OffsetQuery, origin: Vec3) -> Vec<(bool, &'static str)> {
     let relative = [point.length(), point.abs().max_element()]
         .into_iter()
         .any(|size| (1..=7).any(|digits| (height / (size * 10f64.powi(-digits)) - 1.0).abs() < 0.01));
-    let mut mistakes = vec![(
-        along == 0.0 && height < 0.0,
-        "a direction perpendicular to the normal goes to the side of the normal",
-    )];
-    mistakes.extend(start.mistakes());
-    mistakes.extend([
+    [
+        (
+            along == 0.0 && height < 0.0,
+            "a direction perpendicular to the normal goes to the side of the normal",
+        ),
         (relative, "your offset is a fixed fraction of the size of the point: move by error·|n|"),
         (
             along < 0.0 && start.height() < 0.0,
             "the ray starts on the side of the normal, but it goes to the other side: turn the normal to the side of the direction",
         ),
-        (start.height() < 0.0, "the ray starts on the other side: turn the normal to the side of the direction"),
+        (
+            start.height() < 0.0,
+            "the ray starts on the other side: turn the normal to the side of the direction",
+        ),
         (
             height < 4.0 * U * point.abs().max_element(),
             "the ray starts on the other side, up to rounding: turn the normal to the side of the direction",
         ),
-    ]);
-    mistakes
+    ]
 }
 
 /// Judges how far starts are from their points.
@@ -81,13 +82,13 @@ fn judge_heights(
     expected: impl Fn(&Start) -> String,
 ) -> Vec<CheckResult> {
     compare(queries, trial.kit.offset_origin(queries), |query, origin| {
-        if is_right(query, origin) {
-            return Ok(());
-        }
         let start = start(query, origin);
-        let yours = format!("{:.3e} off the point", start.height());
-        Err(Broken::with_texts(describe(query), yours, expected(&start), "closed form")
-            .explained_by(mistakes(query, origin)))
+        let broken = || {
+            let yours = format!("{:.3e} off the point", start.height());
+            Broken::with_texts(describe(query), yours, expected(&start), "closed form")
+                .explained_by(observations(query, origin))
+        };
+        unless(is_right(query, origin), broken).formulas(start.mistakes())
     })
 }
 

@@ -3,7 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::magnitude;
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{Judged, compare, compare_formulas, unless};
 use proptest::prelude::*;
 
 pub(super) fn cut_off_is_the_light_beyond_the_last_bounce(trial: &Trial<'_>) -> CheckResult {
@@ -60,7 +60,7 @@ fn paste((albedo, error): &(f32, f32)) -> String {
 }
 
 /// Judges a number of bounces by its definition.
-fn judge(query: &(f32, f32), yours: u32) -> CheckResult {
+fn judge(query: &(f32, f32), yours: u32) -> Judged {
     let (albedo, error) = (f64::from(query.0), f64::from(query.1));
     // The albedo to the power n, for n up to 2³² + 1.
     let power = |exponent: f64| albedo.powf(exponent);
@@ -69,22 +69,24 @@ fn judge(query: &(f32, f32), yours: u32) -> CheckResult {
     let n = f64::from(yours);
     let is_enough = power(n + 1.0) <= error * (1.0 + slack);
     let is_smallest = yours == 0 || power(n) > error * (1.0 - slack);
-    if is_enough && is_smallest {
-        return Ok(());
-    }
     // The number by the definition, for the message. At the end a step may be off by a rounding.
-    let estimate = if albedo <= error { 0.0 } else { (error.ln() / albedo.ln() - 1.0).ceil() };
+    let bounces = if albedo <= error { 0.0 } else { error.ln() / albedo.ln() - 1.0 };
+    let estimate = bounces.ceil();
     let expected = format!("about {estimate}, the smallest n with albedo^(n + 1) <= error");
-    let off = n - estimate;
-    Err(Broken::with_texts(paste(query), format!("{yours}"), expected, "the definition").explained_by([
+    let right = is_enough && is_smallest;
+    let broken = || {
+        Broken::with_texts(paste(query), format!("{yours}"), expected, "the definition").explained_by([
+            (yours == u32::MAX, "there is a number that is enough"),
+            (yours == 0 && estimate > 0.0, "0 bounces are not enough here"),
+        ])
+    };
+    unless(right, broken).formulas([
         (
-            off == 1.0 && estimate >= 1.0,
+            n == estimate + 1.0 || (right && estimate < 1.0),
             "one bounce too many: the power is n + 1, because light is also seen directly",
         ),
-        (off == -1.0, "one bounce too few: round up"),
-        (yours == u32::MAX, "there is a number that is enough"),
-        (yours == 0 && estimate > 0.0, "0 bounces are not enough here"),
-    ]))
+        (n == (bounces.floor().max(0.0)), "one bounce too few: round up"),
+    ])
 }
 
 pub(super) fn bounces_for_error_is_the_smallest_number(trial: &Trial<'_>) -> CheckResult {

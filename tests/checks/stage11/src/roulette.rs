@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::compare;
+use checks::judge::{Judged, compare, proven, unless};
 use checks::paste::Paste;
 use glam::Vec3;
 use proptest::prelude::*;
@@ -48,11 +48,11 @@ pub(super) fn roulette_keeps_the_mean(trial: &Trial<'_>) -> CheckResult {
         let answers = trial.kit.survives(&queries);
         let judge =
             |((weight, bounce), factors): (&(Vec3, u32), &[f32])| judge_mean(*weight, *bounce, factors);
-        cases.iter().zip(answers.chunks(STRATA as usize)).map(judge).collect()
+        proven(cases.iter().zip(answers.chunks(STRATA as usize)).map(judge))
     })
 }
 
-fn judge_mean(weight: Vec3, bounce: u32, factors: &[f32]) -> CheckResult {
+fn judge_mean(weight: Vec3, bounce: u32, factors: &[f32]) -> Judged {
     let largest = f64::from(weight.max_element());
     let strata = f64::from(STRATA);
     let survivors: Vec<f64> =
@@ -65,35 +65,39 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[f32]) -> CheckResult {
     let slack = 1.5 / strata;
     let (least, most) = (largest.min(LEAST_CAP), (0.5 * (1.0 + largest)).min(1.0));
     let in_range = share >= least - slack && share <= most + slack;
-    if is_one_factor && (mean - 1.0).abs() <= slack * factor && in_range {
-        return Ok(());
-    }
-    let input =
-        format!("survives({}, {bounce}, u) for {STRATA} numbers u, evenly spaced in 0..1", weight.paste());
-    let yours = format!("{:.1} % survive, and the mean of the factor is {mean:.4}", 100.0 * share);
-    let expected = format!(
-        "{:.1} % to {:.1} %, mean 1, and one factor for all that survive",
-        100.0 * least,
-        100.0 * most
-    );
     let near = |x: f64, y: f64| (x - y).abs() <= 2.0 * slack * y.max(1.0);
     let smallest = f64::from(weight.min_element());
     let green = f64::from(weight.dot(Vec3::new(0.2126, 0.7152, 0.0722)));
     let average = f64::from(weight.element_sum()) / 3.0;
-    Err(Broken::with_texts(input, yours, expected, "the mean over u").explained_by([
-        (factors.iter().any(|factor| factor.is_nan()), "you return NaN"),
-        (
-            share == 1.0 && near(mean, 1.0) && bounce == 3,
-            "your roulette begins too late: it begins at bounce 3",
-        ),
+    let broken = || {
+        let input = format!(
+            "survives({}, {bounce}, u) for {STRATA} numbers u, evenly spaced in 0..1",
+            weight.paste()
+        );
+        let yours = format!("{:.1} % survive, and the mean of the factor is {mean:.4}", 100.0 * share);
+        let [least, most] = [least, most].map(|share| 100.0 * share);
+        let expected = format!("{least:.1} % to {most:.1} %, mean 1, and one factor for all that survive");
+        Broken::with_texts(input, yours, expected, "the mean over u").explained_by([
+            (factors.iter().any(|factor| factor.is_nan()), "you return NaN"),
+            (
+                share == 1.0 && near(mean, 1.0) && bounce == 3,
+                "your roulette begins too late: it begins at bounce 3",
+            ),
+            (share == 0.0, "no path survives"),
+            (
+                is_one_factor && near(mean, 1.0) && 0.75 < share && share < least / 100.0 - slack,
+                "too many bright paths end: of those whose weight is 0.95 or more, at most one in twenty may end",
+            ),
+        ])
+    };
+    unless(is_one_factor && (mean - 1.0).abs() <= slack * factor && in_range, broken).formulas([
         (share == 1.0 && near(mean, 1.0), "no path ever ends"),
-        (share == 0.0, "no path survives"),
         (
             near(share, 0.5) && near(mean, 1.0),
             "every path survives with probability 1/2, but the probability has to follow its weight",
         ),
         (
-            is_one_factor && factor == 1.0 && share < 1.0,
+            is_one_factor && factor == 1.0,
             "you do not divide by the probability to survive, so the picture is too dark",
         ),
         (
@@ -106,11 +110,7 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[f32]) -> CheckResult {
         (near(share, green), "you compare u with the luminance of the weight: take the largest channel"),
         (is_one_factor && near(factor * largest * largest, 1.0), "you divide by the probability twice"),
         (is_one_factor && near(factor, largest), "you multiply by the probability to survive: divide by it"),
-        (
-            is_one_factor && near(mean, 1.0) && 0.75 < share && share < least - slack,
-            "too many bright paths end: of those whose weight is 0.95 or more, at most one in twenty may end",
-        ),
-    ]))
+    ])
 }
 
 pub(super) fn roulette_ends_no_young_path(trial: &Trial<'_>) -> CheckResult {
@@ -163,7 +163,7 @@ pub(super) fn roulette_ends_paths_without_weight(trial: &Trial<'_>) -> CheckResu
                 (!lives && yours.is_infinite(), "you divide by 0"),
                 (!lives && query.bounce < 3, "a path without weight ends at once, also before bounce 3"),
                 (!lives, "a path without weight goes on"),
-                (lives, "you end a path that has weight in one channel"),
+                (lives && yours == 0.0, "you end a path that has weight in one channel"),
             ]))
         })
     })

@@ -3,7 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::magnitude;
-use checks::judge::compare;
+use checks::judge::{Judged, compare, unless};
 use checks::paste::call;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -21,33 +21,33 @@ pub(super) fn both_ways(trial: &Trial<'_>, pairs: &[Pair]) -> Vec<Pair> {
 }
 
 /// Judges that both weights are in 0..=1 and sum to 1.
-fn judge_sum(pair: &Pair, (own, other): Pair) -> CheckResult {
+fn judge_sum(pair: &Pair, (own, other): Pair) -> Judged {
     let is_share = |weight: f32| (0.0..=1.0).contains(&weight);
     let sum = f64::from(own) + f64::from(other);
-    // Two roundings.
-    if is_share(own) && is_share(other) && (sum - 1.0).abs() <= 1e-6 {
-        return Ok(());
-    }
-    // Whether both weights are those of a formula in single precision, bit for bit.
+    // Whether both weights are those of a formula in single precision, up to two roundings.
     let is = |formula: fn(f32, f32) -> f32| {
-        let same = |x: f32, y: f32| x == y || (x.is_nan() && y.is_nan());
+        let same = |x: f32, y: f32| (x - y).abs() <= 1e-6 || (x.is_nan() && y.is_nan());
         same(own, formula(pair.0, pair.1)) && same(other, formula(pair.1, pair.0))
     };
-    let input = format!("{} and {}", paste(pair), paste(&(pair.1, pair.0)));
-    let expected = "two weights in 0..=1 that sum to 1";
-    Err(Broken::with_texts(input, format!("{own:?} and {other:?}, sum {sum}"), expected, "the definition")
-        .explained_by([
-            (
-                is(|own, other| own * own / (own * own + other * other)),
-                "the squares of the densities overflow or underflow: divide first",
-            ),
-            (is(|own, other| own / (own + other)), "the sum of the densities overflows: divide first"),
-            (own.is_nan() || other.is_nan(), "you return NaN"),
-            (own == 1.0 && other == 1.0, "each technique counts in full, so light is counted twice"),
-            (own == 0.0 && other == 0.0, "both weights are 0, so light is lost"),
-            (sum > 1.0 + 1e-6, "your weights sum to more than 1, so light is counted twice"),
-            (sum < 1.0 - 1e-6, "your weights sum to less than 1, so light is lost"),
-        ]))
+    let broken = || {
+        let input = format!("{} and {}", paste(pair), paste(&(pair.1, pair.0)));
+        let expected = "two weights in 0..=1 that sum to 1";
+        Broken::with_texts(input, format!("{own:?} and {other:?}, sum {sum}"), expected, "the definition")
+            .explained_by([
+                (own.is_nan() || other.is_nan(), "you return NaN"),
+                (own == 1.0 && other == 1.0, "each technique counts in full, so light is counted twice"),
+                (own == 0.0 && other == 0.0, "both weights are 0, so light is lost"),
+                (sum > 1.0 + 1e-6, "your weights sum to more than 1, so light is counted twice"),
+                (sum < 1.0 - 1e-6, "your weights sum to less than 1, so light is lost"),
+            ])
+    };
+    unless(is_share(own) && is_share(other) && (sum - 1.0).abs() <= 1e-6, broken).formulas([
+        (
+            is(|own, other| own * own / (own * own + other * other)),
+            "the squares of the densities overflow or underflow: divide first",
+        ),
+        (is(|own, other| own / (own + other)), "the sum of the densities overflows: divide first"),
+    ])
 }
 
 pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
@@ -57,10 +57,10 @@ pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
     trial.forall(500, pairs, |pairs| {
         let answers = both_ways(trial, pairs);
         let outcomes = compare(pairs, answers.clone(), |pair, answers| {
-            judge_sum(pair, answers)?;
+            let refuted = judge_sum(pair, answers)?;
             let (larger, smaller) = if pair.0 >= pair.1 { answers } else { (answers.1, answers.0) };
             if larger >= smaller {
-                return Ok(());
+                return Ok(refuted);
             }
             let expected = "the larger density has the larger weight";
             Err(Broken::new(paste(pair), answers.0, expected, "the definition").explained_by([(

@@ -4,7 +4,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::double::U;
 use checks::generate::{direction, point, triangle};
-use checks::judge::compare;
+use checks::judge::{Judged, compare, unless};
 use checks::nasty;
 use checks::paste::call;
 use glam::{Vec3, vec3};
@@ -40,7 +40,7 @@ fn exact(triangle: &Triangle) -> Exact {
 
 const SWAPPED_WITH_UV: &str = "u·v and another product look swapped";
 
-fn judge(triangle: &Triangle, yours: GramScalars) -> CheckResult {
+fn judge(triangle: &Triangle, yours: GramScalars) -> Judged {
     let exact = exact(triangle);
     let near = |yours: f32, exact: f64, slack: f64| (f64::from(yours) - exact).abs() <= slack;
     let [uv_slack, vv_slack, uu_slack] = exact.slack;
@@ -53,19 +53,22 @@ fn judge(triangle: &Triangle, yours: GramScalars) -> CheckResult {
         && near(yours.vv, exact.vv, vv_slack)
         && near(yours.uu, exact.uu, uu_slack);
     let d_is_right = yours.d <= 0.0 && near(yours.d, exact.d, exact.d_slack);
-    if products_are_right && d_is_right {
-        return Ok(());
-    }
     let describe =
         |uv: f64, vv: f64, uu: f64, d: f64| format!("u·v = {uv:?}, v·v = {vv:?}, u·u = {uu:?}, D = {d:e}");
-    let [uv, vv, uu, d] = [yours.uv, yours.vv, yours.uu, yours.d].map(f64::from);
-    let yours_in_words = describe(uv, vv, uu, d);
-    let expected = describe(exact.uv, exact.vv, exact.uu, exact.d);
-    let input = call("gram_scalars", &[triangle]);
+    let broken = || {
+        let [uv, vv, uu, d] = [yours.uv, yours.vv, yours.uu, yours.d].map(f64::from);
+        let expected = describe(exact.uv, exact.vv, exact.uu, exact.d);
+        Broken::with_texts(
+            call("gram_scalars", &[triangle]),
+            describe(uv, vv, uu, d),
+            expected,
+            "double precision",
+        )
+    };
     // UV² and UU·VV are rounded before they are subtracted.
     let cancels = near(yours.d, exact.d, 16.0 * U * (exact.uv * exact.uv + exact.uu * exact.vv));
     let root = exact.d.abs().sqrt();
-    Err(Broken::with_texts(input, yours_in_words, expected, "double precision").explained_by([
+    unless(products_are_right && d_is_right, broken).formulas([
         (products(exact.uv, exact.uu, exact.vv), "u·u and v·v look swapped"),
         (products(exact.uu, exact.vv, exact.uv), SWAPPED_WITH_UV),
         (products(exact.vv, exact.uv, exact.uu), SWAPPED_WITH_UV),
@@ -78,7 +81,7 @@ fn judge(triangle: &Triangle, yours: GramScalars) -> CheckResult {
             "D is -|u × v|², not squared in your answer",
         ),
         (products_are_right && cancels, "UV² - UU·VV cancels for a thin triangle: compute D as -|u × v|²"),
-    ]))
+    ])
 }
 
 pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) -> CheckResult {

@@ -3,7 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::point;
-use checks::judge::compare;
+use checks::judge::{Judged, all_parts, compare, unless};
 use checks::paste::Paste;
 use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
@@ -44,7 +44,7 @@ fn sums(mesh: &Mesh, vertex: usize) -> Sums {
 const WRONG_COUNT: &str = "the result has one normal per vertex, not per triangle or corner";
 
 /// The normals of a mesh are judged per vertex. A sum that nearly cancels is judged by its length only.
-fn judge(what: &str, mesh: &Mesh, normals: &[Vec3]) -> CheckResult {
+fn judge(what: &str, mesh: &Mesh, normals: &[Vec3]) -> Judged {
     if normals.len() != mesh.positions.len() {
         let [yours, expected] = [normals.len(), mesh.positions.len()].map(|n| format!("{n} normals"));
         return Err(Broken::with_texts(what, yours, expected, "one per vertex").explained_by([
@@ -52,14 +52,13 @@ fn judge(what: &str, mesh: &Mesh, normals: &[Vec3]) -> CheckResult {
             (normals.len() == mesh.triangles.len(), WRONG_COUNT),
         ]));
     }
-    let outcomes = normals.iter().enumerate().map(|(vertex, &yours)| judge_one(what, mesh, vertex, yours));
-    all_hold(outcomes.collect())
+    all_parts(normals.iter().enumerate().map(|(vertex, &yours)| judge_one(what, mesh, vertex, yours)))
 }
 
 const NOT_NORMALIZED: &str = "your normal is not of unit length: normalize the sum";
 const ONE_FACE: &str = "you return the normal of one face: add up those of all faces around the vertex";
 
-fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> CheckResult {
+fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> Judged {
     let sums = sums(mesh, vertex);
     let near = |n: DVec3| (yours.as_dvec3() - n).length() < 1e-5;
     let unit = (yours.length() - 1.0).abs() < 1e-5;
@@ -71,19 +70,17 @@ fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> CheckResult
         // The error of a sum of unit vectors grows as the sum becomes shorter.
         _ => unit && (yours.as_dvec3() - average).length() < 1e-5 / sums.plain.length().min(1.0),
     };
-    if right {
-        return Ok(());
-    }
     let expected = match sums.faces.first() {
         None => Vec3::Z,
         Some(face) if cancels => face.as_vec3(),
         Some(_) => average.as_vec3(),
     };
-    let input = format!("{what}, vertex {vertex} at {}", mesh.positions[vertex].paste());
+    let input = || format!("{what}, vertex {vertex} at {}", mesh.positions[vertex].paste());
     let is = |n: DVec3| near(n.normalize_or_zero());
     let has_faces = !sums.faces.is_empty();
     let source = if cancels { "a face, because the sum is 0" } else { "double precision" };
-    Err(Broken::new(input, yours, expected, source).explained_by([
+    let broken = || {
+        Broken::new(input(), yours, expected, source).explained_by([
         (
             cancels && (yours.is_nan() || yours.length() < 1e-3),
             "a sum of 0 has no direction (0/0 is NaN): take the normal of one face, or any unit vector if there is none",
@@ -92,14 +89,19 @@ fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> CheckResult
         (has_faces && !unit && near(sums.plain), NOT_NORMALIZED),
         (has_faces && !unit && near(sums.plain / sums.faces.len() as f64), NOT_NORMALIZED),
         (is(-sums.plain), "your normal points inwards: is the face normal u × v?"),
+    ])
+    };
+    // Where any direction passes, each formula may give each answer.
+    let is_open = right && (cancels || !has_faces);
+    unless(right, broken).formulas([
         (
-            is(sums.by_area),
+            is_open || is(sums.by_area),
             "you weight each face by its area: normalize the face normals before you add them",
         ),
-        (is(sums.by_angle), "you weight each face by its angle: each triangle counts once"),
-        (sums.faces.first().is_some_and(|&face| near(face)), ONE_FACE),
-        (sums.faces.last().is_some_and(|&face| near(face)), ONE_FACE),
-    ]))
+        (is_open || is(sums.by_angle), "you weight each face by its angle: each triangle counts once"),
+        (is_open || sums.faces.first().is_some_and(|&face| near(face)), ONE_FACE),
+        (is_open || sums.faces.last().is_some_and(|&face| near(face)), ONE_FACE),
+    ])
 }
 
 fn judge_all(trial: &Trial<'_>, what: &str, meshes: &[Mesh]) -> Vec<CheckResult> {
@@ -154,18 +156,14 @@ pub(super) fn vertex_normals_average_their_faces(trial: &Trial<'_>) -> CheckResu
         .concat(),
     )?;
     trial.forall(600, fans(), |meshes| {
-        meshes
-            .iter()
-            .zip(trial.kit.vertex_normals(meshes))
-            .map(|(mesh, normals)| {
-                if is_open(mesh) {
-                    return Ok(());
-                }
-                let positions: Vec<String> = mesh.positions.iter().map(Paste::paste).collect();
-                let what = format!("positions [{}], triangles {:?}", positions.join(", "), mesh.triangles);
-                judge(&what, mesh, &normals)
-            })
-            .collect()
+        compare(meshes, trial.kit.vertex_normals(meshes), |mesh, normals| {
+            if is_open(mesh) {
+                return Ok(().into());
+            }
+            let positions: Vec<String> = mesh.positions.iter().map(Paste::paste).collect();
+            let what = format!("positions [{}], triangles {:?}", positions.join(", "), mesh.triangles);
+            judge(&what, mesh, &normals)
+        })
     })
 }
 

@@ -3,7 +3,7 @@
 use checks::broken::{Broken, CheckResult};
 use checks::double;
 use checks::generate::{magnitude, point, rough_point, sphere, triangle};
-use checks::judge::compare;
+use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::paste::call;
 use checks::{Trial, tree};
@@ -24,30 +24,28 @@ pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
         compare(triangles, trial.kit.triangle_bounds(triangles), |triangle, yours| {
             let corner = |p: Vec3| Aabb::new(p, p);
             let expected = tree::around(&[corner(triangle.a), corner(triangle.b), corner(triangle.c)]);
-            let input = call("triangle_bounds", &[triangle]);
-            if yours == expected {
-                Ok(())
-            } else {
-                let two = |p: Vec3, q: Vec3| tree::around(&[corner(p), corner(q)]);
-                let Triangle { a, b, c } = *triangle;
-                let pairs = [two(a, b), two(b, c), two(c, a)];
-                let mut mistakes = Vec::from(pairs.map(|pair| {
+            let input = || call("triangle_bounds", &[triangle]);
+            let two = |p: Vec3, q: Vec3| tree::around(&[corner(p), corner(q)]);
+            let Triangle { a, b, c } = *triangle;
+            let pairs = [two(a, b), two(b, c), two(c, a)];
+            let mut mistakes =
+                Vec::from(pairs.map(|pair| {
                     (yours == pair, "your box leaves out a corner: it contains only two of them")
                 }));
-                mistakes.extend([
-                    (
-                        yours.contains_box(&expected) && !yours.is_empty(),
-                        "you return a padded box: boxes are closed, so even a flat box needs no padding",
-                    ),
-                    (
-                        yours == Aabb::new(expected.max, expected.min),
-                        "min and max are exchanged: min is the smaller one on each axis",
-                    ),
-                    (yours == Aabb::new(a, b), CORNERS),
-                    (yours == Aabb::new(a, c), CORNERS),
-                ]);
-                Err(Broken::new(input, yours, expected, "closed form").explained_by(mistakes))
-            }
+            mistakes.extend([
+                (
+                    yours.contains_box(&expected) && !yours.is_empty(),
+                    "you return a padded box: boxes are closed, so even a flat box needs no padding",
+                ),
+                (
+                    yours == Aabb::new(expected.max, expected.min),
+                    "min and max are exchanged: min is the smaller one on each axis",
+                ),
+                (yours == Aabb::new(a, b), CORNERS),
+                (yours == Aabb::new(a, c), CORNERS),
+            ]);
+            unless(yours == expected, || Broken::new(input(), yours, expected, "closed form"))
+                .formulas(mistakes)
         })
     })
 }
@@ -66,34 +64,27 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
             let near = |yours: Vec3, exact: glam::DVec3| (yours.as_dvec3() - exact).abs().cmple(slack).all();
             let right = near(yours.min, center - radius) && near(yours.max, center + radius);
             let expected = Aabb::new((center - radius).as_vec3(), (center + radius).as_vec3());
-            let input = call("sphere_bounds", &[sphere]);
-            if right {
-                Ok(())
-            } else {
-                let is = |low: glam::DVec3, high: glam::DVec3| near(yours.min, low) && near(yours.max, high);
-                Err(Broken::new(input, yours, expected, "closed form").explained_by([
-                    (
-                        is(glam::DVec3::splat(-radius), glam::DVec3::splat(radius)),
-                        "your box has the right size but the wrong place: go one radius from the centre",
-                    ),
-                    (
-                        is(center - 0.5 * radius, center + 0.5 * radius),
-                        "your box is too small: go one whole radius from the centre to each side",
-                    ),
-                    (
-                        is(center, center + radius),
-                        "your box begins at the centre: go one radius to each side",
-                    ),
-                    (
-                        is(center, center + 2.0 * radius),
-                        "your box begins at the centre: go one radius to each side of it",
-                    ),
-                    (
-                        is(center - 2.0 * radius, center + 2.0 * radius),
-                        "your box is too large: go one radius from the centre to each side, not the diameter",
-                    ),
-                ]))
-            }
+            let input = || call("sphere_bounds", &[sphere]);
+            let is = |low: glam::DVec3, high: glam::DVec3| near(yours.min, low) && near(yours.max, high);
+            unless(right, || Broken::new(input(), yours, expected, "closed form")).formulas([
+                (
+                    is(glam::DVec3::splat(-radius), glam::DVec3::splat(radius)),
+                    "your box has the right size but the wrong place: go one radius from the centre",
+                ),
+                (
+                    is(center - 0.5 * radius, center + 0.5 * radius),
+                    "your box is too small: go one whole radius from the centre to each side",
+                ),
+                (is(center, center + radius), "your box begins at the centre: go one radius to each side"),
+                (
+                    is(center, center + 2.0 * radius),
+                    "your box begins at the centre: go one radius to each side of it",
+                ),
+                (
+                    is(center - 2.0 * radius, center + 2.0 * radius),
+                    "your box is too large: go one radius from the centre to each side, not the diameter",
+                ),
+            ])
         })
     })
 }
@@ -110,28 +101,26 @@ pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> CheckResult {
     trial.forall_and(&[(first, second), (second, first)], 1000, (boxes(), boxes()), |pairs| {
         compare(pairs, trial.kit.union(pairs), |(first, second), yours| {
             let expected = tree::around([first, second]);
-            let input = call("union", &[first, second]);
-            if yours == expected {
-                Ok(())
-            } else {
-                let shared = Aabb::new(first.min.max(second.min), first.max.min(second.max));
-                let origin = Aabb::new(Vec3::ZERO, Vec3::ZERO);
-                let or_origin = |b: &Aabb| if b.is_empty() { origin } else { *b };
-                Err(Broken::new(input, yours, expected, "closed form").explained_by([
-                    (
-                        (first.is_empty() || second.is_empty())
-                            && yours == tree::around([&or_origin(first), &or_origin(second)]),
-                        "the empty box (inf, -inf) must change nothing: you take it for a box at the origin",
-                    ),
-                    (first.is_empty() || second.is_empty(), "the empty box (inf, -inf) must change nothing"),
-                    (
-                        yours == shared,
-                        "you return what both boxes share: take the smaller min and the larger max",
-                    ),
-                    (yours == *first, "you return the first box"),
-                    (yours == *second, "you return the second box"),
-                ]))
-            }
+            let broken = || {
+                let empty = first.is_empty() || second.is_empty();
+                Broken::new(call("union", &[first, second]), yours, expected, "closed form")
+                    .explained_by([(empty, "the empty box (inf, -inf) must change nothing")])
+            };
+            let shared = Aabb::new(first.min.max(second.min), first.max.min(second.max));
+            let origin = Aabb::new(Vec3::ZERO, Vec3::ZERO);
+            let or_origin = |b: &Aabb| if b.is_empty() { origin } else { *b };
+            unless(yours == expected, broken).formulas([
+                (
+                    yours == tree::around([&or_origin(first), &or_origin(second)]),
+                    "the empty box (inf, -inf) must change nothing: you take it for a box at the origin",
+                ),
+                (
+                    yours == shared,
+                    "you return what both boxes share: take the smaller min and the larger max",
+                ),
+                (yours == *first, "you return the first box"),
+                (yours == *second, "you return the second box"),
+            ])
         })
     })
 }
@@ -142,21 +131,17 @@ pub(super) fn centroid_is_the_middle(trial: &Trial<'_>) -> CheckResult {
         compare(boxes, trial.kit.centroid(boxes), |bounds, yours| {
             // Exact, because all coordinates are multiples of 1/8 times a power of two.
             let expected = 0.5 * (bounds.min + bounds.max);
-            let input = call("centroid", &[bounds]);
-            if yours == expected {
-                Ok(())
-            } else {
-                Err(Broken::new(input, yours, expected, "closed form").explained_by([
-                    (yours == bounds.min + bounds.max, "you return min + max, not halved"),
-                    (
-                        yours == 0.5 * (bounds.max - bounds.min),
-                        "you return half the size of the box, not its middle",
-                    ),
-                    (yours == bounds.max - bounds.min, "you return the size of the box, not its middle"),
-                    (yours == bounds.min, "you return a corner of the box, not its middle"),
-                    (yours == bounds.max, "you return a corner of the box, not its middle"),
-                ]))
-            }
+            let input = || call("centroid", &[bounds]);
+            unless(yours == expected, || Broken::new(input(), yours, expected, "closed form")).formulas([
+                (yours == bounds.min + bounds.max, "you return min + max, not halved"),
+                (
+                    yours == 0.5 * (bounds.max - bounds.min),
+                    "you return half the size of the box, not its middle",
+                ),
+                (yours == bounds.max - bounds.min, "you return the size of the box, not its middle"),
+                (yours == bounds.min, "you return a corner of the box, not its middle"),
+                (yours == bounds.max, "you return a corner of the box, not its middle"),
+            ])
         })
     })
 }
@@ -169,23 +154,19 @@ pub(super) fn surface_area_counts_six_faces(trial: &Trial<'_>) -> CheckResult {
         compare(boxes, trial.kit.surface_area(boxes), |bounds, yours| {
             // Exact, because the products are multiples of 1/64 times a power of two.
             let expected = 2.0 * tree::half_area(bounds) as f32;
-            let input = call("surface_area", &[bounds]);
-            if yours == expected {
-                Ok(())
-            } else {
-                let size = bounds.max - bounds.min;
-                let near = |area: f32| yours == area || (yours - area).abs() <= 1e-6 * area.abs();
-                Err(Broken::new(input, yours, expected, "closed form").explained_by([
-                    (bounds.is_empty(), "an empty box has no faces: return 0 (its size max - min is -inf)"),
-                    (near(size.element_product()), "you return the volume, not the area"),
-                    (near(0.5 * expected), "you return half of the area: each face counts twice"),
-                    (
-                        near(2.0 * expected),
-                        "you return twice the area: each face counts twice, not four times",
-                    ),
-                    (near(size.length_squared()), "you return the squared diagonal, not the area"),
-                ]))
-            }
+            let empty = "an empty box has no faces: return 0 (its size max - min is -inf)";
+            let broken = || {
+                Broken::new(call("surface_area", &[bounds]), yours, expected, "closed form")
+                    .explained_by([(bounds.is_empty(), empty)])
+            };
+            let size = bounds.max - bounds.min;
+            let near = |area: f32| bounds.is_empty() || (yours - area).abs() <= 1e-6 * area.abs();
+            unless(yours == expected, broken).formulas([
+                (near(size.element_product()), "you return the volume, not the area"),
+                (near(0.5 * expected), "you return half of the area: each face counts twice"),
+                (near(2.0 * expected), "you return twice the area: each face counts twice, not four times"),
+                (near(size.length_squared()), "you return the squared diagonal, not the area"),
+            ])
         })
     })
 }

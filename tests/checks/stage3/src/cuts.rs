@@ -32,7 +32,7 @@ pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -
         (43.0, 1.0, 1.25, 1.0),
         (44.5, 1.25, 1.0, 1.0),
     ]);
-    let judge = |sets: &[Vec<Aabb>]| judge_splits(trial, Split::SurfaceArea, sets, cheapest);
+    let judge = |sets: &[Vec<Aabb>]| judge_splits(trial, Split::SurfaceArea, sets, cheapest, formulas);
     // Three large boxes on top of each other, for which a leaf is cheaper than any cut.
     let heap = cubes(&[(0.0, 0.0, 0.0, 9.0), (0.1, 0.2, 0.3, 9.0), (0.2, 0.1, 0.4, 9.0)]);
     trial.forall_and(&[scattered, row, heap], 500, boxes(16), judge)
@@ -78,38 +78,18 @@ pub(super) fn surface_area_heuristic_joins_no_side_again(trial: &Trial<'_>) -> C
 const AXES: [usize; 3] = [0, 1, 2];
 
 /// The fault of a cut, if it has one. A `middle` of 0 is a leaf.
-fn cheapest(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> Option<Fault> {
+fn cheapest(_: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> Option<Fault> {
     let best = tree::least_cost(ordered, &AXES, &tree::cut_cost);
     let leaf = tree::leaf_is_cheaper(ordered, best);
-    let area = tree::half_area(&tree::around(ordered.iter().map(|p| &p.bounds)));
-    let n = ordered.len() as f64;
     if middle == 0 {
         let expected = format!("a cut of cost {best:.4}, cheaper than a leaf");
-        let twice = 2.0 * f64::from(TRAVERSAL_COST) * area + f64::from(INTERSECTION_COST) * best;
-        let mut mistakes = vec![
-            (
-                twice >= f64::from(INTERSECTION_COST) * area * n,
-                "the leaf is taken too soon: compare C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) with C_i A(P) n(P)",
-            ),
-            (
-                is_leaf_without(ordered, [2, 1]),
-                "not every cut is tried: the one behind the first primitive is left out",
-            ),
-            (
-                is_leaf_without(ordered, [1, 2]),
-                "not every cut is tried: the one before the last primitive is left out",
-            ),
-        ];
-        mistakes.extend(wrong_costs(ordered, middle));
-        mistakes.push((ordered.len() <= 4, "you make a leaf of few primitives although a cut is cheaper"));
+        let mistakes =
+            vec![(ordered.len() <= 4, "you make a leaf of few primitives although a cut is cheaper")];
         return (leaf == Some(false)).then_some((String::new(), expected, mistakes));
     }
     if leaf == Some(true) {
+        let mistakes = vec![(true, "you return a cut in any case, but a leaf may be cheaper")];
         let yours = format!("a cut before {middle}");
-        let mut mistakes =
-            vec![(best <= area * n * 1.0001, "TRAVERSAL_COST is left out, so a cut always looks cheaper")];
-        mistakes.extend(wrong_costs(ordered, middle));
-        mistakes.push((true, "you return a cut in any case, but a leaf may be cheaper"));
         return Some((yours, "None: a leaf is cheaper than any cut".into(), mistakes));
     }
     let yours = tree::cut_cost(&ordered[..middle], &ordered[middle..]);
@@ -117,7 +97,7 @@ fn cheapest(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> 
     // the cost only if all centroids differ.
     (yours > best * 1.0001 + 1e-6 && centroids_differ(ordered)).then(|| {
         let describe = format!("cost {yours:.4} (cut before {middle})");
-        (describe, format!("cost {best:.4}"), cut_mistakes(given, ordered, middle))
+        (describe, format!("cost {best:.4}"), vec![])
     })
 }
 
@@ -174,6 +154,38 @@ fn wrong_costs(ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static s
     ]
 }
 
+/// Wrong rules, each with whether it gives this cut, or a leaf if `middle` is 0.
+fn formulas(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static str)> {
+    let best = tree::least_cost(ordered, &AXES, &tree::cut_cost);
+    let area = tree::half_area(&tree::around(ordered.iter().map(|p| &p.bounds)));
+    let as_leaf = f64::from(INTERSECTION_COST) * area * ordered.len() as f64;
+    let mut mistakes = match middle {
+        // Equal centroids may be sorted in any order.
+        _ if !centroids_differ(ordered) => return Vec::new(),
+        0 => vec![
+            (
+                2.0 * f64::from(TRAVERSAL_COST) * area + f64::from(INTERSECTION_COST) * best >= as_leaf,
+                "the leaf is taken too soon: compare C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) with C_i A(P) n(P)",
+            ),
+            (
+                is_leaf_without(ordered, [2, 1]),
+                "not every cut is tried: the one behind the first primitive is left out",
+            ),
+            (
+                is_leaf_without(ordered, [1, 2]),
+                "not every cut is tried: the one before the last primitive is left out",
+            ),
+        ],
+        _ => cut_mistakes(given, ordered, middle),
+    };
+    if middle > 0 {
+        let without = f64::from(INTERSECTION_COST) * best <= as_leaf * 1.0001;
+        mistakes.push((without, "TRAVERSAL_COST is left out, so a cut always looks cheaper"));
+    }
+    mistakes.extend(wrong_costs(ordered, middle));
+    mistakes
+}
+
 /// The mistakes that make this cut the best one.
 fn cut_mistakes(
     given: &[PrimitiveRef],
@@ -200,7 +212,7 @@ fn cut_mistakes(
     let only_one = "only one axis is tried: the best cut is along another";
     let all = bounds(ordered);
     let longest = tree::longest_axes(&all);
-    let mut mistakes = vec![
+    vec![
         (as_given, "the primitives are not sorted: you cut them as they come"),
         (is_best_along(0), only_one),
         (is_best_along(1), "only one axis is tried, y: the best cut is along another"),
@@ -221,9 +233,7 @@ fn cut_mistakes(
             is_least_of(&AXES, right_cost, [1, 2]),
             "not every cut is tried: the one before the last primitive is left out",
         ),
-    ];
-    mistakes.extend(wrong_costs(ordered, middle));
-    mistakes
+    ]
 }
 
 fn centroids_differ(primitives: &[PrimitiveRef]) -> bool {

@@ -2,7 +2,7 @@
 
 use checks::broken::{Broken, CheckResult};
 use checks::generate::{point, rough_point};
-use checks::judge::compare;
+use checks::judge::compare_formulas;
 use checks::paste::list;
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
@@ -34,15 +34,20 @@ pub(super) type Fault = (String, String, Vec<(bool, &'static str)>);
 
 /// Judges splits: every primitive is kept and neither side is empty. Then `law` judges the order and the middle, which
 /// is 0 for a leaf. It gets the primitives as they were and in the new order, and returns a fault if they are wrong.
+/// `formulas` gets the same, and lists wrong rules, each with whether it gives this split.
 pub(super) fn judge_splits(
     trial: &Trial<'_>,
     split: Split,
     sets: &[Vec<Aabb>],
     law: impl Fn(&[PrimitiveRef], &[PrimitiveRef], usize) -> Option<Fault>,
+    formulas: impl Fn(&[PrimitiveRef], &[PrimitiveRef], usize) -> Vec<(bool, &'static str)>,
 ) -> Vec<CheckResult> {
     let queries: Vec<SplitQuery> =
         sets.iter().map(|boxes| SplitQuery { split, primitives: tree::references(boxes) }).collect();
-    compare(&queries, trial.kit.split(&queries), |query, yours| {
+    let in_order = |query: &SplitQuery, order: &[u32]| -> Vec<PrimitiveRef> {
+        order.iter().filter_map(|&id| query.primitives.get(id as usize)).copied().collect()
+    };
+    let judge = |query: &SplitQuery, yours: SplitAnswer| {
         let n = query.primitives.len();
         let input = format!("{split:?} of {n} boxes\n{}", list(query.primitives.iter().map(|p| &p.bounds)));
         let SplitAnswer { order, middle, .. } = yours;
@@ -86,14 +91,22 @@ pub(super) fn judge_splits(
                 "all centroids are on one side of the cut: fall back on another split",
             )]));
         }
-        let ordered: Vec<PrimitiveRef> = order.iter().map(|&id| query.primitives[id as usize]).collect();
-        match law(&query.primitives, &ordered, middle) {
+        match law(&query.primitives, &in_order(query, &order), middle) {
             None => Ok(()),
             Some((yours, expected, mistakes)) => {
                 Err(Broken::with_texts(input, yours, expected, "brute force").explained_by(mistakes))
             }
         }
-    })
+    };
+    compare_formulas(
+        &queries,
+        trial.kit.split(&queries),
+        judge,
+        |query, SplitAnswer { order, middle, .. }| {
+            let (ordered, middle) = (in_order(query, order), middle.unwrap_or(0));
+            if middle >= ordered.len() { Vec::new() } else { formulas(&query.primitives, &ordered, middle) }
+        },
+    )
 }
 
 /// Whether `middle` divides the centroids along `axis`: none before it is beyond one behind it, in either direction.

@@ -16,9 +16,14 @@ fn no_cut() -> Fault {
     (String::new(), format!("a cut: {always}"), vec![])
 }
 
+/// No list of wrong rules.
+fn none(_: &[PrimitiveRef], _: &[PrimitiveRef], _: usize) -> Vec<(bool, &'static str)> {
+    Vec::new()
+}
+
 pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult {
     trial.forall(600, boxes(20), |sets| {
-        judge_splits(trial, Split::ObjectMedian, sets, |given, ordered, middle| {
+        let law = |_: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize| {
             let n = ordered.len();
             if middle == 0 {
                 return Some(no_cut());
@@ -28,14 +33,22 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
             if equal && axes.iter().any(|&axis| divided(ordered, middle, axis)) {
                 return None;
             }
+            let mistakes = vec![(!equal, "the halves must hold equally many primitives")];
+            let yours = match equal {
+                true => "the centroids of the halves overlap".into(),
+                false => format!("{middle} and {}", n - middle),
+            };
+            let expected = format!("{} and {}, separated along axis {axes:?} by centroid", n / 2, n - n / 2);
+            Some((yours, expected, mistakes))
+        };
+        let formulas = |given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize| {
             let as_given = given.iter().map(|p| p.id).eq(ordered.iter().map(|p| p.id));
             let shortest = |axis: usize| {
                 let all = tree::around(ordered.iter().map(|p| &p.bounds));
                 (all.max - all.min)[axis] <= (all.max - all.min).min_element()
             };
             let along = |axis: usize| divided(ordered, middle, axis);
-            let mistakes = vec![
-                (!equal, "the halves must hold equally many primitives"),
+            vec![
                 (as_given, "the primitives are not sorted: you cut them as they come"),
                 (along(0), "you always sort along x, not along the longest axis"),
                 (along(1), "you always sort along y, not along the longest axis"),
@@ -45,14 +58,9 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
                     "you sort along the shortest axis, not along the longest axis",
                 ),
                 ((0..3).any(along), "you sort along an axis that is not the longest axis"),
-            ];
-            let yours = match equal {
-                true => "the centroids of the halves overlap".into(),
-                false => format!("{middle} and {}", n - middle),
-            };
-            let expected = format!("{} and {}, separated along axis {axes:?} by centroid", n / 2, n - n / 2);
-            Some((yours, expected, mistakes))
-        })
+            ]
+        };
+        judge_splits(trial, Split::ObjectMedian, sets, law, formulas)
     })
 }
 
@@ -67,19 +75,20 @@ fn is_cut_at(ordered: &[PrimitiveRef], middle: usize, axis: usize, cut: f32, siz
 
 pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResult {
     trial.forall(600, boxes(20), |sets| {
-        judge_splits(trial, Split::SpatialMedian, sets, |_, ordered, middle| {
+        let fits = |ordered: &[PrimitiveRef], middle: usize, bounds: &Aabb, axis: usize| {
+            let cut = 0.5 * (bounds.min[axis] + bounds.max[axis]);
+            is_cut_at(ordered, middle, axis, cut, bounds.max[axis] - bounds.min[axis])
+        };
+        let law = |_: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize| {
             if middle == 0 {
                 return Some(no_cut());
             }
             let all = tree::around(ordered.iter().map(|p| &p.bounds));
             let centroids: Vec<Aabb> = ordered.iter().map(|p| Aabb::new(p.centroid, p.centroid)).collect();
             let of_centroids = tree::around(&centroids);
-            let fits = |bounds: &Aabb, axis: usize| {
-                let cut = 0.5 * (bounds.min[axis] + bounds.max[axis]);
-                is_cut_at(ordered, middle, axis, cut, bounds.max[axis] - bounds.min[axis])
+            let some_cut = |bounds: &Aabb| {
+                tree::longest_axes(bounds).into_iter().any(|axis| fits(ordered, middle, bounds, axis))
             };
-            let some_cut =
-                |bounds: &Aabb| tree::longest_axes(bounds).into_iter().any(|axis| fits(bounds, axis));
             // If all centroids are on one side of the middle, any split is accepted.
             let divides = tree::longest_axes(&all).into_iter().all(|axis| {
                 let cut = 0.5 * (all.min[axis] + all.max[axis]);
@@ -90,13 +99,19 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
                 return None;
             }
             let axes = tree::longest_axes(&all);
-            let n = ordered.len();
+            let expected = format!("centroids below and above the middle of axis {axes:?}");
+            Some(("a cut elsewhere".into(), expected, vec![]))
+        };
+        let formulas = |_: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize| {
+            let all = tree::around(ordered.iter().map(|p| &p.bounds));
+            let (axes, n) = (tree::longest_axes(&all), ordered.len());
+            let fits = |axis: usize| fits(ordered, middle, &all, axis);
             let at_the_mean = |axis: usize| {
                 let mean = ordered.iter().map(|p| p.centroid[axis]).sum::<f32>() / n as f32;
                 is_cut_at(ordered, middle, axis, mean, all.max[axis] - all.min[axis])
             };
             let halves = middle == n / 2 || middle == n.div_ceil(2);
-            let mistakes = vec![
+            vec![
                 (
                     axes.iter().any(|&axis| at_the_mean(axis)),
                     "you cut at the mean of the centroids, which is not in the middle of the box",
@@ -105,14 +120,13 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
                     halves && axes.iter().any(|&axis| divided(ordered, middle, axis)),
                     "you put half of the primitives on each side: your cut is not in the middle of the box",
                 ),
-                (fits(&all, 0), "you always cut along x, not along the longest axis"),
-                (fits(&all, 1), "you always cut along y, not along the longest axis"),
-                (fits(&all, 2), "you always cut along z, not along the longest axis"),
-                ((0..3).any(|axis| fits(&all, axis)), "you cut an axis that is not the longest axis"),
-            ];
-            let expected = format!("centroids below and above the middle of axis {axes:?}");
-            Some(("a cut elsewhere".into(), expected, mistakes))
-        })
+                (fits(0), "you always cut along x, not along the longest axis"),
+                (fits(1), "you always cut along y, not along the longest axis"),
+                (fits(2), "you always cut along z, not along the longest axis"),
+                ((0..3).any(fits), "you cut an axis that is not the longest axis"),
+            ]
+        };
+        judge_splits(trial, Split::SpatialMedian, sets, law, formulas)
     })
 }
 
@@ -128,14 +142,20 @@ pub(super) fn spatial_median_never_leaves_a_side_empty(trial: &Trial<'_>) -> Che
         (0..8).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 1.0, 1.0))).collect();
     let sets = [row, equal, concentric, lopsided];
     let in_the_middle = (String::new(), "4 and 4 of the boxes in a row".to_owned(), vec![]);
-    all_hold(judge_splits(trial, Split::SpatialMedian, &sets, |_, ordered, middle| {
-        let is_row = ordered.iter().any(|p| p.bounds.min.x == 7.0);
-        match middle {
-            0 => Some(no_cut()),
-            4 => None,
-            _ => is_row.then(|| in_the_middle.clone()),
-        }
-    }))
+    all_hold(judge_splits(
+        trial,
+        Split::SpatialMedian,
+        &sets,
+        |_, ordered, middle| {
+            let is_row = ordered.iter().any(|p| p.bounds.min.x == 7.0);
+            match middle {
+                0 => Some(no_cut()),
+                4 => None,
+                _ => is_row.then(|| in_the_middle.clone()),
+            }
+        },
+        none,
+    ))
 }
 
 pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> CheckResult {
@@ -144,7 +164,7 @@ pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> Ch
         (0..6).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 0.0, 0.0))).collect();
     let points = vec![Aabb::new(Vec3::ONE, Vec3::ONE); 5];
     let sets = [line, points, vec![UNIT_BOX; 6]];
-    match kit_error::catch(|| judge_splits(trial, Split::SurfaceArea, &sets, |_, _, _| None)) {
+    match kit_error::catch(|| judge_splits(trial, Split::SurfaceArea, &sets, |_, _, _| None, none)) {
         Ok(outcomes) => all_hold(outcomes)?,
         Err(KitError::Panicked { message, place }) => {
             let input = "SurfaceArea of six boxes along a line, five in one point, six equal ones";
@@ -152,8 +172,9 @@ pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> Ch
             // The same code answers for boxes that have an area.
             let with_area: Vec<Aabb> =
                 (0..6).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 1.0, 1.0))).collect();
-            let answers =
-                kit_error::catch(|| judge_splits(trial, Split::SurfaceArea, &[with_area], |_, _, _| None));
+            let answers = kit_error::catch(|| {
+                judge_splits(trial, Split::SurfaceArea, &[with_area], |_, _, _| None, none)
+            });
             return Err(Broken::with_texts(input, panic, "an answer", "the definition").explained_by([(
                 answers.is_ok() && message.contains("None"),
                 "for boxes without area no cut is the best (0/0 makes every cost NaN): compare costs without dividing by A(P)",
@@ -165,9 +186,15 @@ pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> Ch
     let walls: Vec<Aabb> =
         (0..16).map(|i| Aabb::new(vec3(8.0 * i as f32, 0.0, 0.0), vec3(8.0 * i as f32, 1.0, 1.0))).collect();
     // The cheapest cut is in the middle, and the costs of its neighbours are close.
-    all_hold(judge_splits(trial, Split::SurfaceArea, &[walls], |_, _, middle| {
-        (!(4..=12).contains(&middle)).then(|| {
-            (format!("{middle} on the left"), "a cut near the middle, cheaper than a leaf".into(), vec![])
-        })
-    }))
+    all_hold(judge_splits(
+        trial,
+        Split::SurfaceArea,
+        &[walls],
+        |_, _, middle| {
+            (!(4..=12).contains(&middle)).then(|| {
+                (format!("{middle} on the left"), "a cut near the middle, cheaper than a leaf".into(), vec![])
+            })
+        },
+        none,
+    ))
 }

@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
+use checks::judge::{Judged, compare, unless};
 use checks::paste::Paste;
 
 pub(super) fn gamma_is_two(trial: &Trial<'_>) -> CheckResult {
@@ -18,30 +18,26 @@ pub(super) fn gamma_is_two(trial: &Trial<'_>) -> CheckResult {
     trial.forall(500, 0f32..=1.0, judge)
 }
 
-fn judge_decoded(byte: u8, yours: f32) -> CheckResult {
+fn judge_decoded(byte: u8, yours: f32) -> Judged {
     let share = f64::from(byte) / 255.0;
     // The tolerance covers two roundings of a number up to 1. Mistakes that scale the number have a relative one.
     let near = |value: f64| (f64::from(yours) - value).abs() < 1e-6 * value.max(1.0);
-    if near(share * share) {
-        return Ok(());
-    }
-    let broken = Broken::new(format!("decode_gamma({byte})"), yours, (share * share) as f32, "(byte / 255)²");
-    Err(broken.explained_by([
+    let broken =
+        || Broken::new(format!("decode_gamma({byte})"), yours, (share * share) as f32, "(byte / 255)²");
+    unless(near(share * share), broken).formulas([
         (near(share), "you do not square: decoding squares byte / 255"),
         (near(f64::from(byte).powi(2)), "you square the byte itself: divide it by 255 first"),
         (near(share.sqrt()), "you take the root: encoding takes the root, decoding squares"),
         (near(share.powf(2.2)), "you use gamma 2.2: the lecture uses gamma 2, which is the square"),
         (near((f64::from(byte) / 256.0).powi(2)), "you divide by 256: the largest byte is 255"),
-    ]))
+    ])
 }
 
-fn judge_encoded(linear: f32, yours: u8) -> CheckResult {
+fn judge_encoded(linear: f32, yours: u8) -> Judged {
     let exact = f64::from(linear);
     let right = 255.0 * exact.sqrt();
     // An exact half may be rounded either way; the thousandth covers the rounding of the root.
-    if (f64::from(yours) - right).abs() <= 0.501 {
-        return Ok(());
-    }
+    let is_right = (f64::from(yours) - right).abs() <= 0.501;
     // Whether a number rounded down gives this byte, up to the rounding of the formula.
     let down = |value: f64| (-0.001..1.001).contains(&(value - f64::from(yours)));
     let mut mistakes = vec![
@@ -62,8 +58,9 @@ fn judge_encoded(linear: f32, yours: u8) -> CheckResult {
     mistakes.extend(
         formulas.into_iter().flat_map(|(value, text)| [(down(value), text), (down(value + 0.5), text)]),
     );
-    let input = format!("encode_gamma({})", linear.paste());
-    Err(Broken::new(input, yours, right.round() as u8, "255 √linear, rounded").explained_by(mistakes))
+    let input = || format!("encode_gamma({})", linear.paste());
+    unless(is_right, || Broken::new(input(), yours, right.round() as u8, "255 √linear, rounded"))
+        .formulas(mistakes)
 }
 
 pub(super) fn gamma_survives_invalid_numbers(trial: &Trial<'_>) -> CheckResult {

@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::compare;
+use checks::judge::{Judged, compare, unless};
 use checks::nasty;
 use checks::paste::call;
 use glam::Vec3;
@@ -28,7 +28,7 @@ pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> CheckResult 
     trial.forall(2000, queries(), |queries| compare(queries, trial.kit.shading_normal(queries), judge_normal))
 }
 
-fn judge_normal(query: &Query, yours: Vec3) -> CheckResult {
+fn judge_normal(query: &Query, yours: Vec3) -> Judged {
     let (geometric, interpolated, direction) = *query;
     let facing = if geometric.dot(direction) > 0.0 { -geometric } else { geometric };
     // Normalize in double precision, because the square of a length of 1e18 has few digits left in single precision.
@@ -38,25 +38,27 @@ fn judge_normal(query: &Query, yours: Vec3) -> CheckResult {
     // A geometric normal at right angles to the ray may have either sign.
     let grazing = geometric.dot(direction).abs() < 1e-6;
     let same = |n: Vec3| (yours - n).length() < 1e-5;
-    if same(expected) || (grazing && same(-expected)) {
-        return Ok(());
-    }
     let unnormalized = interpolated.map(|normal| turned(normal, -facing));
     let is = |normal: Option<Vec3>| {
         normal.is_some_and(|normal| (yours - normal).length() <= 1e-5 * normal.length())
     };
-    Err(Broken::new(paste_normal_query(query), yours, expected, "closed form").explained_by([
+    let right = same(expected) || (grazing && same(-expected));
+    let broken = || {
+        Broken::new(paste_normal_query(query), yours, expected, "closed form").explained_by([
+            (same(-expected), "your normal points away from the viewer: negate it"),
+            (is(unnormalized), "your normal does not have unit length: normalize the interpolated normal"),
+        ])
+    };
+    unless(right, broken).formulas([
         (
-            is(smooth.map(|smooth| turned(smooth, direction))),
+            smooth.map_or(right, |smooth| same(turned(smooth, direction))),
             "you turn the interpolated normal by `direction`: turn it to the side of the geometric normal",
         ),
-        (same(-expected), "your normal points away from the viewer: negate it"),
-        (is(unnormalized), "your normal does not have unit length: normalize the interpolated normal"),
         (
-            interpolated.is_some() && same(facing),
+            same(facing) || (grazing && same(-facing)),
             "you return the geometric normal where there is an interpolated one",
         ),
-    ]))
+    ])
 }
 
 pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> CheckResult {

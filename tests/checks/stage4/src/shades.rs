@@ -5,6 +5,7 @@ use super::terms::{cos_phi, specular};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::point;
+use checks::judge::{Judged, proven, unless};
 use checks::nasty;
 use checks::paste::Arguments;
 use glam::{DVec3, Vec3, vec3};
@@ -87,7 +88,7 @@ fn tolerance(right: DVec3) -> f64 {
 }
 
 /// A point with the student's own specular term per light, and whether the student's own `shadow_ray` returns a ray.
-type Judged = (ShadeQuery, Vec<(f32, bool)>);
+type WithOwnTerms = (ShadeQuery, Vec<(f32, bool)>);
 
 fn shadow_queries(queries: &[ShadeQuery]) -> Vec<ShadowQuery> {
     let of_lights = |query: &ShadeQuery| {
@@ -99,7 +100,7 @@ fn shadow_queries(queries: &[ShadeQuery]) -> Vec<ShadowQuery> {
 
 /// Adds the student's own specular terms and shadow rays. The formula of `shade` is judged with these as well as with the right
 /// ones, because other checks judge `specular_term` and `shadow_ray`.
-fn with_own_terms(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Judged> {
+fn with_own_terms(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<WithOwnTerms> {
     let terms: Vec<TermQuery> =
         queries.iter().flat_map(|query| (0..query.lights.len()).map(|light| term(query, light))).collect();
     let rays = trial.kit.shadow_ray(&shadow_queries(queries)).into_iter().map(|ray| ray.is_some());
@@ -111,16 +112,16 @@ fn with_own_terms(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Judged> {
 pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<CheckResult> {
     let judged = with_own_terms(trial, queries);
     let answers = trial.kit.shade(queries);
-    judged.iter().zip(answers).map(|(query, answer)| judge_shade(query, &answer)).collect()
+    proven(judged.iter().zip(answers).map(|(query, answer)| judge_shade(query, &answer)))
 }
 
 const LIGHT_BEHIND: &str =
     "you add a light behind the surface: skip lights for which shadow_ray returns None";
 
-fn judge_shade((query, own): &Judged, yours: &ShadeAnswer) -> CheckResult {
+fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
     let lights: Vec<usize> = (0..query.lights.len()).collect();
     if lights.iter().any(|&light| is_on_edge(query, light)) {
-        return Ok(());
+        return Ok(().into());
     }
     let color = yours.color.as_dvec3();
     let ambient = query.ambient.as_dvec3() * query.material.ambient.as_dvec3();
@@ -147,10 +148,6 @@ fn judge_shade((query, own): &Judged, yours: &ShadeAnswer) -> CheckResult {
     // Whether they give the student's colour, and whether with the student's own functions.
     let gives = |lights: &[usize]| [same(sum(lights)), same(own_sum(lights))];
     let (visible, occluded): (Vec<usize>, Vec<usize>) = lights.iter().partition(|light| seen(light));
-    if gives(&visible).contains(&true) {
-        return Ok(());
-    }
-
     let expected = sum(&visible);
     let of_visible = |share: &dyn Fn(usize) -> DVec3| {
         visible.iter().filter(|&&light| is_in_front(query, light)).map(|&light| share(light)).sum::<DVec3>()
@@ -207,9 +204,9 @@ fn judge_shade((query, own): &Judged, yours: &ShadeAnswer) -> CheckResult {
         (same(unclamped(0.0)), LIGHT_BEHIND),
         (same(unclamped(-1.0)), LIGHT_BEHIND),
     ]);
-    let broken =
-        Broken::new(query.call("shade"), yours.color, expected.as_vec3(), "the formula in double precision");
-    Err(broken.explained_by(mistakes))
+    let source = "the formula in double precision";
+    let broken = || Broken::new(query.call("shade"), yours.color, expected.as_vec3(), source);
+    unless(gives(&visible).contains(&true), broken).formulas(mistakes)
 }
 
 /// A surface with two lights for which every known mistake gives a different colour.

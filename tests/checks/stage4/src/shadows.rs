@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::compare;
+use checks::judge::{Judged, compare, unless};
 use checks::nasty;
 use checks::offset::Start;
 use checks::paste::Arguments;
@@ -42,27 +42,20 @@ pub(super) fn lit() -> impl Strategy<Value = ShadowQuery> + Clone {
     )
 }
 
-/// What is wrong with a ray: its text, the expected text, and the known mistakes, each with whether it gives this ray.
-type Fault = (String, String, Vec<(bool, &'static str)>);
+/// The error that a query gets the text `yours`, but another one is expected.
+fn broken(query: &ShadowQuery, yours: impl Into<String>, expected: impl Into<String>) -> Broken {
+    Broken::with_texts(query.call("shadow_ray"), yours, expected, "closed form")
+}
 
 /// Judges shadow rays to lights in front of a surface by `law`.
 fn judge_shadow_rays(
     trial: &Trial<'_>,
     queries: &[ShadowQuery],
-    law: impl Fn(&ShadowQuery, &Ray) -> Option<Fault>,
+    law: impl Fn(&ShadowQuery, &Ray) -> Judged,
 ) -> Vec<CheckResult> {
     compare(queries, trial.kit.shadow_ray(queries), |query, yours| {
-        let call = || query.call("shadow_ray");
-        let Some(ray) = yours else {
-            let expected = "a ray: the light is in front of the surface";
-            return Err(Broken::with_texts(call(), "None", expected, "the definition"));
-        };
-        match law(query, &ray) {
-            None => Ok(()),
-            Some((yours, expected, mistakes)) => {
-                Err(Broken::with_texts(call(), yours, expected, "closed form").explained_by(mistakes))
-            }
-        }
+        let expected = "a ray: the light is in front of the surface";
+        yours.map_or_else(|| Err(broken(query, "None", expected)), |ray| law(query, &ray))
     })
 }
 
@@ -73,22 +66,20 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> C
 }
 
 /// The surface of the light itself must not occlude it. An object close to the light must.
-fn judge_end(query: &ShadowQuery, ray: &Ray) -> Option<Fault> {
+fn judge_end(query: &ShadowQuery, ray: &Ray) -> Judged {
     let light = &query.light;
     let length = ray.direction.as_dvec3().length();
     let unit = ray.direction.as_dvec3() / length;
     // A direction that is computed again has a few rounding errors, of 1e-7 each.
     if !((unit - light.direction.as_dvec3()).length() < 1e-4) {
         let away = (unit + light.direction.as_dvec3()).length() < 1e-4;
-        return Some((
-            format!("direction {}", ray.direction),
-            format!("direction {}", light.direction),
-            vec![(away, "your ray goes away from the light: use light.direction")],
-        ));
+        let [yours, expected] = [ray.direction, light.direction].map(|way| format!("direction {way}"));
+        return Err(broken(query, yours, expected)
+            .explained_by([(away, "your ray goes away from the light: use light.direction")]));
     }
     if light.distance == f32::INFINITY {
-        return (ray.t_max != f32::INFINITY)
-            .then(|| (format!("t_max = {}", ray.t_max), "t_max = inf".into(), Vec::new()));
+        let broken = || broken(query, format!("t_max = {}", ray.t_max), "t_max = inf");
+        return unless(ray.t_max == f32::INFINITY, broken).formulas([]);
     }
     // Compare t_max itself if t counts world units, because the length of a unit vector is rounded as well, and likewise if
     // t is 1 at the light.
@@ -98,31 +89,33 @@ fn judge_end(query: &ShadowQuery, ray: &Ray) -> Option<Fault> {
         () if (length / distance - 1.0).abs() < 1e-6 => end * distance,
         () => end * length,
     };
-    if reach < distance && reach >= 0.99 * distance {
-        return None;
-    }
-    let mut mistakes = vec![(
-        (length - 1.0).abs() > 1e-3 && (0.99 * distance..=distance).contains(&end),
-        "t counts lengths of the direction: if the direction ends at the light, t is 1 there",
-    )];
-    mistakes.extend((1..=7).map(|digits| {
+    let subtracted = (1..=7).map(|digits| {
         (
             ray.t_max == light.distance - 10f32.powi(-digits),
             "you subtract the same length at every scale: end at a fraction of the distance",
         )
-    }));
-    mistakes.extend([
-        (
-            reach == f64::INFINITY,
-            "your ray goes on behind the light, where no object can occlude the light: set t_max",
-        ),
-        (
-            reach >= distance,
-            "your ray reaches the light, so the light would occlude itself: end slightly before it",
-        ),
-        (reach < 0.99 * distance, "your ray ends too early: it misses objects just in front of the light"),
-    ]);
-    Some((format!("ends after {reach:?}"), format!("just below {distance:?}"), mistakes))
+    });
+    let broken = || {
+        broken(query, format!("ends after {reach:?}"), format!("just below {distance:?}")).explained_by([
+            (
+                (length - 1.0).abs() > 1e-3 && (0.99 * distance..=distance).contains(&end),
+                "t counts lengths of the direction: if the direction ends at the light, t is 1 there",
+            ),
+            (
+                reach == f64::INFINITY,
+                "your ray goes on behind the light, where no object can occlude the light: set t_max",
+            ),
+            (
+                reach >= distance,
+                "your ray reaches the light, so the light would occlude itself: end slightly before it",
+            ),
+            (
+                reach < 0.99 * distance,
+                "your ray ends too early: it misses objects just in front of the light",
+            ),
+        ])
+    };
+    unless(reach < distance && reach >= 0.99 * distance, broken).formulas(subtracted)
 }
 
 /// The start of a shadow ray.
@@ -135,13 +128,13 @@ pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) 
     trial.forall(1000, lit(), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
             let start = start(query, ray);
-            let mut mistakes = start.mistakes();
-            mistakes
-                .push((start.height() < 0.0, "your ray starts below the surface: move to the viewer's side"));
-            start.is_too_low().then(|| {
+            let broken = || {
                 let yours = format!("starts {:.3e} above the point", start.height());
-                (yours, format!("{:.3e} or more", start.least()), mistakes)
-            })
+                let below = "your ray starts below the surface: move to the viewer's side";
+                broken(query, yours, format!("{:.3e} or more", start.least()))
+                    .explained_by([(start.height() < 0.0, below)])
+            };
+            unless(!start.is_too_low(), broken).formulas(start.mistakes())
         })
     })
 }
@@ -150,10 +143,11 @@ pub(super) fn shadow_ray_sees_what_is_close(trial: &Trial<'_>) -> CheckResult {
     trial.forall(1000, lit(), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
             let start = start(query, ray);
-            start.is_too_high().then(|| {
+            let broken = || {
                 let yours = format!("starts {:.3e} above the point", start.height());
-                (yours, format!("at most {:.3e}", start.most()), start.mistakes())
-            })
+                broken(query, yours, format!("at most {:.3e}", start.most()))
+            };
+            unless(!start.is_too_high(), broken).formulas(start.mistakes())
         })
     })
 }

@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::compare;
+use checks::judge::{Judged, compare, unless};
 use checks::nasty;
 use checks::offset::Start;
 use checks::paste::call;
@@ -54,53 +54,41 @@ pub(super) fn secondary_rays_leave_their_surface(trial: &Trial<'_>) -> CheckResu
     trial.forall_and(&chosen, 1000, inputs(), |queries| compare(queries, trial.kit.spawn_ray(queries), judge))
 }
 
-fn judge(query: &Leaving, ray: Ray) -> CheckResult {
+fn judge(query: &Leaving, ray: Ray) -> Judged {
     let (surface, child) = query;
-    let broken = |yours: String, expected: String, mistakes: Vec<(bool, &'static str)>| {
-        Err(Broken::with_texts(describe(query), yours, expected, "closed form").explained_by(mistakes))
-    };
+    let broken =
+        |yours: String, expected: String| Broken::with_texts(describe(query), yours, expected, "closed form");
     let direction = ray.direction.as_dvec3().normalize();
     let is = |v: Vec3| (direction - v.as_dvec3()).length() < 1e-5; // a few roundings
     let side = side(surface, child.bounce);
     if !is(child.direction) {
-        return broken(
-            format!("direction {}", ray.direction),
-            format!("direction {}", child.direction),
-            vec![
-                (is(side), "your ray goes along the geometric normal: use secondary.direction"),
-                (
-                    is(surface.shading_normal),
-                    "your ray goes along the shading normal: use secondary.direction",
-                ),
-                (is(-child.direction), "your ray goes backwards: use secondary.direction"),
-            ],
-        );
+        let [yours, expected] = [ray.direction, child.direction].map(|way| format!("direction {way}"));
+        return Err(broken(yours, expected).explained_by([
+            (is(side), "your ray goes along the geometric normal: use secondary.direction"),
+            (is(surface.shading_normal), "your ray goes along the shading normal: use secondary.direction"),
+            (is(-child.direction), "your ray goes backwards: use secondary.direction"),
+        ]));
     }
     if ray.t_max != f32::INFINITY {
-        return broken(
-            format!("t_max = {}", ray.t_max),
-            "t_max = inf".into(),
-            vec![(true, "a secondary ray is infinite: leave t_max infinite")],
-        );
+        return Err(broken(format!("t_max = {}", ray.t_max), "t_max = inf".into())
+            .explained_by([(true, "a secondary ray is infinite: leave t_max infinite")]));
     }
     let start = Start::new(surface, side, child.direction, &ray);
     let starts = || {
         let height = start.height();
         format!("starts {height:.3e} from the point, along the normal of the side into which the ray goes")
     };
-    let mut mistakes = start.mistakes();
-    if start.is_too_low() {
-        // A start on the wrong side that would be right on the other one.
-        let other = Start::new(surface, -side, child.direction, &ray);
-        mistakes.push((
-            !other.is_too_low() && other.height() <= other.most(),
-            "your ray starts on the wrong side: a reflected ray starts on the side of the normal, a refracted ray on \
-             the other side",
-        ));
-        return broken(starts(), format!("{:.3e} or more", start.least()), mistakes);
-    }
-    if start.is_too_high() {
-        return broken(starts(), format!("at most {:.3e}", start.most()), mistakes);
-    }
-    Ok(())
+    let wrong = || match start.is_too_low() {
+        true => {
+            // A start on the wrong side that would be right on the other one.
+            let other = Start::new(surface, -side, child.direction, &ray);
+            broken(starts(), format!("{:.3e} or more", start.least())).explained_by([(
+                !other.is_too_low() && other.height() <= other.most(),
+                "your ray starts on the wrong side: a reflected ray starts on the side of the normal, a refracted ray on \
+                 the other side",
+            )])
+        }
+        false => broken(starts(), format!("at most {:.3e}", start.most())),
+    };
+    unless(!start.is_too_low() && !start.is_too_high(), wrong).formulas(start.mistakes())
 }

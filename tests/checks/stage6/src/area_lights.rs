@@ -3,6 +3,7 @@
 use super::lens::{is_polar, polar, uneven_disk};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::{Judged, proven, unless};
 use checks::nasty;
 use checks::paste::{Paste, call};
 use checks::statistics::{Mistakes, SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
@@ -42,7 +43,7 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> CheckResult {
     let answers = trial.kit.sample_rectangle(&queries);
     let mut shares = Vec::new();
     let judge = |(query, point): (&RectangleQuery, &Vec3)| judge_rectangle_point(query, *point, &mut shares);
-    all_hold(queries.iter().zip(&answers).map(judge).collect())?;
+    all_hold(proven(queries.iter().zip(&answers).map(judge)))?;
     covers_evenly("sample_rectangle(…, u)", &shares, ["the first edge", "the second edge"], |counts| {
         // 28 of the 64 cells lie beyond the diagonal.
         let hit = counts.iter().filter(|count| **count > 0).count();
@@ -58,7 +59,7 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> CheckResult {
 const CORNER_AS_CENTER: &str = "you use the corner as the centre of the rectangle";
 
 /// Whether a point belongs to its rectangle. Adds its fractions of both edges to `shares`.
-fn judge_rectangle_point(query: &RectangleQuery, point: Vec3, shares: &mut Vec<(f64, f64)>) -> CheckResult {
+fn judge_rectangle_point(query: &RectangleQuery, point: Vec3, shares: &mut Vec<(f64, f64)>) -> Judged {
     let [corner, first, second] = [query.corner, query.edges.0, query.edges.1].map(Vec3::as_dvec3);
     let from_corner = point.as_dvec3() - corner;
     // Solve for the fractions of both edges with the vectors that are perpendicular to the other edge, in the plane.
@@ -70,14 +71,14 @@ fn judge_rectangle_point(query: &RectangleQuery, point: Vec3, shares: &mut Vec<(
     let slack = 1e-6 * (corner.length() + first.length() + second.length()) / size;
     let inside = |share: f64| (-slack..=1.0 + slack).contains(&share);
     let height = (from_corner - u * first - v * second).length();
-    if inside(u) && inside(v) && height <= slack * size {
+    let right = inside(u) && inside(v) && height <= slack * size;
+    if right {
         shares.push((u, v));
-        return Ok(());
     }
     let is = |place: DVec3| (point.as_dvec3() - place).length() <= slack * size;
     let (x, y) = (f64::from(query.u.x), f64::from(query.u.y));
-    let input = call("sample_rectangle", &[&query.corner, &query.edges, &query.u]);
-    Err(Broken::new(input, point, "a point of the rectangle", "the definition").explained_by([
+    let input = || call("sample_rectangle", &[&query.corner, &query.edges, &query.u]);
+    unless(right, || Broken::new(input(), point, "a point of the rectangle", "the definition")).formulas([
         (
             is((1.0 - x - y) * corner + x * first + y * second),
             "you use the edges as positions of corners: they are vectors from the corner",
@@ -85,7 +86,7 @@ fn judge_rectangle_point(query: &RectangleQuery, point: Vec3, shares: &mut Vec<(
         (is(corner + (x - 0.5) * first + (y - 0.5) * second), CORNER_AS_CENTER),
         (is(corner + (2.0 * x - 1.0) * first + (2.0 * y - 1.0) * second), CORNER_AS_CENTER),
         (is(x * first + y * second), "you leave out the corner"),
-    ]))
+    ])
 }
 
 /// Disks in all orientations, with normals of different lengths.

@@ -3,7 +3,7 @@
 use super::pixels::unit_number;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
+use checks::judge::{Judged, compare, unless};
 use checks::nasty;
 use checks::paste::{Paste, call};
 use checks::statistics::{Mistakes, SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
@@ -205,28 +205,29 @@ pub(super) fn focal_plane_is_sharp(trial: &Trial<'_>) -> CheckResult {
     })
 }
 
-fn judge_focus(query: &LensQuery, yours: Ray) -> CheckResult {
+fn judge_focus(query: &LensQuery, yours: Ray) -> Judged {
     let (expected, found) = (in_focus(query, &query.pinhole), in_focus(query, &yours));
     // The tolerance covers a few roundings of the direction, relative to the distance, and of the origin, whose coordinates
     // are up to 4. A wide lens enlarges them.
     let off = (found - expected).length() / expected.length();
     let pinhole = yours == query.pinhole && offset(query) != DVec3::ZERO;
-    if off < 2e-5 && !pinhole {
-        return Ok(());
-    }
     let distance = f64::from(query.lens.focal_distance);
     let [direction, towards] = [query.pinhole.direction, query.camera.towards].map(Vec3::as_dvec3);
     let start = yours.origin.as_dvec3() - query.camera.position.as_dvec3();
     let aims = |way: DVec3| (yours.direction.as_dvec3().normalize() - way.normalize()).length() < 1e-5;
-    let broken = Broken::with_texts(
-        paste(query),
-        format!("a ray that misses by {:.2e}", (found - expected).length()),
-        format!("a ray through camera.position + {:?}", expected.as_vec3()),
-        "the focal plane",
-    );
-    Err(broken.explained_by([
-        (pinhole, "you return the pinhole ray for a lens that has a width"),
-        (yours.origin.is_nan() || yours.direction.is_nan(), "you return NaN"),
+    let broken = || {
+        Broken::with_texts(
+            paste(query),
+            format!("a ray that misses by {:.2e}", (found - expected).length()),
+            format!("a ray through camera.position + {:?}", expected.as_vec3()),
+            "the focal plane",
+        )
+        .explained_by([
+            (pinhole, "you return the pinhole ray for a lens that has a width"),
+            (yours.origin.is_nan() || yours.direction.is_nan(), "you return NaN"),
+        ])
+    };
+    unless(off < 2e-5 && !pinhole, broken).formulas([
         (
             aims(distance * direction - start),
             "you go focal_distance along the ray: divide it by the cosine with camera.towards",
@@ -241,7 +242,7 @@ fn judge_focus(query: &LensQuery, yours: Ray) -> CheckResult {
         ),
         (aims(expected + start), "you add the offset to the focus: subtract it"),
         (aims(direction), "your ray is parallel to the pinhole ray: aim where that meets the focal plane"),
-    ]))
+    ])
 }
 
 /// A ray far from the axis, from a point far from the centre of a wide lens, where all known mistakes give different
@@ -263,21 +264,21 @@ pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> CheckResult {
     })
 }
 
-fn judge_start(query: &LensQuery, yours: Ray) -> CheckResult {
+fn judge_start(query: &LensQuery, yours: Ray) -> Judged {
     let camera = &query.camera;
     let position = camera.position.as_dvec3();
     let expected = position + offset(query);
     // The tolerance covers a few roundings of coordinates up to 4.
     let near = |v: DVec3| (yours.origin.as_dvec3() - v).length() < 2e-6;
     let unit = (yours.direction.length() - 1.0).abs() < 1e-5;
-    if near(expected) && unit {
-        return Ok(());
-    }
     let place = 0.5 * f64::from(query.lens.aperture) * query.on_lens.as_dvec2();
     let (right, up) = (camera.right.as_dvec3(), camera.up.as_dvec3());
-    let source = "position + aperture / 2 · on_lens, along right and up";
-    Err(Broken::new(paste(query), yours, expected.as_vec3(), source).explained_by([
-        (near(expected) && !unit, "your direction does not have unit length"),
+    let broken = || {
+        let source = "position + aperture / 2 · on_lens, along right and up";
+        Broken::new(paste(query), yours, expected.as_vec3(), source)
+            .explained_by([(near(expected) && !unit, "your direction does not have unit length")])
+    };
+    unless(near(expected) && unit, broken).formulas([
         (
             near(position + 2.0 * offset(query)),
             "you use aperture as the radius of the lens: it is the diameter",
@@ -300,7 +301,7 @@ fn judge_start(query: &LensQuery, yours: Ray) -> CheckResult {
             "you exchange x and y of on_lens: x is along camera.right",
         ),
         (near(offset(query)), "you leave out camera.position"),
-    ]))
+    ])
 }
 
 pub(super) fn lens_is_as_sharp_a_million_units_away(trial: &Trial<'_>) -> CheckResult {

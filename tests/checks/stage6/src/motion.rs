@@ -4,7 +4,7 @@ use super::pixels::unit_number;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::{magnitude, point, rough_point};
-use checks::judge::compare;
+use checks::judge::{Judged, compare, proven, unless};
 use checks::nasty;
 use checks::paste::{Paste, call};
 use checks::statistics::{SAMPLES, columns, covers_evenly, pairs};
@@ -18,19 +18,21 @@ use raykata::kit::{KitError, TimeQuery, kit_error};
 const TABLE: [[u32; 4]; 4] = [[7, 11, 3, 14], [4, 15, 13, 9], [16, 1, 8, 12], [6, 10, 5, 2]];
 
 pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> CheckResult {
-    let judge = |cells: &[(u32, u32)]| match kit_error::catch(|| trial.kit.temporal_slot(cells)) {
-        Ok(slots) => {
-            let twice = |slot: &u32| slots.iter().filter(|other| *other == slot).count() > 1;
-            cells.iter().zip(&slots).map(|(cell, slot)| judge_slot(*cell, *slot, twice(slot))).collect()
+    let judge = |cells: &[(u32, u32)]| -> Vec<CheckResult> {
+        match kit_error::catch(|| trial.kit.temporal_slot(cells)) {
+            Ok(slots) => {
+                let twice = |slot: &u32| slots.iter().filter(|other| *other == slot).count() > 1;
+                proven(cells.iter().zip(&slots).map(|(cell, slot)| judge_slot(*cell, *slot, twice(slot))))
+            }
+            Err(KitError::Panicked { message, place }) => {
+                let ((x, y), yours) = (cells[0], format!("a panic at {place}: {message}"));
+                let input = format!("temporal_slot(x, y) for x in {x}..{}, y in {y}..{}", x + 4, y + 4);
+                let broken = Broken::with_texts(input, yours, "each of 1..=16 once", "the definition");
+                // The first block must have passed.
+                vec![Err(broken.explained_by([((x, y) != (0, 0), REPEAT)]))]
+            }
+            Err(error) => kit_error::unwind(error),
         }
-        Err(KitError::Panicked { message, place }) => {
-            let ((x, y), yours) = (cells[0], format!("a panic at {place}: {message}"));
-            let input = format!("temporal_slot(x, y) for x in {x}..{}, y in {y}..{}", x + 4, y + 4);
-            let broken = Broken::with_texts(input, yours, "each of 1..=16 once", "the definition");
-            // The first block must have passed.
-            vec![Err(broken.explained_by([((x, y) != (0, 0), REPEAT)]))]
-        }
-        Err(error) => kit_error::unwind(error),
     };
     let block =
         |(x, y): (u32, u32)| (0..16).map(|index| (x + index % 4, y + index / 4)).collect::<Vec<(u32, u32)>>();
@@ -47,13 +49,17 @@ pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> CheckResul
 const REPEAT: &str = "blocks repeat: take x and y modulo 4";
 
 /// `twice` says whether the block of this cell has the slot twice.
-fn judge_slot((x, y): (u32, u32), slot: u32, twice: bool) -> CheckResult {
+fn judge_slot((x, y): (u32, u32), slot: u32, twice: bool) -> Judged {
     let expected = TABLE[y as usize % 4][x as usize % 4];
-    if slot == expected {
-        return Ok(());
-    }
-    let broken = Broken::new(format!("temporal_slot({x}, {y})"), slot, expected, "the table of the slide");
-    Err(broken.explained_by([
+    let broken = || {
+        let input = format!("temporal_slot({x}, {y})");
+        Broken::new(input, slot, expected, "the table of the slide").explained_by([
+            // The first block is right, so the table is as well.
+            (x.max(y) > 3, REPEAT),
+            (twice, "a block of 4 × 4 cells has this slot twice, and another one is missing: compare the table and its index"),
+        ])
+    };
+    unless(slot == expected, broken).formulas([
         (slot == TABLE[x as usize % 4][y as usize % 4], "you exchange rows and columns: y is the row"),
         (slot == 1 + 4 * (y % 4) + x % 4, "you number the slots in order: use the table"),
         (slot + 1 == expected, "slots are counted from 1"),
@@ -61,10 +67,7 @@ fn judge_slot((x, y): (u32, u32), slot: u32, twice: bool) -> CheckResult {
             slot == TABLE[3 - y as usize % 4][x as usize % 4],
             "your rows are upside down: row 0 is the first line",
         ),
-        // The first block is right, so the table is as well.
-        (x.max(y) > 3, REPEAT),
-        (twice, "a block of 4 × 4 cells has this slot twice, and another one is missing: compare the table and its index"),
-    ]))
+    ])
 }
 
 fn paste(query: &TimeQuery) -> String {
@@ -96,7 +99,7 @@ const FROM_ZERO: &str = "you count slots from 0: slot 1 begins at open";
 const WITHOUT_OPEN: &str = "you start at 0: the shutter opens at open";
 const TIMES_CLOSE: &str = "you multiply by close: use open + share * (close - open)";
 
-fn judge_time(query: &TimeQuery, yours: f32) -> CheckResult {
+fn judge_time(query: &TimeQuery, yours: f32) -> Judged {
     let (open, close) = (f64::from(query.shutter.open), f64::from(query.shutter.close));
     let u = f64::from(query.u);
     let share = |slot: u32| (f64::from(slot) - 1.0 + u) / f64::from(query.slots);
@@ -105,12 +108,12 @@ fn judge_time(query: &TimeQuery, yours: f32) -> CheckResult {
     let expected = at(here);
     let near = |time: f64| (f64::from(yours) - time).abs() < 3e-7; // a few roundings of 1
     let open_then = (query.shutter.open..=query.shutter.close).contains(&yours);
-    if near(expected) && open_then {
-        return Ok(());
-    }
     let next = at(share(query.slot + 1));
-    Err(Broken::new(paste(query), yours, expected, "double precision").explained_by([
-        (near(expected), "your time is outside open..=close by a rounding error: clamp"),
+    let broken = || {
+        Broken::new(paste(query), yours, expected, "double precision")
+            .explained_by([(near(expected), "your time is outside open..=close by a rounding error: clamp")])
+    };
+    unless(near(expected) && open_then, broken).formulas([
         (near(next), FROM_ZERO),
         (near(next.min(close)), FROM_ZERO),
         (near(here), "you return a fraction of the interval: scale it to open..close"),
@@ -128,7 +131,7 @@ fn judge_time(query: &TimeQuery, yours: f32) -> CheckResult {
             "you do not use u: every time is the middle of its slot",
         ),
         (near(close + here * (open - close)), "you go from close to open"),
-    ]))
+    ])
 }
 
 pub(super) fn times_are_even(trial: &Trial<'_>) -> CheckResult {
@@ -181,27 +184,24 @@ pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> CheckResult {
         compare(queries, trial.kit.lerp(queries), |query, yours| {
             let (start, end, time) = *query;
             let expected = if time == 1.0 { end } else { start };
-            if yours == expected {
-                return Ok(());
-            }
             let is = |v: Vec3| (yours - v).abs().cmple(f32::EPSILON * v.abs()).all();
             let still = start == end;
             // A start at any time but 1, or an end at time 1, must be exact.
             let source = if still { "start, because start equals end" } else { "bit for bit" };
-            Err(Broken::new(describe(query), yours, expected, source).explained_by([
+            unless(yours == expected, || Broken::new(describe(query), yours, expected, source)).formulas([
                 (yours == start + time * (end - start), ROUNDED_END),
                 (
                     yours == (start + time * (end - start)).max(start.min(end)).min(start.max(end)),
                     ROUNDED_END,
                 ),
                 (
-                    still && is((1.0 - time) * start + time * end),
+                    is((1.0 - time) * start + time * end),
                     "(1 - t) a + t a has a rounding error: clamp between start and end",
                 ),
                 (yours == ((1.0 - time) * start + time * end).min(end).max(start), CLAMPED_IN_ORDER),
                 (yours == ((1.0 - time) * start + time * end).max(start).min(end), CLAMPED_IN_ORDER),
-                (!still && yours == if time == 1.0 { start } else { end }, "you exchange start and end"),
-            ]))
+                (yours == if time == 1.0 { start } else { end }, "you exchange start and end"),
+            ])
         })
     })
 }
@@ -220,15 +220,15 @@ pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> CheckResult {
             let off = |place: DVec3| (yours.as_dvec3() - place).abs();
             let near = off(exact).cmple(slack).all();
             let inside = Aabb::new(start.min(end), start.max(end)).contains(yours);
-            if near && inside {
-                return Ok(());
-            }
             let at = |time: f64| start.as_dvec3().lerp(end.as_dvec3(), time);
             let is = |place: DVec3| off(place).cmple(2.0 * slack).all();
             let (start_at, end_at, t) = (start.as_dvec3(), end.as_dvec3(), f64::from(time));
-            let source = "double precision, within the ends";
-            Err(Broken::new(describe(query), yours, exact.as_vec3(), source).explained_by([
-                (near, "your point is outside the box of both ends by a rounding error: clamp"),
+            let broken = || {
+                let rounded = "your point is outside the box of both ends by a rounding error: clamp";
+                Broken::new(describe(query), yours, exact.as_vec3(), "double precision, within the ends")
+                    .explained_by([(near, rounded)])
+            };
+            unless(near && inside, broken).formulas([
                 (is(at(1.0 - t)), "you exchange start and end"),
                 (is(start_at + t * end_at), "you use end as a displacement: it is a position"),
                 (is(at(t * t * (3.0 - 2.0 * t))), "your speed varies: the motion is linear in time"),
@@ -237,7 +237,7 @@ pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> CheckResult {
                 (is(end_at), "you return end for every time"),
                 (is(exact.max(start_at).min(end_at)), CLAMPED_IN_ORDER),
                 (is(exact.min(end_at).max(start_at)), CLAMPED_IN_ORDER),
-            ]))
+            ])
         })
     })
 }
@@ -260,16 +260,19 @@ pub(super) fn motion_bounds_covers_the_way_and_no_more(trial: &Trial<'_>) -> Che
     })
 }
 
-fn judge_bounds((start, end): &(Aabb, Aabb), yours: Aabb) -> CheckResult {
+fn judge_bounds((start, end): &(Aabb, Aabb), yours: Aabb) -> Judged {
     let expected = Aabb::new(start.min.min(end.min), start.max.max(end.max));
-    if yours == expected {
-        return Ok(());
-    }
     let way = 0.5 * (end.min + end.max - start.min - start.max);
     let moved = Aabb::new(start.min.min(start.min + way), start.max.max(start.max + way));
     let outside = !(yours.min.cmple(expected.min).all() && expected.max.cmple(yours.max).all());
-    let input = call("motion_bounds", &[start, end]);
-    Err(Broken::new(input, yours, expected, "the corners move along straight lines").explained_by([
+    let broken = || {
+        let input = call("motion_bounds", &[start, end]);
+        Broken::new(input, yours, expected, "the corners move along straight lines").explained_by([
+            (outside, "part of the motion is outside your box"),
+            (!outside, "your box is larger than necessary"),
+        ])
+    };
+    unless(yours == expected, broken).formulas([
         (yours == *start, "you return the start box: include the end box"),
         (yours == *end, "you return the end box: include the start box"),
         (
@@ -285,7 +288,5 @@ fn judge_bounds((start, end): &(Aabb, Aabb), yours: Aabb) -> CheckResult {
             "you take min from start and max from end: use both boxes for each",
         ),
         (yours == moved, "you move the start box: the end box may have another size"),
-        (outside, "part of the motion is outside your box"),
-        (!outside, "your box is larger than necessary"),
-    ]))
+    ])
 }

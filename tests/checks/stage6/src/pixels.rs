@@ -3,7 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::rough_point;
-use checks::judge::compare;
+use checks::judge::{Judged, compare, proven, unless};
 use checks::paste::{Paste, call, list};
 use checks::statistics::{SAMPLES, covers_evenly, pairs, unused_number};
 use glam::{DVec2, DVec3, Vec2, Vec2Swizzles, Vec3, uvec2, vec2, vec3};
@@ -41,15 +41,18 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckRe
             let expected = (cell + u) / grid;
             // The tolerance covers two roundings of a number below 1.
             let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 2e-7;
-            if near(expected) && yours.max_element() < 1.0 {
-                return Ok(());
-            }
-            let input = call("jittered", &[query]);
-            Err(Broken::new(input, yours, expected.as_vec2(), "(cell + u) / grid, below 1").explained_by([
-                (
-                    near(expected),
-                    "you return 1, which is in the next pixel (3 + 0.99999994 is rounded to 4): stay below 1",
-                ),
+            let rounded =
+                "you return 1, which is in the next pixel (3 + 0.99999994 is rounded to 4): stay below 1";
+            let broken = || {
+                Broken::new(
+                    call("jittered", &[query]),
+                    yours,
+                    expected.as_vec2(),
+                    "(cell + u) / grid, below 1",
+                )
+                .explained_by([(near(expected), rounded)])
+            };
+            unless(near(expected) && yours.max_element() < 1.0, broken).formulas([
                 (near(u), "you return u: add the cell and divide by the grid"),
                 (near(u / grid), "you leave out the cell: all samples are in the first cell"),
                 (near((cell + 0.5) / grid), "you do not use u: the sample is not jittered"),
@@ -60,7 +63,7 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckRe
                 (near((cell + u.xx()) / grid), "you use one random number for both axes: use u.x and u.y"),
                 (near((cell + u.yy()) / grid), "you use one random number for both axes: use u.x and u.y"),
                 (near(((cell.yx() + u) / grid).min(DVec2::ONE)), "you exchange column and row of the cell"),
-            ]))
+            ])
         })
     })
 }
@@ -81,11 +84,11 @@ pub(super) fn each_sampler_has_its_places(trial: &Trial<'_>) -> CheckResult {
         let own = trial.kit.jittered(&strata);
         let answers = trial.kit.pixel_position(queries);
         let judge = |((query, own), yours)| judge_position(query, own, yours);
-        queries.iter().zip(own).zip(answers).map(judge).collect()
+        proven(queries.iter().zip(own).zip(answers).map(judge))
     })
 }
 
-fn judge_position((sampler, stratum): &(Sampler, Stratum), own: Vec2, yours: Vec2) -> CheckResult {
+fn judge_position((sampler, stratum): &(Sampler, Stratum), own: Vec2, yours: Vec2) -> Judged {
     let (u, radius) = (stratum.u.as_dvec2(), f64::from(FILTER_RADIUS));
     let jittered = (stratum.cell.as_dvec2() + u) / stratum.grid.as_dvec2();
     let position = |jittered: DVec2| match sampler {
@@ -97,34 +100,31 @@ fn judge_position((sampler, stratum): &(Sampler, Stratum), own: Vec2, yours: Vec
     let expected = position(jittered);
     // The tolerance covers a few roundings of numbers up to 3.
     let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 1e-6;
-    if near(expected) || near(position(own.as_dvec2())) {
-        return Ok(());
-    }
     let gaussian = *sampler == Sampler::Gaussian;
     let in_cells = gaussian || *sampler == Sampler::Jittered;
-    let input = format!("pixel_position(Sampler::{sampler:?}, {})", stratum.paste());
-    Err(Broken::new(input, yours, expected.as_vec2(), "the definition").explained_by([
+    let right = near(expected) || near(position(own.as_dvec2()));
+    // A mistake of some samplers gives the right answers of the others.
+    let of_gaussian = |place: DVec2| if gaussian { near(place) } else { right };
+    let input = || format!("pixel_position(Sampler::{sampler:?}, {})", stratum.paste());
+    unless(right, || Broken::new(input(), yours, expected.as_vec2(), "the definition")).formulas([
         (near(expected - 0.5), "your position is relative to the centre of the pixel: add 0.5"),
+        (of_gaussian(jittered), "you cover only the pixel: cover FILTER_RADIUS from the centre on all sides"),
+        (of_gaussian(0.5 + radius * (jittered - 0.5)), "half as wide: the square is 2 * FILTER_RADIUS wide"),
         (
-            gaussian && near(jittered),
-            "you cover only the pixel: cover FILTER_RADIUS from the centre on all sides",
-        ),
-        (
-            gaussian && near(0.5 + radius * (jittered - 0.5)),
-            "half as wide: the square is 2 * FILTER_RADIUS wide",
-        ),
-        (
-            gaussian && near(0.5 + radius * jittered),
+            of_gaussian(0.5 + radius * jittered),
             "you cover only the right and lower part: cover FILTER_RADIUS on all sides",
         ),
         (
-            gaussian && near(0.5 + radius * (2.0 * u - 1.0)),
+            of_gaussian(0.5 + radius * (2.0 * u - 1.0)),
             "you scale u to the square of the filter: scale the result of jittered",
         ),
-        (in_cells && near(u), "you return u: use jittered(stratum)"),
-        (!in_cells && near(jittered), "this sampler must return `u` unchanged; your result is jittered"),
+        (if in_cells { near(u) } else { right }, "you return u: use jittered(stratum)"),
+        (
+            if in_cells { right } else { near(jittered) },
+            "this sampler must return `u` unchanged; your result is jittered",
+        ),
         (near(DVec2::splat(0.5)), "you return the centre of the pixel for every sampler"),
-    ]))
+    ])
 }
 
 /// The filter's weight along one axis, in double precision.
@@ -156,15 +156,12 @@ pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> CheckRes
 const STEP_AT_R: &str = "your weight ends in a step at R: subtract e^(-2R²) along each axis";
 const NORMALIZED: &str = "you normalize the weight: leave it, because filter_pixel divides by the sum";
 
-fn judge_weight(offset: Vec2, yours: f32) -> CheckResult {
+fn judge_weight(offset: Vec2, yours: f32) -> Judged {
     let (x, y) = (f64::from(offset.x), f64::from(offset.y));
     let expected = bell(x) * bell(y);
     // The tolerance covers the rounding of two powers: a few units in the last place of 1.
     let near = |weight: f64| (f64::from(yours) - weight).abs() < 1e-6;
     let outside = offset.abs().max_element() >= FILTER_RADIUS;
-    if near(expected) && yours >= 0.0 && !(outside && yours != 0.0) {
-        return Ok(());
-    }
     let radius = f64::from(FILTER_RADIUS);
     let with = |power: fn(f64) -> f64| {
         let factor = |x: f64| (power(x).exp() - power(radius).exp()).max(0.0);
@@ -174,7 +171,10 @@ fn judge_weight(offset: Vec2, yours: f32) -> CheckResult {
     let infinite = (-2.0 * (x * x + y * y)).exp();
     // The difference of the two powers without a clamp.
     let raw = |x: f64| (-2.0 * x * x).exp() - (-2.0 * radius * radius).exp();
-    Err(Broken::new(call("gaussian_weight", &[&offset]), yours, expected, "double precision").explained_by([
+    unless(near(expected) && yours >= 0.0 && !(outside && yours != 0.0), || {
+        Broken::new(call("gaussian_weight", &[&offset]), yours, expected, "double precision")
+    })
+    .formulas([
         (near(infinite), STEP_AT_R),
         (near(if outside { 0.0 } else { infinite }), STEP_AT_R),
         (near(bell(x.hypot(y))), "your filter is round: multiply a weight along x by a weight along y"),
@@ -187,11 +187,11 @@ fn judge_weight(offset: Vec2, yours: f32) -> CheckResult {
         (near(expected * FRAC_2_PI), NORMALIZED),
         (near(expected * FRAC_2_PI.sqrt()), NORMALIZED),
         (
-            near((raw(x) * raw(y)).max(0.0)) && outside,
+            near((raw(x) * raw(y)).max(0.0)),
             "two negative factors give a positive weight: each is 0 beyond FILTER_RADIUS",
         ),
         (near(raw(x) * raw(y)), "your weight is negative: each factor is 0 beyond FILTER_RADIUS"),
-    ]))
+    ])
 }
 
 fn paste_samples(samples: &[WeightedColor]) -> String {
@@ -214,25 +214,25 @@ pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> CheckResul
     })
 }
 
-fn judge_pixel(samples: &[WeightedColor], yours: Vec3) -> CheckResult {
+fn judge_pixel(samples: &[WeightedColor], yours: Vec3) -> Judged {
     let weight: f64 = samples.iter().map(|sample| f64::from(sample.weight)).sum();
     let sum: DVec3 = samples.iter().map(|sample| f64::from(sample.weight) * sample.color.as_dvec3()).sum();
     let expected = sum / weight;
     // The tolerance covers eight additions and a division, relative to the largest sum. Weights may be tiny or huge.
     let near = |v: DVec3| (yours.as_dvec3() - v).abs().max_element() <= 1e-5 * v.abs().max_element().max(1.0);
-    if near(expected) {
-        return Ok(());
-    }
     let n = samples.len() as f64;
     let plain = samples.iter().map(|sample| sample.color.as_dvec3()).sum::<DVec3>();
-    Err(Broken::new(paste_samples(samples), yours, expected.as_vec3(), "double precision").explained_by([
+    unless(near(expected), || {
+        Broken::new(paste_samples(samples), yours, expected.as_vec3(), "double precision")
+    })
+    .formulas([
         (near(plain / n), "you do not use the weights"),
         (near(sum / n), "you divide by the number of samples: divide by the sum of their weights"),
         (near(sum / weight.max(1.0)), "you divide by 1 if the weights sum to less: divide by their sum"),
         (near(sum), "you return the sum: divide it by the sum of the weights"),
         (near(plain / weight), "you do not weight the colours: multiply each colour by its weight"),
         (near(expected.min(DVec3::ONE)), "you clamp the colour to 1: return it without a clamp"),
-    ]))
+    ])
 }
 
 pub(super) fn filter_pixel_of_no_samples_is_black(trial: &Trial<'_>) -> CheckResult {
@@ -246,13 +246,13 @@ pub(super) fn filter_pixel_of_no_samples_is_black(trial: &Trial<'_>) -> CheckRes
         if weight > 0.0 {
             return judge_pixel(samples, yours);
         }
-        if yours == Vec3::ZERO {
-            return Ok(());
-        }
-        Err(Broken::new(paste_samples(samples), yours, Vec3::ZERO, "the definition")
-            .explained_by([(yours.is_nan(), "you divide 0 by 0: the weights sum to 0 here")]))
+        let broken = || {
+            Broken::new(paste_samples(samples), yours, Vec3::ZERO, "the definition")
+                .explained_by([(yours.is_nan(), "you divide 0 by 0: the weights sum to 0 here")])
+        };
+        unless(yours == Vec3::ZERO, broken).formulas([])
     };
-    all_hold(queries.iter().zip(trial.kit.filter_pixel(&queries)).map(judge).collect())
+    all_hold(proven(queries.iter().zip(trial.kit.filter_pixel(&queries)).map(judge)))
 }
 
 pub(super) fn jittered_samples_cover_the_pixel_evenly(trial: &Trial<'_>) -> CheckResult {

@@ -3,7 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::{direction, point, rough_point};
-use checks::judge::compare;
+use checks::judge::{Judged, compare, unless};
 use checks::nasty;
 use checks::paste::call;
 use glam::{Affine3A, DMat3, DVec3, Mat3, Vec3};
@@ -76,9 +76,6 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResul
         let right_origin = close(yours.origin, origin, sizes(ray.origin, exact.translation));
         let right_dir = close(yours.direction, direction, sizes(ray.direction, DVec3::ZERO))
             || is_along(yours.direction, direction); // another check tests the length
-        if right_origin && right_dir {
-            return Ok(());
-        }
         let along = |matrix: DMat3| is_roughly_along(yours.direction, matrix * ray.direction.as_dvec3());
         // The answer of a mistake that concerns the direction only, or the origin only.
         let turned = |direction: bool| right_origin && direction;
@@ -89,15 +86,17 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResul
             (yours.origin.as_dvec3() - point).length() <= 1e-4 * size
         };
         let from = ray.origin.as_dvec3();
-        let input = call("ray_to_object", &[ray, to_object]);
+        let input = || call("ray_to_object", &[ray, to_object]);
         let describe = |origin: Vec3, direction: Vec3| format!("origin {origin}, direction {direction}");
-        Err(Broken::with_texts(
-            input,
-            describe(yours.origin, yours.direction),
-            describe(origin.as_vec3(), direction.as_vec3()),
-            "double precision",
-        )
-        .explained_by([
+        unless(right_origin && right_dir, || {
+            Broken::with_texts(
+                input(),
+                describe(yours.origin, yours.direction),
+                describe(origin.as_vec3(), direction.as_vec3()),
+                "double precision",
+            )
+        })
+        .formulas([
             (
                 turned(along(exact.matrix3.transpose())),
                 "you multiply the direction by the transpose of to_object, the inverse transpose of \
@@ -129,7 +128,7 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResul
                 along(exact.matrix3.inverse()) && there(back.transform_point3(from)),
                 "you transform the ray by the inverse of to_object, which leads to the world",
             ),
-        ]))
+        ])
     })
 }
 
@@ -166,7 +165,7 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> CheckResult
     })
 }
 
-fn judge_range(query: &ObjectRayQuery, yours: Ray) -> CheckResult {
+fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
     let ObjectRayQuery { ray, to_object } = query;
     let world = ray.direction.as_dvec3();
     let exact = to_object.as_daffine3().transform_vector3(world).length();
@@ -181,11 +180,8 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> CheckResult {
     let same_length = near(exact);
     let same_range = (yours.t_min, yours.t_max) == (ray.t_min, ray.t_max);
     let same_time = yours.time == ray.time;
-    if same_length && same_range && same_time {
-        return Ok(());
-    }
     // Which parts are wrong.
-    let only_length = same_range && same_time && !same_length;
+    let only_length = same_range && same_time;
     let factor = exact / world.length();
     let is = |yours: f32, right: f64| {
         (f64::from(yours) - right).abs() <= 1e-5 * right.abs() || f64::from(yours) == right
@@ -194,40 +190,38 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> CheckResult {
     let describe = |length: f64, ray: &Ray| {
         format!("length {length:.6e}, t in {:?}..{:?}, time {:?}", ray.t_min, ray.t_max, ray.time)
     };
-    Err(Broken::with_texts(
-        call("ray_to_object", &[ray, to_object]),
-        describe(length, &yours),
-        describe(exact, ray),
-        "the definition",
-    )
-    .explained_by([
-        (
-            only_length && near(1.0),
-            "you normalize the direction: t then has another unit than in the world and cannot be compared",
-        ),
-        (
-            only_length && near(world.length()),
-            "you give the direction the length that it has in the world: then the same t is another point",
-        ),
-        (
-            same_range && same_length && yours.time == 0.0,
-            "you do not copy the time of the ray",
-        ),
-        (
-            (yours.t_min, yours.t_max) == (0.0, f32::INFINITY),
-            "you start with a new range: copy t_min and t_max from the ray",
-        ),
-        (
-            is(yours.t_min, low * factor) && is(yours.t_max, high * factor),
-            "you change the range of the ray by the length of the direction: t is the same number in both spaces, so t_min \
+    unless(same_length && same_range && same_time, || {
+            Broken::with_texts(
+                call("ray_to_object", &[ray, to_object]),
+                describe(length, &yours),
+                describe(exact, ray),
+                "the definition",
+            )
+        }).formulas([
+            (
+                only_length && near(1.0),
+                "you normalize the direction: t then has another unit than in the world and cannot be compared",
+            ),
+            (
+                only_length && near(world.length()),
+                "you give the direction the length that it has in the world: then the same t is another point",
+            ),
+            (same_range && same_length && yours.time == 0.0, "you do not copy the time of the ray"),
+            (
+                (yours.t_min, yours.t_max) == (0.0, f32::INFINITY),
+                "you start with a new range: copy t_min and t_max from the ray",
+            ),
+            (
+                is(yours.t_min, low * factor) && is(yours.t_max, high * factor),
+                "you change the range of the ray by the length of the direction: t is the same number in both spaces, so t_min \
              and t_max stay",
-        ),
-        (
-            is(yours.t_min, low / factor) && is(yours.t_max, high / factor),
-            "you divide the range of the ray by the change of the direction's length: t is the same number in both spaces, \
+            ),
+            (
+                is(yours.t_min, low / factor) && is(yours.t_max, high / factor),
+                "you divide the range of the ray by the change of the direction's length: t is the same number in both spaces, \
              so t_min and t_max stay",
-        ),
-    ]))
+            ),
+        ])
 }
 
 /// The normal in the world, computed in double precision.
@@ -243,19 +237,20 @@ fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<CheckResult>
         let terms = DVec3::from_array([0, 1, 2].map(|row| exact.col(row).abs().dot(own.abs())));
         let cancels = terms.length() / (exact.transpose() * own).length();
         let near = 1e-5f64.max(16.0 * checks::double::U * cancels);
-        if (yours.as_dvec3() - right).length() <= near {
-            return Ok(());
-        }
         let unit = (yours.as_dvec3().length() - 1.0).abs() <= near;
         let like = |other: DVec3| (yours.as_dvec3().normalize_or_zero() - other.normalize()).length() <= near;
-        let input = call("normal_to_world", &[&query.normal, &query.to_object]);
-        Err(Broken::new(input, yours, right.as_vec3(), "double precision").explained_by([
-            (like(right) && !unit, "your normal does not have unit length"),
-            (
-                like(exact.inverse() * own) && determinant(&query.to_object) > 0.0,
-                "you transform the normal like a point, by to_world: it is then not perpendicular to the \
-                 surface",
-            ),
+        let broken = || {
+            let input = call("normal_to_world", &[&query.normal, &query.to_object]);
+            Broken::new(input, yours, right.as_vec3(), "double precision").explained_by([
+                (like(right) && !unit, "your normal does not have unit length"),
+                (
+                    like(-right) && unit,
+                    "your normal points inwards: the inverse transpose needs no change of sign, also for a \
+                     reflection",
+                ),
+            ])
+        };
+        unless((yours.as_dvec3() - right).length() <= near, broken).formulas([
             (like(exact.inverse() * own), "you transform the normal like a point, by to_world"),
             (like(exact * own), "you multiply by to_object without the transpose"),
             (
@@ -264,12 +259,7 @@ fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<CheckResult>
                  inverse",
             ),
             (like(own), "you do not transform the normal"),
-            (
-                like(-right) && unit,
-                "your normal points inwards: the inverse transpose needs no change of sign, also for a \
-                 reflection",
-            ),
-        ]))
+        ])
     })
 }
 

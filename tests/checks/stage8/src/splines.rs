@@ -4,7 +4,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::double::U;
 use checks::generate::point;
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{compare, compare_formulas, proven, unless};
 use checks::nasty;
 use checks::paste::{Paste, list};
 use glam::{DVec3, Vec3, vec2};
@@ -191,23 +191,24 @@ pub(super) fn bspline_basis_sums_to_one(trial: &Trial<'_>) -> CheckResult {
         let judge = |spline: &Spline| {
             let values: Vec<f32> = answers.by_ref().take(spline.count()).collect();
             let sum: f64 = values.iter().map(|&value| f64::from(value)).sum();
-            let is_right = (sum - 1.0).abs() <= room(spline.degree, 1.0);
-            if is_right && values.iter().all(|value| *value >= 0.0) {
-                return Ok(());
-            }
-            let (knots, degree, u) = (list(&spline.knots), spline.degree, spline.u.paste());
-            let input = format!("(0..{}).map(|i| bspline_basis(&{knots}, {degree}, i, {u}))", spline.count());
+            let is_sum = (sum - 1.0).abs() <= room(spline.degree, 1.0);
+            let degree = spline.degree;
             let gives = |rule: Rule| {
                 (0..spline.count()).all(|index| {
                     let value = rule.basis(&spline.knots, degree, index, f64::from(spline.u));
                     same(f64::from(values[index]), value, room(degree, value))
                 })
             };
-            let expected = "values of at least 0 with the sum 1";
-            Err(Broken::with_texts(input, format!("{values:?}, sum {sum}"), expected, "partition of unity")
-                .explained_by(WRONG.map(|(rule, text)| (gives(rule), text))))
+            let broken = || {
+                let (n, knots, u) = (spline.count(), list(&spline.knots), spline.u.paste());
+                let input = format!("(0..{n}).map(|i| bspline_basis(&{knots}, {degree}, i, {u}))");
+                let expected = "values of at least 0 with the sum 1";
+                Broken::with_texts(input, format!("{values:?}, sum {sum}"), expected, "partition of unity")
+            };
+            let right = is_sum && values.iter().all(|value| *value >= 0.0);
+            unless(right, broken).formulas(WRONG.map(|(rule, text)| (gives(rule), text)))
         };
-        splines.iter().map(judge).collect()
+        proven(splines.iter().map(judge))
     })
 }
 
@@ -409,14 +410,14 @@ pub(super) fn nurbs_arcs_are_exact(trial: &Trial<'_>) -> CheckResult {
             // The control points and the weight are rounded, too: two more roundings.
             let room = point_room(&arc.query.patch) + 2.0 * U * arc.radius;
             let distance = from_axis(yours.as_dvec3());
-            if (distance - arc.radius).abs() <= room {
-                return Ok(());
-            }
             let gives = |mean: Mean| same(distance, from_axis(mean.point(&arc.query)), room);
-            let expected = format!("at the distance {} from the axis", arc.radius);
-            let answer = format!("{yours:?}, at the distance {distance}");
-            Err(Broken::with_texts(describe(&arc.query), answer, expected, "x² + y² = r²")
-                .explained_by(WRONG_MEANS[..2].iter().map(|&(mean, text)| (gives(mean), text))))
+            let broken = || {
+                let expected = format!("at the distance {} from the axis", arc.radius);
+                let answer = format!("{yours:?}, at the distance {distance}");
+                Broken::with_texts(describe(&arc.query), answer, expected, "x² + y² = r²")
+            };
+            let right = (distance - arc.radius).abs() <= room;
+            unless(right, broken).formulas(WRONG_MEANS[..2].iter().map(|&(mean, text)| (gives(mean), text)))
         })
     })
 }
