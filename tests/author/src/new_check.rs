@@ -236,14 +236,11 @@ fn skeleton(name: &str, asked: Function) -> String {
         checks::judge::compare(queries, trial.kit.{method}(queries), |query, yours| {{
             // Verify the answer by exact arithmetic, in double precision or by a law. Do not compute it as the exercise does.
             let is_right = |_: &{query}, _: &{answer}| -> bool {{ todo!("judge an answer") }};
-            if is_right(query, &yours) {{
-                return Ok(());
-            }}
-            // Name a mistake only if it gives exactly this answer to this query.
             let expected = || -> String {{ todo!("state the expected answer, and its source behind it") }};
-            let (input, yours) = (format!("{function}({{query:?}})"), format!("{{yours:?}}"));
-            let broken = checks::Broken::with_texts(input, yours, expected(), "double precision");
-            Err(broken.explained_by([]))
+            let (input, answer) = (format!("{function}({{query:?}})"), format!("{{yours:?}}"));
+            let broken = || checks::Broken::with_texts(input, answer, expected(), "double precision");
+            // List wrong formulas, each with whether it gives exactly this answer to this query.
+            checks::judge::unless(is_right(query, &yours), broken).formulas([])
         }})
     }})
 }}

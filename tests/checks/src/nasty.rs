@@ -32,6 +32,11 @@ pub fn any_scale() -> impl Strategy<Value = f32> + Clone {
     prop_oneof![2 => Just(1.0f32), 1 => scale(-16..=16), 1 => scale(-60..=60)]
 }
 
+/// The direction with 1/8 in place of 0: rays along an axis and within a face belong to checks of their own.
+pub fn slanted(direction: Vec3) -> Vec3 {
+    Vec3::select(direction.cmpeq(Vec3::ZERO), Vec3::splat(0.125), direction)
+}
+
 /// A unit vector: parallel to an axis, with zeros of either sign (1 of 8); diagonal (1 of 8); at an angle between 1 and 10⁻⁶
 /// to an axis (1 of 8); on a coarse grid (3 of 8); with full mantissas (2 of 8).
 pub fn unit() -> impl Strategy<Value = Vec3> + Clone {

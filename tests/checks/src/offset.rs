@@ -102,13 +102,18 @@ impl Start {
                 along_the_side(error.element_sum()),
                 "you add up the errors of all axes: along the normal it is error·|n|",
             ),
-            (self.is_along(shading), "you move along the shading normal: move along the geometric normal"),
         ];
+        if self.surface.shading_normal != self.surface.geometric_normal {
+            let text = "you move along the shading normal: move along the geometric normal";
+            all.push((self.is_along(shading), text));
+        }
         // A round number, alone or in addition to the bound.
         let lengths = (0..=7).flat_map(|digits| [1.0, 2.0, 5.0].map(|n| n * 10f64.powi(-digits)));
-        all.extend(lengths.flat_map(|length| [length, length + self.least()]).map(|length| {
-            (along_the_side(length), "your offset has the same length at every scale: move by error·|n|")
-        }));
+        all.extend(lengths.flat_map(|length| [length, length + self.least(), length.max(self.least())]).map(
+            |length| {
+                (along_the_side(length), "your offset has the same length at every scale: move by error·|n|")
+            },
+        ));
         all.extend((1..=7).map(|digits| {
             let is_fixed = self.t_min == Some(10f32.powi(-digits));
             (
@@ -116,10 +121,11 @@ impl Start {
                 "your t_min is the same at every scale, as in One Weekend: move the origin by error·|n|",
             )
         }));
-        all.push((
-            self.is_along(self.direction) && self.t_min.is_none(),
-            "you move the origin along the ray: move it along the geometric normal",
-        ));
+        // A start at the point itself is along any way.
+        if self.moved != DVec3::ZERO {
+            let text = "you move the origin along the ray: move it along the geometric normal";
+            all.push((self.is_along(self.direction) && self.t_min.is_none(), text));
+        }
         all
     }
 }

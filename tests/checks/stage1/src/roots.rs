@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare_formulas;
+use checks::judge::{Judged, compare, unless};
 use checks::nasty;
 use checks::paste::Arguments;
 use glam::Vec3;
@@ -19,26 +19,17 @@ const LARGER: &str = "you return the larger root, also if the smaller one counts
 const SORTED_WITH_NAN: &str =
     "comparisons with NaN are false, so NaN takes the place of the other root: use f32::min and f32::max";
 
-fn judge(query: &RootQuery, yours: Option<f32>) -> CheckResult {
-    let expected = expected(query);
-    if yours == expected {
-        return Ok(());
-    }
-    Err(Broken::new(query.call("nearest_root"), yours, expected, "the definition").explained_by([
-        (yours.is_some_and(f32::is_nan), "you return NaN, which ray.contains(t) refuses"),
-        (yours.is_some_and(f32::is_infinite), "you return infinity, which ray.contains(t) refuses"),
-    ]))
-}
-
-fn expected(RootQuery { roots, ray }: &RootQuery) -> Option<f32> {
-    roots.iter().copied().filter(|&t| ray.contains(t)).reduce(f32::min)
-}
-
-/// Wrong choices, each with whether it gives this answer.
-fn formulas(query: &RootQuery, yours: Option<f32>) -> Vec<(bool, &'static str)> {
+fn judge(query: &RootQuery, yours: Option<f32>) -> Judged {
     let ([first, second], ray) = (query.roots, query.ray);
     let counting = |t: f32| ray.contains(t);
-    let is_right = yours == expected(query);
+    let expected = query.roots.into_iter().filter(|&t| counting(t)).reduce(f32::min);
+    let is_right = yours == expected;
+    let broken = || {
+        Broken::new(query.call("nearest_root"), yours, expected, "the definition").explained_by([
+            (yours.is_some_and(f32::is_nan), "you return NaN, which ray.contains(t) refuses"),
+            (yours.is_some_and(f32::is_infinite), "you return infinity, which ray.contains(t) refuses"),
+        ])
+    };
     let (near, far) = (first.min(second), first.max(second));
     let among = |counts: &dyn Fn(f32) -> bool| [near, far].into_iter().find(|&t| counts(t));
     // Whether the answer is the first root that counts, and whether it is the first root if that one counts.
@@ -46,7 +37,7 @@ fn formulas(query: &RootQuery, yours: Option<f32>) -> Vec<(bool, &'static str)> 
     let first_if_it_counts = |roots: [f32; 2]| yours == Some(roots[0]).filter(|&t| counting(t));
     // Each comparison with NaN is false, so a sort by an if-else always swaps the roots, or never.
     let with_nan = |gives: bool| if first.is_nan() || second.is_nan() { gives } else { is_right };
-    vec![
+    unless(is_right, broken).formulas([
         (
             yours == among(&|t| ray.t_min <= t && t <= ray.t_max),
             "you return an end of the range; the range is open: t_min and t_max do not count",
@@ -78,11 +69,11 @@ fn formulas(query: &RootQuery, yours: Option<f32>) -> Vec<(bool, &'static str)> 
         (with_nan(first_if_it_counts([second, first])), SORTED_WITH_NAN),
         (with_nan(first_that_counts([second, first])), SORTED_WITH_NAN),
         (with_nan(yours.is_none()), "one root is NaN, but the other one may still count"),
-    ]
+    ])
 }
 
 fn judge_all(trial: &Trial<'_>, queries: &[RootQuery]) -> Vec<CheckResult> {
-    compare_formulas(queries, trial.kit.nearest_root(queries), judge, |query, yours| formulas(query, *yours))
+    compare(queries, trial.kit.nearest_root(queries), judge)
 }
 
 pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> CheckResult {

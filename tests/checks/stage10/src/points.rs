@@ -3,7 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
-use checks::judge::{compare, compare_formulas, unless};
+use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::offset::Start;
 use checks::paste::call;
@@ -134,22 +134,14 @@ pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> C
         .prop_map(|(v, exponent)| (v.as_dvec3() * 2f64.powi(exponent)).as_vec3());
     let vectors = vectors.prop_filter("neither 0 nor infinite", |v| *v != Vec3::ZERO && v.is_finite());
     let longest = [Vec3::splat(f32::MAX), vec3(f32::MAX, 1.0, -f32::MAX), Vec3::splat(f32::from_bits(1))];
-    // Allow four roundings per coordinate.
-    let is_right = |query: &Vec3, yours: &Option<Vec3>| {
-        yours.is_some_and(|yours| (yours.as_dvec3() - query.as_dvec3().normalize()).length() < 4.0 * 2.0 * U)
-    };
-    let judge = |query: &Vec3, yours: Option<Vec3>| match is_right(query, &yours) {
-        true => Ok(()),
-        false => {
-            let expected = query.as_dvec3().normalize();
-            Err(Broken::new(call("safe_normalize", &[query]), yours, expected, "double precision"))
-        }
-    };
     // A cause is proven if the answers are wrong exactly where it acts.
-    let causes = |query: &Vec3, yours: &Option<Vec3>| {
+    let judge = |query: &Vec3, yours: Option<Vec3>| {
+        let expected = query.as_dvec3().normalize();
+        let broken = || Broken::new(call("safe_normalize", &[query]), yours, expected, "double precision");
         let [underflow, overflow] = squares_fail(*query);
-        let is_wrong = !is_right(query, yours);
-        let (is_none, is_zero) = (yours.is_none(), *yours == Some(Vec3::ZERO));
+        // Allow four roundings per coordinate.
+        let is_wrong = !yours.is_some_and(|yours| (yours.as_dvec3() - expected).length() < 4.0 * 2.0 * U);
+        let (is_none, is_zero) = (yours.is_none(), yours == Some(Vec3::ZERO));
         let infinite = (1.0 / query.abs().max_element()).is_infinite();
         let reciprocal = Acts { certainly: infinite, possibly: infinite };
         let either = Acts {
@@ -157,7 +149,7 @@ pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> C
             possibly: underflow.possibly || overflow.possibly,
         };
         let of = |acts: Acts, answer: bool| if is_wrong { acts.possibly && answer } else { !acts.certainly };
-        vec![
+        unless(!is_wrong, broken).formulas([
             (
                 of(underflow, is_none),
                 "you return None for a short vector: the squares underflow, so scale by the largest coordinate first",
@@ -181,11 +173,10 @@ pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> C
                 !is_wrong || is_zero,
                 "you return 0, as a division by an infinite length does: the squares overflow, so scale by the largest coordinate first",
             ),
-        ]
+        ])
     };
-    trial.forall_and(&longest, 4000, vectors, |queries| {
-        compare_formulas(queries, trial.kit.safe_normalize(queries), judge, causes)
-    })
+    let judge = |queries: &[Vec3]| compare(queries, trial.kit.safe_normalize(queries), judge);
+    trial.forall_and(&longest, 4000, vectors, judge)
 }
 
 pub(super) fn zero_has_no_direction(trial: &Trial<'_>) -> CheckResult {

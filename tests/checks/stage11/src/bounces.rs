@@ -3,7 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::magnitude;
-use checks::judge::{Judged, compare, compare_formulas, unless};
+use checks::judge::{Judged, compare, unless};
 use proptest::prelude::*;
 
 pub(super) fn cut_off_is_the_light_beyond_the_last_bounce(trial: &Trial<'_>) -> CheckResult {
@@ -15,43 +15,29 @@ pub(super) fn cut_off_is_the_light_beyond_the_last_bounce(trial: &Trial<'_>) -> 
             // The doc comment states these bounds.
             (f64::from(yours) - expected).abs() <= (1e-4 * expected).max(1e-6)
         };
-        compare_formulas(
-            queries,
-            trial.kit.cut_off(queries),
-            |(albedo, bounces), yours| {
-                let expected = power(*albedo, f64::from(*bounces) + 1.0);
-                if near(yours, expected) {
-                    return Ok(());
-                }
-                Err(Broken::new(
-                    format!("cut_off({albedo:?}, {bounces})"),
-                    yours,
-                    expected,
-                    "albedo^(bounces + 1)",
-                ))
-            },
-            |(albedo, bounces), &yours| {
-                let n = f64::from(*bounces);
-                let whole = 1.0 / (1.0 - f64::from(*albedo));
-                let rest = power(*albedo, n + 1.0);
-                vec![
-                    (
-                        near(yours, power(*albedo, n)),
-                        "the power is bounces: it is bounces + 1, because light is also seen directly",
-                    ),
-                    (near(yours, power(*albedo, n + 2.0)), "the power is bounces + 2: it is bounces + 1"),
-                    (
-                        near(yours, 1.0 - rest),
-                        "you return the fraction that is found, not the one that is missing",
-                    ),
-                    (
-                        near(yours, rest * whole) || (*albedo == 1.0 && !yours.is_finite()),
-                        "you return the missing light, not its fraction of all light",
-                    ),
-                    (near(yours, f64::from(*albedo) * (n + 1.0)), "you multiply where a power is needed"),
-                ]
-            },
-        )
+        compare(queries, trial.kit.cut_off(queries), |(albedo, bounces), yours| {
+            let n = f64::from(*bounces);
+            let whole = 1.0 / (1.0 - f64::from(*albedo));
+            let rest = power(*albedo, n + 1.0);
+            let input = || format!("cut_off({albedo:?}, {bounces})");
+            let broken = || Broken::new(input(), yours, rest, "albedo^(bounces + 1)");
+            unless(near(yours, rest), broken).formulas([
+                (
+                    near(yours, power(*albedo, n)),
+                    "the power is bounces: it is bounces + 1, because light is also seen directly",
+                ),
+                (near(yours, power(*albedo, n + 2.0)), "the power is bounces + 2: it is bounces + 1"),
+                (
+                    near(yours, 1.0 - rest),
+                    "you return the fraction that is found, not the one that is missing",
+                ),
+                (
+                    near(yours, rest * whole) || (*albedo == 1.0 && !yours.is_finite()),
+                    "you return the missing light, not its fraction of all light",
+                ),
+                (near(yours, f64::from(*albedo) * (n + 1.0)), "you multiply where a power is needed"),
+            ])
+        })
     })
 }
 

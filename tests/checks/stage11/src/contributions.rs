@@ -4,7 +4,7 @@ use crate::weights::both_ways;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::magnitude;
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::paste::call;
 use glam::{DVec3, Vec3, vec3};
@@ -70,61 +70,48 @@ pub(super) fn light_contributions_have_their_closed_form(trial: &Trial<'_>) -> C
             (yours.as_dvec3() - expected).abs().max_element()
                 <= slack(query, factor) + 1e-5 * expected.max_element()
         };
-        compare_formulas(
-            queries,
-            answers,
-            |query, (yours, (weight, _))| {
-                // Light that rays cannot hit counts in full.
-                let weight = if query.bsdf_pdf == 0.0 { 1.0 } else { f64::from(weight) };
-                let expected = weight * unweighted(query);
-                if near(query, yours, expected, weight) {
-                    return Ok(());
-                }
-                Err(Broken::new(
-                    paste(query),
-                    yours,
-                    expected.as_vec3(),
-                    "kd / π · L · cos θ / pdf · mis_weight",
-                ))
-            },
-            |query, (yours, (weight, swapped))| {
-                let (weight, whole) = (f64::from(*weight), unweighted(query));
-                let cosine = query.normal.as_dvec3().dot(query.sample.direction.as_dvec3());
-                let (pdf, other) = (f64::from(query.sample.pdf), f64::from(query.bsdf_pdf));
-                let is = |expected: DVec3, factor: f64| near(query, *yours, expected, factor);
-                vec![
-                    (yours.is_nan(), "you return NaN"),
-                    (
-                        is(whole, 1.0),
-                        "the weight of multiple importance sampling is missing, so light counts twice",
-                    ),
-                    (
-                        is(f64::from(*swapped) * whole, f64::from(*swapped)),
-                        "own and other are exchanged: own is the density of the light's sample",
-                    ),
-                    (is(PI * weight * whole, PI), "a diffuse surface sends kd / π on: the π is missing"),
-                    (
-                        is(weight * whole / cosine.max(1e-9), 1.0 / cosine.max(1e-9)),
-                        "the cosine at the surface is missing",
-                    ),
-                    (is(weight * whole * cosine, 1.0), "you multiply by the cosine twice"),
-                    (is(weight * whole * pdf, pdf), "you do not divide by the density of the sample"),
-                    (
-                        is(weight * whole * pdf * pdf, pdf * pdf),
-                        "you multiply by the density of the sample: divide by it",
-                    ),
-                    (
-                        other == 0.0 || is(weight * whole * pdf / other, pdf / other),
-                        "you divide by the density of the surface, not by that of the light",
-                    ),
-                    (
-                        is(weight * query.sample.radiance.as_dvec3() * (cosine / PI / pdf), 1.0),
-                        "the diffuse reflectance is missing",
-                    ),
-                    (is(weight * whole / PI, 1.0), "you divide by π twice"),
-                ]
-            },
-        )
+        compare(queries, answers, |query, (yours, (weight, swapped))| {
+            let (weight, whole) = (f64::from(weight), unweighted(query));
+            // Light that rays cannot hit counts in full.
+            let factor = if query.bsdf_pdf == 0.0 { 1.0 } else { weight };
+            let expected = factor * whole;
+            let source = "kd / π · L · cos θ / pdf · mis_weight";
+            let broken = || Broken::new(paste(query), yours, expected.as_vec3(), source);
+            let cosine = query.normal.as_dvec3().dot(query.sample.direction.as_dvec3());
+            let (pdf, other) = (f64::from(query.sample.pdf), f64::from(query.bsdf_pdf));
+            let is = |expected: DVec3, factor: f64| near(query, yours, expected, factor);
+            unless(near(query, yours, expected, factor), broken).formulas([
+                (yours.is_nan(), "you return NaN"),
+                (
+                    is(whole, 1.0),
+                    "the weight of multiple importance sampling is missing, so light counts twice",
+                ),
+                (
+                    is(f64::from(swapped) * whole, f64::from(swapped)),
+                    "own and other are exchanged: own is the density of the light's sample",
+                ),
+                (is(PI * weight * whole, PI), "a diffuse surface sends kd / π on: the π is missing"),
+                (
+                    is(weight * whole / cosine.max(1e-9), 1.0 / cosine.max(1e-9)),
+                    "the cosine at the surface is missing",
+                ),
+                (is(weight * whole * cosine, 1.0), "you multiply by the cosine twice"),
+                (is(weight * whole * pdf, pdf), "you do not divide by the density of the sample"),
+                (
+                    is(weight * whole * pdf * pdf, pdf * pdf),
+                    "you multiply by the density of the sample: divide by it",
+                ),
+                (
+                    other == 0.0 || is(weight * whole * pdf / other, pdf / other),
+                    "you divide by the density of the surface, not by that of the light",
+                ),
+                (
+                    is(weight * query.sample.radiance.as_dvec3() * (cosine / PI / pdf), 1.0),
+                    "the diffuse reflectance is missing",
+                ),
+                (is(weight * whole / PI, 1.0), "you divide by π twice"),
+            ])
+        })
     })
 }
 
@@ -191,44 +178,42 @@ pub(super) fn emission_counts_by_its_weight(trial: &Trial<'_>) -> CheckResult {
         let near = |yours: Vec3, expected: DVec3| {
             (yours.as_dvec3() - expected).abs().max_element() <= 1e-5 * expected.max_element() + 1e-38
         };
-        compare_formulas(
-            queries,
-            answers,
-            |query, (yours, (own, _))| {
-                // These two cases follow from the definition alone.
-                let is_whole = query.pdf == f32::INFINITY || query.light_pdf == 0.0;
-                let weight = if is_whole { 1.0 } else { f64::from(own) };
-                let expected = weight * query.emission.as_dvec3();
-                // A wrong weight of a certain direction is judged by a check of mis_weight.
-                let by_own = own * query.emission;
-                let is_by_own = yours == by_own || yours.is_nan() && by_own.is_nan();
-                if near(yours, expected) || query.pdf == f32::INFINITY && is_by_own {
-                    return Ok(());
-                }
-                let input = call("emitted_contribution", &[&query.emission, &query.pdf, &query.light_pdf]);
-                Err(Broken::new(input, yours, expected.as_vec3(), "emission · mis_weight"))
-            },
-            |query, (yours, (weight, swapped))| {
-                let whole = query.emission.as_dvec3();
-                let is_certain = query.pdf == f32::INFINITY;
-                let unless_certain = |weight: f64| if is_certain { whole } else { weight * whole };
-                let weight = f64::from(*weight);
-                vec![
-                    (yours.is_nan(), "you return NaN"),
-                    (near(*yours, whole), "all emission counts in full, so light that is sampled counts twice"),
-                    (*yours == Vec3::ZERO, "no emission counts, so mirrors show no lights"),
-                    (near(*yours, f64::from(*swapped) * whole), "own and other are exchanged: own is the density of the ray"),
-                    (near(*yours, unless_certain(0.0)), "light that a diffuse ray finds counts by its weight, and in full if it is not sampled"),
-                    (
-                        near(*yours, if is_certain { DVec3::ZERO } else { weight * whole }),
-                        "light of camera rays and mirrors counts in full, because no sample finds it",
-                    ),
-                    (
-                        near(*yours, if query.light_pdf == 0.0 { DVec3::ZERO } else { weight * whole }),
-                        "light of an emitter that is not sampled counts in full",
-                    ),
-                ]
-            },
-        )
+        compare(queries, answers, |query, (yours, (own, swapped))| {
+            // These two cases follow from the definition alone.
+            let is_whole = query.pdf == f32::INFINITY || query.light_pdf == 0.0;
+            let weight = if is_whole { 1.0 } else { f64::from(own) };
+            let expected = weight * query.emission.as_dvec3();
+            // A wrong weight of a certain direction is judged by a check of mis_weight.
+            let by_own = own * query.emission;
+            let is_by_own = yours == by_own || yours.is_nan() && by_own.is_nan();
+            let input = || call("emitted_contribution", &[&query.emission, &query.pdf, &query.light_pdf]);
+            let broken = || Broken::new(input(), yours, expected.as_vec3(), "emission · mis_weight");
+            let right = near(yours, expected) || query.pdf == f32::INFINITY && is_by_own;
+            let whole = query.emission.as_dvec3();
+            let is_certain = query.pdf == f32::INFINITY;
+            let unless_certain = |weight: f64| if is_certain { whole } else { weight * whole };
+            let weight = f64::from(own);
+            unless(right, broken).formulas([
+                (yours.is_nan(), "you return NaN"),
+                (near(yours, whole), "all emission counts in full, so light that is sampled counts twice"),
+                (yours == Vec3::ZERO, "no emission counts, so mirrors show no lights"),
+                (
+                    near(yours, f64::from(swapped) * whole),
+                    "own and other are exchanged: own is the density of the ray",
+                ),
+                (
+                    near(yours, unless_certain(0.0)),
+                    "light that a diffuse ray finds counts by its weight, and in full if it is not sampled",
+                ),
+                (
+                    near(yours, if is_certain { DVec3::ZERO } else { weight * whole }),
+                    "light of camera rays and mirrors counts in full, because no sample finds it",
+                ),
+                (
+                    near(yours, if query.light_pdf == 0.0 { DVec3::ZERO } else { weight * whole }),
+                    "light of an emitter that is not sampled counts in full",
+                ),
+            ])
+        })
     })
 }

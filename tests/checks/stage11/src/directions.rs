@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::paste::call;
 use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
@@ -128,29 +128,20 @@ pub(super) fn cosine_pdf_is_the_cosine_over_pi(trial: &Trial<'_>) -> CheckResult
         let exact = |(normal, direction): &(Vec3, Vec3)| normal.as_dvec3().dot(direction.as_dvec3());
         // Roundings of the three products, each at most 1.
         let near = |yours: f32, expected: f64| (f64::from(yours) - expected).abs() <= 1e-6 * (1.0 + expected);
-        compare_formulas(
-            queries,
-            trial.kit.cosine_pdf(queries),
-            |query, yours| {
-                let expected = exact(query) / PI;
-                if near(yours, expected.max(0.0)) {
-                    return Ok(());
-                }
-                Err(Broken::new(call("cosine_pdf", &[&query.0, &query.1]), yours, expected, "the definition"))
-            },
-            |query, &yours| {
-                let cosine = exact(query);
-                vec![
-                    (near(yours, cosine), "you return the cosine: divide it by π"),
-                    (near(yours, 1.0 / TAU), "you return the density of the uniform hemisphere, 1 / 2π"),
-                    (near(yours, 1.0 / PI), "you return 1 / π: multiply it by the cosine"),
-                    (near(yours, cosine / TAU), "you divide by 2π: the integral of the cosine is π"),
-                    (near(yours, 0.25 / PI), "you return the density of the whole sphere, 1 / 4π"),
-                    (near(yours, cosine * cosine / PI), "you multiply by the cosine twice"),
-                    (near(yours, 2.0 * cosine / PI), "twice too much: the integral of the cosine is π"),
-                ]
-            },
-        )
+        compare(queries, trial.kit.cosine_pdf(queries), |query, yours| {
+            let cosine = exact(query);
+            let input = || call("cosine_pdf", &[&query.0, &query.1]);
+            let broken = || Broken::new(input(), yours, cosine / PI, "the definition");
+            unless(near(yours, (cosine / PI).max(0.0)), broken).formulas([
+                (near(yours, cosine), "you return the cosine: divide it by π"),
+                (near(yours, 1.0 / TAU), "you return the density of the uniform hemisphere, 1 / 2π"),
+                (near(yours, 1.0 / PI), "you return 1 / π: multiply it by the cosine"),
+                (near(yours, cosine / TAU), "you divide by 2π: the integral of the cosine is π"),
+                (near(yours, 0.25 / PI), "you return the density of the whole sphere, 1 / 4π"),
+                (near(yours, cosine * cosine / PI), "you multiply by the cosine twice"),
+                (near(yours, 2.0 * cosine / PI), "twice too much: the integral of the cosine is π"),
+            ])
+        })
     })
 }
 

@@ -185,6 +185,10 @@ pub(super) fn dark_sides_send_no_light(trial: &Trial<'_>) -> CheckResult {
                 return Err(broken.explained_by([
                     (*is_dark && black, "an emitter of radiance 0 sends no light: return None"),
                     (
+                        *is_dark && !black && !inside && !lit.is_behind(),
+                        "you sample an emitter for a point in its plane, from which it has no area: return None",
+                    ),
+                    (
                         *is_dark && !black && inside,
                         "from inside, a sphere that is not two-sided sends no light",
                     ),

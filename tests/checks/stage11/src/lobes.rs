@@ -3,7 +3,7 @@
 use crate::directions::number;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::paste::{Paste, call};
 use checks::statistics::{SAMPLES, covers_evenly, has_mean, pairs};
@@ -161,50 +161,35 @@ fn judge_weight(query: &BsdfQuery, sample: &BsdfSample) -> bool {
 
 pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> CheckResult {
     trial.forall(800, bsdf_queries(), |queries| {
-        compare_formulas(
-            queries,
-            trial.kit.sample_bsdf(queries),
-            |query, yours| {
-                let Some(sample) = yours else { return missing(query) };
-                if reflectance_of(&query.scattering, sample.lobe) == Vec3::ZERO
-                    || judge_weight(query, &sample)
-                {
-                    return Ok(());
-                }
-                let reflectance = reflectance_of(&query.scattering, sample.lobe);
-                let share = share(&query.scattering, sample.lobe);
-                let yours = format!("weight {} for {:?}", sample.weight, sample.lobe);
+        compare(queries, trial.kit.sample_bsdf(queries), |query, yours| {
+            let Some(sample) = yours else { return missing(query).map(Into::into) };
+            let scattering = &query.scattering;
+            let reflectance = reflectance_of(scattering, sample.lobe).as_dvec3();
+            let share = share(scattering, sample.lobe);
+            let near = |factor: f64| {
+                (sample.weight.as_dvec3() - factor * reflectance).abs().max_element()
+                    <= 1e-4 * factor * reflectance.max_element()
+            };
+            let largest = reflectance.max_element();
+            let broken = || {
+                let (yours, least) =
+                    (format!("weight {} for {:?}", sample.weight, sample.lobe), 0.25 * share);
                 let expected = format!(
-                    "{reflectance} divided by one probability in {:.3}..=1, for example {share:.3}",
-                    0.25 * share
+                    "{} divided by one probability in {least:.3}..=1, for example {share:.3}",
+                    reflectance.as_vec3()
                 );
-                Err(Broken::with_texts(paste(query), yours, expected, "the definition"))
-            },
-            |query, yours| {
-                // A missing sample agrees with each of these mistakes only where there has to be none.
-                let Some(sample) = yours else { return vec![(missing(query).is_ok(), ""); 4] };
-                let scattering = &query.scattering;
-                let reflectance = reflectance_of(scattering, sample.lobe).as_dvec3();
-                let share = share(scattering, sample.lobe);
-                let near = |factor: f64| {
-                    (sample.weight.as_dvec3() - factor * reflectance).abs().max_element()
-                        <= 1e-4 * factor * reflectance.max_element()
-                };
-                let largest = reflectance.max_element();
-                vec![
-                    (near(share), "you multiply by the probability of the choice: divide by it"),
-                    (
-                        near(1.0 / largest),
-                        "you divide by the reflectance, not by the probability of the choice",
-                    ),
-                    (
-                        near(1.0 / share / PI),
-                        "the weight of a diffuse direction has no π: it cancels against the density",
-                    ),
-                    (sample.weight.is_nan(), "you return NaN"),
-                ]
-            },
-        )
+                Broken::with_texts(paste(query), yours, expected, "the definition")
+            };
+            unless(reflectance.max_element() == 0.0 || judge_weight(query, &sample), broken).formulas([
+                (near(share), "you multiply by the probability of the choice: divide by it"),
+                (near(1.0 / largest), "you divide by the reflectance, not by the probability of the choice"),
+                (
+                    near(1.0 / share / PI),
+                    "the weight of a diffuse direction has no π: it cancels against the density",
+                ),
+                (sample.weight.is_nan(), "you return NaN"),
+            ])
+        })
     })
 }
 
@@ -304,52 +289,34 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
         // Roundings of the products in the cosine, and of the probability.
         let near = |pdf: f32, expected: f64| (f64::from(pdf) - expected).abs() <= 1e-6 + 1e-5 * expected;
         let answers: Vec<_> = samples.into_iter().zip(trial.kit.bsdf_pdf(&pdf_queries)).collect();
-        compare_formulas(
-            &pdf_queries,
-            answers,
-            |query, (sample, yours)| {
-                let Some(sample) = diffuse(&sample) else {
-                    let input = format!("sample_bsdf for {} diffuse surfaces", queries.len());
-                    let broken = Broken::with_texts(
-                        input,
-                        "no diffuse sample",
-                        "some diffuse samples",
-                        "the definition",
-                    );
-                    return if none_is_diffuse { Err(broken) } else { Ok(()) };
-                };
-                let (cosine, probability) = factors(query, &sample);
-                let expected = probability * cosine / PI;
-                if near(yours, expected) && near(sample.pdf, expected) {
-                    return Ok(());
-                }
+        compare(&pdf_queries, answers, |query, (sample, yours)| {
+            let Some(sample) = diffuse(&sample) else {
+                let input = format!("sample_bsdf for {} diffuse surfaces", queries.len());
+                let broken =
+                    Broken::with_texts(input, "no diffuse sample", "some diffuse samples", "the definition");
+                return if none_is_diffuse { Err(broken) } else { Ok(().into()) };
+            };
+            let (cosine, probability) = factors(query, &sample);
+            let expected = probability * cosine / PI;
+            let both = |expected: f64| near(yours, expected) && near(sample.pdf, expected);
+            let broken = || {
                 let input = call("bsdf_pdf", &[&query.scattering, &query.direction]);
                 let yours = format!("{yours:?}, and pdf {:?} of sample_bsdf", sample.pdf);
-                Err(Broken::with_texts(
-                    input,
-                    yours,
-                    format!("{expected:?} for both"),
-                    "probability · cos θ / π",
-                ))
-            },
-            |query, (sample, yours)| {
-                let Some(sample) = diffuse(sample) else { return vec![(true, ""); 4] };
-                let (cosine, probability) = factors(query, &sample);
-                let both = |expected: f64| near(*yours, expected) && near(sample.pdf, expected);
-                vec![
-                    (both(cosine / PI), "the probability of the diffuse lobe is missing in both densities"),
-                    (near(*yours, cosine / PI), "the probability of the diffuse lobe is missing in bsdf_pdf"),
-                    (
-                        near(sample.pdf, cosine / PI),
-                        "the probability of the diffuse lobe is missing in the pdf of sample_bsdf",
-                    ),
-                    (
-                        near(*yours, cosine / PI / probability),
-                        "you divide by the probability of the diffuse lobe: multiply by it",
-                    ),
-                ]
-            },
-        )
+                Broken::with_texts(input, yours, format!("{expected:?} for both"), "probability · cos θ / π")
+            };
+            unless(both(expected), broken).formulas([
+                (both(cosine / PI), "the probability of the diffuse lobe is missing in both densities"),
+                (near(yours, cosine / PI), "the probability of the diffuse lobe is missing in bsdf_pdf"),
+                (
+                    near(sample.pdf, cosine / PI),
+                    "the probability of the diffuse lobe is missing in the pdf of sample_bsdf",
+                ),
+                (
+                    near(yours, cosine / PI / probability),
+                    "you divide by the probability of the diffuse lobe: multiply by it",
+                ),
+            ])
+        })
     })
 }
 

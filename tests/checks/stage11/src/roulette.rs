@@ -90,27 +90,34 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[f32]) -> Judged {
             ),
         ])
     };
-    unless(is_one_factor && (mean - 1.0).abs() <= slack * factor && in_range, broken).formulas([
+    let right = is_one_factor && (mean - 1.0).abs() <= slack * factor && in_range;
+    // A weight of 1 or more always survives.
+    let open = right && largest >= 1.0;
+    let formulas = [
         (share == 1.0 && near(mean, 1.0), "no path ever ends"),
         (
             near(share, 0.5) && near(mean, 1.0),
             "every path survives with probability 1/2, but the probability has to follow its weight",
         ),
         (
-            is_one_factor && factor == 1.0,
+            is_one_factor && factor == 1.0 && (share < 1.0 || right),
             "you do not divide by the probability to survive, so the picture is too dark",
         ),
         (
             is_one_factor && near(1.0 - share, largest),
             "the path ends with the probability with which it must survive",
         ),
-        (is_one_factor && near(1.0 - share, 1.0 / factor), "you divide by the probability to end"),
+        (
+            is_one_factor && near(share, largest) && near(1.0 - share, 1.0 / factor),
+            "you divide by the probability to end",
+        ),
         (near(share, smallest), "you compare u with the smallest channel of the weight: take the largest"),
         (near(share, average), "you compare u with the mean of the channels: take the largest"),
         (near(share, green), "you compare u with the luminance of the weight: take the largest channel"),
         (is_one_factor && near(factor * largest * largest, 1.0), "you divide by the probability twice"),
         (is_one_factor && near(factor, largest), "you multiply by the probability to survive: divide by it"),
-    ])
+    ];
+    unless(right, broken).formulas(formulas.map(|(gives, text)| (gives || open, text)))
 }
 
 pub(super) fn roulette_ends_no_young_path(trial: &Trial<'_>) -> CheckResult {

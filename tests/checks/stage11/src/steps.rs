@@ -8,7 +8,7 @@ use crate::lobes::{missing, surfaces};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::magnitude;
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{compare, unless};
 use checks::nasty;
 use glam::{DVec3, Vec2, Vec3, vec3};
 use proptest::prelude::*;
@@ -120,57 +120,44 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
         let near = |yours: Vec3, expected: DVec3| {
             (yours.as_dvec3() - expected).abs().max_element() <= 1e-5 * expected.max_element() + 1e-30
         };
-        compare_formulas(
-            queries,
-            answers,
-            |query, ((step, weight), _)| {
-                let expected =
-                    counting(query, weight) * (query.path.weight * query.vertex.emission).as_dvec3();
-                if near(step.light, expected) {
-                    return Ok(());
-                }
-                let yours = format!("light {}", step.light);
-                Err(Broken::with_texts(
-                    describe(query),
-                    yours,
-                    format!("{}", expected.as_vec3()),
-                    "weight · emitted_contribution",
-                ))
-            },
-            |query, ((step, weight), unscaled)| {
-                let whole = (query.path.weight * query.vertex.emission).as_dvec3();
-                let [weight, unscaled] = [*weight, *unscaled].map(|weight| counting(query, weight));
-                let is_last = query.path.bounces == query.max_depth;
-                vec![
-                    (step.light.is_nan(), "you return NaN"),
-                    (
-                        near(step.light, if is_last { DVec3::ZERO } else { weight * whole }),
-                        "the light of the last surface is lost: collect it before the path ends",
-                    ),
-                    (
-                        near(step.light, whole),
-                        "light that is sampled as well counts in full here, so it counts twice",
-                    ),
-                    (
-                        near(step.light, unscaled * whole),
-                        "the probability with which the emitter is chosen is missing in its density",
-                    ),
-                    (
-                        near(step.light, weight * query.vertex.emission.as_dvec3()),
-                        "the weight of the path is missing",
-                    ),
-                    (step.light == Vec3::ZERO, "the emission of the surface is missing"),
-                    (
-                        near(step.light, if query.path.bounces == 0 { weight * whole } else { DVec3::ZERO }),
-                        "emission counts only where the camera sees it",
-                    ),
-                    (
-                        near(step.light, if query.path.pdf == CERTAIN { whole } else { DVec3::ZERO }),
-                        "emission counts only for camera rays and mirrors: diffuse rays find light, too",
-                    ),
-                ]
-            },
-        )
+        compare(queries, answers, |query, ((step, weight), unscaled)| {
+            let whole = (query.path.weight * query.vertex.emission).as_dvec3();
+            let [weight, unscaled] = [weight, unscaled].map(|weight| counting(query, weight));
+            let broken = || {
+                let (yours, expected) = (format!("light {}", step.light), (weight * whole).as_vec3());
+                let expected = format!("{expected}");
+                Broken::with_texts(describe(query), yours, expected, "weight · emitted_contribution")
+            };
+            let is_last = query.path.bounces == query.max_depth;
+            unless(near(step.light, weight * whole), broken).formulas([
+                (step.light.is_nan(), "you return NaN"),
+                (
+                    near(step.light, if is_last { DVec3::ZERO } else { weight * whole }),
+                    "the light of the last surface is lost: collect it before the path ends",
+                ),
+                (
+                    near(step.light, whole),
+                    "light that is sampled as well counts in full here, so it counts twice",
+                ),
+                (
+                    near(step.light, unscaled * whole),
+                    "the probability with which the emitter is chosen is missing in its density",
+                ),
+                (
+                    near(step.light, weight * query.vertex.emission.as_dvec3()),
+                    "the weight of the path is missing",
+                ),
+                (step.light == Vec3::ZERO, "the emission of the surface is missing"),
+                (
+                    near(step.light, if query.path.bounces == 0 { weight * whole } else { DVec3::ZERO }),
+                    "emission counts only where the camera sees it",
+                ),
+                (
+                    near(step.light, if query.path.pdf == CERTAIN { whole } else { DVec3::ZERO }),
+                    "emission counts only for camera rays and mirrors: diffuse rays find light, too",
+                ),
+            ])
+        })
     })
 }
 
@@ -280,80 +267,63 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
         let above = |query: &StepQuery, sample: &BsdfSample| {
             query.vertex.surface.geometric_normal.as_dvec3().dot(sample.direction.as_dvec3())
         };
-        compare_formulas(
-            queries,
-            answers,
-            |query, ((step, sample), [factor, ..])| {
-                let Some(sample) = sample else {
-                    return match step.next {
-                        None => missing(&ask(query)),
-                        Some(_) => Err(Broken::new(
-                            describe(query),
-                            step.next,
-                            None::<()>,
-                            "sample_bsdf returns None",
-                        )),
-                    };
+        compare(queries, answers, |query, ((step, sample), [factor, early, late])| {
+            let Some(sample) = sample else {
+                return match step.next {
+                    None => missing(&ask(query)).map(Into::into),
+                    Some(_) => {
+                        Err(Broken::new(describe(query), step.next, None::<()>, "sample_bsdf returns None"))
+                    }
                 };
-                let height = above(query, &sample);
-                // At the horizon a rounding decides.
-                if sample.lobe == Lobe::Diffuse && height.abs() < 1e-5 {
-                    return Ok(());
-                }
-                let ends = sample.lobe == Lobe::Diffuse && height < 0.0;
-                let weight = f64::from(factor) * (query.path.weight * sample.weight).as_dvec3();
-                let weight = if ends { DVec3::ZERO } else { weight };
-                if is(&step, &sample, weight) {
-                    return Ok(());
-                }
+            };
+            let height = above(query, &sample);
+            // At the horizon a rounding decides.
+            if sample.lobe == Lobe::Diffuse && height.abs() < 1e-5 {
+                return Ok(().into());
+            }
+            let ends = sample.lobe == Lobe::Diffuse && height < 0.0;
+            let weight = f64::from(factor) * (query.path.weight * sample.weight).as_dvec3();
+            let weight = if ends { DVec3::ZERO } else { weight };
+            let broken = || {
                 let BsdfSample { lobe, direction, pdf, .. } = sample;
                 let expected = NextRay { lobe, direction, weight: weight.as_vec3(), pdf };
                 let expected = (weight != DVec3::ZERO).then_some(expected);
                 let source = "path.weight · weight of sample_bsdf · survives";
-                Err(Broken::with_texts(describe(query), says(step.next), says(expected), source))
-            },
-            |query, ((step, sample), [factor, early, late])| {
-                let Some(sample) = sample else {
-                    return vec![(step.next.is_none() && missing(&ask(query)).is_ok(), ""); 8];
-                };
-                let whole = (query.path.weight * sample.weight).as_dvec3();
-                let below = sample.lobe == Lobe::Diffuse && above(query, sample) < 0.0;
-                let unless_below = |weight: DVec3| if below { DVec3::ZERO } else { weight };
-                let by = |factor: &f32| f64::from(*factor);
-                let alive = if *factor == 0.0 { 0.0 } else { 1.0 };
-                vec![
-                    (step.next.is_some_and(|next| next.weight.is_nan()), "you return NaN"),
-                    (
-                        is(step, sample, by(factor) * whole),
-                        "a diffuse ray below the geometric normal hits its own surface: end the path",
-                    ),
-                    (
-                        is(step, sample, unless_below(alive * whole)),
-                        "the factor of survives is missing in the weight",
-                    ),
-                    (is(step, sample, unless_below(whole)), "there is no Russian roulette"),
-                    (
-                        is(step, sample, unless_below(by(early) * whole)),
-                        "the roulette counts surfaces: path.bounces + 1",
-                    ),
-                    (
-                        is(step, sample, unless_below(by(late) * whole)),
-                        "the roulette counts one surface too many: path.bounces + 1",
-                    ),
-                    (
-                        is(step, sample, unless_below(by(factor) * sample.weight.as_dvec3())),
-                        "the weight of the path is missing",
-                    ),
-                    (
-                        is(
-                            step,
-                            &BsdfSample { pdf: f32::INFINITY, ..*sample },
-                            unless_below(by(factor) * whole),
-                        ),
-                        "the density of a diffuse ray is that of sample_bsdf",
-                    ),
-                ]
-            },
-        )
+                Broken::with_texts(describe(query), says(step.next), says(expected), source)
+            };
+            let whole = (query.path.weight * sample.weight).as_dvec3();
+            let is_next = |sample: &BsdfSample, weight: DVec3| is(&step, sample, weight);
+            let unless_below = |weight: DVec3| if ends { DVec3::ZERO } else { weight };
+            let by = |factor: f32| f64::from(factor);
+            let alive = if factor == 0.0 { 0.0 } else { 1.0 };
+            unless(is_next(&sample, weight), broken).formulas([
+                (step.next.is_some_and(|next| next.weight.is_nan()), "you return NaN"),
+                (
+                    is_next(&sample, by(factor) * whole),
+                    "a diffuse ray below the geometric normal hits its own surface: end the path",
+                ),
+                (
+                    is_next(&sample, unless_below(alive * whole)),
+                    "the factor of survives is missing in the weight",
+                ),
+                (is_next(&sample, unless_below(whole)), "there is no Russian roulette"),
+                (
+                    is_next(&sample, unless_below(by(early) * whole)),
+                    "the roulette counts surfaces: path.bounces + 1",
+                ),
+                (
+                    is_next(&sample, unless_below(by(late) * whole)),
+                    "the roulette counts one surface too many: path.bounces + 1",
+                ),
+                (
+                    is_next(&sample, unless_below(by(factor) * sample.weight.as_dvec3())),
+                    "the weight of the path is missing",
+                ),
+                (
+                    is_next(&BsdfSample { pdf: f32::INFINITY, ..sample }, unless_below(by(factor) * whole)),
+                    "the density of a diffuse ray is that of sample_bsdf",
+                ),
+            ])
+        })
     })
 }

@@ -120,8 +120,9 @@ fn judge(flat: &Flat, yours: &FlatTree) -> CheckResult {
 }
 
 /// Judges hierarchies, the first of which are chosen so that each wrong order gives another tree.
-fn judge_all(trial: &Trial<'_>, chosen: &[Flat], most: usize) -> CheckResult {
-    trial.forall_and(chosen, 400, flats(most), |flats| {
+fn judge_all(trial: &Trial<'_>, chosen: &[Flat], fewest: usize, most: usize) -> CheckResult {
+    let large = flats(most).prop_filter("enough nodes", move |flat| flat.tree.nodes.len() >= fewest);
+    trial.forall_and(chosen, 400, large, |flats| {
         let queries: Vec<Bvh> = flats.iter().map(|flat| flat.bvh.clone()).collect();
         compare(flats, trial.kit.flatten(&queries), |flat, yours| judge(flat, &yours))
     })
@@ -132,7 +133,7 @@ pub(super) fn flatten_is_depth_first(trial: &Trial<'_>) -> CheckResult {
     let boxes: Vec<Aabb> =
         (0..4).map(|i| Aabb::new(Vec3::splat(i as f32), Vec3::splat(i as f32 + 0.5))).collect();
     let tree = drawn_tree(&boxes, 1, &[1, 0]);
-    judge_all(trial, &[Flat { bvh: scattered(&tree, &[1, 0, 1]), tree }], 40)
+    judge_all(trial, &[Flat { bvh: scattered(&tree, &[1, 0, 1]), tree }], 2, 40)
 }
 
 pub(super) fn flatten_of_one_leaf_and_of_nothing(trial: &Trial<'_>) -> CheckResult {
@@ -141,5 +142,5 @@ pub(super) fn flatten_of_one_leaf_and_of_nothing(trial: &Trial<'_>) -> CheckResu
         let tree = drawn_tree(&boxes, n, &[1]);
         Flat { bvh: scattered(&tree, &[0]), tree }
     };
-    judge_all(trial, &[leaf(1), leaf(3), leaf(0)], 3)
+    judge_all(trial, &[leaf(1), leaf(3), leaf(0)], 0, 3)
 }

@@ -7,6 +7,7 @@ use checks::judge::{compare, compare_formulas};
 use checks::tree::half_area;
 use glam::Vec3;
 use oracle::splitmix::Random;
+use proptest::strategy::Strategy;
 use raykata::aabb::Aabb;
 use raykata::wide::{BLOCK, Child, ChildContents, FlatTree, NO_PRIMITIVE, WideTree};
 
@@ -147,13 +148,17 @@ fn judge_leaves(tree: &FlatTree, wide: &WideTree) -> CheckResult {
     meaning.map_or_else(|fault| Err(broken_by(fault, describe(tree), "the binary tree")), |_| Ok(()))
 }
 
-fn trees_only(most: usize) -> impl proptest::strategy::Strategy<Value = FlatTree> + Clone {
-    use proptest::strategy::Strategy;
+fn trees_only(most: usize) -> impl Strategy<Value = FlatTree> + Clone {
     drawn_trees(most).prop_map(|(_, tree)| tree)
 }
 
+/// Trees with an inner node: another check judges those with one leaf or none.
+fn divided_trees(most: usize) -> impl Strategy<Value = FlatTree> + Clone {
+    trees_only(most).prop_filter("an inner node", |tree| tree.nodes.len() > 1)
+}
+
 pub(super) fn collapse_keeps_every_leaf(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(300, trees_only(80), |trees| {
+    trial.forall(300, divided_trees(80), |trees| {
         compare(trees, trial.kit.collapse(trees), |tree, wide| judge_leaves(tree, &wide))
     })
 }
@@ -259,7 +264,7 @@ fn judge_opened(tree: &FlatTree, wide: &WideTree) -> CheckResult {
 }
 
 pub(super) fn collapse_opens_the_largest_child(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(200, trees_only(120), |trees| {
+    trial.forall(200, divided_trees(120), |trees| {
         let judge = |tree: &FlatTree, wide: WideTree| judge_opened(tree, &wide);
         let formulas = |tree: &FlatTree, wide: &WideTree| {
             let (meaning, parents) = (meaning(tree, wide).ok(), parents(tree));

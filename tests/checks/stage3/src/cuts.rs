@@ -77,6 +77,11 @@ pub(super) fn surface_area_heuristic_joins_no_side_again(trial: &Trial<'_>) -> C
 
 const AXES: [usize; 3] = [0, 1, 2];
 
+const ONLY_ONE: &str = "only one axis is tried: the best cut is along another";
+const ONLY_Y: &str = "only one axis is tried, y: the best cut is along another";
+const ONLY_Z: &str = "only one axis is tried, z: the best cut is along another";
+const ONLY_LONGEST: &str = "only one axis is tried, the longest: the best cut is along another";
+
 /// The fault of a cut, if it has one. A `middle` of 0 is a leaf.
 fn cheapest(_: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> Option<Fault> {
     let best = tree::least_cost(ordered, &AXES, &tree::cut_cost);
@@ -97,7 +102,14 @@ fn cheapest(_: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> Opti
     // the cost only if all centroids differ.
     (yours > best * 1.0001 + 1e-6 && centroids_differ(ordered)).then(|| {
         let describe = format!("cost {yours:.4} (cut before {middle})");
-        (describe, format!("cost {best:.4}"), vec![])
+        let is_best = |[left, right]: &[Vec<PrimitiveRef>; 2]| {
+            left.len() == middle && tree::cut_cost(left, right) <= best * 1.0001
+        };
+        let mistakes = vec![(
+            AXES.iter().any(|&axis| tree::cuts(ordered, axis).iter().any(is_best)),
+            "sorted along another axis than that of the best cut: sort again along that axis",
+        )];
+        (describe, format!("cost {best:.4}"), mistakes)
     })
 }
 
@@ -157,11 +169,13 @@ fn wrong_costs(ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static s
 /// Wrong rules, each with whether it gives this cut, or a leaf if `middle` is 0.
 fn formulas(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static str)> {
     let best = tree::least_cost(ordered, &AXES, &tree::cut_cost);
-    let area = tree::half_area(&tree::around(ordered.iter().map(|p| &p.bounds)));
+    let bounds = tree::around(ordered.iter().map(|p| &p.bounds));
+    let is_leaf_along = |axes: &[usize]| {
+        tree::leaf_is_cheaper(ordered, tree::least_cost(ordered, axes, &tree::cut_cost)) != Some(false)
+    };
+    let area = tree::half_area(&bounds);
     let as_leaf = f64::from(INTERSECTION_COST) * area * ordered.len() as f64;
     let mut mistakes = match middle {
-        // Equal centroids may be sorted in any order.
-        _ if !centroids_differ(ordered) => return Vec::new(),
         0 => vec![
             (
                 2.0 * f64::from(TRAVERSAL_COST) * area + f64::from(INTERSECTION_COST) * best >= as_leaf,
@@ -175,15 +189,25 @@ fn formulas(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> 
                 is_leaf_without(ordered, [1, 2]),
                 "not every cut is tried: the one before the last primitive is left out",
             ),
+            (is_leaf_along(&[0]), ONLY_ONE),
+            (is_leaf_along(&[1]), ONLY_Y),
+            (is_leaf_along(&[2]), ONLY_Z),
+            (is_leaf_along(&tree::longest_axes(&bounds)), ONLY_LONGEST),
         ],
         _ => cut_mistakes(given, ordered, middle),
     };
-    if middle > 0 {
-        let without = f64::from(INTERSECTION_COST) * best <= as_leaf * 1.0001;
-        mistakes.push((without, "TRAVERSAL_COST is left out, so a cut always looks cheaper"));
-    }
+    let without = match middle {
+        0 => f64::from(INTERSECTION_COST) * best >= as_leaf * 0.9999,
+        _ => {
+            tree::cut_cost(&ordered[..middle], &ordered[middle..]) <= best * 1.0001
+                && f64::from(INTERSECTION_COST) * best <= as_leaf * 1.0001
+        }
+    };
+    mistakes.push((without, "TRAVERSAL_COST is left out, so a cut always looks cheaper"));
     mistakes.extend(wrong_costs(ordered, middle));
-    mistakes
+    // Equal centroids may be sorted in any order, so each rule may give such a cut.
+    let open = middle > 0 && !centroids_differ(ordered) && tree::leaf_is_cheaper(ordered, best) != Some(true);
+    mistakes.into_iter().map(|(gives, text)| (gives || open, text)).collect()
 }
 
 /// The mistakes that make this cut the best one.
@@ -204,27 +228,35 @@ fn cut_mistakes(
     };
     let is_best_along =
         |axis: usize| divided(ordered, middle, axis) && is_least_of(&[axis], right_cost, [1, 1]);
-    let best = tree::least_cost(ordered, &AXES, right_cost);
-    let is_best = |[left, right]: &[Vec<PrimitiveRef>; 2]| {
-        left.len() == middle && tree::cut_cost(left, right) <= best * 1.0001
-    };
     let as_given = given.iter().map(|p| p.id).eq(ordered.iter().map(|p| p.id));
-    let only_one = "only one axis is tried: the best cut is along another";
     let all = bounds(ordered);
     let longest = tree::longest_axes(&all);
-    vec![
+    // The least cost of the cuts between so many equal bins of centroids, along all axes.
+    let binned = |n: f32| {
+        let cost = |axis: usize, cut: f32| {
+            let at = |p: &PrimitiveRef| p.centroid[axis];
+            let (low, high) =
+                ordered.iter().fold((f32::MAX, f32::MIN), |(l, h), p| (l.min(at(p)), h.max(at(p))));
+            let is_left = |p: &PrimitiveRef| (n * (at(p) - low) / (high - low)).min(n - 1.0).floor() < cut;
+            let (left, right): (Vec<_>, Vec<_>) = ordered.iter().copied().partition(is_left);
+            if left.is_empty() || right.is_empty() { f64::INFINITY } else { tree::cut_cost(&left, &right) }
+        };
+        let cuts = AXES.iter().flat_map(|&axis| (1..n as u32).map(move |cut| (axis, cut as f32)));
+        cuts.map(|(axis, cut)| cost(axis, cut)).fold(f64::INFINITY, f64::min)
+    };
+    let yours = tree::cut_cost(&ordered[..middle], &ordered[middle..]);
+    let of_bins = [8.0, 12.0, 16.0, 32.0].map(|n| {
+        (
+            (yours / binned(n) - 1.0).abs() < 1e-4,
+            "you try the cuts between some equal bins only: try each cut",
+        )
+    });
+    let others = [
         (as_given, "the primitives are not sorted: you cut them as they come"),
-        (is_best_along(0), only_one),
-        (is_best_along(1), "only one axis is tried, y: the best cut is along another"),
-        (is_best_along(2), "only one axis is tried, z: the best cut is along another"),
-        (
-            longest.into_iter().any(is_best_along),
-            "only one axis is tried, the longest: the best cut is along another",
-        ),
-        (
-            AXES.iter().any(|&axis| tree::cuts(ordered, axis).iter().any(is_best)),
-            "sorted along another axis than that of the best cut: sort again along that axis",
-        ),
+        (is_best_along(0), ONLY_ONE),
+        (is_best_along(1), ONLY_Y),
+        (is_best_along(2), ONLY_Z),
+        (longest.into_iter().any(is_best_along), ONLY_LONGEST),
         (
             is_least_of(&AXES, right_cost, [2, 1]),
             "not every cut is tried: the one behind the first primitive is left out",
@@ -233,7 +265,8 @@ fn cut_mistakes(
             is_least_of(&AXES, right_cost, [1, 2]),
             "not every cut is tried: the one before the last primitive is left out",
         ),
-    ]
+    ];
+    others.into_iter().chain(of_bins).collect()
 }
 
 fn centroids_differ(primitives: &[PrimitiveRef]) -> bool {

@@ -83,11 +83,6 @@ fn judge_verdicts(trial: &Trial<'_>, cases: &[(Ray, Aabb, bool)]) -> Vec<CheckRe
     judge_cases(trial, &cases.iter().map(case).collect::<Vec<_>>(), "exact arithmetic")
 }
 
-/// The direction with 1/8 in place of 0: rays along an axis and within a face are those of other checks.
-fn slanted(direction: Vec3) -> Vec3 {
-    Vec3::select(direction.cmpeq(Vec3::ZERO), Vec3::splat(0.125), direction)
-}
-
 pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
     let scales = (nasty::any_scale(), nasty::scale(-40..=40));
     let inputs = (point(8), direction(), aabb(), rough_point(1.0), scales).prop_map(
@@ -95,7 +90,7 @@ pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResul
             // Aim half of the rays at the box.
             let target = 0.5 * (bounds.min + bounds.max) + 0.5 * at * (bounds.max - bounds.min);
             let direction = if at.x > 0.0 && target != origin { target - origin } else { direction };
-            let ray = Ray::new(size * origin, length * slanted(direction));
+            let ray = Ray::new(size * origin, length * nasty::slanted(direction));
             SlabQuery { ray, bounds: Aabb::new(size * bounds.min, size * bounds.max) }
         },
     );
@@ -118,7 +113,7 @@ pub(super) fn slab_is_entered_at_once_from_inside(trial: &Trial<'_>) -> CheckRes
         (aabb(), 0..=8i32, 0..=8i32, 0..=8i32, direction()).prop_map(|(bounds, x, y, z, direction)| {
             let at = vec3(x as f32, y as f32, z as f32) / 8.0;
             let origin = bounds.min + at * (bounds.max - bounds.min);
-            SlabQuery { ray: Ray::new(origin, slanted(direction)), bounds }
+            SlabQuery { ray: Ray::new(origin, nasty::slanted(direction)), bounds }
         });
     trial.forall_and(&[middle], 2000, inputs, |queries| judge_slabs(trial, queries))
 }
@@ -235,7 +230,7 @@ pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> CheckRe
     let inputs = (aabb(), point(8), 0..8usize).prop_map(|(bounds, origin, corner)| {
         let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
         let corner = vec3(pick(0), pick(1), pick(2));
-        let direction = slanted(corner - origin);
+        let direction = nasty::slanted(corner - origin);
         SlabQuery { ray: Ray::new(corner - direction, direction), bounds }
     });
     trial.forall(3000, inputs, |queries| {

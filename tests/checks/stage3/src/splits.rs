@@ -33,7 +33,13 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
             if equal && axes.iter().any(|&axis| divided(ordered, middle, axis)) {
                 return None;
             }
-            let mistakes = vec![(!equal, "the halves must hold equally many primitives")];
+            let mistakes = vec![
+                (!equal, "the halves must hold equally many primitives"),
+                (
+                    (0..3).any(|axis| divided(ordered, middle, axis)),
+                    "you sort along an axis that is not the longest axis",
+                ),
+            ];
             let yours = match equal {
                 true => "the centroids of the halves overlap".into(),
                 false => format!("{middle} and {}", n - middle),
@@ -57,7 +63,6 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
                     (0..3).any(|axis| shortest(axis) && along(axis)),
                     "you sort along the shortest axis, not along the longest axis",
                 ),
-                ((0..3).any(along), "you sort along an axis that is not the longest axis"),
             ]
         };
         judge_splits(trial, Split::ObjectMedian, sets, law, formulas)
@@ -100,7 +105,9 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
             }
             let axes = tree::longest_axes(&all);
             let expected = format!("centroids below and above the middle of axis {axes:?}");
-            Some(("a cut elsewhere".into(), expected, vec![]))
+            let any = (0..3).any(|axis| fits(ordered, middle, &all, axis));
+            let mistakes = vec![(any, "you cut an axis that is not the longest axis")];
+            Some(("a cut elsewhere".into(), expected, mistakes))
         };
         let formulas = |_: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize| {
             let all = tree::around(ordered.iter().map(|p| &p.bounds));
@@ -123,7 +130,6 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
                 (fits(0), "you always cut along x, not along the longest axis"),
                 (fits(1), "you always cut along y, not along the longest axis"),
                 (fits(2), "you always cut along z, not along the longest axis"),
-                ((0..3).any(fits), "you cut an axis that is not the longest axis"),
             ]
         };
         judge_splits(trial, Split::SpatialMedian, sets, law, formulas)

@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{Judged, compare, unless};
 use checks::nasty;
 use checks::paste::call;
 use glam::{Vec3, vec3};
@@ -32,31 +32,25 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> CheckResult {
     // The tolerance covers three products and two sums of numbers up to 1.
     let near = |yours: f32, value: f64| (f64::from(yours) - value).abs() < 1e-6;
     let judge = |query: &TermQuery, yours: f32| {
-        let expected = cos_theta(query).max(0.0);
-        if near(yours, expected) {
-            return Ok(());
-        }
-        Err(Broken::new(paste_term("diffuse_term", query), yours, expected as f32, "closed form"))
-    };
-    let formulas = |query: &TermQuery, yours: &f32| {
         let cosine = cos_theta(query);
-        vec![
+        let expected = cosine.max(0.0);
+        let broken = || Broken::new(paste_term("diffuse_term", query), yours, expected as f32, "closed form");
+        unless(near(yours, expected), broken).formulas([
             (
-                near(*yours, cosine),
+                near(yours, cosine),
                 "you return a negative cosine for a light behind the surface: return at least 0",
             ),
-            (near(*yours, cosine.abs()), "you return the absolute value: a light behind the surface gives 0"),
-            (*yours == 1.0 || near(*yours, 0.0) && cosine <= 0.0, "you return 1: the cosine is missing"),
+            (near(yours, cosine.abs()), "you return the absolute value: a light behind the surface gives 0"),
+            (yours == 1.0 || near(yours, 0.0) && cosine <= 0.0, "you return 1: the cosine is missing"),
             (
-                near(*yours, (-cosine).max(0.0)),
+                near(yours, (-cosine).max(0.0)),
                 "you return 0 for a light in front of the surface, and a cosine for one behind: is a direction \
                  negated?",
             ),
-            (*yours == 0.0, "you return 0 for a light in front of the surface"),
-        ]
+            (yours == 0.0, "you return 0 for a light in front of the surface"),
+        ])
     };
-    let judge =
-        |queries: &[TermQuery]| compare_formulas(queries, trial.kit.diffuse_term(queries), judge, formulas);
+    let judge = |queries: &[TermQuery]| compare(queries, trial.kit.diffuse_term(queries), judge);
     // Begin with a light in front: behind the surface a wrong sign and an absolute value give the same answer.
     let (to_light, to_viewer) = (vec3(0.6, 0.8, 0.0), Vec3::Y);
     let chosen = [TermQuery { normal: Vec3::Y, to_light, to_viewer, exponent: 1.0 }];
@@ -99,8 +93,7 @@ pub(super) fn specular_term_is_the_mirrored_cosine(trial: &Trial<'_>) -> CheckRe
         TermQuery { to_viewer: side(query.to_viewer, cos_phi(&query)), ..query }
     });
     trial.forall_and(&[DRAWN], 2000, highlights, |queries| {
-        let formulas = |query: &TermQuery, yours: &f32| formulas(query, *yours);
-        compare_formulas(queries, trial.kit.specular_term(queries), judge_highlight, formulas)
+        compare(queries, trial.kit.specular_term(queries), judge_highlight)
     })
 }
 
@@ -111,25 +104,18 @@ fn is_on_edge(query: &TermQuery) -> bool {
 
 const BLINN: &str = "you use the half vector (Blinn-Phong): the lecture reflects the light (Phong)";
 
-fn judge_highlight(query: &TermQuery, yours: f32) -> CheckResult {
+fn judge_highlight(query: &TermQuery, yours: f32) -> Judged {
     let exponent = f64::from(query.exponent);
     let (cos_phi, expected) = (cos_phi(query), specular(query));
     // The cosine is off by a few roundings. The power multiplies this by n cosⁿ⁻¹ φ, which exceeds n for n < 1.
     let steep = exponent * cos_phi.powf(exponent - 1.0).max(1.0);
-    if is_on_edge(query) || (f64::from(yours) - expected).abs() < 1e-6 * (1.0 + steep) {
-        return Ok(());
-    }
-    Err(Broken::new(paste_term("specular_term", query), yours, expected as f32, "closed form"))
-}
-
-/// Wrong formulas of a highlight, each with whether it gives this answer.
-fn formulas(query: &TermQuery, yours: f32) -> Vec<(bool, &'static str)> {
+    let right = is_on_edge(query) || (f64::from(yours) - expected).abs() < 1e-6 * (1.0 + steep);
     let [n, l, v] = [query.normal, query.to_light, query.to_viewer].map(Vec3::as_dvec3);
-    let (exponent, cos_phi, expected) = (f64::from(query.exponent), cos_phi(query), specular(query));
     let near = |value: f64| (f64::from(yours) - value).abs() < 1e-5 * (1.0 + exponent) || is_on_edge(query);
     let power = |cosine: f64| cosine.max(0.0).powf(exponent);
     let half = (l + v).normalize().dot(n);
-    vec![
+    let broken = || Broken::new(paste_term("specular_term", query), yours, expected as f32, "closed form");
+    unless(right, broken).formulas([
         (near(power(half)), BLINN),
         (near(half.powf(exponent)) || !(half >= 1e-2), BLINN),
         (near(power(n.dot(l))), "you use θ: φ is the angle between the reflected light and the viewer"),
@@ -140,7 +126,7 @@ fn formulas(query: &TermQuery, yours: f32) -> Vec<(bool, &'static str)> {
             near(power(-cos_phi)),
             "you return 0 where there is a highlight: the reflected light is 2 (n·l) n - l",
         ),
-    ]
+    ])
 }
 
 pub(super) fn light_from_behind_adds_nothing(trial: &Trial<'_>) -> CheckResult {

@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{Judged, compare, compare_formulas, unless};
 use checks::nasty;
 use checks::paste::call;
 use glam::{DVec3, Vec3, vec3};
@@ -25,38 +25,26 @@ fn off_reflection(direction: Vec3, normal: Vec3, yours: Vec3) -> f64 {
 pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> CheckResult {
     // Begin with a slanted ray: along the normal or the surface, several mistakes give the same answer.
     trial.forall_and(&[(vec3(0.6, -0.8, 0.0), Vec3::Y)], 2000, arrival(), |queries| {
-        compare_formulas(queries, trial.kit.reflect(queries), judge_reflection, reflections)
+        compare(queries, trial.kit.reflect(queries), judge_reflection)
     })
 }
 
 const ADDED: &str = "you add 2 n (d·n): subtract it, d - 2 n (d·n)";
 const SUBTRACTED_ONCE: &str = "you subtract n (d·n) once: subtract it twice";
 
-/// The reflected direction in double precision.
-fn reflected((direction, normal): &(Vec3, Vec3)) -> DVec3 {
-    let (d, n) = (direction.as_dvec3(), normal.as_dvec3());
-    (d - 2.0 * d.dot(n) * n).normalize()
-}
-
-fn judge_reflection(query: &(Vec3, Vec3), yours: Vec3) -> CheckResult {
-    let expected = reflected(query);
-    // The tolerance covers a few roundings of numbers up to 2.
-    if (yours.as_dvec3() - expected).length() < 1e-6 {
-        return Ok(());
-    }
-    Err(Broken::new(call("reflect", &[&query.0, &query.1]), yours, expected.as_vec3(), "closed form"))
-}
-
-/// Wrong formulas, each with whether it gives this direction.
-fn reflections(query: &(Vec3, Vec3), yours: &Vec3) -> Vec<(bool, &'static str)> {
+fn judge_reflection(query: &(Vec3, Vec3), yours: Vec3) -> Judged {
     let (d, n) = (query.0.as_dvec3(), query.1.as_dvec3());
+    let expected = (d - 2.0 * d.dot(n) * n).normalize();
     let near = |v: DVec3, limit: f64| (yours.as_dvec3() - v).length() < limit;
     let is = |v: DVec3| near(v, 1e-5);
     let (along, added) = (d - d.dot(n) * n, d + 2.0 * d.dot(n) * n);
-    vec![
+    let input = || call("reflect", &[&query.0, &query.1]);
+    let broken = || Broken::new(input(), yours, expected.as_vec3(), "closed form");
+    // The tolerance covers a few roundings of numbers up to 2.
+    unless(near(expected, 1e-6), broken).formulas([
         (is(d), "you return the direction unchanged"),
         (is(-d), "you reverse the whole direction: reverse only its part along n"),
-        (is(-reflected(query)), "your result is negated: it points into the surface"),
+        (is(-expected), "your result is negated: it points into the surface"),
         (is(added), ADDED),
         (is(added.normalize_or_zero()), ADDED),
         (is(along), SUBTRACTED_ONCE),
@@ -65,7 +53,7 @@ fn reflections(query: &(Vec3, Vec3), yours: &Vec3) -> Vec<(bool, &'static str)> 
             near(along.normalize_or_zero(), 1e-5 + 1e-6 / along.length().max(1e-7)) || along.length() < 1e-5,
             SUBTRACTED_ONCE,
         ),
-    ]
+    ])
 }
 
 pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> CheckResult {

@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::compare_formulas;
+use checks::judge::{compare, unless};
 use checks::paste::call;
 use proptest::prelude::*;
 use raykata::kit::FresnelQuery;
@@ -74,38 +74,34 @@ fn judge(
         let expected = reference(query);
         let critical = is_critical(query);
         let right = (f64::from(yours) - expected).abs() <= tolerance(query);
-        if right || (critical && (0.0..=1.0).contains(&yours)) {
-            return Ok(());
-        }
         let zero_by_zero = critical && query.n1 == query.n2 && yours.is_nan();
         let beyond = behind(query).0.is_none();
-        let input = call(name, &[&query.cos_theta, &query.n1, &query.n2]);
-        Err(Broken::new(input, yours, expected as f32, "double precision").explained_by([
-            (zero_by_zero, "you divide 0 by 0 for equal indices at cos θ = 0: return a value in 0..=1"),
-            (beyond && yours.is_nan(), "you return NaN: beyond the critical angle the reflectance is 1"),
-            (
-                zero_by_zero || (beyond && yours.is_nan()),
-                "you return NaN: mind 0 / 0 at equal indices, and the root of a negative number",
-            ),
-            (beyond, "beyond the critical angle all light is reflected: the reflectance is 1"),
-        ]))
-    };
-    compare_formulas(queries, answers, judge, |query, yours| {
+        let input = || call(name, &[&query.cos_theta, &query.n1, &query.n2]);
+        let broken = || {
+            Broken::new(input(), yours, expected as f32, "double precision").explained_by([
+                (zero_by_zero, "you divide 0 by 0 for equal indices at cos θ = 0: return a value in 0..=1"),
+                (beyond && yours.is_nan(), "you return NaN: beyond the critical angle the reflectance is 1"),
+                (
+                    zero_by_zero || (beyond && yours.is_nan()),
+                    "you return NaN: mind 0 / 0 at equal indices, and the root of a negative number",
+                ),
+                (beyond, "beyond the critical angle all light is reflected: the reflectance is 1"),
+            ])
+        };
         let swapped = reference(&FresnelQuery { n1: query.n2, n2: query.n1, ..*query });
         let known = [
             (swapped, "you exchange n1 and n2"),
-            (1.0 - reference(query), "you return the transmitted fraction: return the reflected one"),
+            (1.0 - expected, "you return the transmitted fraction: return the reflected one"),
             (
-                if behind(query).0.is_none() { 1.0 } else { 1.0 - reference(query) },
+                if beyond { 1.0 } else { 1.0 - expected },
                 "you return the transmitted fraction: return the reflected one",
             ),
         ];
-        known
-            .into_iter()
-            .chain(mistakes(query))
-            .map(|(value, text)| (near(query, *yours, value), text))
-            .collect()
-    })
+        let known = known.into_iter().chain(mistakes(query));
+        unless(right || (critical && (0.0..=1.0).contains(&yours)), broken)
+            .formulas(known.map(|(value, text)| (near(query, yours, value), text)))
+    };
+    compare(queries, answers, judge)
 }
 
 /// What Schlick's formula gives with one mistake.

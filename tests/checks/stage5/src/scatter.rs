@@ -163,14 +163,18 @@ fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Ju
     let right = same(expected, 2e-4)
         || same(mine, 2e-4)
         || (lost && (same(mine_lost, 2e-4) || same([expected[0], DVec3::ZERO], 2e-4)));
-    // Where a ray is missing because the student's own refract returns none, each formula may give a right answer.
-    let is = |other: [DVec3; 2]| same(other, 2e-4) || (lost && right);
+    // An answer that is right by the student's own functions only says nothing about a formula.
+    let is = |other: [DVec3; 2]| same(other, 2e-4) || (right && !same(expected, 2e-4));
     let (reflected, through) = (expected[0], expected[1]);
+    // Schlick's approximation always, the exact formula always, and each in place of the other.
     let other_fresnel = match query.material.fresnel {
-        Fresnel::None => 0.0,
-        Fresnel::Schlick => exact(&fresnel_query(query)),
-        Fresnel::Exact => schlick(&fresnel_query(query)),
+        Fresnel::None => [0.0; 3],
+        Fresnel::Schlick => [share, exact(&fresnel_query(query)), exact(&fresnel_query(query))],
+        Fresnel::Exact => [schlick(&fresnel_query(query)), share, schlick(&fresnel_query(query))],
     };
+    let of_fresnel = other_fresnel.map(|share| {
+        (is(weights(share)), "you use the other Fresnel formula: Schlick for Schlick, Exact for Exact")
+    });
     let turned =
         FresnelQuery { n1: fresnel_query(query).n2, n2: fresnel_query(query).n1, ..fresnel_query(query) };
     let exchanged = match query.material.fresnel {
@@ -186,49 +190,46 @@ fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Ju
         let expected = format!("Reflection of weight {first}, Transmission of weight {second}");
         Broken::with_texts(paste(query), describe(&yours), expected, "the formula in double precision")
     };
-    unless(right, broken).formulas([
-            (
-                is([mirror + share * transmission, (1.0 - share) * transmission]),
-                "you leave out the weight of the incoming ray: multiply by `weight`",
-            ),
-            (is([weight * reflected, weight * through]), WEIGHT_TWICE),
-            (is([weight * reflected, through]), WEIGHT_TWICE),
-            (is([reflected, weight * through]), WEIGHT_TWICE),
-            (
-                is([if mirror == DVec3::ZERO { mirror } else { reflected }, through]),
-                "clear glass reflects by Fresnel: test the reflected weight, not material.mirror",
-            ),
-            (
-                is([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror]),
-                "you exchange material.mirror and material.transmission",
-            ),
-            (is([weight * mirror, weight * transmission]), "you leave out material.fresnel"),
-            (
-                is([reflected, weight * transmission]),
-                "you add F transmission to the reflected ray, but do not take it off the refracted one: (1 - F) transmission",
-            ),
-            (
-                is([weight * mirror, through]),
-                "you take F off the refracted ray, but do not add F transmission to the reflected one",
-            ),
-            (
-                is([weight * share * mirror, through]),
-                "you multiply the mirror by F: the reflected ray has mirror + F transmission",
-            ),
-            (
-                is([weight * (mirror + (1.0 - share) * transmission), weight * share * transmission]),
-                "you exchange F and 1 - F",
-            ),
-            (
-                is(weights(other_fresnel)),
-                "you use the other Fresnel formula: Schlick for Schlick, Exact for Exact",
-            ),
-            (is(weights(exchanged)), "you exchange n1 and n2 in the Fresnel reflectance"),
-            (
-                without(&|weight| weight.min_element() <= 0.0),
-                "you leave out a ray with one channel of 0: test the largest channel",
-            ),
-        ])
+    let rest = [
+        (
+            is([mirror + share * transmission, (1.0 - share) * transmission]),
+            "you leave out the weight of the incoming ray: multiply by `weight`",
+        ),
+        (is([weight * reflected, weight * through]), WEIGHT_TWICE),
+        (is([weight * reflected, through]), WEIGHT_TWICE),
+        (is([reflected, weight * through]), WEIGHT_TWICE),
+        (
+            is([if mirror == DVec3::ZERO { mirror } else { reflected }, through]),
+            "clear glass reflects by Fresnel: test the reflected weight, not material.mirror",
+        ),
+        (
+            is([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror]),
+            "you exchange material.mirror and material.transmission",
+        ),
+        (is([weight * mirror, weight * transmission]), "you leave out material.fresnel"),
+        (
+            is([reflected, weight * transmission]),
+            "you add F transmission to the reflected ray, but do not take it off the refracted one: (1 - F) transmission",
+        ),
+        (
+            is([weight * mirror, through]),
+            "you take F off the refracted ray, but do not add F transmission to the reflected one",
+        ),
+        (
+            is([weight * share * mirror, through]),
+            "you multiply the mirror by F: the reflected ray has mirror + F transmission",
+        ),
+        (
+            is([weight * (mirror + (1.0 - share) * transmission), weight * share * transmission]),
+            "you exchange F and 1 - F",
+        ),
+        (is(weights(exchanged)), "you exchange n1 and n2 in the Fresnel reflectance"),
+        (
+            [0.0, 1e-6].iter().any(|limit| without(&|weight| weight.min_element() <= *limit)),
+            "you leave out a ray with one channel of 0: test the largest channel",
+        ),
+    ];
+    unless(right, broken).formulas(rest.into_iter().chain(of_fresnel))
 }
 
 /// On the way out of glass the indices change places, and both rays have the directions of `reflect` and `refract`.
@@ -257,6 +258,8 @@ pub(super) fn scatter_swaps_indices_when_leaving_glass(trial: &Trial<'_>) -> Che
     trial.forall_and(&chosen, 300, inputs, |queries| judge_with_own(trial, queries, judge_directions))
 }
 
+const TURNED: &str = "you turn the normal: it is already on the side that the ray comes from";
+
 fn judge_directions(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Judged {
     let forward = refract_query(query);
     let right = |query: &RefractQuery| snell(query).0.map(|v| v.as_vec3());
@@ -284,7 +287,8 @@ fn judge_directions(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) ->
                 "leaving: n1 = index_of_refraction (glass), n2 = 1 (air); you exchange them",
             ),
             (is(right(&backward)), "you exchange n1 and n2, on the way in and on the way out"),
-            (is(right(&turned)), "you turn the normal: it is already on the side that the ray comes from"),
+            (is(right(&turned)), TURNED),
+            (if query.entering { refracts } else { is(right(&turned)) }, TURNED),
             (is(Some(query.direction)), "you do not refract the ray: its direction is that of refract"),
         ])?
     };

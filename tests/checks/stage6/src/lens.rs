@@ -214,7 +214,11 @@ fn judge_focus(query: &LensQuery, yours: Ray) -> Judged {
     let distance = f64::from(query.lens.focal_distance);
     let [direction, towards] = [query.pinhole.direction, query.camera.towards].map(Vec3::as_dvec3);
     let start = yours.origin.as_dvec3() - query.camera.position.as_dvec3();
-    let aims = |way: DVec3| (yours.direction.as_dvec3().normalize() - way.normalize()).length() < 1e-5;
+    // A lens without a width has a case of its own.
+    let aims = |way: DVec3| {
+        offset(query) == DVec3::ZERO
+            || (yours.direction.as_dvec3().normalize() - way.normalize()).length() < 1e-5
+    };
     let broken = || {
         Broken::with_texts(
             paste(query),
@@ -270,6 +274,7 @@ fn judge_start(query: &LensQuery, yours: Ray) -> Judged {
     let expected = position + offset(query);
     // The tolerance covers a few roundings of coordinates up to 4.
     let near = |v: DVec3| (yours.origin.as_dvec3() - v).length() < 2e-6;
+    let is = |v: DVec3| near(v) || (offset(query) == DVec3::ZERO && near(expected));
     let unit = (yours.direction.length() - 1.0).abs() < 1e-5;
     let place = 0.5 * f64::from(query.lens.aperture) * query.on_lens.as_dvec2();
     let (right, up) = (camera.right.as_dvec3(), camera.up.as_dvec3());
@@ -280,27 +285,27 @@ fn judge_start(query: &LensQuery, yours: Ray) -> Judged {
     };
     unless(near(expected) && unit, broken).formulas([
         (
-            near(position + 2.0 * offset(query)),
+            is(position + 2.0 * offset(query)),
             "you use aperture as the radius of the lens: it is the diameter",
         ),
-        (near(position), "you start every ray at the centre of the lens: use on_lens"),
+        (is(position), "you start every ray at the centre of the lens: use on_lens"),
         (
-            near(position + place.x * right),
+            is(position + place.x * right),
             "your lens is a line: it extends along camera.right and along camera.up",
         ),
         (
-            near(position + place.y * up),
+            is(position + place.y * up),
             "your lens is a line: it extends along camera.right and along camera.up",
         ),
         (
-            near(position + place.extend(0.0)),
+            is(position + place.extend(0.0)),
             "you use the world's x and y axes: use camera.right and camera.up",
         ),
         (
-            near(position + place.y * right + place.x * up),
+            is(position + place.y * right + place.x * up),
             "you exchange x and y of on_lens: x is along camera.right",
         ),
-        (near(offset(query)), "you leave out camera.position"),
+        (is(offset(query)), "you leave out camera.position"),
     ])
 }
 

@@ -69,16 +69,8 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckRe
 }
 
 pub(super) fn each_sampler_has_its_places(trial: &Trial<'_>) -> CheckResult {
-    let samplers = prop_oneof![
-        Just(Sampler::Center),
-        Just(Sampler::Random),
-        Just(Sampler::Jittered),
-        Just(Sampler::Gaussian),
-        Just(Sampler::LowDiscrepancy)
-    ];
-    let drawn =
-        [Sampler::Center, Sampler::Random, Sampler::LowDiscrepancy, Sampler::Jittered, Sampler::Gaussian];
-    trial.forall_and(&drawn.map(|sampler| (sampler, DRAWN)), 2000, (samplers, stratum()), |queries| {
+    let samplers = prop::sample::select(ALL.to_vec());
+    trial.forall_and(&ALL.map(|sampler| (sampler, DRAWN)), 2000, (samplers, stratum()), |queries| {
         // Positions are judged by the student's own `jittered` as well, because another check judges that.
         let strata: Vec<Stratum> = queries.iter().map(|(_, stratum)| *stratum).collect();
         let own = trial.kit.jittered(&strata);
@@ -87,6 +79,10 @@ pub(super) fn each_sampler_has_its_places(trial: &Trial<'_>) -> CheckResult {
         proven(queries.iter().zip(own).zip(answers).map(judge))
     })
 }
+
+use Sampler::{Center, Gaussian, Jittered, LowDiscrepancy, Random};
+
+const ALL: [Sampler; 5] = [Center, Random, LowDiscrepancy, Jittered, Gaussian];
 
 fn judge_position((sampler, stratum): &(Sampler, Stratum), own: Vec2, yours: Vec2) -> Judged {
     let (u, radius) = (stratum.u.as_dvec2(), f64::from(FILTER_RADIUS));
@@ -100,31 +96,53 @@ fn judge_position((sampler, stratum): &(Sampler, Stratum), own: Vec2, yours: Vec
     let expected = position(jittered);
     // The tolerance covers a few roundings of numbers up to 3.
     let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 1e-6;
-    let gaussian = *sampler == Sampler::Gaussian;
-    let in_cells = gaussian || *sampler == Sampler::Jittered;
     let right = near(expected) || near(position(own.as_dvec2()));
-    // A mistake of some samplers gives the right answers of the others.
-    let of_gaussian = |place: DVec2| if gaussian { near(place) } else { right };
     let input = || format!("pixel_position(Sampler::{sampler:?}, {})", stratum.paste());
-    unless(right, || Broken::new(input(), yours, expected.as_vec2(), "the definition")).formulas([
-        (near(expected - 0.5), "your position is relative to the centre of the pixel: add 0.5"),
-        (of_gaussian(jittered), "you cover only the pixel: cover FILTER_RADIUS from the centre on all sides"),
-        (of_gaussian(0.5 + radius * (jittered - 0.5)), "half as wide: the square is 2 * FILTER_RADIUS wide"),
-        (
-            of_gaussian(0.5 + radius * jittered),
+    // A mistake of these samplers gives the right answers of the others.
+    let of = |sets: &[&[Sampler]], gives: bool, text: &'static str| {
+        let given = sets.iter().map(|set| (if set.contains(sampler) { gives } else { right }, text));
+        given.collect::<Vec<_>>()
+    };
+    let formulas = [
+        of(
+            &[&[Center], &[Random], &[Jittered], &[Gaussian], &[LowDiscrepancy], &[Center, Gaussian], &ALL],
+            near(expected - 0.5),
+            "your position is relative to the centre of the pixel: add 0.5",
+        ),
+        of(
+            &[&[Gaussian]],
+            near(jittered),
+            "you cover only the pixel: cover FILTER_RADIUS from the centre on all sides",
+        ),
+        of(
+            &[&[Gaussian]],
+            near(0.5 + radius * (jittered - 0.5)),
+            "half as wide: the square is 2 * FILTER_RADIUS wide",
+        ),
+        of(
+            &[&[Gaussian]],
+            near(0.5 + radius * jittered),
             "you cover only the right and lower part: cover FILTER_RADIUS on all sides",
         ),
-        (
-            of_gaussian(0.5 + radius * (2.0 * u - 1.0)),
+        of(
+            &[&[Gaussian]],
+            near(0.5 + radius * (2.0 * u - 1.0)),
             "you scale u to the square of the filter: scale the result of jittered",
         ),
-        (if in_cells { near(u) } else { right }, "you return u: use jittered(stratum)"),
-        (
-            if in_cells { right } else { near(jittered) },
+        of(
+            &[&[Jittered], &[Gaussian], &[Jittered, Gaussian]],
+            near(u),
+            "you return u: use jittered(stratum)",
+        ),
+        of(
+            &[&[Random], &[LowDiscrepancy], &[Random, LowDiscrepancy]],
+            near(jittered),
             "this sampler must return `u` unchanged; your result is jittered",
         ),
-        (near(DVec2::splat(0.5)), "you return the centre of the pixel for every sampler"),
-    ])
+        of(&[&ALL], near(DVec2::splat(0.5)), "you return the centre of the pixel for every sampler"),
+    ];
+    unless(right, || Broken::new(input(), yours, expected.as_vec2(), "the definition"))
+        .formulas(formulas.into_iter().flatten())
 }
 
 /// The filter's weight along one axis, in double precision.

@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::compare_formulas;
+use checks::judge::{Judged, compare, unless};
 use proptest::prelude::*;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::kit::{HitsQuery, MaterialHits, RayCounts};
@@ -226,7 +226,7 @@ pub(super) fn samples_reach_the_error_that_is_asked_for(trial: &Trial<'_>) -> Ch
         (scale * deviation as f32, scale * error as f32)
     });
     trial.forall_and(&chosen, 500, inputs, |queries| {
-        compare_formulas(queries, trial.kit.samples_for_error(queries), judge_samples, sample_mistakes)
+        compare(queries, trial.kit.samples_for_error(queries), judge_samples)
     })
 }
 
@@ -235,39 +235,31 @@ fn is_enough((deviation, error): (f32, f32), n: f64) -> bool {
     f64::from(deviation).powi(2) <= n * f64::from(error).powi(2)
 }
 
-fn judge_samples(query: &(f32, f32), yours: u32) -> CheckResult {
-    let (deviation, error) = *query;
+fn judge_samples(query: &(f32, f32), yours: u32) -> Judged {
+    let &(deviation, error) = query;
     let most = u32::MAX;
     let enough = is_enough(*query, yours.into());
     let fewer = yours > 1 && is_enough(*query, f64::from(yours) - 1.0);
-    if yours >= 1 && (enough || yours == most) && !fewer {
-        return Ok(());
-    }
-    let expected = match () {
-        () if yours == 0 => "1 or more".to_owned(),
-        () if fewer => format!("less: {} samples are enough", yours - 1),
-        () => format!(
-            "more than {yours}: the error is still {:e}",
-            f64::from(deviation) / f64::from(yours).sqrt()
-        ),
+    let broken = || {
+        let expected = match () {
+            () if yours == 0 => "1 or more".to_owned(),
+            () if fewer => format!("less: {} samples are enough", yours - 1),
+            () => format!(
+                "more than {yours}: the error is still {:e}",
+                f64::from(deviation) / f64::from(yours).sqrt()
+            ),
+        };
+        let input = format!("samples_for_error({deviation:?}, {error:?})");
+        Broken::with_texts(input, format!("{yours}"), expected, "deviation / √n <= error")
     };
-    let input = format!("samples_for_error({deviation:?}, {error:?})");
-    Err(Broken::with_texts(input, format!("{yours}"), expected, "deviation / √n <= error"))
-}
-
-const IN_SINGLE: &str =
-    "you compute in single precision, which rounds the quotient or its square: convert to f64 first";
-
-/// Wrong formulas, each with whether it gives this answer.
-fn sample_mistakes((deviation, error): &(f32, f32), yours: &u32) -> Vec<(bool, &'static str)> {
-    let ratio = f64::from(*deviation) / f64::from(*error);
+    let ratio = f64::from(deviation) / f64::from(error);
     let whole = |n: f64| n as u32;
-    let is = |wrong: u32| *yours == wrong || (*yours == 1 && wrong == 0);
+    let is = |wrong: u32| yours == wrong || (yours == 1 && wrong == 0);
     let square = ratio * ratio;
     let single = deviation / error;
     let of_single = f64::from(single) * f64::from(single);
-    vec![
-        (*yours == whole(square.ceil()), "you return 0 if the deviation is 0: one sample is the minimum"),
+    unless(yours >= 1 && (enough || yours == most) && !fewer, broken).formulas([
+        (yours == whole(square.ceil()), "you return 0 if the deviation is 0: one sample is the minimum"),
         (is(whole(square.recip().ceil())), "you divide the error by the deviation: it is deviation / error"),
         (
             is(whole(square.floor() + 1.0)),
@@ -283,12 +275,15 @@ fn sample_mistakes((deviation, error): &(f32, f32), yours: &u32) -> Vec<(bool, &
         (is(((single * single).ceil() as u32).max(1)), IN_SINGLE),
         (is((of_single.ceil() as u32).max(1)), IN_SINGLE),
         (
-            is(if *error == 0.0 { 1 } else { whole(square.ceil()).max(1) }),
+            is(if error == 0.0 { 1 } else { whole(square.ceil()).max(1) }),
             "you return 1 for an error of 0: no number of samples is enough, so return u32::MAX",
         ),
         (
-            is(if *error == 0.0 { u32::MAX } else { whole(square.ceil()).max(1) }),
+            is(if error == 0.0 { u32::MAX } else { whole(square.ceil()).max(1) }),
             "you return u32::MAX for an error of 0 also if the deviation is 0: one sample is enough then",
         ),
-    ]
+    ])
 }
+
+const IN_SINGLE: &str =
+    "you compute in single precision, which rounds the quotient or its square: convert to f64 first";

@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::compare_formulas;
+use checks::judge::{Judged, compare, unless};
 use proptest::prelude::*;
 use raykata::kit::TexelQuery;
 use raykata::material::Wrap;
@@ -40,33 +40,23 @@ pub(super) fn texels_wrap_as_they_should(trial: &Trial<'_>) -> CheckResult {
     // Indices at which each known mistake gives another column.
     let drawn = [(-1, Wrap::Repeat), (5, Wrap::Clamp), (-1, Wrap::Mirror), (5, Wrap::Mirror)]
         .map(|(index, wrap)| TexelQuery { index, size: 4, wrap });
-    trial.forall_and(&drawn, 3000, queries, |queries| {
-        compare_formulas(queries, trial.kit.texel(queries), judge_texel, texel_mistakes)
-    })
+    trial.forall_and(&drawn, 3000, queries, |queries| compare(queries, trial.kit.texel(queries), judge_texel))
 }
 
-fn judge_texel(query: &TexelQuery, yours: u32) -> CheckResult {
-    let expected = row(query.size, query.wrap, REACH)[(query.index + REACH) as usize];
-    if yours == expected {
-        return Ok(());
-    }
-    let input = format!("texel({}, {}, Wrap::{:?})", query.index, query.size, query.wrap);
-    Err(Broken::new(input, yours, expected, "counted step by step"))
-}
-
-/// Wrong formulas, each with whether it gives this answer.
-fn texel_mistakes(query: &TexelQuery, yours: &u32) -> Vec<(bool, &'static str)> {
+fn judge_texel(query: &TexelQuery, yours: u32) -> Judged {
     let TexelQuery { index, size, wrap } = *query;
     let of = |wrap| i64::from(row(size, wrap, REACH)[(index + REACH) as usize]);
     let (expected, size) = (of(wrap), i64::from(size));
-    let is = |wrong: i64| *yours == wrong as u32;
+    let is = |wrong: i64| yours == wrong as u32;
     // A formula that is wrong for one wrap mode only.
     let only = |mode: Wrap, wrong: i64| is(if wrap == mode { wrong } else { expected });
     let period = (2 * size - 2).max(1);
     let once = index.rem_euclid(period);
     let twice = index.rem_euclid(2 * size);
     let remainder = "you are wrong for negative indices: the remainder of a negative number is negative, so use rem_euclid";
-    vec![
+    let input = || format!("texel({index}, {size}, Wrap::{wrap:?})");
+    let broken = || Broken::new(input(), yours, expected, "counted step by step");
+    unless(i64::from(yours) == expected, broken).formulas([
         (
             only(Wrap::Clamp, index.clamp(0, size)),
             "you return an index of size or more: the last one is size - 1",
@@ -113,5 +103,5 @@ fn texel_mistakes(query: &TexelQuery, yours: &u32) -> Vec<(bool, &'static str)> 
             }),
             "you exchange two modes: for Wrap::Repeat you continue the border, as Wrap::Clamp does",
         ),
-    ]
+    ])
 }

@@ -5,7 +5,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
 use checks::generate::{direction, point, sphere};
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{Judged, compare, compare_formulas, unless};
 use checks::nasty;
 use checks::paste::{call, list};
 use glam::{DVec3, Vec3};
@@ -50,28 +50,29 @@ fn judge_covers(trial: &Trial<'_>, queries: &[Vec<Vec3>], allowed: f64) -> Vec<C
     compare(queries, trial.kit.bounding_sphere(queries), judge)
 }
 
-fn judge_cover(points: &Vec<Vec3>, sphere: Sphere, allowed: f64) -> CheckResult {
+fn judge_cover(points: &Vec<Vec3>, sphere: Sphere, allowed: f64) -> Judged {
     let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
     let distances = || points.iter().map(|point| point.as_dvec3().distance(center));
     let most = radius + allowed * reach(points);
-    let Some(outside) = points.iter().zip(distances()).find(|(_, distance)| !(*distance <= most)) else {
-        return Ok(());
-    };
+    let outside = points.iter().zip(distances()).find(|(_, distance)| !(*distance <= most));
     let farthest = distances().fold(0.0, f64::max);
     // Rounding errors of the usual formulas: a few of the coordinates, and a few of the radius.
     let near = |right: f64| (radius - right).abs() <= 16.0 * U * (reach(points) + right);
     let min = points.iter().copied().fold(Vec3::INFINITY, Vec3::min).as_dvec3();
     let max = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max).as_dvec3();
     let mean = distances().sum::<f64>() / points.len() as f64;
-    let ends = [points[0], points[points.len() - 1]].map(|point| point.as_dvec3());
-    Err(Broken::with_texts(
-        format!("bounding_sphere(&{})", list(points)),
-        format!("radius {radius:?} around {}, and {} lies outside", sphere.center, outside.0),
-        "a sphere that contains all points",
-        "double precision",
-    )
-    .explained_by([
-        (near(farthest), "your radius is too small by a rounding error: compute it in double and round up"),
+    let ends = [points.first(), points.last()].map(|point| point.map_or(center, |point| point.as_dvec3()));
+    let broken = || {
+        let input = format!("bounding_sphere(&{})", list(points));
+        let outside = outside.map_or(Vec3::NAN, |(point, _)| *point);
+        let yours = format!("radius {radius:?} around {}, and {outside} lies outside", sphere.center);
+        let rounded = "your radius is too small by a rounding error: compute it in double and round up";
+        Broken::with_texts(input, yours, "a sphere that contains all points", "double precision")
+            .explained_by([(near(farthest), rounded)])
+    };
+    // One point needs no radius.
+    let open = points.len() < 2 && outside.is_none();
+    let formulas = [
         (
             near(0.5 * (max - min).max_element()),
             "your radius is half the longest side of the box: its corners lie outside",
@@ -93,7 +94,8 @@ fn judge_cover(points: &Vec<Vec3>, sphere: Sphere, allowed: f64) -> CheckResult 
         (near(distances().next().unwrap_or(0.0)), "your radius is the distance of the first point"),
         (near(0.5 * farthest), "your radius is half the largest distance from the centre"),
         (near(farthest * farthest), "your radius is the square of the largest distance"),
-    ]))
+    ];
+    unless(outside.is_none(), broken).formulas(formulas.map(|(gives, text)| (gives || open, text)))
 }
 
 pub(super) fn sphere_is_small(trial: &Trial<'_>) -> CheckResult {

@@ -3,7 +3,7 @@
 use super::graph::{ALL, NOTHING, Row, SKIP, SORT, VOLUMES, describe, random_query};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, proven, unless};
+use checks::judge::compare;
 use checks::tree::closest_of;
 use oracle::splitmix::Random;
 use raykata::bvh::PrimitiveHit;
@@ -164,15 +164,15 @@ pub(super) fn child_cache_goes_first(trial: &Trial<'_>) -> CheckResult {
     let judge = |(case, query): (&Case<'_>, &CachedGraphQuery), yours: CachedGraphAnswer| {
         let (.., expected, mistakes) = case;
         let asked = yours.found.asked;
-        let broken = || {
-            let (yours, right) = (format!("tested the primitives {asked:?}"), format!("{expected:?}"));
-            Broken::with_texts(describe_cached(query), yours, right, "the definition")
-        };
-        let given = mistakes.iter().map(|(wrong, text)| (asked == *wrong, *text));
-        unless(asked == *expected, broken).formulas(given)
+        if asked == *expected {
+            return Ok(());
+        }
+        let (yours, right) = (format!("tested the primitives {asked:?}"), format!("{expected:?}"));
+        Err(Broken::with_texts(describe_cached(query), yours, right, "the definition")
+            .explained_by(mistakes.iter().map(|(wrong, text)| (asked == *wrong, *text))))
     };
     let pairs = cases.iter().zip(&queries).zip(answers);
-    all_hold(proven(pairs.map(|(pair, answer)| judge(pair, answer))))
+    all_hold(pairs.map(|(pair, answer)| judge(pair, answer)).collect())
 }
 
 pub(super) fn child_cache_stores_the_way_to_the_hit(trial: &Trial<'_>) -> CheckResult {

@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, unless};
+use checks::judge::compare;
 use checks::paste::Paste;
 use checks::tree::{closest_of, move_apart, tie};
 use glam::Vec3;
@@ -311,12 +311,16 @@ fn judge_orders(trial: &Trial<'_>, cases: &[Case<'_>]) -> CheckResult {
     let queries: Vec<GraphQuery> = cases.iter().map(|(query, ..)| query.clone()).collect();
     let outcomes =
         compare(cases, trial.kit.closest_hit_in_graph(&queries), |(query, expected, mistakes), yours| {
-            let broken = || {
-                let tested = format!("tested the primitives {:?}", yours.asked);
-                Broken::with_texts(describe(query), tested, format!("{expected:?}"), "the definition")
-            };
-            let given = mistakes.iter().map(|(wrong, text)| (yours.asked == *wrong, *text));
-            unless(yours.asked == *expected, broken).formulas(given)
+            if yours.asked == *expected {
+                return Ok(());
+            }
+            Err(Broken::with_texts(
+                describe(query),
+                format!("tested the primitives {:?}", yours.asked),
+                format!("{expected:?}"),
+                "the definition",
+            )
+            .explained_by(mistakes.iter().map(|(wrong, text)| (yours.asked == *wrong, *text))))
         });
     all_hold(outcomes)
 }

@@ -82,7 +82,7 @@ fn rays<S: Solid>(ranges: &'static [(f32, f32)]) -> impl Strategy<Value = SolidQ
             1 if !S::FLAT => (solid.inside(at), direction),
             _ => (origin, solid.inside(at) - origin),
         };
-        let direction = if direction == Vec3::ZERO { Vec3::X } else { direction };
+        let direction = nasty::slanted(if direction == Vec3::ZERO { Vec3::X } else { direction });
         SolidQuery { ray: Ray::new(origin, direction).with_range(t_min, t_max), solid }
     })
 }

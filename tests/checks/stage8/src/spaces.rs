@@ -251,7 +251,11 @@ fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<CheckResult>
             ])
         };
         unless((yours.as_dvec3() - right).length() <= near, broken).formulas([
-            (like(exact.inverse() * own), "you transform the normal like a point, by to_world"),
+            (
+                like(exact.inverse() * own),
+                "you transform the normal like a point, by to_world: it is then not perpendicular to the \
+                 surface",
+            ),
             (like(exact * own), "you multiply by to_object without the transpose"),
             (
                 like(exact.inverse().transpose() * own),

@@ -4,7 +4,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::double::U;
 use checks::generate::point;
-use checks::judge::{compare, compare_formulas, proven, unless};
+use checks::judge::{compare, proven, unless};
 use checks::nasty;
 use checks::paste::{Paste, list};
 use glam::{DVec3, Vec3, vec2};
@@ -155,24 +155,19 @@ pub(super) fn bspline_basis_follows_the_recursion(trial: &Trial<'_>) -> CheckRes
         let value = |query: &BasisQuery, rule: Rule| {
             rule.basis(&query.knots, query.degree, query.index, f64::from(query.u))
         };
-        let judge = |query: &BasisQuery, yours: f32| {
-            let right = value(query, Rule::Right);
-            if same(f64::from(yours), right, room(query.degree, right)) {
-                return Ok(());
-            }
-            let knots = list(&query.knots);
-            let (degree, index, u) = (query.degree, query.index, query.u.paste());
-            let input = format!("bspline_basis(&{knots}, {degree}, {index}, {u})");
-            Err(Broken::new(input, yours, right as f32, "the recursion in double"))
-        };
-        let formulas = |query: &BasisQuery, yours: &f32| {
+        compare(queries, trial.kit.bspline_basis(queries), |query, yours| {
             let gives = |rule: Rule| {
                 let value = value(query, rule);
-                same(f64::from(*yours), value, room(query.degree, value))
+                same(f64::from(yours), value, room(query.degree, value))
             };
-            WRONG.map(|(rule, text)| (gives(rule), text)).to_vec()
-        };
-        compare_formulas(queries, trial.kit.bspline_basis(queries), judge, formulas)
+            let broken = || {
+                let (knots, degree, index, u) =
+                    (list(&query.knots), query.degree, query.index, query.u.paste());
+                let input = format!("bspline_basis(&{knots}, {degree}, {index}, {u})");
+                Broken::new(input, yours, value(query, Rule::Right) as f32, "the recursion in double")
+            };
+            unless(gives(Rule::Right), broken).formulas(WRONG.map(|(rule, text)| (gives(rule), text)))
+        })
     })
 }
 
@@ -329,17 +324,14 @@ pub(super) fn nurbs_point_is_the_weighted_mean_of_its_net(trial: &Trial<'_>) -> 
             let room = point_room(&query.patch);
             (0..3).all(|axis| same(yours[axis], other[axis], room))
         };
-        let judge = |query: &NurbsQuery, yours: Vec3| match near(query, yours, Mean::Right) {
-            true => Ok(()),
-            false => {
+        compare(queries, trial.kit.nurbs_point(queries), |query, yours| {
+            let broken = || {
                 let right = Mean::Right.point(query).as_vec3();
-                Err(Broken::new(describe(query), yours, right, "the weighted mean in double"))
-            }
-        };
-        let formulas = |query: &NurbsQuery, yours: &Vec3| {
-            WRONG_MEANS.map(|(mean, text)| (near(query, *yours, mean), text)).to_vec()
-        };
-        compare_formulas(queries, trial.kit.nurbs_point(queries), judge, formulas)
+                Broken::new(describe(query), yours, right, "the weighted mean in double")
+            };
+            unless(near(query, yours, Mean::Right), broken)
+                .formulas(WRONG_MEANS.map(|(mean, text)| (near(query, yours, mean), text)))
+        })
     })
 }
 

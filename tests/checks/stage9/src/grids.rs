@@ -8,6 +8,7 @@ use super::structures::{around_loosely, filled};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
+use checks::nasty;
 use checks::paste::Paste;
 use glam::{DVec3, UVec3, Vec3, uvec3, vec3};
 use proptest::prelude::Strategy;
@@ -64,7 +65,7 @@ pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> CheckResult {
         let bounds = Aabb::new(turn(vec3(0.0, -4.0, -4.0)), turn(vec3(8.0, 4.5, 4.0)));
         let resolution = turn(vec3(4.0, 1.0, 1.0)).as_uvec3();
         let cells = filled(bounds, resolution, &[vec![2, 0], vec![1, 0], vec![0], vec![0]]);
-        let ray = Ray::new(turn(vec3(-1.0, 0.0, 0.0)), turn(Vec3::X));
+        let ray = Ray::new(turn(vec3(-1.0, 0.0, 0.0)), turn(vec3(1.0, 0.01, 0.01)));
         asked.ask("grid of 4 cells in a row; all of them list primitive 0", &cells, &scene, ray);
         let control = filled(bounds, resolution, &[vec![0, 1, 2], vec![], vec![], vec![]]);
         asked.control("grid", control, ray, (1.0, 3.0));
@@ -82,14 +83,15 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> CheckRe
         let query = |(ray, scales): &(Ray, Scales)| {
             let bounds = Aabb::new(scales.size * Vec3::splat(-5.0), scales.size * vec3(5.0, 4.0, 6.0));
             let cells = bare_grid(bounds, uvec3(6, 5, 4));
-            CellsQuery { cells, ray: scales.of_ray(ray), hits: Vec::new() }
+            let ray = Ray { direction: nasty::slanted(ray.direction), ..*ray };
+            CellsQuery { cells, ray: scales.of_ray(&ray), hits: Vec::new() }
         };
         let queries: Vec<CellsQuery<Grid>> = rays.iter().map(query).collect();
         compare(&queries, trial.kit.grid_search(&queries), |query, yours| judge_way(query, &yours.visits))
     })?;
     // A row of spheres of which the first is hit: the cells behind it must not be visited.
     let row = Scene::new((0..32).map(|i| sphere(i as f32, 0.0, 0.0, 0.25)).collect());
-    let rays = [Ray::new(vec3(-2.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(40.0, 0.0, 0.0), Vec3::NEG_X)];
+    let rays = [(-2.0, 1.0), (40.0, -1.0)].map(|(x, way)| Ray::new(vec3(x, 0.0, 0.0), vec3(way, 1e-3, 1e-3)));
     let queries = grid_queries(&row, &rays, around_loosely(&row.boxes()), uvec3(32, 1, 1));
     GRID.visits(trial.kit, "grid over a row of 32 spheres", &queries)
 }

@@ -268,13 +268,13 @@ pub(super) fn agrees<S: Clone>(trial: &Trial<'_>, search: &Search<S>) -> CheckRe
     let large = Thing::Sphere(Sphere { center: vec3(9.0, 4.0, 0.0), radius: 4.25 });
     let small = (0..8).map(|i| sphere(7.0, 0.8 * (i % 4) as f32, (i / 4) as f32, 0.25));
     let through = Scene::new([large].into_iter().chain(small).collect());
-    let rays = [Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(9.0, 0.0, 0.0), Vec3::NEG_X)];
+    let rays = [(-3.0, 1.0), (9.0, -1.0)].map(|(x, way)| Ray::new(vec3(x, 0.0, 0.0), vec3(way, 0.01, 0.01)));
     let in_a_row = Searched { one_leaf: true, ..Searched::new("three spheres in a row", &row, &rays) };
     let passing = Searched::new("a large sphere and eight small ones", &through, &rays[..1]);
     // And rays from all directions at both scenes, which refute or confirm a mistake that one answer suggests.
     let around = |at: Vec3| {
         let look = move |forward: Vec3| Ray::new(at - 20.0 * forward, forward);
-        checks::nasty::directions().into_iter().map(look).collect::<Vec<Ray>>()
+        checks::nasty::directions().into_iter().map(checks::nasty::slanted).map(look).collect::<Vec<Ray>>()
     };
     let (at_row, at_small) = (around(vec3(2.0, 0.1, 0.2)), around(vec3(7.0, 0.9, 0.4)));
     let others = [
