@@ -88,3 +88,19 @@ pub fn compare_formulas<Q, A: Clone>(
         Err(broken) => Err(broken.computed_by(given)),
     }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_right_answer_refutes_each_formula_that_gives_another_one() {
+        let judge = |query: &i32, yours| {
+            unless(yours == *query, Broken::default).formulas([(yours == 0, "a"), (yours != 1, "b")])
+        };
+        let diagnosis = |queries: &[i32]| all_hold(compare(queries, vec![0; queries.len()], judge));
+        assert_eq!(diagnosis(&[0, 1]).unwrap_err().diagnosis.as_deref(), Some("a\nor: b"));
+        let outcomes = compare(&[0, 1, 2], vec![0, 0, 2], judge);
+        assert_eq!(all_hold(outcomes).unwrap_err().diagnosis.as_deref(), Some("b"));
+    }
+}

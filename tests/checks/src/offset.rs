@@ -121,8 +121,10 @@ impl Start {
                 "your t_min is the same at every scale, as in One Weekend: move the origin by error·|n|",
             )
         }));
-        // A start at the point itself is along any way.
-        if self.moved != DVec3::ZERO {
+        // A start at the point itself is along any way, if the point is not so large that its rounding loses a step.
+        let step = f64::from(self.surface.error.length()).min(1e-4);
+        let size = f64::from(self.surface.point.abs().max_element());
+        if self.moved != DVec3::ZERO || step <= 4.0 * U * size {
             let text = "you move the origin along the ray: move it along the geometric normal";
             all.push((self.is_along(self.direction) && self.t_min.is_none(), text));
         }

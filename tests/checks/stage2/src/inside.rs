@@ -5,7 +5,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double;
 use checks::generate::{point, triangle};
-use checks::judge::compare_formulas;
+use checks::judge::{Judged, compare, compare_formulas, unless};
 use checks::nasty;
 use checks::paste::{Arguments, call};
 use glam::{DVec3, Vec3, vec3};
@@ -236,25 +236,22 @@ fn area_mistakes(case @ (_, weights, _): &Case, yours: Option<Vec3>) -> Vec<(boo
     all
 }
 
-fn judge_areas((query, weights, exact): &Case, yours: Option<Vec3>) -> CheckResult {
-    let Some(inside) = clearly_inside(&(*query, *weights, *exact)) else { return Ok(()) };
+fn judge_areas(case @ (query, weights, _): &Case, yours: Option<Vec3>) -> Judged {
+    let Some(inside) = clearly_inside(case) else { return Ok(().into()) };
     let coordinates = DVec3::from_array(*weights);
     // The point is rounded at its own size. A thin triangle magnifies this error, here up to 30 times.
     let near = yours.is_none_or(|yours| (yours.as_dvec3() - coordinates).abs().max_element() < 1e-3);
-    if yours.is_some() == inside && near {
-        return Ok(());
-    }
     let expected = inside.then_some(coordinates.as_vec3());
-    let input = call("inside_by_areas", &[&query.point, &query.triangle]);
-    Err(Broken::new(input, yours, expected, "double precision"))
+    let input = || call("inside_by_areas", &[&query.point, &query.triangle]);
+    let broken = || Broken::new(input(), yours, expected, "double precision");
+    unless(yours.is_some() == inside && near, broken).formulas(area_mistakes(case, yours))
 }
 
 pub(super) fn inside_by_areas_gives_barycentric_coordinates(trial: &Trial<'_>) -> CheckResult {
     let inputs = prop_oneof![3 => plane_points(), 1 => exact_points()];
     trial.forall(4000, inputs, |cases| {
         let queries: Vec<InsideQuery> = cases.iter().map(|case| case.0).collect();
-        let formulas = |case: &Case, yours: &Option<Vec3>| area_mistakes(case, *yours);
-        compare_formulas(cases, trial.kit.inside_by_areas(&queries), judge_areas, formulas)
+        compare(cases, trial.kit.inside_by_areas(&queries), judge_areas)
     })?;
     // A triangle without area and a NaN give None; the same query with an area does not.
     let ray = Ray::new(Vec3::Z, Vec3::NEG_Z);

@@ -182,13 +182,14 @@ fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Ju
         Fresnel::Schlick => schlick(&turned),
         Fresnel::Exact => exact(&turned),
     };
-    let without = |condition: &dyn Fn(DVec3) -> bool| {
-        is(expected.map(|weight| if condition(weight) { DVec3::ZERO } else { weight }))
-    };
+    // The rays of which no channel is 0.
+    let coloured = expected.map(|weight| if weight.min_element() <= 0.0 { DVec3::ZERO } else { weight });
     let broken = || {
         let [first, second] = expected.map(|weight| weight.as_vec3());
         let expected = format!("Reflection of weight {first}, Transmission of weight {second}");
+        let text = "you leave out a ray with one channel of 0: test the largest channel";
         Broken::with_texts(paste(query), describe(&yours), expected, "the formula in double precision")
+            .explained_by([(is(coloured), text)])
     };
     let rest = [
         (
@@ -224,10 +225,6 @@ fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Ju
             "you exchange F and 1 - F",
         ),
         (is(weights(exchanged)), "you exchange n1 and n2 in the Fresnel reflectance"),
-        (
-            [0.0, 1e-6].iter().any(|limit| without(&|weight| weight.min_element() <= *limit)),
-            "you leave out a ray with one channel of 0: test the largest channel",
-        ),
     ];
     unless(right, broken).formulas(rest.into_iter().chain(of_fresnel))
 }

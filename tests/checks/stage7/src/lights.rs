@@ -3,7 +3,7 @@
 use super::scenes::{ONE_SAMPLE, light, sphere_light};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, compare_formulas};
+use checks::judge::{compare, unless};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::effects::LightEffects;
@@ -136,16 +136,14 @@ fn light_mistakes(case: &LightCase, yours: &LightEffects) -> Vec<(bool, &'static
 pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> CheckResult {
     let cases = light_cases();
     let queries: Vec<LightQuery> = cases.iter().map(|case| case.query.clone()).collect();
-    let judge = |case: &LightCase, yours: LightEffects| {
-        if yours == case.expected {
-            return Ok(());
-        }
-        let input =
-            format!("light_effects of {}, light_samples {}", case.name, case.query.quality.light_samples);
-        Err(Broken::new(input, yours, case.expected, "the definition"))
-    };
-    let answers = trial.kit.light_effects(&queries);
-    all_hold(compare_formulas(&cases, answers, judge, light_mistakes))?;
+    all_hold(compare(&cases, trial.kit.light_effects(&queries), |case, yours| {
+        let broken = || {
+            let (name, n) = (case.name, case.query.quality.light_samples);
+            let input = format!("light_effects of {name}, light_samples {n}");
+            Broken::new(input, yours, case.expected, "the definition")
+        };
+        unless(yours == case.expected, broken).formulas(light_mistakes(case, &yours))
+    }))?;
     trial.forall(200, drawn_lights(), |drawn| {
         let queries: Vec<LightQuery> = drawn.iter().map(|(query, _)| query.clone()).collect();
         compare(drawn, trial.kit.light_effects(&queries), |(query, expected), yours| {
