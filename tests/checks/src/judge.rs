@@ -35,16 +35,13 @@ pub fn compare<Q, A, R: Into<Refuted>>(
 pub fn proven<R: Into<Refuted>>(outcomes: impl Iterator<Item = Result<R, Broken>>) -> Vec<CheckResult> {
     let outcomes: Vec<Judged> = outcomes.map(|outcome| outcome.map(Into::into)).collect();
     let mut refuted: Vec<Mistake> = Vec::new();
-    for Refuted(mistakes) in outcomes.iter().flatten() {
-        refuted.extend(
-            mistakes.iter().filter(|mistake| !refuted.contains(mistake)).copied().collect::<Vec<_>>(),
-        );
+    for mistake in outcomes.iter().flatten().flat_map(|Refuted(mistakes)| mistakes) {
+        if !refuted.contains(mistake) {
+            refuted.push(*mistake);
+        }
     }
-    let show = |outcome: Judged| match outcome {
-        Ok(_) => Ok(()),
-        Err(broken) => Err(broken.without(&refuted)),
-    };
-    outcomes.into_iter().map(show).collect()
+    let named = |outcome: Judged| outcome.map(|_| ()).map_err(|broken| broken.without(&refuted));
+    outcomes.into_iter().map(named).collect()
 }
 
 /// Whether an answer is right, and the error if it is not.
