@@ -2,6 +2,7 @@
 
 use crate::rubric::CheckEntry;
 use raykata::kit::Request;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// The longest call that a message shows, in bytes: a search in a tree over four primitives.
@@ -13,7 +14,7 @@ const MOST_PRINTED: usize = 30;
 /// The result of a check.
 pub type CheckResult = Result<(), Broken>;
 
-/// A broken law with the smallest input that breaks it.
+/// A broken law with a small input that breaks it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Broken {
     /// The call, as Rust that can be pasted into a test.
@@ -99,6 +100,12 @@ impl Broken {
         Broken { diagnosis: diagnosis.map(|text| text.into().into_boxed_str()), ..self }
     }
 
+    /// Adds the call that breaks the law.
+    pub fn in_call(mut self, call: Request) -> Self {
+        self.details.call = Some(call);
+        self
+    }
+
     /// Adds observations before the mistakes that are known already, the most specific one first. Each is its text, and whether
     /// this wrong answer shows it. A wrong formula, which also computes an answer where the student's is right, belongs into the
     /// list of [`unless`](crate::judge::unless), which right answers refute.
@@ -143,6 +150,13 @@ impl Broken {
     /// Whether a mistake is proven for this answer.
     pub(crate) fn is_explained_by(&self, mistake: &Mistake) -> bool {
         self.details.mistakes.contains(mistake)
+    }
+
+    /// Whether the law is broken in the same way: the same words in both answers and in both expected values.
+    pub(crate) fn is_like(&self, other: &Broken) -> bool {
+        let is_finite = |word: &&str| word.parse().is_ok_and(f32::is_finite);
+        let words = |text| words(text).filter(|word| !is_finite(word)).collect::<BTreeSet<_>>();
+        words(&self.yours) == words(&other.yours) && words(&self.expected) == words(&other.expected)
     }
 
     /// The whole message for the student: title, slide, input, both answers, the diagnosis and the next commands.
@@ -231,6 +245,11 @@ pub fn next_commands(stage: u8, check: &str) -> String {
     )
 }
 
+/// The words and numbers of a text.
+pub(crate) fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|sign: char| !(sign.is_ascii_alphanumeric() || "+-._".contains(sign)))
+}
+
 /// The first `lines` lines of a text, each cut after 400 characters.
 fn shorten(text: &str, lines: usize) -> String {
     let mut cut: Vec<String> = text
@@ -289,6 +308,14 @@ mod tests {
         let named = |outcomes| first_broken(outcomes).map(|(_, broken)| broken.diagnosis);
         assert_eq!(named(vec![fails([false, true]), fails([true, true])]), Some(Some("a".into())));
         assert_eq!(named(vec![fails([true, false]), fails([false, true])]), Some(None));
+    }
+
+    #[test]
+    fn a_message_shows_thirty_of_a_hundred_lines_that_a_function_prints() {
+        let printed: String = (0..100).map(|n| format!("n = {n}\n")).collect();
+        let message = with_output("  yours     3\n  again: x\n", &printed);
+        assert_eq!(message.matches("n = ").count(), MOST_PRINTED);
+        assert!(message.contains("n = 29 …\n  again: x\n"), "{message}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The calls that a check makes, with their answers.
 
-use crate::broken::{Broken, CheckResult};
+use crate::broken::{Broken, CheckResult, words};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Kit, KitError, Request, Transport};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -19,31 +19,51 @@ impl Calls {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The call that breaks the law, if it was part of a batch in which each input has one call. If `is_alone`, all batches were
-    /// asked about this input, and the first ones are judged; otherwise the last batches are about it. Of several calls it is
-    /// the one whose function and numbers the input names.
-    pub(crate) fn of(&self, broken: &Broken, is_alone: bool) -> Option<Request> {
-        let (index, n_inputs) = broken.details.index.or(is_alone.then_some((0, 1)))?;
-        let numbers = |text: &str| -> Vec<String> {
-            let words = text.split(|sign: char| !(sign.is_ascii_alphanumeric() || "+-.".contains(sign)));
-            words.filter(|word| word.parse::<f32>().is_ok()).map(str::to_owned).collect()
+    /// The call that gives the word with this index of a table, if the name of a function precedes each of its answers there.
+    pub(crate) fn of_table(&self, words: &[&str], index: usize) -> Option<Request> {
+        let batches = self.batches();
+        let of = |name: &str| {
+            batches
+                .iter()
+                .filter_map(|(request, _)| {
+                    request
+                        .queries()
+                        .filter(|(function, _)| *function == name)
+                        .map(|(_, queries)| (request, queries.len()))
+                })
+                .collect::<Vec<_>>()
         };
-        let of_input = numbers(&broken.input);
-        let likeness = |(function, request): &(&str, Request)| {
-            let of_call = numbers(&request.call().unwrap_or_default());
-            let n_shared = of_input.iter().filter(|number| of_call.contains(number)).count();
-            (broken.input.contains(function), n_shared)
+        let name = *words[..index].iter().rfind(|word| !of(word).is_empty())?;
+        let count = |words: &[&str]| words.iter().filter(|word| **word == name).count();
+        match of(name)[..] {
+            [(request, n_calls)] if n_calls == count(words) => request.only(count(&words[..index]) - 1),
+            _ => None,
+        }
+    }
+
+    /// The call that breaks the law, if it was part of a batch in which each input has one call. If `is_alone`, all batches were
+    /// asked about this input, and the first ones are judged; otherwise the last batches are about it. Of these calls it is
+    /// the first one whose function the input names.
+    pub(crate) fn of(&self, broken: &Broken, is_alone: bool) -> Option<Request> {
+        let Some((index, n_inputs)) = broken.details.index.or(is_alone.then_some((0, 1))) else {
+            // A law about one input ends at the call that breaks it. A call that is too long to read is no help.
+            let request = self.batches().last()?.0.clone();
+            let (function, queries) = request.queries()?;
+            let is_it = queries.len() == 1 && words(&broken.input).any(|word| word == function);
+            return request
+                .only(0)
+                .filter(|call| is_it && call.call().is_some_and(|call| call.len() < 1 << 17));
         };
         let fits = |(request, _): &Batch| {
             let (function, queries) = request.queries()?;
             Some((function, request.only(index).filter(|_| queries.len() == n_inputs)?))
         };
-        // `max_by_key` returns the last one of several.
         let mut fitting: Vec<_> = self.batches().iter().filter_map(fits).collect();
-        if is_alone {
+        if !is_alone {
             fitting.reverse();
         }
-        fitting.into_iter().max_by_key(likeness).map(|(_, request)| request)
+        let named = fitting.iter().position(|(function, _)| broken.input.contains(function));
+        fitting.into_iter().nth(named.unwrap_or(0)).map(|(_, request)| request)
     }
 }
 

@@ -1,25 +1,94 @@
-//! Random inputs that shrink to small numbers.
+//! Random inputs that shrink to simple numbers.
 
 use glam::Vec3;
 use proptest::prelude::*;
+use proptest::strategy::{NewTree, ValueTree};
+use proptest::test_runner::TestRunner;
 use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
+use std::ops::{Range, RangeInclusive};
 
-/// A coordinate in `-reach..=reach`, on a grid of 1/8. Such numbers are short in messages, and sums and products of a
-/// few of them are exact.
-fn coordinate(reach: i32) -> impl Strategy<Value = f32> + Clone {
-    (-8 * reach..=8 * reach).prop_map(|eighths| eighths as f32 / 8.0)
+/// Random numbers from `low` to `high`, which are multiples of `step` if it is not 0.
+#[derive(Clone, Debug)]
+struct Numbers<S> {
+    drawn: S,
+    low: f32,
+    high: f32,
+    step: f32,
+}
+
+/// A number that was drawn, behind simpler ones. They are tried from the simplest on, until one breaks the law as well.
+#[derive(Clone, Debug)]
+struct Number {
+    numbers: Vec<f32>,
+    tried: Option<usize>,
+}
+
+impl<S: Strategy<Value = f32>> Strategy for Numbers<S> {
+    type Tree = Number;
+    type Value = f32;
+
+    fn new_tree(&self, runner: &mut TestRunner) -> NewTree<Self> {
+        let drawn = self.drawn.new_tree(runner)?.current();
+        let size = f64::from(drawn.abs());
+        let tens = |digits: f64| 10f64.powf(digits - 1.0 - size.log10().floor());
+        let digits = |digits: f64| (tens(digits) * size).round() / tens(digits);
+        let [ten, half] = [10f64.powf(size.log10().round()), (2.0 * size).round() / 2.0];
+        let simple = [0.0, 1.0, 2.0, 3.0, 0.5, ten, digits(1.0), half, digits(2.0), digits(3.0)];
+        let signed = simple.map(|number| drawn.signum() * number as f32 + 0.0).into_iter();
+        let is_on_grid = |number: f32| self.step == 0.0 || number % self.step == 0.0;
+        let simpler = signed.filter(|number| (self.low..=self.high).contains(number) && is_on_grid(*number));
+        Ok(Number { numbers: simpler.chain([drawn]).collect(), tried: None })
+    }
+}
+
+impl ValueTree for Number {
+    type Value = f32;
+
+    fn current(&self) -> f32 {
+        self.numbers[self.tried.unwrap_or(self.numbers.len() - 1)]
+    }
+
+    fn simplify(&mut self) -> bool {
+        let is_new = self.tried.is_none();
+        self.tried.get_or_insert(0);
+        is_new
+    }
+
+    fn complicate(&mut self) -> bool {
+        let next = self.tried.map(|index| index + 1).filter(|index| *index < self.numbers.len());
+        self.tried = next.or(self.tried);
+        next.is_some()
+    }
+}
+
+/// A number in this range.
+pub fn number(range: Range<f32>) -> impl Strategy<Value = f32> + Clone {
+    let (low, high) = (range.start, range.end.next_down());
+    Numbers { drawn: range, low, high, step: 0.0 }
+}
+
+/// A fraction with one of these numerators, such as a number of eighths. Such numbers are short in messages, and sums and products
+/// of a few of them are exact.
+pub fn fractions(numerators: RangeInclusive<i32>, denominator: f32) -> impl Strategy<Value = f32> + Clone {
+    let fraction = move |numerator: i32| numerator as f32 / denominator;
+    let [low, high] = [fraction(*numerators.start()), fraction(*numerators.end())];
+    Numbers { drawn: numerators.prop_map(fraction), low, high, step: 1.0 / denominator }
+}
+
+/// A vector of three such numbers.
+pub fn vector(coordinate: impl Strategy<Value = f32> + Clone) -> impl Strategy<Value = Vec3> + Clone {
+    (coordinate.clone(), coordinate.clone(), coordinate).prop_map(Vec3::from)
 }
 
 /// A point on a grid of 1/8, each coordinate in `-reach..=reach`.
 pub fn point(reach: i32) -> impl Strategy<Value = Vec3> + Clone {
-    (coordinate(reach), coordinate(reach), coordinate(reach)).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+    vector(fractions(-8 * reach..=8 * reach, 8.0))
 }
 
 /// A point with full mantissas, each coordinate in `-reach..reach`.
 pub fn rough_point(reach: f32) -> impl Strategy<Value = Vec3> + Clone {
-    let range = -reach..reach;
-    (range.clone(), range.clone(), range).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+    vector(number(-reach..reach))
 }
 
 /// A direction on a grid of 1/8, of any length except zero.
@@ -34,7 +103,7 @@ pub fn unit() -> impl Strategy<Value = Vec3> + Clone {
 
 /// A sphere near the origin.
 pub fn sphere() -> impl Strategy<Value = Sphere> + Clone {
-    (point(4), 1..=32i32).prop_map(|(center, eighths)| Sphere { center, radius: eighths as f32 / 8.0 })
+    (point(4), fractions(1..=32, 8.0)).prop_map(|(center, radius)| Sphere { center, radius })
 }
 
 /// A ray with a unit direction from a point near the origin.
@@ -51,5 +120,5 @@ pub fn triangle() -> impl Strategy<Value = Triangle> + Clone {
 
 /// A positive number between `10^low` and `10^high`, uniform in its logarithm.
 pub fn magnitude(low: f32, high: f32) -> impl Strategy<Value = f32> + Clone {
-    (low..high).prop_map(|exponent| 10f32.powf(exponent))
+    number(low..high).prop_map(|exponent| 10f32.powf(exponent))
 }

@@ -1,9 +1,8 @@
-//! Golden texts: trees, tables and counts that are the same for every correct solution. insta keeps them in
-//! `tests/golden`.
+//! Golden texts: trees, tables and counts that are the same for every correct solution, in `tests/golden`.
 
 use crate::broken::{Broken, CheckResult};
 use crate::trial::Trial;
-use raykata::kit::{Kit, kit_error};
+use raykata::kit::Kit;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static SEALED: AtomicBool = AtomicBool::new(false);
@@ -19,14 +18,15 @@ pub(crate) fn is_sealed() -> bool {
     SEALED.load(Ordering::Relaxed)
 }
 
-/// Whether insta may write golden texts. Only the tests of the reference may, with any setting of insta: a student's run
-/// compares.
-fn may_write() -> bool {
-    !is_sealed() && std::env::var("CARGO_PKG_NAME").is_ok_and(|package| package == "solutions")
+/// Whether golden texts are written again. Only the tests of the reference do so: a student's run compares.
+fn is_written_again() -> bool {
+    let is = |name: &str, value: &str| std::env::var(name).is_ok_and(|set| set == value);
+    !is_sealed() && is("CARGO_PKG_NAME", "solutions") && is("INSTA_UPDATE", "always")
 }
 
 /// A table that is composed from answers. The last digit of a number may differ by one, because correct solutions round
-/// differently; everything else is the same for all of them.
+/// differently; everything else is the same for all of them. If the name of a function precedes its answers, the message has the
+/// call that gives the wrong word.
 pub struct Table<'a> {
     /// The name of the golden text.
     pub name: &'a str,
@@ -40,18 +40,20 @@ impl Table<'_> {
     #[track_caller]
     pub fn check(&self, trial: &Trial<'_>, compose: impl Fn(&dyn Kit) -> String) -> CheckResult {
         let yours = compose(trial.kit);
-        let Some(expected) = trial.expected(&compose) else {
-            let is_written_again = std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always");
-            let golden = golden_text(self.name).filter(|_| !(may_write() && is_written_again));
-            return match golden {
-                Some(golden) if are_close(&yours, &golden) => Ok(()),
-                _ => compare(self.name, self.input, &yours),
-            };
+        let composed = trial.expected(&compose);
+        let expected = composed.as_deref().cloned().or_else(|| golden_text(self.name)).unwrap_or_default();
+        let judged = match composed {
+            None if is_written_again() => compare(self.name, self.input, &yours),
+            None => judge(&format!("{}\ntests/golden/{}.snap", self.input, self.name), &yours, &expected),
+            Some(_) => judge(self.input, &yours, &expected),
         };
-        match are_close(&yours, &expected) {
-            true => Ok(()),
-            false => Err(broken(self.input.to_owned(), &yours, &expected)),
-        }
+        judged.map_err(|mut broken| {
+            let words: Vec<&str> = yours.split_whitespace().collect();
+            let pairs = words.iter().zip(expected.split_whitespace());
+            let n_right = pairs.take_while(|(yours, expected)| is_close_word(yours, expected)).count();
+            broken.details.call = trial.calls.of_table(&words, n_right);
+            broken
+        })
     }
 }
 
@@ -62,15 +64,20 @@ pub fn digits(value: f32, digits: usize) -> String {
     if is_zero { text.trim_start_matches('-').to_owned() } else { text }
 }
 
-/// Whether two texts have the same words, except for numbers whose last digit differs by one.
-fn are_close(yours: &str, theirs: &str) -> bool {
-    let mut pairs = yours.trim_end().lines().zip(theirs.trim_end().lines());
-    yours.trim_end().lines().count() == theirs.trim_end().lines().count()
-        && pairs.all(|(yours, theirs)| {
-            let [mine, golden] = [yours, theirs].map(|line| line.split_whitespace().collect::<Vec<_>>());
-            mine.len() == golden.len()
-                && mine.iter().zip(golden).all(|(mine, golden)| is_close_word(mine, golden))
-        })
+/// The index of the first line whose words differ, except for numbers whose last digit differs by one.
+fn different_line(yours: &str, theirs: &str) -> Option<usize> {
+    let words = |text: &str, line: usize| {
+        text.lines().nth(line).map(|line| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
+    };
+    let is_close = |line: usize| match (words(yours, line), words(theirs, line)) {
+        (Some(yours), Some(theirs)) => {
+            yours.len() == theirs.len()
+                && yours.iter().zip(&theirs).all(|(yours, theirs)| is_close_word(yours, theirs))
+        }
+        _ => false,
+    };
+    let n_lines = yours.trim_end().lines().count().max(theirs.trim_end().lines().count());
+    (0..n_lines).find(|&line| !is_close(line))
 }
 
 fn is_close_word(yours: &str, theirs: &str) -> bool {
@@ -88,52 +95,36 @@ fn is_close_word(yours: &str, theirs: &str) -> bool {
     }
 }
 
-fn folder() -> &'static str {
-    concat!(env!("CARGO_MANIFEST_DIR"), "/../golden")
+fn path(name: &str) -> String {
+    format!("{}/../golden/{name}.snap", env!("CARGO_MANIFEST_DIR"))
 }
 
 /// The golden text `name` without its header, if there is one.
 fn golden_text(name: &str) -> Option<String> {
-    let file = std::fs::read_to_string(format!("{}/{name}.snap", folder())).ok()?;
+    let file = std::fs::read_to_string(path(name)).ok()?;
     file.splitn(3, "---\n").nth(2).map(str::to_owned)
 }
 
 /// Compares `text` with the golden text `name`. `INSTA_UPDATE=always cargo test -p solutions` writes it again.
 pub fn compare(name: &str, input: &str, text: &str) -> CheckResult {
-    let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path(folder());
-    settings.set_prepend_module_to_snapshot(false);
-    settings.set_omit_expression(true);
     let golden = golden_text(name).unwrap_or("(there is no golden text)".into());
-    let same = match may_write() {
-        true => kit_error::catch(|| settings.bind(|| insta::assert_snapshot!(name, text))).is_ok(),
-        false => golden.trim_end() == text.trim_end(),
-    };
-    if same {
+    if golden.trim_end() == text.trim_end() {
         return Ok(());
     }
-    let line = different_line(text, &golden);
-    Err(broken(format!("{input}\nline {} of tests/golden/{name}.snap", line + 1), text, &golden))
+    if is_written_again() {
+        let file = format!("---\nsource: tests/checks/src/golden.rs\n---\n{}\n", text.trim_end());
+        return std::fs::write(path(name), file)
+            .map_err(|error| Broken::new(name, error, "a file", "written"));
+    }
+    judge(&format!("{input}\ntests/golden/{name}.snap"), text, &golden)?;
+    Err(Broken::with_texts(input, "other last digits", "those of the golden text", "the golden text"))
 }
 
-/// The index of the first line that differs.
-fn different_line(text: &str, golden: &str) -> usize {
-    let lines = |text: &str| text.lines().map(|line| line.trim_end().to_owned()).collect::<Vec<String>>();
-    let [yours, theirs] = [text, golden].map(lines);
-    let differs = |line: usize| match (yours.get(line), theirs.get(line)) {
-        (Some(yours), Some(theirs)) => yours != theirs && !are_close(yours, theirs),
-        _ => true,
-    };
-    let n_lines = yours.len().max(theirs.len());
-    let exactly = || (0..n_lines).find(|&line| yours.get(line) != theirs.get(line));
-    (0..n_lines).find(|&line| differs(line)).or_else(exactly).unwrap_or(0)
-}
-
-/// The message about the first line that differs.
-fn broken(input: String, text: &str, golden: &str) -> Broken {
-    let line = different_line(text, golden);
+/// The broken law with the first line that differs.
+fn judge(input: &str, text: &str, golden: &str) -> CheckResult {
+    let Some(line) = different_line(text, golden) else { return Ok(()) };
     let [yours, theirs] = [text, golden].map(|text| text.lines().nth(line).unwrap_or("(the end)").trim());
-    Broken::with_texts(input, yours, theirs, "the golden text")
+    Err(Broken::with_texts(format!("{input}, line {}", line + 1), yours, theirs, "the golden text"))
 }
 
 #[cfg(test)]
@@ -143,7 +134,7 @@ mod tests {
     #[test]
     fn only_the_last_digit_may_differ_by_one() {
         for (yours, theirs) in [("a 1.200", "a 1.201"), ("-0.0001 7", "0.0000 7"), ("9.99e9", "1.00e10")] {
-            assert!(are_close(yours, theirs), "{yours} {theirs}");
+            assert_eq!(different_line(yours, theirs), None, "{yours} {theirs}");
         }
         let apart = [
             ("1.200", "1.202"),
@@ -154,7 +145,7 @@ mod tests {
             ("NaN", "1.0"),
         ];
         for (yours, theirs) in apart {
-            assert!(!are_close(yours, theirs), "{yours} {theirs}");
+            assert!(different_line(yours, theirs).is_some(), "{yours} {theirs}");
         }
         assert_eq!([digits(-1e-9, 3), digits(-0.5, 1), digits(2.0, 0)], ["0.000", "-0.5", "2"]);
     }

@@ -3,7 +3,7 @@
 //!
 //! The checks of each stage are a separate crate beside this one, so that a student builds the checks of one stage
 //! only. A check calls a [`raykata::kit::Kit`] and does not know whose code answers. It is a function that returns
-//! `Ok(())` or a [`Broken`] law with the smallest input that breaks it.
+//! `Ok(())` or a [`Broken`] law with a small input that breaks it.
 
 pub mod broken;
 pub mod calls;
@@ -74,7 +74,8 @@ macro_rules! stage {
             ($d kit:expr) => {
                 $(#[test]
                 fn $name() {
-                    $d $crate_of_stage::grade($d $crate_of_stage::CHECKS, stringify!($name), $d $crate_of_stage::linked($d kit));
+                    let path = concat!(module_path!(), "::", stringify!($name));
+                    $d $crate_of_stage::grade($d $crate_of_stage::CHECKS, path, $d $crate_of_stage::linked($d kit));
                 })*
             };
         }

@@ -20,9 +20,9 @@ pub fn sign() -> impl Strategy<Value = f32> + Clone {
 /// A power of two with an exponent in this range. A product with it is exact unless it overflows or underflows, so a formula
 /// without fixed constants gives the same digits at each scale.
 pub fn scale(exponents: RangeInclusive<i32>) -> impl Strategy<Value = f32> + Clone {
-    // Draw the distance from exponent 0, so that exponents shrink to 0.
+    // Draw the distance from exponent 0, so that exponents shrink to 0. A small scale shrinks to no large one.
     let (low, high) = exponents.into_inner();
-    (0..=high.max(-low), any::<bool>())
+    (0..=high.max(-low), any::<bool>().no_shrink())
         .prop_map(move |(size, down)| 2f32.powi(if down { -size } else { size }.clamp(low, high)))
 }
 
@@ -40,7 +40,7 @@ pub fn slanted(direction: Vec3) -> Vec3 {
 /// A unit vector: parallel to an axis, with zeros of either sign (1 of 8); diagonal (1 of 8); at an angle between 1 and 10⁻⁶
 /// to an axis (1 of 8); on a coarse grid (3 of 8); with full mantissas (2 of 8).
 pub fn unit() -> impl Strategy<Value = Vec3> + Clone {
-    let signs = || (sign(), sign(), sign()).prop_map(|(x, y, z)| Vec3::new(x, y, z));
+    let signs = || generate::vector(sign());
     let parallel = (0..3usize, signs()).prop_map(|(axis, signs)| AXES[axis] * signs);
     let diagonal = (0..4usize, signs()).prop_map(|(axis, signs)| {
         let diagonal = Vec3::ONE - AXES.get(axis).copied().unwrap_or_default();
@@ -86,8 +86,7 @@ pub fn directions() -> Vec<Vec3> {
 /// The coordinates of a point of a small integer lattice, in `-reach..=reach`. Sums and products of a few of them are exact,
 /// so points often lie exactly on a line, in a plane or on a bound.
 pub fn lattice(reach: i32) -> impl Strategy<Value = Vec3> + Clone {
-    let coordinate = move || (-reach..=reach).prop_map(|n| n as f32);
-    (coordinate(), coordinate(), coordinate()).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+    generate::vector(generate::fractions(-reach..=reach, 1.0))
 }
 
 /// A point that is not the origin: on a lattice or with full mantissas, at any scale, and often with a coordinate that is 0

@@ -6,8 +6,9 @@ use raykata::camera::{Lens, Shutter};
 use raykata::emitter::{AreaEmitter, EmitterSample};
 use raykata::film::WeightedColor;
 use raykata::kit::{
-    BuildQuery, EmitterPdfQuery, EmitterQuery, InsideQuery, LightSample, PlaneEquationQuery, PlaneQuery,
-    RootQuery, SecondaryRay, ShadeQuery, ShadowQuery, SlabQuery, SphereQuery, Surface, TriangleQuery,
+    BoundsQuery, BuildQuery, EmitterPdfQuery, EmitterQuery, InsideQuery, LightSample, PhongLobeQuery,
+    PlaneEquationQuery, PlaneQuery, RootQuery, SecondaryRay, ShadeQuery, ShadowQuery, SlabQuery, SphereQuery,
+    SphereSampleQuery, Surface, TriangleQuery,
 };
 use raykata::light_path::Scattering;
 use raykata::material::Material;
@@ -58,7 +59,7 @@ macro_rules! pasted {
 }
 
 pasted! {
-    "" (Vec3, Vec3) f32 Vec2 Vec3 Option<Vec3> LightSample WeightedColor;
+    "" (Vec3, Vec3) u32 f32 Vec2 Vec3 Option<Vec3> LightSample WeightedColor;
     "&" Stratum Triangle Surface Sphere Cuboid Cylinder Cone Disk Polygon Affine3A Scattering EmitterSample SecondaryRay AreaEmitter
         Shutter Lens KdHeuristics;
 }
@@ -115,6 +116,9 @@ arguments! {
     InsideQuery(ray, point, triangle);
     EmitterQuery(emitter, from, u);
     EmitterPdfQuery(emitter, from, direction);
+    SphereSampleQuery(sphere, from, u);
+    PhongLobeQuery(ideal, normal, roughness, u);
+    BoundsQuery(to_world, bounds);
 }
 
 impl Arguments for SlabQuery {

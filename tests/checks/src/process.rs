@@ -28,9 +28,10 @@ pub(crate) fn show(work: impl FnOnce()) {
 }
 
 /// The message of the test of this check, which runs in another process; `None` if it passes.
-pub(crate) fn message_of(check: &Check) -> Option<String> {
-    let shown = shown(check.name).unwrap_or_else(|error| Some(vec![error.to_string()]))?;
+pub(crate) fn message_of(check: &Check, path: &str) -> Option<String> {
+    let shown = shown(path).unwrap_or_else(|error| vec![error.to_string()]);
     match &shown[..] {
+        [_, _, _] => None,
         [_, printed, _, message, _] => Some(with_output(message, printed)),
         // The process has ended before there was a message.
         others => match verdict(check, Err(KitError::Crashed { how: others.concat() })) {
@@ -40,8 +41,11 @@ pub(crate) fn message_of(check: &Check) -> Option<String> {
     }
 }
 
-/// The output of the process, divided at the marks. Between shown parts it has only its last line. `None` if the test passes.
-fn shown(name: &str) -> io::Result<Option<Vec<String>>> {
+/// The output of the process, divided at the marks. Between shown parts it has only its last line. If the test passes, nothing is
+/// shown after what the call prints.
+fn shown(path: &str) -> io::Result<Vec<String>> {
+    // The path begins with the name of the crate.
+    let (_, name) = path.split_once("::").unwrap_or_default();
     let (output, to_output) = io::pipe()?;
     let mut command = Command::new(std::env::current_exe()?);
     command
@@ -63,5 +67,6 @@ fn shown(name: &str) -> io::Result<Option<Vec<String>>> {
             _ => {}
         }
     }
-    Ok((!child.wait()?.success()).then_some(parts))
+    child.wait()?;
+    Ok(parts)
 }

@@ -3,7 +3,7 @@
 use crate::broken::{self, Broken, CheckResult};
 use crate::calls::{Calls, Recorder, breaking_call};
 use crate::drawn::{Drawn, Values};
-use crate::law::{Judged, Law, judge_one};
+use crate::law::{self, Fails, judge_one};
 use crate::patience::{self, PATIENCE};
 use crate::picture::Replay;
 use crate::process;
@@ -17,6 +17,7 @@ use raykata::kit::{Door, Kit, KitError, Request, kit_error};
 use raykata::worker::Thread;
 use std::cell::Cell;
 use std::collections::BTreeSet;
+use std::ops::Range;
 use std::panic::Location;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, mpsc};
 use std::time::Duration;
@@ -50,7 +51,7 @@ pub struct Trial<'a> {
     /// Where the inputs come from.
     inputs: Inputs,
     /// The calls so far.
-    calls: Calls,
+    pub(crate) calls: Calls,
     /// Whether a failing input is replaced by a smaller one, which only a message needs.
     shrinks: bool,
 }
@@ -114,21 +115,26 @@ impl<'a> Trial<'a> {
         if self.reference().is_some() { self.varied(public, hidden) } else { public }
     }
 
-    /// What `compose` makes of the answers of the reference; `None` if the expected value is a file. It is computed once
-    /// per seed and kept with the inputs.
+    /// What `compute` returns. It is computed once per seed and kept with the inputs.
+    fn kept<T: Send + Sync + 'static>(
+        &self,
+        caller: &'static Location<'static>,
+        compute: &dyn Fn() -> T,
+    ) -> Option<Arc<T>> {
+        let key = (self.name, self.seed, caller, self.draws.replace(self.draws.get() + 1));
+        let compute = || -> Values { Arc::new(compute()) };
+        let value = self.inputs.drawn.as_ref().map_or_else(compute, |drawn| drawn.get(key, &compute));
+        value.downcast::<T>().ok()
+    }
+
+    /// What `compose` makes of the answers of the reference; `None` if the expected value is a file.
     #[track_caller]
     pub(crate) fn expected<T: Send + Sync + 'static>(
         &self,
         compose: impl Fn(&dyn Kit) -> T,
     ) -> Option<Arc<T>> {
         let reference = self.reference()?;
-        let key = (self.name, self.seed, Location::caller(), self.draws.replace(self.draws.get() + 1));
-        let compute = || -> Values { Arc::new(compose(&**reference)) };
-        let value = match &self.inputs.drawn {
-            Some(drawn) => drawn.get(key, &compute),
-            None => compute(),
-        };
-        value.downcast::<T>().ok()
+        self.kept(Location::caller(), &|| compose(&**reference))
     }
 
     /// Draws `cases` inputs, calls `judge` with all of them at once, and shrinks the first input that breaks the law.
@@ -142,7 +148,7 @@ impl<'a> Trial<'a> {
     where
         S::Value: Clone + Send + Sync + 'static,
     {
-        self.hold(cases, &Judged { inputs, judge, chosen: Vec::new() }, Location::caller())
+        self.forall_and(&[], cases, inputs, judge)
     }
 
     /// The same as [`Trial::forall`], with the inputs `chosen` before those that are drawn, in one batch.
@@ -160,45 +166,74 @@ impl<'a> Trial<'a> {
     where
         S::Value: Clone + Send + Sync + 'static,
     {
-        let chosen = chosen.to_vec();
-        self.hold(cases, &Judged { inputs, judge, chosen }, Location::caller())
+        let cases = cases.div_ceil(self.inputs.one_in);
+        let draw = || {
+            let mut runner = self.runner();
+            let trees = (0..cases).filter_map(|_| inputs.new_tree(&mut runner).ok());
+            chosen.iter().cloned().chain(trees.map(|tree| tree.current())).collect::<Vec<_>>()
+        };
+        let values = self.kept(Location::caller(), &draw).unwrap_or_default();
+        let size = |index: usize| format!("{:?}", values[index]).len();
+        let shrink = |drawn: usize, fails: &mut Fails<'_>| {
+            // Draw the inputs again with their trees of smaller inputs, which only this step needs.
+            let mut runner = self.runner();
+            let tree = (0..cases).filter_map(|_| inputs.new_tree(&mut runner).ok()).nth(drawn);
+            tree.into_iter().for_each(|tree| law::shrink(tree, &judge, fails));
+        };
+        self.hold(chosen.len(), values.len(), &|range| judge(&values[range]), &size, &shrink)
     }
 
     /// The part of [`Trial::forall`] that does not depend on the type of the inputs, so that it is compiled only once.
-    fn hold(&self, cases: usize, law: &dyn Law, caller: &'static Location<'static>) -> CheckResult {
-        let cases = cases.div_ceil(self.inputs.one_in);
-        let draw = || law.draw(cases, &mut self.runner());
-        let key = (self.name, self.seed, caller, self.draws.replace(self.draws.get() + 1));
-        let values = match &self.inputs.drawn {
-            Some(drawn) => drawn.get(key, &draw),
-            None => draw(),
-        };
-        let broken = match kit_error::catch(|| law.judge(&*values, 0..law.count(&*values))) {
-            Ok(outcomes) => broken::first_broken(outcomes),
+    /// `judge` judges a range of the inputs, of which the first ones are chosen. `size` is how long one is as a text, and `shrink`
+    /// searches for a smaller input than the one that was drawn with this index.
+    fn hold(
+        &self,
+        n_chosen: usize,
+        n_inputs: usize,
+        judge: &dyn Fn(Range<usize>) -> Vec<CheckResult>,
+        size: &dyn Fn(usize) -> usize,
+        shrink: &dyn Fn(usize, &mut Fails<'_>),
+    ) -> CheckResult {
+        let alone = |index: usize| judge_one(&|| judge(index..index + 1), &self.calls);
+        let outcomes = match kit_error::catch(|| judge(0..n_inputs)) {
+            Ok(outcomes) => outcomes,
             // The code panicked on an input of the batch: judge the inputs one by one to find it.
-            Err(KitError::Panicked { .. }) => (0..law.count(&*values))
-                .find_map(|i| Some((i, judge_one(&|| law.judge(&*values, i..i + 1), &self.calls)?))),
+            Err(KitError::Panicked { .. }) => {
+                let panics = (0..n_inputs).find_map(|index| Some((index, alone(index)?)));
+                panics.map_or_else(Vec::new, |(n_passed, broken)| {
+                    [vec![Ok(()); n_passed], vec![Err(broken)]].concat()
+                })
+            }
             Err(error) => kit_error::unwind(error),
         };
-        let Some((index, mut broken)) = broken else {
+        let Some((first, mut broken)) = broken::first_broken(outcomes.clone()) else {
             self.calls.batches().clear();
             return Ok(());
         };
         if !self.shrinks {
             return Err(broken);
         }
-        // Find the call of this input.
-        let alone = judge_one(&|| law.judge(&*values, index..index + 1), &self.calls);
-        broken.details.call = alone.and_then(|alone| alone.details.call);
-        // All failing inputs together prove the mistakes, so a smaller input has one of them and keeps the diagnosis.
-        let (mistakes, diagnosis) = (broken.details.mistakes.clone(), broken.diagnosis.clone());
-        law.shrink(cases, &mut self.runner(), index, &mut |judge| {
-            let smaller = judge_one(judge, &self.calls);
-            let same = |smaller: &Broken| mistakes.first().is_none_or(|one| smaller.is_explained_by(one));
-            smaller.filter(same).map(|smaller| broken = smaller).is_some()
-        });
-        broken.details.mistakes = mistakes;
-        Err(Broken { diagnosis, ..broken })
+        // All failing inputs together prove the mistakes, so a smaller input has one of them and keeps the diagnosis. It breaks
+        // the law in the same way, so that an input that is too small does not shrink to one that overflows.
+        let drawn = broken.clone();
+        let mistake = drawn.details.mistakes.first();
+        let is_same = |smaller: &Broken| {
+            mistake.is_none_or(|one| smaller.is_explained_by(one)) && smaller.is_like(&drawn)
+        };
+        // Begin with an input that was chosen, or with the smallest one.
+        let fails = |&index: &usize| outcomes[index].as_ref().is_err_and(is_same);
+        let size = |index: &usize| if *index < n_chosen { 0 } else { size(*index) };
+        let smallest = (first..outcomes.len()).filter(fails).min_by_key(size).unwrap_or(first);
+        if let Some(smaller) = alone(smallest).filter(is_same) {
+            broken = smaller;
+        }
+        if let Some(drawn) = smallest.checked_sub(n_chosen) {
+            shrink(drawn, &mut |judge| {
+                judge_one(judge, &self.calls).filter(is_same).map(|smaller| broken = smaller).is_some()
+            });
+        }
+        broken.details.mistakes.clone_from(&drawn.details.mistakes);
+        Err(Broken { diagnosis: drawn.diagnosis, ..broken })
     }
 
     /// Only one in so many rows of a picture is judged.
@@ -320,10 +355,11 @@ fn is_first(gap: &str) -> bool {
     PRINTED.lock().unwrap_or_else(PoisonError::into_inner).insert(gap.to_owned())
 }
 
-/// Runs the check of this name as a test of `kit`: prints the message for the student if the check fails, and ends the
+/// Runs the check whose test has this path as a test of `kit`: prints the message for the student if the check fails, and ends the
 /// test. The code prints in every call, so the check runs in a process of its own, and only what one call prints is shown.
 /// With `--nocapture` it runs here, and everything is shown.
-pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
+pub fn grade(checks: &[Check], path: &str, kit: Arc<dyn Kit + Send + Sync>) {
+    let (_, name) = path.rsplit_once("::").unwrap_or_default();
     let Some(check) = checks.iter().find(|check| check.name == name) else {
         panic!("there is no check `{name}` in this stage");
     };
@@ -341,7 +377,7 @@ pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
             Verdict::Failed(message) => Some(message),
         }
     } else {
-        process::message_of(check)
+        process::message_of(check, path)
     };
     let Some(message) = message else { return };
     if is_alone {
@@ -385,6 +421,24 @@ mod tests {
         assert_eq!(find(), "42");
         assert_eq!(find(), "42");
         assert_eq!(with_trial(|trial| trial.forall(200, 0..1000i32, refuse_above(1000))), Ok(()));
+    }
+
+    #[test]
+    fn numbers_shrink_to_simple_ones_that_break_the_law_in_the_same_way() {
+        let find = |range: Range<f32>, breaks: fn(f32) -> Option<&'static str>| {
+            let judge = |number: &f32| match breaks(*number) {
+                None => Ok(()),
+                Some(yours) => Err(Broken::with_texts(format!("{number:?}"), yours, "", "")),
+            };
+            let law = |numbers: &[f32]| numbers.iter().map(judge).collect();
+            with_trial(|trial| trial.forall(200, crate::generate::number(range), law)).unwrap_err().input
+        };
+        assert_eq!(find(0.4..90.0, |number| (number > 0.7).then_some("large")), "1.0");
+        assert_eq!(find(-90.0..0.0, |number| (number < -1.2).then_some("small")), "-2.0");
+        assert_eq!(find(400.0..2e3, |number| (number > 600.0).then_some("large")), "1000.0");
+        // A small number does not shrink to a large one, although 1 breaks the law as well.
+        let of_two_kinds = |number: f32| if number < 0.2 { Some("small") } else { Some("large 7") };
+        assert_eq!(find(0.01..0.21, of_two_kinds).len(), "0.1".len());
     }
 
     #[test]

@@ -1,15 +1,15 @@
 //! Ray-plane intersection with the plane as the equation A x + B y + C z + D = 0.
 
-use crate::planes::{observations, of_tests};
+use crate::planes::{along_planes, at_far_planes, at_planes, observations, of_tests};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::{self, Expected, Sum, U, compare_tolerant};
-use checks::generate::{direction, point, rough_point};
+use checks::generate::{direction, point};
 use checks::nasty;
 use checks::paste::Arguments;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
-use raykata::kit::PlaneEquationQuery;
+use raykata::kit::{PlaneEquationQuery, PlaneQuery};
 use raykata::ray::Ray;
 use raykata::shape::PlaneEquation;
 
@@ -75,21 +75,15 @@ fn through(point: Vec3, normal: Vec3) -> PlaneEquation {
     PlaneEquation { normal, d: -normal.as_dvec3().dot(point.as_dvec3()) as f32 }
 }
 
+fn as_equation(PlaneQuery { ray, plane }: &PlaneQuery) -> PlaneEquationQuery {
+    PlaneEquationQuery { ray: *ray, plane: through(plane.point, plane.normal) }
+}
+
 pub(super) fn plane_by_coefficients_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
-    // Planes of any place and direction, with normals of any length, and rays that are almost parallel to them.
-    let plain = (point(8), direction(), point(8), direction()).prop_map(|(origin, direction, on, normal)| {
-        PlaneEquationQuery { ray: Ray::new(origin, direction), plane: through(on, normal) }
-    });
-    let slanted = (point(8), point(8), nasty::unit(), nasty::tilt(), any::<bool>()).prop_map(
-        |(origin, on, normal, (angle, turn), behind)| {
-            let direction = nasty::tilted(if behind { normal } else { -normal }, angle, turn);
-            PlaneEquationQuery { ray: Ray::new(origin, direction), plane: through(on, normal) }
-        },
-    );
     let ends = (0..4usize).prop_map(|end| [(0.0, f32::INFINITY), (0.0, 1.0), (2.0, 64.0), (-64.0, 1.0)][end]);
-    let inputs = (prop_oneof![plain, slanted], ends).prop_map(|(query, (t_min, t_max))| PlaneEquationQuery {
+    let inputs = (at_planes(), ends).prop_map(|(query, (t_min, t_max))| PlaneEquationQuery {
         ray: query.ray.with_range(t_min, t_max),
-        ..query
+        ..as_equation(&query)
     });
     let ceiling = PlaneEquation { normal: Vec3::Y, d: -2.0 };
     // From both sides, with products of n·v that cancel to 0.00003 of their size.
@@ -133,34 +127,19 @@ pub(super) fn plane_by_coefficients_takes_any_factor(trial: &Trial<'_>) -> Check
 
 pub(super) fn plane_by_coefficients_is_missed_by_rays_along_it(trial: &Trial<'_>) -> CheckResult {
     let floor = PlaneEquation { normal: Vec3::Y, d: 0.0 };
-    let slanted = PlaneEquation { normal: vec3(1.0, 2.0, -1.0), d: -2.0 };
-    let hit = |t| Expected::exactly(Some(t));
-    let cases = [
-        (Ray::new(Vec3::Y, Vec3::X), floor, Expected::Miss),
-        (Ray::new(Vec3::ZERO, Vec3::X), floor, Expected::Miss),
-        (Ray::new(Vec3::NEG_Y, Vec3::new(1.0, -0.0, 1.0)), floor, Expected::Miss),
-        (Ray::new(Vec3::ONE, vec3(1.0, 1.0, 3.0)), slanted, Expected::Miss),
-        (Ray::new(Vec3::ZERO, Vec3::NEG_Y), floor, Expected::Miss),
-        (Ray::new(Vec3::Y, Vec3::NAN), floor, Expected::Miss),
+    let flat = Ray::new(Vec3::Y, vec3(1.0, 2f32.powi(-20), 0.0));
+    let others = [
         (Ray::new(Vec3::Y, Vec3::NEG_Y), PlaneEquation { d: f32::NAN, ..floor }, Expected::Miss),
         (Ray::new(Vec3::Y, Vec3::NEG_Y), PlaneEquation { normal: Vec3::ZERO, d: 1.0 }, Expected::Miss),
-        (Ray::new(Vec3::Y, Vec3::NEG_Y), floor, hit(1.0)),
-        (Ray::new(2.0 * Vec3::NEG_Y, vec3(4.0, 0.5, 0.0)), floor, hit(4.0)),
-        (
-            Ray::new(Vec3::Y, vec3(1.0, 2f32.powi(-20), 0.0)),
-            PlaneEquation { d: -2.0, ..floor },
-            hit(1_048_576.0),
-        ),
+        (flat, PlaneEquation { d: -2.0, ..floor }, Expected::exactly(Some(1_048_576.0))),
     ];
-    let cases = cases.map(|(ray, plane, expected)| (PlaneEquationQuery { ray, plane }, expected));
-    all_hold(judge_cases(trial, &cases, "the definition"))
+    let others = others.map(|(ray, plane, expected)| (PlaneEquationQuery { ray, plane }, expected));
+    let along = along_planes().map(|(query, expected)| (as_equation(&query), expected));
+    all_hold(judge_cases(trial, &[&along[..], &others].concat(), "the definition"))
 }
 
 pub(super) fn plane_by_coefficients_far_from_the_origin(trial: &Trial<'_>) -> CheckResult {
     // D and n·o are as large as the coordinates, and their sum is as small as the distance.
-    let inputs = (rough_point(4.0), direction(), direction()).prop_map(|(offset, direction, normal)| {
-        let on = Vec3::new(148_376.0, 1_234.0, -223_423.0);
-        PlaneEquationQuery { ray: Ray::new(on + offset, direction), plane: through(on, normal) }
-    });
+    let inputs = at_far_planes().prop_map(|query| as_equation(&query));
     trial.forall(2000, inputs, |queries| judge_equations(trial, queries, Sum::Double))
 }

@@ -112,25 +112,30 @@ pub(super) fn of_tests(
     all
 }
 
-pub(super) fn plane_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
+/// Rays at planes of any place and direction, with normals of any length. Half of the rays are at a chosen angle, so that some are
+/// almost parallel to the plane.
+pub(super) fn at_planes() -> impl Strategy<Value = PlaneQuery> + Clone {
     let plain =
         (point(8), direction(), point(8), direction()).prop_map(|(origin, direction, point, normal)| {
             PlaneQuery { ray: Ray::new(origin, direction), plane: Plane { point, normal } }
         });
-    // Any sizes of the scene, of the direction and of the normal, and rays that are almost parallel to the plane.
-    let scales = (nasty::scale(-40..=40), nasty::scale(-40..=40), nasty::scale(-40..=40));
     let slanted = (point(8), point(8), nasty::unit(), nasty::tilt(), any::<bool>()).prop_map(
         |(origin, point, normal, (angle, turn), behind)| {
             let direction = nasty::tilted(if behind { normal } else { -normal }, angle, turn);
             PlaneQuery { ray: Ray::new(origin, direction), plane: Plane { point, normal } }
         },
     );
-    let sized =
-        (prop_oneof![plain.clone(), slanted], scales).prop_map(|(query, (size, length, of_normal))| {
-            let PlaneQuery { ray, plane } = query;
-            let ray = Ray { origin: size * ray.origin, direction: length * ray.direction, ..ray };
-            PlaneQuery { ray, plane: Plane { point: size * plane.point, normal: of_normal * plane.normal } }
-        });
+    prop_oneof![plain, slanted]
+}
+
+pub(super) fn plane_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
+    // Any sizes of the scene, of the direction and of the normal.
+    let scales = (nasty::scale(-40..=40), nasty::scale(-40..=40), nasty::scale(-40..=40));
+    let sized = (at_planes(), scales).prop_map(|(query, (size, length, of_normal))| {
+        let PlaneQuery { ray, plane } = query;
+        let ray = Ray { origin: size * ray.origin, direction: length * ray.direction, ..ray };
+        PlaneQuery { ray, plane: Plane { point: size * plane.point, normal: of_normal * plane.normal } }
+    });
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let down = |x: f32, y: f32| Ray::new(2.0 * Vec3::Y, vec3(x, y, 0.0));
     let on_floor = |ray| PlaneQuery { ray, plane: floor };
@@ -149,7 +154,7 @@ pub(super) fn plane_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResu
         cancels(0.0, 1024.0),
         cancels(4.0, -1024.0),
     ];
-    trial.forall_and(&drawn, 4000, prop_oneof![plain, sized], |queries| judge_planes(trial, queries))?;
+    trial.forall_and(&drawn, 4000, sized, |queries| judge_planes(trial, queries))?;
     trial.forall(500, (point(8), direction(), direction()), |inputs| judge_ends(trial, inputs))
 }
 
@@ -172,7 +177,8 @@ fn judge_ends(trial: &Trial<'_>, inputs: &[(Vec3, Vec3, Vec3)]) -> Vec<CheckResu
     outcomes
 }
 
-pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> CheckResult {
+/// Rays along a plane, rays and a plane with NaN, a plane without a normal, and rays that hit.
+pub(super) fn along_planes() -> [(PlaneQuery, Expected); 9] {
     let plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let slanted = Plane { point: vec3(0.0, 1.0, 0.0), normal: vec3(1.0, 2.0, -1.0) };
     let hit = |t| Expected::exactly(Some(t));
@@ -187,17 +193,24 @@ pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> CheckResult
         (Ray::new(Vec3::Y, Vec3::NEG_Y), plane, hit(1.0)),
         (Ray::new(2.0 * Vec3::NEG_Y, vec3(4.0, 0.5, 0.0)), plane, hit(4.0)),
     ];
-    let cases = cases.map(|(ray, plane, expected)| (PlaneQuery { ray, plane }, expected));
-    all_hold(judge_cases(trial, &cases, "the definition"))
+    cases.map(|(ray, plane, expected)| (PlaneQuery { ray, plane }, expected))
+}
+
+pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> CheckResult {
+    all_hold(judge_cases(trial, &along_planes(), "the definition"))
+}
+
+/// Rays at planes that are far from the origin.
+pub(super) fn at_far_planes() -> impl Strategy<Value = PlaneQuery> + Clone {
+    (rough_point(4.0), direction(), direction()).prop_map(|(offset, direction, normal)| {
+        let point = Vec3::new(148_376.0, 1_234.0, -223_423.0);
+        PlaneQuery { ray: Ray::new(point + offset, direction), plane: Plane { point, normal } }
+    })
 }
 
 pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> CheckResult {
     // -(D + n·o) subtracts two numbers as large as the coordinates; (p0 - o)·n does not.
-    let inputs = (rough_point(4.0), direction(), direction()).prop_map(|(offset, direction, normal)| {
-        let point = Vec3::new(148_376.0, 1_234.0, -223_423.0);
-        PlaneQuery { ray: Ray::new(point + offset, direction), plane: Plane { point, normal } }
-    });
-    trial.forall(2000, inputs, |queries| judge_planes(trial, queries))
+    trial.forall(2000, at_far_planes(), |queries| judge_planes(trial, queries))
 }
 
 pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> CheckResult {

@@ -54,7 +54,11 @@ fn lines(kit: &dyn Kit, (sphere, point, normal, eye): &Place) -> String {
             Some(_) => normal.to_array().map(|x| digits(x, 3)).join(" "),
             None => "-".to_owned(),
         };
-        format!("{index:>2}  sphere {} {}  plane {} {}  normal {normal}", t(0), t(1), t(2), t(3))
+        let [algebraic, geometric, plane, coefficients] = [0, 1, 2, 3].map(t);
+        format!(
+            "{index:>2}  sphere_algebraic {algebraic}  sphere_geometric {geometric}  plane {plane}  \
+             plane_by_coefficients {coefficients}  face_forward {normal}"
+        )
     };
     normals.iter().enumerate().map(line).collect::<Vec<String>>().join("\n")
 }
@@ -73,6 +77,6 @@ pub(super) fn hit_table_of_a_sphere_on_a_plane(trial: &Trial<'_>) -> CheckResult
         (sphere, floor, vec3(tilt, 1.0, 0.1), sphere.center + radius * vec3(x, 1.5, 5.0))
     });
     let place = trial.composed(public, hidden);
-    let input = "rays at a sphere on a plane";
+    let input = "rays at a sphere above a floor";
     Table { name: "stage1_hit_table", input }.check(trial, |kit| lines(kit, &place))
 }

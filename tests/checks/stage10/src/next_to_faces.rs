@@ -4,10 +4,11 @@ use super::triangles::judge_hit_point;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
+use checks::paste::Arguments;
 use glam::Vec3;
 use oracle::exact::{Body, verdict};
 use oracle::splitmix::Random;
-use raykata::kit::TriangleQuery;
+use raykata::kit::{Request, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
@@ -112,14 +113,15 @@ pub(super) fn starts_next_to_a_face(trial: &Trial<'_>) -> CheckResult {
         }
         let infinite = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
         let line = trial.kit.watertight(&[query(&infinite, &faces[0])]).remove(0);
-        let input = format!(
-            "watertight of {ray:?}\nagainst each of the faces {faces:?} of a tetrahedron, from inside"
-        );
-        Err(Broken::with_texts(input, "no hit", "a hit", "the mesh is closed").explained_by([(
+        let (hit, about) =
+            (query(ray, &faces[0]), "a face of a tetrahedron, from inside; no other face is hit");
+        let input = format!("{}\n{about}", hit.call("watertight"));
+        let broken = Broken::with_texts(input, "no hit", "a hit", "the mesh is closed").explained_by([(
             line.is_some_and(|hit| hit.t <= 0.0),
             "t has the wrong sign: the ray starts so near to the triangle that rounding errors decide on which side it \
              starts. Compute the determinants exactly there",
-        )]))
+        )]);
+        Err(broken.in_call(Request::Watertight(vec![hit])))
     };
     all_hold(cases.iter().zip(answers.chunks(4)).map(judge).collect())
 }

@@ -105,7 +105,13 @@ impl Scaled {
             let query = |index: &usize| TriangleQuery { ray: at(self.half, &rays[*index]), triangle: *face };
             let hits = kit.watertight(&entered.iter().map(query).collect::<Vec<_>>());
             for (index, hit) in entered.iter().zip(hits) {
-                add(*index, hit.map(|hit| hit.t), self.half, &|_| normal_of(face), Kind::Gem);
+                add(
+                    *index,
+                    hit.map(|hit| hit.t),
+                    self.half,
+                    &|_| (face.b - face.a).cross(face.c - face.a),
+                    Kind::Gem,
+                );
             }
         }
         let queries: Vec<SphereQuery> =
@@ -182,10 +188,6 @@ impl Scaled {
 
 fn times(scale: f32, triangle: &Triangle) -> Triangle {
     Triangle { a: scale * triangle.a, b: scale * triangle.b, c: scale * triangle.c }
-}
-
-fn normal_of(face: &Triangle) -> Vec3 {
-    (face.b - face.a).cross(face.c - face.a)
 }
 
 pub(super) fn picture_at_three_scales(trial: &Trial<'_>) -> CheckResult {

@@ -51,7 +51,8 @@ fn lines(kit: &dyn Kit, shift: Vec3) -> String {
         let roots =
             roots[i].map_or("-".into(), |roots| roots.map(|root| digits(root / halves[i], 5)).join(" "));
         format!(
-            "2^{}: watertight {}  double {}  sphere {sphere}  box {bounds}  unit {unit}  roots {roots}",
+            "2^{}: watertight {}  triangle_in_double {}  sphere_in_double {sphere}  conservative_slab {bounds}  \
+             safe_normalize {unit}  stable_roots {roots}",
             EXPONENTS[i],
             of_triangle(watertight[i], halves[i]),
             of_triangle(double[i], scales[i]),

@@ -6,7 +6,7 @@ use super::next_to_faces::{passes_beside_a_triangle_seen_edge_on, starts_next_to
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
-use checks::paste::Arguments;
+use checks::paste::{Arguments, Paste};
 use glam::{Vec3, vec3};
 use oracle::STABLE;
 use oracle::exact::{Body, meet, t_in_double, triangle, verdict};
@@ -15,7 +15,7 @@ use oracle::gauntlet::families::families;
 use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::gauntlet::meshes::{Closed, closed};
 use oracle::splitmix::Random;
-use raykata::kit::{Kit, TriangleHit, TriangleQuery};
+use raykata::kit::{Kit, Request, TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
@@ -105,11 +105,9 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
     Ok(())
 }
 
-/// The known mistakes that let `ray` leak out of `mesh`: what exact arithmetic and the student's code say about the
-/// triangles that the ray hits.
-fn reasons_of_leak(trial: &Trial<'_>, ray: &Ray, mesh: &Closed) -> [(bool, &'static str); 4] {
-    let is_hit = |triangle: &Triangle| verdict(ray, Body::Triangle(*triangle)).is_some_and(|v| v.is_hit());
-    let hits: Vec<Triangle> = mesh.all().into_iter().filter(is_hit).collect();
+/// The known mistakes that let `ray` leak out of a mesh: what exact arithmetic and the student's code say about the triangles
+/// `hits`, which the ray hits.
+fn reasons_of_leak(trial: &Trial<'_>, ray: &Ray, hits: &[Triangle]) -> [(bool, &'static str); 4] {
     let ask = |ray: &dyn Fn(&Triangle) -> Ray| {
         let query = |triangle: &Triangle| TriangleQuery { ray: ray(triangle), triangle: *triangle };
         trial.kit.watertight(&hits.iter().map(query).collect::<Vec<_>>())
@@ -199,14 +197,19 @@ fn mesh_does_not_leak(trial: &Trial<'_>, mesh: &Closed) -> CheckResult {
             Aim::Edge => "an edge",
             Aim::Vertex => "a vertex",
         };
+        let is_hit = |query: &TriangleQuery| {
+            verdict(&query.ray, Body::Triangle(query.triangle)).is_some_and(|verdict| verdict.is_hit())
+        };
+        let hits: Vec<TriangleQuery> = all.into_iter().filter(is_hit).collect();
         let input = format!(
-            "watertight of {:?}\nagainst each of the {} triangles of a closed mesh ({}), from inside, aimed at {aimed_at}",
-            ray,
-            mesh.triangles.len(),
+            "{}\nagainst a closed mesh ({}) from inside, aimed at {aimed_at}; the call has the triangles that it hits",
+            ray.paste(),
             mesh.name
         );
-        Err(Broken::with_texts(input, "no hit", "a hit", "the mesh is closed")
-            .explained_by(reasons_of_leak(trial, ray, mesh)))
+        let triangles: Vec<Triangle> = hits.iter().map(|query| query.triangle).collect();
+        Err(Broken::with_texts(input, "no hit", "a hit of one of them", "the mesh is closed")
+            .explained_by(reasons_of_leak(trial, ray, &triangles))
+            .in_call(Request::Watertight(hits)))
     };
     all_hold(rays.iter().map(judge).collect())?;
     // In the opposite direction the ray misses these triangles, unless they lie around its origin.

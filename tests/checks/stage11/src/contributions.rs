@@ -14,13 +14,12 @@ use raykata::kit::{EmissionQuery, LightContributionQuery};
 use std::f64::consts::PI;
 
 fn color() -> impl Strategy<Value = Vec3> + Clone {
-    let channel = || (0..=8i32).prop_map(|n| n as f32 / 4.0);
-    (channel(), channel(), channel()).prop_map(|(x, y, z)| vec3(x, y, z))
+    checks::generate::vector(checks::generate::fractions(0..=8, 4.0))
 }
 
 /// A density: 0 in one of five.
 fn density() -> impl Strategy<Value = f32> + Clone {
-    prop_oneof![1 => Just(0.0f32), 2 => (1..=32i32).prop_map(|n| n as f32 / 8.0), 2 => magnitude(-3.0, 5.0)]
+    prop_oneof![1 => Just(0.0f32), 2 => checks::generate::fractions(1..=32, 8.0), 2 => magnitude(-3.0, 5.0)]
 }
 
 fn paste(query: &LightContributionQuery) -> String {
@@ -31,8 +30,8 @@ fn paste(query: &LightContributionQuery) -> String {
 fn queries(
     angle: impl Strategy<Value = (f64, f64)> + Clone,
 ) -> impl Strategy<Value = LightContributionQuery> + Clone {
-    let pdf = prop_oneof![1 => (1..=32i32).prop_map(|n| n as f32 / 8.0), 1 => magnitude(-3.0, 5.0)];
-    let distance = prop_oneof![3 => (1..=16i32).prop_map(|n| n as f32 / 4.0), 1 => Just(f32::INFINITY)];
+    let pdf = prop_oneof![1 => checks::generate::fractions(1..=32, 8.0), 1 => magnitude(-3.0, 5.0)];
+    let distance = prop_oneof![3 => checks::generate::fractions(1..=16, 4.0), 1 => Just(f32::INFINITY)];
     let sample = (nasty::unit(), angle, distance, color(), pdf).prop_map(
         |(normal, (angle, turn), distance, radiance, pdf)| {
             (normal, EmitterSample { direction: nasty::tilted(normal, angle, turn), distance, radiance, pdf })

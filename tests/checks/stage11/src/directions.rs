@@ -23,10 +23,6 @@ pub(super) fn numbers() -> impl Strategy<Value = Vec2> + Clone {
     (number(), number()).prop_map(|(x, y)| vec2(x, y))
 }
 
-fn paste((normal, u): &(Vec3, Vec2)) -> String {
-    call("cosine_direction", &[normal, u])
-}
-
 pub(super) fn cosine_directions_stay_above_the_surface(trial: &Trial<'_>) -> CheckResult {
     trial.forall(1000, (nasty::unit(), numbers()), |queries| {
         let answers = trial.kit.cosine_direction(queries);
@@ -41,8 +37,12 @@ pub(super) fn cosine_directions_stay_above_the_surface(trial: &Trial<'_>) -> Che
             if unit && above >= -1e-6 && !constant {
                 return Ok(());
             }
-            let broken =
-                Broken::new(paste(query), yours, "a unit direction above the surface", "the definition");
+            let broken = Broken::new(
+                call("cosine_direction", &[&query.0, &query.1]),
+                yours,
+                "a unit direction above the surface",
+                "the definition",
+            );
             Err(broken.explained_by([
                 (constant, "you return the normal for every u"),
                 (
@@ -72,7 +72,12 @@ fn have_their_density(trial: &Trial<'_>, normals: &[Vec3], seed: u64) -> CheckRe
     let judge = |(query, yours): (&(Vec3, Vec2), Vec3)| {
         let (normal, direction) = (query.0.as_dvec3().normalize(), yours.as_dvec3());
         if !((direction.length() - 1.0).abs() < 1e-5) {
-            return Err(Broken::new(paste(query), yours, "a unit direction", "the definition"));
+            return Err(Broken::new(
+                call("cosine_direction", &[&query.0, &query.1]),
+                yours,
+                "a unit direction",
+                "the definition",
+            ));
         }
         let (x, y) = normal.any_orthonormal_pair();
         let cosine = direction.dot(normal);

@@ -31,7 +31,7 @@ const STRATA: u32 = 4096;
 pub(super) fn roulette_keeps_the_mean(trial: &Trial<'_>) -> CheckResult {
     // The largest channel is at least 1/64, so that at least 64 of the random numbers survive.
     let largest =
-        prop_oneof![6 => (1..64i32).prop_map(|n| n as f32 / 64.0), 2 => 0.02..0.99f32, 1 => 1.0..8.0f32];
+        prop_oneof![6 => checks::generate::fractions(1..=63, 64.0), 2 => 0.02..0.99f32, 1 => 1.0..8.0f32];
     // Roulette begins at bounce 3.
     let first =
         [(Vec3::new(0.25, 0.5, 0.125), 3), (Vec3::new(0.75, 0.5, 0.875), 3), (Vec3::new(1.5, 0.5, 1.0), 3)];
@@ -122,7 +122,7 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[f32]) -> Judged {
 
 pub(super) fn roulette_ends_no_young_path(trial: &Trial<'_>) -> CheckResult {
     let number = || (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0);
-    let young = (weight((1..=64i32).prop_map(|n| n as f32 / 64.0)), 0..3u32, number(), Just(true));
+    let young = (weight(checks::generate::fractions(1..=64, 64.0)), 0..3u32, number(), Just(true));
     // Every fifth path has the weight 1/64, and half of these must end, whichever random numbers end them.
     let dim = (weight(Just(1.0f32 / 64.0)), 3..50u32, number(), Just(false));
     let cases = prop_oneof![4 => young, 1 => dim];

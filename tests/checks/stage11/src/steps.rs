@@ -22,8 +22,7 @@ pub(super) fn describe(query: &StepQuery) -> String {
 }
 
 pub(super) fn color() -> impl Strategy<Value = Vec3> + Clone {
-    let channel = || (1..=8i32).prop_map(|n| n as f32 / 8.0);
-    (channel(), channel(), channel()).prop_map(|(x, y, z)| vec3(x, y, z))
+    checks::generate::vector(checks::generate::fractions(1..=8, 8.0))
 }
 
 pub(super) fn numbers() -> impl Strategy<Value = StepNumbers> + Clone {
@@ -45,7 +44,7 @@ fn pdf() -> impl Strategy<Value = f32> + Clone {
 
 /// The probability with which an emitter is chosen. It is 1 in one of four.
 pub(super) fn probability() -> impl Strategy<Value = f32> + Clone {
-    (1..=4i32).prop_map(|n| n as f32 / 4.0)
+    checks::generate::fractions(1..=4, 4.0)
 }
 
 /// A diffuse surface at a point, with both normals.

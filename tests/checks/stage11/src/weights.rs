@@ -51,7 +51,7 @@ fn judge_sum(pair: &Pair, (own, other): Pair) -> Judged {
 }
 
 pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
-    let density = || prop_oneof![1 => (1..=32i32).prop_map(|n| n as f32 / 8.0), 3 => magnitude(-4.0, 4.0)];
+    let density = || prop_oneof![1 => checks::generate::fractions(1..=32, 8.0), 3 => magnitude(-4.0, 4.0)];
     let pairs = (density(), density(), 0..6i32)
         .prop_map(|(own, other, which)| (own, if which == 0 { own } else { other }));
     trial.forall(500, pairs, |pairs| {

@@ -70,7 +70,7 @@ impl Parts<'_> {
 
 /// A search of a tree over primitives with these hits. The leaves have the sizes of `sizes`, and list the primitives in
 /// an order that is not that of their numbers.
-fn query(hits: &[f32], sizes: &[usize], choices: &[u16], ray: Ray) -> WideQuery {
+pub(super) fn query(hits: &[f32], sizes: &[usize], choices: &[u16], ray: Ray) -> WideQuery {
     let mut ids = shuffled(hits.len()).into_iter();
     let mut leaves = Vec::new();
     for size in sizes.iter().cycle() {
@@ -94,8 +94,7 @@ fn query(hits: &[f32], sizes: &[usize], choices: &[u16], ray: Ray) -> WideQuery 
 
 /// Searches with up to `most` primitives. Their `t` are near whole quarters, and no two are equal.
 pub(super) fn searches(most: usize) -> impl Strategy<Value = WideQuery> + Clone {
-    let t =
-        prop_oneof![2 => (1..=40i32).prop_map(|quarters| quarters as f32 / 4.0), 1 => Just(f32::INFINITY)];
+    let t = prop_oneof![2 => checks::generate::fractions(1..=40, 4.0), 1 => Just(f32::INFINITY)];
     let hits = prop::collection::vec(t, 1..=most);
     let sizes = prop::collection::vec(1..=9usize, 1..6);
     let choices = prop::collection::vec(any::<u16>(), 1..30);
@@ -113,22 +112,6 @@ pub(super) fn two_leaves(entries: [f32; 2], hits: [f32; 2]) -> WideQuery {
     let mut two = query(&hits, &[1], &[0, 1], Ray::new(Vec3::ZERO, Vec3::X));
     two.entries[0][..2].copy_from_slice(&entries);
     two
-}
-
-/// Small searches in which each mistake shows: a leaf of five, two leaves of which the second one has the nearer hit, two with
-/// a hit in one of them, and a hit before the range.
-pub(super) fn small_searches() -> Vec<WideQuery> {
-    let ray = Ray::new(Vec3::ZERO, Vec3::X);
-    let leaf = query(&[3.0, 5.0, 4.0, 6.0, 2.0], &[5], &[0], ray);
-    let (miss, pair) = (f32::INFINITY, two_leaves);
-    let before = query(&[1.0], &[1], &[0], ray.with_range(2.0, miss));
-    vec![
-        leaf,
-        pair([1.0, 2.0], [6.0, 4.0]),
-        pair([1.0, 2.0], [miss, 4.0]),
-        pair([1.0, 2.0], [6.0, miss]),
-        before,
-    ]
 }
 
 /// The primitive and the `t` of the closest hit by brute force; of equal ones the smaller number.

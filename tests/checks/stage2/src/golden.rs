@@ -8,7 +8,7 @@ use checks::picture::{Composed, LARGE};
 use checks::{Trial, picture};
 use glam::{Quat, Vec3, vec3};
 use proptest::prelude::*;
-use raykata::kit::{InterpolateQuery, Kit, TriangleQuery};
+use raykata::kit::{InterpolateQuery, Kit, TriangleHit, TriangleQuery};
 use raykata::mesh::Mesh;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
@@ -29,20 +29,22 @@ pub(super) fn hit_table_of_a_fan(trial: &Trial<'_>) -> CheckResult {
             TriangleQuery { ray: Ray::new(eye, target - eye), triangle }
         })
         .collect();
-    for method in [CRAMER, GRAM, CHOICE] {
-        let lines = |kit: &dyn Kit| {
-            let line = |(query, hit): (&TriangleQuery, Option<raykata::kit::TriangleHit>)| {
-                let target = query.ray.at(1.0);
+    let lines = |kit: &dyn Kit| {
+        let hits = [CRAMER, GRAM, CHOICE].map(|method| (method.name, (method.ask)(kit, &rays)));
+        let line = |(index, query): (usize, &TriangleQuery)| {
+            let hit = |(name, hits): &(&str, Vec<Option<TriangleHit>>)| {
+                let hit = hits[index];
                 let hit =
                     hit.map_or("-".into(), |hit| format!("{:.4} {:.4} {:.4}", hit.t, hit.beta, hit.gamma));
-                format!("({:.2} {:.2})  {hit}", target.x, target.y)
+                format!("  {name} {hit}")
             };
-            rays.iter().zip((method.ask)(kit, &rays)).map(line).collect::<Vec<String>>().join("\n")
+            let target = query.ray.at(1.0);
+            format!("({:.2} {:.2})", target.x, target.y) + &hits.each_ref().map(hit).concat()
         };
-        let input = format!("{} on a fan of 25 rays from {eye}", method.name);
-        Table { name: "stage2_hit_table", input: &input }.check(trial, lines)?;
-    }
-    Ok(())
+        rays.iter().enumerate().map(line).collect::<Vec<String>>().join("\n")
+    };
+    let input = format!("a fan of 25 rays from {eye}");
+    Table { name: "stage2_hit_table", input: &input }.check(trial, lines)
 }
 
 fn colors(kit: &dyn Kit, rays: &[Ray], mesh: &Mesh) -> Vec<Vec3> {

@@ -4,6 +4,7 @@ use crate::triangle_mistakes::{mistakes, observations};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::{self, TriangleExpected, compare_tolerant};
+use checks::generate::fractions;
 use checks::paste::Arguments;
 use glam::Vec3;
 use proptest::prelude::*;
@@ -66,13 +67,13 @@ pub(super) fn aimed(
     triangles: impl Strategy<Value = Triangle> + Clone,
     origins: impl Strategy<Value = Vec3> + Clone,
 ) -> impl Strategy<Value = TriangleQuery> + Clone {
-    (triangles, origins, -4..=12i32, -4..=12i32, 1..=16i32).prop_map(
+    let weight = || fractions(-4..=12, 8.0);
+    (triangles, origins, weight(), weight(), fractions(1..=16, 4.0)).prop_map(
         |(triangle, origin, beta, gamma, length)| {
-            let (beta, gamma) = (beta as f32 / 8.0, gamma as f32 / 8.0);
             let target = triangle.a + beta * (triangle.b - triangle.a) + gamma * (triangle.c - triangle.a);
             let to_target = target - origin;
             let direction = if to_target == Vec3::ZERO { Vec3::X } else { to_target.normalize() };
-            TriangleQuery { ray: Ray::new(origin, length as f32 / 4.0 * direction), triangle }
+            TriangleQuery { ray: Ray::new(origin, length * direction), triangle }
         },
     )
 }

@@ -111,8 +111,10 @@ fn judge_all(trial: &Trial<'_>, what: &str, meshes: &[Mesh]) -> Vec<CheckResult>
 /// Faces around vertex 0, with angles and areas that differ. Some of them do not have their neighbour as next one.
 fn fans() -> impl Strategy<Value = Mesh> + Clone {
     let faces = prop::collection::vec((0..6u32, 0..6u32, any::<bool>()), 1..6);
-    (point(2), prop::collection::vec(point(2), 6), faces).prop_map(|(tip, around, faces)| {
-        let positions: Vec<Vec3> = std::iter::once(tip).chain(around).collect();
+    let around = prop::collection::vec(point(2), 6);
+    let points = (point(2), around).prop_map(|(tip, around)| [vec![tip], around].concat());
+    let differ = |points: &Vec<Vec3>| (1..7).all(|index| !points[..index].contains(&points[index]));
+    (points.prop_filter("equal points", differ), faces).prop_map(|(positions, faces)| {
         let triangles = faces
             .into_iter()
             .map(|(p, q, first)| if first { [0, p + 1, q + 1] } else { [q + 1, 0, p + 1] })

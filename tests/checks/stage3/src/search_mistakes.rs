@@ -245,15 +245,11 @@ pub(super) fn visits(order: Order, query: &SearchQuery) -> u64 {
     }
     let (mut end, mut count) = (query.ray.t_max, 0);
     if let Some(root) = query.bvh.root()
-        && tree_is_entered(query)
+        && (Search { query, wrong: Wrong::Nothing }).enter(root).is_some()
     {
         below(order, query, root, &mut end, &mut count);
     }
     count
-}
-
-fn tree_is_entered(query: &SearchQuery) -> bool {
-    query.bvh.root().is_some_and(|root| Search { query, wrong: Wrong::Nothing }.enter(root).is_some())
 }
 
 /// The orders that open too many nodes, with whether they open exactly so many.

@@ -2,7 +2,7 @@
 
 use super::search_mistakes::{any_mistakes, every_node, mistakes, observations};
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::generate::{point, unit};
+use checks::generate::{fractions, point, unit};
 use checks::judge::{compare, compare_formulas};
 use checks::tree::{closest_in_table, tied};
 use checks::{Trial, tree};
@@ -16,13 +16,13 @@ use raykata::shape::Sphere;
 
 /// Searches: a ray, up to 60 spheres (0 to 29, in some scenes each of them twice), a tree and a table of answers.
 pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
-    let spheres = prop::collection::vec((point(6), 1..=8i32), 0..30);
+    let spheres = prop::collection::vec((point(6), fractions(1..=8, 4.0)), 0..30);
     (spheres, point(10), unit(), 1..=4usize, 0..=4i32, 0..=9i32).prop_map(
         |(spheres, origin, direction, leaf_size, t_min, t_max)| {
             let spheres: Vec<Sphere> =
-                spheres.into_iter().map(|(center, r)| Sphere { center, radius: r as f32 / 4.0 }).collect();
+                spheres.into_iter().map(|(center, radius)| Sphere { center, radius }).collect();
             // Some scenes have each sphere twice.
-            let times = if t_min % 3 == 0 { 2 } else { 1 };
+            let times = if t_min % 3 == 1 { 2 } else { 1 };
             let spheres: Vec<Sphere> =
                 spheres.into_iter().flat_map(|sphere| std::iter::repeat_n(sphere, times)).collect();
             let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();

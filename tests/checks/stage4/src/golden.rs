@@ -57,7 +57,7 @@ pub(super) fn shading_table(trial: &Trial<'_>) -> CheckResult {
             let mut traced = answer.traced;
             traced.sort_unstable();
             format!(
-                "({:.2} {:.2} {:.2})  {:.3} {:.3} {:.3}  rays to {traced:?}",
+                "shade ({:.2} {:.2} {:.2})  {:.3} {:.3} {:.3}  rays to {traced:?}",
                 n.x, n.y, n.z, answer.color.x, answer.color.y, answer.color.z
             )
         };

@@ -5,7 +5,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::{Judged, proven, unless};
 use checks::nasty;
-use checks::paste::{Paste, call};
+use checks::paste::{Arguments, Paste, call};
 use checks::statistics::{Mistakes, SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
 use glam::{DVec3, Vec2, Vec3, vec3};
 use raykata::kit::{RectangleQuery, SphereSampleQuery};
@@ -200,10 +200,6 @@ impl Seen {
     }
 }
 
-fn sphere_call(query: &SphereSampleQuery) -> String {
-    format!("sample_sphere({}, {}, {})", query.sphere.paste(), query.from.paste(), query.u.paste())
-}
-
 /// Samples spheres in turn. Every direction must have unit length and lead to its sphere.
 fn seen(trial: &Trial<'_>, spheres: &[(Sphere, Vec3)]) -> Result<Seen, Broken> {
     let u = numbers(trial.seed);
@@ -249,8 +245,12 @@ fn judge_direction(
         seen.local.push(DVec3::new(cosine, toward.dot(x), toward.dot(y)));
         return Ok(());
     }
-    let broken =
-        Broken::new(sphere_call(query), direction, "a unit direction to the sphere", "the definition");
+    let broken = Broken::new(
+        query.call("sample_sphere"),
+        direction,
+        "a unit direction to the sphere",
+        "the definition",
+    );
     Err(broken.explained_by([
         (inside && all_nan, "you return NaN: from inside the sphere 1 - sin² is negative"),
         (direction.is_nan(), "you return NaN"),

@@ -8,7 +8,7 @@ use checks::judge::{Judged, compare, proven, unless};
 use checks::nasty;
 use checks::paste::{Paste, call};
 use checks::statistics::{SAMPLES, columns, covers_evenly, pairs};
-use glam::{DVec3, Vec3, vec3};
+use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::camera::Shutter;
@@ -178,9 +178,7 @@ pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> CheckResult {
         1 => (start, end, 1.0),
         _ => (start, start, time),
     });
-    // At this end the rounding error of each known formula is visible.
-    let chosen = (vec3(937.2, -612.7, 0.1), vec3(-5.3, 841.9, 1e-3), 1.0);
-    trial.forall_and(&[chosen], 3000, inputs, |queries| {
+    trial.forall(3000, inputs, |queries| {
         compare(queries, trial.kit.lerp(queries), |query, yours| {
             let (start, end, time) = *query;
             let expected = if time == 1.0 { end } else { start };
@@ -210,13 +208,12 @@ pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> CheckResult {
     // Times just below 1, where a rounding error may leave the box, and just above 0.
     let time = prop_oneof![6 => 0.0..=1.0f32, 1 => Just(1.0 - f32::EPSILON / 2.0), 1 => Just(1e-7f32)];
     let queries = (ways(), time).prop_map(|((start, end), time)| (start, end, time));
-    let drawn = (vec3(1.0, 2.0, -3.0), vec3(2.0, -2.0, 4.5), 0.25);
-    trial.forall_and(&[drawn], 4000, queries, |queries| {
+    trial.forall(4000, queries, |queries| {
         compare(queries, trial.kit.lerp(queries), |query, yours| {
             let (start, end, time) = *query;
             let exact = start.as_dvec3().lerp(end.as_dvec3(), f64::from(time));
-            // The tolerance covers three roundings of the larger end, per axis.
-            let slack = 2e-7 * start.abs().max(end.abs()).as_dvec3();
+            // The tolerance covers five roundings of the larger end, per axis: end - start is up to twice as large.
+            let slack = 3e-7 * start.abs().max(end.abs()).as_dvec3();
             let off = |place: DVec3| (yours.as_dvec3() - place).abs();
             let near = off(exact).cmple(slack).all();
             let inside = Aabb::new(start.min(end), start.max(end)).contains(yours);
@@ -252,12 +249,7 @@ pub(super) fn motion_bounds_covers_the_way_and_no_more(trial: &Trial<'_>) -> Che
     let scaled = |bounds: Aabb, scale: f32| Aabb::new(scale * bounds.min, scale * bounds.max);
     let ways = (around(), around(), nasty::any_scale())
         .prop_map(move |(start, end, scale)| (scaled(start, scale), scaled(end, scale)));
-    // Begin with a box that moves along each axis and changes its size.
-    let drawn =
-        (Aabb::new(Vec3::ZERO, vec3(1.0, 1.0, 2.0)), Aabb::new(vec3(0.5, -1.0, 1.0), vec3(4.0, 0.5, 1.5)));
-    trial.forall_and(&[drawn], 2000, ways, |queries| {
-        compare(queries, trial.kit.motion_bounds(queries), judge_bounds)
-    })
+    trial.forall(2000, ways, |queries| compare(queries, trial.kit.motion_bounds(queries), judge_bounds))
 }
 
 fn judge_bounds((start, end): &(Aabb, Aabb), yours: Aabb) -> Judged {

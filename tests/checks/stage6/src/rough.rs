@@ -7,15 +7,11 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
 use checks::nasty;
-use checks::paste::call;
+use checks::paste::Arguments;
 use checks::statistics::{Mistakes, SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
 use glam::{Vec2, Vec3, vec2};
 use proptest::prelude::*;
 use raykata::kit::PhongLobeQuery;
-
-fn paste(query: &PhongLobeQuery) -> String {
-    call("sample_phong_lobe", &[&query.ideal, &query.normal, &query.roughness, &query.u])
-}
 
 pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
     // Every fourth surface is rough, and gives another direction than `ideal`.
@@ -34,10 +30,10 @@ pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
             }
             if rough {
                 let expected = "a direction at an angle to ideal";
-                return Err(Broken::new(paste(query), yours, expected, "roughness above 0")
+                return Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, "roughness above 0")
                     .explained_by([(true, "you return ideal for a rough surface")]));
             }
-            Err(Broken::new(paste(query), yours, query.ideal, "roughness 0").explained_by([
+            Err(Broken::new(query.call("sample_phong_lobe"), yours, query.ideal, "roughness 0").explained_by([
                 (yours.is_nan(), "you return NaN: 2 / 0² is infinite"),
                 (
                     (yours - query.ideal).length() < 1e-5,
@@ -88,7 +84,8 @@ fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Lobe, Broken> {
     let judge = |(query, direction): (&PhongLobeQuery, Vec3)| {
         let (around, ideal) = (direction.as_dvec3(), query.ideal.as_dvec3().normalize());
         if !((around.length() - 1.0).abs() < 1e-5) {
-            let broken = Broken::new(paste(query), direction, "a unit direction", "the definition");
+            let broken =
+                Broken::new(query.call("sample_phong_lobe"), direction, "a unit direction", "the definition");
             return Err(broken.explained_by([
                 (direction.is_nan(), "you return NaN"),
                 (!direction.is_nan(), "your direction does not have unit length"),
@@ -188,14 +185,10 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
             "the definition",
         ));
     }
-    let queries = (unit_arrival(), 1..=16i32, unit_number(), unit_number()).prop_map(
-        |((ideal, normal), sixteenths, u, v)| PhongLobeQuery {
-            ideal,
-            normal,
-            roughness: sixteenths as f32 / 16.0,
-            u: vec2(u, v),
-        },
-    );
+    let queries =
+        (unit_arrival(), checks::generate::fractions(1..=16, 16.0), unit_number(), unit_number()).prop_map(
+            |((ideal, normal), roughness, u, v)| PhongLobeQuery { ideal, normal, roughness, u: vec2(u, v) },
+        );
     trial.forall_and(&chosen, 3000, queries, |queries| {
         // The same samples with the normal `ideal` give the directions before they are reflected back.
         let drawn = trial.kit.sample_phong_lobe(&free(queries));
@@ -217,7 +210,7 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
             // puts below it, too. They are at a right angle to ideal.
             let replaced = *drawn == query.ideal && yours.dot(query.ideal).abs() < 1e-5;
             let mirrored = unreflected - 2.0 * unreflected.dot(query.normal) * query.normal;
-            Err(Broken::new(paste(query), yours, expected, source).explained_by([
+            Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, source).explained_by([
                 (yours.is_nan(), "you return NaN: ln 0 is -∞, and 0 · ∞ is NaN"),
                 (
                     through && near(-*drawn),

@@ -37,7 +37,8 @@ fn lines(kit: &dyn Kit, (seed, shutter, start, end): &Inputs) -> String {
     let mut lines: Vec<String> = (0..16)
         .map(|i| {
             format!(
-                "cell {} {}  jittered {}  gaussian {} weight {}  slot {} time {}  at {}",
+                "cell {} {}  jittered {}  gaussian {} gaussian_weight {}  temporal_slot {} time_in_shutter {}  \
+                 lerp {}",
                 i % 4,
                 i / 4,
                 vector(&jittered[i].to_array()),
@@ -54,7 +55,7 @@ fn lines(kit: &dyn Kit, (seed, shutter, start, end): &Inputs) -> String {
     let samples: Vec<WeightedColor> =
         weighted.map(|(place, weight)| WeightedColor { color: place.abs(), weight: *weight }).collect();
     let pixel = kit.filter_pixel(&[samples]).remove(0);
-    lines.push(format!("filtered {}", vector(&pixel.to_array())));
+    lines.push(format!("filter_pixel {}", vector(&pixel.to_array())));
     lines.join("\n")
 }
 

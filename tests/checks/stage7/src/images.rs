@@ -5,7 +5,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use glam::{DVec3, Vec3, vec2, vec3};
 use proptest::prelude::*;
-use raykata::kit::{KitError, TextureQuery, kit_error};
+use raykata::kit::{KitError, Request, TextureQuery, kit_error};
 use raykata::material::{Texture, Wrap};
 use std::sync::Arc;
 
@@ -45,7 +45,7 @@ fn broken(query: &TextureQuery, yours: Vec3, expected: DVec3, source: &'static s
         "texture_color of an image of {} by {} pixels, Wrap::{:?}, at {uv:?}",
         texture.width, texture.height, texture.wrap
     );
-    Broken::new(input, yours, expected.as_vec3(), source)
+    Broken::new(input, yours, expected.as_vec3(), source).in_call(Request::TextureColor(vec![query.clone()]))
 }
 
 /// The centre of a pixel, which may lie far outside, moved right and down by fractions of a pixel.

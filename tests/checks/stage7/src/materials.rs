@@ -258,8 +258,7 @@ fn compare_effects(
 }
 
 fn color() -> impl Strategy<Value = Vec3> + Clone {
-    let channel = || prop_oneof![3 => Just(0.0f32), 2 => Just(0.5f32), 1 => Just(1e-4f32)];
-    (channel(), channel(), channel()).prop_map(|(r, g, b)| vec3(r, g, b))
+    checks::generate::vector(prop_oneof![3 => Just(0.0f32), 2 => Just(0.5f32), 1 => Just(1e-4f32)])
 }
 
 fn material_query() -> impl Strategy<Value = MaterialQuery> + Clone {

@@ -5,7 +5,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
 use checks::judge::compare;
-use checks::paste::call;
+use checks::paste::Arguments;
 use glam::{Affine3A, Mat3, Vec3};
 use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
@@ -55,10 +55,6 @@ fn ends(query: &BoundsQuery, row: usize) -> (f64, f64, f64) {
     (low, high, size)
 }
 
-fn describe(query: &BoundsQuery) -> String {
-    call("bounds_to_world", &[&query.to_world, &query.bounds])
-}
-
 /// What a box may lack, relative to its terms, where its rounding is not judged: the errors of a few products and sums.
 pub(super) const ROUNDINGS: f64 = 16.0 * U;
 
@@ -95,7 +91,7 @@ pub(super) fn judge_contents(trial: &Trial<'_>, allowed: f64) -> CheckResult {
             let exchanged =
                 is_between(yours.min, corners[0].to_array()) && is_between(yours.max, corners[1].to_array());
             return Err(Broken::with_texts(
-                describe(query),
+                query.call("bounds_to_world"),
                 format!("{yours_low} to {yours_high} along {axis}"),
                 format!("{low} to {high}, or more"),
                 "double precision",
@@ -141,10 +137,11 @@ fn judge_room(query: &BoundsQuery, yours: Aabb) -> CheckResult {
             return Ok(());
         }
         let nan = yours.min.is_nan() || yours.max.is_nan();
-        return Err(Broken::new(describe(query), yours, "an empty box", "the definition").explained_by([
-            (nan, "an empty box stays empty: its corners are infinite, and ∞ - ∞ or 0 · ∞ is NaN"),
-            (true, "an empty box stays empty: min is above max on some axis, so return Aabb::EMPTY"),
-        ]));
+        return Err(Broken::new(query.call("bounds_to_world"), yours, "an empty box", "the definition")
+            .explained_by([
+                (nan, "an empty box stays empty: its corners are infinite, and ∞ - ∞ or 0 · ∞ is NaN"),
+                (true, "an empty box stays empty: min is above max on some axis, so return Aabb::EMPTY"),
+            ]));
     }
     for row in 0..3 {
         let (low, high, size) = ends(query, row);
@@ -157,7 +154,7 @@ fn judge_room(query: &BoundsQuery, yours: Aabb) -> CheckResult {
         }
         let axis = ["x", "y", "z"][row];
         return Err(Broken::with_texts(
-            describe(query),
+            query.call("bounds_to_world"),
             format!("{yours_low} to {yours_high} along {axis}"),
             format!("{low} to {high}, and {room:.1e} on either side at most"),
             "double precision",

@@ -2,7 +2,7 @@
 //! normal.
 
 use super::mistakes::{self, Mistakes, WrongNormals};
-use checks::generate::{direction, point};
+use checks::generate::{direction, fractions, point};
 use checks::nasty;
 use glam::{DVec3, Vec3};
 use oracle::exact::{Body, Meeting, meet, polygon::meet_fan};
@@ -69,7 +69,7 @@ fn axis() -> impl Strategy<Value = Vec3> + Clone {
 
 /// Half a unit to two units, in quarters.
 fn radius() -> impl Strategy<Value = f32> + Clone {
-    (2..=8i32).prop_map(|quarters| quarters as f32 / 4.0)
+    fractions(2..=8, 4.0)
 }
 
 /// The length of the part of a vector that is perpendicular to `axis`.

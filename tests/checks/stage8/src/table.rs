@@ -43,10 +43,10 @@ fn lines(kit: &dyn Kit, height: f32, shift: Vec3) -> String {
     let mut lines: Vec<String> = parameters
         .iter()
         .zip(points)
-        .map(|(uv, point)| format!("patch {:.2} {:.2}  {}", uv.x, uv.y, vector(point)))
+        .map(|(uv, point)| format!("bezier_point {:.2} {:.2}  {}", uv.x, uv.y, vector(point)))
         .collect();
     let fine = kit.loop_subdivide(&[mesh(shift)]).remove(0);
-    lines.push(format!("subdivided: {} triangles", fine.triangles.len()));
+    lines.push(format!("loop_subdivide {} triangles", fine.triangles.len()));
     let mut vertices = fine.positions;
     vertices.sort_by(|p, q| p.x.total_cmp(&q.x));
     lines.extend(vertices.into_iter().map(|vertex| format!("vertex {}", vector(vertex))));

@@ -2,7 +2,7 @@
 //! precision, then rounded as if each primitive had its own formula.
 
 use checks::double::sphere_roots;
-use checks::generate::point;
+use checks::generate::{fractions, point};
 use checks::nasty;
 use checks::tree::{closest_of, move_apart};
 use glam::{Vec3, vec3};
@@ -175,11 +175,11 @@ pub(super) fn sphere(x: f32, y: f32, z: f32, radius: f32) -> Thing {
 /// at any scale. The range of some rays begins or ends at the closest
 /// hit, or one float before or after it.
 pub(super) fn scenes() -> impl Strategy<Value = (Scene, Ray)> + Clone {
-    let spheres = prop::collection::vec((point(6), 1..=12i32), 0..16);
+    let spheres = prop::collection::vec((point(6), fractions(1..=12, 8.0)), 0..16);
     let walls = prop::collection::vec((0..3usize, -4..=4i32, 1..=4i32), 0..5);
     let kinds = (any::<bool>(), any::<bool>(), scales(), 0..24usize);
     (spheres, walls, rays(), kinds).prop_map(|(spheres, walls, ray, (rough, twice, scales, range))| {
-        let spheres = spheres.into_iter().map(|(p, r)| sphere(p.x, p.y, p.z, r as f32 / 8.0));
+        let spheres = spheres.into_iter().map(|(p, r)| sphere(p.x, p.y, p.z, r));
         let walls = walls.into_iter().flat_map(|(axis, at, size)| wall(axis, at as f32, size as f32));
         let mut things: Vec<Thing> = spheres.chain(walls).map(|thing| scales.of_thing(thing)).collect();
         if twice && !rough {

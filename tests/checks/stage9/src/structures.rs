@@ -27,10 +27,6 @@ fn loose(boxes: &[Aabb]) -> (Vec<(u32, Aabb)>, Aabb) {
     (kept, all)
 }
 
-fn in_cell(boxes: &[(u32, Aabb)], cell: &Cell) -> Vec<(u32, Aabb)> {
-    boxes.iter().filter(|(_, one)| cell.touches(one)).copied().collect()
-}
-
 /// The numbers in descending order: of two hits at the same `t` the larger number comes first.
 fn ids(boxes: &[(u32, Aabb)]) -> Vec<u32> {
     boxes.iter().rev().map(|(id, _)| *id).collect()
@@ -38,7 +34,8 @@ fn ids(boxes: &[(u32, Aabb)]) -> Vec<u32> {
 
 /// The list of a cell. The last cell lists one primitive too many.
 fn listed(boxes: &[(u32, Aabb)], cell: &Cell, is_last: bool) -> Vec<u32> {
-    let mut inside = ids(&in_cell(boxes, cell));
+    let touches = |(_, one): &&(u32, Aabb)| cell.touches(one);
+    let mut inside = ids(&boxes.iter().filter(touches).copied().collect::<Vec<_>>());
     if let (true, Some((first, _))) = (is_last, boxes.first())
         && !inside.contains(first)
     {

@@ -64,7 +64,8 @@ fn lines(kit: &dyn Kit, scene: &Scene, rays: &[Ray]) -> String {
     for (ray, answer) in rays.iter().zip(kit.grid_search(&queries(&grid, scene, rays))) {
         let hit =
             answer.hit.map_or("nothing".into(), |hit| format!("{} at {}", hit.primitive, digits(hit.t, 3)));
-        lines.push(format!("along {} {}: {hit}", digits(ray.direction.x, 2), digits(ray.direction.y, 2)));
+        let [x, y] = [ray.direction.x, ray.direction.y].map(|x| digits(x, 2));
+        lines.push(format!("grid_search along {x} {y}: {hit}"));
         // The order of the visits, in letters; `#` is a cell that lists primitives and is not visited.
         for row in (0..ROWS).rev() {
             let letter = |column: u32| {
