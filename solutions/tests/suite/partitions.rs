@@ -157,29 +157,25 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
     let bsp = stage9_bsp::build(&hulls, 4, 16);
     let bvh = stage3_build::build(&boxes, Split::SurfaceArea, 4);
     let (mut last, mut waiting) = (None, Vec::new());
-    let mut visits = [0; 8];
     for case in 0..n_rays() {
         let ray = ray(&mut random, &things, size, at);
         let mut asked = SceneProbe::new(&things, &bvh);
         let expected = stage2_triangles::brute_force(boxes.len() as u32, &mut asked, &ray);
         let near = |asked: &mut SceneProbe<'_>, ray: &Ray| stage9_kd_tree::closest_hit(&trees[0], asked, ray);
-        let mut judge =
-            |index: usize, what: &str, find: &dyn Fn(&mut SceneProbe<'_>) -> Option<PrimitiveHit>| {
-                let mut probe = asked;
-                let found = find(&mut probe);
-                visits[index] += probe.visits;
-                assert_eq!(found, expected, "{what}, size {size} at {at}, seed {seed}, ray {case}: {ray:?}");
-            };
-        judge(0, "grid", &|probe| stage9_grid::closest_hit(&grid, probe, &ray));
-        judge(1, "octree by cells", &|probe| stage9_octree::closest_hit_by_cells(&octree, probe, &ray));
-        judge(7, "octree by neighbours", &|probe| {
+        let judge = |what: &str, find: &dyn Fn(&mut SceneProbe<'_>) -> Option<PrimitiveHit>| {
+            let found = find(&mut { asked });
+            assert_eq!(found, expected, "{what}, size {size} at {at}, seed {seed}, ray {case}: {ray:?}");
+        };
+        judge("grid", &|probe| stage9_grid::closest_hit(&grid, probe, &ray));
+        judge("octree by cells", &|probe| stage9_octree::closest_hit_by_cells(&octree, probe, &ray));
+        judge("octree by neighbours", &|probe| {
             stage9_neighbours::closest_hit_by_neighbours(&octree, probe, &ray)
         });
-        judge(2, "octree", &|probe| stage9_octree::closest_hit(&octree, probe, &ray));
-        judge(3, "kd-tree", &|probe| stage9_kd_tree::closest_hit(&trees[0], probe, &ray));
-        judge(4, "plain kd-tree", &|probe| stage9_kd_tree::closest_hit(&trees[1], probe, &ray));
-        judge(5, "BSP tree", &|probe| stage9_bsp::closest_hit(&bsp, probe, &ray));
-        judge(6, "last hit", &|probe| stage9_coherence::closest_hit_cached(last, probe, &ray, near));
+        judge("octree", &|probe| stage9_octree::closest_hit(&octree, probe, &ray));
+        judge("kd-tree", &|probe| stage9_kd_tree::closest_hit(&trees[0], probe, &ray));
+        judge("plain kd-tree", &|probe| stage9_kd_tree::closest_hit(&trees[1], probe, &ray));
+        judge("BSP tree", &|probe| stage9_bsp::closest_hit(&bsp, probe, &ray));
+        judge("last hit", &|probe| stage9_coherence::closest_hit_cached(last, probe, &ray, near));
         last = expected.map(|hit| hit.primitive);
         waiting.push((ray, expected));
         if waiting.len() == stage9_coherence::PACKET {
@@ -188,25 +184,6 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
             assert_eq!(found, expected, "packet, size {size} at {at}, seed {seed}, ray {case}");
         }
     }
-    let a_ray = |index: usize| visits[index] as f64 / n_rays() as f64;
-    println!(
-        "size {size}, {} primitives, {} rays; visits per ray: grid {:.1}, octree by cells {:.1}, by \
-         neighbours {:.1}, from the root {:.1}, kd-tree {:.1}, plain kd-tree {:.1}, BSP tree {:.1}; references: {}, {}, {}, {}, {}",
-        boxes.len(),
-        n_rays(),
-        a_ray(0),
-        a_ray(1),
-        a_ray(7),
-        a_ray(2),
-        a_ray(3),
-        a_ray(4),
-        a_ray(5),
-        grid.items.len(),
-        octree.items.len(),
-        trees[0].items.len(),
-        trees[1].items.len(),
-        bsp.items.len(),
-    );
 }
 
 /// Counts the visits that a search of a kd-tree would save without its margin for rounding errors: to cells

@@ -6,10 +6,10 @@ use crate::kits::{Choice, Need, Program, Which, build, root, run_program};
 use crate::list;
 use anyhow::{Context, Result};
 use raykata::message::Message;
-use raykata::worker::{receive, send};
+use raykata::worker::{child, receive, send};
 use std::ffi::OsStr;
 use std::path::Path;
-use std::process::{Child, Command, ExitCode, Stdio};
+use std::process::{Child, ExitCode, Stdio};
 
 /// `raykata check`.
 pub static CHECK: Spec = Spec {
@@ -99,7 +99,7 @@ impl Judge {
     /// Starts the judge with this command.
     pub fn start(root: &Path, what: &str) -> Result<Judge> {
         let [program] = build(root, "the judge of your exercises", [Program::JUDGE])?;
-        let child = Command::new(&program).arg(what).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
+        let child = child(&program).arg(what).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
         Ok(Judge(child.with_context(|| format!("{} cannot be started", program.display()))?))
     }
 

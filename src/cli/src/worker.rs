@@ -226,7 +226,7 @@ impl Process {
     ) -> io::Result<Process> {
         let mut command = match &launcher {
             Some(launcher) => launcher.command(program),
-            None => Command::new(program),
+            None => worker::child(program),
         };
         let (errors, stderr) = io::pipe()?;
         let stdout = if output.is_some() { Stdio::from(stderr.try_clone()?) } else { Stdio::null() };

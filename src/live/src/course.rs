@@ -3,11 +3,10 @@
 use crate::process::Process;
 use anyhow::{Context, Result, bail};
 use raykata::rubric::{self, CheckEntry, Score};
-use raykata::worker::receive;
+use raykata::worker::{child, receive};
 use raykata_cli::verdicts::{CheckVerdict, Verdict};
 use std::io::{BufReader, ErrorKind};
 use std::path::Path;
-use std::process::Command;
 
 /// A stage.
 pub struct Stage {
@@ -105,7 +104,7 @@ pub fn judge(
     stage: u8,
     mut report: impl FnMut(CheckVerdict),
 ) -> Result<bool> {
-    let mut command = Command::new(judge);
+    let mut command = child(judge);
     command.arg("verdicts").arg(root).arg(worker).arg(stage.to_string());
     let verdicts = |out: &mut BufReader<_>| loop {
         match receive::<CheckVerdict>(out) {

@@ -6,6 +6,7 @@ use live::compiler::{Compiled, CompilerError, compile};
 use live::course::judge;
 use live::process::Process;
 use raykata::frame::Watch;
+use raykata::worker::child;
 use raykata_cli::finish::{self, Picture};
 use raykata_cli::kits::{Need, Program, Which, cargo_build, profile};
 use raykata_cli::report::words_of_building;
@@ -13,7 +14,6 @@ use raykata_cli::verdicts::CheckVerdict;
 use raykata_cli::worker::{CALL_PATIENCE, Worker};
 use std::io::Read;
 use std::path::PathBuf;
-use std::process::Command;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
@@ -124,7 +124,7 @@ fn work(paths: &Paths, task: Task, process: &Process, report: &(impl Fn(Event) +
             Ok(())
         }),
         Task::Try(check) => {
-            let mut command = Command::new(&paths.judge);
+            let mut command = child(&paths.judge);
             command.arg("try").arg(&paths.root).arg(&worker).arg(check);
             let mut tried = String::new();
             process.follow(command, |out| Ok(_ = out.read_to_string(&mut tried)?))?;

@@ -43,7 +43,7 @@ impl Calls {
 
     /// The call that breaks the law, if it was part of a batch in which each input has one call. If `is_alone`, all batches were
     /// asked about this input, and the first ones are judged; otherwise the last batches are about it. Of these calls it is
-    /// the first one whose function the input names.
+    /// the first one whose function the input names, and whose answer is printed as yours, if there is one.
     pub(crate) fn of(&self, broken: &Broken, is_alone: bool) -> Option<Request> {
         let Some((index, n_inputs)) = broken.details.index.or(is_alone.then_some((0, 1))) else {
             // A law about one input ends at the call that breaks it. A call that is too long to read is no help.
@@ -54,16 +54,19 @@ impl Calls {
                 .only(0)
                 .filter(|call| is_it && call.call().is_some_and(|call| call.len() < 1 << 17));
         };
-        let fits = |(request, _): &Batch| {
+        let fits = |(request, answer): &Batch| {
             let (function, queries) = request.queries()?;
-            Some((function, request.only(index).filter(|_| queries.len() == n_inputs)?))
+            let call = request.only(index).filter(|_| queries.len() == n_inputs)?;
+            let values = answer.as_ref().map(|answer| answer.values()).unwrap_or_default();
+            let is_printed = values.get(index).is_some_and(|one| format!("{one:?}").contains(&broken.yours));
+            Some(((broken.input.contains(function), is_printed), call))
         };
         let mut fitting: Vec<_> = self.batches().iter().filter_map(fits).collect();
-        if !is_alone {
+        // The last one of equal keys is the maximum.
+        if is_alone {
             fitting.reverse();
         }
-        let named = fitting.iter().position(|(function, _)| broken.input.contains(function));
-        fitting.into_iter().nth(named.unwrap_or(0)).map(|(_, request)| request)
+        fitting.into_iter().max_by_key(|(key, _)| *key).map(|(_, call)| call)
     }
 }
 
