@@ -69,7 +69,9 @@ pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
             Err(Broken::new(input, found, expected, "brute force, (primitive, t)").explained_by(mistakes))
         })
     };
-    trial.forall_and(&[tie], 700, inputs, judge)
+    let behind = Scene::new(vec![sphere(2.0, 0.0, 0.0, 0.5), sphere(5.0, 0.0, 0.0, 1.0)]);
+    let nearer = (cached(&behind, &ray, Some(1)), 2);
+    trial.forall_and(&[nearer, tie], 700, inputs, judge)
 }
 
 pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> CheckResult {
