@@ -1,6 +1,7 @@
 //! Ray-plane intersection, and the normal on the side that the ray comes from.
 
 use crate::roots::T_ABOVE_0;
+use crate::sphere_mistakes::{DROPS_NEAR_HITS, EPSILONS};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::{self, Expected, U, compare_tolerant};
@@ -109,6 +110,7 @@ pub(super) fn of_tests(
         let text = "you compare n·direction with a limit, but a ray is parallel only if it is 0";
         (lost_if(slope.abs() < limit), text)
     }));
+    all.extend(EPSILONS.map(|epsilon| (gives(t, (t_min.max(epsilon), t_max)), DROPS_NEAR_HITS)));
     all
 }
 

@@ -39,7 +39,10 @@ fn gives(
 }
 
 /// The limits of `t` below which hits are lost.
-const EPSILONS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+pub(super) const EPSILONS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+
+pub(super) const DROPS_NEAR_HITS: &str =
+    "you drop hits with a small t: compare with t_min, not with a fixed epsilon";
 
 /// All known mistakes, each with whether it gives this answer.
 pub(super) fn mistakes(
@@ -182,7 +185,7 @@ fn of_choices(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) ->
     ];
     // The limit replaces t_min, or is asked before or after the root is chosen.
     all.extend(EPSILONS.into_iter().flat_map(|epsilon| {
-        let text = "you drop hits with a small t: compare with t_min, not with a fixed epsilon";
+        let text = DROPS_NEAR_HITS;
         [
             (is(&|roots| Within(epsilon, t_max).first(roots)), text),
             (is(&|roots| Within(t_min.max(epsilon), t_max).first(roots)), text),
