@@ -16,8 +16,7 @@ use raykata::wide::{
     WideNode, WideTree,
 };
 use solutions::stage3_build::build;
-use solutions::stage10_stability::conservative_slab as slab;
-use solutions::stage10_stability::watertight;
+use solutions::stage10_stability::{conservative_slab as slab, watertight};
 use solutions::stage12_build::{build_binned, build_parallel};
 use solutions::stage12_wide::{collapse, flatten};
 

@@ -3,7 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double;
-use checks::judge::compare;
+use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::paste::Arguments;
 use glam::Vec3;
@@ -49,7 +49,7 @@ enum Widened {
 
 /// The mistakes with the words of the diagnosis, those that lose the fewest boxes first: the first one that explains all lost
 /// boxes is named.
-const MISTAKES: [(Mistake, Widened, &str); 13] = {
+const MISTAKES: [(Mistake, Widened, &str); 12] = {
     use Mistake::*;
     use Widened::*;
     [
@@ -58,7 +58,6 @@ const MISTAKES: [(Mistake, Widened, &str); 13] = {
             Both,
             "a factor of 1 + 2 γ₃ moves a negative exit the wrong way: move it later by 2 γ₃ |t|",
         ),
-        (Mistake::None, Not, "rounding loses a corner of the box: move the exit later by 2 γ₃ |t|"),
         (Overflow, Both, "1/d is infinite although d is not 0: divide by d there"),
         (Open, Not, "you return None for a flat or only touched box: compare with <= and not with <"),
         (NotFromInside, Both, "you return None although the ray starts in the box: it enters at t_min"),
@@ -125,20 +124,22 @@ impl Mistake {
 /// No box that is met by exact arithmetic may be missed, and no box that is passed by at more than 64 roundings may be met.
 fn hit_and_missed_boxes_differ(trial: &Trial<'_>, queries: &[SlabQuery]) -> CheckResult {
     let judge = |query: &SlabQuery, yours: Option<(f32, f32)>| {
-        let Some(exact) = overlap(&query.ray, &query.bounds) else { return Ok(()) };
+        let Some(exact) = overlap(&query.ray, &query.bounds) else { return Ok(().into()) };
+        let is_hit = exact.verdict.is_hit();
         let broken = |expected: &str| {
             Broken::with_texts(query.call("conservative_slab"), format!("{yours:?}"), expected, "exactly")
         };
-        match yours {
-            None if exact.verdict.is_hit() => Err(broken("Some: the ray meets the box").explained_by(
-                MISTAKES.map(|(mistake, widened, text)| (mistake.slab(widened, query).is_none(), text)),
-            )),
-            // A box whose exit overflows may be entered at infinity, which costs a visit.
-            Some((enter, _)) if !enter.is_infinite() && !exact.verdict.is_hit() && exact.margin > STABLE => {
-                Err(broken("None: the ray passes by the box"))
-            }
-            _ => Ok(()),
+        // A box whose exit overflows may be entered at infinity, which costs a visit.
+        if yours.is_some_and(|(enter, _)| !enter.is_infinite()) && !is_hit && exact.margin > STABLE {
+            return Err(broken("None: the ray passes by the box"));
         }
+        let loses = |mistake: Mistake, widened| mistake.slab(widened, query).is_none() == yours.is_none();
+        // Rounding loses a box if the test without widening loses it. A test that widens too little keeps some.
+        let rounding = "rounding loses a corner of the box: move the exit later by 2 γ₃ |t|";
+        let is_rounding = Mistake::None.slab(Widened::Not, query).is_none();
+        let lost = || broken("Some: the ray meets the box").explained_by([(is_rounding, rounding)]);
+        unless(!is_hit || yours.is_some(), lost)
+            .formulas(MISTAKES.map(|(mistake, widened, text)| (!is_hit || loses(mistake, widened), text)))
     };
     all_hold(compare(queries, trial.kit.conservative_slab(queries), judge))
 }

@@ -5,7 +5,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
 use checks::generate::magnitude;
-use checks::judge::compare;
+use checks::judge::{compare, unless};
 use checks::paste::call;
 use proptest::prelude::*;
 
@@ -42,6 +42,8 @@ fn are_near(yours: [f32; 2], exact: [f64; 2]) -> bool {
     near(yours[0], exact[0]) && near(yours[1], exact[1])
 }
 
+type Named = (bool, &'static str);
+
 const LARGER_FIRST: &str =
     "you return the larger root first: the smaller root comes first, also if a or b is negative";
 
@@ -56,28 +58,27 @@ fn without_the_sign_of_b(coefficients: Coefficients) -> [[f32; 2]; 2] {
     [of(q), of(f64::from(single))]
 }
 
-/// The known mistakes in two roots, each with whether it gives these roots.
-fn mistakes(query: &Coefficients, yours: [f32; 2], expected: [f64; 2]) -> [(bool, &'static str); 9] {
+/// What two wrong roots show, and the wrong formulas, each with whether it gives these roots.
+fn mistakes(query: &Coefficients, yours: [f32; 2], expected: [f64; 2]) -> ([Named; 3], [Named; 4]) {
     const WITHOUT_SIGN: &str =
         "you leave out the sign of b, so a root cancels if b is negative: q = -(b + sign(b) √(b² - 4ac)) / 2";
     const OFF_BY_TWO: &str = "off by a factor of 2: q is half of -(b + sign(b) √(b² - 4ac))";
     let (small, large) = if expected[0].abs() < expected[1].abs() { (0, 1) } else { (1, 0) };
-    let large_is_right = near(yours[large], expected[large]);
     // The error of a difference of two numbers of the size of the larger root.
     let rounding = 16.0 * U * expected[large].abs();
-    let lost = large_is_right && (f64::from(yours[small]) - expected[small]).abs() <= rounding;
-    let mut doubled = expected;
-    (doubled[small], doubled[large]) = (0.5 * expected[small], 2.0 * expected[large]);
-    let mut halved = expected;
-    (halved[small], halved[large]) = (2.0 * expected[small], 0.5 * expected[large]);
+    let lost =
+        near(yours[large], expected[large]) && (f64::from(yours[small]) - expected[small]).abs() <= rounding;
+    let scaled = |of_small: f64| {
+        let mut roots = expected;
+        (roots[small], roots[large]) = (of_small * expected[small], expected[large] / of_small);
+        roots
+    };
     let is = |roots: [f64; 2]| are_near(yours, roots);
     // The two wrong roots are sorted again.
     let sorted = |[p, q]: [f64; 2]| [p.min(q), p.max(q)];
     let [in_double, in_single] = without_the_sign_of_b(*query).map(|roots| roots.map(f64::from));
-    [
+    let shown = [
         (is([expected[1], expected[0]]), LARGER_FIRST),
-        (is(in_double), WITHOUT_SIGN),
-        (is(in_single), WITHOUT_SIGN),
         (
             lost && yours[small] == 0.0,
             "one root has cancelled to 0: -b + √(b² - 4ac) subtracts two nearly equal numbers",
@@ -86,11 +87,10 @@ fn mistakes(query: &Coefficients, yours: [f32; 2], expected: [f64; 2]) -> [(bool
             lost,
             "one root has lost its digits, because two nearly equal numbers are subtracted: where one root has cancelled, compute it as c / q",
         ),
-        (is(doubled), OFF_BY_TWO),
-        (is(sorted(doubled)), OFF_BY_TWO),
-        (is(halved), OFF_BY_TWO),
-        (is(sorted(halved)), OFF_BY_TWO),
-    ]
+    ];
+    let [half, twice] = [0.5, 2.0].map(|factor| is(scaled(factor)) || is(sorted(scaled(factor))));
+    let without_sign = [in_double, in_single].map(|roots| (is(roots), WITHOUT_SIGN));
+    (shown, [without_sign[0], without_sign[1], (half, OFF_BY_TWO), (twice, OFF_BY_TWO)])
 }
 
 pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> CheckResult {
@@ -98,12 +98,12 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> CheckResult {
         let (value, roundings) = discriminant(*query);
         // Leave nearly equal roots to another check: they move by the square root of a rounding.
         if roundings < 1e6 {
-            return Ok(());
+            return Ok(().into());
         }
         let expected = (value > 0.0).then(|| roots(*query));
         let broken = || Broken::new(describe(query), yours, expected, "double precision");
         match (yours, expected) {
-            (None, None) => Ok(()),
+            (None, None) => Ok(().into()),
             (Some(_), None) => {
                 Err(broken().explained_by([(true, "you return roots although the discriminant is below 0")]))
             }
@@ -111,8 +111,10 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> CheckResult {
                 true,
                 "you return None, but the discriminant is far above 0: there are two roots",
             )])),
-            (Some(yours), Some(expected)) if are_near(yours, expected) => Ok(()),
-            (Some(yours), Some(expected)) => Err(broken().explained_by(mistakes(query, yours, expected))),
+            (Some(yours), Some(expected)) => {
+                let (shown, formulas) = mistakes(query, yours, expected);
+                unless(are_near(yours, expected), || broken().explained_by(shown)).formulas(formulas)
+            }
         }
     };
     let drawn =
@@ -160,8 +162,8 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> CheckResult {
                         double && one && !yours.map(f32::is_nan).contains(&true),
                         "return a double root twice: only one of yours is right",
                     );
-                    let mistakes = mistakes(query, yours, exact).into_iter().filter(|_| !double);
-                    Err(broken(format!("{exact:?}")).explained_by([band, twice].into_iter().chain(mistakes)))
+                    let shown = mistakes(query, yours, exact).0.into_iter().filter(|_| !double);
+                    Err(broken(format!("{exact:?}")).explained_by([band, twice].into_iter().chain(shown)))
                 }
             }
         })
