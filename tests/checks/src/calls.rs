@@ -22,23 +22,14 @@ impl Calls {
     /// The call that gives the word with this index of a table, if the name of a function precedes each of its answers there.
     pub(crate) fn of_table(&self, words: &[&str], index: usize) -> Option<Request> {
         let batches = self.batches();
-        let of = |name: &str| {
-            batches
-                .iter()
-                .filter_map(|(request, _)| {
-                    request
-                        .queries()
-                        .filter(|(function, _)| *function == name)
-                        .map(|(_, queries)| (request, queries.len()))
-                })
-                .collect::<Vec<_>>()
-        };
-        let name = *words[..index].iter().rfind(|word| !of(word).is_empty())?;
+        let calls = || batches.iter().filter_map(|(request, _)| Some((request, request.queries()?)));
+        let name =
+            *words[..index].iter().rfind(|word| calls().any(|(_, (function, _))| function == **word))?;
+        // Only one batch may ask this function, with one call per answer of the table.
+        let mut of_name = calls().filter(|(_, (function, _))| *function == name);
+        let (request, (_, queries)) = of_name.next().filter(|_| of_name.next().is_none())?;
         let count = |words: &[&str]| words.iter().filter(|word| **word == name).count();
-        match of(name)[..] {
-            [(request, n_calls)] if n_calls == count(words) => request.only(count(&words[..index]) - 1),
-            _ => None,
-        }
+        if queries.len() == count(words) { request.only(count(&words[..index]) - 1) } else { None }
     }
 
     /// The call that breaks the law, if it was part of a batch in which each input has one call. If `is_alone`, all batches were

@@ -29,9 +29,9 @@ pub(crate) fn show(work: impl FnOnce()) {
 
 /// The message of the test of this check, which runs in another process; `None` if it passes.
 pub(crate) fn message_of(check: &Check, path: &str) -> Option<String> {
-    let shown = shown(path).unwrap_or_else(|error| vec![error.to_string()]);
+    let (passed, shown) = shown(path).unwrap_or_else(|error| (false, vec![error.to_string()]));
     match &shown[..] {
-        [_, _, _] => None,
+        [_, _, _] if passed => None,
         [_, printed, _, message, _] => Some(with_output(message, printed)),
         // The process has ended before there was a message.
         others => match verdict(check, Err(KitError::Crashed { how: others.concat() })) {
@@ -41,9 +41,9 @@ pub(crate) fn message_of(check: &Check, path: &str) -> Option<String> {
     }
 }
 
-/// The output of the process, divided at the marks. Between shown parts it has only its last line. If the test passes, nothing is
-/// shown after what the call prints.
-fn shown(path: &str) -> io::Result<Vec<String>> {
+/// Whether the test passes, and the output of the process, divided at the marks. Between shown parts it has only its last line.
+/// If the test passes, nothing is shown after what the call prints.
+fn shown(path: &str) -> io::Result<(bool, Vec<String>)> {
     // The path begins with the name of the crate.
     let (_, name) = path.split_once("::").unwrap_or_default();
     let (output, to_output) = io::pipe()?;
@@ -67,6 +67,5 @@ fn shown(path: &str) -> io::Result<Vec<String>> {
             _ => {}
         }
     }
-    child.wait()?;
-    Ok(parts)
+    Ok((child.wait()?.success(), parts))
 }
