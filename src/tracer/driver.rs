@@ -67,7 +67,7 @@ pub struct CameraSample {
 }
 
 impl CameraSample {
-    /// SurfaceOptions up the random numbers for sample `sample` of the pixel in this column and row. The result
+    /// Looks up the random numbers for sample `sample` of the pixel in this column and row. The result
     /// depends on the arguments alone, so all threads agree.
     #[inline(always)]
     pub fn draw(settings: &FrameSettings, column: u32, row: u32, sample: u32) -> CameraSample {

@@ -12,6 +12,9 @@ use raykata::shape::{Plane, PlaneEquation, Sphere, Triangle};
 /// The largest relative error of one rounding to `f32`.
 pub const U: f64 = f32::EPSILON as f64 / 2.0;
 
+/// Fixed limits below which code takes a cosine, a determinant or another product for 0.
+pub const LIMITS: [f64; 9] = [1e-12, 1e-9, 1e-8, f32::EPSILON as f64, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+
 /// The answers for `t` that a correct method in single precision may give.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Expected {

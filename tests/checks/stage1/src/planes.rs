@@ -4,7 +4,7 @@ use crate::roots::T_ABOVE_0;
 use crate::sphere_mistakes::{DROPS_NEAR_HITS, EPSILONS};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::{self, Expected, U, compare_tolerant};
+use checks::double::{self, Expected, LIMITS, U, compare_tolerant};
 use checks::generate::{direction, point, rough_point};
 use checks::judge::{compare, unless};
 use checks::nasty;
@@ -30,9 +30,6 @@ fn judge_cases(trial: &Trial<'_>, cases: &[Case], source: &'static str) -> Vec<C
     let shown = |query: &PlaneQuery, yours| observations(&query.ray, yours);
     compare_tolerant(cases, trial.kit.plane(&queries), broken, shown, mistakes)
 }
-
-/// Fixed limits for `|n·d|`.
-const LIMITS: [f64; 8] = [1e-12, 1e-8, f32::EPSILON as f64, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
 /// Mistakes that a wrong answer alone shows.
 pub(super) fn observations(ray: &Ray, yours: Option<f32>) -> [(bool, &'static str); 3] {

@@ -105,11 +105,26 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> CheckResult {
         (!right).then_some((*query, yours, exact.t))
     };
     let answers = trial.kit.sphere_in_double(&queries);
-    let mut wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
+    let mut wrong: Vec<_> = queries.iter().zip(answers.iter().copied()).filter_map(judge).collect();
     // Report the plainest error.
     wrong.sort_by(|(p, ..), (q, ..)| margin(q).total_cmp(&margin(p)));
     let single = wrong.iter().all(|(query, ..)| margin(query) <= STABLE * U)
         && err_both_ways(wrong.iter().map(|(_, yours, _)| yours.is_some()));
+    // The answers for a direction of length 1: q = -b ± √(b² - c) or q = -b ± √(r² - |f - b d|²), and c / q.
+    let assumes_unit = [false, true].into_iter().any(|by_foot| {
+        queries.iter().zip(&answers).all(|(SphereQuery { ray, sphere }, yours)| {
+            let (f, d) = (ray.origin.as_dvec3() - sphere.center.as_dvec3(), ray.direction.as_dvec3());
+            let (b, squared_radius) = (f.dot(d), f64::from(sphere.radius).powi(2));
+            let across = if by_foot { (f - b * d).length_squared() } else { f.length_squared() - b * b };
+            let q = -b - (squared_radius - across).sqrt().copysign(b);
+            let of_unit = [(f.length_squared() - squared_radius) / q, q].map(|t| t as f32);
+            // NaN, the square root of a negative number, is in no range.
+            match (of_unit.into_iter().filter(|t| ray.contains(*t)).reduce(f32::min), yours) {
+                (Some(t), Some(yours)) => (t - yours).abs() <= 1e-3 * t.abs(),
+                (t, yours) => t.is_none() && yours.is_none(),
+            }
+        })
+    });
     let broken = |(query, yours, exact): &(SphereQuery, Option<f32>, Option<f32>)| {
         let line = query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
         let on_the_line = meet(&line, Body::Sphere(query.sphere)).is_some_and(|it| it.verdict.is_hit());
@@ -128,6 +143,7 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> CheckResult {
                 "you return None although the far root is in the range: the ray starts inside, or its range begins inside",
             ),
             (converted_late, CONVERTED_LATE),
+            (assumes_unit, "you take the direction to have length 1: a = d·d, and both roots are divided by it"),
             (
                 single,
                 "the error is that of single precision, in both directions: you round an intermediate result to f32",

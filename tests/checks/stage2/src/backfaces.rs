@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::U;
+use checks::double::{LIMITS, U};
 use checks::generate::{direction, point, triangle};
 use checks::judge::compare_formulas;
 use checks::nasty;
@@ -22,9 +22,6 @@ fn slope(query: &TriangleQuery) -> (f64, f64) {
     let terms = (u.abs().max_element() * v.abs().max_element()) * d.abs().element_sum() * 2.0;
     (u.cross(v).dot(d), 16.0 * U * terms)
 }
-
-/// Limits with which cosines and products are compared.
-const LIMITS: [f64; 5] = [1e-12, 1e-9, 1e-6, 1e-3, 1e-2];
 
 /// Wrong formulas in the same order for every query, each with whether it gives this answer.
 fn formulas(query: &TriangleQuery, yours: bool) -> Vec<(bool, &'static str)> {

@@ -1,6 +1,6 @@
 //! Known mistakes in the intersection of a ray and a triangle, each with the answer that it gives.
 
-use checks::double::U;
+use checks::double::{LIMITS, U};
 use glam::{DVec3, Vec3};
 use raykata::kit::{TriangleHit, TriangleQuery};
 
@@ -84,9 +84,6 @@ impl Answer<'_> {
         f64::from(self.query.ray.t_min) < t && t < f64::from(self.query.ray.t_max)
     }
 }
-
-/// Fixed limits for the determinant.
-const LIMITS: [f64; 6] = [1e-12, 1e-8, f32::EPSILON as f64, 1e-6, 1e-5, 1e-4];
 
 /// Fixed limits for `t`.
 const EPSILONS: [f64; 5] = [f32::EPSILON as f64, 1e-6, 1e-5, 1e-4, 1e-3];

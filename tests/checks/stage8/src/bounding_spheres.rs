@@ -102,7 +102,7 @@ pub(super) fn sphere_is_small(trial: &Trial<'_>) -> CheckResult {
     trial.forall(500, clouds(), |queries| compare(queries, trial.kit.bounding_sphere(queries), judge_size))
 }
 
-fn judge_size(points: &Vec<Vec3>, sphere: Sphere) -> CheckResult {
+fn judge_size(points: &Vec<Vec3>, sphere: Sphere) -> Judged {
     let all: Vec<DVec3> = points.iter().map(|point| point.as_dvec3()).collect();
     let pairs = all.iter().flat_map(|p| all.iter().map(move |q| p.distance(*q)));
     let widest = pairs.fold(0.0, f64::max);
@@ -111,35 +111,34 @@ fn judge_size(points: &Vec<Vec3>, sphere: Sphere) -> CheckResult {
     // another check judges whether all points are inside.
     let most = 2.0 * (3.0f64 / 8.0).sqrt() * widest + 16.0 * U * reach(points) + f64::from(f32::MIN_POSITIVE);
     let radius = f64::from(sphere.radius);
-    if 0.25 * widest <= radius && radius <= most {
-        return Ok(());
-    }
+    let is_large = radius > most;
     let [center, reach] = [sphere.center.as_dvec3().length(), reach(points)];
     let farthest = all.iter().map(|point| point.distance(sphere.center.as_dvec3())).fold(0.0, f64::max);
     let with_origin = all.iter().copied().chain([DVec3::ZERO]);
     let (min, max) =
         with_origin.fold((DVec3::ZERO, DVec3::ZERO), |(min, max), point| (min.min(point), max.max(point)));
-    let is_large = radius > most;
-    Err(Broken::with_texts(
-        format!("bounding_sphere(&{})", list(points)),
-        format!("radius {radius:?}"),
-        format!("{:?} to {most:?}, twice the radius of the smallest sphere", 0.25 * widest),
-        "Jung's theorem",
-    )
-    .explained_by([
+    let broken = || {
+        Broken::with_texts(
+            format!("bounding_sphere(&{})", list(points)),
+            format!("radius {radius:?}"),
+            format!("{:?} to {most:?}, twice the radius of the smallest sphere", 0.25 * widest),
+            "Jung's theorem",
+        )
+        .explained_by([(
+            is_large && radius > 1.5 * farthest,
+            "your sphere is too large: its radius is far above the largest distance of a point from its centre",
+        )])
+    };
+    unless(0.25 * widest <= radius && !is_large, broken).formulas([
         (
-            is_large && reach > 0.0 && center <= 16.0 * U * reach,
+            center <= 16.0 * U * reach,
             "your sphere is too large, because its centre is the origin: use the centre of the points' box",
         ),
         (
-            is_large && (sphere.center.as_dvec3() - 0.5 * (min + max)).length() <= 16.0 * U * reach,
+            (sphere.center.as_dvec3() - 0.5 * (min + max)).length() <= 16.0 * U * reach,
             "your sphere is too large, because your box includes the origin: start the minimum at infinity",
         ),
-        (
-            is_large && radius > 1.5 * farthest,
-            "your sphere is too large: its radius is far above the largest distance of a point from its centre",
-        ),
-    ]))
+    ])
 }
 
 /// A sphere and a ray at any size. The coordinates are multiplied by `size`, and the direction by `speed`.

@@ -4,9 +4,9 @@ use super::bounding_spheres;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
-use checks::judge::compare;
+use checks::judge::{compare, unless};
 use checks::paste::Arguments;
-use glam::{Affine3A, Mat3, Vec3};
+use glam::{Affine3A, DVec3, Mat3, Vec3};
 use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
 use raykata::kit::BoundsQuery;
@@ -67,54 +67,47 @@ pub(super) fn volumes_are_rounded_outwards(trial: &Trial<'_>) -> CheckResult {
 pub(super) fn judge_contents(trial: &Trial<'_>, allowed: f64) -> CheckResult {
     let queries = moved(trial);
     let judge = |query: &BoundsQuery, yours: Aabb| {
-        for row in 0..3 {
+        // How much of the interval is missing on each axis, and the sum of the terms there.
+        let lacks = [0, 1, 2].map(|row| {
             let (low, high, size) = ends(query, row);
-            // The rounding error of the sums in double precision is at most 2⁻⁵¹ of the sum of their terms.
-            let slack = size * allowed.max(2f64.powi(-51));
-            let (yours_low, yours_high) = (f64::from(yours.min[row]), f64::from(yours.max[row]));
-            if yours_low <= low + slack && yours_high >= high - slack {
-                continue;
-            }
-            let axis = ["x", "y", "z"][row];
-            let off = |row: usize| {
-                let (low, high, size) = ends(query, row);
-                (f64::from(yours.min[row]) - low).max(high - f64::from(yours.max[row])) / (U * size)
-            };
-            // Move the smallest and the largest corner, as this mistake does.
-            let corners = [query.bounds.min, query.bounds.max]
-                .map(|corner| query.to_world.as_daffine3().transform_point3(corner.as_dvec3()));
-            let is_between = |yours: Vec3, wrong: [f64; 3]| {
-                (0..3).all(|row| (f64::from(yours[row]) - wrong[row]).abs() <= 16.0 * U * ends(query, row).2)
-            };
-            let two_corners = is_between(yours.min, corners[0].min(corners[1]).to_array())
-                && is_between(yours.max, corners[0].max(corners[1]).to_array());
-            let exchanged =
-                is_between(yours.min, corners[0].to_array()) && is_between(yours.max, corners[1].to_array());
-            return Err(Broken::with_texts(
+            ((f64::from(yours.min[row]) - low).max(high - f64::from(yours.max[row])), size)
+        });
+        // The rounding error of the sums in double precision is at most 2⁻⁵¹ of the sum of their terms.
+        let too_small = lacks.iter().position(|(off, size)| !(*off <= size * allowed.max(2f64.powi(-51))));
+        let broken = || {
+            let row = too_small.unwrap_or(0);
+            let ((low, high, _), axis) = (ends(query, row), ["x", "y", "z"][row]);
+            let rounded = lacks.iter().all(|(off, size)| *off < 8.0 * U * size);
+            Broken::with_texts(
                 query.call("bounds_to_world"),
-                format!("{yours_low} to {yours_high} along {axis}"),
+                format!("{} to {} along {axis}", f64::from(yours.min[row]), f64::from(yours.max[row])),
                 format!("{low} to {high}, or more"),
                 "double precision",
             )
             .explained_by([
                 (yours.min.is_nan() || yours.max.is_nan(), "you return NaN"),
-                (
-                    (0..3).all(|row| off(row) < 8.0),
-                    "your box is too small by a rounding error: round outwards",
-                ),
-                (
-                    two_corners,
-                    "your box is much too small, because you transform two corners only: after a rotation any of the \
-                     eight can be the farthest",
-                ),
-                (
-                    exchanged,
-                    "your box is inside out, because you transform two corners only: after a rotation any of the eight \
-                     can be the farthest",
-                ),
-            ]));
-        }
-        Ok(())
+                (rounded, "your box is too small by a rounding error: round outwards"),
+            ])
+        };
+        // Move the smallest and the largest corner, as this mistake does.
+        let corners = [query.bounds.min, query.bounds.max]
+            .map(|corner| query.to_world.as_daffine3().transform_point3(corner.as_dvec3()));
+        let is = |yours: Vec3, wrong: DVec3| {
+            (0..3).all(|row| (f64::from(yours[row]) - wrong[row]).abs() <= 16.0 * U * lacks[row].1)
+        };
+        let [least, most] = [corners[0].min(corners[1]), corners[0].max(corners[1])];
+        unless(too_small.is_none(), broken).formulas([
+            (
+                is(yours.min, least) && is(yours.max, most),
+                "your box is much too small, because you transform two corners only: after a rotation any of the eight \
+                 can be the farthest",
+            ),
+            (
+                is(yours.min, corners[0]) && is(yours.max, corners[1]),
+                "your box is inside out, because you transform two corners only: after a rotation any of the eight can \
+                 be the farthest",
+            ),
+        ])
     };
     all_hold(compare(&queries, trial.kit.bounds_to_world(&queries), judge))
 }

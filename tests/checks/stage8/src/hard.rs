@@ -51,7 +51,7 @@ fn judged_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Vec<CheckResu
     // explain a wrong normal.
     let formulas = |(query, ..): &Case<S>, yours: &Option<SolidHit>| match has_unsound {
         true => Vec::new(),
-        false => S::mistakes(query, yours.map(|hit| hit.t)),
+        false => (S::MISTAKES)(query, yours.map(|hit| hit.t), 1.0),
     };
     let judge = |(query, expected, text): &Case<S>, yours: Option<SolidHit>| {
         let t = yours.map(|hit| hit.t);

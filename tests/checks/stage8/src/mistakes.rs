@@ -2,6 +2,7 @@
 //!
 //! A mistake explains an answer if both are hits at the same `t`, or both are misses.
 
+use checks::double::LIMITS;
 use glam::{DVec3, Vec3};
 use raykata::kit::SolidQuery;
 use raykata::ray::Ray;
@@ -35,7 +36,7 @@ fn is(ray: &Ray, yours: Option<f32>, wrong: Option<f64>) -> bool {
     }
 }
 
-pub(super) fn of_cuboid(query: &SolidQuery<Cuboid>, yours: Option<f32>) -> Mistakes {
+pub(super) fn of_cuboid(query: &SolidQuery<Cuboid>, yours: Option<f32>, _: f64) -> Mistakes {
     let SolidQuery { ray, solid } = query;
     let interval = |axis: usize| {
         let [low, high, origin, direction] =
@@ -126,7 +127,10 @@ impl AroundAxis {
     }
 }
 
-pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>) -> Mistakes {
+const LIMITED: &str =
+    "you compare the product of the direction with a limit, but a ray is parallel only if it is 0";
+
+pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>, scale: f64) -> Mistakes {
     let SolidQuery { ray, solid } = query;
     let line = AroundAxis::new(ray, solid.base, solid.top);
     let radius = f64::from(solid.radius);
@@ -139,7 +143,13 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>) -> M
         let all = ends.iter().flatten().chain(side).copied();
         is(ray, yours, first(ray, all))
     };
-    vec![
+    let is_between = (0.0..=1.0).contains(&line.height(0.0));
+    let rate = scale * line.direction.dot(line.axis).abs();
+    let limited = LIMITS.map(|limit| match rate < limit {
+        true => only(&[], if is_between { &endless } else { &[] }),
+        false => only(&[base, top], &side),
+    });
+    let mut all = vec![
         (only(&[], &side), "you leave out the ends: a ray can enter or leave through them"),
         (only(&[base], &side), "you leave out the end at `top`: a ray can enter or leave through it"),
         (only(&[top], &side), "you leave out the end at `base`: a ray can enter or leave through it"),
@@ -156,7 +166,9 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>) -> M
             only(&[], &endless) || (endless.is_empty() && yours.is_none_or(|t| t > 1e3)),
             "your cylinder has no ends: it goes on beyond `base` and `top`",
         ),
-    ]
+    ];
+    all.extend(limited.map(|gives| (gives, LIMITED)));
+    all
 }
 
 pub(super) fn normals_of_cylinder(cylinder: &Cylinder, at: DVec3) -> WrongNormals {
@@ -171,7 +183,7 @@ pub(super) fn normals_of_cylinder(cylinder: &Cylinder, at: DVec3) -> WrongNormal
     ]
 }
 
-pub(super) fn of_cone(query: &SolidQuery<Cone>, yours: Option<f32>) -> Mistakes {
+pub(super) fn of_cone(query: &SolidQuery<Cone>, yours: Option<f32>, _: f64) -> Mistakes {
     let SolidQuery { ray, solid } = query;
     let line = &AroundAxis::new(ray, solid.apex, solid.base);
     let (radius, height) = (f64::from(solid.radius), line.axis.length());
@@ -233,7 +245,7 @@ fn of_flat(ray: &Ray, yours: Option<f32>, t: f64, slope: f64, inside: bool) -> M
     ]
 }
 
-pub(super) fn of_disk(query: &SolidQuery<Disk>, yours: Option<f32>) -> Mistakes {
+pub(super) fn of_disk(query: &SolidQuery<Disk>, yours: Option<f32>, scale: f64) -> Mistakes {
     let SolidQuery { ray, solid } = query;
     let (normal, direction) = (solid.normal.as_dvec3(), ray.direction.as_dvec3());
     let to_center = solid.center.as_dvec3() - ray.origin.as_dvec3();
@@ -249,10 +261,12 @@ pub(super) fn of_disk(query: &SolidQuery<Disk>, yours: Option<f32>) -> Mistakes 
         ),
     ];
     all.extend(of_flat(ray, yours, t, slope, squared <= radius * radius));
+    let is_kept = |limit: f64| squared <= radius * radius && scale * slope.abs() >= limit;
+    all.extend(LIMITS.map(|limit| (wrong(is_kept(limit)), LIMITED)));
     all
 }
 
-pub(super) fn of_polygon(query: &SolidQuery<Polygon>, yours: Option<f32>) -> Mistakes {
+pub(super) fn of_polygon(query: &SolidQuery<Polygon>, yours: Option<f32>, _: f64) -> Mistakes {
     let SolidQuery { ray, solid } = query;
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let corners: Vec<DVec3> = solid.corners.iter().map(|corner| corner.as_dvec3() - origin).collect();

@@ -12,6 +12,10 @@ use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 use std::fmt::Debug;
 
+/// The mistakes in a query, each with whether it gives this answer. In the student's query, products of the direction and an axis
+/// are so many times as large.
+type OfAnswer<S> = fn(&SolidQuery<S>, Option<f32>, f64) -> Mistakes;
+
 /// A solid that rays are tested against.
 pub(super) trait Solid: checks::paste::Paste + Clone + Debug + Send + Sync + 'static {
     /// The function that students write.
@@ -19,6 +23,12 @@ pub(super) trait Solid: checks::paste::Paste + Clone + Debug + Send + Sync + 'st
 
     /// Whether the shape is flat, so that it has no inside.
     const FLAT: bool = false;
+
+    /// The known mistakes that lose hits or find wrong ones.
+    const MISTAKES: OfAnswer<Self>;
+
+    /// The normals that known mistakes give at a point of the surface. They may have any length.
+    const WRONG_NORMALS: fn(&Self, DVec3) -> WrongNormals = |_, _| Vec::new();
 
     /// Calls the function for all queries.
     fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>>;
@@ -34,14 +44,6 @@ pub(super) trait Solid: checks::paste::Paste + Clone + Debug + Send + Sync + 'st
 
     /// The same shape with x, y and z exchanged in a circle, see [`turned`].
     fn turned(&self) -> Self;
-
-    /// The known mistakes that lose hits or find wrong ones, each with whether it gives the answer `yours`.
-    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes;
-
-    /// The normals that known mistakes give at a point of the surface. They may have any length.
-    fn wrong_normals(&self, _at: DVec3) -> WrongNormals {
-        Vec::new()
-    }
 
     /// A point inside for each point of the cube from -1 to 1.
     fn inside(&self, at: Vec3) -> Vec3;
@@ -86,6 +88,8 @@ fn in_round(base: Vec3, axis: Vec3, radius: f32, along: f32, at: Vec3) -> Vec3 {
 
 impl Solid for Cuboid {
     const NAME: &'static str = "cuboid";
+    const MISTAKES: OfAnswer<Self> = mistakes::of_cuboid;
+    const WRONG_NORMALS: fn(&Self, DVec3) -> WrongNormals = mistakes::normals_of_cuboid;
 
     fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
         kit.cuboid(queries)
@@ -102,12 +106,6 @@ impl Solid for Cuboid {
     }
     fn turned(&self) -> Self {
         Cuboid { min: turned(self.min), max: turned(self.max) }
-    }
-    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes {
-        mistakes::of_cuboid(query, yours)
-    }
-    fn wrong_normals(&self, at: DVec3) -> WrongNormals {
-        mistakes::normals_of_cuboid(self, at)
     }
     fn inside(&self, at: Vec3) -> Vec3 {
         self.min + (0.5 + 0.45 * at) * (self.max - self.min)
@@ -127,6 +125,8 @@ impl Solid for Cuboid {
 
 impl Solid for Cylinder {
     const NAME: &'static str = "cylinder";
+    const MISTAKES: OfAnswer<Self> = mistakes::of_cylinder;
+    const WRONG_NORMALS: fn(&Self, DVec3) -> WrongNormals = mistakes::normals_of_cylinder;
 
     fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
         kit.cylinder(queries)
@@ -144,12 +144,6 @@ impl Solid for Cylinder {
     fn turned(&self) -> Self {
         Cylinder { base: turned(self.base), top: turned(self.top), radius: self.radius }
     }
-    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes {
-        mistakes::of_cylinder(query, yours)
-    }
-    fn wrong_normals(&self, at: DVec3) -> WrongNormals {
-        mistakes::normals_of_cylinder(self, at)
-    }
     fn inside(&self, at: Vec3) -> Vec3 {
         in_round(self.base, self.top - self.base, self.radius, 0.5 + 0.45 * at.z, at)
     }
@@ -166,6 +160,8 @@ impl Solid for Cylinder {
 
 impl Solid for Cone {
     const NAME: &'static str = "cone";
+    const MISTAKES: OfAnswer<Self> = mistakes::of_cone;
+    const WRONG_NORMALS: fn(&Self, DVec3) -> WrongNormals = mistakes::normals_of_cone;
 
     fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
         kit.cone(queries)
@@ -182,12 +178,6 @@ impl Solid for Cone {
     }
     fn turned(&self) -> Self {
         Cone { base: turned(self.base), apex: turned(self.apex), radius: self.radius }
-    }
-    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes {
-        mistakes::of_cone(query, yours)
-    }
-    fn wrong_normals(&self, at: DVec3) -> WrongNormals {
-        mistakes::normals_of_cone(self, at)
     }
     fn inside(&self, at: Vec3) -> Vec3 {
         // Use a cylinder inside the cone, with less than half the height and less than half the radius.
@@ -206,6 +196,7 @@ impl Solid for Cone {
 
 impl Solid for Disk {
     const NAME: &'static str = "disk";
+    const MISTAKES: OfAnswer<Self> = mistakes::of_disk;
     const FLAT: bool = true;
 
     fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
@@ -224,9 +215,6 @@ impl Solid for Disk {
     fn turned(&self) -> Self {
         Disk { center: turned(self.center), normal: turned(self.normal), radius: self.radius }
     }
-    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes {
-        mistakes::of_disk(query, yours)
-    }
     fn inside(&self, at: Vec3) -> Vec3 {
         in_round(self.center, self.normal, self.radius, 0.0, at)
     }
@@ -242,6 +230,7 @@ impl Solid for Disk {
 
 impl Solid for Polygon {
     const NAME: &'static str = "polygon";
+    const MISTAKES: OfAnswer<Self> = mistakes::of_polygon;
     const FLAT: bool = true;
 
     fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
@@ -259,9 +248,6 @@ impl Solid for Polygon {
     }
     fn turned(&self) -> Self {
         Polygon { corners: self.corners.iter().copied().map(turned).collect() }
-    }
-    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes {
-        mistakes::of_polygon(query, yours)
     }
     fn inside(&self, at: Vec3) -> Vec3 {
         let middle = self.corners.iter().sum::<Vec3>() / self.corners.len() as f32;

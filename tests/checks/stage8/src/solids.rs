@@ -163,8 +163,9 @@ fn judge<S: Solid>(trial: &Trial<'_>, queries: &[Scaled<S>]) -> Vec<CheckResult>
             .explained_by(mistakes(scaled, yours, exact)))
     };
     // Where the ray passes too near to an edge, each formula may give each answer.
-    let formulas = |Scaled { plain, .. }: &Scaled<S>, yours: &Option<SolidHit>| {
-        let (given, is_open) = (S::mistakes(plain, yours.map(|hit| hit.t)), expected(plain).is_none());
+    let formulas = |Scaled { plain, size, speed }: &Scaled<S>, yours: &Option<SolidHit>| {
+        let given = (S::MISTAKES)(plain, yours.map(|hit| hit.t), f64::from(size * speed));
+        let is_open = expected(plain).is_none();
         given.into_iter().map(|(gives, text)| (gives || is_open, text)).collect()
     };
     compare_formulas(queries, ask(trial, queries), judge, formulas)
@@ -316,7 +317,7 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> CheckResult {
             let is = |(wrong, text): (DVec3, &'static str)| {
                 ((wrong.normalize_or_zero() - direction).length() < 1e-3, text)
             };
-            mistakes.extend(query.solid.wrong_normals(at).into_iter().map(is));
+            mistakes.extend((S::WRONG_NORMALS)(&query.solid, at).into_iter().map(is));
             mistakes.extend([(!S::FLAT && beyond(-direction) <= 2e-3, "your normal points inwards")]);
             Err(Broken::with_texts(
                 input(&scaled.asked()),

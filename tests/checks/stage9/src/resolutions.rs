@@ -5,7 +5,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::slabs_interval;
 use checks::generate::rough_point;
-use checks::judge::compare;
+use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::paste::{Arguments, Paste};
 use glam::{UVec3, Vec3, uvec3, vec3};
@@ -167,38 +167,32 @@ pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> CheckResult {
             let side = (query.bounds.max - query.bounds.min) / yours.as_vec3();
             let cubes = side.max_element() <= 2.0 * side.min_element();
             // Rounding up or down on three axes of five or more cells changes the number by at most half.
-            if cubes && 0.5 * wanted <= n && n <= 2.0 * wanted {
-                return Ok(());
-            }
-            let mistakes = [
+            let is_right = cubes && 0.5 * wanted <= n && n <= 2.0 * wanted;
+            let broken = || {
+                let expected = format!("about {wanted} cells that are nearly cubes");
+                let yours = format!("{yours}, {n} cells");
+                Broken::with_texts(describe(query), yours, expected, "the definition").explained_by([
+                    (!cubes, "your cells are not nearly cubes"),
+                    (
+                        n < wanted,
+                        "you make too few cells: the product over the three axes must be about density · n",
+                    ),
+                    (
+                        n > wanted,
+                        "you make too many cells: the product over the three axes must be about density · n",
+                    ),
+                ])
+            };
+            unless(is_right, broken).formulas([
                 (
-                    !cubes && yours.x == yours.y && yours.y == yours.z,
+                    yours.x == yours.y && yours.y == yours.z,
                     "you make as many cells on every axis: a longer side needs more",
                 ),
                 (
-                    cubes
-                        && (n * f64::from(query.density) / wanted - 1.0).abs() < 0.6
-                        && query.density != 1.0,
+                    cubes && (n * f64::from(query.density) / wanted - 1.0).abs() < 0.6,
                     "you leave out the density",
                 ),
-                (!cubes, "your cells are not nearly cubes"),
-                (
-                    n < wanted,
-                    "you make too few cells: the product over the three axes must be about density · n",
-                ),
-                (
-                    n > wanted,
-                    "you make too many cells: the product over the three axes must be about density · n",
-                ),
-            ];
-            let expected = format!("about {wanted} cells that are nearly cubes");
-            Err(Broken::with_texts(
-                describe(query),
-                format!("{yours}, {n} cells"),
-                expected,
-                "the definition",
-            )
-            .explained_by(mistakes))
+            ])
         })
     })
 }
