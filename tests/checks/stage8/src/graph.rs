@@ -247,6 +247,7 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
         let is_twice = asked.windows(2).any(|pair| pair[0] == pair[1]);
         let is_root_a_leaf = graph.nodes.first().is_some_and(|root| root.children.is_empty());
         let extra = asked.iter().any(|primitive| !expected.contains(primitive));
+        let is_all = n_boxes == graph.nodes.len() as u64 && asked.len() == table.primitives.len();
         Err(Broken::with_texts(
             describe(query),
             format!("{n_boxes} volumes, primitives {asked:?}"),
@@ -259,6 +260,7 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
             // The root may be a leaf. Some test its volume nevertheless.
             (n_boxes + leaves == boxes, LEAVES_UNTESTED),
             (n_boxes + leaves == boxes + u64::from(is_root_a_leaf), LEAVES_UNTESTED),
+            (is_all, "you open volumes that the ray misses, too"),
             (extra, "you test primitives in a volume that the ray misses"),
             (n_boxes > boxes && !extra, "you test a volume twice, or a volume below one that the ray misses"),
         ]))
