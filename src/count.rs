@@ -6,80 +6,77 @@
 use crate::aabb::Aabb;
 use crate::message;
 use serde::{Deserialize, Serialize};
+use std::cell::Cell;
 use std::ops::AddAssign;
 
-/// A kind of work that is counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
+/// Makes the events, and the counts of all of them, from one list.
+macro_rules! counts {
+    ($($(#[$doc:meta])* $event:ident $count:ident,)*) => {
+        /// A kind of work that is counted.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Event {
+            $($(#[$doc])* $event,)*
+        }
+
+        /// How often each [`Event`] happened. The sum of two counts is the sum of each field.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+        pub struct Counts {
+            $($(#[$doc])* pub $count: u64,)*
+        }
+
+        message! { Counts { $($count),* } }
+
+        impl AddAssign for Counts {
+            fn add_assign(&mut self, other: Counts) {
+                $(self.$count += other.$count;)*
+            }
+        }
+
+        impl Counts {
+            #[inline]
+            fn of(&mut self, event: Event) -> &mut u64 {
+                match event {
+                    $(Event::$event => &mut self.$count,)*
+                }
+            }
+        }
+    };
+}
+
+counts! {
     /// A ray from the camera was traced.
-    Primary,
+    Primary primary,
     /// A shadow ray was traced to a light.
-    Shadow,
+    Shadow shadow,
     /// A reflected ray was traced.
-    Reflection,
+    Reflection reflection,
     /// A refracted ray was traced through a surface.
-    Transmission,
+    Transmission transmission,
     /// A ray in a random direction was traced from a diffuse surface (indirect light).
-    Indirect,
+    Indirect indirect,
     /// A path ended at a surface that reflects light, before its last bounce: by Russian roulette.
-    Absorbed,
+    Absorbed absorbed,
     /// A ray other than a shadow ray hit a surface.
-    Hit,
+    Hit hits,
     /// A search looked at the contents of a node or cell.
-    NodeVisit,
+    NodeVisit node_visits,
     /// A ray was tested against a bounding volume.
-    BoxTest,
+    BoxTest box_tests,
     /// A ray was tested against a primitive.
-    PrimitiveTest,
+    PrimitiveTest primitive_tests,
+    /// A test against a primitive went over to exact arithmetic, see [`exact_test`].
+    ExactTest exact_tests,
     /// One random number was looked up.
-    RandomNumber,
+    RandomNumber random_numbers,
     /// One colour was read from an image.
-    TextureRead,
-    /// With a fixed ray offset: a shadow ray hit something that it misses from the point at the error bound.
-    ShadowAcne,
-    /// With a fixed ray offset: a shadow ray missed what blocks it from the point at the error bound.
-    LightLeak,
+    TextureRead texture_reads,
+    /// With a fixed `ray_offset`: a shadow ray hit something, mostly its own surface, which it misses when it starts at the error
+    /// bound (shadow acne).
+    ShadowAcne shadow_acne,
+    /// With a fixed `ray_offset`: a shadow ray reached the light although something blocks it when it starts at the error bound,
+    /// because it started beyond it (light leak).
+    LightLeak light_leaks,
 }
-
-/// How often each [`Event`] happened. The sum of two counts is the sum of each field.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Counts {
-    /// The number of rays from the camera.
-    pub primary: u64,
-    /// The number of shadow rays.
-    pub shadow: u64,
-    /// The number of reflected rays.
-    pub reflection: u64,
-    /// The number of refracted rays.
-    pub transmission: u64,
-    /// The number of rays in random directions from diffuse surfaces (indirect light).
-    pub indirect: u64,
-    /// The number of paths that ended at a surface that reflects light, before their last bounce: by Russian roulette.
-    pub absorbed: u64,
-    /// The number of hits of rays with surfaces, without those of shadow rays.
-    pub hits: u64,
-    /// The number of nodes or cells whose contents a search looked at.
-    pub node_visits: u64,
-    /// The number of tests of a ray against a bounding volume.
-    pub box_tests: u64,
-    /// The number of tests of a ray against a primitive.
-    pub primitive_tests: u64,
-    /// The number of random numbers that were looked up.
-    pub random_numbers: u64,
-    /// The number of colours that were read from images.
-    pub texture_reads: u64,
-    /// With a fixed `ray_offset`: the number of shadow rays that hit something, mostly their own surface, which they miss
-    /// when they start at the error bound (shadow acne).
-    pub shadow_acne: u64,
-    /// With a fixed `ray_offset`: the number of shadow rays that reach the light although something blocks them when they
-    /// start at the error bound, because they start beyond it (light leaks).
-    pub light_leaks: u64,
-}
-
-message! { Counts {
-    primary, shadow, reflection, transmission, indirect, absorbed, hits, node_visits, box_tests,
-    primitive_tests, random_numbers, texture_reads, shadow_acne, light_leaks
-} }
 
 impl Counts {
     /// The number of rays of all five kinds: primary, shadow, reflected, refracted and indirect.
@@ -88,23 +85,19 @@ impl Counts {
     }
 }
 
-impl AddAssign for Counts {
-    fn add_assign(&mut self, other: Counts) {
-        self.primary += other.primary;
-        self.shadow += other.shadow;
-        self.reflection += other.reflection;
-        self.transmission += other.transmission;
-        self.indirect += other.indirect;
-        self.absorbed += other.absorbed;
-        self.hits += other.hits;
-        self.node_visits += other.node_visits;
-        self.box_tests += other.box_tests;
-        self.primitive_tests += other.primitive_tests;
-        self.random_numbers += other.random_numbers;
-        self.texture_reads += other.texture_reads;
-        self.shadow_acne += other.shadow_acne;
-        self.light_leaks += other.light_leaks;
-    }
+thread_local! {
+    static EXACT_TESTS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// Counts an exact test. A test of a ray against a primitive calls this where it goes over to exact arithmetic; `render`, `cost` and
+/// `explain` show how often frames do.
+pub fn exact_test() {
+    EXACT_TESTS.set(EXACT_TESTS.get() + 1);
+}
+
+/// The number of exact tests on this thread so far.
+pub(crate) fn exact_tests() -> u64 {
+    EXACT_TESTS.get()
 }
 
 /// Counts events, or ignores them at no cost. Each tile of a frame is counted by a tally of its own.
@@ -141,22 +134,7 @@ impl Tally for Counts {
 
     #[inline]
     fn note(&mut self, event: Event) {
-        *match event {
-            Event::Primary => &mut self.primary,
-            Event::Shadow => &mut self.shadow,
-            Event::Reflection => &mut self.reflection,
-            Event::Transmission => &mut self.transmission,
-            Event::Indirect => &mut self.indirect,
-            Event::Absorbed => &mut self.absorbed,
-            Event::Hit => &mut self.hits,
-            Event::NodeVisit => &mut self.node_visits,
-            Event::BoxTest => &mut self.box_tests,
-            Event::PrimitiveTest => &mut self.primitive_tests,
-            Event::RandomNumber => &mut self.random_numbers,
-            Event::TextureRead => &mut self.texture_reads,
-            Event::ShadowAcne => &mut self.shadow_acne,
-            Event::LightLeak => &mut self.light_leaks,
-        } += 1;
+        *self.of(event) += 1;
     }
 
     fn counts(&self) -> Counts {

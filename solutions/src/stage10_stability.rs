@@ -25,7 +25,8 @@ use raykata::shape::Triangle;
 
 // <solution>
 use crate::{stage1_shapes::nearest_root, stage4_shading::off_surface};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
+use raykata::count::exact_test;
 use raykata::rounding::{gamma, two_sum};
 // </solution>
 
@@ -117,9 +118,19 @@ pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // needle seen from inside.
     let normal = (b - a).cross(c - a);
     let (distance, slope) = (corners[0].dot(normal), d.dot(normal));
-    let size = largest((b - a).to_array()) * largest((c - a).to_array());
-    let distance_error = PLANE_ERROR * size * largest(corners[0].to_array());
-    let slope_error = PLANE_ERROR * size * largest(d.to_array());
+    let terms = cross_without_signs((b - a).abs(), (c - a).abs());
+    let distance_error = PLANE_ERROR * corners[0].abs().dot(terms);
+    let slope_error = PLANE_ERROR * d.abs().dot(terms);
+
+    // Reject the ray if t is outside its range for certain, compared as t |d·n|. A ray that leaves
+    // a wall asks about its own wall: there the sign of t is certain long before its digits are.
+    let (along, steep) = (distance * 1f64.copysign(slope), slope.abs());
+    let [t_min, t_max] = [ray.t_min, ray.t_max].map(f64::from);
+    let too_near = along - t_min * steep < -(distance_error + t_min.abs() * slope_error);
+    let too_far = along - t_max * steep > distance_error + t_max.abs() * slope_error;
+    if steep > slope_error && (too_near || too_far) {
+        return None;
+    }
 
     // Where rounding errors may decide, compute the exact answer. That is rare: the ray meets an
     // edge, or the triangle is a needle, is seen edge-on, or contains the origin of the ray up to
@@ -149,18 +160,22 @@ pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 /// roundings. Together `u w (12 w + 16 z)`; `32 u` leaves room for products of errors.
 const EDGE_ERROR: f64 = 16.0 * f64::EPSILON;
 
-/// A bound on the rounding errors of `v·n`, with `n` the cross product of two edges, is
-/// `PLANE_ERROR` times the largest coordinates of `v` and of both edges.
+/// A bound on the rounding errors of `v·(e × f)` is `PLANE_ERROR` times the sum of its six products
+/// without their signs, `|v_x| (|e_y f_z| + |e_z f_y|) + …`: it is 0 where the exact products are.
 ///
-/// With `e` and `f` for the largest coordinates of the edges: each coordinate of `n` is at most
-/// `2 e f` and has an error of `8 u e f` at most (two differences, a product and a difference
-/// each). The scalar product adds three products of it with `v`, which has an error of `u`:
-/// `3 · (8 + 2 · 4) u e f v`. That is `48 u`; `96 u` leaves room for products of errors.
-const PLANE_ERROR: f64 = 48.0 * f64::EPSILON;
+/// Each product has a relative error of `u` for each of its three differences, and two more for
+/// itself; then it is in three sums. Together `8 u`. The comparison of `(a - o)·n` with `t d·n`
+/// rounds a product and a difference: `10 u`. `16 u` leaves room for products of errors.
+const PLANE_ERROR: f64 = 8.0 * f64::EPSILON;
 
 /// A number that exceeds its error bound by this factor has 26 right binary digits, two more than
 /// single precision keeps.
 const DIGITS: f64 = (1 << 26) as f64;
+
+/// The sums in place of the differences in `e × f`.
+fn cross_without_signs(e: DVec3, f: DVec3) -> DVec3 {
+    DVec3::new(e.y * f.z + e.z * f.y, e.z * f.x + e.x * f.z, e.x * f.y + e.y * f.x)
+}
 
 /// Twice the signed area of the triangle from the origin over `p` to `q`.
 fn edge(p: DVec2, q: DVec2) -> f64 {
@@ -190,6 +205,7 @@ fn largest<const N: usize>(numbers: [f64; N]) -> f64 {
 /// hits its neighbours.
 #[cold]
 fn exact_hit(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
+    exact_test();
     let (o, d, Triangle { a, b, c }) = (ray.origin, ray.direction, *triangle);
     // The barycentric coordinates are to each other as the determinants |d  b-o  c-o|,
     // |d  c-o  a-o| and |d  a-o  b-o|. A determinant is linear in each column, so expand the

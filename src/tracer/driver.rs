@@ -1,7 +1,7 @@
 //! The frame driver: renders every pixel exactly once, on all cores, with the same result for any number of
 //! threads. It looks up no random number that the scene does not need.
 
-use crate::count::{Counts, Event, Tally};
+use crate::count::{Counts, Event, Tally, exact_tests};
 use crate::effects::{Effect, Effects};
 use crate::film::{Film, WeightedColor};
 use crate::kit::{KitError, kit_error};
@@ -176,6 +176,7 @@ fn render_tile<T: Tally>(
     let right = settings.width.min(x + TILE);
     let bottom = settings.rows.end.min(y + TILE);
     let mut tally = T::default();
+    let before = exact_tests();
     let mut samples = Vec::new();
     // Compute the radiance of one sample, and count its random numbers.
     let mut sample_pixel = |column, row, sample| {
@@ -198,7 +199,8 @@ fn render_tile<T: Tally>(
         .flat_map(|row| (x..right).map(move |column| (column, row)))
         .map(&mut render_pixel)
         .collect();
-    (Tile { x, y, width: right - x, pixels }, tally.counts())
+    let exact_tests = if T::COUNTS { exact_tests() - before } else { 0 };
+    (Tile { x, y, width: right - x, pixels }, Counts { exact_tests, ..tally.counts() })
 }
 
 #[cfg(test)]

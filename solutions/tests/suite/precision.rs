@@ -131,3 +131,40 @@ shape = { sphere = { center = [0.3, 0.1, -0.2], radius = 1 } }
         assert_eq!(double, 0, "{accelerator:?}");
     }
 }
+
+/// A floor of tiles with two triangles each, in steps along x: every third column is `rise` higher, and a riser stands before it.
+fn tiles(rise: f32) -> Scene {
+    const SIDE: i32 = 12;
+    let mut text = "[film]\nwidth = 64\nheight = 48\n[camera]\nposition = [4.3, 7.1, -5.9]\nlook_at = [6, 1, 6]\n\
+                    [environment]\nbackground = 0.5\nindirect_light = true\n[quality]\nsamples_per_pixel = 4\n\
+                    [[lights]]\ndirectional = { direction = [1, -3, 2] }\nintensity = 2\n"
+        .to_owned();
+    let mut square = |[a, b, c, d]: [Vec3; 4]| {
+        for corners in [[a, b, c], [a, c, d]] {
+            let [a, b, c] = corners.map(|corner| format!("{:?}", corner.to_array()));
+            text += &format!("[[nodes]]\nshape = {{ triangle = {{ a = {a}, b = {b}, c = {c} }} }}\n");
+        }
+    };
+    let height = |column: i32| rise * (column / 3) as f32;
+    for (column, row) in (0..SIDE).flat_map(|column| (0..SIDE).map(move |row| (column, row))) {
+        let (x, z, y) = (column as f32, row as f32, height(column));
+        square([vec3(x, y, z), vec3(x, y, z + 1.0), vec3(x + 1.0, y, z + 1.0), vec3(x + 1.0, y, z)]);
+        let below = height(column - 1);
+        if below != y {
+            square([vec3(x, below, z), vec3(x, below, z + 1.0), vec3(x, y, z + 1.0), vec3(x, y, z)]);
+        }
+    }
+    scene(&text)
+}
+
+#[test]
+fn exact_arithmetic_is_rare() {
+    let mut room = load::load("../scenes/cornell.toml".as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    (room.film.width, room.film.height, room.quality.samples_per_pixel) = (64, 64, 4);
+    for (name, scene) in [("room", room), ("grid", tiles(0.0)), ("terrace", tiles(0.25))] {
+        let counts = in_precision(&scene, Precision::Single).counts;
+        // Some rays graze a tile or meet an edge.
+        let per_ray = counts.exact_tests as f64 / counts.rays() as f64;
+        assert!(per_ray < 0.01, "{name}: {per_ray} exact tests per ray");
+    }
+}

@@ -56,7 +56,7 @@ fn cells(
     point: &Point,
     base: &Point,
     [on_front, too_noisy]: [bool; 2],
-) -> [(&'static str, String); 19] {
+) -> [(&'static str, String); 20] {
     let pixels = f64::from(report.width) * f64::from(report.height);
     let (bias, bias_error) = point.bias(report.reference_error, pixels);
     let time = point.time_ratio(base);
@@ -77,6 +77,7 @@ fn cells(
         ("rays", counts.rays().to_string()),
         ("box_tests", counts.box_tests.to_string()),
         ("primitive_tests", counts.primitive_tests.to_string()),
+        ("exact_tests", counts.exact_tests.to_string()),
         ("shadow_acne", counts.shadow_acne.to_string()),
         ("light_leaks", counts.light_leaks.to_string()),
         ("rays_judged", judged(|hits| hits.rays)),

@@ -289,8 +289,11 @@ fn about_hits(counted: &Counts) -> String {
     let seen = counted.rays() - counted.shadow;
     format!(
         "{} of {} rays other than shadow rays hit a surface. Shadow rays start only there, and only to lights in \
-         front of it.",
+         front of it. Of the {} tests of primitives, {} needed exact arithmetic, {:.3} per ray.",
         Thousands(counted.hits),
-        Thousands(seen)
+        Thousands(seen),
+        Thousands(counted.primitive_tests),
+        Thousands(counted.exact_tests),
+        counted.exact_tests as f64 / counted.rays().max(1) as f64
     )
 }

@@ -126,6 +126,38 @@ pub(super) fn starts_next_to_a_face(trial: &Trial<'_>) -> CheckResult {
     all_hold(cases.iter().zip(answers.chunks(4)).map(judge).collect())
 }
 
+/// Triangles seen edge-on from the origin of the world. On the way to the second corner, double precision loses the sign of the
+/// determinant, but not that of the distance. Of whole numbers, such as were found by a search for small determinants.
+const CORNERS: [[[i32; 3]; 3]; 3] = [
+    [[-79901, -54540, 137825], [-7945579, 7727471, 798180], [-219053, 7525521, -7155049]],
+    [[-48248, -18708, -190529], [-5529899, -6277445, -7531181], [2786749, 6017523, -6083264]],
+    [[-45972, 27707, 79193], [2216769, -6412465, -7659052], [6934301, 7440082, -3155143]],
+];
+
+pub(super) fn hits_a_corner_seen_edge_on(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 37);
+    let queries: Vec<TriangleQuery> = (0..48)
+        .map(|index| {
+            // Each axis comes first, on both sides of 0 and at any size.
+            let (axis, size) = (random.below(3) as usize, 2f32.powi(random.below(41) as i32 - 20));
+            let size = if index % 2 == 0 { size } else { -size };
+            let [a, b, c] = CORNERS[index % 3].map(|p| [0, 1, 2].map(|i| p[(axis + i) % 3] as f32));
+            let [a, b, c] = [a, b, c].map(|corner| size * Vec3::from_array(corner));
+            TriangleQuery { ray: Ray::new(Vec3::ZERO, b), triangle: Triangle { a, b, c } }
+        })
+        .collect();
+    all_hold(compare(&queries, trial.kit.watertight(&queries), |query, yours| match yours {
+        // Another check judges the digits of t.
+        Some(hit) if (hit.t - 1.0).abs() < 1e-3 => Ok(()),
+        _ => Err(Broken::new(
+            query.call("watertight"),
+            yours,
+            "a hit of the second corner at t = 1",
+            "exactly",
+        )),
+    }))
+}
+
 /// Rays that are so nearly parallel to a triangle that rounding errors decide all signs, and that cross its plane one size of
 /// the triangle beside it. A hit must not have barycentric coordinates outside of the triangle.
 pub(super) fn passes_beside_a_triangle_seen_edge_on(trial: &Trial<'_>) -> CheckResult {

@@ -2,7 +2,9 @@
 
 use super::Odd;
 use super::doubles::{judge_ends, judge_weights};
-use super::next_to_faces::{passes_beside_a_triangle_seen_edge_on, starts_next_to_a_face};
+use super::next_to_faces::{
+    hits_a_corner_seen_edge_on, passes_beside_a_triangle_seen_edge_on, starts_next_to_a_face,
+};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
@@ -238,6 +240,7 @@ pub(super) fn watertight_walls_seen_edge_on_do_not_leak(trial: &Trial<'_>) -> Ch
     let seen_edge_on = ["star prism", "star prism, tilted", "urchin", "cave", "scan"];
     let meshes = families().into_iter().filter(|mesh| seen_edge_on.contains(&mesh.name));
     meshes.into_iter().try_for_each(|mesh| mesh_does_not_leak(trial, &mesh))?;
+    hits_a_corner_seen_edge_on(trial)?;
     passes_beside_a_triangle_seen_edge_on(trial)
 }
 
