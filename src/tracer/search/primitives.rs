@@ -19,8 +19,8 @@ pub trait Primitives: Probe + Cells {
     /// Counts one event.
     fn count(&mut self, event: Event);
 
-    /// Notes that a ray was tested against a box, and whether it enters it.
-    fn tested(&mut self, bounds: &Aabb, hit: bool);
+    /// Notes that a ray was tested against a box, and whether it enters it. The box is made only if it is kept.
+    fn tested(&mut self, bounds: impl FnOnce() -> Aabb, hit: bool);
 
     /// Whether `conservative_slab` of stage 10 tests boxes; otherwise `slab` of stage 3.
     fn conservative(&self) -> bool;

@@ -265,7 +265,7 @@ impl<F: StudentFunctions, T: Tally> Probe for SceneProbe<'_, F, T> {
         } else {
             F::slab(ray, self.inverse_direction, bounds)
         };
-        self.tested(bounds, interval.is_some());
+        self.tested(|| *bounds, interval.is_some());
         interval.map(|(enter, _)| enter)
     }
 
@@ -301,9 +301,9 @@ impl<F: StudentFunctions, T: Tally> Primitives for SceneProbe<'_, F, T> {
     }
 
     #[inline(always)]
-    fn tested(&mut self, bounds: &Aabb, hit: bool) {
+    fn tested(&mut self, bounds: impl FnOnce() -> Aabb, hit: bool) {
         if self.tally.keeps_boxes() {
-            self.tally.tested(bounds, hit);
+            self.tally.tested(&bounds(), hit);
         }
     }
 

@@ -307,7 +307,7 @@ impl<F: StudentFunctions, P: Primitives> Probe for GraphProbe<'_, F, P> {
                 let (inverse, conservative) = (self.probe.inverse_direction(), self.probe.conservative());
                 let test = if conservative { F::conservative_slab } else { F::slab };
                 let interval = test(ray, inverse, bounds);
-                self.probe.tested(bounds, interval.is_some());
+                self.probe.tested(|| *bounds, interval.is_some());
                 interval.map(|(enter, _)| enter)
             }
             Volumes::Spheres(spheres) => F::enter_bounding_sphere(ray, spheres[node as usize].as_ref()?),

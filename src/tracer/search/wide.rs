@@ -187,7 +187,7 @@ impl<F: StudentFunctions, P: Primitives, L: Level> WideProbe for TreeProbe<'_, F
             // The children come first, then the empty places.
             for child in 0..node.n_children() {
                 self.probe.count(Event::BoxTest);
-                self.probe.tested(&node.child_bounds(child as usize), entered.mask & 1 << child != 0);
+                self.probe.tested(|| node.child_bounds(child as usize), entered.mask & 1 << child != 0);
             }
         }
         entered
