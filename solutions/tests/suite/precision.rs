@@ -67,16 +67,17 @@ fn wall() -> Scene {
         };
         (0..COLUMNS).map(corner).collect::<Vec<Vec3>>()
     });
-    let mut triangle = |corners: [Vec3; 3]| {
-        let [a, b, c] = corners.map(|corner| format!("{:?}", corner.to_array()));
-        text += &format!("[[nodes]]\nshape = {{ triangle = {{ a = {a}, b = {b}, c = {c} }} }}\n");
-    };
     for (left, right) in (0..).zip(1..COLUMNS as usize) {
         // A corner with the barycentric coordinate γ on one side of an edge has 1 - β - γ on the other side.
-        triangle([below[left], above[left], below[right]]);
-        triangle([above[left], above[right], below[right]]);
+        text += &triangle([below[left], above[left], below[right]]);
+        text += &triangle([above[left], above[right], below[right]]);
     }
     scene(&text)
+}
+
+fn triangle(corners: [Vec3; 3]) -> String {
+    let [a, b, c] = corners.map(|corner| format!("{:?}", corner.to_array()));
+    format!("[[nodes]]\nshape = {{ triangle = {{ a = {a}, b = {b}, c = {c} }} }}\n")
 }
 
 #[test]
@@ -139,12 +140,7 @@ fn tiles(rise: f32) -> Scene {
                     [environment]\nbackground = 0.5\nindirect_light = true\n[quality]\nsamples_per_pixel = 4\n\
                     [[lights]]\ndirectional = { direction = [1, -3, 2] }\nintensity = 2\n"
         .to_owned();
-    let mut square = |[a, b, c, d]: [Vec3; 4]| {
-        for corners in [[a, b, c], [a, c, d]] {
-            let [a, b, c] = corners.map(|corner| format!("{:?}", corner.to_array()));
-            text += &format!("[[nodes]]\nshape = {{ triangle = {{ a = {a}, b = {b}, c = {c} }} }}\n");
-        }
-    };
+    let mut square = |[a, b, c, d]: [Vec3; 4]| text += &(triangle([a, b, c]) + &triangle([a, c, d]));
     let height = |column: i32| rise * (column / 3) as f32;
     for (column, row) in (0..SIDE).flat_map(|column| (0..SIDE).map(move |row| (column, row))) {
         let (x, z, y) = (column as f32, row as f32, height(column));

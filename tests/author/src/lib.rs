@@ -7,7 +7,6 @@ extern crate raykata_cli;
 #[cfg(target_os = "linux")]
 pub mod attacks;
 pub mod bars;
-pub mod cases;
 pub mod corpus;
 pub mod gaps;
 pub mod gauntlet;

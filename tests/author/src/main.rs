@@ -1,6 +1,6 @@
 //! `author`: generates the exercises, and tests the checks and the grader. It is the program of the kit's authors.
 
-use author::{bars, cases, corpus, gaps, gauntlet, generate, mutants, new_check, sync, weaken};
+use author::{bars, corpus, gaps, gauntlet, generate, mutants, new_check, sync, weaken};
 #[cfg(target_os = "linux")]
 use author::{rehearsal, run_attacks};
 use grader::kits::root;
@@ -36,7 +36,6 @@ const COMMANDS: &[Command] = &[
     (&gauntlet::SPEC, |given| done(in_kit(gauntlet::GauntletOptions::read(given), gauntlet::run))),
     (&gauntlet::COST, gauntlet::cost),
     (&bars::SPEC, |given| done(in_kit(bars::BarsOptions::read(given), bars::run))),
-    (&cases::SPEC, |_| done(cases::list(&root()?))),
     (&generate::SPEC, |given| done(generate::write(&generate::folder(given)))),
 ];
 

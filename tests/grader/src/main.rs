@@ -5,7 +5,6 @@ use grader::program::{Command, Program, done, exit_code, in_kit};
 use grader::{course, handout, release};
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
-use raykata_cli::args::Misuse;
 use std::process::ExitCode;
 
 const PROGRAM: Program<bool> = Program {
@@ -21,10 +20,7 @@ or files differ; 2 the command line is wrong.",
         ("export", "Write the files with which Gradescope, GitHub Classroom or Slurm grade."),
     ],
     without_command: None,
-    elsewhere: |name| match MOVED.contains(&name) {
-        true => Err(Misuse::new(format!("this command moved: cargo run -p author -- {name}"))),
-        false => Ok(String::new()),
-    },
+    elsewhere: |_| Ok(String::new()),
     ends: exit_code,
 };
 
@@ -48,23 +44,6 @@ const COMMANDS: &[Command] = &[
     (&export::PICTURE, |given| done(in_kit(export::PictureOptions::read(given), export::picture))),
     #[cfg(target_os = "linux")]
     (&export::CLASSROOM, |given| done(export::classroom(&export::ExportOptions::of_classroom(given)?))),
-];
-
-/// Commands that only authors use.
-const MOVED: &[&str] = &[
-    "gauntlet",
-    "cost",
-    "attacks",
-    "rehearse",
-    "cases",
-    "sync",
-    "new-check",
-    "bars",
-    "corpus",
-    "gaps",
-    "weaken",
-    "mutants",
-    "generate",
 ];
 
 fn main() -> ExitCode {

@@ -3,12 +3,11 @@ use super::program_runs::{does_not_understand, explains};
 use std::process::Command;
 
 /// The commands with their arguments and options.
-const COMMANDS: [(&str, &[&str]); 12] = [
+const COMMANDS: [(&str, &[&str]); 11] = [
     ("gauntlet", &["--kit", "--inputs", "--seed", "--out", "20000"]),
     ("cost", &["[SCENE]", "--headline", "--rounds", "--set"]),
     ("attacks", &["[NAME]...", "--shard"]),
     ("rehearse", &["--students", "--out", "--jobs", "--honest", "200"]),
-    ("cases", &[]),
     ("sync", &["--check", "--force"]),
     ("new-check", &["NAME", "--stage", "--function", "--module", "--after"]),
     (
@@ -51,7 +50,7 @@ fn what_is_not_understood_ends_with_2() {
         ("mutants --again --resume", "cannot be used with"),
         ("gauntlet --inputs 99", "from 100 to"),
         ("gauntlet --kit solution", "did you mean `solutions`?"),
-        ("cases all", "unexpected argument `all`"),
+        ("sync all", "unexpected argument `all`"),
         ("rehearse --jobs 0", "a whole number from 1 to 65535"),
     ];
     does_not_understand(PROGRAM, &lines);

@@ -43,7 +43,7 @@ fn at_all_edges(trial: &Trial<'_>, name: &str) -> Vec<TriangleQuery> {
     queries
 }
 
-const SINGLE: &str =
+pub(super) const SINGLE: &str =
     "the error is that of single precision, in both directions: you round an intermediate result to f32";
 
 /// Whether answers err in both directions, as rounding errors do. A tolerance errs in one direction only.

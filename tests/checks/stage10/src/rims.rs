@@ -1,6 +1,6 @@
 //! The laws of `sphere_in_double`.
 
-use super::doubles::{describe, err_both_ways};
+use super::doubles::{SINGLE, describe, err_both_ways};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::{U, sphere_roots};
@@ -144,10 +144,7 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> CheckResult {
             ),
             (converted_late, CONVERTED_LATE),
             (assumes_unit, "you take the direction to have length 1: a = d·d, and both roots are divided by it"),
-            (
-                single,
-                "the error is that of single precision, in both directions: you round an intermediate result to f32",
-            ),
+            (single, SINGLE),
         ]))
     };
     all_hold(wrong.iter().map(broken).collect())?;

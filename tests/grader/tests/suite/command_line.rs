@@ -66,12 +66,3 @@ fn what_is_not_understood_ends_with_2() {
     ];
     does_not_understand(PROGRAM, &lines);
 }
-
-#[test]
-fn a_command_of_authors_says_the_new_command() {
-    for line in ["sync --check", "corpus --list", "help gaps"] {
-        let command = line.trim_start_matches("help ").split(' ').next().unwrap_or_default();
-        let error = format!("error: this command moved: cargo run -p author -- {command}\n");
-        assert_eq!(said(PROGRAM, line), (Some(2), String::new(), error));
-    }
-}
