@@ -156,7 +156,6 @@ impl Summary<'_> {
                 ("node visits", counts.node_visits),
                 ("box tests", counts.box_tests),
                 ("primitive tests", counts.primitive_tests),
-                ("exact tests", counts.exact_tests),
             ];
             let indirect = if *indirect_light { &indirect[..] } else { &[] };
             let offset = [("shadow acne", counts.shadow_acne), ("light leaks", counts.light_leaks)];
@@ -166,10 +165,14 @@ impl Summary<'_> {
             }
             let rays = counts.rays().max(1) as f64;
             println!(
-                "  per ray          {:.1} box tests, {:.1} primitive tests, {:.3} exact tests, {:.0} ns (all threads)",
+                "  exact tests      {} ({:.3} per ray)",
+                Thousands(counts.exact_tests),
+                counts.exact_tests as f64 / rays
+            );
+            println!(
+                "  per ray          {:.1} box tests, {:.1} primitive tests, {:.0} ns (all threads)",
                 counts.box_tests as f64 / rays,
                 counts.primitive_tests as f64 / rays,
-                counts.exact_tests as f64 / rays,
                 1e9 * rendering.render_seconds / rays
             );
         }

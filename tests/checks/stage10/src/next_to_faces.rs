@@ -126,8 +126,8 @@ pub(super) fn starts_next_to_a_face(trial: &Trial<'_>) -> CheckResult {
     all_hold(cases.iter().zip(answers.chunks(4)).map(judge).collect())
 }
 
-/// Triangles seen edge-on from the origin of the world. On the way to the second corner, double precision loses the sign of the
-/// determinant, but not that of the distance. Of whole numbers, such as were found by a search for small determinants.
+/// Triangles seen edge-on from the origin of the world, found by a search for small determinants of whole numbers. On the way to
+/// the second corner, double precision loses the sign of the determinant, but not that of the distance.
 const CORNERS: [[[i32; 3]; 3]; 3] = [
     [[-79901, -54540, 137825], [-7945579, 7727471, 798180], [-219053, 7525521, -7155049]],
     [[-48248, -18708, -190529], [-5529899, -6277445, -7531181], [2786749, 6017523, -6083264]],
