@@ -70,11 +70,9 @@ counts! {
     RandomNumber random_numbers,
     /// One colour was read from an image.
     TextureRead texture_reads,
-    /// With a fixed `ray_offset`: a shadow ray hit something, mostly its own surface, which it misses when it starts at the error
-    /// bound (shadow acne).
+    /// With a fixed `ray_offset`: a shadow ray hit something that it misses from the point at the error bound (shadow acne).
     ShadowAcne shadow_acne,
-    /// With a fixed `ray_offset`: a shadow ray reached the light although something blocks it when it starts at the error bound,
-    /// because it started beyond it (light leak).
+    /// With a fixed `ray_offset`: a shadow ray missed what blocks it from the point at the error bound (light leak).
     LightLeak light_leaks,
 }
 

@@ -217,10 +217,11 @@ fn shown(name: &str, scene: &Scene, kit: &dyn Kit) -> Shown {
 }
 
 impl Shown {
-    /// Returns eight hexadecimal digits of a hash of all results. Counts of indirect light that are 0 are left out, so that the
-    /// hash of a scene without indirect light is that from before there was any.
+    /// Returns eight hexadecimal digits of a hash of all results. Counts of indirect light and of exact tests that are 0 are left
+    /// out, so that the hash of a scene without them is that from before there were any.
     pub fn hash(&self) -> String {
-        let hash = Sha256::digest(format!("{self:?}").replace("indirect: 0, absorbed: 0, ", ""));
+        let all = format!("{self:?}").replace("indirect: 0, absorbed: 0, ", "");
+        let hash = Sha256::digest(all.replace("exact_tests: 0, ", ""));
         hash[..4].iter().map(|byte| format!("{byte:02x}")).collect()
     }
 }
