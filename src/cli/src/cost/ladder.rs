@@ -376,6 +376,9 @@ mod tests {
     #[test]
     fn levels_of_a_ladder_differ_in_one_parameter_of_the_plan() {
         let root = root().expect("the kit");
+        if !root.join("solutions").is_dir() {
+            return println!("a hand-out has no reference, whose plans have every parameter");
+        }
         let source = Source::prepare(&root, Which::Solutions, Need::Frames).expect("the solutions");
         let mut plans = Plans { kit: source.fresh(), known: HashMap::new() };
         let mut seen = std::collections::BTreeSet::new();
