@@ -28,8 +28,8 @@ pub fn fill_bins(primitives: &[PrimitiveBox], grid: &BinGrid) -> Bins {
     todo!("find the bin of each primitive along each axis; extend its box and count the primitive")
 }
 
-/// The cost of a leaf of n primitives: `BLOCK_COST · ⌈n / BLOCK⌉`. A ray tests four triangles at
-/// once, so it pays for whole blocks: five cost as much as eight. The result is exact for up to 2²⁴
+/// The cost of a leaf of n primitives: `BLOCK_COST · ⌈n / BLOCK⌉`. A ray tests eight triangles at
+/// once, so it pays for whole blocks: nine cost as much as sixteen. The result is exact for up to 2²⁴
 /// primitives.
 pub fn block_cost(n_primitives: u32) -> f32 {
     todo!("round up to whole blocks")

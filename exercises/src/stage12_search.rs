@@ -13,8 +13,7 @@ use raykata::ray::Ray;
 use raykata::wide::{BLOCK, Child, ChildContents, Stack, WideProbe};
 
 /// The closest hit in a wide tree. From [`Child::ROOT`] on, the nearest child is visited first, and
-/// the others wait on a stack, the nearest on top. Is a child still the nearest when it comes from
-/// the stack?
+/// the others wait on a stack, in any order. Is a child still needed when it comes from the stack?
 ///
 /// `t_max` in calls of the probe is the end of the shortened ray, one float above the best `t`.
 ///
@@ -27,7 +26,7 @@ use raykata::wide::{BLOCK, Child, ChildContents, Stack, WideProbe};
 /// - Full points need at most 1.05 times the reference's calls of the probe.
 #[inline(always)]
 pub fn wide_closest_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> Option<PrimitiveHit> {
-    todo!("visit the nearest child, push the others in order, and skip what lies beyond the best hit")
+    todo!("visit the nearest child, push the others, and skip what lies beyond the best hit")
 }
 
 /// Whether any primitive of a wide tree is hit within the range of the ray (shadow rays). The order
@@ -37,5 +36,5 @@ pub fn wide_closest_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> Option<Primit
 /// the ray does not enter.
 #[inline(always)]
 pub fn wide_any_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> bool {
-    todo!("push all children that the ray enters, and stop at the first hit")
+    todo!("push inner children that the ray enters, test leaves, and stop at the first hit")
 }

@@ -1,17 +1,17 @@
-//! Stage 12 · eight boxes at once, and four triangles at once.
+//! Stage 12 · eight boxes at once, and eight triangles at once.
 //!
 //! Slides: `slides/stage12.md`. Sources: Ize, "Robust BVH Ray Traversal", JCGT 2013; Möller and
 //! Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997; Higham, "Accuracy and
 //! Stability of Numerical Algorithms", 2002.
 //!
-//! Given: [`gamma`] and [`UNIT_ROUNDOFF`]; [`F32x8`] and [`F32x4`] with `+`, `-`, `*`, `min`,
+//! Given: [`gamma`] and [`UNIT_ROUNDOFF`]; [`F32x8`] with `+`, `-`, `*`, `min`,
 //! `max`, `abs`, `le`, `lt` per lane; masks with `&`, `|` and `bits`; [`WideRay`] with
 //! `1 / direction` and the near side of boxes on each axis. `ray.t_min` is 0 or more. Coordinates
 //! and directions of triangles are at most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing
 //! overflows.
 
 use raykata::rounding::{UNIT_ROUNDOFF, gamma};
-use raykata::wide::simd::{F32x4, F32x8, Level};
+use raykata::wide::simd::{F32x8, Level};
 use raykata::wide::{Entered, TriangleBlock, WideNode, WideRay};
 
 /// Which of the eight boxes of a node a ray enters: the slab test `t_b = t_x ∩ t_y ∩ t_z`, eight
@@ -33,7 +33,7 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
     todo!("the slab test with eight lanes: near planes, far planes, minimum, maximum, widen, compare")
 }
 
-/// Which of four triangles a ray may hit before `t_max`: a filter before the test of stage 10,
+/// Which of eight triangles a ray may hit before `t_max`: a filter before the test of stage 10,
 /// which decides. The barycentric coordinates times `d·n` are `U = ((a-o) × d)·(c-a)`,
 /// `V = -((a-o) × d)·(b-a)` and `W = d·n - U - V`, with `n = (b-a) × (c-a)`. Different signs mean a
 /// miss: when is a sign certain? `t` is `n·(a-o) / d·n`.
@@ -52,5 +52,5 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
 /// 1997.
 #[inline(always)]
 pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: f32) -> u32 {
-    todo!("compute U, V and W with four lanes, bound their errors, and reject what is certain")
+    todo!("compute U, V and W with eight lanes, bound their errors, and reject what is certain")
 }

@@ -1,13 +1,14 @@
 //! Stage 12 · trees as fast searches need them: all nodes in one array, and eight children per
 //! node.
 //!
-//! Source: Wald, Benthin and Boulos, "Getting Rid of Packets", 2008.
+//! Source: Wald, Benthin and Boulos, "Getting Rid of Packets", 2008; Ylitie, Karras and Laine,
+//! "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", 2017.
 //!
 //! Given: [`FlatTree`], a binary tree with nodes of 32 bytes; [`WideTree`], a tree whose nodes have
-//! eight children.
+//! eight children; the cost [`WIDE_NODE_COST`].
 
 use raykata::bvh::Bvh;
-use raykata::wide::{BLOCK, Child, FlatTree, NO_PRIMITIVE, WideNode, WideTree};
+use raykata::wide::{BLOCK, Child, FlatTree, MAX_LEAF, NO_PRIMITIVE, WIDE_NODE_COST, WideNode, WideTree};
 
 /// Copies a hierarchy of stage 3 into one array, [`FlatTree`]. A ray needs both children of a node
 /// at once, so they lie side by side:
@@ -25,18 +26,19 @@ pub fn flatten(bvh: &Bvh) -> FlatTree {
     todo!("copy the root, then the two children of each node side by side, depth first")
 }
 
-/// Turns a binary tree into one with eight children per node. A node takes its two children, and
-/// replaces the inner child with the largest surface area by its own two, until there are eight or
-/// only leaves. Which child does a ray enter most probably?
+/// Turns a binary tree into the cheapest one with eight children per node, by dynamic programming.
+/// Everything below a binary node becomes a leaf, or up to eight children. The cost is
+/// `WIDE_NODE_COST · A` per inner node and `A · c` per leaf, with half the surface area `A` of its
+/// box and [`block_cost`] `c`. Which costs does a node need from its two children?
 ///
 /// Exactly:
 ///
-/// - Each leaf becomes one leaf with the same box and primitives.
-/// - Its primitives fill whole blocks of four, in order; free lanes of the last block have
-///   [`NO_PRIMITIVE`].
+/// - The cost is the least, up to rounding.
+/// - A leaf has the box and all primitives of a binary node, in order, at most [`MAX_LEAF`]. Free
+///   lanes of its last block have [`NO_PRIMITIVE`].
 /// - The children of a node come before its empty places.
 /// - A parent has a smaller index than its children.
-/// - A root that is a leaf becomes the only child of one node; no nodes give no nodes.
+/// - A tree that is best as one leaf has one node with one child; no nodes give no nodes.
 pub fn collapse(tree: &FlatTree) -> WideTree {
-    todo!("open the child with the largest area until there are eight; fill blocks at the leaves")
+    todo!("from the last node to the first: the least cost as 1 to 8 children; then build what costs least")
 }

@@ -27,7 +27,7 @@ fn clusters() -> Vec<Aabb> {
     places.map(|x| Aabb::new(vec3(x, 0.0, 0.0), vec3(x + 1.0, 4.0, 4.0))).collect()
 }
 
-/// Three clusters of boxes in sixteen bins: the boxes per bin, and the cost of each cut between two bins beside that of each cut
+/// Three clusters of boxes in 32 bins: the boxes per bin, and the cost of each cut between two bins beside that of each cut
 /// of the sorted boxes.
 pub fn bins_and_cuts(kit: &dyn Kit) -> Result<String> {
     let boxes = clusters();
@@ -46,7 +46,7 @@ pub fn bins_and_cuts(kit: &dyn Kit) -> Result<String> {
     let query = BinSplitQuery { bins: bins.clone(), n_bins: MAX_BINS as u32 };
     let best = kit.cheapest_split(&[query]).remove(0).context("these boxes can be split")?;
 
-    let mut drawing = Drawing::new("Sixteen bins, and the cost of each cut", 1000.0, 640.0);
+    let mut drawing = Drawing::new("32 bins, and the cost of each cut", 1000.0, 640.0);
     let plot = Plot::new(
         Axis::linear(f64::from(low) / 2.0, f64::from(high) / 2.0),
         Axis::linear(3000.0, 15000.0),
@@ -90,7 +90,7 @@ pub fn bins_and_cuts(kit: &dyn Kit) -> Result<String> {
             drawing.text(offset(at, [0.0, 36.0]), Middle, SMALL, ink, &text);
         }
     }
-    drawing.text([960.0, 66.0], End, SMALL, Ink::Color(0), "15 cuts between bins");
+    drawing.text([960.0, 66.0], End, SMALL, Ink::Color(0), "31 cuts between bins");
     draw_bins(&mut drawing, &plot, &bins, border);
     Ok(drawing.svg())
 }
@@ -110,27 +110,27 @@ fn draw_bins(drawing: &mut Drawing, plot: &Plot, bins: &Bins, border: impl Fn(us
 
 /// The cost of a leaf over its number of primitives.
 pub fn blocks_that_pay(kit: &dyn Kit) -> Result<String> {
-    let sizes: Vec<u32> = (1..=16).collect();
+    let sizes: Vec<u32> = (1..=32).collect();
     let costs = kit.block_cost(&sizes);
-    let mut drawing = Drawing::new("The cost of a leaf, in blocks of four", 1000.0, 520.0);
-    let plot = Plot::new(Axis::linear(0.0, 17.0), Axis::linear(0.0, 4.4), [80.0, 430.0], [880.0, 360.0]);
+    let mut drawing = Drawing::new("The cost of a leaf, in blocks of eight", 1000.0, 520.0);
+    let plot = Plot::new(Axis::linear(0.0, 33.0), Axis::linear(0.0, 4.4), [80.0, 430.0], [880.0, 360.0]);
     let names: Vec<String> = sizes.iter().map(u32::to_string).collect();
     let x: Vec<(f64, &str)> =
         sizes.iter().map(|&n| f64::from(n)).zip(names.iter().map(String::as_str)).collect();
     let y = [(1.0, "1"), (2.0, "2"), (3.0, "3"), (4.0, "4")];
     plot.draw_axes(&mut drawing, &x, &y, ["primitives", "block_cost"]);
-    plot.draw_curve(&mut drawing, [[0.0, 0.0], [17.0, 4.25]], Ink::Faint.pen(3.0).dashed());
+    plot.draw_curve(&mut drawing, [[0.0, 0.0], [33.0, 4.125]], Ink::Faint.pen(3.0).dashed());
     for (&n, &cost) in sizes.iter().zip(&costs) {
         let top = plot.at(f64::from(n), f64::from(cost));
-        let ink = if n % 4 == 0 { Ink::Color(1) } else { Ink::Color(0) };
+        let ink = if n % 8 == 0 { Ink::Color(1) } else { Ink::Color(0) };
         drawing.rectangle(
-            offset(top, [-18.0, 0.0]),
-            offset(plot.at(f64::from(n), 0.0), [18.0, 0.0]),
+            offset(top, [-9.0, 0.0]),
+            offset(plot.at(f64::from(n), 0.0), [9.0, 0.0]),
             ink,
             0.85,
         );
     }
-    drawing.text(plot.at(0.3, 3.6), Start, SMALL, Ink::Color(1), "full blocks cost a quarter per primitive");
+    drawing.text(plot.at(0.6, 3.6), Start, SMALL, Ink::Color(1), "full blocks cost an eighth per primitive");
     Ok(drawing.svg())
 }
 
@@ -222,8 +222,8 @@ pub fn wide_node(kit: &dyn Kit) -> Result<String> {
         drawing.text([left + width / 2.0, 508.0], Middle, SMALL, Ink::Text, &text);
     }
     let free = wide.blocks.iter().flatten().filter(|&&id| id == NO_PRIMITIVE).count();
-    let fill = 4.0 - free as f64 / wide.blocks.len() as f64;
-    let text = format!("{inner} inner nodes become {nodes}; a block of four holds {fill:.1} primitives");
+    let fill = 8.0 - free as f64 / wide.blocks.len() as f64;
+    let text = format!("{inner} inner nodes become {nodes}; a block of eight holds {fill:.1} primitives");
     drawing.text([500.0, 578.0], Middle, SMALL, Ink::Text, &text);
     Ok(drawing.svg())
 }

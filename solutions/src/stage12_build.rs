@@ -85,8 +85,8 @@ impl Grow for BoxA {
 }
 // </solution>
 
-/// The cost of a leaf of n primitives: `BLOCK_COST · ⌈n / BLOCK⌉`. A ray tests four triangles at
-/// once, so it pays for whole blocks: five cost as much as eight. The result is exact for up to 2²⁴
+/// The cost of a leaf of n primitives: `BLOCK_COST · ⌈n / BLOCK⌉`. A ray tests eight triangles at
+/// once, so it pays for whole blocks: nine cost as much as sixteen. The result is exact for up to 2²⁴
 /// primitives.
 pub fn block_cost(n_primitives: u32) -> f32 {
     // <solution>
@@ -410,6 +410,6 @@ const BINNING_PIECES: usize = 8;
 /// The number of bins for a node: small nodes use fewer, because at a node of ten primitives the
 /// bins take longer than the primitives.
 fn bins_for(count: usize) -> u32 {
-    (4 + count / 8).min(MAX_BINS) as u32
+    (8 + count / 2).min(MAX_BINS) as u32
 }
 // </solution>

@@ -17,8 +17,7 @@ use crate::stage3_traversal::keep_closest;
 // </solution>
 
 /// The closest hit in a wide tree. From [`Child::ROOT`] on, the nearest child is visited first, and
-/// the others wait on a stack, the nearest on top. Is a child still the nearest when it comes from
-/// the stack?
+/// the others wait on a stack, in any order. Is a child still needed when it comes from the stack?
 ///
 /// `t_max` in calls of the probe is the end of the shortened ray, one float above the best `t`.
 ///
@@ -65,37 +64,29 @@ pub fn wide_closest_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> Option<Primit
         }
     }
     closest
-    // <stub> todo!("visit the nearest child, push the others in order, and skip what lies beyond the best hit")
+    // <stub> todo!("visit the nearest child, push the others, and skip what lies beyond the best hit")
     // </solution>
 }
 
 // <solution>
-/// The nearest child of `node` that the ray enters, or `None`. The others are pushed, the nearest
-/// last.
+/// The nearest child of `node` that the ray enters, or `None`. The others are pushed: to sort them
+/// takes longer than the visits that it saves.
 #[inline(always)]
 fn nearest_child(probe: &mut impl WideProbe, node: u32, t_max: f32, stack: &mut Stack) -> Option<Child> {
     let entered = probe.enter(node, t_max);
     let children = probe.children(node);
-    // Sort the keys of the children that the ray enters by insertion, the farthest first.
-    let (mut keys, mut n, mut mask) = ([0; 8], 0, entered.mask);
+    let (mut nearest, mut mask) = (None::<u64>, entered.mask);
     while mask != 0 {
         let i = mask.trailing_zeros() as usize & 7;
         mask &= mask - 1;
+        // Keep the smaller key, and push the larger one.
         let key = children[i].key(entered.t[i]);
-        let mut place = n;
-        while place > 0 && keys[(place - 1) & 7] < key {
-            keys[place & 7] = keys[(place - 1) & 7];
-            place -= 1;
-        }
-        keys[place & 7] = key;
-        n += 1;
+        nearest = Some(nearest.map_or(key, |other| {
+            stack.push(other.max(key));
+            other.min(key)
+        }));
     }
-    // Push all but the nearest.
-    let (nearest, others) = keys[..n.min(8)].split_last()?;
-    for &key in others {
-        stack.push(key);
-    }
-    Some(Child::of_key(*nearest).0)
+    Some(Child::of_key(nearest?).0)
 }
 
 /// The blocks of a leaf, each with the number of its primitives.
@@ -117,31 +108,29 @@ pub fn wide_any_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> bool {
     let mut stack = Stack::new();
     stack.push(Child::ROOT.key(0.0));
     while let Some(key) = stack.pop() {
-        match Child::of_key(key).0.contents() {
-            // Push all children that the ray enters.
-            ChildContents::Inner(node) => {
-                let mut mask = probe.enter(node, ray.t_max).mask;
-                let children = probe.children(node);
-                while mask != 0 {
-                    stack.push(children[mask.trailing_zeros() as usize & 7].key(0.0));
-                    mask &= mask - 1;
-                }
-            }
-            // Test the primitives of a leaf, and stop at the first hit.
-            ChildContents::Leaf { block, count } => {
-                for (block, n) in blocks(block, count) {
-                    let mut lanes = probe.candidates(block, n, ray.t_max);
-                    while lanes != 0 {
-                        if probe.hit(block, lanes.trailing_zeros(), ray).is_some() {
-                            return true;
+        let ChildContents::Inner(node) = Child::of_key(key).0.contents() else { continue };
+        let mut mask = probe.enter(node, ray.t_max).mask;
+        while mask != 0 {
+            let child = probe.children(node)[mask.trailing_zeros() as usize & 7];
+            mask &= mask - 1;
+            match child.contents() {
+                ChildContents::Inner(_) => stack.push(child.key(0.0)),
+                // Test a leaf at once, and stop at the first hit.
+                ChildContents::Leaf { block, count } => {
+                    for (block, n) in blocks(block, count) {
+                        let mut lanes = probe.candidates(block, n, ray.t_max);
+                        while lanes != 0 {
+                            if probe.hit(block, lanes.trailing_zeros(), ray).is_some() {
+                                return true;
+                            }
+                            lanes &= lanes - 1;
                         }
-                        lanes &= lanes - 1;
                     }
                 }
             }
         }
     }
     false
-    // <stub> todo!("push all children that the ray enters, and stop at the first hit")
+    // <stub> todo!("push inner children that the ray enters, test leaves, and stop at the first hit")
     // </solution>
 }

@@ -1,17 +1,17 @@
-//! Stage 12 · eight boxes at once, and four triangles at once.
+//! Stage 12 · eight boxes at once, and eight triangles at once.
 //!
 //! Slides: `slides/stage12.md`. Sources: Ize, "Robust BVH Ray Traversal", JCGT 2013; Möller and
 //! Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997; Higham, "Accuracy and
 //! Stability of Numerical Algorithms", 2002.
 //!
-//! Given: [`gamma`] and [`UNIT_ROUNDOFF`]; [`F32x8`] and [`F32x4`] with `+`, `-`, `*`, `min`,
+//! Given: [`gamma`] and [`UNIT_ROUNDOFF`]; [`F32x8`] with `+`, `-`, `*`, `min`,
 //! `max`, `abs`, `le`, `lt` per lane; masks with `&`, `|` and `bits`; [`WideRay`] with
 //! `1 / direction` and the near side of boxes on each axis. `ray.t_min` is 0 or more. Coordinates
 //! and directions of triangles are at most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing
 //! overflows.
 
 use raykata::rounding::{UNIT_ROUNDOFF, gamma};
-use raykata::wide::simd::{F32x4, F32x8, Level};
+use raykata::wide::simd::{F32x8, Level};
 use raykata::wide::{Entered, TriangleBlock, WideNode, WideRay};
 
 // <solution>
@@ -60,7 +60,7 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
     // </solution>
 }
 
-/// Which of four triangles a ray may hit before `t_max`: a filter before the test of stage 10,
+/// Which of eight triangles a ray may hit before `t_max`: a filter before the test of stage 10,
 /// which decides. The barycentric coordinates times `d·n` are `U = ((a-o) × d)·(c-a)`,
 /// `V = -((a-o) × d)·(b-a)` and `W = d·n - U - V`, with `n = (b-a) × (c-a)`. Different signs mean a
 /// miss: when is a sign certain? `t` is `n·(a-o) / d·n`.
@@ -95,18 +95,18 @@ pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: 
     let slope = dot(direction, normal);
     let w = slope - u + minus_v;
     let fastest = ray.direction.abs().max_element();
-    let (size, far_away) = (F32x4::load(level, &block.size), largest(to_a));
-    let tiny = F32x4::splat(level, UNDERFLOW);
-    let edge_error = F32x4::splat(level, EDGE_ERROR * fastest)
+    let (size, far_away) = (F32x8::load(level, &block.size), largest(to_a));
+    let tiny = F32x8::splat(level, UNDERFLOW);
+    let edge_error = F32x8::splat(level, EDGE_ERROR * fastest)
         .mul_add(size, tiny)
-        .mul_add(far_away + size, F32x4::splat(level, UNDERFLOW * (1.0 + fastest)));
+        .mul_add(far_away + size, F32x8::splat(level, UNDERFLOW * (1.0 + fastest)));
 
     // Reject a triangle if two signs differ for certain. Most blocks are done here. Each comparison
     // is false for a NaN, which rejects nothing.
-    let v = F32x4::splat(level, 0.0) - minus_v;
+    let v = F32x8::splat(level, 0.0) - minus_v;
     let (least, most) = (w.min(u.min(v)), w.max(u.max(v)));
-    let outside = least.lt(F32x4::splat(level, 0.0) - edge_error) & edge_error.lt(most);
-    let may_be_inside = !outside.bits() & 15;
+    let outside = least.lt(F32x8::splat(level, 0.0) - edge_error) & edge_error.lt(most);
+    let may_be_inside = !outside.bits() & 255;
     if may_be_inside == 0 {
         return 0;
     }
@@ -114,24 +114,24 @@ pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: 
     // Compute both parts of t, and bound the rounding errors at both ends of the range.
     let distance = dot(normal, to_a);
     let t_min = ray.t_min;
-    let area = (F32x4::splat(level, T_ERROR) * size).mul_add(size, tiny);
+    let area = (F32x8::splat(level, T_ERROR) * size).mul_add(size, tiny);
     let error_at_t_min = area.mul_add(
-        far_away + F32x4::splat(level, t_min * fastest),
-        F32x4::splat(level, UNDERFLOW * (1.0 + t_min)),
+        far_away + F32x8::splat(level, t_min * fastest),
+        F32x8::splat(level, UNDERFLOW * (1.0 + t_min)),
     );
     let error_at_t_max = area.mul_add(
-        far_away + F32x4::splat(level, t_max * fastest),
-        F32x4::splat(level, UNDERFLOW * (1.0 + t_max)),
+        far_away + F32x8::splat(level, t_max * fastest),
+        F32x8::splat(level, UNDERFLOW * (1.0 + t_max)),
     );
 
     // Beyond t_max, with the computed sign of the slope: |slope| t = along.
-    let (along, steep) = (distance * F32x4::splat(level, 1.0).copysign(slope), slope.abs());
-    let beyond = error_at_t_max.lt(along - F32x4::splat(level, t_max) * steep);
+    let (along, steep) = (distance * F32x8::splat(level, 1.0).copysign(slope), slope.abs());
+    let beyond = error_at_t_max.lt(along - F32x8::splat(level, t_max) * steep);
     // A hit before t_min needs a slope whose sign is certain. Beyond t_max it does not, see
     // T_ERROR.
-    let before = along.lt(F32x4::splat(level, t_min) * steep - error_at_t_min) & edge_error.lt(steep);
+    let before = along.lt(F32x8::splat(level, t_min) * steep - error_at_t_min) & edge_error.lt(steep);
     may_be_inside & !(beyond | before).bits()
-    // <stub> todo!("compute U, V and W with four lanes, bound their errors, and reject what is certain")
+    // <stub> todo!("compute U, V and W with eight lanes, bound their errors, and reject what is certain")
     // </solution>
 }
 
@@ -171,19 +171,19 @@ const T_ERROR: f32 = 64.0 * UNIT_ROUNDOFF;
 /// 1.6 times as long.
 const UNDERFLOW: f32 = f32::MIN_POSITIVE; // 2⁻¹²⁶
 
-/// Four vectors, one per lane. Functions with a level are `#[inline(always)]`, and closures are
+/// Eight vectors, one per lane. Functions with a level are `#[inline(always)]`, and closures are
 /// avoided, because a closure may be compiled without the instructions of the level: measured, a
 /// closure in `may_hit` made searches twice as slow.
-type Vector<L> = [F32x4<L>; 3];
+type Vector<L> = [F32x8<L>; 3];
 
 #[inline(always)]
-fn load<L: Level>(level: L, corner: &[[f32; 4]; 3]) -> Vector<L> {
-    [F32x4::load(level, &corner[0]), F32x4::load(level, &corner[1]), F32x4::load(level, &corner[2])]
+fn load<L: Level>(level: L, corner: &[[f32; 8]; 3]) -> Vector<L> {
+    [F32x8::load(level, &corner[0]), F32x8::load(level, &corner[1]), F32x8::load(level, &corner[2])]
 }
 
 #[inline(always)]
 fn splat<L: Level>(level: L, p: Vec3) -> Vector<L> {
-    [F32x4::splat(level, p.x), F32x4::splat(level, p.y), F32x4::splat(level, p.z)]
+    [F32x8::splat(level, p.x), F32x8::splat(level, p.y), F32x8::splat(level, p.z)]
 }
 
 #[inline(always)]
@@ -197,14 +197,14 @@ fn cross<L: Level>(p: Vector<L>, q: Vector<L>) -> Vector<L> {
 }
 
 #[inline(always)]
-fn dot<L: Level>(p: Vector<L>, q: Vector<L>) -> F32x4<L> {
+fn dot<L: Level>(p: Vector<L>, q: Vector<L>) -> F32x8<L> {
     p[0].mul_add(q[0], p[1].mul_add(q[1], p[2] * q[2]))
 }
 
 /// The largest absolute coordinate of each vector. A NaN in the first two coordinates may be lost:
 /// the comparisons see it all the same, because U, V and W are NaN then.
 #[inline(always)]
-fn largest<L: Level>(p: Vector<L>) -> F32x4<L> {
+fn largest<L: Level>(p: Vector<L>) -> F32x8<L> {
     p[0].abs().max(p[1].abs()).max(p[2].abs())
 }
 // </solution>

@@ -1,15 +1,17 @@
 //! Stage 12 · trees as fast searches need them: all nodes in one array, and eight children per
 //! node.
 //!
-//! Source: Wald, Benthin and Boulos, "Getting Rid of Packets", 2008.
+//! Source: Wald, Benthin and Boulos, "Getting Rid of Packets", 2008; Ylitie, Karras and Laine,
+//! "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", 2017.
 //!
 //! Given: [`FlatTree`], a binary tree with nodes of 32 bytes; [`WideTree`], a tree whose nodes have
-//! eight children.
+//! eight children; the cost [`WIDE_NODE_COST`].
 
 use raykata::bvh::Bvh;
-use raykata::wide::{BLOCK, Child, FlatTree, NO_PRIMITIVE, WideNode, WideTree};
+use raykata::wide::{BLOCK, Child, FlatTree, MAX_LEAF, NO_PRIMITIVE, WIDE_NODE_COST, WideNode, WideTree};
 
 // <solution>
+use crate::stage12_build::block_cost;
 use raykata::bvh::Contents;
 use raykata::wide::FlatNode;
 // </solution>
@@ -60,108 +62,147 @@ fn flatten_below(bvh: &Bvh, node: u32, index: usize, nodes: &mut Vec<FlatNode>) 
 }
 // </solution>
 
-/// Turns a binary tree into one with eight children per node. A node takes its two children, and
-/// replaces the inner child with the largest surface area by its own two, until there are eight or
-/// only leaves. Which child does a ray enter most probably?
+/// Turns a binary tree into the cheapest one with eight children per node, by dynamic programming.
+/// Everything below a binary node becomes a leaf, or up to eight children. The cost is
+/// `WIDE_NODE_COST · A` per inner node and `A · c` per leaf, with half the surface area `A` of its
+/// box and [`block_cost`] `c`. Which costs does a node need from its two children?
 ///
 /// Exactly:
 ///
-/// - Each leaf becomes one leaf with the same box and primitives.
-/// - Its primitives fill whole blocks of four, in order; free lanes of the last block have
-///   [`NO_PRIMITIVE`].
+/// - The cost is the least, up to rounding.
+/// - A leaf has the box and all primitives of a binary node, in order, at most [`MAX_LEAF`]. Free
+///   lanes of its last block have [`NO_PRIMITIVE`].
 /// - The children of a node come before its empty places.
 /// - A parent has a smaller index than its children.
-/// - A root that is a leaf becomes the only child of one node; no nodes give no nodes.
+/// - A tree that is best as one leaf has one node with one child; no nodes give no nodes.
 pub fn collapse(tree: &FlatTree) -> WideTree {
     // <solution>
     let mut wide = WideTree::default();
-    if let Some(root) = tree.nodes.first() {
-        wide.nodes.reserve(tree.nodes.len() / 8);
-        wide.blocks.reserve(tree.order.len() / 3);
-        let children = if root.is_leaf() { Children::one(0) } else { open(tree, 0) };
-        add_node(tree, &children, &mut wide);
+    if !tree.nodes.is_empty() {
+        wide.nodes.reserve(tree.nodes.len() / 4);
+        wide.blocks.reserve(tree.order.len() / 5);
+        wide.nodes.push(WideNode::EMPTY);
+        Costs::of(tree).fill_node(0, 0, &mut wide);
     }
     wide
-    // <stub> todo!("open the child with the largest area until there are eight; fill blocks at the leaves")
+    // <stub> todo!("from the last node to the first: the least cost as 1 to 8 children; then build what costs least")
     // </solution>
 }
 
 // <solution>
-/// Up to eight nodes of the binary tree, which become the children of one wide node.
-struct Children {
-    nodes: [u32; 8],
-    len: usize,
+/// What the parts of a binary tree cost in a wide tree.
+struct Costs<'a> {
+    tree: &'a FlatTree,
+    /// The primitives below each node, as a range of `tree.order`.
+    ranges: Vec<[u32; 2]>,
+    /// `least[node][n - 1]`: the least cost of everything below `node` as at most `n` children.
+    least: Vec<[f32; 8]>,
 }
 
-impl Children {
-    fn one(node: u32) -> Children {
-        Children { nodes: [node; 8], len: 1 }
+impl Costs<'_> {
+    fn of(tree: &FlatTree) -> Costs<'_> {
+        let n = tree.nodes.len();
+        let mut costs = Costs { tree, ranges: vec![[0; 2]; n], least: vec![[0.0; 8]; n] };
+        // Children come after their parents, so from the last node to the first they are known.
+        for (index, node) in tree.nodes.iter().enumerate().rev() {
+            let first = node.first as usize;
+            if node.is_leaf() {
+                costs.ranges[index] = [node.first, node.first + node.count];
+                costs.least[index] = [costs.as_leaf(index); 8];
+                continue;
+            }
+            costs.ranges[index] = [costs.ranges[first][0], costs.ranges[first + 1][1]];
+            // Divide n places between both children in the cheapest way.
+            let (left, right) = (&costs.least[first], &costs.least[first + 1]);
+            let mut least = [f32::INFINITY; 8];
+            for i in 0..7 {
+                for j in 0..7 - i {
+                    least[i + j + 1] = least[i + j + 1].min(left[i] + right[j]);
+                }
+            }
+            // In one place the node is a leaf, or a wide node with up to eight children.
+            let as_node = WIDE_NODE_COST * half_area(node) + least[7];
+            let one = costs.as_leaf(index).min(as_node);
+            costs.least[index] = least.map(|divided| divided.min(one));
+        }
+        costs
     }
-}
 
-/// The nodes of the binary tree that become the children of the inner node `node`.
-fn open(tree: &FlatTree, node: u32) -> Children {
-    let mut children = Children::one(node);
-    // Remember the area of each child that can be opened; it is negative for a leaf.
-    let area = |node: u32| {
-        let node = &tree.nodes[node as usize];
-        if node.is_leaf() { -1.0 } else { half_area(node) }
-    };
-    let mut areas = [f32::INFINITY; 8];
-    while children.len < 8 {
-        // Find the inner child with the largest area. A box without area is opened as well.
-        let mut largest = 0;
-        for i in 1..children.len {
-            if areas[i] > areas[largest] {
-                largest = i;
+    /// The cost of everything below a node as one leaf.
+    fn as_leaf(&self, node: usize) -> f32 {
+        let [first, end] = self.ranges[node];
+        let is_small = (end - first) as usize <= MAX_LEAF;
+        if is_small { half_area(&self.tree.nodes[node]) * block_cost(end - first) } else { f32::INFINITY }
+    }
+
+    /// The least cost of both children of an inner node in `n` places, and the number of places of
+    /// the left one.
+    fn division(&self, node: u32, n: usize) -> (f32, usize) {
+        let first = self.tree.nodes[node as usize].first as usize;
+        let (left, right) = (&self.least[first], &self.least[first + 1]);
+        let costs = (1..n).map(|i| (left[i - 1] + right[n - i - 1], i));
+        costs.reduce(|best, other| if other.0 < best.0 { other } else { best }).unwrap_or((0.0, 1))
+    }
+
+    /// Adds the nodes that stand for everything below `node` in `n` places.
+    fn place(&self, node: u32, n: usize, children: &mut Vec<u32>) {
+        if n > 1 && !self.tree.nodes[node as usize].is_leaf() {
+            // Of equal costs choose a leaf, then more children: boxes without area cost nothing.
+            let (cost, of_left) = self.division(node, n);
+            if cost <= self.least[node as usize][0] && cost < self.as_leaf(node as usize) {
+                let first = self.tree.nodes[node as usize].first;
+                self.place(first, of_left, children);
+                return self.place(first + 1, n - of_left, children);
             }
         }
-        if areas[largest] < 0.0 {
-            break;
-        }
-        // Replace it by its two children.
-        let first = tree.nodes[children.nodes[largest] as usize].first;
-        for (place, node) in [(largest, first), (children.len, first + 1)] {
-            children.nodes[place] = node;
-            areas[place] = area(node);
-        }
-        children.len += 1;
+        children.push(node);
     }
-    children
+
+    /// Fills the wide node `index` with everything below `node`.
+    fn fill_node(&self, node: u32, index: usize, wide: &mut WideTree) {
+        // An inner node is never its own child: only the root may be a leaf.
+        let flat = &self.tree.nodes[node as usize];
+        let mut children = Vec::with_capacity(8);
+        if flat.is_leaf() || self.as_leaf(node as usize) <= self.division(node, 8).0 {
+            children.push(node);
+        } else {
+            let (_, of_left) = self.division(node, 8);
+            self.place(flat.first, of_left, &mut children);
+            self.place(flat.first + 1, 8 - of_left, &mut children);
+        }
+        // Put the children side by side, and fill them in the same order.
+        let next = wide.nodes.len();
+        let is_leaf = |child: &u32| self.as_leaf(*child as usize) <= self.least[*child as usize][0];
+        for (place, child) in children.iter().enumerate() {
+            let content = if node == *child || is_leaf(child) {
+                self.add_leaf(*child, wide)
+            } else {
+                wide.nodes.push(WideNode::EMPTY);
+                Child::inner(wide.nodes.len() as u32 - 1)
+            };
+            wide.nodes[index].set(place, &self.tree.nodes[*child as usize].bounds(), content);
+        }
+        let inner = children.iter().filter(|&&child| child != node && !is_leaf(&child));
+        inner.zip(next..).for_each(|(&child, index)| self.fill_node(child, index, wide));
+    }
+
+    /// Adds the blocks of a leaf with everything below `node`.
+    fn add_leaf(&self, node: u32, wide: &mut WideTree) -> Child {
+        let block = wide.blocks.len() as u32;
+        let [first, end] = self.ranges[node as usize];
+        for part in self.tree.order[first as usize..end as usize].chunks(BLOCK) {
+            let mut ids = [NO_PRIMITIVE; BLOCK];
+            ids[..part.len()].copy_from_slice(part);
+            wide.blocks.push(ids);
+        }
+        Child::leaf(block, end - first)
+    }
 }
 
-/// Half of the surface area of a node's box; 0 for an empty box.
+/// Half of the surface area of a node's box; 0 for an empty box. It is finite for every box, so
+/// that costs can be compared.
 fn half_area(node: &FlatNode) -> f32 {
     let size = (node.high - node.low).max(glam::Vec3::ZERO);
-    size.x * size.y + size.y * size.z + size.z * size.x
-}
-
-/// Adds a wide node with these children and everything below it, and returns its index.
-fn add_node(tree: &FlatTree, children: &Children, wide: &mut WideTree) -> u32 {
-    let index = wide.nodes.len();
-    wide.nodes.push(WideNode::EMPTY);
-    for place in 0..children.len {
-        let number = children.nodes[place];
-        let node = &tree.nodes[number as usize];
-        let child = if node.is_leaf() {
-            add_leaf(tree, node, wide)
-        } else {
-            Child::inner(add_node(tree, &open(tree, number), wide))
-        };
-        wide.nodes[index].set(place, &node.bounds(), child);
-    }
-    index as u32
-}
-
-/// Adds the blocks of a leaf.
-fn add_leaf(tree: &FlatTree, leaf: &FlatNode, wide: &mut WideTree) -> Child {
-    let first = wide.blocks.len() as u32;
-    let primitives = &tree.order[leaf.first as usize..(leaf.first + leaf.count) as usize];
-    for part in primitives.chunks(BLOCK) {
-        let mut block = [NO_PRIMITIVE; BLOCK];
-        block[..part.len()].copy_from_slice(part);
-        wide.blocks.push(block);
-    }
-    Child::leaf(first, leaf.count)
+    (size.x * size.y + size.y * size.z + size.z * size.x).min(1e30)
 }
 // </solution>

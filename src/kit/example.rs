@@ -192,7 +192,7 @@ examples! {
         split: BinSplit { axis: 0, bin: 1, cost: 1.0 },
     };
     WideBoxesQuery => WideBoxesQuery { node: Box::new(WideNode::EMPTY), ray: example() };
-    BlockQuery => BlockQuery { block: Box::new(TriangleBlock::new([0; 4], |_| Some(example()))), ray: example() };
+    BlockQuery => BlockQuery { block: Box::new(TriangleBlock::new([0; 8], |_| Some(example()))), ray: example() };
     WideQuery => WideQuery {
         tree: WideTree { nodes: vec![WideNode::EMPTY], blocks: Vec::new() },
         ray: example(),

@@ -539,7 +539,7 @@ macro_rules! student_functions {
                 FillBins fn fill_bins(primitives: &[PrimitiveBox], grid: &BinGrid) -> Bins
                     = stage12_build::fill_bins;
                 { [BinsQuery] |q: BinsQuery| -> Box<Bins> { Box::new(F::fill_bins(&q.primitives, &q.grid)) } }
-                /// The cost of a leaf, which pays for whole blocks of four.
+                /// The cost of a leaf, which pays for whole blocks of eight.
                 BlockCost fn block_cost(n_primitives: u32) -> f32
                     = stage12_build::block_cost; ()
                 /// The cheapest split between two bins, by the surface area heuristic.
@@ -565,7 +565,7 @@ macro_rules! student_functions {
                     let tree = F::build_parallel(bounds, &mut forks);
                     ForkedTree { tree, forks: forks.into_log() }
                 } }
-                /// A tree with eight children per node, made of a binary one.
+                /// The cheapest tree with eight children per node over a binary one.
                 Collapse fn collapse(tree: &FlatTree) -> WideTree
                     = stage12_wide::collapse; ()
                 /// Which of the eight boxes of a node a ray enters, and where.
@@ -583,7 +583,7 @@ macro_rules! student_functions {
                     }
                     Instructions::detect().run(Work::<F>(q, std::marker::PhantomData))
                 } }
-                /// Which of four triangles a ray may hit, as bits.
+                /// Which of eight triangles a ray may hit, as bits.
                 MayHit fn may_hit[L: Level](level: L, block: &TriangleBlock, ray: &WideRay, t_max: f32) -> u32
                     = stage12_simd::may_hit;
                 { |q: BlockQuery| -> u32 {

@@ -1,4 +1,4 @@
-//! The wide tree of stage 12 over a set of primitives: eight boxes and four triangles are tested at once.
+//! The wide tree of stage 12 over a set of primitives: eight boxes and eight triangles are tested at once.
 
 use super::primitives::Primitives;
 use crate::aabb::Aabb;
@@ -217,7 +217,7 @@ impl<F: StudentFunctions, P: Primitives, L: Level> WideProbe for TreeProbe<'_, F
     #[inline(always)]
     fn hit(&mut self, block: u32, lane: u32, ray: &Ray) -> Option<PrimitiveHit> {
         let block = &self.wide.blocks[block as usize];
-        let lane = lane as usize & 3;
+        let lane = lane as usize & 7;
         let primitive = block.ids[lane];
         // Take the corners from the block, which is in the cache. Other shapes are looked up.
         let triangle = block.triangle(lane);

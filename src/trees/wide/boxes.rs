@@ -84,7 +84,7 @@ impl BoxA {
 }
 
 /// The largest number of bins along each axis.
-pub const MAX_BINS: usize = 16;
+pub const MAX_BINS: usize = 32;
 
 /// Where the bins of a node lie: `n_bins` equal bins along each axis, over the box around twice the centroids.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,5 +1,5 @@
 //! Bounding volume hierarchies as fast rays need them (stage 12), as data: nodes of 32 bytes in one array, nodes with eight
-//! children whose boxes one instruction tests at once, and blocks of four triangles.
+//! children whose boxes one instruction tests at once, and blocks of eight triangles.
 //!
 //! Building and searching them are exercises.
 
@@ -75,11 +75,14 @@ message! { ForkedTree { tree, forks } }
 /// The cost of visiting an inner node of a binary tree, in the surface area heuristic of stage 12.
 pub const NODE_COST: f32 = 0.25;
 
-/// The cost of testing a block of four triangles, in the surface area heuristic of stage 12.
+/// The cost of visiting a node of a wide tree, in the surface area heuristic of stage 12.
+pub const WIDE_NODE_COST: f32 = 1.0;
+
+/// The cost of testing a block of eight triangles, in the surface area heuristic of stage 12.
 pub const BLOCK_COST: f32 = 1.0;
 
 /// The number of triangles in a block.
-pub const BLOCK: usize = 4;
+pub const BLOCK: usize = 8;
 
 /// The largest number of primitives that a leaf of a wide tree can hold.
 pub const MAX_LEAF: usize = 32;
@@ -212,7 +215,7 @@ impl WideNode {
     }
 }
 
-/// The numbers of up to four primitives that are tested at once. Free lanes have [`NO_PRIMITIVE`].
+/// The numbers of up to eight primitives that are tested at once. Free lanes have [`NO_PRIMITIVE`].
 pub type BlockIds = [u32; BLOCK];
 
 /// The number in a free lane of a block.
@@ -229,12 +232,12 @@ pub struct WideTree {
 
 message! { WideTree { nodes, blocks } }
 
-/// The largest coordinate for which triangles are tested four at once: a product of three such numbers does not overflow.
+/// The largest coordinate for which triangles are tested eight at once: a product of three such numbers does not overflow.
 pub const LARGEST: f32 = (1u64 << 40) as f32;
 
-/// Four triangles as a structure of arrays, in 176 bytes.
+/// Eight triangles as a structure of arrays, in 352 bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(16))]
+#[repr(C, align(32))]
 pub struct TriangleBlock {
     /// `corners[corner][axis][lane]`. A lane has NaN if its primitive is not a triangle, if the lane is free, or if
     /// a coordinate is above [`LARGEST`].
@@ -293,7 +296,7 @@ pub struct WideRay {
     pub near_side: [usize; 3],
     /// The lower end of the range, which is not negative.
     pub t_min: f32,
-    /// Whether triangles may be tested four at once: no coordinate of the ray is above [`LARGEST`].
+    /// Whether triangles may be tested eight at once: no coordinate of the ray is above [`LARGEST`].
     pub in_range: bool,
 }
 

@@ -16,21 +16,13 @@ use std::time::Duration;
 
 /// Finds hits of rays with triangles.
 pub trait Contestant {
-    /// The `t` of the closest hit of each ray; ∞ for a miss.
-    fn closest(&self, rays: &[Ray], found: &mut [f32]);
-
-    /// Whether each ray hits anything.
-    fn any(&self, rays: &[Ray], found: &mut [bool]);
+    /// The `t` of the closest hit of each ray; ∞ for a miss. With `any`, 0 for a ray that hits anything.
+    fn trace(&self, rays: &[Ray], any: bool, found: &mut [f32]);
 }
 
-impl Contestant for crate::reference::Wide {
-    fn closest(&self, rays: &[Ray], found: &mut [f32]) {
-        self.closest(rays, found);
-    }
-
-    fn any(&self, rays: &[Ray], found: &mut [bool]) {
-        self.any(rays, found);
-    }
+/// The number for an answer to whether anything is hit.
+pub fn of_any(hit: bool) -> f32 {
+    if hit { 0.0 } else { f32::INFINITY }
 }
 
 fn obvhs_triangles(triangles: &[Triangle]) -> Vec<obvhs::triangle::Triangle> {
@@ -65,19 +57,17 @@ macro_rules! obvhs_contestant {
         }
 
         impl Contestant for $name {
-            fn closest(&self, rays: &[Ray], found: &mut [f32]) {
+            fn trace(&self, rays: &[Ray], any: bool, found: &mut [f32]) {
+                let test = |ray: &_, id: usize| self.triangles[id].intersect(ray);
                 for (ray, found) in rays.iter().zip(found) {
                     let mut hit = RayHit::none();
-                    let test = |ray: &_, id: usize| self.triangles[id].intersect(ray);
-                    let any = self.tree.ray_traverse(obvhs_ray(ray), &mut hit, test);
-                    *found = if any { hit.t } else { f32::INFINITY };
-                }
-            }
-
-            fn any(&self, rays: &[Ray], found: &mut [bool]) {
-                for (ray, found) in rays.iter().zip(found) {
-                    let test = |ray: &_, id: usize| self.triangles[id].intersect(ray);
-                    *found = !self.tree.ray_traverse_miss(obvhs_ray(ray), test);
+                    *found = if any {
+                        of_any(!self.tree.ray_traverse_miss(obvhs_ray(ray), test))
+                    } else if self.tree.ray_traverse(obvhs_ray(ray), &mut hit, test) {
+                        hit.t
+                    } else {
+                        f32::INFINITY
+                    };
                 }
             }
         }
@@ -103,25 +93,16 @@ impl Parry {
         let indices = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         Parry(TriMesh::new(vertices, indices).expect("a mesh"))
     }
-
-    fn cast(&self, ray: &Ray) -> Option<f32> {
-        let vector = |p: glam::Vec3| Vector::new(p.x, p.y, p.z);
-        let cast = parry3d::query::Ray::new(vector(ray.origin), vector(ray.direction));
-        self.0.cast_local_ray(&cast, ray.t_max, false)
-    }
 }
 
 impl Contestant for Parry {
-    fn closest(&self, rays: &[Ray], found: &mut [f32]) {
+    fn trace(&self, rays: &[Ray], any: bool, found: &mut [f32]) {
+        let vector = |p: glam::Vec3| Vector::new(p.x, p.y, p.z);
         for (ray, found) in rays.iter().zip(found) {
-            *found = self.cast(ray).unwrap_or(f32::INFINITY);
-        }
-    }
-
-    fn any(&self, rays: &[Ray], found: &mut [bool]) {
-        // It has no search for any hit.
-        for (ray, found) in rays.iter().zip(found) {
-            *found = self.cast(ray).is_some();
+            // It has no search for any hit.
+            let cast = parry3d::query::Ray::new(vector(ray.origin), vector(ray.direction));
+            let hit = self.0.cast_local_ray(&cast, ray.t_max, false);
+            *found = if any { of_any(hit.is_some()) } else { hit.unwrap_or(f32::INFINITY) };
         }
     }
 }
@@ -181,15 +162,11 @@ fn bvh_ray(ray: &Ray) -> bvh::ray::Ray<f32, 3> {
 }
 
 impl Contestant for Bvh {
-    fn closest(&self, rays: &[Ray], found: &mut [f32]) {
+    fn trace(&self, rays: &[Ray], any: bool, found: &mut [f32]) {
         for (ray, found) in rays.iter().zip(found) {
-            *found = self.hits(&bvh_ray(ray), &obvhs_ray(ray)).fold(f32::INFINITY, f32::min);
-        }
-    }
-
-    fn any(&self, rays: &[Ray], found: &mut [bool]) {
-        for (ray, found) in rays.iter().zip(found) {
-            *found = self.hits(&bvh_ray(ray), &obvhs_ray(ray)).next().is_some();
+            let (own, other) = (bvh_ray(ray), obvhs_ray(ray));
+            let mut hits = self.hits(&own, &other);
+            *found = if any { of_any(hits.next().is_some()) } else { hits.fold(f32::INFINITY, f32::min) };
         }
     }
 }

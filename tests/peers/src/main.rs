@@ -1,57 +1,69 @@
-//! Measures the wide tree of the reference against published crates, on one thread: `cargo run --release` in this folder,
-//! with `-- SCENE …` for some of the scenes, and `-- terrain-12m` for the largest.
+//! Measures the wide tree of the reference against Embree and published crates, on one thread: `cargo run --release` in this
+//! folder, with `-- SCENE …` for some of the scenes, and `-- terrain-12m` for the largest. `-- --embree FILE` names the
+//! library of Embree.
 //!
 //! The contestants trace the same rays in turn. Each figure is the median over rounds of the ratio of processor times of one
-//! round: above 1 the reference is faster. Camera rays come in tiles of 16 × 16 pixels, as in frames; diffuse rays leave their
-//! hits in random directions; shadow rays go from the hits to a light.
+//! round. Camera rays come in tiles of 16 × 16 pixels, as in frames; diffuse rays leave their hits in random directions; shadow
+//! rays go from the hits to a light.
 //!
-//! `-- --steps SCENE …` prints what each step of stage 12 changes, in counts. `-- --alone SCENE …` leaves out the crates.
-//! `-- --scaling SCENE …` builds the binary tree on one and on two threads in turn.
-//! `-- --dump FOLDER SCENE …` writes triangles and rays as binary files of `f32`, for programs that are not Rust crates.
+//! `-- --alone SCENE …` leaves out the crates.
 
 mod crates;
+mod embree;
 mod reference;
-mod scaling;
 mod scenes;
-mod steps;
 
 use cpu_time::ThreadTime;
 use crates::{Bvh, Contestant, Obvhs2, ObvhsWide, Parry};
+use embree::Embree;
 use raykata::ray::Ray;
-use reference::{Search, Wide};
+use reference::Wide;
 use scenes::{Random, Scene};
 use std::time::Duration;
 
 const SIDE: u32 = 256;
-const ROUNDS: usize = 7;
+const ROUNDS: usize = 9;
 
 fn main() {
     let mut words = std::env::args().skip(1).peekable();
     let option = words.next_if(|word| word.starts_with("--"));
     let option = option.as_deref();
-    let folder = if option == Some("--dump") { words.next() } else { None };
+    let library = if option == Some("--embree") { words.next() } else { None };
+    let library = library.unwrap_or("libembree4.so.4".into());
+    if let Some(other) = option.filter(|option| !["--alone", "--embree"].contains(option)) {
+        fail(&format!("no option `{other}`; there are --alone and --embree FILE"));
+    }
     let mut names: Vec<String> = words.collect();
     if names.is_empty() {
         names = scenes::NAMES.map(String::from).into();
     }
+    let mut table = Vec::new();
     for name in names {
         let Some(scene) = scenes::by_name(&name) else {
             fail(&format!("no scene `{name}`; there are {:?} and \"terrain-12m\"", scenes::NAMES));
         };
-        match option {
-            None | Some("--alone" | "--dump") => {
-                measure(&scene, folder.as_deref(), option == Some("--alone"))
-            }
-            Some("--scaling") => println!("{name}: {}", scaling::measured(&scene.triangles)),
-            Some("--steps") => {
-                println!("{name}: {} triangles", scene.triangles.len());
-                let [camera, ..] = rays(&scene, &Wide::build(&scene.triangles, true));
-                steps::print(&scene.triangles, &camera);
-            }
-            Some(other) => {
-                fail(&format!("no option `{other}`; there are --alone, --steps, --scaling and --dump FOLDER"))
-            }
-        }
+        table.push((name, measure(&scene, &library, option == Some("--alone"))));
+    }
+    print_table(&table);
+}
+
+/// The ratios of all contestants in one scene, for camera, diffuse and shadow rays.
+type Ratios = Vec<(&'static str, [f64; 3])>;
+
+/// Prints a table for `README.md`, with the date and the processor.
+fn print_table(table: &[(String, Ratios)]) {
+    let Some((_, first)) = table.first() else { return };
+    let date =
+        std::process::Command::new("date").arg("-I").output().map(|date| date.stdout).unwrap_or_default();
+    let machine = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let machine = machine.lines().find_map(|line| line.strip_prefix("model name\t: ")).unwrap_or("unknown");
+    println!("\n{}, {machine}, one thread:\n", String::from_utf8_lossy(&date).trim());
+    let row = |cells: Vec<String>| println!("| {} |", cells.join(" | "));
+    row(["scene"].into_iter().chain(first.iter().map(|one| one.0)).map(String::from).collect());
+    row(vec!["---".into(); first.len() + 1]);
+    for (scene, ratios) in table {
+        let cell = |(_, [p, d, s]): &(_, [f64; 3])| format!("{p:.2}, {d:.2}, {s:.2}");
+        row([scene.clone()].into_iter().chain(ratios.iter().map(cell)).collect());
     }
 }
 
@@ -83,7 +95,7 @@ fn rays(scene: &Scene, wide: &Wide) -> [Vec<Ray>; 3] {
         }
     }
     let mut found = vec![0.0; primary.len()];
-    wide.closest(&primary, &mut found);
+    wide.trace(&primary, false, &mut found);
     let mut random = Random(3);
     let (mut diffuse, mut shadow) = (Vec::new(), Vec::new());
     for (ray, &t) in primary.iter().zip(&found).filter(|(_, t)| t.is_finite()) {
@@ -98,31 +110,9 @@ fn rays(scene: &Scene, wide: &Wide) -> [Vec<Ray>; 3] {
     [primary, diffuse, shadow]
 }
 
-fn dump(folder: &str, scene: &Scene, rays: &[Vec<Ray>; 3]) {
-    let write = |name: &str, numbers: Vec<f32>| {
-        let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
-        std::fs::write(format!("{folder}/{}-{name}.bin", scene.name), bytes)
-            .expect("a folder that can be written");
-    };
-    write(
-        "triangles",
-        scene.triangles.iter().flat_map(|t| [t.a, t.b, t.c]).flat_map(|p| p.to_array()).collect(),
-    );
-    for (name, rays) in ["primary", "diffuse", "shadow"].iter().zip(rays) {
-        let numbers = |ray: &Ray| {
-            [ray.origin.to_array(), ray.direction.to_array()]
-                .concat()
-                .into_iter()
-                .chain([ray.t_max])
-                .collect::<Vec<_>>()
-        };
-        write(name, rays.iter().flat_map(numbers).collect());
-    }
-}
-
-fn measure(scene: &Scene, folder: Option<&str>, alone: bool) {
+fn measure(scene: &Scene, library: &str, alone: bool) -> Ratios {
     let triangles = scene.triangles.as_slice();
-    let (wide, build) = timed(|| Wide::build(triangles, false));
+    let (wide, build) = timed(|| Wide::build(triangles));
     let rays = rays(scene, &wide);
     println!(
         "{}: {} triangles, {:.1} bytes per triangle, built in {:.3} s",
@@ -132,19 +122,21 @@ fn measure(scene: &Scene, folder: Option<&str>, alone: bool) {
         build.as_secs_f64()
     );
     for (name, rays) in ["primary", "diffuse", "shadow"].iter().zip(&rays) {
-        let per_ray = wide
-            .counts(rays, if *name == "shadow" { Search::Any } else { Search::Closest })
-            .map(|count| count as f64 / rays.len() as f64);
+        let per_ray = wide.counts(rays, *name == "shadow").map(|count| count as f64 / rays.len() as f64);
         println!(
             "  {name}: {:.2} nodes, {:.2} blocks, {:.2} exact tests per ray",
             per_ray[0], per_ray[1], per_ray[2]
         );
     }
-    if let Some(folder) = folder {
-        dump(folder, scene, &rays);
-    }
-    let mut contestants: Vec<(&str, Box<dyn Contestant>, Duration)> =
+    let mut contestants: Vec<(&'static str, Box<dyn Contestant>, Duration)> =
         vec![("reference", Box::new(wide), build)];
+    for (name, robust) in [("Embree", false), ("Embree robust", true)] {
+        let (embree, build) = timed(|| Embree::build(library, triangles, robust));
+        match embree {
+            Some(embree) => contestants.push((name, Box::new(embree), build)),
+            None => println!("{}", embree::HOW_TO_GET),
+        }
+    }
     if !alone {
         fn boxed<C: Contestant + 'static>((built, time): (C, Duration)) -> (Box<dyn Contestant>, Duration) {
             (Box::new(built), time)
@@ -158,14 +150,15 @@ fn measure(scene: &Scene, folder: Option<&str>, alone: bool) {
             contestants.push((name, built, time));
         }
     }
-    compare(&contestants, &rays);
+    compare(&contestants, &rays)
 }
 
-/// Prints one line per contestant.
-fn compare(contestants: &[(&str, Box<dyn Contestant>, Duration)], rays: &[Vec<Ray>; 3]) {
+/// Prints one line per contestant, and returns the speeds relative to that of Embree, or of the reference without Embree.
+fn compare(contestants: &[(&'static str, Box<dyn Contestant>, Duration)], rays: &[Vec<Ray>; 3]) -> Ratios {
+    let base = contestants.iter().position(|one| one.0 == "Embree").unwrap_or(0);
     let n = contestants.len();
     let most = rays.iter().map(Vec::len).max().unwrap_or(0);
-    let (mut closest, mut any) = (vec![0.0f32; most], vec![false; most]);
+    let mut found = vec![0.0f32; most];
     // times[contestant][kind][round], and the number of answers that differ from the reference's.
     let mut times = vec![[const { Vec::new() }; 3]; n];
     let mut differ = vec![[0usize; 3]; n];
@@ -173,18 +166,13 @@ fn compare(contestants: &[(&str, Box<dyn Contestant>, Duration)], rays: &[Vec<Ra
     for round in 0..=ROUNDS {
         for (i, (_, contestant, _)) in contestants.iter().enumerate() {
             for (kind, rays) in rays.iter().enumerate() {
-                let (answers, time) = if kind < 2 {
-                    let ((), time) = timed(|| contestant.closest(rays, &mut closest[..rays.len()]));
-                    (closest[..rays.len()].to_vec(), time)
-                } else {
-                    let ((), time) = timed(|| contestant.any(rays, &mut any[..rays.len()]));
-                    (any[..rays.len()].iter().map(|&hit| if hit { 1.0 } else { 0.0 }).collect(), time)
-                };
+                let answers = &mut found[..rays.len()];
+                let ((), time) = timed(|| contestant.trace(rays, kind == 2, answers));
                 // The first round fills the caches, and its answers are compared.
                 if round > 0 {
                     times[i][kind].push(time.as_secs_f64());
                 } else if i == 0 {
-                    expected.push(answers);
+                    expected.push(answers.to_vec());
                 } else {
                     let close = |p: f32, q: f32| p == q || (p - q).abs() <= 1e-3 * p.abs();
                     differ[i][kind] =
@@ -194,28 +182,29 @@ fn compare(contestants: &[(&str, Box<dyn Contestant>, Duration)], rays: &[Vec<Ra
         }
     }
     println!(
-        "  {:<16} {:>8}   {:^29}   {:^23}   {:^17}",
-        "", "build s", "million rays per second", "the reference is faster", "other answers"
+        "  {:<16} {:>8}   {:^29}   speed / that of {:<9} {:>17}",
+        "", "build s", "million rays per second", contestants[base].0, "other answers"
     );
-    for (i, (name, _, build)) in contestants.iter().enumerate() {
+    let mut ratios = Vec::new();
+    for (i, &(name, _, build)) in contestants.iter().enumerate() {
         let rate = |kind: usize| rays[kind].len() as f64 / median(times[i][kind].clone()) / 1e6;
-        let ratio = |kind: usize| {
-            median(times[i][kind].iter().zip(&times[0][kind]).map(|(t, own)| t / own).collect())
-        };
+        let own = [0, 1, 2].map(|kind: usize| {
+            median(times[base][kind].iter().zip(&times[i][kind]).map(|(base, own)| base / own).collect())
+        });
         println!(
-            "  {name:<16} {:>8.3}   {:>9.3} {:>9.3} {:>9.3}   {:>7.2} {:>7.2} {:>7.2}   {:>5} {:>5} {:>5}",
+            "  {name:<16} {:>8.3}   {:>9.3} {:>9.3} {:>9.3}   {:>7.2} {:>7.2} {:>7.2}   {:?}",
             build.as_secs_f64(),
             rate(0),
             rate(1),
             rate(2),
-            ratio(0),
-            ratio(1),
-            ratio(2),
-            differ[i][0],
-            differ[i][1],
-            differ[i][2],
+            own[0],
+            own[1],
+            own[2],
+            differ[i],
         );
+        ratios.push((name, own));
     }
+    ratios
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

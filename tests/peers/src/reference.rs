@@ -1,5 +1,6 @@
 //! The wide tree of the reference, with the guarantee of frames: hits are those of the watertight test.
 
+use crate::crates::{Contestant, of_any};
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
@@ -16,9 +17,10 @@ pub struct Wide {
 }
 
 impl Wide {
-    pub fn build(triangles: &[Triangle], in_parallel: bool) -> Wide {
-        let bounds = bounds(triangles);
-        let tree = stage12_build::build_parallel(&bounds, &mut Forks::new(in_parallel));
+    pub fn build(triangles: &[Triangle]) -> Wide {
+        let bounds: Vec<Aabb> =
+            triangles.iter().map(|t| Aabb::new(t.a.min(t.b).min(t.c), t.a.max(t.b).max(t.c))).collect();
+        let tree = stage12_build::build_parallel(&bounds, &mut Forks::new(false));
         drop(bounds);
         let wide = stage12_wide::collapse(&tree);
         drop(tree);
@@ -31,80 +33,37 @@ impl Wide {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice())
     }
 
-    pub fn closest(&self, rays: &[Ray], found: &mut [f32]) {
-        self.instructions.run(Closest(self, rays, found));
-    }
-
-    pub fn any(&self, rays: &[Ray], found: &mut [bool]) {
-        self.instructions.run(Any(self, rays, found));
-    }
-
     /// Node visits, blocks, and exact tests of a search for each ray.
-    pub fn counts(&self, rays: &[Ray], search: Search) -> [u64; 3] {
-        struct Counting<'a>(&'a Wide, &'a [Ray], Search);
-        impl Vectorized for Counting<'_> {
-            type Output = [u64; 3];
-
-            #[inline(always)]
-            fn run<L: Level>(self, level: L) -> [u64; 3] {
-                let counts = |ray: &Ray| {
-                    let mut probe = Triangles::new(self.0, ray, level);
-                    probe.is_ordered = self.2 != Search::ClosestWithoutOrder;
-                    if self.2 == Search::Any {
-                        let _ = stage12_search::wide_any_hit(&mut probe, ray);
-                    } else {
-                        let _ = stage12_search::wide_closest_hit(&mut probe, ray);
-                    }
-                    probe.counts
-                };
-                let add = |sum: [u64; 3], one: [u64; 3]| std::array::from_fn(|i| sum[i] + one[i]);
-                self.1.iter().map(counts).fold([0; 3], add)
-            }
-        }
-        self.instructions.run(Counting(self, rays, search))
+    pub fn counts(&self, rays: &[Ray], any: bool) -> [u64; 3] {
+        let mut counts = [0; 3];
+        self.instructions.run(Work(self, rays, any, &mut vec![0.0; rays.len()], &mut counts));
+        counts
     }
 }
 
-/// What is searched, and how.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Search {
-    /// The closest hit.
-    Closest,
-    /// The closest hit, by a search that does not know where a ray enters a child: nothing is sorted or skipped.
-    ClosestWithoutOrder,
-    /// Any hit.
-    Any,
+impl Contestant for Wide {
+    fn trace(&self, rays: &[Ray], any: bool, found: &mut [f32]) {
+        self.instructions.run(Work(self, rays, any, found, &mut [0; 3]));
+    }
 }
 
-/// The boxes around the triangles.
-pub fn bounds(triangles: &[Triangle]) -> Vec<Aabb> {
-    triangles.iter().map(|t| Aabb::new(t.a.min(t.b).min(t.c), t.a.max(t.b).max(t.c))).collect()
-}
+/// Searches for all rays, closest hits or any, with the answers and the counts.
+struct Work<'a>(&'a Wide, &'a [Ray], bool, &'a mut [f32], &'a mut [u64; 3]);
 
-struct Closest<'a>(&'a Wide, &'a [Ray], &'a mut [f32]);
-
-impl Vectorized for Closest<'_> {
+impl Vectorized for Work<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Level>(self, level: L) {
-        for (ray, found) in self.1.iter().zip(self.2) {
-            let mut probe = Triangles::new(self.0, ray, level);
-            *found = stage12_search::wide_closest_hit(&mut probe, ray).map_or(f32::INFINITY, |hit| hit.t);
-        }
-    }
-}
-
-struct Any<'a>(&'a Wide, &'a [Ray], &'a mut [bool]);
-
-impl Vectorized for Any<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Level>(self, level: L) {
-        for (ray, found) in self.1.iter().zip(self.2) {
-            let mut probe = Triangles::new(self.0, ray, level);
-            *found = stage12_search::wide_any_hit(&mut probe, ray);
+        let Work(wide, rays, any, found, counts) = self;
+        for (ray, found) in rays.iter().zip(found) {
+            let mut probe = Triangles { wide, ray: WideRay::new(ray), level, counts: [0; 3] };
+            *found = if any {
+                of_any(stage12_search::wide_any_hit(&mut probe, ray))
+            } else {
+                stage12_search::wide_closest_hit(&mut probe, ray).map_or(f32::INFINITY, |hit| hit.t)
+            };
+            (0..3).for_each(|i| counts[i] += probe.counts[i]);
         }
     }
 }
@@ -115,23 +74,13 @@ struct Triangles<'a, L> {
     ray: WideRay,
     level: L,
     counts: [u64; 3],
-    is_ordered: bool,
-}
-
-impl<'a, L: Level> Triangles<'a, L> {
-    #[inline(always)]
-    fn new(wide: &'a Wide, ray: &Ray, level: L) -> Self {
-        Triangles { wide, ray: WideRay::new(ray), level, counts: [0; 3], is_ordered: true }
-    }
 }
 
 impl<L: Level> WideProbe for Triangles<'_, L> {
     #[inline(always)]
     fn enter(&mut self, node: u32, t_max: f32) -> Entered {
         self.counts[0] += 1;
-        let entered =
-            stage12_simd::enter_boxes(self.level, &self.wide.nodes[node as usize], &self.ray, t_max);
-        if self.is_ordered { entered } else { Entered { t: [0.0; 8], ..entered } }
+        stage12_simd::enter_boxes(self.level, &self.wide.nodes[node as usize], &self.ray, t_max)
     }
 
     #[inline(always)]
@@ -150,7 +99,7 @@ impl<L: Level> WideProbe for Triangles<'_, L> {
     fn hit(&mut self, block: u32, lane: u32, ray: &Ray) -> Option<PrimitiveHit> {
         self.counts[2] += 1;
         let block = &self.wide.blocks[block as usize];
-        let lane = lane as usize & 3;
+        let lane = lane as usize & 7;
         let hit = stage10_stability::watertight(ray, &block.triangle(lane))?;
         Some(PrimitiveHit { t: hit.t, primitive: block.ids[lane] })
     }

@@ -18,12 +18,12 @@ use raykata::shape::Triangle;
 use raykata::wide::{BLOCK, LARGEST, NO_PRIMITIVE, TriangleBlock};
 
 /// A block of triangles, and a ray.
-struct Four {
+struct Lanes {
     triangles: Vec<Triangle>,
     ray: Ray,
 }
 
-impl Four {
+impl Lanes {
     /// The query; `None` if a coordinate of the ray is so large that frames do not ask.
     fn query(&self) -> Option<BlockQuery> {
         let largest = self.ray.origin.abs().max(self.ray.direction.abs()).max_element();
@@ -69,28 +69,28 @@ fn causes(ray: &Ray, triangle: &Triangle, t: f32) -> [(bool, &'static str); 5] {
 }
 
 /// Judges the lanes of one block: none that is hit may be rejected.
-fn judge_hits(four: &Four, mask: u32) -> CheckResult {
+fn judge_hits(lanes: &Lanes, mask: u32) -> CheckResult {
     if mask >> BLOCK != 0 {
-        return Err(Broken::new("may_hit", format!("{mask:#x}"), "four bits", "the definition"));
+        return Err(Broken::new("may_hit", format!("{mask:#x}"), "eight bits", "the definition"));
     }
-    for (lane, triangle) in four.triangles.iter().enumerate() {
-        let Some(t) = exact(&four.ray, triangle) else { continue };
+    for (lane, triangle) in lanes.triangles.iter().enumerate() {
+        let Some(t) = exact(&lanes.ray, triangle) else { continue };
         if mask >> lane & 1 == 0 {
-            let input = format!("may_hit of {}, lane {lane}: {}", four.ray.paste(), triangle.paste());
+            let input = format!("may_hit of {}, lane {lane}: {}", lanes.ray.paste(), triangle.paste());
             let broken =
                 Broken::with_texts(input, "rejected", format!("kept: it is hit at t = {t:?}"), "exactly");
-            return Err(broken.explained_by(causes(&four.ray, triangle, t)));
+            return Err(broken.explained_by(causes(&lanes.ray, triangle, t)));
         }
     }
     Ok(())
 }
 
 /// The blocks that frames ask about, with their queries.
-fn queries(drawn: Vec<Four>) -> (Vec<Four>, Vec<BlockQuery>) {
-    drawn.into_iter().filter_map(|four| four.query().map(|query| (four, query))).unzip()
+fn queries(drawn: Vec<Lanes>) -> (Vec<Lanes>, Vec<BlockQuery>) {
+    drawn.into_iter().filter_map(|lanes| lanes.query().map(|query| (lanes, query))).unzip()
 }
 
-fn judge_all(trial: &Trial<'_>, drawn: Vec<Four>) -> CheckResult {
+fn judge_all(trial: &Trial<'_>, drawn: Vec<Lanes>) -> CheckResult {
     let (drawn, queries) = queries(drawn);
     all_hold(compare(&drawn, trial.kit.may_hit(&queries), judge_hits))
 }
@@ -100,16 +100,16 @@ pub(super) fn may_hit_keeps_what_is_hit(trial: &Trial<'_>) -> CheckResult {
         let mut random = Random::new(trial.seed, stream);
         let drawn = (0..250).map(|_| {
             let (ray, first) = (distribution.draw)(&mut random);
-            let others = (0..3).map(|_| (distribution.draw)(&mut random).1);
+            let others = (0..7).map(|_| (distribution.draw)(&mut random).1);
             let triangles = std::iter::once(first).chain(others).collect();
-            Four { triangles, ray: Ray { t_min: ray.t_min.max(0.0), ..ray } }
+            Lanes { triangles, ray: Ray { t_min: ray.t_min.max(0.0), ..ray } }
         });
         judge_all(trial, drawn.collect())
     })
 }
 
 /// A ray whose range begins one float before its hit, or ends one float behind it; `None` without a hit.
-fn at_the_ends(random: &mut Random, ray: &Ray, triangle: Triangle) -> Option<Four> {
+fn at_the_ends(random: &mut Random, ray: &Ray, triangle: Triangle) -> Option<Lanes> {
     let ray = Ray::new(ray.origin, ray.direction);
     let t = exact(&ray, &triangle)?;
     let (t_min, t_max) = match random.below(3) {
@@ -117,8 +117,8 @@ fn at_the_ends(random: &mut Random, ray: &Ray, triangle: Triangle) -> Option<Fou
         1 => (0.0, t.next_up()),
         _ => (t.next_down().max(0.0), t.next_up()),
     };
-    let triangles = vec![triangle; 1 + random.below(4) as usize];
-    Some(Four { triangles, ray: ray.with_range(t_min, t_max) })
+    let triangles = vec![triangle; 1 + random.below(8) as usize];
+    Some(Lanes { triangles, ray: ray.with_range(t_min, t_max) })
 }
 
 /// A ray that starts near the corner a of a triangle and hits it far from there, at any `t`. So the error of `t` depends on the way
@@ -150,21 +150,21 @@ pub(super) fn may_hit_keeps_hits_at_the_ends_of_the_range(trial: &Trial<'_>) -> 
 }
 
 /// Rays from inside closed meshes, each with the triangles around the vertex near which it should hit.
-fn aimed_fours(trial: &Trial<'_>, mesh: &Closed, index: u64) -> Vec<Four> {
+fn aimed_lanes(trial: &Trial<'_>, mesh: &Closed, index: u64) -> Vec<Lanes> {
     let mut random = Random::new(trial.seed, 70 + index);
     let mut drawn = Vec::new();
     for n in 0..60 {
         let (ray, vertex) = aimed(mesh, Aim::ALL[n % 2], &mut random);
         let fan: Vec<Triangle> =
             mesh.fans[vertex as usize].iter().map(|&index| mesh.triangle(index)).collect();
-        drawn.extend(fan.chunks(BLOCK).map(|part| Four { triangles: part.to_vec(), ray }));
+        drawn.extend(fan.chunks(BLOCK).map(|part| Lanes { triangles: part.to_vec(), ray }));
     }
     drawn
 }
 
 pub(super) fn may_hit_loses_no_ray_at_an_edge(trial: &Trial<'_>) -> CheckResult {
     let meshes = closed().into_iter().chain(families());
-    meshes.zip(0..).try_for_each(|(mesh, index)| judge_all(trial, aimed_fours(trial, &mesh, index)))
+    meshes.zip(0..).try_for_each(|(mesh, index)| judge_all(trial, aimed_lanes(trial, &mesh, index)))
 }
 
 pub(super) fn may_hit_of_any_size(trial: &Trial<'_>) -> CheckResult {
@@ -192,7 +192,7 @@ pub(super) fn may_hit_of_any_size(trial: &Trial<'_>) -> CheckResult {
             }
         };
         if ray.direction != Vec3::ZERO {
-            drawn.push(Four { triangles: vec![Triangle { a, b, c }; 2], ray });
+            drawn.push(Lanes { triangles: vec![Triangle { a, b, c }; 2], ray });
         }
     }
     judge_all(trial, drawn)
@@ -202,23 +202,23 @@ pub(super) fn may_hit_keeps_lanes_without_a_triangle(trial: &Trial<'_>) -> Check
     let mut random = Random::new(trial.seed, 91);
     let mut drawn = Vec::new();
     for _ in 0..300 {
-        let n = random.below(4) as usize;
+        let n = random.below(8) as usize;
         let mut corner = || 0.5 * random.in_cube();
         let mut triangles: Vec<Triangle> =
             (0..n).map(|_| Triangle { a: corner(), b: corner(), c: corner() }).collect();
         // A triangle with too large a coordinate gets NaN, like another shape.
         triangles.insert(0, Triangle { a: Vec3::splat(4.0 * LARGEST), b: Vec3::X, c: Vec3::Y });
-        drawn.push(Four { triangles, ray: Ray::new(4.0 * random.direction(), random.direction()) });
+        drawn.push(Lanes { triangles, ray: Ray::new(4.0 * random.direction(), random.direction()) });
     }
     let (drawn, queries) = queries(drawn);
     let without =
         |query: &BlockQuery| (0..BLOCK).filter(|&lane| query.block.size[lane].is_nan()).collect::<Vec<_>>();
     let masks = trial.kit.may_hit(&queries);
-    // Some lane with a triangle must be rejected, because 15 is no answer to every question.
+    // Some lane with a triangle must be rejected, because 255 is no answer to every question.
     let rejected = masks
         .iter()
         .zip(&drawn)
-        .filter(|(mask, four)| mask.count_ones() < 4 && four.triangles.len() > 1)
+        .filter(|(mask, lanes)| mask.count_ones() < 8 && lanes.triangles.len() > 1)
         .count();
     let judge = |query: &BlockQuery, mask: u32| {
         let lost = without(query).into_iter().find(|lane| mask >> lane & 1 == 0);
@@ -242,14 +242,14 @@ pub(super) fn may_hit_keeps_lanes_without_a_triangle(trial: &Trial<'_>) -> Check
 const REJECTED: f64 = 0.99;
 
 /// Judges the share of sure misses that are rejected, and that hits are kept.
-fn judge_share(trial: &Trial<'_>, what: &str, drawn: &[Four], cause: &'static str) -> CheckResult {
-    let queries: Vec<BlockQuery> = drawn.iter().filter_map(Four::query).collect();
+fn judge_share(trial: &Trial<'_>, what: &str, drawn: &[Lanes], cause: &'static str) -> CheckResult {
+    let queries: Vec<BlockQuery> = drawn.iter().filter_map(Lanes::query).collect();
     let masks = trial.kit.may_hit(&queries);
     all_hold(compare(drawn, masks.clone(), judge_hits))?;
     let (mut misses, mut rejected, mut n_hits) = (0, 0, 0);
-    for (four, mask) in drawn.iter().zip(masks) {
-        for (lane, triangle) in four.triangles.iter().enumerate() {
-            if exact(&four.ray, triangle).is_some() {
+    for (lanes, mask) in drawn.iter().zip(masks) {
+        for (lane, triangle) in lanes.triangles.iter().enumerate() {
+            if exact(&lanes.ray, triangle).is_some() {
                 n_hits += 1;
             } else {
                 misses += 1;
@@ -270,15 +270,15 @@ fn judge_share(trial: &Trial<'_>, what: &str, drawn: &[Four], cause: &'static st
 pub(super) fn may_hit_rejects_rays_beside_a_triangle(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 92);
     // Small triangles in a cube, seen from two units away.
-    let drawn: Vec<Four> = (0..3000)
+    let drawn: Vec<Lanes> = (0..3000)
         .map(|_| {
-            let triangles = (0..4).map(|_| {
+            let triangles = (0..8).map(|_| {
                 let [a, b, c] = [(); 3].map(|()| 0.1 * random.in_cube());
                 Triangle { a, b, c }
             });
             let triangles = triangles.collect();
             let origin = 2.0 * random.direction();
-            Four { triangles, ray: Ray::new(origin, 0.1 * random.in_cube() - origin) }
+            Lanes { triangles, ray: Ray::new(origin, 0.1 * random.in_cube() - origin) }
         })
         .collect();
     judge_share(
@@ -292,10 +292,10 @@ pub(super) fn may_hit_rejects_rays_beside_a_triangle(trial: &Trial<'_>) -> Check
 pub(super) fn may_hit_rejects_hits_outside_of_the_range(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 93);
     // Rays aimed at the middle of triangles, of which half begin behind the triangle, end before it, or point away.
-    let drawn: Vec<Four> = (0..2000)
+    let drawn: Vec<Lanes> = (0..2000)
         .map(|_| {
             let place = 2.0 * random.direction();
-            let triangles: Vec<Triangle> = (0..4)
+            let triangles: Vec<Triangle> = (0..8)
                 .map(|_| {
                     let [a, b, c] = [(); 3].map(|()| place + random.in_cube());
                     // Move the triangle such that its centre is at `place`.
@@ -310,7 +310,7 @@ pub(super) fn may_hit_rejects_hits_outside_of_the_range(trial: &Trial<'_>) -> Ch
                 2 => ray.with_range(1.1 + random.unit(), f32::INFINITY),
                 _ => ray,
             };
-            Four { triangles, ray }
+            Lanes { triangles, ray }
         })
         .collect();
     judge_share(

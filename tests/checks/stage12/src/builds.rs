@@ -110,49 +110,49 @@ fn choices(random: &mut Random) -> Vec<Choice> {
     // Half the surface area of a bar is 1 + 2 · length, and that of all is 3.
     vec![
         (
-            "two groups of four that are far apart",
-            pair(4, 4, 0.2),
-            vec![4, 4],
+            "two groups of eight that are far apart",
+            pair(8, 8, 0.2),
+            vec![8, 8],
             [Same, Same, More, Same, Fewer],
         ),
         (
-            "four boxes at one end and one at the other",
-            pair(4, 1, 0.1),
-            vec![1, 4],
+            "eight boxes at one end and one at the other",
+            pair(8, 1, 0.1),
+            vec![1, 8],
             [Same, Same, More, Same, Fewer],
         ),
         (
-            // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.75. By primitives 6 · 3 and 0.25 · 3 + 6 · 2.75.
-            "two groups of three that overlap by three quarters",
-            pair(3, 3, 0.875),
-            vec![6],
-            [Sizes(&[3, 3]), Sizes(&[3, 3]), More, More, Same],
+            // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.75. By primitives 12 · 3 and 0.25 · 3 + 12 · 2.75.
+            "two groups of six that overlap by three quarters",
+            pair(6, 6, 0.875),
+            vec![12],
+            [Sizes(&[6, 6]), Sizes(&[6, 6]), More, More, Same],
         ),
         (
-            // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.85. By primitives 8 · 3 and 0.25 · 3 + 8 · 2.85.
-            "two groups of four that overlap nearly",
-            pair(4, 4, 0.925),
-            vec![8],
-            [Sizes(&[4, 4]), Sizes(&[4, 4]), Same, More, Same],
+            // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.85. By primitives 16 · 3 and 0.25 · 3 + 16 · 2.85.
+            "two groups of eight that overlap nearly",
+            pair(8, 8, 0.925),
+            vec![16],
+            [Sizes(&[8, 8]), Sizes(&[8, 8]), Same, More, Same],
         ),
         (
-            // As a leaf 8 · 3; split 0.25 · 3 + 8 · 2.99 at best.
+            // As a leaf 4 · 3; split 0.25 · 3 + 4 · 2.99 at best.
             "two groups of 16 that overlap but for a hundredth",
             pair(16, 16, 0.995),
             vec![32],
             [Same, More, Same, More, Same],
         ),
         (
-            // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.91 + 3, because bins do not separate the five.
-            "five equal boxes in a larger one",
-            [vec![bar(0.955); 5], vec![bar(1.0)]].concat(),
-            vec![6],
+            // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.91 + 3, because bins do not separate the nine.
+            "nine equal boxes in a larger one",
+            [vec![bar(0.955); 9], vec![bar(1.0)]].concat(),
+            vec![10],
             [Same, Same, Same, More, Same],
         ),
         (
-            "four boxes that are far apart",
-            [0.0, 1.0, 2.0, 3.0].map(apart).to_vec(),
-            vec![4],
+            "eight boxes that are far apart",
+            (0..8).map(|i| apart(i as f32)).collect(),
+            vec![8],
             [Same, Same, More, Same, Same],
         ),
     ]

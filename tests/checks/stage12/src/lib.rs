@@ -1,7 +1,7 @@
 //! The checks of stage 12: speed.
 //!
 //! `flat` (flattened hierarchies) · `bins`, `splits`, `partitions` (the steps of the binned builder) · `builds`, `forks`
-//! (whole trees, and their work and span) · `wide_trees` (eight children per node) · `slabs`, `blocks` (eight boxes and four
+//! (whole trees, and their work and span) · `wide_trees` (eight children per node) · `slabs`, `blocks` (eight boxes and eight
 //! triangles at once) · `searches`, `visits` (what searches find, and what they cost) · `table` · `picture`. `trees`, `wide_tables` and `scenes` make
 //! inputs; `bars` has the counts of the reference.
 //!
@@ -51,8 +51,8 @@ checks::stage! { ($ crate) 12 [
     forks::build_parallel_has_a_fifth_of_the_span => judge_span(100_000, 5)
     wide_trees::collapse_keeps_every_leaf
     wide_trees::collapse_of_one_leaf_and_of_nothing
-    wide_trees::collapse_opens_the_largest_child
-    wide_trees::collapse_fills_its_nodes
+    wide_trees::collapse_costs_least
+    wide_trees::collapse_fills_its_leaves
     slabs::enter_boxes_agrees_with_one_box_at_a_time
     slabs::enter_boxes_takes_zeros_and_faces
     slabs::enter_boxes_hits_the_corners_it_is_aimed_at

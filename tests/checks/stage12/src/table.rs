@@ -26,8 +26,8 @@ fn bins_and_split(kit: &dyn Kit, boxes: &[Aabb], text: &mut String) {
         let bins: Vec<String> = bins[..n_bins as usize].iter().map(bin).collect();
         let _ = writeln!(text, "bins of axis {axis}  {}", bins.join("  "));
     }
-    let costs: Vec<String> = kit.block_cost(&[1, 4, 5, 16]).into_iter().map(|cost| digits(cost, 1)).collect();
-    let _ = writeln!(text, "leaves of 1, 4, 5 and 16  {}", costs.join("  "));
+    let costs: Vec<String> = kit.block_cost(&[1, 8, 9, 16]).into_iter().map(|cost| digits(cost, 1)).collect();
+    let _ = writeln!(text, "leaves of 1, 8, 9 and 16  {}", costs.join("  "));
     let Some(split) = kit.cheapest_split(&[BinSplitQuery { bins, n_bins }]).remove(0) else {
         text.push_str("no split\n");
         return;

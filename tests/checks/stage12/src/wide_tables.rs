@@ -167,8 +167,9 @@ pub(super) enum Flaw {
     FirstOfEqual,
 }
 
-/// What a flawed search returns, and its number of calls.
-pub(super) fn flawed_search(query: &WideQuery, flaw: Flaw) -> (Option<(u32, f32)>, usize) {
+/// What a flawed search returns, and its number of calls. Other children than the nearest wait on the stack in order, or as the
+/// reference pushes them.
+pub(super) fn flawed_search(query: &WideQuery, flaw: Flaw, is_sorted: bool) -> (Option<(u32, f32)>, usize) {
     let mut ray = query.ray;
     let mut best: Option<PrimitiveHit> = None;
     let (mut n_calls, mut stack) = (0, vec![(Child::ROOT, ray.t_min)]);
@@ -188,7 +189,15 @@ pub(super) fn flawed_search(query: &WideQuery, flaw: Flaw) -> (Option<(u32, f32)
                 match flaw {
                     Flaw::Unsorted => entered.reverse(),
                     Flaw::FarthestFirst => entered.sort_by_key(|(child, t)| child.key(*t)),
-                    _ => entered.sort_by_key(|(child, t)| std::cmp::Reverse(child.key(*t))),
+                    _ if is_sorted => entered.sort_by_key(|(child, t)| std::cmp::Reverse(child.key(*t))),
+                    _ => {
+                        for i in 1..entered.len() {
+                            let [before, after] = [i - 1, i].map(|i| entered[i].0.key(entered[i].1));
+                            if before < after {
+                                entered.swap(i - 1, i);
+                            }
+                        }
+                    }
                 }
                 stack.extend(entered);
             }

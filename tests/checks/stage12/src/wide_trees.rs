@@ -9,7 +9,10 @@ use glam::Vec3;
 use oracle::splitmix::Random;
 use proptest::strategy::Strategy;
 use raykata::aabb::Aabb;
-use raykata::wide::{BLOCK, Child, ChildContents, FlatTree, NO_PRIMITIVE, WideTree};
+use raykata::wide::{
+    BLOCK, Child, ChildContents, FlatNode, FlatTree, MAX_LEAF, NO_PRIMITIVE, WIDE_NODE_COST, WideTree,
+};
+use std::collections::HashMap;
 
 /// For each node of a flat tree its parent; the root is its own.
 fn parents(tree: &FlatTree) -> Vec<usize> {
@@ -21,15 +24,19 @@ fn parents(tree: &FlatTree) -> Vec<usize> {
     parents
 }
 
-/// For each node of a flat tree the number of leaves below it, or 1 for a leaf.
-fn n_leaves(tree: &FlatTree) -> Vec<usize> {
-    from_leaves(tree, |_, _| 1, |_, left, right| left + right)
+/// For each node of a flat tree the primitives below it: where they begin in the order, and their number.
+fn ranges(tree: &FlatTree) -> Vec<(u32, u32)> {
+    from_leaves(tree, |_, leaf| (leaf.first, leaf.count), |_, left, right| (left.0, left.1 + right.1))
 }
 
-/// The nodes of the flat tree that the children of each wide node stand for.
-type Meaning = Vec<Vec<usize>>;
+/// The nodes of the flat tree that a wide tree is made of: those that its inner nodes stand for, without the root, and its leaves.
+#[derive(Default)]
+struct Meaning {
+    inner: Vec<usize>,
+    leaves: Vec<usize>,
+}
 
-const SPLIT_LEAF: &str = "a leaf of the binary tree must become one leaf of the wide tree, whatever its size";
+const SPLIT_LEAF: &str = "a leaf of the binary tree must not be divided, whatever its size";
 
 /// The leaves and places of a wide tree over `tree`, or the first fault.
 fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
@@ -37,17 +44,17 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
     if tree.nodes.is_empty() || wide.nodes.is_empty() {
         let yours = format!("{} wide nodes for {} nodes", wide.nodes.len(), tree.nodes.len());
         let same = tree.nodes.is_empty() && wide.nodes.is_empty();
-        return if same { Ok(Vec::new()) } else { wrong(yours, "nodes for nodes, and none for none") };
+        return if same {
+            Ok(Meaning::default())
+        } else {
+            wrong(yours, "nodes for nodes, and none for none")
+        };
     }
-    // Find the leaf of each primitive.
-    let mut leaf_of = vec![0; tree.order.len()];
-    for (index, leaf) in tree.nodes.iter().enumerate().filter(|(_, node)| node.is_leaf()) {
-        let range = leaf.first as usize..(leaf.first + leaf.count) as usize;
-        tree.order[range].iter().for_each(|&id| leaf_of[id as usize] = index);
-    }
-    let (parents, n_leaves) = (parents(tree), n_leaves(tree));
-    let mut meaning = vec![Vec::new(); wide.nodes.len()];
-    let mut times = vec![0; tree.nodes.len()];
+    let (parents, ranges) = (parents(tree), ranges(tree));
+    let node_of: HashMap<(u32, u32), usize> = ranges.iter().copied().zip(0..).collect();
+    let mut meaning = Meaning::default();
+    let mut children = vec![Vec::new(); wide.nodes.len()];
+    let mut times = vec![0; tree.order.len()];
     let (mut reached, mut used) = (vec![0; wide.nodes.len()], vec![0; wide.blocks.len()]);
     reached[0] = 1;
     // A parent precedes its children, so in reverse order the meaning of each child is known.
@@ -73,11 +80,12 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
                         return wrong(yours, "a parent has a smaller index than its children");
                     }
                     reached[below] += 1;
-                    let Some(top) = common(&parents, &meaning[below]) else { continue };
-                    if meaning[below].iter().map(|&one| n_leaves[one]).sum::<usize>() != n_leaves[top] {
+                    let Some(top) = common(&parents, &children[below]) else { continue };
+                    if children[below].iter().map(|&one| ranges[one].1).sum::<u32>() != ranges[top].1 {
                         let yours = format!("node {below} holds leaves of different parts of the tree");
                         return wrong(yours, "everything below one node of the binary tree");
                     }
+                    meaning.inner.push(top);
                     (top, tree.nodes[top].bounds())
                 }
                 ChildContents::Leaf { block, count } => {
@@ -89,18 +97,22 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
                     used[blocks].iter_mut().for_each(|used| *used += 1);
                     let lanes: Vec<u32> = lanes.iter().flatten().copied().collect();
                     let (ids, free) = lanes.split_at(count as usize);
-                    let Some(&leaf) = ids.first().and_then(|id| leaf_of.get(*id as usize)) else {
+                    let Some(first) = tree.order.iter().position(|id| ids.first() == Some(id)) else {
                         return wrong(format!("a leaf of {ids:?}"), "primitives that exist");
                     };
-                    let node = &tree.nodes[leaf];
-                    let expected = &tree.order[node.first as usize..(node.first + node.count) as usize];
-                    if ids != expected || free.iter().any(|&id| id != NO_PRIMITIVE) {
-                        let is_part = ids.len() < expected.len() && expected.starts_with(ids);
-                        let expected = format!("{expected:?}, and NO_PRIMITIVE in the free lanes");
+                    let is_in_order = tree.order[first..].starts_with(ids);
+                    let leaf = node_of.get(&(first as u32, count)).filter(|_| is_in_order);
+                    let Some(&leaf) = leaf.filter(|_| free.iter().all(|&id| id == NO_PRIMITIVE)) else {
+                        let is_part = |node: &FlatNode| node.first == first as u32 && count < node.count;
+                        let is_part = is_in_order && tree.nodes.iter().any(is_part);
+                        let expected =
+                            "the primitives of one binary node in order, and NO_PRIMITIVE in the free lanes";
                         let yours = format!("a leaf with the lanes {lanes:?}");
-                        return Err((yours, expected, is_part.then_some(SPLIT_LEAF)));
-                    }
-                    times[leaf] += 1;
+                        return Err((yours, expected.into(), is_part.then_some(SPLIT_LEAF)));
+                    };
+                    times[first..first + count as usize].iter_mut().for_each(|times| *times += 1);
+                    meaning.leaves.push(leaf);
+                    let node = &tree.nodes[leaf];
                     (leaf, node.bounds())
                 }
             };
@@ -114,12 +126,11 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
                     is_of_root.then_some("a place has the box of the root: it needs the box of its child");
                 return Err((of(&yours), of(&bounds), cause));
             }
-            meaning[index].push(stands_for);
+            children[index].push(stands_for);
         }
     }
-    let lost = (0..tree.nodes.len()).find(|&leaf| tree.nodes[leaf].is_leaf() && times[leaf] != 1);
-    if let Some(leaf) = lost {
-        return wrong(format!("the leaf {leaf} of the binary tree appears {} times", times[leaf]), "once");
+    if let Some(at) = times.iter().position(|&times| times != 1) {
+        return wrong(format!("primitive {} is in {} leaves", tree.order[at], times[at]), "in one leaf");
     }
     if reached.iter().chain(&used).any(|&times| times != 1) {
         return wrong("a node or a block that is not in use, or used twice".into(), "each exactly once");
@@ -166,129 +177,136 @@ pub(super) fn collapse_keeps_every_leaf(trial: &Trial<'_>) -> CheckResult {
 pub(super) fn collapse_of_one_leaf_and_of_nothing(trial: &Trial<'_>) -> CheckResult {
     // Leaves of one primitive, of whole blocks, and of more.
     let leaf = |n: usize| drawn_tree(&vec![Aabb::new(Vec3::ZERO, Vec3::ONE); n], n, &[1]);
-    let chosen: Vec<FlatTree> = [1, 4, 5, 8, 32, 0].into_iter().map(leaf).collect();
+    let chosen: Vec<FlatTree> = [1, 8, 9, 16, 32, 0].into_iter().map(leaf).collect();
     trial.forall_and(&chosen, 60, trees_only(3), |trees| {
         compare(trees, trial.kit.collapse(trees), |tree, wide| judge_leaves(tree, &wide))
     })
 }
 
-/// Which inner child is opened next.
-#[derive(Clone, Copy)]
-enum Opens {
-    First,
-    Last,
-    Smallest,
-    MostLeaves,
-    LargestVolume,
-    GrandchildrenOnly,
+/// By which rule a tree is made.
+#[derive(Clone, Copy, PartialEq)]
+enum Rule {
+    Right,
+    FourChildren,
+    LeavesStay,
+    Primitives,
+    NodesAreFree,
+    Greedy,
 }
 
-const WRONG_RULES: [(Opens, &str); 6] = [
-    (Opens::First, "the first inner child is opened, not the one with the largest surface area"),
-    (Opens::Last, "the last inner child is opened, not the one with the largest surface area"),
-    (Opens::Smallest, "the child with the smallest surface area is opened: take the largest"),
+const WRONG_RULES: [(Rule, &str); 5] = [
     (
-        Opens::MostLeaves,
-        "the child with the most leaves is opened, not the one with the largest surface area",
+        Rule::Greedy,
+        "the inner child with the largest surface area is opened until there are eight: this is not always the cheapest",
     ),
-    (Opens::LargestVolume, "the child with the largest volume is opened: take the surface area"),
-    (
-        Opens::GrandchildrenOnly,
-        "a node gets at most four children: open children until there are eight or only leaves",
-    ),
+    (Rule::FourChildren, "a node gets at most four children, not eight"),
+    (Rule::LeavesStay, "every leaf stays a leaf: everything below an inner node may become one leaf as well"),
+    (Rule::Primitives, "the costs count single primitives: a leaf pays for whole blocks, block_cost"),
+    (Rule::NodesAreFree, "WIDE_NODE_COST is left out: visiting a node costs something, too"),
 ];
 
-/// The nodes that become the children of `top` by a wrong rule, sorted.
-fn opened_by(tree: &FlatTree, top: usize, rule: Opens) -> Vec<usize> {
-    let n_leaves = n_leaves(tree);
-    let mut children = vec![top];
-    let most = if matches!(rule, Opens::GrandchildrenOnly) { 4 } else { 8 };
-    while children.len() < most {
-        let inner = (0..children.len()).filter(|&place| !tree.nodes[children[place]].is_leaf());
-        let key = |&place: &usize| {
-            let bounds = tree.nodes[children[place]].bounds();
-            let size = (bounds.max - bounds.min).as_dvec3();
-            match rule {
-                Opens::First => -(place as f64),
-                Opens::Last => place as f64,
-                Opens::Smallest => -half_area(&bounds),
-                Opens::MostLeaves => n_leaves[children[place]] as f64,
-                Opens::LargestVolume => size.x * size.y * size.z,
-                Opens::GrandchildrenOnly => half_area(&bounds),
+/// The cost of everything below a node of `count` primitives as one leaf.
+fn leaf_cost(node: &FlatNode, count: u32, rule: Rule) -> f64 {
+    let blocks = if rule == Rule::Primitives { count } else { count.div_ceil(BLOCK as u32) };
+    let may_be = count as usize <= MAX_LEAF && (node.is_leaf() || rule != Rule::LeavesStay);
+    if may_be { half_area(&node.bounds()) * f64::from(blocks) } else { f64::INFINITY }
+}
+
+fn node_cost(node: &FlatNode, rule: Rule) -> f64 {
+    if rule == Rule::NodesAreFree { 0.0 } else { half_area(&node.bounds()) * f64::from(WIDE_NODE_COST) }
+}
+
+/// The least cost of a wide tree over `tree` by a rule, without its root.
+fn least(tree: &FlatTree, rule: Rule) -> f64 {
+    let ranges = ranges(tree);
+    let most = if rule == Rule::FourChildren { 4 } else { 8 };
+    let leaf = |index: usize| leaf_cost(&tree.nodes[index], ranges[index].1, rule);
+    // For each node its least cost in one place and in up to `most` places; the last number is that of a division.
+    let costs = from_leaves(
+        tree,
+        |index, _| [leaf(index); 9],
+        |index, left: [f64; 9], right| {
+            let mut costs = [f64::INFINITY; 9];
+            for n in 2..=most {
+                costs[n - 1] = (1..n).map(|i| left[i - 1] + right[n - i - 1]).fold(f64::INFINITY, f64::min);
+            }
+            let divided = costs[most - 1];
+            let one = leaf(index).min(node_cost(&tree.nodes[index], rule) + divided);
+            let mut costs = costs.map(|cost| cost.min(one));
+            costs[8] = divided.min(leaf(index));
+            costs
+        },
+    );
+    costs.first().map_or(0.0, |root| root[8])
+}
+
+/// The cost of a wide tree by a rule, without its root.
+fn cost(tree: &FlatTree, meaning: &Meaning, rule: Rule) -> f64 {
+    let ranges = ranges(tree);
+    let leaves = meaning.leaves.iter().map(|&leaf| leaf_cost(&tree.nodes[leaf], ranges[leaf].1, rule));
+    let inner = meaning.inner.iter().map(|&inner| node_cost(&tree.nodes[inner], rule));
+    leaves.chain(inner).sum()
+}
+
+/// The nodes that stay inner nodes if the inner child with the largest surface area is opened until there are eight.
+fn kept_by_greed(tree: &FlatTree) -> Vec<usize> {
+    let (mut kept, mut waiting) = (Vec::new(), vec![0]);
+    while let Some(top) = waiting.pop() {
+        let mut children = vec![top];
+        let is_inner = |child: &usize| !tree.nodes[*child].is_leaf();
+        while children.len() < 8 {
+            let inner = (0..children.len()).filter(|&place| is_inner(&children[place]));
+            let area = |place: &usize| half_area(&tree.nodes[children[*place]].bounds());
+            let Some(place) = inner.max_by(|p, q| area(p).total_cmp(&area(q))) else { break };
+            let first = tree.nodes[children[place]].first as usize;
+            children.splice(place..=place, [first, first + 1]);
+        }
+        children.retain(is_inner);
+        kept.extend(&children);
+        waiting.extend(children);
+    }
+    kept.sort_unstable();
+    kept
+}
+
+/// Judges the cost of wide trees, which is counted without the root.
+fn judge_costs(trial: &Trial<'_>, trees: &[FlatTree]) -> Vec<CheckResult> {
+    let judge = |tree: &FlatTree, wide: WideTree| {
+        judge_leaves(tree, &wide)?;
+        let Ok(meaning) = meaning(tree, &wide) else { return Ok(()) };
+        let (yours, least) = (cost(tree, &meaning, Rule::Right), least(tree, Rule::Right));
+        if yours <= least * (1.0 + 1e-4) {
+            return Ok(());
+        }
+        let [yours, least] = [yours, least].map(|cost| format!("a cost of {cost:.3} below the root"));
+        Err(Broken::with_texts(describe(tree), yours, least, "the surface area heuristic"))
+    };
+    let formulas = |tree: &FlatTree, wide: &WideTree| {
+        let meaning = meaning(tree, wide).ok();
+        let is_narrow = wide.nodes.iter().all(|node| node.n_children() <= 4);
+        let gives = |rule, meaning: &Meaning| match rule {
+            Rule::Greedy => {
+                let mut inner = meaning.inner.clone();
+                inner.sort_unstable();
+                inner == kept_by_greed(tree)
+            }
+            rule => {
+                (rule != Rule::FourChildren || is_narrow)
+                    && cost(tree, meaning, rule) <= least(tree, rule) * (1.0 + 1e-4)
             }
         };
-        let Some(place) = inner.max_by(|p, q| key(p).total_cmp(&key(q)).then(q.cmp(p))) else { break };
-        let first = tree.nodes[children[place]].first as usize;
-        children.splice(place..=place, [first, first + 1]);
-    }
-    children.sort_unstable();
-    children
+        WRONG_RULES
+            .map(|(rule, text)| (meaning.as_ref().is_some_and(|meaning| gives(rule, meaning)), text))
+            .to_vec()
+    };
+    compare_formulas(trees, trial.kit.collapse(trees), judge, formulas)
 }
 
-/// The first node whose children break the rule: the node of the flat tree, and yours and expected.
-fn broken_rule(tree: &FlatTree, meaning: &Meaning) -> Option<(String, &'static str)> {
-    let parents = parents(tree);
-    let area = |node: usize| half_area(&tree.nodes[node].bounds());
-    for children in meaning {
-        let top = common(&parents, children)?;
-        let waiting = children.iter().copied().filter(|&child| !tree.nodes[child].is_leaf());
-        let largest = waiting.clone().map(area).fold(0.0, f64::max);
-        if waiting.count() > 0 && children.len() < 8 {
-            let yours = format!("{} children, of which some are inner nodes", children.len());
-            return Some((yours, "eight children, or only leaves"));
-        }
-        // Every node that was opened must have at least the area of every inner node that was not.
-        let mut least = f64::INFINITY;
-        for &child in children {
-            let mut above = child;
-            while above != top && parents[above] != top {
-                above = parents[above];
-                least = least.min(area(above));
-            }
-        }
-        // Areas in single precision have a relative error of about 2⁻²².
-        if least < largest * (1.0 - 1e-6) {
-            let yours = format!("a node of half area {least} was opened, and one of {largest} was not");
-            return Some((yours, "the inner child with the largest surface area is opened first"));
-        }
-    }
-    None
+pub(super) fn collapse_costs_least(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(200, divided_trees(160), |trees| judge_costs(trial, trees))
 }
 
-/// Judges which children were opened.
-fn judge_opened(tree: &FlatTree, wide: &WideTree) -> CheckResult {
-    judge_leaves(tree, wide)?;
-    let broken = meaning(tree, wide).ok().and_then(|meaning| broken_rule(tree, &meaning));
-    let Some((yours, expected)) = broken else { return Ok(()) };
-    Err(Broken::with_texts(describe(tree), yours, expected, "the areas of the nodes"))
-}
-
-pub(super) fn collapse_opens_the_largest_child(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(200, divided_trees(120), |trees| {
-        let judge = |tree: &FlatTree, wide: WideTree| judge_opened(tree, &wide);
-        let formulas = |tree: &FlatTree, wide: &WideTree| {
-            let (meaning, parents) = (meaning(tree, wide).ok(), parents(tree));
-            let follows = |rule: Opens, children: &Vec<usize>| {
-                let mut sorted = children.clone();
-                sorted.sort_unstable();
-                let top = common(&parents, children).unwrap_or(0);
-                tree.nodes[top].is_leaf() || sorted == opened_by(tree, top, rule)
-            };
-            let gives = |rule, all: &Meaning| all.iter().all(|children| follows(rule, children));
-            WRONG_RULES
-                .map(|(rule, text)| (meaning.as_ref().is_some_and(|all| gives(rule, all)), text))
-                .to_vec()
-        };
-        compare_formulas(trees, trial.kit.collapse(trees), judge, formulas)
-    })?;
-    // No node has an area, so any of them may be opened next, until there are eight children.
-    let point = Vec3::splat(trial.varied(1.0, 0.25..8f32));
-    let trees = [drawn_tree(&[Aabb::new(point, point); 40], 1, &[])];
-    all_hold(compare(&trees, trial.kit.collapse(&trees), |tree, wide| judge_opened(tree, &wide)))
-}
-
-/// A tree over boxes in a row whose nodes are divided in half down to leaves of four. A node is larger than all nodes of the
-/// next level, so all wide nodes can be full if the number of leaves is a power of eight.
+/// A tree over boxes in a row whose nodes are divided in half down to leaves of one.
 fn halved(seed: u64, n: usize) -> FlatTree {
     let mut random = Random::new(seed, 23);
     let mut order: Vec<Aabb> = (0..n)
@@ -300,26 +318,9 @@ fn halved(seed: u64, n: usize) -> FlatTree {
     // `drawn_tree` lists every seventh box, again and again.
     let given = order.clone();
     (0..n).for_each(|i| order[i * 7 % n] = given[i]);
-    drawn_tree(&order, BLOCK, &[])
+    drawn_tree(&order, 1, &[])
 }
 
-/// The mean number of children that a wide tree must have, of eight.
-const MEAN_CHILDREN: f64 = 5.5;
-
-pub(super) fn collapse_fills_its_nodes(trial: &Trial<'_>) -> CheckResult {
-    let trees = [4 * 64, 4 * 512].map(|n| halved(trial.seed, n));
-    all_hold(compare(&trees, trial.kit.collapse(&trees), |tree, wide| {
-        judge_leaves(tree, &wide)?;
-        let n: u32 = wide.nodes.iter().map(raykata::wide::WideNode::n_children).sum();
-        let mean = f64::from(n) / wide.nodes.len() as f64;
-        if mean >= MEAN_CHILDREN {
-            return Ok(());
-        }
-        let expected = format!("at least {MEAN_CHILDREN}");
-        Err(Broken::with_texts(describe(tree), format!("{mean:.2} children per node"), expected, "counted")
-            .explained_by([(
-                mean <= 4.0,
-                "a node gets at most four children: open children until there are eight or only leaves",
-            )]))
-    }))
+pub(super) fn collapse_fills_its_leaves(trial: &Trial<'_>) -> CheckResult {
+    all_hold(judge_costs(trial, &[512, 2048].map(|n| halved(trial.seed, n))))
 }
