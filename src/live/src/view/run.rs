@@ -8,7 +8,7 @@
 use super::quick_tree::quickly_built;
 use super::reference::{Origin, Reference};
 use super::studio::{Kit, PATIENCE, Pass, Studio, job};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use live::compiler::{Compiled, compile};
 use live::course::{judge, keep, stages};
 use live::process::Process;
@@ -18,17 +18,21 @@ use raykata::scene::Scene;
 use raykata_cli::finish::{self, encoded};
 use raykata_cli::kits::{Need, Program, Which, cargo_build, profile};
 use raykata_cli::report::{Thousands, read_scene, words_of_building};
+use raykata_cli::verdicts::{CheckVerdict, Verdict};
 use raykata_cli::worker::Worker;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The longest time that the coarse picture has all processors for itself.
 const HEAD_START: Duration = Duration::from_secs(2);
+
+/// The time without a pixel after which the checks look for a function that does not end.
+const SILENCE: Duration = Duration::from_secs(10);
 
 const COARSE: Pass = Pass { name: "coarse", scale: 4 };
 const SINGLE: Pass = Pass { name: "one sample per pixel", scale: 1 };
@@ -48,6 +52,8 @@ struct Work {
     is_over: AtomicBool,
     /// The optimised code takes over.
     is_quick_over: AtomicBool,
+    /// The optimised code has finished some pixels, or a part of a structure.
+    moves: AtomicBool,
 }
 
 /// The kits of a picture.
@@ -76,6 +82,7 @@ impl Run {
             kits: Mutex::default(),
             is_over: AtomicBool::new(false),
             is_quick_over: AtomicBool::new(false),
+            moves: AtomicBool::new(false),
         });
         let own = work.clone();
         std::thread::spawn(move || {
@@ -202,7 +209,13 @@ impl Work {
         // End the others now, because a question that one of them answers at the moment goes to the new one.
         earlier.iter().for_each(Kits::end);
         let job = job(scene, View::Shaded, true);
-        let rendered = self.render(&kits, &job, FINAL, &|| self.is_over())?;
+        let (waits, ends) = channel::<()>();
+        let rendered = std::thread::scope(|scope| {
+            scope.spawn(|| self.seek_endless_loop(ends, file, &program));
+            let rendered = self.render(&kits, &job, FINAL, &|| self.is_over());
+            drop(waits);
+            rendered
+        })?;
         let Some(rendering) = rendered else { return Ok(()) };
         let facts = facts(&rendering, compiled);
         self.studio.finished(self.number, facts.clone());
@@ -227,18 +240,12 @@ impl Work {
         mut facts: serde_json::Value,
     ) -> Result<()> {
         let root = &self.studio.root;
-        let is_shown =
-            |stage: u8| finish::scene_of(root, stage).canonicalize().ok() == file.canonicalize().ok();
         let mut stages = stages();
-        let Some(at) = stages.iter().position(|stage| is_shown(stage.number)) else { return Ok(()) };
+        let Some(at) = stages.iter().position(|stage| self.shows(stage.number, file)) else { return Ok(()) };
         let number = stages[at].number;
         let working = format!("the picture is finished, and the checks of stage {number} run");
         self.studio.status(self.number, "checking", &working);
-        let (process, cargo) = (&self.builds[1], cargo_build(root, &[Program::JUDGE])?);
-        if let Some(Compiled::Program(path)) = compile(process, cargo, Program::JUDGE)?
-            && judge(process, &path, [root, program], number, |verdict| keep(&mut stages, verdict))?
-            && stages[at].is_done()
-        {
+        if self.judge(number, program, |verdict| keep(&mut stages, verdict))? && stages[at].is_done() {
             let album = finish::file_of(number, true);
             let picture = finish::keep(root, &album, scene, rendering, kit)?;
             let lines = picture.lines.into_iter().chain([finish::next_step(number)]);
@@ -246,6 +253,35 @@ impl Work {
         }
         self.studio.finished(self.number, facts);
         Ok(())
+    }
+
+    /// Whether this is the scene of a stage.
+    fn shows(&self, stage: u8, file: &Path) -> bool {
+        finish::scene_of(&self.studio.root, stage).canonicalize().ok() == file.canonicalize().ok()
+    }
+
+    /// Runs the checks of a stage; `false` if the run is over.
+    fn judge(&self, stage: u8, program: &Path, report: impl FnMut(CheckVerdict)) -> Result<bool> {
+        let (root, process) = (&self.studio.root, &self.builds[1]);
+        match compile(process, cargo_build(root, &[Program::JUDGE])?, Program::JUDGE)? {
+            Some(Compiled::Program(path)) => judge(process, &path, [root, program], stage, report),
+            _ => Ok(false),
+        }
+    }
+
+    /// If a picture has no pixel for a while, runs the checks of its stage, and shows the first one that gets no answer.
+    fn seek_endless_loop(&self, ends: Receiver<()>, file: &Path, program: &Path) {
+        let waited = ends.recv_timeout(SILENCE) == Err(RecvTimeoutError::Timeout);
+        let Some(stage) = stages().into_iter().find(|stage| self.shows(stage.number, file)) else { return };
+        if !waited || self.moves.load(Ordering::Relaxed) {
+            return;
+        }
+        let words = format!("no pixel yet: do the functions end? The checks of stage {} run", stage.number);
+        self.studio.status(self.number, "rendering", &words);
+        let _ = self.judge(stage.number, program, |CheckVerdict { verdict, .. }| match verdict {
+            Verdict::Failed(message) if message.contains("no answer after") => self.fail(&anyhow!(message)),
+            _ => {}
+        });
     }
 
     /// Renders a frame and shows its tiles; `None` if it was cancelled.
@@ -374,6 +410,7 @@ impl Watch for Tiles<'_> {
 
     fn building(&self, placed: u64, total: u64) {
         if !(self.is_over)() {
+            self.work.moves.fetch_or(self.pass == FINAL && placed > 0, Ordering::Relaxed);
             self.work.studio.status(self.work.number, "building", &words_of_building(placed, total));
         }
     }
@@ -384,6 +421,7 @@ impl Watch for Tiles<'_> {
 
     fn tile(&self, tile: &Tile) {
         if !(self.is_over)() {
+            self.work.moves.fetch_or(self.pass == FINAL, Ordering::Relaxed);
             self.work.studio.tile(self.work.number, self.pass, tile, self.helper);
         }
     }
