@@ -29,7 +29,7 @@ pub fn flatten(bvh: &Bvh) -> FlatTree {
 /// Turns a binary tree into the cheapest one with eight children per node, by dynamic programming.
 /// Everything below a binary node becomes a leaf, or up to eight children. The cost is
 /// `WIDE_NODE_COST · A` per inner node and `A · c` per leaf, with half the surface area `A` of its
-/// box and [`block_cost`] `c`. Which costs does a node need from its two children?
+/// box and `block_cost` as `c`. Which costs does a node need from its two children?
 ///
 /// Exactly:
 ///
