@@ -4,11 +4,10 @@
 //! Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997; Higham, "Accuracy and
 //! Stability of Numerical Algorithms", 2002.
 //!
-//! Given: [`gamma`] and [`UNIT_ROUNDOFF`]; [`F32x8`] with `+`, `-`, `*`, `min`,
-//! `max`, `abs`, `le`, `lt` per lane; masks with `&`, `|` and `bits`; [`WideRay`] with
-//! `1 / direction` and the near side of boxes on each axis. `ray.t_min` is 0 or more. Coordinates
-//! and directions of triangles are at most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing
-//! overflows.
+//! Given: [`gamma`] and [`UNIT_ROUNDOFF`]; [`F32x8`] with `+`, `-`, `*`, `min`, `max`, `abs`, `le`,
+//! `lt` per lane; masks with `&`, `|` and `bits`; [`WideRay`] with `1 / direction` and the near side
+//! of boxes on each axis. `ray.t_min` is 0 or more. Coordinates and directions of triangles are at
+//! most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing overflows.
 
 use raykata::rounding::{UNIT_ROUNDOFF, gamma};
 use raykata::wide::simd::{F32x8, Level};

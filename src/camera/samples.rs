@@ -155,7 +155,7 @@ impl Points {
     }
 }
 
-/// Dimensions 0 and 1 of `sobol_burley::sample`, bit for bit, in a quarter of the time. The first is the index with its bits
+/// Dimensions 0 and 1 of `sobol_burley::sample`, bit for bit, without the other two. The first is the index with its bits
 /// reversed. The second adds, modulo 2, a row of Pascal's triangle for each bit of the index: with `(1 + x)ⁱ` for bit `i`, which
 /// is a product of `(1 + x)`, `(1 + x²)`, `(1 + x⁴)` and `(1 + x⁸)`, four steps add all rows.
 ///

@@ -36,7 +36,7 @@ struct Meaning {
     leaves: Vec<usize>,
 }
 
-const SPLIT_LEAF: &str = "a leaf of the binary tree must not be divided, whatever its size";
+const SPLIT_LEAF: &str = "a leaf of the binary tree must not be divided, also if it is large";
 
 /// The leaves and places of a wide tree over `tree`, or the first fault.
 fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
