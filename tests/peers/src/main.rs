@@ -6,8 +6,9 @@
 //! round. Camera rays come in tiles of 16 × 16 pixels, as in frames; diffuse rays leave their hits in random directions; shadow
 //! rays go from the hits to a light.
 //!
-//! `-- --alone SCENE …` leaves out the crates.
+//! `-- --alone SCENE …` leaves out the crates. `-- --compare N` compares the hits of N rays with those of the binary tree.
 
+mod compare;
 mod crates;
 mod embree;
 mod reference;
@@ -30,8 +31,14 @@ fn main() {
     let option = option.as_deref();
     let library = if option == Some("--embree") { words.next() } else { None };
     let library = library.unwrap_or("libembree4.so.4".into());
+    if option == Some("--compare") {
+        let Some(n) = words.next().and_then(|n| n.parse().ok()) else {
+            fail("--compare needs a number of rays")
+        };
+        std::process::exit(i32::from(!compare::run(n)));
+    }
     if let Some(other) = option.filter(|option| !["--alone", "--embree"].contains(option)) {
-        fail(&format!("no option `{other}`; there are --alone and --embree FILE"));
+        fail(&format!("no option `{other}`; there are --alone, --compare N and --embree FILE"));
     }
     let mut names: Vec<String> = words.collect();
     if names.is_empty() {

@@ -13,6 +13,8 @@ use solutions::{stage10_stability, stage12_build, stage12_search, stage12_simd, 
 pub struct Wide {
     nodes: Vec<WideNode>,
     blocks: Vec<TriangleBlock>,
+    /// For triangles that are too large for blocks.
+    triangles: Vec<Triangle>,
     instructions: Instructions,
 }
 
@@ -26,7 +28,8 @@ impl Wide {
         drop(tree);
         let block = |ids: &_| TriangleBlock::new(*ids, |id| Some(triangles[id as usize]));
         let blocks = wide.blocks.iter().map(block).collect();
-        Wide { nodes: wide.nodes, blocks, instructions: Instructions::detect() }
+        let triangles = triangles.to_vec();
+        Wide { nodes: wide.nodes, blocks, triangles, instructions: Instructions::detect() }
     }
 
     pub fn bytes(&self) -> usize {
@@ -38,6 +41,26 @@ impl Wide {
         let mut counts = [0; 3];
         self.instructions.run(Work(self, rays, any, &mut vec![0.0; rays.len()], &mut counts));
         counts
+    }
+
+    /// The closest hit of a ray, and whether there is any.
+    pub fn both(&self, ray: &Ray) -> (Option<PrimitiveHit>, bool) {
+        self.instructions.run(Both(self, ray))
+    }
+}
+
+/// Both searches for one ray.
+struct Both<'a>(&'a Wide, &'a Ray);
+
+impl Vectorized for Both<'_> {
+    type Output = (Option<PrimitiveHit>, bool);
+
+    #[inline(always)]
+    fn run<L: Level>(self, level: L) -> Self::Output {
+        let Both(wide, ray) = self;
+        let mut probe = Triangles { wide, ray: WideRay::new(ray), level, counts: [0; 3] };
+        let closest = stage12_search::wide_closest_hit(&mut probe, ray);
+        (closest, stage12_search::wide_any_hit(&mut probe, ray))
     }
 }
 
@@ -92,6 +115,9 @@ impl<L: Level> WideProbe for Triangles<'_, L> {
     fn candidates(&mut self, block: u32, n: u32, t_max: f32) -> u32 {
         self.counts[1] += 1;
         let lanes = (1 << n) - 1;
+        if !self.ray.in_range {
+            return lanes;
+        }
         lanes & stage12_simd::may_hit(self.level, &self.wide.blocks[block as usize], &self.ray, t_max)
     }
 
@@ -100,7 +126,11 @@ impl<L: Level> WideProbe for Triangles<'_, L> {
         self.counts[2] += 1;
         let block = &self.wide.blocks[block as usize];
         let lane = lane as usize & 7;
-        let hit = stage10_stability::watertight(ray, &block.triangle(lane))?;
+        let mut triangle = block.triangle(lane);
+        if triangle.a.x.is_nan() {
+            triangle = self.wide.triangles[block.ids[lane] as usize];
+        }
+        let hit = stage10_stability::watertight(ray, &triangle)?;
         Some(PrimitiveHit { t: hit.t, primitive: block.ids[lane] })
     }
 }
