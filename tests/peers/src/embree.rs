@@ -4,7 +4,7 @@ use crate::crates::{Contestant, of_any};
 use libloading::Library;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
-use std::ffi::{c_char, c_int, c_void};
+use std::ffi::{CString, c_char, c_int, c_void};
 use std::ptr::null;
 
 /// A sentence for machines without Embree.
@@ -34,11 +34,20 @@ pub struct Embree {
     scene: *mut c_void,
     intersect: Query,
     occluded: Query,
+    release: unsafe extern "C" fn(*mut c_void),
+}
+
+impl Drop for Embree {
+    fn drop(&mut self) {
+        // SAFETY: the scene is not used any more.
+        unsafe { (self.release)(self.scene) };
+    }
 }
 
 impl Embree {
-    /// Builds a scene by the library at `path`. `None` if there is no such library.
-    pub fn build(path: &str, triangles: &[Triangle], robust: bool) -> Option<Embree> {
+    /// Builds a scene by the library at `path` and on so many threads. `None` if there is no such library.
+    pub fn build(path: &str, triangles: &[Triangle], robust: bool, threads: usize) -> Option<Embree> {
+        let threads = CString::new(format!("threads={threads},set_affinity=0")).ok()?;
         // SAFETY: the types are those of the headers of Embree 4. All buffers are made by Embree and have the stated sizes.
         unsafe {
             let library = Library::new(path).ok()?;
@@ -47,7 +56,7 @@ impl Embree {
                     (library.get::<unsafe extern "C" fn($($Type),*) $(-> $Result)?>($name).ok()?)($($argument),*)
                 };
             }
-            let device = call!(b"rtcNewDevice"(c"threads=1".as_ptr() => *const c_char) -> *mut c_void);
+            let device = call!(b"rtcNewDevice"(threads.as_ptr() => *const c_char) -> *mut c_void);
             let scene = call!(b"rtcNewScene"(device => *mut c_void) -> *mut c_void);
             let flags = if robust { 4 } else { 0 };
             call!(b"rtcSetSceneFlags"(scene => *mut c_void, flags => c_int));
@@ -67,12 +76,14 @@ impl Embree {
             }
             call!(b"rtcCommitGeometry"(mesh => *mut c_void));
             call!(b"rtcAttachGeometry"(scene => *mut c_void, mesh => *mut c_void) -> u32);
+            call!(b"rtcReleaseGeometry"(mesh => *mut c_void));
             call!(b"rtcCommitScene"(scene => *mut c_void));
             let query = |name: &[u8]| library.get::<Query>(name).ok().map(|query| *query);
             let (intersect, occluded) = (query(b"rtcIntersect1")?, query(b"rtcOccluded1")?);
-            // Keep the library and the scene until the program ends: a library with threads cannot be unloaded.
+            let release = *library.get::<unsafe extern "C" fn(*mut c_void)>(b"rtcReleaseScene").ok()?;
+            // Keep the library until the program ends: a library with threads cannot be unloaded.
             std::mem::forget(library);
-            Some(Embree { scene, intersect, occluded })
+            Some(Embree { scene, intersect, occluded, release })
         }
     }
 }

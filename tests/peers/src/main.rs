@@ -7,11 +7,13 @@
 //! rays go from the hits to a light.
 //!
 //! `-- --alone SCENE …` leaves out the crates. `-- --compare N` compares the hits of N rays with those of the binary tree.
+//! `-- --scale SVG` shows how the cost grows with the number of triangles, also on two threads, and draws a plot.
 
 mod compare;
 mod crates;
 mod embree;
 mod reference;
+mod scale;
 mod scenes;
 
 use cpu_time::ThreadTime;
@@ -26,21 +28,28 @@ const SIDE: u32 = 256;
 const ROUNDS: usize = 9;
 
 fn main() {
-    let mut words = std::env::args().skip(1).peekable();
-    let option = words.next_if(|word| word.starts_with("--"));
-    let option = option.as_deref();
-    let library = if option == Some("--embree") { words.next() } else { None };
-    let library = library.unwrap_or("libembree4.so.4".into());
-    if option == Some("--compare") {
-        let Some(n) = words.next().and_then(|n| n.parse().ok()) else {
-            fail("--compare needs a number of rays")
-        };
-        std::process::exit(i32::from(!compare::run(n)));
+    let mut words = std::env::args().skip(1);
+    let (mut library, mut alone, mut names) = (String::from("libembree4.so.4"), false, Vec::new());
+    while let Some(word) = words.next() {
+        let mut value = || words.next().unwrap_or_else(|| fail(&format!("{word} needs a value")));
+        match word.as_str() {
+            "--embree" => library = value(),
+            "--alone" => alone = true,
+            "--compare" => {
+                let n = value().parse().unwrap_or_else(|_| fail("--compare needs a number of rays"));
+                std::process::exit(i32::from(!compare::run(n)));
+            }
+            "--memory" => {
+                let side = value().parse().unwrap_or_else(|_| fail("--memory needs a number"));
+                return println!("{}", scale::memory_of_build(side));
+            }
+            "--scale" => return scale::run(&library, &value()),
+            option if option.starts_with("--") => fail(&format!(
+                "no option `{option}`; there are --alone, --embree FILE, --compare N and --scale SVG"
+            )),
+            _ => names.push(word),
+        }
     }
-    if let Some(other) = option.filter(|option| !["--alone", "--embree"].contains(option)) {
-        fail(&format!("no option `{other}`; there are --alone, --compare N and --embree FILE"));
-    }
-    let mut names: Vec<String> = words.collect();
     if names.is_empty() {
         names = scenes::NAMES.map(String::from).into();
     }
@@ -49,28 +58,48 @@ fn main() {
         let Some(scene) = scenes::by_name(&name) else {
             fail(&format!("no scene `{name}`; there are {:?} and \"terrain-12m\"", scenes::NAMES));
         };
-        table.push((name, measure(&scene, &library, option == Some("--alone"))));
+        table.push((name, on_threads(1, || measure(&scene, &library, alone))));
     }
     print_table(&table);
 }
 
-/// The ratios of all contestants in one scene, for camera, diffuse and shadow rays.
-type Ratios = Vec<(&'static str, [f64; 3])>;
+/// Does work whose parallel parts run on so many threads.
+fn on_threads<R: Send>(n: usize, work: impl FnOnce() -> R + Send) -> R {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
+    pool.unwrap_or_else(|error| fail(&error.to_string())).install(work)
+}
 
-/// Prints a table for `README.md`, with the date and the processor.
-fn print_table(table: &[(String, Ratios)]) {
-    let Some((_, first)) = table.first() else { return };
+/// The speed of a contestant, for camera, diffuse and shadow rays.
+struct Speed {
+    name: &'static str,
+    /// In relation to Embree's fast mode.
+    ratio: [f64; 3],
+    /// The microseconds per ray.
+    microseconds: [f64; 3],
+}
+
+/// The date and the processor.
+fn date_and_machine() -> String {
     let date =
         std::process::Command::new("date").arg("-I").output().map(|date| date.stdout).unwrap_or_default();
     let machine = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let machine = machine.lines().find_map(|line| line.strip_prefix("model name\t: ")).unwrap_or("unknown");
-    println!("\n{}, {machine}, one thread:\n", String::from_utf8_lossy(&date).trim());
-    let row = |cells: Vec<String>| println!("| {} |", cells.join(" | "));
-    row(["scene"].into_iter().chain(first.iter().map(|one| one.0)).map(String::from).collect());
-    row(vec!["---".into(); first.len() + 1]);
-    for (scene, ratios) in table {
-        let cell = |(_, [p, d, s]): &(_, [f64; 3])| format!("{p:.2}, {d:.2}, {s:.2}");
-        row([scene.clone()].into_iter().chain(ratios.iter().map(cell)).collect());
+    format!("{}, {machine}", String::from_utf8_lossy(&date).trim())
+}
+
+fn print_row(cells: Vec<String>) {
+    println!("| {} |", cells.join(" | "));
+}
+
+/// Prints a table for `README.md`, with the date and the processor.
+fn print_table(table: &[(String, Vec<Speed>)]) {
+    let Some((_, first)) = table.first() else { return };
+    println!("\n{}, one thread:\n", date_and_machine());
+    print_row(["scene"].into_iter().chain(first.iter().map(|one| one.name)).map(String::from).collect());
+    print_row(vec!["---".into(); first.len() + 1]);
+    for (scene, speeds) in table {
+        let cell = |Speed { ratio: [p, d, s], .. }: &Speed| format!("{p:.2}, {d:.2}, {s:.2}");
+        print_row([scene.clone()].into_iter().chain(speeds.iter().map(cell)).collect());
     }
 }
 
@@ -117,7 +146,7 @@ fn rays(scene: &Scene, wide: &Wide) -> [Vec<Ray>; 3] {
     [primary, diffuse, shadow]
 }
 
-fn measure(scene: &Scene, library: &str, alone: bool) -> Ratios {
+fn measure(scene: &Scene, library: &str, alone: bool) -> Vec<Speed> {
     let triangles = scene.triangles.as_slice();
     let (wide, build) = timed(|| Wide::build(triangles));
     let rays = rays(scene, &wide);
@@ -138,7 +167,7 @@ fn measure(scene: &Scene, library: &str, alone: bool) -> Ratios {
     let mut contestants: Vec<(&'static str, Box<dyn Contestant>, Duration)> =
         vec![("reference", Box::new(wide), build)];
     for (name, robust) in [("Embree", false), ("Embree robust", true)] {
-        let (embree, build) = timed(|| Embree::build(library, triangles, robust));
+        let (embree, build) = timed(|| Embree::build(library, triangles, robust, 1));
         match embree {
             Some(embree) => contestants.push((name, Box::new(embree), build)),
             None => println!("{}", embree::HOW_TO_GET),
@@ -161,7 +190,10 @@ fn measure(scene: &Scene, library: &str, alone: bool) -> Ratios {
 }
 
 /// Prints one line per contestant, and returns the speeds relative to that of Embree, or of the reference without Embree.
-fn compare(contestants: &[(&'static str, Box<dyn Contestant>, Duration)], rays: &[Vec<Ray>; 3]) -> Ratios {
+fn compare(
+    contestants: &[(&'static str, Box<dyn Contestant>, Duration)],
+    rays: &[Vec<Ray>; 3],
+) -> Vec<Speed> {
     let base = contestants.iter().position(|one| one.0 == "Embree").unwrap_or(0);
     let n = contestants.len();
     let most = rays.iter().map(Vec::len).max().unwrap_or(0);
@@ -209,7 +241,7 @@ fn compare(contestants: &[(&'static str, Box<dyn Contestant>, Duration)], rays: 
             own[2],
             differ[i],
         );
-        ratios.push((name, own));
+        ratios.push(Speed { name, ratio: own, microseconds: [0, 1, 2].map(|kind| 1.0 / rate(kind)) });
     }
     ratios
 }

@@ -7,29 +7,33 @@ use raykata::bvh::PrimitiveHit;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 use raykata::wide::simd::{Instructions, Level, Vectorized};
-use raykata::wide::{Child, Entered, Forks, TriangleBlock, WideNode, WideProbe, WideRay};
+use raykata::wide::{Child, Entered, Forks, LARGEST, TriangleBlock, WideNode, WideProbe, WideRay};
+use rayon::prelude::*;
 use solutions::{stage10_stability, stage12_build, stage12_search, stage12_simd, stage12_wide};
+use std::collections::HashMap;
 
 pub struct Wide {
     nodes: Vec<WideNode>,
     blocks: Vec<TriangleBlock>,
-    /// For triangles that are too large for blocks.
-    triangles: Vec<Triangle>,
+    /// The triangles that are too large for blocks.
+    large: HashMap<u32, Triangle>,
     instructions: Instructions,
 }
 
 impl Wide {
+    /// Builds as frames do, on the threads of the pool that calls it.
     pub fn build(triangles: &[Triangle]) -> Wide {
-        let bounds: Vec<Aabb> =
-            triangles.iter().map(|t| Aabb::new(t.a.min(t.b).min(t.c), t.a.max(t.b).max(t.c))).collect();
-        let tree = stage12_build::build_parallel(&bounds, &mut Forks::new(false));
+        let box_of = |t: &Triangle| Aabb::new(t.a.min(t.b).min(t.c), t.a.max(t.b).max(t.c));
+        let bounds: Vec<Aabb> = triangles.par_iter().map(box_of).collect();
+        let tree = stage12_build::build_parallel(&bounds, &mut Forks::new(rayon::current_num_threads() > 1));
         drop(bounds);
         let wide = stage12_wide::collapse(&tree);
         drop(tree);
         let block = |ids: &_| TriangleBlock::new(*ids, |id| Some(triangles[id as usize]));
-        let blocks = wide.blocks.iter().map(block).collect();
-        let triangles = triangles.to_vec();
-        Wide { nodes: wide.nodes, blocks, triangles, instructions: Instructions::detect() }
+        let blocks = wide.blocks.par_iter().map(block).collect();
+        let is_large = |t: &Triangle| !(t.a.abs().max(t.b.abs()).max(t.c.abs()).max_element() <= LARGEST);
+        let large = (0..).zip(triangles).filter(|(_, t)| is_large(t)).map(|(id, t)| (id, *t)).collect();
+        Wide { nodes: wide.nodes, blocks, large, instructions: Instructions::detect() }
     }
 
     pub fn bytes(&self) -> usize {
@@ -128,7 +132,7 @@ impl<L: Level> WideProbe for Triangles<'_, L> {
         let lane = lane as usize & 7;
         let mut triangle = block.triangle(lane);
         if triangle.a.x.is_nan() {
-            triangle = self.wide.triangles[block.ids[lane] as usize];
+            triangle = self.wide.large[&block.ids[lane]];
         }
         let hit = stage10_stability::watertight(ray, &triangle)?;
         Some(PrimitiveHit { t: hit.t, primitive: block.ids[lane] })

@@ -53,16 +53,22 @@ pub fn by_name(name: &str) -> Option<Scene> {
             field: 45.0,
             light: Vec3::new(3.0, 4.0, 2.0),
         },
-        "terrain" | "terrain-12m" => Scene {
-            name: if name == "terrain" { "terrain" } else { "terrain-12m" },
-            triangles: terrain(if name == "terrain" { 707 } else { 2449 }),
-            eye: Vec3::new(0.0, 0.45, 1.1),
-            target: Vec3::new(0.0, -0.1, 0.0),
-            field: 50.0,
-            light: Vec3::new(1.0, 1.2, 0.3),
-        },
+        "terrain" => terrain("terrain", 707),
+        "terrain-12m" => terrain("terrain-12m", 2449),
         _ => return None,
     })
+}
+
+/// A landscape over a square, of `2 n²` triangles.
+pub fn terrain(name: &'static str, n: usize) -> Scene {
+    Scene {
+        name,
+        triangles: landscape(n),
+        eye: Vec3::new(0.0, 0.45, 1.1),
+        target: Vec3::new(0.0, -0.1, 0.0),
+        field: 50.0,
+        light: Vec3::new(1.0, 1.2, 0.3),
+    }
 }
 
 /// Random numbers that are the same in every run (SplitMix64).
@@ -163,8 +169,8 @@ fn soup(n: usize) -> Vec<Triangle> {
     (0..n).map(|_| triangle()).collect()
 }
 
-/// A landscape over a square.
-fn terrain(n: usize) -> Vec<Triangle> {
+/// The triangles of a landscape.
+fn landscape(n: usize) -> Vec<Triangle> {
     let height = |p: Vec2| {
         let mut height = 0.0;
         for octave in 0..8 {

@@ -20,7 +20,7 @@ mod measured;
 mod options;
 mod page;
 mod parameter;
-mod plot;
+pub mod plot;
 mod reference;
 mod search;
 mod setting;

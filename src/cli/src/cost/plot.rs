@@ -4,9 +4,13 @@ use crate::svg::{self, Axis, Drawing, End, Ink, Middle, Pen, Point, SMALL, Start
 
 /// The contents of a plot.
 pub struct Plot<'a> {
+    /// The heading.
     pub title: &'a str,
+    /// What the horizontal axis shows, with its unit.
     pub x_axis: &'a str,
+    /// The same for the vertical axis.
     pub y_axis: &'a str,
+    /// What is drawn.
     pub lines: Vec<Line>,
     /// Slopes to compare with, drawn from the first point of the first line on, as numbers and in writing.
     pub guides: Vec<(f64, String)>,
@@ -25,6 +29,7 @@ impl Plot<'_> {
 
 /// Points with a name.
 pub struct Line {
+    /// What it shows.
     pub name: String,
     /// x, y, and the smallest and the largest measured y.
     pub points: Vec<[f64; 4]>,
