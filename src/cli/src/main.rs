@@ -51,7 +51,7 @@ be read; 2 if the command line was not understood.",
 fn of_other_program(name: &str) -> String {
     let other = match name {
         "handout" | "export" | "merge" | "grade" => "grader",
-        "sync" | "corpus" | "gaps" | "mutants" | "generate" => "author",
+        "sync" | "corpus" | "gaps" | "generate" => "author",
         _ => return String::new(),
     };
     match root().is_ok_and(|root| root.join("tests").join(other).is_dir()) {

@@ -1,6 +1,6 @@
 //! `author`: generates the exercises, and tests the checks and the grader. It is the program of the kit's authors.
 
-use author::{bars, corpus, gaps, gauntlet, generate, mutants, new_check, sync, weaken};
+use author::{bars, corpus, gaps, gauntlet, generate, new_check, sync, weaken};
 #[cfg(target_os = "linux")]
 use author::{rehearsal, run_attacks};
 use grader::kits::root;
@@ -27,7 +27,6 @@ const COMMANDS: &[Command] = &[
     (&new_check::SPEC, |given| in_kit(new_check::NewCheckOptions::read(given), new_check::run)),
     (&corpus::SPEC, |given| in_kit(corpus::CorpusOptions::read(given), corpus::run)),
     (&gaps::SPEC, |given| gaps::run(&gaps::GapsOptions::read(given)?)),
-    (&mutants::SPEC, |given| in_kit(mutants::MutantsOptions::read(given), mutants::run)),
     (&weaken::SPEC, |given| in_kit(weaken::WeakenOptions::read(given), weaken::run)),
     #[cfg(target_os = "linux")]
     (&run_attacks::SPEC, |given| run_attacks::run(&root()?, &run_attacks::AttacksOptions::read(given)?)),

@@ -112,13 +112,6 @@ impl Scenes {
     pub fn shown_by(&self, kit: &dyn Kit) -> Vec<Shown> {
         self.0.iter().map(|(name, scene)| shown(name, scene, kit)).collect()
     }
-
-    /// Returns the first scene for which the results of this kit differ from the expected ones.
-    pub fn first_difference(&self, kit: &dyn Kit, expected: &[Shown]) -> Option<String> {
-        let differs =
-            |((name, scene), expected): &(&(String, Scene), &Shown)| shown(name, scene, kit) != **expected;
-        self.0.iter().zip(expected).find(differs).map(|((name, _), _)| name.clone())
-    }
 }
 
 /// Counts the primitives that the reference makes of a scene.

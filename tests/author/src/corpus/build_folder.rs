@@ -96,25 +96,6 @@ pub enum Built {
 }
 
 impl BuildFolder {
-    /// Opens `jobs` folders for workers of this kind. The unchanged solutions are known to build in each.
-    pub fn open_all(root: &Path, jobs: usize, need: Need) -> Result<Vec<BuildFolder>> {
-        let first = BuildFolder::open(root, "0", Product::Worker(need))?;
-        // Build the reference first. The other folders copy its compiled crates.
-        if let Built::DoesNotCompile(error) = first.build_with(&[])? {
-            bail!("the unchanged solutions do not compile:\n{error}");
-        }
-        let compiled = first.folder.join("target");
-        let mut build_folders = vec![first];
-        for number in 1..jobs {
-            let build_folder = BuildFolder::open(root, &number.to_string(), Product::Worker(need))?;
-            if !build_folder.folder.join("target").exists() {
-                copy_with_times(&compiled, &build_folder.folder.join("target"))?;
-            }
-            build_folders.push(build_folder);
-        }
-        Ok(build_folders)
-    }
-
     /// Opens the folder of this name for the kit at `root`, and updates what does not change with each build.
     pub fn open(root: &Path, name: &str, product: Product) -> Result<BuildFolder> {
         let folder = root.join(super::FOLDER).join(name);
@@ -137,11 +118,6 @@ impl BuildFolder {
             copy_with_times(&root.join("tests/golden"), &folder.join("tests/golden"))?;
         }
         Ok(BuildFolder { root: root.to_owned(), folder, product })
-    }
-
-    /// Returns the same folder for workers of another kind.
-    pub fn with(&self, need: Need) -> BuildFolder {
-        BuildFolder { root: self.root.clone(), folder: self.folder.clone(), product: Product::Worker(need) }
     }
 
     /// Returns the text of a file of the kit.

@@ -9,7 +9,7 @@
 mod begun;
 mod switch;
 
-use crate::corpus::build_folder::{BuildFolder, Built};
+use crate::corpus::build_folder::{BuildFolder, Product};
 use crate::corpus::verdict::without_lines;
 use crate::pictures::{Scenes, Shown};
 use anyhow::{Context, Result};
@@ -116,8 +116,8 @@ pub fn run(options: &GapsOptions) -> Result<bool> {
     let reference = Source::prepare(&root, Which::Solutions, Need::Frames)?.fresh();
     let scenes = Scenes::read(&root, &*reference)?.of_gaps();
     let whole = scenes.shown_by(&*reference);
-    let build_folders = BuildFolder::open_all(&root, 1, Need::Frames)?;
-    let switchable = Switchable::build(&build_folders[0], &root, &gaps)?;
+    let build_folder = BuildFolder::open(&root, "0", Product::Worker(Need::Frames))?;
+    let switchable = Switchable::build(&build_folder, &root, &gaps)?;
     let says_what_it_lacks = begun::run(&switchable, &gaps, &scenes, &whole)?;
     let text = text(&switchable, &gaps, &scenes, &whole)?;
     let text: String =
@@ -156,19 +156,6 @@ fn text(switchable: &Switchable, gaps: &[Gap], scenes: &Scenes, whole: &[Shown])
     text
 }
 
-/// Returns how the pictures of the solutions with these changes differ from those of the unchanged solutions.
-pub fn lacks(
-    build_folder: &BuildFolder,
-    changes: &[(&str, &str)],
-    scenes: &Scenes,
-    whole: &[Shown],
-) -> Result<String> {
-    Ok(match build_folder.build_with(changes)? {
-        Built::Program(worker) => differences(worker, scenes, whole),
-        Built::DoesNotCompile(error) => format!("  {error}\n"),
-    })
-}
-
 /// Returns how the pictures of a worker differ from those of the unchanged solutions.
 fn differences(worker: PathBuf, scenes: &Scenes, whole: &[Shown]) -> String {
     // Each note, with the scenes that have it and the hashes of their pictures.
@@ -193,24 +180,6 @@ fn differences(worker: PathBuf, scenes: &Scenes, whole: &[Shown]) -> String {
         format!("  {}\n    {}\n", if words.is_empty() { "(no note)" } else { words }, scenes.join(", "))
     };
     said.iter().map(line).collect()
-}
-
-/// Returns the gaps with which a picture is still made but differs, and what each lacks. These are computed and not read
-/// from the stored file: if that file were from other solutions, every change would seem to show.
-pub fn that_show(
-    root: &Path,
-    build_folders: &[BuildFolder],
-    scenes: &Scenes,
-    whole: &[Shown],
-) -> Result<Vec<(Gap, String)>> {
-    let gaps = all(root)?;
-    let switchable = Switchable::build(&build_folders[0], root, &gaps)?;
-    let text = text(&switchable, &gaps, scenes, whole)?;
-    let shows = |text: &str| !text.contains(NOTHING) && !text.contains("not written yet: solutions/");
-    let mut gaps: Vec<_> = gaps.into_iter().zip(text).filter(|(_, text)| shows(text)).collect();
-    // Pictures without a hierarchy take longest, so they come last.
-    gaps.sort_by_key(|(_, text)| text.contains("every ray tests every primitive"));
-    Ok(gaps)
 }
 
 /// Returns every function of the exercises as a gap.

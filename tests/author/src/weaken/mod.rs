@@ -4,10 +4,11 @@
 //! A number that survives is a gap in the corpus, or decides nothing that an entry should notice. Those that were reviewed are
 //! listed in tests/corpus/harmless.toml, each with its reason.
 //!
-//! `numbers` (finds them) · `judges` (asks a judge with a change)
+//! `numbers` (finds them) · `judges` (asks a judge with a change) · `reviewed` (the harmless changes)
 
 mod judges;
 mod numbers;
+mod reviewed;
 
 use crate::corpus::FOLDER;
 use crate::corpus::build_folder::{BuildFolder, Built, Product};
@@ -15,7 +16,6 @@ use crate::corpus::entry::{Entry, read_all};
 use crate::corpus::plan::{Plan, Trial};
 use crate::corpus::program::Program;
 use crate::corpus::records::{Matrix, Messages, without_rubric};
-use crate::mutants::reviewed::Reviewed;
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
 use checks::Check;
@@ -28,6 +28,7 @@ use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use raykata_cli::fingerprint::fingerprint;
 use raykata_cli::journal::Journal;
 use raykata_cli::lock::Lock;
+use reviewed::Reviewed;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -145,7 +146,9 @@ pub fn run(root: &Path, options: &WeakenOptions) -> Result<bool> {
             match &verdict {
                 WeakenVerdict::DoesNotCompile => println!("  does not compile, so another one is drawn\n"),
                 WeakenVerdict::Caught(why) => println!("  caught: {why}\n"),
-                WeakenVerdict::Survived if reviewed.has(&change.file, &change.was, &change.becomes) => {
+                WeakenVerdict::Survived
+                    if reviewed.reason(&change.file, &change.was, &change.becomes).is_some() =>
+                {
                     println!("  reviewed as harmless\n")
                 }
                 WeakenVerdict::Survived => println!("  SURVIVED\n"),
@@ -159,7 +162,8 @@ pub fn run(root: &Path, options: &WeakenOptions) -> Result<bool> {
 }
 
 fn report(tried: &[(&Change, WeakenVerdict)], reviewed: &Reviewed) -> bool {
-    let is_reviewed = |change: &Change| reviewed.has(&change.file, &change.was, &change.becomes);
+    let reason = |change: &Change| reviewed.reason(&change.file, &change.was, &change.becomes);
+    let is_reviewed = |change: &Change| reason(change).is_some();
     println!("stage   weakened  caught  reviewed  survived");
     let stages: Vec<u8> = (0..=STAGES.len() as u8).collect();
     for stage in stages.into_iter().map(Some).chain([None]) {
@@ -186,7 +190,8 @@ fn report(tried: &[(&Change, WeakenVerdict)], reviewed: &Reviewed) -> bool {
         .map(|(change, _)| *change)
         .collect();
     for change in &caught {
-        println!("\ncaught, but {REVIEWED} says that nothing can notice it: {change}");
+        let because = reason(change).unwrap_or_default();
+        println!("\ncaught, but {REVIEWED} says that nothing can notice it ({because}): {change}");
     }
     let survivors = tried
         .iter()

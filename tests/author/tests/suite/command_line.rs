@@ -3,7 +3,7 @@ use super::program_runs::{does_not_understand, explains};
 use std::process::Command;
 
 /// The commands with their arguments and options.
-const COMMANDS: [(&str, &[&str]); 11] = [
+const COMMANDS: [(&str, &[&str]); 10] = [
     ("gauntlet", &["--kit", "--inputs", "--seed", "--out", "20000"]),
     ("cost", &["[SCENE]", "--headline", "--rounds", "--set"]),
     ("attacks", &["[NAME]...", "--shard"]),
@@ -26,7 +26,6 @@ const COMMANDS: [(&str, &[&str]); 11] = [
     ),
     ("weaken", &["--sample", "--seed", "--file", "--resume"]),
     ("gaps", &["--check", "--bless"]),
-    ("mutants", &["[FILE]", "--resume", "--again", "--jobs"]),
     ("generate", &["[SCENES]"]),
 ];
 
@@ -47,7 +46,6 @@ fn what_is_not_understood_ends_with_2() {
         ("corpus --stage 256", "a whole number from 0 to 255"),
         ("gaps --check --bless", "cannot be used with"),
         ("sync --check --force", "cannot be used with"),
-        ("mutants --again --resume", "cannot be used with"),
         ("gauntlet --inputs 99", "from 100 to"),
         ("gauntlet --kit solution", "did you mean `solutions`?"),
         ("sync all", "unexpected argument `all`"),

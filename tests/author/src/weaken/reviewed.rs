@@ -1,14 +1,14 @@
-//! The equivalent and harmless changes, each reviewed by a person: tests/corpus/equivalent.toml and harmless.toml.
+//! The harmless changes, each reviewed by a person: tests/corpus/harmless.toml.
 
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use std::path::Path;
 
-/// Changes of one line, and why they are equivalent.
+/// Changes of one line, and why they are harmless.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Review {
-    /// A file of solutions/src, or of tests/checks.
+    /// A file of tests/checks.
     pub file: String,
     /// The original line.
     pub was: String,
@@ -35,12 +35,13 @@ impl Reviewed {
         toml::from_str(&text).with_context(|| file.display().to_string())
     }
 
-    /// Returns whether this change is one of them.
-    pub fn has(&self, file: &str, was: &str, becomes: &str) -> bool {
-        self.change.iter().any(|review| {
+    /// Why nothing can notice this change, if it is one of them.
+    pub fn reason(&self, file: &str, was: &str, becomes: &str) -> Option<&str> {
+        let review = self.change.iter().find(|review| {
             file.ends_with(&format!("/{}", review.file))
                 && review.was.trim() == was
                 && review.becomes.iter().any(|line| line.trim() == becomes)
-        })
+        });
+        review.map(|review| review.because.as_str())
     }
 }
