@@ -16,23 +16,27 @@ use std::sync::{LazyLock, OnceLock};
 static FILE: LazyLock<BTreeMap<String, Stage>> = LazyLock::new(|| {
     let mut stages = PLAIN.clone();
     course().apply(&mut stages);
-    for stage in stages.values_mut() {
-        let deck = deck(stage.checks.values().next().map_or(0, |entry| entry.stage));
-        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(&deck));
-        let text = text.unwrap_or_default();
-        // Without the deck, and where the course names slides of its own, the text stays.
-        for (name, entry) in &mut stage.checks {
-            if let Some(page) = page_of(&text, &entry.slide, name) {
-                entry.slide = format!("{deck}, page {page}");
-            }
-        }
-    }
     stages
 });
 
 /// The path of a stage's deck, from the root of the kit.
 pub fn deck(stage: u8) -> String {
     format!("slides/stage{stage:02}.md")
+}
+
+impl CheckEntry {
+    /// Where the check is taught: a page of the kit's deck. Without the deck, and where the course names slides of its own, these.
+    pub fn taught(&self) -> String {
+        static DECKS: [OnceLock<String>; 12] = [const { OnceLock::new() }; 12];
+        let deck = deck(self.stage);
+        let read =
+            || std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(&deck)).unwrap_or_default();
+        let text = DECKS.get(usize::from(self.stage).wrapping_sub(1)).map(|text| text.get_or_init(read));
+        match text.and_then(|text| page_of(text, &self.slide, &self.name)) {
+            Some(page) => format!("{deck}, page {page}"),
+            None => self.slide.clone(),
+        }
+    }
 }
 
 /// The page of a deck that teaches what a check tests, as `12: Object median`. A speaker note refers to checks by the beginning of
@@ -125,7 +129,13 @@ pub fn stages() -> Vec<(u8, &'static Stage)> {
 /// On the first use of [`RUBRIC`], if one of [`files`] is malformed.
 pub fn entry(stage: u8, check: &str) -> CheckEntry {
     RUBRIC.get(&format!("stage{stage}")).and_then(|stage| stage.checks.get(check)).cloned().unwrap_or_else(
-        || CheckEntry { stage, points: 1, title: check.replace('_', " "), ..CheckEntry::default() },
+        || CheckEntry {
+            stage,
+            name: check.into(),
+            points: 1,
+            title: check.replace('_', " "),
+            ..CheckEntry::default()
+        },
     )
 }
 

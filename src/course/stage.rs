@@ -12,7 +12,10 @@ pub struct CheckEntry {
     /// The number of the check's stage. It is filled in from the file.
     #[serde(skip)]
     pub stage: u8,
-    /// The byte offset of the entry in the rubric of its stage, which gives the order of the checks.
+    /// The name of the check.
+    #[serde(skip)]
+    pub name: String,
+    /// The line of the entry in the rubric of its stage, which gives the order of the checks.
     #[serde(skip)]
     pub place: usize,
     /// The number of points for a passed check.
@@ -28,7 +31,7 @@ pub struct CheckEntry {
     pub(super) bonus: bool,
     /// The law that the check tests, in one sentence.
     pub title: String,
-    /// The page of the kit's deck that teaches it. The file has the slide of the lecture, to which that page refers.
+    /// The slide of the lecture, to which the [page of the kit's deck](CheckEntry::taught) refers.
     pub slide: String,
     /// Three hints, from a first thought to nearly the answer.
     pub hints: [String; 3],
@@ -64,9 +67,14 @@ fn read(files: &[(&str, &str)]) -> Result<BTreeMap<String, Stage>, String> {
         let Some(mut stage) = file.remove(&name).filter(|_| file.is_empty()) else {
             return Err(format!("{path} must hold the table [{name}] and its subtables, and no other"));
         };
+        let prefix = format!("[{name}.checks.");
+        let heads =
+            text.lines().map(|line| line.strip_prefix(&prefix).and_then(|rest| rest.strip_suffix(']')));
+        let places: BTreeMap<&str, usize> =
+            heads.enumerate().filter_map(|(place, check)| Some((check?, place))).collect();
         for (check, entry) in &mut stage.checks {
-            entry.stage = number;
-            entry.place = text.find(&format!("[{name}.checks.{check}]")).unwrap_or(usize::MAX);
+            (entry.stage, entry.name) = (number, check.clone());
+            entry.place = places.get(check.as_str()).copied().unwrap_or(usize::MAX);
         }
         stages.insert(name, stage);
     }
@@ -133,7 +141,7 @@ impl CheckEntry {
             Level::Core | Level::Deeper => String::new(),
             level => format!(" ({})", level.word()),
         };
-        format!("stage {}{apart} · {}\n  slides: {}\n", self.stage, self.title, self.slide)
+        format!("stage {}{apart} · {}\n  slides: {}\n", self.stage, self.title, self.taught())
     }
 }
 

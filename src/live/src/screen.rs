@@ -136,7 +136,7 @@ fn check(app: &App, hints: usize, unfolded: bool, columns: usize) -> Vec<Row> {
     let mut law = |tone, word: &str| {
         let title = wrapped(&format!("{word}: {} ({})", check.entry.title, check.entry.worth()), columns);
         rows.extend(title.into_iter().map(|line| Row::Words(tone, line)));
-        rows.push(Row::Words(Tone::Quiet, format!("  slides: {}", check.entry.slide)));
+        rows.push(Row::Words(Tone::Quiet, format!("  slides: {}", check.entry.taught())));
     };
     match &check.verdict {
         None => law(Tone::Plain, "? no verdict yet"),

@@ -49,8 +49,8 @@ pub struct Details {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mistake {
     text: &'static str,
-    /// The number of mistakes with this text before it in its list. So mistakes that share a text stay apart.
-    before: usize,
+    /// Its place in its list. So mistakes that share a text stay apart.
+    place: usize,
     /// Whether it is a formula: the right answers of the batch refute those that differ from them.
     is_formula: bool,
 }
@@ -58,9 +58,8 @@ pub struct Mistake {
 impl Mistake {
     /// The mistakes of a list, each with whether it gives the answer.
     pub(crate) fn listed(listed: Vec<(bool, &'static str)>, is_formula: bool) -> Vec<(bool, Self)> {
-        let before = |n: usize| listed[..n].iter().filter(|(_, text)| *text == listed[n].1).count();
-        let mistake = |n: usize| Mistake { text: listed[n].1, before: before(n), is_formula };
-        (0..listed.len()).map(|n| (listed[n].0, mistake(n))).collect()
+        let mistake = |(place, (gives, text))| (gives, Mistake { text, place, is_formula });
+        listed.into_iter().enumerate().map(mistake).collect()
     }
 }
 

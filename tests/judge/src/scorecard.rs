@@ -243,7 +243,7 @@ pub fn status(root: &Path, source: &Source) -> Result<()> {
             let (stage, name) = (next.check.stage, next.check.name);
             match &next.verdict {
                 Verdict::NotWritten { task, place } => {
-                    let slide = &next.entry.slide;
+                    let slide = next.entry.taught();
                     let (next, slides) = (course.text("next"), course.text("slides"));
                     println!("{next}: {place}\n  {task}\n  {slides}: {slide}\n");
                 }

@@ -75,7 +75,7 @@ fn worst(tallies: &[Tally]) -> Markup {
                         @for tally in worst {
                             tr {
                                 td { "Stage " (tally.stage) ": " (with_code(&tally.entry.title)) div.name { (tally.name) } }
-                                td.slide { (tally.entry.slide) }
+                                td.slide { (tally.entry.taught()) }
                                 td.number { (tally.tried_in_vain()) span.unit { " fail" } }
                                 td.number { (tally.passed()) " of " (tally.of()) span.unit { " pass" } }
                                 td.wide { (chart::outcomes(tally)) (failures(tally)) }

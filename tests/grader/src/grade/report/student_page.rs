@@ -152,7 +152,7 @@ fn failed(check: &CheckResult, alone: bool) -> Markup {
     let entry = messages::entry(check);
     html! {
         h3 { (heading(check)) }
-        @if !entry.slide.is_empty() { p.slide { "Slides: " (entry.slide) } }
+        @if !entry.slide.is_empty() { p.slide { "Slides: " (entry.taught()) } }
         @if alone && !entry.hints[0].is_empty() { details { summary { "Hint" } p { (with_code(&entry.hints[0])) } } }
     }
 }
