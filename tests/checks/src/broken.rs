@@ -49,17 +49,18 @@ pub struct Details {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mistake {
     text: &'static str,
-    /// Its place in its list. So mistakes that share a text stay apart.
-    place: usize,
+    /// The number of mistakes with this text before it in its list. So mistakes that share a text stay apart.
+    before: usize,
     /// Whether it is a formula: the right answers of the batch refute those that differ from them.
     is_formula: bool,
 }
 
 impl Mistake {
-    /// The mistakes of a list, each with whether it gives the answer.
-    pub(crate) fn listed(listed: Vec<(bool, &'static str)>, is_formula: bool) -> Vec<(bool, Self)> {
-        let mistake = |(place, (gives, text))| (gives, Mistake { text, place, is_formula });
-        listed.into_iter().enumerate().map(mistake).collect()
+    /// The mistakes of a list that give the answer, or those that do not.
+    pub(crate) fn those(gives: bool, listed: &[(bool, &'static str)], is_formula: bool) -> Vec<Self> {
+        let before = |n: usize| listed[..n].iter().filter(|(_, text)| *text == listed[n].1).count();
+        let mistake = |n: usize| Mistake { text: listed[n].1, before: before(n), is_formula };
+        (0..listed.len()).filter(|&n| listed[n].0 == gives).map(mistake).collect()
     }
 }
 
@@ -122,8 +123,7 @@ impl Broken {
     }
 
     fn with_mistakes(mut self, listed: Vec<(bool, &'static str)>, is_formula: bool) -> Self {
-        let proven = Mistake::listed(listed, is_formula).into_iter().filter(|(gives, _)| *gives);
-        self.details.mistakes.splice(..0, proven.map(|(_, mistake)| mistake));
+        self.details.mistakes.splice(..0, Mistake::those(true, &listed, is_formula));
         self.named()
     }
 

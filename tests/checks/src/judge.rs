@@ -2,16 +2,9 @@
 
 use crate::broken::{Broken, CheckResult, Mistake, all_hold};
 
-/// The wrong formulas that a right answer refutes, because they give another one.
+/// Wrong formulas, each with whether it gives a right answer. Those that do not are refuted by it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Refuted(Vec<Mistake>);
-
-impl Refuted {
-    fn by(formulas: Vec<(bool, &'static str)>) -> Self {
-        let wrong = Mistake::listed(formulas, true).into_iter().filter(|(gives, _)| !gives);
-        Refuted(wrong.map(|(_, mistake)| mistake).collect())
-    }
-}
+pub struct Refuted(Vec<(bool, &'static str)>);
 
 /// The judgement of one answer, with the formulas that it refutes.
 pub type Judged = Result<Refuted, Broken>;
@@ -35,9 +28,14 @@ pub fn compare<Q, A, R: Into<Refuted>>(
 pub fn proven<R: Into<Refuted>>(outcomes: impl Iterator<Item = Result<R, Broken>>) -> Vec<CheckResult> {
     let outcomes: Vec<Judged> = outcomes.map(|outcome| outcome.map(Into::into)).collect();
     let mut refuted: Vec<Mistake> = Vec::new();
-    for mistake in outcomes.iter().flatten().flat_map(|Refuted(mistakes)| mistakes) {
-        if !refuted.contains(mistake) {
-            refuted.push(*mistake);
+    // Only a wrong answer needs to know what right ones refute.
+    if outcomes.iter().any(Result::is_err) {
+        for mistake in
+            outcomes.iter().flatten().flat_map(|Refuted(listed)| Mistake::those(false, listed, true))
+        {
+            if !refuted.contains(&mistake) {
+                refuted.push(mistake);
+            }
         }
     }
     let named = |outcome: Judged| outcome.map(|_| ()).map_err(|broken| broken.without(&refuted));
@@ -57,7 +55,7 @@ impl<B: FnOnce() -> Broken> Unless<B> {
     /// [`proven`] name a formula only if it also gives the right answers of the batch.
     pub fn formulas(self, formulas: impl IntoIterator<Item = (bool, &'static str)>) -> Judged {
         let (Unless(is_right, broken), formulas) = (self, formulas.into_iter().collect());
-        if is_right { Ok(Refuted::by(formulas)) } else { Err(broken().computed_by(formulas)) }
+        if is_right { Ok(Refuted(formulas)) } else { Err(broken().computed_by(formulas)) }
     }
 }
 
@@ -81,7 +79,7 @@ pub fn compare_formulas<Q, A: Clone>(
     }
     let given = queries.iter().zip(&answers).map(|(query, answer)| formulas(query, answer));
     proven(outcomes.into_iter().zip(given).map(|(outcome, given)| match outcome {
-        Ok(()) => Ok(Refuted::by(given)),
+        Ok(()) => Ok(Refuted(given)),
         Err(broken) => Err(broken.computed_by(given)),
     }))
 }
