@@ -1,55 +1,54 @@
 //! Stage 12 · eight boxes at once, and eight triangles at once.
 //!
-//! Slides: `slides/stage12.md`. Sources: Ize, "Robust BVH Ray Traversal", JCGT 2013; Möller and
-//! Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997; Higham, "Accuracy and
-//! Stability of Numerical Algorithms", 2002.
+//! Slides: `slides/stage12.md`. Sources: Ize, "Robust BVH Ray Traversal", JCGT 2013; Woop, Benthin
+//! and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013; Higham, "Accuracy and Stability of
+//! Numerical Algorithms", 2002.
 //!
-//! Given: [`gamma`] and [`UNIT_ROUNDOFF`]; [`F32x8`] with `+`, `-`, `*`, `min`, `max`, `abs`, `le`,
-//! `lt` per lane; masks with `&`, `|` and `bits`; [`WideRay`] with `1 / direction` and the near side
-//! of boxes on each axis. `ray.t_min` is 0 or more. Coordinates and directions of triangles are at
-//! most [`LARGEST`](raykata::wide::LARGEST) in size, so nothing overflows.
+//! Given: [`UNIT_ROUNDOFF`]; [`F32x8`] with `+`, `-`, `*`, `min`, `max`, `abs`, `le`, `lt` per lane;
+//! masks with `&`, `|` and `bits`; [`WideRay`] with the factors of planes, the near side of boxes and
+//! the shear. `ray.t_min` is 0 or more. Coordinates and directions of triangles are at most
+//! [`LARGEST`](raykata::wide::LARGEST) in size, so nothing overflows.
 
-use raykata::rounding::{UNIT_ROUNDOFF, gamma};
+use raykata::rounding::UNIT_ROUNDOFF;
 use raykata::wide::simd::{F32x8, Level};
-use raykata::wide::{Entered, TriangleBlock, WideNode, WideRay};
+use raykata::wide::{Entered, Filtered, TriangleBlock, WideNode, WideRay};
 
 /// Which of the eight boxes of a node a ray enters: the slab test `t_b = t_x ∩ t_y ∩ t_z`, eight
-/// boxes at once. `ray.near_side[axis]` says which plane the ray passes first. What is `0 · ∞`, and
-/// which operand of `min` and `max` survives a NaN?
+/// boxes at once. `ray.near_side[axis]` says which plane the ray passes first. Why do near and far
+/// planes have factors of their own?
 ///
 /// Exactly:
 ///
-/// - The `t` of a plane is `(plane - origin) · inverse_direction`; one that is NaN decides nothing.
-/// - Intersect the axes, multiply the entry by `1 - 2γ₃` and the exit by `1 + 2γ₃`, and intersect
-///   with the range `ray.t_min..=t_max`. A box is entered if the entry is at most the exit.
-/// - The result is that of these operations in single precision, bit for bit, except for the sign
-///   of 0.
-/// - An empty place is never entered: `node.occupied` has a bit per child.
+/// - The `t` of a plane is `plane · scale + offset`, with `scale[0]` and `offset[0]` for near planes,
+///   `scale[1]` and `offset[1]` for far ones. One that is NaN decides nothing.
+/// - Intersect the axes with the range `ray.t_min..=t_max`. A box is entered if the entry is at most
+///   the exit, so an empty place never is.
+/// - The result is that of these operations in single precision, with one or two roundings per
+///   plane, except for the sign of 0.
 ///
 /// Source: "Ray/box intersection"; Ize, "Robust BVH Ray Traversal", JCGT 2013.
 #[inline(always)]
 pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f32) -> Entered {
-    todo!("the slab test with eight lanes: near planes, far planes, minimum, maximum, widen, compare")
+    todo!("the slab test with eight lanes: near planes, far planes, minimum, maximum, compare")
 }
 
 /// Which of eight triangles a ray may hit before `t_max`: a filter before the test of stage 10,
-/// which decides. The barycentric coordinates times `d·n` are `U = ((a-o) × d)·(c-a)`,
-/// `V = -((a-o) × d)·(b-a)` and `W = d·n - U - V`, with `n = (b-a) × (c-a)`. Different signs mean a
-/// miss: when is a sign certain? `t` is `n·(a-o) / d·n`.
-///
-/// Bit `i` is 0 if triangle `i` is rejected.
+/// with its sheared coordinates. With a' = a - o, e = b - a and f = c - a, sheared to
+/// `(x + shear[0] z, y + shear[1] z, z)`, and `p × q = p_x q_y - p_y q_x`, the barycentric
+/// coordinates times `N = e × f` are `U = f × a'`, `V = a' × e` and `W = N - U - V`. Different signs
+/// mean a miss: when is a sign certain? `t` is `(N a'_z + U e_z + V f_z) / (N d_z)`.
 ///
 /// Exactly:
 ///
-/// - No triangle that the watertight test hits is rejected, for any finite input: the exact line
-///   meets the closed triangle, and the exact `t`, rounded, is in `ray.t_min..t_max`.
-/// - At least 99 of 100 are rejected that a ray misses by a good part of their size, or hits
-///   outside of the range by a tenth.
-/// - A lane with NaN is never rejected: it holds another shape.
+/// - `possible` has the bit of each triangle that the watertight test hits, for any finite input: the
+///   exact line meets the closed triangle, and the exact `t`, rounded, is in `ray.t_min..t_max`.
+/// - At least 99 of 100 are left out that a ray misses by a good part of their size, or hits outside
+///   of the range by a tenth.
+/// - A lane with NaN is possible: it holds another shape.
+/// - `certain` has the bits where U, V, W and N have the same sign for certain: most of those hit.
 ///
-/// Source: "Cramer's Rule"; Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection",
-/// 1997.
+/// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013.
 #[inline(always)]
-pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: f32) -> u32 {
-    todo!("compute U, V and W with eight lanes, bound their errors, and reject what is certain")
+pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: f32) -> Filtered {
+    todo!("compute U, V, W and N with eight lanes, bound their errors, and reject what is certain")
 }

@@ -75,18 +75,26 @@ pub fn wide_closest_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> Option<Primit
 fn nearest_child(probe: &mut impl WideProbe, node: u32, t_max: f32, stack: &mut Stack) -> Option<Child> {
     let entered = probe.enter(node, t_max);
     let children = probe.children(node);
-    let (mut nearest, mut mask) = (None::<u64>, entered.mask);
+    let mut mask = entered.mask;
+    if mask == 0 {
+        return None;
+    }
+    let i = mask.trailing_zeros() as usize & 7;
+    mask &= mask - 1;
+    // Do not wait for the distance of an only child.
+    if mask == 0 {
+        return Some(children[i]);
+    }
+    let mut nearest = children[i].key(entered.t[i]);
     while mask != 0 {
         let i = mask.trailing_zeros() as usize & 7;
         mask &= mask - 1;
         // Keep the smaller key, and push the larger one.
         let key = children[i].key(entered.t[i]);
-        nearest = Some(nearest.map_or(key, |other| {
-            stack.push(other.max(key));
-            other.min(key)
-        }));
+        stack.push(nearest.max(key));
+        nearest = nearest.min(key);
     }
-    Some(Child::of_key(nearest?).0)
+    Some(Child::of_key(nearest).0)
 }
 
 /// The blocks of a leaf, each with the number of its primitives.
@@ -106,14 +114,16 @@ fn blocks(first: u32, count: u32) -> impl Iterator<Item = (u32, u32)> {
 pub fn wide_any_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> bool {
     // <solution>
     let mut stack = Stack::new();
-    stack.push(Child::ROOT.key(0.0));
-    while let Some(key) = stack.pop() {
-        let ChildContents::Inner(node) = Child::of_key(key).0.contents() else { continue };
+    let mut next = Some(Child::ROOT);
+    while let Some(ChildContents::Inner(node)) = next.map(Child::contents) {
+        next = None;
         let mut mask = probe.enter(node, ray.t_max).mask;
         while mask != 0 {
             let child = probe.children(node)[mask.trailing_zeros() as usize & 7];
             mask &= mask - 1;
             match child.contents() {
+                // Visit the first inner child next. The others wait.
+                ChildContents::Inner(_) if next.is_none() => next = Some(child),
                 ChildContents::Inner(_) => stack.push(child.key(0.0)),
                 // Test a leaf at once, and stop at the first hit.
                 ChildContents::Leaf { block, count } => {
@@ -128,6 +138,9 @@ pub fn wide_any_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> bool {
                     }
                 }
             }
+        }
+        if next.is_none() {
+            next = stack.pop().map(|key| Child::of_key(key).0);
         }
     }
     false

@@ -17,7 +17,7 @@ use crate::random::Stratum;
 use crate::ray::Ray;
 use crate::scene::{Sampler, Scene, Split};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
-use crate::wide::{BinSplit, Bins, Entered, FlatTree, ForkedTree, WideTree};
+use crate::wide::{BinSplit, Bins, Entered, Filtered, FlatTree, ForkedTree, WideTree};
 use glam::{Affine3A, UVec3, Vec2, Vec3};
 use std::fmt::Debug;
 use std::hint::black_box;

@@ -583,16 +583,16 @@ macro_rules! student_functions {
                     }
                     Instructions::detect().run(Work::<F>(q, std::marker::PhantomData))
                 } }
-                /// Which of eight triangles a ray may hit, as bits.
-                MayHit fn may_hit[L: Level](level: L, block: &TriangleBlock, ray: &WideRay, t_max: f32) -> u32
+                /// Which of eight triangles a ray may hit, and which it passes through for certain.
+                MayHit fn may_hit[L: Level](level: L, block: &TriangleBlock, ray: &WideRay, t_max: f32) -> Filtered
                     = stage12_simd::may_hit;
-                { |q: BlockQuery| -> u32 {
+                { |q: BlockQuery| -> Filtered {
                     struct Work<'a, F>(&'a BlockQuery, std::marker::PhantomData<F>);
                     impl<F: StudentFunctions> Vectorized for Work<'_, F> {
-                        type Output = u32;
+                        type Output = Filtered;
 
                         #[inline(always)]
-                        fn run<L: Level>(self, level: L) -> u32 {
+                        fn run<L: Level>(self, level: L) -> Filtered {
                             F::may_hit(level, &self.0.block, &WideRay::new(&self.0.ray), self.0.ray.t_max)
                         }
                     }

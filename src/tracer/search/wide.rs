@@ -11,7 +11,8 @@ use crate::shape::Triangle;
 use crate::tracer::plan::WidePlan;
 use crate::wide::simd::{Instructions, Level, Vectorized};
 use crate::wide::{
-    Child, ChildContents, Entered, FlatTree, Forks, MAX_LEAF, TriangleBlock, WideNode, WideProbe, WideRay,
+    Child, ChildContents, Entered, Filtered, FlatTree, Forks, MAX_LEAF, TriangleBlock, WideNode, WideProbe,
+    WideRay,
 };
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -164,6 +165,8 @@ struct TreeProbe<'s, F, P, L> {
     ray: WideRay,
     /// Whether `may_hit` sorts out triangles for this ray.
     sorts_out: bool,
+    /// The lanes of the last block that the ray passes through for certain.
+    certain: u32,
     level: L,
     functions: PhantomData<F>,
 }
@@ -173,7 +176,7 @@ impl<'s, F: StudentFunctions, P: Primitives, L: Level> TreeProbe<'s, F, P, L> {
     fn new(wide: &'s Wide, probe: &'s mut P, ray: &Ray, level: L) -> Self {
         let ray = WideRay::new(ray);
         let sorts_out = ray.in_range && probe.may_sort_out();
-        TreeProbe { wide, probe, ray, sorts_out, level, functions: PhantomData }
+        TreeProbe { wide, probe, ray, sorts_out, certain: 0, level, functions: PhantomData }
     }
 }
 
@@ -207,11 +210,13 @@ impl<F: StudentFunctions, P: Primitives, L: Level> WideProbe for TreeProbe<'_, F
             }
         }
         let lanes = (1 << n) - 1;
-        if self.sorts_out {
-            lanes & F::may_hit(self.level, &self.wide.blocks[block as usize], &self.ray, t_max)
-        } else {
-            lanes
+        if !self.sorts_out {
+            return lanes;
         }
+        let Filtered { possible, certain } =
+            F::may_hit(self.level, &self.wide.blocks[block as usize], &self.ray, t_max);
+        self.certain = certain;
+        lanes & possible
     }
 
     #[inline(always)]
@@ -219,6 +224,12 @@ impl<F: StudentFunctions, P: Primitives, L: Level> WideProbe for TreeProbe<'_, F
         let block = &self.wide.blocks[block as usize];
         let lane = lane as usize & 7;
         let primitive = block.ids[lane];
+        // Where the ray passes through the inside for certain, compute only t.
+        if self.certain >> lane & 1 == 1
+            && let Some(t) = block.t_of_plane(lane, ray)
+        {
+            return ray.contains(t).then_some(PrimitiveHit { t, primitive });
+        }
         // Take the corners from the block, which is in the cache. Other shapes are looked up.
         let triangle = block.triangle(lane);
         let t = if self.sorts_out && !triangle.a.x.is_nan() {

@@ -7,7 +7,7 @@ use raykata::bvh::PrimitiveHit;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 use raykata::wide::simd::{Instructions, Level, Vectorized};
-use raykata::wide::{Child, Entered, Forks, LARGEST, TriangleBlock, WideNode, WideProbe, WideRay};
+use raykata::wide::{Child, Entered, Filtered, Forks, LARGEST, TriangleBlock, WideNode, WideProbe, WideRay};
 use rayon::prelude::*;
 use solutions::{stage10_stability, stage12_build, stage12_search, stage12_simd, stage12_wide};
 use std::collections::HashMap;
@@ -62,7 +62,7 @@ impl Vectorized for Both<'_> {
     #[inline(always)]
     fn run<L: Level>(self, level: L) -> Self::Output {
         let Both(wide, ray) = self;
-        let mut probe = Triangles { wide, ray: WideRay::new(ray), level, counts: [0; 3] };
+        let mut probe = Triangles { wide, ray: WideRay::new(ray), level, certain: 0, counts: [0; 3] };
         let closest = stage12_search::wide_closest_hit(&mut probe, ray);
         (closest, stage12_search::wide_any_hit(&mut probe, ray))
     }
@@ -84,7 +84,7 @@ impl Vectorized for Work<'_> {
     fn run<L: Level>(self, level: L) {
         let Work(wide, rays, any, found, counts) = self;
         for (ray, found) in rays.iter().zip(found) {
-            let mut probe = Triangles { wide, ray: WideRay::new(ray), level, counts: [0; 3] };
+            let mut probe = Triangles { wide, ray: WideRay::new(ray), level, certain: 0, counts: [0; 3] };
             *found = if any {
                 of_any(stage12_search::wide_any_hit(&mut probe, ray))
             } else {
@@ -100,6 +100,8 @@ struct Triangles<'a, L> {
     wide: &'a Wide,
     ray: WideRay,
     level: L,
+    /// The lanes of the last block that the ray passes through for certain.
+    certain: u32,
     counts: [u64; 3],
 }
 
@@ -120,16 +122,25 @@ impl<L: Level> WideProbe for Triangles<'_, L> {
         self.counts[1] += 1;
         let lanes = (1 << n) - 1;
         if !self.ray.in_range {
+            self.certain = 0;
             return lanes;
         }
-        lanes & stage12_simd::may_hit(self.level, &self.wide.blocks[block as usize], &self.ray, t_max)
+        let Filtered { possible, certain } =
+            stage12_simd::may_hit(self.level, &self.wide.blocks[block as usize], &self.ray, t_max);
+        self.certain = certain;
+        lanes & possible
     }
 
     #[inline(always)]
     fn hit(&mut self, block: u32, lane: u32, ray: &Ray) -> Option<PrimitiveHit> {
-        self.counts[2] += 1;
         let block = &self.wide.blocks[block as usize];
         let lane = lane as usize & 7;
+        if self.certain >> lane & 1 == 1
+            && let Some(t) = block.t_of_plane(lane, ray)
+        {
+            return ray.contains(t).then_some(PrimitiveHit { t, primitive: block.ids[lane] });
+        }
+        self.counts[2] += 1;
         let mut triangle = block.triangle(lane);
         if triangle.a.x.is_nan() {
             triangle = self.wide.large[&block.ids[lane]];

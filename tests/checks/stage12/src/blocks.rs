@@ -15,7 +15,7 @@ use oracle::splitmix::Random;
 use raykata::kit::BlockQuery;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
-use raykata::wide::{BLOCK, LARGEST, NO_PRIMITIVE, TriangleBlock};
+use raykata::wide::{BLOCK, Filtered, LARGEST, NO_PRIMITIVE, TriangleBlock};
 
 /// A block of triangles, and a ray.
 struct Lanes {
@@ -68,14 +68,26 @@ fn causes(ray: &Ray, triangle: &Triangle, t: f32) -> [(bool, &'static str); 5] {
     ]
 }
 
-/// Judges the lanes of one block: none that is hit may be rejected.
-fn judge_hits(lanes: &Lanes, mask: u32) -> CheckResult {
-    if mask >> BLOCK != 0 {
-        return Err(Broken::new("may_hit", format!("{mask:#x}"), "eight bits", "the definition"));
+/// Judges the lanes of one block: none that is hit may be rejected, and a certain one must be met by the line of the ray.
+fn judge_hits(lanes: &Lanes, filtered: Filtered) -> CheckResult {
+    let Filtered { possible, certain } = filtered;
+    if (possible | certain) >> BLOCK != 0 {
+        return Err(Broken::new("may_hit", format!("{filtered:x?}"), "eight bits", "the definition"));
     }
+    let line = lanes.ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
     for (lane, triangle) in lanes.triangles.iter().enumerate() {
+        if certain >> lane & 1 == 1 && exact(&line, triangle).is_none() {
+            let input = format!("may_hit of {}, lane {lane}: {}", lanes.ray.paste(), triangle.paste());
+            let broken =
+                Broken::with_texts(input, "certain", "not certain: its line passes beside it", "exactly");
+            return Err(broken.explained_by([(
+                true,
+                "a lane is certain only if U, V and W are all above their error, or all below minus their error, and N is \
+                 larger than its own",
+            )]));
+        }
         let Some(t) = exact(&lanes.ray, triangle) else { continue };
-        if mask >> lane & 1 == 0 {
+        if possible >> lane & 1 == 0 {
             let input = format!("may_hit of {}, lane {lane}: {}", lanes.ray.paste(), triangle.paste());
             let broken =
                 Broken::with_texts(input, "rejected", format!("kept: it is hit at t = {t:?}"), "exactly");
@@ -218,14 +230,15 @@ pub(super) fn may_hit_keeps_lanes_without_a_triangle(trial: &Trial<'_>) -> Check
     let rejected = masks
         .iter()
         .zip(&drawn)
-        .filter(|(mask, lanes)| mask.count_ones() < 8 && lanes.triangles.len() > 1)
+        .filter(|(mask, lanes)| mask.possible.count_ones() < 8 && lanes.triangles.len() > 1)
         .count();
-    let judge = |query: &BlockQuery, mask: u32| {
-        let lost = without(query).into_iter().find(|lane| mask >> lane & 1 == 0);
+    let judge = |query: &BlockQuery, Filtered { possible, certain }| {
+        let lost = without(query).into_iter().find(|lane| (possible & !certain) >> lane & 1 == 0);
         let Some(lane) = lost else { return Ok(()) };
         let input = format!("may_hit of {}, lane {lane} with NaN", query.ray.paste());
-        Err(Broken::with_texts(input, "rejected", "kept", "the definition").explained_by([(
-            true,
+        let yours = if certain >> lane & 1 == 1 { "certain" } else { "rejected" };
+        Err(Broken::with_texts(input, yours, "possible", "the definition").explained_by([(
+            yours == "rejected",
             "a lane with NaN is rejected: it holds another shape. A comparison with NaN is false, so reject where a comparison is true",
         )]))
     };
@@ -246,18 +259,24 @@ fn judge_share(trial: &Trial<'_>, what: &str, drawn: &[Lanes], cause: &'static s
     let queries: Vec<BlockQuery> = drawn.iter().filter_map(Lanes::query).collect();
     let masks = trial.kit.may_hit(&queries);
     all_hold(compare(drawn, masks.clone(), judge_hits))?;
-    let (mut misses, mut rejected, mut n_hits) = (0, 0, 0);
+    let (mut misses, mut rejected, mut n_hits, mut certain) = (0, 0, 0, 0);
     for (lanes, mask) in drawn.iter().zip(masks) {
         for (lane, triangle) in lanes.triangles.iter().enumerate() {
             if exact(&lanes.ray, triangle).is_some() {
                 n_hits += 1;
+                certain += usize::from(mask.certain >> lane & 1 == 1);
             } else {
                 misses += 1;
-                rejected += usize::from(mask >> lane & 1 == 0);
+                rejected += usize::from(mask.possible >> lane & 1 == 0);
             }
         }
     }
     assert!(n_hits > 100 && misses > 100, "{what}: {n_hits} hits, {misses} misses");
+    if 2 * certain < n_hits {
+        let input = format!("may_hit of {} blocks: {what}", drawn.len());
+        let yours = format!("{certain} of {n_hits} hits are certain");
+        return Err(Broken::with_texts(input, yours, "at least half", "exactly"));
+    }
     if rejected as f64 >= REJECTED * misses as f64 {
         return Ok(());
     }

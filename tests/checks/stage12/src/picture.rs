@@ -10,7 +10,7 @@ use raykata::aabb::Aabb;
 use raykata::kit::{BlockQuery, Kit, WideBoxesQuery, WideQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
-use raykata::wide::{BLOCK, FlatTree, NO_PRIMITIVE, TriangleBlock, WideTree};
+use raykata::wide::{BLOCK, Filtered, FlatTree, NO_PRIMITIVE, TriangleBlock, WideTree};
 use std::f32::consts::TAU;
 
 const TARGET: Vec3 = vec3(0.0, 1.0, 0.0);
@@ -67,14 +67,15 @@ fn depths(kit: &dyn Kit, tree: &FlatTree, triangles: &[Triangle], rays: &[Ray]) 
     };
     let entered = kit.enter_boxes(&rays.iter().flat_map(boxes).collect::<Vec<_>>());
     let kept = kit.may_hit(&rays.iter().flat_map(lanes).collect::<Vec<_>>());
-    let query = |((ray, entered), kept): ((&Ray, &[raykata::wide::Entered]), &[u32])| {
+    let query = |((ray, entered), kept): ((&Ray, &[raykata::wide::Entered]), &[Filtered])| {
         let entries = entered
             .iter()
             .map(|one| std::array::from_fn(|i| if one.mask >> i & 1 == 1 { one.t[i] } else { f32::INFINITY }))
             .collect();
         let mut hits = vec![f32::INFINITY; triangles.len()];
-        for (ids, mask) in wide.blocks.iter().zip(kept) {
-            for lane in (0..BLOCK).filter(|&lane| mask >> lane & 1 == 1 && ids[lane] != NO_PRIMITIVE) {
+        for (ids, kept) in wide.blocks.iter().zip(kept) {
+            for lane in (0..BLOCK).filter(|&lane| kept.possible >> lane & 1 == 1 && ids[lane] != NO_PRIMITIVE)
+            {
                 hits[ids[lane] as usize] = t_of(ray, &triangles[ids[lane] as usize]);
             }
         }
