@@ -33,6 +33,9 @@ pub trait Primitives: Probe + Cells {
     /// and then a wide tree would find other hits than the other accelerators.
     fn may_sort_out(&self) -> bool;
 
+    /// Whether hits of triangles are those of the watertight test of stage 10.
+    fn is_watertight(&self) -> bool;
+
     /// The `t` of the hit with a primitive in the range of the ray, without a count.
     fn hit_uncounted(&mut self, primitive: u32, ray: &Ray) -> Option<f32>;
 

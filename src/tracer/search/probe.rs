@@ -323,6 +323,11 @@ impl<F: StudentFunctions, T: Tally> Primitives for SceneProbe<'_, F, T> {
     }
 
     #[inline(always)]
+    fn is_watertight(&self) -> bool {
+        self.tests.triangles == TriangleTest::Watertight
+    }
+
+    #[inline(always)]
     fn hit_uncounted(&mut self, index: u32, ray: &Ray) -> Option<f32> {
         let primitive = &self.primitives[index as usize];
         match primitive.end.get() {

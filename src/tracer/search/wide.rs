@@ -215,7 +215,8 @@ impl<F: StudentFunctions, P: Primitives, L: Level> WideProbe for TreeProbe<'_, F
         }
         let Filtered { possible, certain } =
             F::may_hit(self.level, &self.wide.blocks[block as usize], &self.ray, t_max);
-        self.certain = certain;
+        // Another test may round t otherwise.
+        self.certain = if self.probe.is_watertight() { certain } else { 0 };
         lanes & possible
     }
 

@@ -174,19 +174,14 @@ pub struct WideNode {
     pub bounds: [[[f32; 8]; 2]; 3],
     /// What the eight places hold. The children come first, then the empty places.
     pub children: [Child; 8],
-    /// Bit `i` is set if place `i` holds a child. [`WideNode::set`] sets it.
-    pub occupied: u32,
 }
 
-message! { WideNode { bounds, children, occupied } }
+message! { WideNode { bounds, children } }
 
 impl WideNode {
     /// A node without children.
-    pub const EMPTY: WideNode = WideNode {
-        bounds: [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3],
-        children: [Child::EMPTY; 8],
-        occupied: 0,
-    };
+    pub const EMPTY: WideNode =
+        WideNode { bounds: [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3], children: [Child::EMPTY; 8] };
 
     /// Puts `child` with its box into place `index`.
     ///
@@ -199,7 +194,6 @@ impl WideNode {
             self.bounds[axis][1][index] = bounds.max[axis];
         }
         self.children[index] = child;
-        self.occupied |= 1 << index;
     }
 
     /// The box of place `index`.

@@ -100,7 +100,7 @@ fn judge(query: &WideBoxesQuery, yours: &Entered) -> CheckResult {
             || Broken::new("enter_boxes", format!("mask {:#x}", yours.mask), "eight bits", "the definition");
         return if beyond == 0 { Ok(()) } else { Err(broken()) };
     };
-    let is_empty = if query.node.occupied >> place & 1 == 0 { ", which is empty" } else { "" };
+    let is_empty = if query.node.children[place] == Child::EMPTY { ", which is empty" } else { "" };
     let input = format!("enter_boxes, place {place}{is_empty}: {}", query.ray.paste());
     let of = |entry: Option<f32>| entry.map_or("not entered".into(), |t| format!("entered at {t:?}"));
     Err(Broken::with_texts(input, of(mine[place]), of(expected[place]), "one box at a time"))

@@ -56,7 +56,11 @@ pub(super) fn search(tree: &WideTree, spheres: &[Sphere], ray: &Ray) -> WideQuer
     };
     let entries = |node: &WideNode| {
         std::array::from_fn(|place| {
-            if node.occupied >> place & 1 == 1 { entry(&node.child_bounds(place)) } else { f32::INFINITY }
+            if node.children[place] != Child::EMPTY {
+                entry(&node.child_bounds(place))
+            } else {
+                f32::INFINITY
+            }
         })
     };
     WideQuery {

@@ -60,7 +60,6 @@ impl Parts<'_> {
             let at = |place: usize| leaves.start + place * leaves.len() / n;
             let (child, t) = self.child(at(place)..at(place + 1));
             self.tree.nodes[index].children[place] = child;
-            self.tree.nodes[index].occupied |= 1 << place;
             self.entries[index][place] = t;
             nearest = nearest.min(t);
         }
