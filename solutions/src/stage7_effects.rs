@@ -324,6 +324,9 @@ pub fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
     // Map the index into 0..size, in i64 because it can be negative.
     let size = i64::from(size);
     let inside = match wrap {
+        // The remainder by a power of two is the lowest bits, also of a negative number, and most
+        // images have such a size: a division would take longer than the rest of a read.
+        Wrap::Repeat if size & (size - 1) == 0 => index & (size - 1),
         // `%` of a negative number is negative or 0; rem_euclid is never negative.
         Wrap::Repeat => index.rem_euclid(size),
         Wrap::Clamp => index.clamp(0, size - 1),

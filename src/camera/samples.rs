@@ -6,8 +6,10 @@
 
 use crate::light::surface::Bounce;
 use crate::message;
-use glam::{UVec2, Vec2, Vec4, Vec4Swizzles, uvec2};
+use glam::{UVec2, Vec2, uvec2};
 use serde::{Deserialize, Serialize};
+use sobol_burley::parts::sobol_rev;
+use std::sync::LazyLock;
 
 /// Where the samples of a pixel lie (stage 6). Lens, shutter time, area lights and rough surfaces are sampled
 /// in the same way, and independently at random with [`Sampler::Center`].
@@ -116,6 +118,7 @@ impl Points {
     /// The random numbers of draw `part` of `parts` (`0 <= part < parts`) for `purpose`, with both numbers in
     /// `0 <= u < 1`. Among all samples of the pixel, the draws for one purpose are distributed as the sampler
     /// says: stratified, by a Sobol sequence, or independent.
+    #[inline(always)]
     pub fn stratum(&self, purpose: Purpose, part: u32, parts: u32) -> Stratum {
         let index = self.nth(part, parts);
         let key = || self.key ^ mix(address(purpose));
@@ -140,40 +143,52 @@ impl Points {
     /// A point of an Owen-scrambled Sobol sequence. The position in the pixel, the lens and the time use five
     /// dimensions of one sequence, so that they are spread evenly together; each other purpose has a sequence
     /// of its own.
+    #[inline(always)]
     fn sobol(&self, purpose: Purpose, index: u32) -> Vec2 {
-        let key = match purpose {
-            Purpose::Pixel | Purpose::Lens | Purpose::Time => self.key,
-            other => mix(self.key ^ mix(address(other))),
+        let (key, dimension) = match purpose {
+            Purpose::Pixel => (self.key, 0),
+            Purpose::Lens => (self.key, 2),
+            Purpose::Time => (self.key, 4),
+            other => (mix(self.key ^ mix(address(other))), 0),
         };
         // The sequence has 2¹⁶ points; use another sequence after that.
-        let (index, seed) = (index & 0xffff, (key ^ mix(u64::from(index >> 16))) as u32);
-        match purpose {
-            Purpose::Lens => Vec4::from(sobol_burley::sample_4d(index, 0, seed)).zw(),
-            Purpose::Time => Vec4::from(sobol_burley::sample_4d(index, 1, seed)).xy(),
-            _ => first_two_dimensions(index, seed),
-        }
+        two_dimensions(index & 0xffff, dimension, (key ^ mix(u64::from(index >> 16))) as u32)
     }
 }
 
-/// Dimensions 0 and 1 of `sobol_burley::sample`, bit for bit, without the other two. The first is the index with its bits
-/// reversed. The second adds, modulo 2, a row of Pascal's triangle for each bit of the index: with `(1 + x)ⁱ` for bit `i`, which
-/// is a product of `(1 + x)`, `(1 + x²)`, `(1 + x⁴)` and `(1 + x⁸)`, four steps add all rows.
+/// Dimensions `dimension` and `dimension + 1` of `sobol_burley::sample`, bit for bit, without the loop over the bits of the index:
+/// each bit of the index adds a vector modulo 2, and a table of all bytes adds eight vectors at once.
 ///
-/// `index` is below 2¹⁶.
-fn first_two_dimensions(index: u32, seed: u32) -> Vec2 {
+/// `index` is below 2¹⁶, and `dimension` is 0, 2 or 4.
+#[inline(always)]
+fn two_dimensions(index: u32, dimension: u32, seed: u32) -> Vec2 {
     use sobol_burley::parts::{hash, owen_scramble_rev, u32_to_f32_norm};
     let shuffled = owen_scramble_rev(index.reverse_bits(), hash(seed ^ 0x79c6_8e4a));
-    let first = shuffled.reverse_bits() & 0xffff;
-    let add = |bits: u32, (mask, shift): (u32, u32)| bits ^ (bits & mask) >> shift;
-    let second = [(0xaaaa, 1), (0xcccc, 2), (0xf0f0, 4), (0xff00, 8)].into_iter().fold(first, add);
+    let [upper, lower] = &SOBOL[dimension as usize / 2];
+    let bits = upper[(shuffled >> 24) as usize] ^ lower[(shuffled >> 16 & 0xff) as usize];
     let scrambled = |bits: u32, of_dimension: u32| {
-        let scramble = hash(seed.wrapping_mul(0x9c8f_2d3b) ^ of_dimension);
-        u32_to_f32_norm(owen_scramble_rev(bits, scramble).reverse_bits())
+        owen_scramble_rev(bits, hash(seed.wrapping_mul(0x9c8f_2d3b) ^ dimension >> 2 ^ of_dimension))
     };
-    Vec2::new(scrambled(first, 0x912f_69ba), scrambled(second, 0x174f_18ab))
+    let constants = if dimension == 2 { [0x691e_72ca, 0xb40c_c1b8] } else { [0x912f_69ba, 0x174f_18ab] };
+    let [x, y] = [scrambled(bits & 0xffff, constants[0]), scrambled(bits >> 16, constants[1])];
+    // Reverse the bits of both numbers at once.
+    let reversed = (u64::from(x) << 32 | u64::from(y)).reverse_bits();
+    Vec2::new(u32_to_f32_norm(reversed as u32), u32_to_f32_norm((reversed >> 32) as u32))
 }
 
+/// For each pair of dimensions and each byte of a reversed index the point of the Sobol sequence: 16 bits of the first
+/// dimension, and above them 16 bits of the second.
+static SOBOL: LazyLock<[[[u32; 256]; 2]; 3]> = LazyLock::new(|| {
+    let point = |dimension: u32, byte: u32| {
+        sobol_rev(byte, dimension) & 0xffff | (sobol_rev(byte, dimension + 1) & 0xffff) << 16
+    };
+    [0, 2, 4].map(|dimension| {
+        [24, 16].map(|shift| std::array::from_fn(|byte| point(dimension, (byte as u32) << shift)))
+    })
+});
+
 /// A distinct number for each purpose.
+#[inline(always)]
 fn address(purpose: Purpose) -> u64 {
     match purpose {
         Purpose::Pixel => 1,
@@ -199,6 +214,7 @@ pub fn grid_of(samples: u32) -> UVec2 {
 
 /// Two random numbers, `0 <= u < 1` each, of 24 bits, which an `f32` holds exactly. With 32 bits, 128 of the
 /// values would round up to 1.0.
+#[inline(always)]
 fn random_pair(key: u64, index: u32) -> Vec2 {
     let bits = mix(key.wrapping_add(mix(u64::from(index))));
     let unit = |bits: u32| (bits >> 8) as f32 * (1.0 / 16_777_216.0);
@@ -207,6 +223,7 @@ fn random_pair(key: u64, index: u32) -> Vec2 {
 
 /// The finalizer of SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014): every
 /// bit of the input affects every bit of the output.
+#[inline(always)]
 fn mix(key: u64) -> u64 {
     let key = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let key = (key ^ (key >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -217,6 +234,7 @@ fn mix(key: u64) -> u64 {
 /// The position of `index` in a shuffled `0..length`, without a table: in each round the indices are paired,
 /// and a random bit says for each pair whether its two members are exchanged (Hoang, Morris and Rogaway, "An
 /// enciphering scheme based on a card shuffle", 2012).
+#[inline(never)]
 fn permute(mut index: u32, length: u32, seed: u64) -> u32 {
     /// Enough rounds that all orders of a few cells are equally frequent.
     const ROUNDS: u64 = 12;
@@ -317,11 +335,13 @@ mod tests {
     }
 
     #[test]
-    fn the_first_two_dimensions_are_those_of_the_library() {
+    fn the_dimensions_are_those_of_the_library() {
         for index in (0..256).chain((256..1 << 16).step_by(97)) {
             let seed = (mix(u64::from(index)) >> 7) as u32;
-            let [first, second, ..] = sobol_burley::sample_4d(index, 0, seed);
-            assert_eq!(first_two_dimensions(index, seed), Vec2::new(first, second), "{index}, {seed}");
+            for dimension in [0, 2, 4] {
+                let expected = [0, 1].map(|next| sobol_burley::sample(index, dimension + next, seed));
+                assert_eq!(two_dimensions(index, dimension, seed).to_array(), expected, "{index}, {seed}");
+            }
         }
     }
 

@@ -124,7 +124,7 @@ fn render<F: StudentFunctions>(
     // Render the pixels, with or without counts.
     let (started, ran_before) = (Instant::now(), Thread::processor_time());
     let (film, counts) =
-        if job.count { pixels::<F, Counter>(&frame, watch)? } else { pixels::<F, Uncounted>(&frame, watch)? };
+        if job.count { pixels::<F, Counts>(&frame, watch)? } else { pixels::<F, Uncounted>(&frame, watch)? };
     let render_seconds = started.elapsed().as_secs_f64();
     let processor_time = ran_before.and_then(|before| Some(Thread::processor_time()? - before));
     let scene = &frame.intersector.scene;
