@@ -11,6 +11,9 @@ use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::kit::{MaterialHits, RayCounts};
 use raykata::material::{Emitter, Fresnel, Light, Material, Texture, Wrap};
 use raykata::scene::{Quality, Scene};
+// <solution>
+use raykata::rounding::floor;
+// </solution>
 
 /// How many samples a light needs, whether they are spread over an area, and whether it casts
 /// shadows. Each sample costs a shadow ray per hit. Which lights emit nothing?
@@ -357,15 +360,15 @@ pub fn texture_color(texture: &Texture, uv: Vec2) -> Vec3 {
     // Convert uv to pixels, counted from the centre of the upper left pixel.
     let (x, y) = (finite(uv.x, width) * width - 0.5, (1.0 - finite(uv.y, height)) * height - 0.5);
     // Split the coordinates into the upper left pixel and the distances from its centre.
-    let (left, top) = (x.floor() as i64, y.floor() as i64);
-    let (dx, dy) = (x - x.floor(), y - y.floor());
-    let (right, bottom) = (left.saturating_add(1), top.saturating_add(1));
-    // Read the pixels through the wrap mode.
-    let pixel = |column: i64, row: i64| {
-        let column = texel(column, texture.width, texture.wrap) as usize;
-        let row = texel(row, texture.height, texture.wrap) as usize;
-        texture.pixels[row * texture.width as usize + column]
+    let (left, top) = (floor(x), floor(y));
+    let (dx, dy) = (x - left, y - top);
+    // Find the columns and rows of the four pixels by the wrap mode.
+    let both = |first: f32, size: u32| {
+        let (first, wrap) = (first as i64, texture.wrap);
+        [texel(first, size, wrap) as usize, texel(first.saturating_add(1), size, wrap) as usize]
     };
+    let ([left, right], [top, bottom]) = (both(left, texture.width), both(top, texture.height));
+    let pixel = |column: usize, row: usize| texture.pixels[row * texture.width as usize + column];
     // Interpolate along x in both rows, then along y.
     let upper = pixel(left, top).lerp(pixel(right, top), dx);
     let lower = pixel(left, bottom).lerp(pixel(right, bottom), dx);

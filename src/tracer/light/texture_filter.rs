@@ -16,6 +16,7 @@ use crate::effects::Effects;
 use crate::kit::StudentFunctions;
 use crate::material::Texture;
 use crate::ray::Ray;
+use crate::rounding::floor;
 use crate::shape::{Triangle, around_sphere, between_poles};
 use crate::tracer::search::hit::{Hit, Target};
 use crate::tracer::search::motion::{geometry_at, plane_at};
@@ -98,9 +99,9 @@ impl Pyramids {
         }
         // Choose the level whose pixels are as wide as the shorter side, and the number of points along the longer one.
         let width = shorter.max(longer / MOST_POINTS).max(1.0);
-        let points = (longer / width).ceil().max(1.0);
+        let points = (-floor(-longer / width)).max(1.0);
         let level = width.log2().min(smaller.len() as f32);
-        let (level, blend) = (level.floor() as usize, level.fract());
+        let (level, blend) = (level as usize, level - floor(level));
         // Read all points, each between two levels, so that no border between levels is seen.
         let mut sum = Vec3::ZERO;
         for point in 0..points as u32 {

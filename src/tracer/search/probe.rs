@@ -139,7 +139,11 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
             tests: scene.tests,
             may_hit: scene.may_hit,
             conservative: scene.conservative,
-            inverse_direction: ray.direction.recip(),
+            // A wide tree has reciprocals of its own.
+            inverse_direction: match structure {
+                Structure::Wide(_) => Vec3::ZERO,
+                _ => ray.direction.recip(),
+            },
             tally,
             scene,
             reported,
