@@ -11,9 +11,6 @@ use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::kit::{MaterialHits, RayCounts};
 use raykata::material::{Emitter, Fresnel, Light, Material, Texture, Wrap};
 use raykata::scene::{Quality, Scene};
-// <solution>
-use raykata::rounding::floor;
-// </solution>
 
 /// How many samples a light needs, whether they are spread over an area, and whether it casts
 /// shadows. Each sample costs a shadow ray per hit. Which lights emit nothing?
@@ -360,7 +357,7 @@ pub fn texture_color(texture: &Texture, uv: Vec2) -> Vec3 {
     // Convert uv to pixels, counted from the centre of the upper left pixel.
     let (x, y) = (finite(uv.x, width) * width - 0.5, (1.0 - finite(uv.y, height)) * height - 0.5);
     // Split the coordinates into the upper left pixel and the distances from its centre.
-    let (left, top) = (floor(x), floor(y));
+    let (left, top) = (raykata::rounding::floor(x), raykata::rounding::floor(y));
     let (dx, dy) = (x - left, y - top);
     // Find the columns and rows of the four pixels by the wrap mode.
     let both = |first: f32, size: u32| {

@@ -24,6 +24,13 @@ pub const fn gamma(n: u32) -> f32 {
 
 /// The largest whole number that is not above `x`, as [`f32::floor`] returns it. Processors before SSE 4.1 have no instruction
 /// for it, and programs for all of them call a library function, which takes several times as long.
+///
+/// ```
+/// use raykata::rounding::floor;
+///
+/// let numbers = [-2.5, -2.0, 0.5, 8_388_607.5, -8_388_607.5, 1e30, f32::MIN, f32::INFINITY];
+/// assert_eq!(numbers.map(floor), numbers.map(f32::floor));
+/// ```
 #[inline]
 pub fn floor(x: f32) -> f32 {
     // A number from 2²³ on has no fraction, and neither have infinity and NaN.

@@ -149,15 +149,14 @@ fn pixels<F: StudentFunctions, T: Tally>(frame: &Frame<'_, F>, watch: &dyn Watch
         // Find the closest hit of the camera ray.
         scratch.note(Event::Primary);
         let before = (frame.job.view == View::Work).then(|| scratch.counts());
-        let ray = frame.camera.ray(sample);
+        let path = Path::from_camera(frame.camera.ray(sample), sample.points, frame.camera.cone());
         let hit = if packets {
             let Scratch { packets, tally, .. } = scratch;
             packets.first_hit(sample, &settings, &frame.camera, &frame.intersector, tally)
         } else {
-            frame.closest_hit(&ray, scratch)
+            frame.closest_hit(&path.ray, scratch)
         };
         // Compute what the pixel shows: normals, light or work.
-        let path = Path::from_camera(ray, sample.points, frame.camera.cone());
         let mut color = match frame.plan.view {
             View::Normals => frame.normal_as_color(&path, hit, scratch, &mut NoRecord),
             View::Shaded | View::Work => match &frame.indirect {
@@ -194,8 +193,7 @@ fn trace<F: StudentFunctions>(
     let path = Path::from_camera(frame.camera.ray(&sample), sample.points, frame.camera.cone());
     // Follow it as a frame does, and record all rays.
     let mut record = Rays { material_names: &job.scene.material_names, rays: Vec::new() };
-    let mut scratch = Scratch::default();
-    scratch.tally = Counter::of_each_search();
+    let mut scratch = Scratch::<Counter>::default();
     let hit = frame.closest_hit(&path.ray, &mut scratch);
     match frame.plan.view {
         View::Normals => frame.normal_as_color(&path, hit, &mut scratch, &mut record),

@@ -161,33 +161,15 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
     ) -> Option<f32> {
         match geometry {
             Geometry::Sphere(sphere) => self.tests.sphere::<F>(ray, sphere),
-            Geometry::Triangle(triangle) => {
+            Geometry::OneSided(triangle) if F::backfacing(ray, triangle) => None,
+            Geometry::Triangle(triangle) | Geometry::OneSided(triangle) => {
                 let hit = self.tests.triangle::<F>(ray, triangle, scalars)?;
                 self.reported.last = (index, Detail::Triangle(hit.beta, hit.gamma));
                 Some(hit.t)
             }
-            Geometry::OneSided(triangle) => self.intersect_front(index, ray, triangle, scalars),
             Geometry::Solid(solid) => self.intersect_solid(index, ray, *solid),
             Geometry::Instance(instance) => self.intersect_instance(index, ray, *instance),
         }
-    }
-
-    /// Tests the triangle of a one-sided mesh, unless it turns its back to the ray. Out of line, because few scenes
-    /// have such meshes.
-    #[cold]
-    fn intersect_front(
-        &mut self,
-        index: u32,
-        ray: &Ray,
-        triangle: &Triangle,
-        scalars: Option<&GramScalars>,
-    ) -> Option<f32> {
-        if F::backfacing(ray, triangle) {
-            return None;
-        }
-        let hit = self.tests.triangle::<F>(ray, triangle, scalars)?;
-        self.reported.last = (index, Detail::Triangle(hit.beta, hit.gamma));
-        Some(hit.t)
     }
 
     #[cold]
