@@ -20,7 +20,7 @@ use raykata::wide::{Entered, Filtered, TriangleBlock, WideNode, WideRay};
 /// Exactly:
 ///
 /// - The `t` of a plane is `plane · scale + offset`, with `scale[0]` and `offset[0]` for near planes,
-///   `scale[1]` and `offset[1]` for far ones. One that is NaN decides nothing.
+///   `scale[1]` and `offset[1]` for far ones.
 /// - Intersect the axes with the range `ray.t_min..=t_max`. A box is entered if the entry is at most
 ///   the exit, so an empty place never is.
 /// - The result is that of these operations in single precision, with one or two roundings per

@@ -20,7 +20,7 @@ use raykata::wide::{Entered, Filtered, TriangleBlock, WideNode, WideRay};
 /// Exactly:
 ///
 /// - The `t` of a plane is `plane · scale + offset`, with `scale[0]` and `offset[0]` for near planes,
-///   `scale[1]` and `offset[1]` for far ones. One that is NaN decides nothing.
+///   `scale[1]` and `offset[1]` for far ones.
 /// - Intersect the axes with the range `ray.t_min..=t_max`. A box is entered if the entry is at most
 ///   the exit, so an empty place never is.
 /// - The result is that of these operations in single precision, with one or two roundings per
@@ -39,10 +39,9 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
             .mul_add(F32x8::splat(level, ray.scale[0][axis]), F32x8::splat(level, ray.offset[0][axis]));
         let leave = F32x8::load(level, &node.bounds[axis][1 - side])
             .mul_add(F32x8::splat(level, ray.scale[1][axis]), F32x8::splat(level, ray.offset[1][axis]));
-        // Intersect the intervals. `min` and `max` return their second operand if the first one is
-        // NaN, so the interval so far is the second one.
-        near = enter.max(near);
-        far = leave.min(far);
+        // Intersect the intervals.
+        near = near.max(enter);
+        far = far.min(leave);
     }
     Entered { mask: near.le(far).bits(), t: near.to_array() }
     // <stub> todo!("the slab test with eight lanes: near planes, far planes, minimum, maximum, compare")
@@ -94,21 +93,21 @@ pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: 
         return Filtered { possible: 0, certain: 0 };
     }
 
-    // Compute N t and |N|, and bound the rounding errors at both ends of the range.
+    // Compute N t and |N|, and bound the rounding errors.
     let along = n.mul_add(p[2], u.mul_add(e[2], v * f[2])) * F32x8::splat(level, ray.per_z);
     let (along, steep) = (along * F32x8::splat(level, 1.0).copysign(n), n.abs());
     let t_per_length = ray.per_z.abs();
     let area = (F32x8::splat(level, T_ERROR) * size).mul_add(size, tiny);
-    let (way, least_error) =
-        (reach * F32x8::splat(level, t_per_length), F32x8::splat(level, UNDERFLOW * (1.0 + t_per_length)));
+    let t_error = area.mul_add(
+        reach * F32x8::splat(level, t_per_length),
+        F32x8::splat(level, UNDERFLOW * (1.0 + t_per_length)),
+    );
     let [t_min, t_max] = [F32x8::splat(level, ray.t_min), F32x8::splat(level, t_max)];
-    let error_at_t_min = area.mul_add(way + t_min, least_error);
-    let error_at_t_max = area.mul_add(way + t_max, least_error);
 
     // A hit before t_min needs an N whose sign is certain. Beyond t_max it does not, see T_ERROR.
-    let beyond = error_at_t_max.lt(along - t_max * steep);
+    let beyond = t_error.lt(along - t_max * steep);
     let has_sign = edge_error.lt(steep);
-    let before = along.lt(t_min * steep - error_at_t_min) & has_sign;
+    let before = along.lt(t_min * steep - t_error) & has_sign;
     let inside = (edge_error.lt(least) | most.lt(zero - edge_error)) & has_sign;
     Filtered { possible: may_be_inside & !(beyond | before).bits(), certain: inside.bits() }
     // <stub> todo!("compute U, V, W and N with eight lanes, bound their errors, and reject what is certain")
@@ -128,17 +127,18 @@ pub fn may_hit<L: Level>(level: L, block: &TriangleBlock, ray: &WideRay, t_max: 
 /// products of errors. With fused products there are fewer roundings.
 const EDGE_ERROR: f32 = 192.0 * UNIT_ROUNDOFF;
 
-/// A bound on the rounding errors of `N t - t_end N` is `T_ERROR · e² (h / |d_z| + t_end)`, for both
-/// ends of the range.
+/// A bound on the rounding errors of `N t - t_end N` is `T_ERROR · e² (h + e) / |d_z|`, for both ends
+/// of the range and a hit between them.
 ///
 /// Each of the three products of `N t` has an error of `72 u e² h` from N, U or V and `16 u e² h` of
 /// its own, and is at most `8 e² h`. Their sum has `304 u e² h`, and `352 u e² h / |d_z|` after the
-/// product with `1 / d_z`. `N t_end` has an error of `80 u e² t_end`, and the difference rounds both.
-/// The rest of `512 u` covers the rounding of the hit's `t` to single precision.
+/// product with `1 / d_z`. A hit has `t ≤ (h + e) / |d_z|`, because its z lies between those of the
+/// corners. So the error of N, `72 u e²`, adds `72 u e² t` at most: beyond `t_max > t` a computed
+/// `t_max |N|` that is too small is too small by no more, because it is not negative. The rest of
+/// `512 u` covers the last roundings and that of the hit's `t` to single precision.
 ///
-/// So `along > t_max |N| + error` is certain to reject. If N has the computed sign, the exact `|N| t`
-/// is above `t_max |N|` as well. If rounding has changed its sign, then so has the sign of the exact
-/// `t`, which is negative then. If N is exactly 0, there is no hit.
+/// So `along > t_max |N| + error` is certain to reject if N has the computed sign. If rounding has
+/// changed its sign, `along` is at most the error. If N is exactly 0, there is no hit.
 const T_ERROR: f32 = 512.0 * UNIT_ROUNDOFF;
 
 /// Where a product underflows, it has an error of up to 2⁻¹⁵⁰ more, at most 12 times, and most of

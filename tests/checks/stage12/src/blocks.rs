@@ -120,13 +120,14 @@ pub(super) fn may_hit_keeps_what_is_hit(trial: &Trial<'_>) -> CheckResult {
     })
 }
 
-/// A ray whose range begins one float before its hit, or ends one float behind it; `None` without a hit.
+/// A ray whose range begins one float before its hit, or ends one float or far behind it; `None` without a hit.
 fn at_the_ends(random: &mut Random, ray: &Ray, triangle: Triangle) -> Option<Lanes> {
     let ray = Ray::new(ray.origin, ray.direction);
     let t = exact(&ray, &triangle)?;
-    let (t_min, t_max) = match random.below(3) {
+    let (t_min, t_max) = match random.below(4) {
         0 => (t.next_down().max(0.0), f32::INFINITY),
         1 => (0.0, t.next_up()),
+        2 => (0.0, t * 2f32.powi(1 + random.below(40) as i32)),
         _ => (t.next_down().max(0.0), t.next_up()),
     };
     let triangles = vec![triangle; 1 + random.below(8) as usize];
