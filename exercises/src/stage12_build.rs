@@ -59,7 +59,7 @@ pub fn cheapest_split(bins: &Bins, n_bins: u32) -> Option<BinSplit> {
 /// number. On which side is a centroid exactly between two bins?
 ///
 /// The bin of a primitive is that of [`fill_bins`]. The order within a side is free, and a side may
-/// be empty. No memory is needed beside the slice.
+/// be empty.
 pub fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &BinSplit) -> usize {
     todo!("swap primitives in place until all of the left side come first")
 }

@@ -23,8 +23,7 @@ use raykata::wide::{Entered, Filtered, TriangleBlock, WideNode, WideRay};
 ///   `scale[1]` and `offset[1]` for far ones.
 /// - Intersect the axes with the range `ray.t_min..=t_max`. A box is entered if the entry is at most
 ///   the exit, so an empty place never is.
-/// - The result is that of these operations in single precision, with one or two roundings per
-///   plane, except for the sign of 0.
+/// - Each `t` has one or two roundings.
 ///
 /// Source: "Ray/box intersection"; Ize, "Robust BVH Ray Traversal", JCGT 2013.
 #[inline(always)]
@@ -40,8 +39,8 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
 ///
 /// Exactly:
 ///
-/// - `possible` has the bit of each triangle that the watertight test hits, for any finite input: the
-///   exact line meets the closed triangle, and the exact `t`, rounded, is in `ray.t_min..t_max`.
+/// - `possible` has the bit of each triangle that the exact line meets at a `t`, rounded, in
+///   `ray.t_min..t_max`, for any finite input.
 /// - At least 99 of 100 are left out that a ray misses by a good part of their size, or hits outside
 ///   of the range by a tenth.
 /// - A lane with NaN is possible: it holds another shape.

@@ -153,7 +153,7 @@ fn cost_of(side: &Bin) -> f32 {
 /// number. On which side is a centroid exactly between two bins?
 ///
 /// The bin of a primitive is that of [`fill_bins`]. The order within a side is free, and a side may
-/// be empty. No memory is needed beside the slice.
+/// be empty.
 pub fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &BinSplit) -> usize {
     // <solution>
     let axis = split.axis as usize;

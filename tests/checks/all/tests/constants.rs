@@ -109,6 +109,7 @@ macro_rules! fields {
 fields! {
     Aabb { min, max }
     PrimitiveHit { t, primitive }
+    Filtered { possible, certain }
     TriangleHit { t, beta, gamma }
     GramScalars { uu, uv, vv, d }
     SolidHit { t, normal }
