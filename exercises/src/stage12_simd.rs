@@ -31,11 +31,10 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
     todo!("the slab test with eight lanes: near planes, far planes, minimum, maximum, compare")
 }
 
-/// Which of eight triangles a ray may hit before `t_max`: a filter before the test of stage 10,
-/// with its sheared coordinates. With a' = a - o, e = b - a and f = c - a, sheared to
-/// `(x + shear[0] z, y + shear[1] z, z)`, and `p × q = p_x q_y - p_y q_x`, the barycentric
-/// coordinates times `N = e × f` are `U = f × a'`, `V = a' × e` and `W = N - U - V`. Different signs
-/// mean a miss: when is a sign certain? `t` is `(N a'_z + U e_z + V f_z) / (N d_z)`.
+/// Which of eight triangles a ray may hit before `t_max`: a filter before the test of stage 10. Shear
+/// a' = a-o, e = b-a and f = c-a to `(x + shear[0] z, y + shear[1] z, z)`. With their cross products
+/// in x and y, `N = e×f`, `U = f×a'`, `V = a'×e` and `W = N-U-V`, different signs of U, V and W mean
+/// a miss: when is a sign certain? `t` is `(N a'_z + U e_z + V f_z) / (N d_z)`.
 ///
 /// Exactly:
 ///
