@@ -40,9 +40,9 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
 ///
 /// - `possible` has the bit of each triangle that the exact line meets at a `t`, rounded, in
 ///   `ray.t_min..t_max`, for any finite input.
-/// - At least 99 of 100 are left out that a ray misses by a good part of their size, or hits outside
-///   of the range by a tenth.
-/// - A lane with NaN is possible: it holds another shape.
+/// - At least 99 of 100 are left out that a ray misses by a good part of their size, or hits a tenth
+///   outside of the range.
+/// - A lane with NaN, another shape, is possible.
 /// - `certain` has the bits where U, V, W and N have the same sign for certain: most of those hit.
 ///
 /// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013.
