@@ -74,7 +74,7 @@ fn title(text: &str) -> Result<String> {
 /// Folders that are handed out with their subfolders, and the extensions of the files in them. A missing folder is left
 /// out.
 const FOLDERS: [(&str, &[&str]); 10] = [
-    ("src", &["css", "html", "md", "rs", "snap", "toml", "txt"]),
+    ("src", &["css", "html", "md", "rs", "snap", "svg", "toml", "txt"]),
     ("tests/checks", &["rs", "toml"]),
     ("tests/oracle", &["rs", "toml"]),
     ("tests/judge", &["rs", "toml"]),
