@@ -55,7 +55,7 @@ fn eight_boxes_miss_no_box_that_the_ray_meets() {
         }
         // Only these rays are promised to meet what they enter.
         let [o, d] = [ray.origin, ray.direction].map(|v| v.abs().max_element());
-        if o > LARGEST || d > LARGEST || d < 1.0 / LARGEST {
+        if o > LARGEST || !(1.0 / LARGEST..=LARGEST).contains(&d) {
             continue;
         }
         met.push(boxes.iter().map(|bounds| exact_entry(&ray, bounds)).collect::<Vec<_>>());
