@@ -21,6 +21,7 @@ use crate::ray::Ray;
 use crate::tracer::frame::Frame;
 use crate::tracer::search::hit::Hit;
 use glam::{Vec2, Vec3};
+use std::borrow::Cow;
 
 /// The limits of `scatter` for a path, whose length `step` limits.
 const UNLIMITED: Limits = Limits { max_depth: u32::MAX, min_contribution: 0.0 };
@@ -79,7 +80,7 @@ struct Vertex<'m> {
     at: SurfaceInteraction,
     /// The number of the ray in the record.
     number: usize,
-    material: &'m Material,
+    material: Cow<'m, Material>,
     may_bounce: bool,
     state: PathState,
     vertex: PathVertex,
@@ -115,7 +116,6 @@ struct CountedLight {
 ///
 /// A point of an emitter does not sample this emitter, because it sees none of it, or the inside of a sphere, and whether it
 /// lies inside or outside is a matter of rounding.
-#[inline(always)]
 fn counted_light<F: StudentFunctions>(
     indirect: &IndirectLight,
     (start, direction): (&Start, Vec3),
@@ -183,8 +183,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 return color + path.weight * self.background_of_path(indirect, &path, start.pdf, scratch);
             };
             // What is here, and which of its light counts?
-            let mut own = None;
-            let here = self.vertex(indirect, &path, &start, (&found, &mut own), scratch, record);
+            let here = self.vertex(indirect, &path, &start, &found, scratch, record);
             // Add the light of `[[lights]]`, which no ray finds by chance, without ambient light.
             if !self.plan.effects.materials[here.at.material].lights.is_empty() {
                 let Vertex { at, number, material, .. } = &here;
@@ -217,20 +216,18 @@ impl<F: StudentFunctions> Frame<'_, F> {
     }
 
     /// The surface that `path` hits, how it scatters light, and which of its light counts.
-    #[inline(always)]
-    fn vertex<'m, T: Tally>(
-        &'m self,
+    fn vertex<T: Tally>(
+        &self,
         indirect: &IndirectLight,
         path: &Path,
         start: &Start,
-        (hit, own): (&Hit, &'m mut Option<Material>),
+        hit: &Hit,
         scratch: &mut Scratch<T>,
         record: &mut impl Record,
-    ) -> Vertex<'m> {
+    ) -> Vertex<'_> {
         let direction = self.unit(path.ray.direction);
-        let at = self.surface_at(path, hit, scratch);
-        let number = record.hit(path, hit.t, at.material);
-        let material = self.material(path, hit, &at, own, &mut scratch.tally);
+        let (at, number) = self.surface_at(path, hit, scratch, record);
+        let material = self.material(path, hit, &at, &mut scratch.tally);
         let state = PathState {
             origin: start.origin,
             direction,
@@ -239,13 +236,13 @@ impl<F: StudentFunctions> Frame<'_, F> {
             pdf: start.pdf,
         };
         let may_bounce = path.depth < self.limits.max_depth;
-        let scattering = self.scattering(indirect, direction, &at, material, may_bounce);
-        let rough = self.rough_lobe(indirect, &at, material, &scattering);
+        let scattering = self.scattering(indirect, direction, &at, &material, may_bounce);
+        let rough = self.rough_lobe(indirect, &at, &material, &scattering);
         let asks = rough.is_some() || scattering.diffuse != Vec3::ZERO;
         let (light, numbers) =
             self.numbers_of_step(indirect, &scattering, asks, &path.points, &state, scratch);
         let CountedLight { emission, own, weighed, sampled } =
-            counted_light::<F>(indirect, (start, direction), (hit, &at, material), light);
+            counted_light::<F>(indirect, (start, direction), (hit, &at, &material), light);
         let vertex =
             PathVertex { surface: at.surface, scattering, emission, emitter: weighed, light: sampled };
         Vertex { at, number, material, may_bounce, state, vertex, numbers, rough, own }
@@ -308,7 +305,6 @@ impl<F: StudentFunctions> Frame<'_, F> {
 
     /// The light that may be sampled at a vertex that `asks` for it, and the random numbers of its step. Numbers that cannot
     /// matter are 0 and are not looked up.
-    #[inline(always)]
     fn numbers_of_step<T: Tally>(
         &self,
         indirect: &IndirectLight,
@@ -346,7 +342,6 @@ impl<F: StudentFunctions> Frame<'_, F> {
     }
 
     /// Two random numbers for `purpose`, `0 <= u < 1` each, of which `used` are used and counted.
-    #[inline(always)]
     fn numbers<T: Tally>(
         &self,
         points: &Points,
@@ -424,7 +419,6 @@ impl<F: StudentFunctions> Frame<'_, F> {
     }
 
     /// The path along the ray `next`, which the student's `step` has chosen, and where this ray starts.
-    #[inline(always)]
     fn next_path<T: Tally>(
         &self,
         next: &NextRay,

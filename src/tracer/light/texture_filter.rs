@@ -99,6 +99,7 @@ impl Pyramids {
         }
         // Choose the level whose pixels are as wide as the shorter side, and the number of points along the longer one.
         let width = shorter.max(longer / MOST_POINTS).max(1.0);
+        // Rounded up.
         let points = (-floor(-longer / width)).max(1.0);
         let level = width.log2().min(smaller.len() as f32);
         let (level, blend) = (level as usize, level - floor(level));

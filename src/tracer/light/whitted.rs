@@ -17,9 +17,7 @@ use crate::tracer::search::Cache;
 use crate::tracer::search::hit::Hit;
 use crate::tracer::search::packets::Packets;
 use glam::{Vec2, Vec3};
-
-/// A place in the list of samples before it is filled.
-const NO_LIGHT: LightSample = LightSample { direction: Vec3::ZERO, distance: 0.0, radiance: Vec3::ZERO };
+use std::borrow::Cow;
 
 /// The state of one thread: its counts, and lists that are reused for every hit.
 #[derive(Default)]
@@ -122,31 +120,33 @@ impl<F: StudentFunctions> Frame<'_, F> {
         record: &mut impl Record,
     ) -> Vec3 {
         // Compute the surface interaction and its material.
-        let at = self.surface_at(path, hit, scratch);
-        let number = record.hit(path, hit.t, at.material);
-        let mut own = None;
-        let material = self.material(path, hit, &at, &mut own, &mut scratch.tally);
+        let (at, number) = self.surface_at(path, hit, scratch, record);
+        let material = self.material(path, hit, &at, &mut scratch.tally);
         // Shade the point with direct light, tracing shadow rays.
-        let mut color = self.direct_light(path, number, &at, material, scratch, record);
+        let mut color = self.direct_light(path, number, &at, &material, scratch, record);
         // Add the light that the surface emits by itself. The plan knows whether any surface does.
         if self.plan.emission {
-            color += at.emission(material);
+            color += at.emission(&material);
         }
         // Queue the secondary rays.
-        self.scatter(path, hit, number, &at, material, scratch);
+        self.scatter(path, hit, number, &at, &material, scratch);
         color
     }
 
-    /// The surface interaction at `hit`.
+    /// The surface interaction at `hit`, and the index of the path in the record.
     #[inline(always)]
     pub(super) fn surface_at<T: Tally>(
         &self,
         path: &Path,
         hit: &Hit,
         scratch: &mut Scratch<T>,
-    ) -> SurfaceInteraction {
+        record: &mut impl Record,
+    ) -> (SurfaceInteraction, usize) {
         scratch.note(Event::Hit);
-        SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.surface_options, &path.ray, hit)
+        let at =
+            SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.surface_options, &path.ray, hit);
+        let number = record.hit(path, hit.t, at.material);
+        (at, number)
     }
 
     /// The light of `[[lights]]` that the surface sends back along the path; `number` is the index of the path in the record.
@@ -167,18 +167,17 @@ impl<F: StudentFunctions> Frame<'_, F> {
     }
 
     /// The material of the surface as it is seen along the path: with `ambient` and `diffuse` multiplied by its image, and
-    /// under its coat. If that makes another material of it, `own` holds it: a `Cow` would be copied where it is returned.
+    /// under its coat.
     #[inline(always)]
-    pub(super) fn material<'m, T: Tally>(
-        &'m self,
+    pub(super) fn material<T: Tally>(
+        &self,
         path: &Path,
         hit: &Hit,
         at: &SurfaceInteraction,
-        own: &'m mut Option<Material>,
         tally: &mut T,
-    ) -> &'m Material {
+    ) -> Cow<'_, Material> {
         let world = &self.intersector.scene.world;
-        let material = &world.materials[at.material];
+        let mut material = Cow::Borrowed(&world.materials[at.material]);
         if let Some(texture) = material.texture
             && self.plan.effects.materials[at.material].texture
         {
@@ -194,14 +193,14 @@ impl<F: StudentFunctions> Frame<'_, F> {
                     F::texture_color(image, uv)
                 }
             };
-            let textured = own.insert(material.clone());
+            let textured = material.to_mut();
             textured.ambient *= color;
             textured.diffuse *= color;
         }
-        if self.plan.coats && material.coat != 1.0 && at.entering {
-            *own = Some(self.coated(path.ray.direction, at, own.as_ref().unwrap_or(material)));
+        match self.plan.coats && material.coat != 1.0 && at.entering {
+            true => Cow::Owned(self.coated(path.ray.direction, at, &material)),
+            false => material,
         }
-        own.as_ref().unwrap_or(material)
     }
 
     /// The material under its coat: what the coat reflects is added to `mirror`, and what lies below gets the rest.
@@ -267,21 +266,20 @@ impl<F: StudentFunctions> Frame<'_, F> {
         for &index in &effects.materials[at.material].lights {
             let (light, takes) = (&self.intersector.scene.world.lights[index], effects.lights[index]);
             let first = scratch.lights.len();
-            // Sample random points of an area light, and the centre of any other light. Write into the list itself, because `push`
-            // would copy each sample.
-            let area = area_of(light).filter(|_| takes.area);
-            let parts = if area.is_some() { takes.samples } else { takes.samples.min(1) };
-            scratch.lights.resize(first + parts as usize, NO_LIGHT);
-            for (part, sample) in (0..).zip(&mut scratch.lights[first..]) {
-                *sample = match area {
-                    Some(shape) => {
-                        scratch.tally.note(Event::RandomNumber);
-                        scratch.tally.note(Event::RandomNumber);
+            match area_of(light) {
+                // Sample random points of an area light.
+                Some(shape) if takes.area => {
+                    for part in 0..takes.samples {
+                        scratch.note(Event::RandomNumber);
+                        scratch.note(Event::RandomNumber);
+                        let parts = (part, takes.samples);
                         let light = (index, light, shape);
-                        sample_area_light::<F>(light, &at.surface, &path.points, (part, parts))
+                        scratch.lights.push(sample_area_light::<F>(light, &at.surface, &path.points, parts));
                     }
-                    None => light.sample_center(at.surface.point),
-                };
+                }
+                // Sample the centre of any other light.
+                _ if takes.samples > 0 => scratch.lights.push(light.sample_center(at.surface.point)),
+                _ => {}
             }
             scratch.shadows.resize(scratch.lights.len(), takes.shadows);
             // Keep the surface that shows a visible light out of its own shadow rays.
@@ -412,11 +410,10 @@ impl<F: StudentFunctions> Frame<'_, F> {
     #[inline(always)]
     fn at_the_error_bound(&self, at: &SurfaceInteraction, ray: Ray) -> Ray {
         let Surface { point, error, geometric_normal, .. } = at.surface;
-        let origin = match self.plan.offsets {
-            true => F::offset_origin(point, error, geometric_normal, ray.direction),
-            false => ray.origin,
-        };
-        Ray { origin, ..ray }
+        match self.plan.offsets {
+            true => Ray { origin: F::offset_origin(point, error, geometric_normal, ray.direction), ..ray },
+            false => ray,
+        }
     }
 
     /// The shading normal at `hit` as the colour `0.5 n + 0.5`, in world space; the background if nothing is
@@ -432,8 +429,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
             record.miss(path);
             return self.background(path.ray.direction, scratch);
         };
-        let at = self.surface_at(path, &hit, scratch);
-        record.hit(path, hit.t, at.material);
+        let (at, _) = self.surface_at(path, &hit, scratch, record);
         0.5 * at.surface.shading_normal + 0.5
     }
 }

@@ -6,7 +6,7 @@ use std::process::Command;
 
 /// The most lines of Rust in the repository. It rose from 130,471 with what files, `cost`, hard cases and scenes can do since then,
 /// and with numbers of documents that are made. It only falls from here.
-const MOST_LINES: usize = 133_741;
+const MOST_LINES: usize = 133_732;
 
 #[test]
 fn what_comes_in_takes_something_out() {
