@@ -7,7 +7,8 @@
 //! inlined is compiled for the oldest processor.
 //!
 //! Sums, differences, products, comparisons, `min` and `max` give the same result at every level. [`F32x8::mul_add`] does
-//! not: use it only where a rounding error changes no result.
+//! not: use it only where a rounding error changes no hit. So a wide tree finds the same hits on every processor, but may visit
+//! a few other nodes.
 
 use fearless_simd::{SimdBase, SimdFloat, SimdMask};
 use std::ops::{Add, BitAnd, BitOr, Mul, Sub};
