@@ -5,10 +5,10 @@
 //! "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", 2017.
 //!
 //! Given: [`FlatTree`], a binary tree with nodes of 32 bytes; [`WideTree`], a tree whose nodes have
-//! eight children; the cost [`WIDE_NODE_COST`].
+//! eight children.
 
 use raykata::bvh::Bvh;
-use raykata::wide::{BLOCK, Child, FlatTree, MAX_LEAF, NO_PRIMITIVE, WIDE_NODE_COST, WideNode, WideTree};
+use raykata::wide::{BLOCK, Child, FlatTree, MAX_LEAF, NO_PRIMITIVE, WideNode, WideTree};
 
 /// Copies a hierarchy of stage 3 into one array, [`FlatTree`]. A ray needs both children of a node
 /// at once, so they lie side by side:
@@ -28,7 +28,7 @@ pub fn flatten(bvh: &Bvh) -> FlatTree {
 
 /// Turns a binary tree into the cheapest one with eight children per node, by dynamic programming.
 /// Everything below a binary node becomes a leaf, or up to eight children. The cost is
-/// `WIDE_NODE_COST · A` per inner node and `A · c` per leaf, with half the surface area `A` of its
+/// `node_cost · A` per inner node and `A · c` per leaf, with half the surface area `A` of its
 /// box and `block_cost` as `c`. Which costs does a node need from its two children?
 ///
 /// Exactly:
@@ -39,6 +39,6 @@ pub fn flatten(bvh: &Bvh) -> FlatTree {
 /// - The children of a node come before its empty places.
 /// - A parent has a smaller index than its children.
 /// - A tree that is best as one leaf has one node with one child; no nodes give no nodes.
-pub fn collapse(tree: &FlatTree) -> WideTree {
+pub fn collapse(tree: &FlatTree, node_cost: f32) -> WideTree {
     todo!("from the last node to the first: the least cost as 1 to 8 children; then build what costs least")
 }

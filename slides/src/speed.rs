@@ -6,7 +6,9 @@ use glam::{Vec3A, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{BinSplitQuery, BinsQuery, Kit};
 use raykata::scene::Accelerator;
-use raykata::wide::{BinGrid, Bins, ChildContents, FlatTree, ForkKind, MAX_BINS, NO_PRIMITIVE, PrimitiveBox};
+use raykata::wide::{
+    BinGrid, Bins, ChildContents, FlatTree, ForkKind, MAX_BINS, NO_PRIMITIVE, PrimitiveBox, WIDE_NODE_COST,
+};
 use raykata_cli::report::Thousands;
 use raykata_cli::svg::{Axis, Drawing, End, Ink, Middle, Plot, SMALL, Start, TEXT, offset};
 use std::collections::HashSet;
@@ -171,7 +173,7 @@ pub fn wide_node(kit: &dyn Kit) -> Result<String> {
         })
         .collect();
     let tree = kit.build_binned(&[boxes]).remove(0);
-    let wide = kit.collapse(std::slice::from_ref(&tree)).remove(0);
+    let wide = kit.collapse(&[(tree.clone(), WIDE_NODE_COST)]).remove(0);
     let all = layout(&tree);
     let deepest = f64::from(all.depth.iter().copied().max().unwrap_or(0));
 

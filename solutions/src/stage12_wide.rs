@@ -5,10 +5,10 @@
 //! "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", 2017.
 //!
 //! Given: [`FlatTree`], a binary tree with nodes of 32 bytes; [`WideTree`], a tree whose nodes have
-//! eight children; the cost [`WIDE_NODE_COST`].
+//! eight children.
 
 use raykata::bvh::Bvh;
-use raykata::wide::{BLOCK, Child, FlatTree, MAX_LEAF, NO_PRIMITIVE, WIDE_NODE_COST, WideNode, WideTree};
+use raykata::wide::{BLOCK, Child, FlatTree, MAX_LEAF, NO_PRIMITIVE, WideNode, WideTree};
 
 // <solution>
 use crate::stage12_build::block_cost;
@@ -64,7 +64,7 @@ fn flatten_below(bvh: &Bvh, node: u32, index: usize, nodes: &mut Vec<FlatNode>) 
 
 /// Turns a binary tree into the cheapest one with eight children per node, by dynamic programming.
 /// Everything below a binary node becomes a leaf, or up to eight children. The cost is
-/// `WIDE_NODE_COST · A` per inner node and `A · c` per leaf, with half the surface area `A` of its
+/// `node_cost · A` per inner node and `A · c` per leaf, with half the surface area `A` of its
 /// box and `block_cost` as `c`. Which costs does a node need from its two children?
 ///
 /// Exactly:
@@ -75,14 +75,14 @@ fn flatten_below(bvh: &Bvh, node: u32, index: usize, nodes: &mut Vec<FlatNode>) 
 /// - The children of a node come before its empty places.
 /// - A parent has a smaller index than its children.
 /// - A tree that is best as one leaf has one node with one child; no nodes give no nodes.
-pub fn collapse(tree: &FlatTree) -> WideTree {
+pub fn collapse(tree: &FlatTree, node_cost: f32) -> WideTree {
     // <solution>
     let mut wide = WideTree::default();
     if !tree.nodes.is_empty() {
         wide.nodes.reserve(tree.nodes.len() / 4);
         wide.blocks.reserve(tree.order.len() / 5);
         wide.nodes.push(WideNode::EMPTY);
-        Costs::of(tree).fill_node(0, 0, &mut wide);
+        Costs::of(tree, node_cost).fill_node(0, 0, &mut wide);
     }
     wide
     // <stub> todo!("from the last node to the first: the least cost as 1 to 8 children; then build what costs least")
@@ -100,7 +100,7 @@ struct Costs<'a> {
 }
 
 impl Costs<'_> {
-    fn of(tree: &FlatTree) -> Costs<'_> {
+    fn of(tree: &FlatTree, node_cost: f32) -> Costs<'_> {
         let n = tree.nodes.len();
         let mut costs = Costs { tree, ranges: vec![[0; 2]; n], least: vec![[0.0; 8]; n] };
         // Children come after their parents, so from the last node to the first they are known.
@@ -121,7 +121,7 @@ impl Costs<'_> {
                 }
             }
             // In one place the node is a leaf, or a wide node with up to eight children.
-            let as_node = WIDE_NODE_COST * half_area(node) + least[7];
+            let as_node = node_cost * half_area(node) + least[7];
             let one = costs.as_leaf(index).min(as_node);
             costs.least[index] = least.map(|divided| divided.min(one));
         }

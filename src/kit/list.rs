@@ -566,7 +566,7 @@ macro_rules! student_functions {
                     ForkedTree { tree, forks: forks.into_log() }
                 } }
                 /// The cheapest tree with eight children per node over a binary one.
-                Collapse fn collapse(tree: &FlatTree) -> WideTree
+                Collapse fn collapse(tree: &FlatTree, node_cost: f32) -> WideTree
                     = stage12_wide::collapse; ()
                 /// Which of the eight boxes of a node a ray enters, and where.
                 EnterBoxes fn enter_boxes[L: Level](level: L, node: &WideNode, ray: &WideRay, t_max: f32) -> Entered

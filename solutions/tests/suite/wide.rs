@@ -13,7 +13,7 @@ use raykata::scene::Split;
 use raykata::shape::Triangle;
 use raykata::wide::{
     BLOCK, Child, ChildContents, FlatTree, Fork, Forks, LARGEST, MAX_LEAF, NO_PRIMITIVE, TriangleBlock,
-    WideNode, WideTree,
+    WIDE_NODE_COST, WideNode, WideTree,
 };
 use solutions::stage3_build::build;
 use solutions::stage10_stability::watertight;
@@ -305,7 +305,7 @@ fn work_and_span(tree: &FlatTree, forks: &[Fork]) -> (u64, u64) {
 fn wide_trees_have_every_primitive_once_and_tight_boxes() {
     for (name, bounds) in scenes() {
         let tree = build_binned(&bounds);
-        let wide: WideTree = collapse(&tree);
+        let wide: WideTree = collapse(&tree, WIDE_NODE_COST);
         let mut found: Vec<u32> = Vec::new();
         let mut waiting: Vec<Child> = wide.nodes.first().map(|_| Child::ROOT).into_iter().collect();
         while let Some(child) = waiting.pop() {

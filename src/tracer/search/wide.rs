@@ -11,8 +11,8 @@ use crate::shape::Triangle;
 use crate::tracer::plan::WidePlan;
 use crate::wide::simd::{Instructions, Level, Vectorized};
 use crate::wide::{
-    Child, ChildContents, Entered, Filtered, FlatTree, Forks, MAX_LEAF, TriangleBlock, WideNode, WideProbe,
-    WideRay,
+    Child, ChildContents, Entered, Filtered, FlatTree, Forks, MAX_LEAF, TriangleBlock, WIDE_NODE_COST,
+    WIDE_NODE_COST_OF_OBJECTS, WideNode, WideProbe, WideRay,
 };
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -48,8 +48,10 @@ impl Wide {
         } else {
             F::flatten(&F::build(bounds, quality.split, (quality.leaf_size as usize).min(MAX_LEAF)))
         };
-        // Collapse it, and copy the triangles into the blocks.
-        let wide = F::collapse(&tree);
+        // Collapse it by the cost of what most primitives are, and copy the triangles into the blocks.
+        let n_triangles = (0..bounds.len() as u32).filter(|&index| triangle(index).is_some()).count();
+        let is_mesh = 2 * n_triangles > bounds.len();
+        let wide = F::collapse(&tree, if is_mesh { WIDE_NODE_COST } else { WIDE_NODE_COST_OF_OBJECTS });
         drop(tree);
         let block = |&ids: &_| TriangleBlock::new(ids, &triangle);
         let blocks = if rayon::current_num_threads() > 1 {

@@ -7,7 +7,9 @@ use raykata::bvh::PrimitiveHit;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 use raykata::wide::simd::{Instructions, Level, Vectorized};
-use raykata::wide::{Child, Entered, Filtered, Forks, LARGEST, TriangleBlock, WideNode, WideProbe, WideRay};
+use raykata::wide::{
+    Child, Entered, Filtered, Forks, LARGEST, TriangleBlock, WIDE_NODE_COST, WideNode, WideProbe, WideRay,
+};
 use rayon::prelude::*;
 use solutions::{stage10_stability, stage12_build, stage12_search, stage12_simd, stage12_wide};
 use std::collections::HashMap;
@@ -27,7 +29,7 @@ impl Wide {
         let bounds: Vec<Aabb> = triangles.par_iter().map(box_of).collect();
         let tree = stage12_build::build_parallel(&bounds, &mut Forks::new(rayon::current_num_threads() > 1));
         drop(bounds);
-        let wide = stage12_wide::collapse(&tree);
+        let wide = stage12_wide::collapse(&tree, WIDE_NODE_COST);
         drop(tree);
         let block = |ids: &_| TriangleBlock::new(*ids, |id| Some(triangles[id as usize]));
         let blocks = wide.blocks.par_iter().map(block).collect();

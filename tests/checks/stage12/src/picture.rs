@@ -10,7 +10,7 @@ use raykata::aabb::Aabb;
 use raykata::kit::{BlockQuery, Kit, WideBoxesQuery, WideQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
-use raykata::wide::{BLOCK, Filtered, FlatTree, NO_PRIMITIVE, TriangleBlock, WideTree};
+use raykata::wide::{BLOCK, Filtered, FlatTree, NO_PRIMITIVE, TriangleBlock, WIDE_NODE_COST, WideTree};
 use std::f32::consts::TAU;
 
 const TARGET: Vec3 = vec3(0.0, 1.0, 0.0);
@@ -50,7 +50,7 @@ fn is_usable(wide: &WideTree, n: usize) -> bool {
 
 /// The depth of each pixel: white is near, black is the background.
 fn depths(kit: &dyn Kit, tree: &FlatTree, triangles: &[Triangle], rays: &[Ray]) -> Vec<Vec3> {
-    let wide = kit.collapse(std::slice::from_ref(tree)).remove(0);
+    let wide = kit.collapse(&[(tree.clone(), WIDE_NODE_COST)]).remove(0);
     if wide.nodes.is_empty() || !is_usable(&wide, triangles.len()) {
         return vec![Vec3::ZERO; rays.len()];
     }

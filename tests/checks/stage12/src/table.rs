@@ -86,7 +86,7 @@ fn lines(kit: &dyn Kit, boxes: &[Aabb], bvh: &Bvh) -> String {
     bins_and_split(kit, boxes, &mut text);
     flat(&kit.flatten(std::slice::from_ref(bvh))[0], &mut text);
     let tree = drawn_tree(boxes, 1, &[1, 4, 2, 7, 1]);
-    children_of_root(&kit.collapse(std::slice::from_ref(&tree))[0], &mut text);
+    children_of_root(&kit.collapse(&[(tree, 2.0)])[0], &mut text);
     text
 }
 

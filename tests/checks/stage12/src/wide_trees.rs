@@ -9,9 +9,7 @@ use glam::Vec3;
 use oracle::splitmix::Random;
 use proptest::strategy::Strategy;
 use raykata::aabb::Aabb;
-use raykata::wide::{
-    BLOCK, Child, ChildContents, FlatNode, FlatTree, MAX_LEAF, NO_PRIMITIVE, WIDE_NODE_COST, WideTree,
-};
+use raykata::wide::{BLOCK, Child, ChildContents, FlatNode, FlatTree, MAX_LEAF, NO_PRIMITIVE, WideTree};
 use std::collections::HashMap;
 
 /// For each node of a flat tree its parent; the root is its own.
@@ -153,27 +151,31 @@ fn judge_leaves(tree: &FlatTree, wide: &WideTree) -> CheckResult {
     meaning.map_or_else(|fault| Err(broken_by(fault, describe(tree), "the binary tree")), |_| Ok(()))
 }
 
-fn trees_only(most: usize) -> impl Strategy<Value = FlatTree> + Clone {
-    drawn_trees(most).prop_map(|(_, tree)| tree)
+/// What [`Kit::collapse`] asks: a tree, and the cost of a node.
+type Collapsed = (FlatTree, f32);
+
+/// Trees with a cost of a node in the range of those in use.
+fn trees_only(most: usize) -> impl Strategy<Value = Collapsed> + Clone {
+    (drawn_trees(most), 1.0..6.0f32).prop_map(|((_, tree), cost)| (tree, cost))
 }
 
 /// Trees with an inner node: another check judges those with one leaf or none.
-fn divided_trees(most: usize) -> impl Strategy<Value = FlatTree> + Clone {
-    trees_only(most).prop_filter("an inner node", |tree| tree.nodes.len() > 1)
+fn divided_trees(most: usize) -> impl Strategy<Value = Collapsed> + Clone {
+    trees_only(most).prop_filter("an inner node", |(tree, _)| tree.nodes.len() > 1)
 }
 
 pub(super) fn collapse_keeps_every_leaf(trial: &Trial<'_>) -> CheckResult {
     trial.forall(300, divided_trees(80), |trees| {
-        compare(trees, trial.kit.collapse(trees), |tree, wide| judge_leaves(tree, &wide))
+        compare(trees, trial.kit.collapse(trees), |(tree, _), wide| judge_leaves(tree, &wide))
     })
 }
 
 pub(super) fn collapse_of_one_leaf_and_of_nothing(trial: &Trial<'_>) -> CheckResult {
     // Leaves of one primitive, of whole blocks, and of more.
     let leaf = |n: usize| drawn_tree(&vec![Aabb::new(Vec3::ZERO, Vec3::ONE); n], n, &[1]);
-    let chosen: Vec<FlatTree> = [1, 8, 9, 16, 32, 0].into_iter().map(leaf).collect();
+    let chosen: Vec<Collapsed> = [1, 8, 9, 16, 32, 0].into_iter().map(|n| (leaf(n), 2.0)).collect();
     trial.forall_and(&chosen, 60, trees_only(3), |trees| {
-        compare(trees, trial.kit.collapse(trees), |tree, wide| judge_leaves(tree, &wide))
+        compare(trees, trial.kit.collapse(trees), |(tree, _), wide| judge_leaves(tree, &wide))
     })
 }
 
@@ -196,7 +198,7 @@ const WRONG_RULES: [(Rule, &str); 5] = [
     (Rule::FourChildren, "a node gets at most four children, not eight"),
     (Rule::LeavesStay, "every leaf stays a leaf: everything below an inner node may become one leaf as well"),
     (Rule::Primitives, "the costs count single primitives: a leaf pays for whole blocks, block_cost"),
-    (Rule::NodesAreFree, "WIDE_NODE_COST is left out: visiting a node costs something, too"),
+    (Rule::NodesAreFree, "the cost of a node is left out: visiting it costs something, too"),
 ];
 
 /// The cost of everything below a node of `count` primitives as one leaf.
@@ -206,12 +208,12 @@ fn leaf_cost(node: &FlatNode, count: u32, rule: Rule) -> f64 {
     if may_be { half_area(&node.bounds()) * f64::from(blocks) } else { f64::INFINITY }
 }
 
-fn node_cost(node: &FlatNode, rule: Rule) -> f64 {
-    if rule == Rule::NodesAreFree { 0.0 } else { half_area(&node.bounds()) * f64::from(WIDE_NODE_COST) }
+fn inner_cost(node: &FlatNode, node_cost: f32, rule: Rule) -> f64 {
+    if rule == Rule::NodesAreFree { 0.0 } else { half_area(&node.bounds()) * f64::from(node_cost) }
 }
 
-/// The least cost of a wide tree over `tree` by a rule, without its root.
-fn least(tree: &FlatTree, rule: Rule) -> f64 {
+/// The least cost of a wide tree by a rule, without its root.
+fn least((tree, node_cost): &Collapsed, rule: Rule) -> f64 {
     let ranges = ranges(tree);
     let most = if rule == Rule::FourChildren { 4 } else { 8 };
     let leaf = |index: usize| leaf_cost(&tree.nodes[index], ranges[index].1, rule);
@@ -225,7 +227,7 @@ fn least(tree: &FlatTree, rule: Rule) -> f64 {
                 costs[n - 1] = (1..n).map(|i| left[i - 1] + right[n - i - 1]).fold(f64::INFINITY, f64::min);
             }
             let divided = costs[most - 1];
-            let one = leaf(index).min(node_cost(&tree.nodes[index], rule) + divided);
+            let one = leaf(index).min(inner_cost(&tree.nodes[index], *node_cost, rule) + divided);
             let mut costs = costs.map(|cost| cost.min(one));
             costs[8] = divided.min(leaf(index));
             costs
@@ -235,10 +237,10 @@ fn least(tree: &FlatTree, rule: Rule) -> f64 {
 }
 
 /// The cost of a wide tree by a rule, without its root.
-fn cost(tree: &FlatTree, meaning: &Meaning, rule: Rule) -> f64 {
+fn cost((tree, node_cost): &Collapsed, meaning: &Meaning, rule: Rule) -> f64 {
     let ranges = ranges(tree);
     let leaves = meaning.leaves.iter().map(|&leaf| leaf_cost(&tree.nodes[leaf], ranges[leaf].1, rule));
-    let inner = meaning.inner.iter().map(|&inner| node_cost(&tree.nodes[inner], rule));
+    let inner = meaning.inner.iter().map(|&inner| inner_cost(&tree.nodes[inner], *node_cost, rule));
     leaves.chain(inner).sum()
 }
 
@@ -264,18 +266,20 @@ fn kept_by_greed(tree: &FlatTree) -> Vec<usize> {
 }
 
 /// Judges the cost of wide trees, which is counted without the root.
-fn judge_costs(trial: &Trial<'_>, trees: &[FlatTree]) -> Vec<CheckResult> {
-    let judge = |tree: &FlatTree, wide: WideTree| {
+fn judge_costs(trial: &Trial<'_>, trees: &[Collapsed]) -> Vec<CheckResult> {
+    let judge = |asked: &Collapsed, wide: WideTree| {
+        let tree = &asked.0;
         judge_leaves(tree, &wide)?;
         let Ok(meaning) = meaning(tree, &wide) else { return Ok(()) };
-        let (yours, least) = (cost(tree, &meaning, Rule::Right), least(tree, Rule::Right));
+        let (yours, least) = (cost(asked, &meaning, Rule::Right), least(asked, Rule::Right));
         if yours <= least * (1.0 + 1e-4) {
             return Ok(());
         }
         let [yours, least] = [yours, least].map(|cost| format!("a cost of {cost:.3} below the root"));
         Err(Broken::with_texts(describe(tree), yours, least, "the surface area heuristic"))
     };
-    let formulas = |tree: &FlatTree, wide: &WideTree| {
+    let formulas = |asked: &Collapsed, wide: &WideTree| {
+        let tree = &asked.0;
         let meaning = meaning(tree, wide).ok();
         let is_narrow = wide.nodes.iter().all(|node| node.n_children() <= 4);
         let gives = |rule, meaning: &Meaning| match rule {
@@ -286,7 +290,7 @@ fn judge_costs(trial: &Trial<'_>, trees: &[FlatTree]) -> Vec<CheckResult> {
             }
             rule => {
                 (rule != Rule::FourChildren || is_narrow)
-                    && cost(tree, meaning, rule) <= least(tree, rule) * (1.0 + 1e-4)
+                    && cost(asked, meaning, rule) <= least(asked, rule) * (1.0 + 1e-4)
             }
         };
         WRONG_RULES
@@ -316,5 +320,5 @@ fn halved(seed: u64, n: usize) -> FlatTree {
 }
 
 pub(super) fn collapse_fills_its_leaves(trial: &Trial<'_>) -> CheckResult {
-    all_hold(judge_costs(trial, &[512, 2048].map(|n| halved(trial.seed, n))))
+    all_hold(judge_costs(trial, &[512, 2048].map(|n| (halved(trial.seed, n), 2.0))))
 }
