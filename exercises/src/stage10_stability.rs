@@ -28,10 +28,10 @@ use raykata::shape::Triangle;
 ///
 /// Exactly:
 ///
-/// - The smaller root comes first, for every sign of `a` and `b`.
-/// - A double root is returned twice; for `b = c = 0` both roots are 0.
-/// - `None` if there is no real root, if `a` is 0, or if a coefficient is NaN or infinite.
-/// - No root is NaN; one too large for `f32` is infinite.
+/// 1. The smaller root comes first, for every sign of `a` and `b`.
+/// 2. A double root is returned twice; for `b = c = 0` both roots are 0.
+/// 3. `None` if there is no real root, if `a` is 0, or if a coefficient is NaN or infinite.
+/// 4. No root is NaN; one too large for `f32` is infinite.
 ///
 /// Source: "Ray-Sphere Intersection".
 pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
@@ -45,14 +45,14 @@ pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
 ///
 /// Exactly:
 ///
-/// - No ray escapes at a shared edge or corner, at any size and place.
-/// - None escapes through a triangle seen edge-on.
-/// - Points on edges belong to the triangle.
-/// - A ray in its plane misses it.
-/// - Scaling by a power of two changes no answer, unless a number over- or underflows.
-/// - `t` is accurate also on triangles a million times as long as wide. β and γ are right to
-///   1e-3 well inside.
-/// - NaN or infinity gives `None` or a finite hit.
+/// 1. No ray escapes at a shared edge or corner, at any size and place.
+/// 2. None escapes through a triangle seen edge-on.
+/// 3. Points on edges belong to the triangle.
+/// 4. A ray in its plane misses it.
+/// 5. Scaling by a power of two changes no answer, unless a number over- or underflows.
+/// 6. `t` is accurate also on triangles a million times as long as wide. β and γ are right to
+///    1e-3 well inside.
+/// 7. NaN or infinity gives `None` or a finite hit.
 ///
 /// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013; Shewchuk,
 /// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
@@ -69,12 +69,12 @@ pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 ///
 /// Exactly:
 ///
-/// - No box that the ray meets gives `None`: at corners, along faces, flat boxes, far away.
-/// - The same in every range, also at negative `t`.
-/// - The same in every direction, also -0.0, and where `1/d` overflows.
-/// - A box with a hit at `t` is entered at `t` or before.
-/// - The entry is right up to 64 roundings, where the ray clearly meets the box.
-/// - A box passed by at more than 64 roundings gives `None`, and so does the empty box.
+/// 1. No box that the ray meets gives `None`: at corners, along faces, flat boxes, far away.
+/// 2. The same in every range, also at negative `t`.
+/// 3. The same in every direction, also -0.0, and where `1/d` overflows.
+/// 4. A box with a hit at `t` is entered at `t` or before.
+/// 5. The entry is right up to 64 roundings, where the ray clearly meets the box.
+/// 6. A box passed by at more than 64 roundings gives `None`, and so does the empty box.
 ///
 /// Source: Ize, "Robust BVH Ray Traversal", JCGT 2013.
 pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
@@ -96,9 +96,10 @@ pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> O
 ///
 /// Exactly:
 ///
-/// - The origin is at least h above `point`, also after rounding.
-/// - It is on the side to which `direction` goes, or on that of `normal` if both are perpendicular.
-/// - Its height is at most 4 h plus 64 rounding steps of the largest coordinate.
+/// 1. The origin is at least h above `point`, also after rounding.
+/// 2. It is on the side to which `direction` goes, or on that of `normal` if both are
+///    perpendicular.
+/// 3. Its height is at most 4 h plus 64 rounding steps of the largest coordinate.
 ///
 /// Source: Pharr, Jakob and Humphreys, section 6.8.
 pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
@@ -123,11 +124,11 @@ pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
 ///
 /// Exactly:
 ///
-/// - Every number is an `f64`, and only the results are rounded: `t` is at most one unit in the
-///   last place off; β and γ, well inside, two roundings.
-/// - Points on edges belong to the triangle, if no product of three numbers is rounded.
-/// - The range of the ray contains the rounded `t`.
-/// - `None` for a determinant of 0. Every hit is finite.
+/// 1. Every number is an `f64`, and only the results are rounded: `t` is at most one unit in the
+///    last place off; β and γ, well inside, two roundings.
+/// 2. Points on edges belong to the triangle, if no product of three numbers is rounded.
+/// 3. The range of the ray contains the rounded `t`.
+/// 4. `None` for a determinant of 0. Every hit is finite.
 ///
 /// Source: "Cramer's Rule".
 pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
@@ -141,9 +142,9 @@ pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
 ///
 /// Exactly:
 ///
-/// - A ray that starts inside hits the far side; one that touches the sphere hits it.
-/// - `t` is within 0.51 units in the last place, if the ray starts a millionth of the radius or
-///   more away from the sphere.
+/// 1. A ray that starts inside hits the far side; one that touches the sphere hits it.
+/// 2. `t` is within 0.51 units in the last place, if the ray starts a millionth of the radius or
+///    more away from the sphere.
 ///
 /// Source: "Ray-Sphere Intersection".
 pub fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {

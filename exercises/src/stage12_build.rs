@@ -20,10 +20,10 @@ use raykata::wide::{
 ///
 /// Exactly:
 ///
-/// - c is `primitive.twice_centroid()`.
-/// - A bin below 0 or a NaN counts as bin 0, a bin above the last one as the last one.
-/// - The empty box changes no box, but its primitive is counted.
-/// - One pass over the primitives is made.
+/// 1. c is `primitive.twice_centroid()`.
+/// 2. A bin below 0 or a NaN counts as bin 0, a bin above the last one as the last one.
+/// 3. The empty box changes no box, but its primitive is counted.
+/// 4. One pass over the primitives is made.
 pub fn fill_bins(primitives: &[PrimitiveBox], grid: &BinGrid) -> Bins {
     todo!("find the bin of each primitive along each axis; extend its box and count the primitive")
 }
@@ -44,10 +44,10 @@ pub fn block_cost(n_primitives: u32) -> f32 {
 ///
 /// Exactly:
 ///
-/// - Both sides have primitives; `None` if every split leaves one side without any.
-/// - A cost of 0 (boxes without area) is a cost like any other.
-/// - Of equal costs up to rounding, any is right.
-/// - The result has the cost of the split.
+/// 1. Both sides have primitives; `None` if every split leaves one side without any.
+/// 2. A cost of 0 (boxes without area) is a cost like any other.
+/// 3. Of equal costs up to rounding, any is right.
+/// 4. The result has the cost of the split.
 ///
 /// Source: "Surface Area Heuristic"; Wald, "On fast Construction of SAH-based Bounding Volume
 /// Hierarchies", 2007.
@@ -69,17 +69,17 @@ pub fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &B
 ///
 /// Exactly:
 ///
-/// - A node of up to [`BLOCK`] primitives is a leaf; one of more than [`MAX_LEAF`] never is.
-/// - In between it is one where no split is possible, or if
-///   `NODE_COST · A + A(L) c(L) + A(R) c(R) ≥ A · c` (c is [`block_cost`]).
-/// - Each axis has [`MAX_BINS`] equal bins, fewer only for fewer primitives.
-/// - Without a split a larger node, and at depth [`DEEPEST_SPLIT`] each of more than `BLOCK`, is
-///   halved in any order.
-/// - Leaves stand in `order` as in the tree.
-/// - Boxes are the smallest possible.
-/// - An empty box or one with NaN goes into some leaf and changes no other box.
-/// - The cost (`NODE_COST · A` per inner node, `A · c` per leaf) is at most 1.05 times that of a
-///   full sweep, unless sizes differ a millionfold.
+/// 1. A node of up to [`BLOCK`] primitives is a leaf; one of more than [`MAX_LEAF`] never is.
+/// 2. In between it is one where no split is possible, or if
+///    `NODE_COST · A + A(L) c(L) + A(R) c(R) ≥ A · c` (c is [`block_cost`]).
+/// 3. Each axis has [`MAX_BINS`] equal bins, fewer only for fewer primitives.
+/// 4. Without a split a larger node, and at depth [`DEEPEST_SPLIT`] each of more than `BLOCK`, is
+///    halved in any order.
+/// 5. Leaves stand in `order` as in the tree.
+/// 6. Boxes are the smallest possible.
+/// 7. An empty box or one with NaN goes into some leaf and changes no other box.
+/// 8. The cost (`NODE_COST · A` per inner node, `A · c` per leaf) is at most 1.05 times that of a
+///    full sweep, unless sizes differ a millionfold.
 pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
     todo!("make a leaf or fill bins, choose a split, partition, and build both sides")
 }
@@ -90,15 +90,15 @@ pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
 ///
 /// Exactly:
 ///
-/// - The tree is the same, bit for bit.
-/// - Each forked node is logged once, as [`ForkKind::Children`], with the position `first` of its
-///   first primitive in the whole `order`.
-/// - A node adds its number n of primitives to the work and span of its sides; of parallel sides
-///   the larger span counts.
-/// - The span is at most 1/3 of the work at 30,000 primitives of about one size, and 1/5 at
-///   100,000.
-/// - Bonus: 1/8 at 100,000. [`Forks::each`] sorts into bins in pieces of 1,000 primitives or more,
-///   logged once with the number of pieces; the node then adds `n/2 + n/(2 pieces)` to the span.
+/// 1. The tree is the same, bit for bit.
+/// 2. Each forked node is logged once, as [`ForkKind::Children`], with the position `first` of its
+///    first primitive in the whole `order`.
+/// 3. A node adds its number n of primitives to the work and span of its sides; of parallel sides
+///    the larger span counts.
+/// 4. The span is at most 1/3 of the work at 30,000 primitives of about one size, and 1/5 at
+///    100,000.
+/// 5. Bonus: 1/8 at 100,000. [`Forks::each`] sorts into bins in pieces of 1,000 primitives or more,
+///    logged once with the number of pieces; the node then adds `n/2 + n/(2 pieces)` to the span.
 ///
 /// Source: Blumofe and Leiserson, "Scheduling Multithreaded Computations by Work Stealing", 1999.
 pub fn build_parallel(bounds: &[Aabb], forks: &mut Forks) -> FlatTree {

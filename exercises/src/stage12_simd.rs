@@ -19,11 +19,11 @@ use raykata::wide::{Entered, Filtered, TriangleBlock, WideNode, WideRay};
 ///
 /// Exactly:
 ///
-/// - The `t` of a plane is `plane · scale + offset`, with `scale[0]` and `offset[0]` for near planes,
-///   `scale[1]` and `offset[1]` for far ones.
-/// - Intersect the axes with the range `ray.t_min..=t_max`. A box is entered if the entry is at most
-///   the exit, so an empty place never is.
-/// - Each `t` has one or two roundings.
+/// 1. The `t` of a plane is `plane · scale + offset`, with `scale[0]` and `offset[0]` for near
+///    planes, `scale[1]` and `offset[1]` for far ones.
+/// 2. Intersect the axes with the range `ray.t_min..=t_max`. A box is entered if the entry is at
+///    most the exit, so an empty place never is.
+/// 3. Each `t` has one or two roundings.
 ///
 /// Source: "Ray/box intersection"; Ize, "Robust BVH Ray Traversal", JCGT 2013.
 #[inline(always)]
@@ -38,12 +38,12 @@ pub fn enter_boxes<L: Level>(level: L, node: &WideNode, ray: &WideRay, t_max: f3
 ///
 /// Exactly:
 ///
-/// - `possible` has the bit of each triangle that the exact line meets at a `t`, rounded, in
-///   `ray.t_min..t_max`, for any finite input.
-/// - At least 99 of 100 are left out that a ray misses by a good part of their size, or hits a tenth
-///   outside of the range.
-/// - A lane with NaN, another shape, is possible.
-/// - `certain` has the bits where U, V, W and N have the same sign for certain: most of those hit.
+/// 1. `possible` has the bit of each triangle that the exact line meets at a `t`, rounded, in
+///    `ray.t_min..t_max`, for any finite input.
+/// 2. At least 99 of 100 are left out that a ray misses by a good part of their size, or hits a
+///    tenth outside of the range.
+/// 3. A lane with NaN, another shape, is possible.
+/// 4. `certain` has the bits where U, V, W and N have the same sign for certain: most of those hit.
 ///
 /// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013.
 #[inline(always)]

@@ -19,9 +19,9 @@ use raykata::wide::{BLOCK, Child, FlatTree, MAX_LEAF, NO_PRIMITIVE, WideNode, Wi
 ///
 /// Exactly:
 ///
-/// - The left child A comes first, and all below A before all below B.
-/// - Boxes, leaves and the order of the primitives stay as they are.
-/// - A hierarchy without nodes gives a tree without nodes.
+/// 1. The left child A comes first, and all below A before all below B.
+/// 2. Boxes, leaves and the order of the primitives stay as they are.
+/// 3. A hierarchy without nodes gives a tree without nodes.
 pub fn flatten(bvh: &Bvh) -> FlatTree {
     todo!("copy the root, then the two children of each node side by side, depth first")
 }
@@ -33,12 +33,12 @@ pub fn flatten(bvh: &Bvh) -> FlatTree {
 ///
 /// Exactly:
 ///
-/// - The cost is the least, up to rounding.
-/// - A leaf has the box and all primitives of a binary node, in order, at most [`MAX_LEAF`]. Free
-///   lanes of its last block have [`NO_PRIMITIVE`].
-/// - The children of a node come before its empty places.
-/// - A parent has a smaller index than its children.
-/// - A tree that is best as one leaf has one node with one child; no nodes give no nodes.
+/// 1. The cost is the least, up to rounding.
+/// 2. A leaf has the box and all primitives of a binary node, in order, at most [`MAX_LEAF`]. Free
+///    lanes of its last block have [`NO_PRIMITIVE`].
+/// 3. The children of a node come before its empty places.
+/// 4. A parent has a smaller index than its children.
+/// 5. A tree that is best as one leaf has one node with one child; no nodes give no nodes.
 pub fn collapse(tree: &FlatTree, node_cost: f32) -> WideTree {
     todo!("from the last node to the first: the least cost as 1 to 8 children; then build what costs least")
 }

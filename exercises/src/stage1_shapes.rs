@@ -20,8 +20,8 @@ use raykata::ray::Ray;
 ///
 /// Exactly:
 ///
-/// - The roots come in any order.
-/// - A root that is NaN or infinite does not count, but the other root still may.
+/// 1. The roots come in any order.
+/// 2. A root that is NaN or infinite does not count, but the other root still may.
 pub fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32> {
     todo!("return the smaller of the two roots for which ray.contains(t) is true")
 }
@@ -41,10 +41,10 @@ pub fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32> {
 ///
 /// Exactly:
 ///
-/// - A tangent ray (discriminant exactly 0) hits.
-/// - A root `t = 0`, of a ray that starts on the sphere, does not count.
-/// - `None` for a radius of 0 or less, a direction of 0, an infinite origin, and a NaN anywhere.
-/// - Hits of near, distant and tiny spheres (sizes 1e-6 to 1e6) are right up to a few roundings.
+/// 1. A tangent ray (discriminant exactly 0) hits.
+/// 2. A root `t = 0`, of a ray that starts on the sphere, does not count.
+/// 3. `None` for a radius of 0 or less, a direction of 0, an infinite origin, and a NaN anywhere.
+/// 4. Hits of near, distant and tiny spheres (sizes 1e-6 to 1e6) are right up to a few roundings.
 #[inline]
 pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     todo!("solve the quadratic for t and return the nearest root that counts")
@@ -84,10 +84,10 @@ pub fn sphere_normal(center: Vec3, point: Vec3) -> Vec3 {
 ///
 /// Exactly:
 ///
-/// - The plane is infinite and is hit from both sides. `normal` need not be a unit vector.
-/// - `None` for a ray parallel to the plane (`n·d = 0` exactly) or starting in it, a normal of 0,
-///   and a NaN anywhere.
-/// - `t` keeps its digits far from the origin.
+/// 1. The plane is infinite and is hit from both sides. `normal` need not be a unit vector.
+/// 2. `None` for a ray parallel to the plane (`n·d = 0` exactly) or starting in it, a normal of 0,
+///    and a NaN anywhere.
+/// 3. `t` keeps its digits far from the origin.
 pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     todo!("solve n·(o + t d - p0) = 0 for t and return it if ray.contains(t)")
 }
@@ -99,10 +99,10 @@ pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
 ///
 /// Exactly:
 ///
-/// - What [`plane`] demands.
-/// - All four coefficients times the same factor (1e-12 to 1e12, or negative) give the same `t`.
-/// - `t` is right up to a few roundings for the plane that the coefficients give, also far from the
-///   origin.
+/// 1. What [`plane`] demands.
+/// 2. All four coefficients times the same factor (1e-12 to 1e12, or negative) give the same `t`.
+/// 3. `t` is right up to a few roundings for the plane that the coefficients give, also far from
+///    the origin.
 ///
 /// Source: "Ray-plane intersection".
 pub fn plane_by_coefficients(ray: &Ray, normal: Vec3, d: f32) -> Option<f32> {

@@ -26,9 +26,9 @@ pub fn closest_hit_both(bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> Option<
 ///
 /// Exactly:
 ///
-/// - `t_max` is lowered at each hit. After the nearer child, the farther child's entry is compared
-///   with it again.
-/// - If the ray enters both children at the same `t`, either may be first.
+/// 1. `t_max` is lowered at each hit. After the nearer child, the farther child's entry is compared
+///    with it again.
+/// 2. If the ray enters both children at the same `t`, either may be first.
 pub fn closest_hit(bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
     todo!("enter the nearer child first, and skip boxes beyond the best hit")
 }

@@ -29,10 +29,10 @@ pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
 ///
 /// Exactly:
 ///
-/// - Along the normal, and if `n1 == n2`, it is `direction` up to rounding.
-/// - `None` beyond the critical angle (total internal reflection). Within rounding of it both
-///   answers pass.
-/// - The length of `direction` may differ from 1 by a rounding error.
+/// 1. Along the normal, and if `n1 == n2`, it is `direction` up to rounding.
+/// 2. `None` beyond the critical angle (total internal reflection). Within rounding of it both
+///    answers pass.
+/// 3. The length of `direction` may differ from 1 by a rounding error.
 ///
 /// Source: "Snell's law", "Refraction direction".
 pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> {
@@ -51,8 +51,8 @@ pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> 
 ///
 /// Exactly:
 ///
-/// - The result is in `0..=1`, and 1 beyond the critical angle. Within rounding of it (or if
-///   `n1 == n2` and `cos_theta` is 0) any number in `0..=1` passes.
+/// 1. The result is in `0..=1`, and 1 beyond the critical angle. Within rounding of it (or if
+///    `n1 == n2` and `cos_theta` is 0) any number in `0..=1` passes.
 ///
 /// Source: Schlick, 1994.
 pub fn fresnel_schlick(cos_theta: f32, n1: f32, n2: f32) -> f32 {
@@ -84,13 +84,13 @@ pub fn fresnel_exact(cos_theta: f32, n1: f32, n2: f32) -> f32 {
 ///
 /// Exactly:
 ///
-/// - The directions are those of [`reflect`] and [`refract`].
-/// - The weights are `weight · (mirror + F transmission)` and `weight · (1 - F) transmission`,
-///   channel by channel.
-/// - F is that of `material.fresnel`, and 0 for `None`, also beyond the critical angle, where there
-///   is no refracted ray.
-/// - A ray is returned only if `depth < limits.max_depth` and the largest channel of its own weight
-///   is above 0 and at least `limits.min_contribution`. The order does not matter.
+/// 1. The directions are those of [`reflect`] and [`refract`].
+/// 2. The weights are `weight · (mirror + F transmission)` and `weight · (1 - F) transmission`,
+///    channel by channel.
+/// 3. F is that of `material.fresnel`, and 0 for `None`, also beyond the critical angle, where
+///    there is no refracted ray.
+/// 4. A ray is returned only if `depth < limits.max_depth` and the largest channel of its own
+///    weight is above 0 and at least `limits.min_contribution`. The order does not matter.
 ///
 /// Source: "Illumination in ray tracing", "Algorithm (max depth)", "Algorithm (min contribution)".
 pub fn scatter(
@@ -112,10 +112,10 @@ pub fn scatter(
 ///
 /// Exactly:
 ///
-/// - A reflected ray starts on the side of `surface.geometric_normal`, a refracted ray on the other
-///   side.
-/// - Its distance from the point along the normal is as for
-///   [`shadow_ray`](crate::stage4_shading::shadow_ray).
+/// 1. A reflected ray starts on the side of `surface.geometric_normal`, a refracted ray on the
+///    other side.
+/// 2. Its distance from the point along the normal is as for
+///    [`shadow_ray`](crate::stage4_shading::shadow_ray).
 ///
 /// Source: "Algorithm (max depth)".
 pub fn spawn_ray(surface: &Surface, secondary: &SecondaryRay) -> Ray {

@@ -17,10 +17,10 @@ use raykata::scene::{Quality, Scene};
 ///
 /// Exactly:
 ///
-/// - A [`Light::radiance`] of 0 in all channels needs nothing: `LightEffects::default()`.
-/// - An area light has `area`, and `quality.light_samples` samples, if that number is above 0.
-/// - Every other light has 1 sample and no `area`.
-/// - `shadows` is `light.shadows`.
+/// 1. A [`Light::radiance`] of 0 in all channels needs nothing: `LightEffects::default()`.
+/// 2. An area light has `area`, and `quality.light_samples` samples, if that number is above 0.
+/// 3. Every other light has 1 sample and no `area`.
+/// 4. `shadows` is `light.shadows`.
 pub fn light_effects(light: &Light, quality: &Quality) -> LightEffects {
     todo!("radiance zero: the default; an area light: quality.light_samples samples; else 1 sample")
 }
@@ -30,15 +30,15 @@ pub fn light_effects(light: &Light, quality: &Quality) -> LightEffects {
 ///
 /// Exactly:
 ///
-/// - `lights`: the indices, ascending, of all lights of which, in some channel, [`Light::radiance`]
-///   is not 0 and `diffuse` or `specular` is not 0.
-/// - `transmission`: `material.transmission` is not 0 in some channel, for every index of
-///   refraction.
-/// - `mirror`: `material.mirror` is not 0 in some channel, or `coat` is not 1, or rays are
-///   refracted and `fresnel` is not [`Fresnel::None`].
-/// - Both are `false` if `quality.max_depth` is 0.
-/// - `glossy`: `roughness` is above 0, and `mirror` or `transmission` is set.
-/// - `texture`: there is an image, and `diffuse` or `ambient` is not 0.
+/// 1. `lights`: the indices, ascending, of all lights of which, in some channel,
+///    [`Light::radiance`] is not 0 and `diffuse` or `specular` is not 0.
+/// 2. `transmission`: `material.transmission` is not 0 in some channel, for every index of
+///    refraction.
+/// 3. `mirror`: `material.mirror` is not 0 in some channel, or `coat` is not 1, or rays are
+///    refracted and `fresnel` is not [`Fresnel::None`].
+/// 4. Both are `false` if `quality.max_depth` is 0.
+/// 5. `glossy`: `roughness` is above 0, and `mirror` or `transmission` is set.
+/// 6. `texture`: there is an image, and `diffuse` or `ambient` is not 0.
 pub fn material_effects(material: &Material, lights: &[Light], quality: &Quality) -> MaterialEffects {
     todo!("find the lights that matter; then set mirror, transmission, glossy and texture")
 }
@@ -48,18 +48,18 @@ pub fn material_effects(material: &Material, lights: &[Light], quality: &Quality
 ///
 /// Exactly:
 ///
-/// - `lens`: a lens has an aperture above 0.
-/// - `motion`: a shown shape moves, and a shutter closes later than it opens.
-/// - `indirect_light`: as in the scene.
-/// - `lights`: [`light_effects`] of each light in order, also of those that emit nothing.
-/// - `materials`: [`material_effects`] of each material that a shown shape has, the default for all
-///   others.
-/// - `texture` is also `false` if nothing lights the image: `scene.ambient` times `ambient` and
-///   each radiance times `diffuse` are 0, and so is `diffuse` or there is no indirect light.
-/// - `smooth_meshes`: per mesh, whether it is smooth and shown.
-/// - All but `lights` is `false` or the default if nothing shines: the background
-///   [`is_black`](raykata::scene::Background::is_black), and each shown material has no `emission`,
-///   lists no light, and `scene.ambient` times `ambient` is 0.
+/// 1. `lens`: a lens has an aperture above 0.
+/// 2. `motion`: a shown shape moves, and a shutter closes later than it opens.
+/// 3. `indirect_light`: as in the scene.
+/// 4. `lights`: [`light_effects`] of each light in order, also of those that emit nothing.
+/// 5. `materials`: [`material_effects`] of each material that a shown shape has, the default for
+///    all others.
+/// 6. `texture` is also `false` if nothing lights the image: `scene.ambient` times `ambient` and
+///    each radiance times `diffuse` are 0, and so is `diffuse` or there is no indirect light.
+/// 7. `smooth_meshes`: per mesh, whether it is smooth and shown.
+/// 8. All but `lights` is `false` or the default if nothing shines: the background
+///    [`is_black`](raykata::scene::Background::is_black), and each shown material has no
+///    `emission`, lists no light, and `scene.ambient` times `ambient` is 0.
 pub fn effects(scene: &Scene) -> Effects {
     todo!("list the shown shapes; then combine the effects of camera, lights, materials and meshes")
 }
@@ -69,18 +69,19 @@ pub fn effects(scene: &Scene) -> Effects {
 ///
 /// Exactly:
 ///
-/// - `primary`: one ray per sample of each pixel.
-/// - `reflection`: a hit spawns `quality.glossy_samples` rays if its one material is glossy, else
-///   1; `transmission` likewise. The largest number over all materials counts; for the next level,
-///   that of both together.
-/// - There are at most `quality.max_depth` bounces, each only if the weight of the whole reflection
-///   or refraction is above 0 and at least `quality.min_contribution`.
-/// - A camera ray weighs 1. A reflection weighs the largest channel of `mirror` (with `fresnel`, of
-///   `mirror + transmission`; with `coat` not 1, at least 1), a refraction that of `transmission`,
-///   times the ray's weight. The largest counts; each of `glossy_samples` rays has an equal part.
-/// - `shadow`: each hit, also of the last bounce, needs a ray per sample of each shadow-casting
-///   light that its material lists. The largest sum counts.
-/// - A number beyond `u64` is `u64::MAX`.
+/// 1. `primary`: one ray per sample of each pixel.
+/// 2. `reflection`: a hit spawns `quality.glossy_samples` rays if its one material is glossy, else
+///    1; `transmission` likewise. The largest number over all materials counts; for the next level,
+///    that of both together.
+/// 3. There are at most `quality.max_depth` bounces, each only if the weight of the whole
+///    reflection or refraction is above 0 and at least `quality.min_contribution`.
+/// 4. A camera ray weighs 1. A reflection weighs the largest channel of `mirror` (with `fresnel`,
+///    of `mirror + transmission`; with `coat` not 1, at least 1), a refraction that of
+///    `transmission`, times the ray's weight. The largest counts; each of `glossy_samples` rays has
+///    an equal part.
+/// 5. `shadow`: each hit, also of the last bounce, needs a ray per sample of each shadow-casting
+///    light that its material lists. The largest sum counts.
+/// 6. A number beyond `u64` is `u64::MAX`.
 pub fn most_rays(scene: &Scene, effects: &Effects) -> RayCounts {
     todo!("count camera rays; then secondary rays bounce by bounce; then shadow rays of all hits")
 }
@@ -91,11 +92,11 @@ pub fn most_rays(scene: &Scene, effects: &Effects) -> RayCounts {
 ///
 /// Exactly:
 ///
-/// - `primary`: the sum of `hits`.
-/// - `shadow`: the sum of `in_front[light]` over all lights that matter to the material and cast
-///   shadows.
-/// - `reflection`: per hit of a material with `mirror`, `quality.glossy_samples` rays if it is
-///   glossy, else 1. `transmission` likewise.
+/// 1. `primary`: the sum of `hits`.
+/// 2. `shadow`: the sum of `in_front[light]` over all lights that matter to the material and cast
+///    shadows.
+/// 3. `reflection`: per hit of a material with `mirror`, `quality.glossy_samples` rays if it is
+///    glossy, else 1. `transmission` likewise.
 pub fn rays_of_hits(hits: &[MaterialHits], effects: &Effects, quality: &Quality) -> RayCounts {
     todo!("add up the rays row by row, as the effects of the row's material say")
 }
@@ -129,8 +130,8 @@ pub fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
 ///
 /// Exactly:
 ///
-/// - [`texel`] with `texture.wrap` gives the column and row of each pixel.
-/// - A coordinate counts as 0 if it, or its product with the width or height, is NaN or infinite.
+/// 1. [`texel`] with `texture.wrap` gives the column and row of each pixel.
+/// 2. A coordinate counts as 0 if it, or its product with the width or height, is NaN or infinite.
 pub fn texture_color(texture: &Texture, uv: Vec2) -> Vec3 {
     todo!("find the four pixels around uv and interpolate between them")
 }

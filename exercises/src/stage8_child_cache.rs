@@ -15,14 +15,14 @@ use raykata::ray::Ray;
 ///
 /// Exactly:
 ///
-/// - `cache` has an entry per node: one of its children, or `None`. The hit is the same for all
-///   contents.
-/// - Visit the cached child after the node's own primitives and before the other children, and
-///   those as `savings` says.
-/// - Call `probe.enter` at most once per node, and test each primitive at most once.
-/// - In the end, each node on the path from the root to the node with the closest hit has stored
-///   the child on this path.
-/// - Other entries may stay or change. A ray without a hit need not change any.
+/// 1. `cache` has an entry per node: one of its children, or `None`. The hit is the same for all
+///    contents.
+/// 2. Visit the cached child after the node's own primitives and before the other children, and
+///    those as `savings` says.
+/// 3. Call `probe.enter` at most once per node, and test each primitive at most once.
+/// 4. In the end, each node on the path from the root to the node with the closest hit has stored
+///    the child on this path.
+/// 5. Other entries may stay or change. A ray without a hit need not change any.
 ///
 /// Source: "Ray-Scene Intersection" (coherence).
 pub fn closest_hit_with_child_cache(

@@ -19,10 +19,10 @@ use raykata::shape::Sphere;
 ///
 /// Exactly:
 ///
-/// - The origin stays accurate also far from the world's origin, where single precision loses
-///   digits.
-/// - The direction keeps its transformed length.
-/// - `t_min`, `t_max` and `time` stay the same.
+/// 1. The origin stays accurate also far from the world's origin, where single precision loses
+///    digits.
+/// 2. The direction keeps its transformed length.
+/// 3. `t_min`, `t_max` and `time` stay the same.
 #[inline]
 pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
     todo!("transform the origin as a point and the direction as a vector; do not normalize it")
@@ -42,10 +42,10 @@ pub fn normal_to_world(normal: Vec3, to_object: &Affine3A) -> Vec3 {
 ///
 /// Exactly:
 ///
-/// - `to_object` is `Mₙ⁻¹ … M₂⁻¹ M₁⁻¹`.
-/// - An empty path gives the identity for both.
-/// - `None` if some determinant is exactly 0 or some inverse is not finite. A small or negative
-///   determinant is valid.
+/// 1. `to_object` is `Mₙ⁻¹ … M₂⁻¹ M₁⁻¹`.
+/// 2. An empty path gives the identity for both.
+/// 3. `None` if some determinant is exactly 0 or some inverse is not finite. A small or negative
+///    determinant is valid.
 pub fn placement(path: &[Affine3A]) -> Option<Placement> {
     todo!("multiply the transforms from the root to the node, and the inverses in reverse order")
 }
@@ -55,9 +55,9 @@ pub fn placement(path: &[Affine3A]) -> Option<Placement> {
 ///
 /// Exactly:
 ///
-/// - The box contains all transformed points of `bounds`.
-/// - It is larger than the exact box by a few rounding errors of the terms at most.
-/// - An empty box (`min` above `max` on some axis) gives [`Aabb::EMPTY`].
+/// 1. The box contains all transformed points of `bounds`.
+/// 2. It is larger than the exact box by a few rounding errors of the terms at most.
+/// 3. An empty box (`min` above `max` on some axis) gives [`Aabb::EMPTY`].
 ///
 /// Source: Arvo, "Transforming axis-aligned bounding boxes", Graphics Gems, 1990; "Rotate Bounding
 /// Boxes".
@@ -70,9 +70,9 @@ pub fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
 ///
 /// Exactly:
 ///
-/// - No point lies outside, also not by a rounding error.
-/// - The radius is at most twice the smallest possible one, apart from a few rounding errors of the
-///   coordinates.
+/// 1. No point lies outside, also not by a rounding error.
+/// 2. The radius is at most twice the smallest possible one, apart from a few rounding errors of
+///    the coordinates.
 pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
     todo!("take the centre of the points' box and the largest distance from it, rounded up")
 }
@@ -82,11 +82,11 @@ pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
 ///
 /// Exactly:
 ///
-/// - `t` counts lengths of the direction, which may have any length but 0. The radius is above 0.
-/// - The result is in `t_min..=t_max`; from inside it is `t_min`.
-/// - It is never later than the exact entry, and only a few rounding errors earlier.
-/// - `None` if the sphere lies beside the ray, behind it or beyond `t_max`. The surface belongs to
-///   the sphere.
+/// 1. `t` counts lengths of the direction, which may have any length but 0. The radius is above 0.
+/// 2. The result is in `t_min..=t_max`; from inside it is `t_min`.
+/// 3. It is never later than the exact entry, and only a few rounding errors earlier.
+/// 4. `None` if the sphere lies beside the ray, behind it or beyond `t_max`. The surface belongs to
+///    the sphere.
 pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
     todo!("return the nearer root, or t_min from inside; None if the ray misses the sphere")
 }
@@ -97,15 +97,15 @@ pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
 ///
 /// Exactly:
 ///
-/// - The hit is the same for all combinations of `savings`. At equal `t` the smaller primitive
-///   number wins.
-/// - Test each primitive at most once.
-/// - `volumes`: call `probe.enter` once per node before its primitives are tested, also for the
-///   root; skip a node that the ray does not enter, with all nodes below. Off: never call it, and
-///   visit all nodes.
-/// - `skip`: just before you visit a node, skip it if the ray enters it beyond the closest hit so
-///   far, not exactly there.
-/// - `sort`: visit the entered children in the order of their entries. Off: as listed.
+/// 1. The hit is the same for all combinations of `savings`. At equal `t` the smaller primitive
+///    number wins.
+/// 2. Test each primitive at most once.
+/// 3. `volumes`: call `probe.enter` once per node before its primitives are tested, also for the
+///    root; skip a node that the ray does not enter, with all nodes below. Off: never call it, and
+///    visit all nodes.
+/// 4. `skip`: just before you visit a node, skip it if the ray enters it beyond the closest hit so
+///    far, not exactly there.
+/// 5. `sort`: visit the entered children in the order of their entries. Off: as listed.
 pub fn closest_hit_in_graph(
     graph: &Graph,
     probe: &mut impl Probe,

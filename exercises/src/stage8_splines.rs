@@ -17,11 +17,11 @@ use raykata::shape::NurbsPatch;
 ///
 /// Exactly:
 ///
-/// - `N(i, 0)(u)` is 1 in the span `knots[i] <= u < knots[i + 1]`, and 0 elsewhere. The last span
-///   that is not empty also contains the last knot.
-/// - `N(i, p)(u) = (u - k_i) / (k_{i+p} - k_i) N(i, p-1)(u) + (k_{i+p+1} - u) / (k_{i+p+1} -
-///   k_{i+1}) N(i+1, p-1)(u)`, without a term whose denominator is 0.
-/// - In the domain, ends included, they are at least 0, and their sum is 1.
+/// 1. `N(i, 0)(u)` is 1 in the span `knots[i] <= u < knots[i + 1]`, and 0 elsewhere. The last span
+///    that is not empty also contains the last knot.
+/// 2. `N(i, p)(u) = (u - k_i) / (k_{i+p} - k_i) N(i, p-1)(u) + (k_{i+p+1} - u) / (k_{i+p+1} -
+///    k_{i+1}) N(i+1, p-1)(u)`, without a term whose denominator is 0.
+/// 3. In the domain, ends included, they are at least 0, and their sum is 1.
 ///
 /// Source: Cox 1972; de Boor 1972.
 pub fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32 {

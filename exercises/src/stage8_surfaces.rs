@@ -24,17 +24,17 @@ pub fn bezier_point(patch: &BezierPatch, uv: Vec2) -> Vec3 {
 ///
 /// Exactly:
 ///
-/// - An edge `p q` with third corners `r` and `s` gets the vertex `3/8 (p+q) + 1/8 (r+s)`, a
-///   border edge `1/2 (p+q)`.
-/// - An old vertex `p` with `n` neighbours `pᵢ` moves to `(1 - nβ) p + β Σ pᵢ`. β is `3/16` for
-///   `n = 3`, else `3/(8n)` (Warren), or Loop's `(5/8 - (3/8 + cos(2π/n)/4)²)/n`.
-/// - On a border it moves to `3/4 p + 1/8 (p₁+p₂)` (neighbours on it). A vertex of no
-///   triangle stays.
-/// - All formulas use the old positions.
-/// - Old vertices keep their numbers; new ones follow, one per edge, in any order.
-/// - Triangles, in any order, keep the old order of corners and material.
-/// - Old texture coordinates stay; a new vertex has the mean of its edge's ends. Without
-///   them, or without materials, the result has none. It has no normals.
+/// 1. An edge `p q` with third corners `r` and `s` gets the vertex `3/8 (p+q) + 1/8 (r+s)`, a
+///    border edge `1/2 (p+q)`.
+/// 2. An old vertex `p` with `n` neighbours `pᵢ` moves to `(1 - nβ) p + β Σ pᵢ`. β is `3/16` for
+///    `n = 3`, else `3/(8n)` (Warren), or Loop's `(5/8 - (3/8 + cos(2π/n)/4)²)/n`.
+/// 3. On a border it moves to `3/4 p + 1/8 (p₁+p₂)` (neighbours on it). A vertex of no
+///    triangle stays.
+/// 4. All formulas use the old positions.
+/// 5. Old vertices keep their numbers; new ones follow, one per edge, in any order.
+/// 6. Triangles, in any order, keep the old order of corners and material.
+/// 7. Old texture coordinates stay; a new vertex has the mean of its edge's ends. Without
+///    them, or without materials, the result has none. It has no normals.
 ///
 /// Source: Loop 1987; Warren 1995; Hoppe 1994.
 pub fn loop_subdivide(mesh: &Mesh) -> Mesh {

@@ -25,14 +25,14 @@ use raykata::ray::Ray;
 ///
 /// Exactly:
 ///
-/// - Choose a plane that leaves few primitives on its fuller side, and few on both.
-/// - Make a leaf of at most `leaf_size` primitives, at `max_depth` (the root is at depth 0), if no
-///   plane leaves fewer primitives on each side and less than 60 % of them on both, or if
-///   [`ListGrowth::divide`] returns `None`.
-/// - List a primitive once in every leaf that it overlaps; one that touches a plane is on both
-///   sides.
-/// - Leave out hulls without corners, or with NaN or infinity. Without a usable hull there are
-///   no nodes.
+/// 1. Choose a plane that leaves few primitives on its fuller side, and few on both.
+/// 2. Make a leaf of at most `leaf_size` primitives, at `max_depth` (the root is at depth 0), if no
+///    plane leaves fewer primitives on each side and less than 60 % of them on both, or if
+///    [`ListGrowth::divide`] returns `None`.
+/// 3. List a primitive once in every leaf that it overlaps; one that touches a plane is on both
+///    sides.
+/// 4. Leave out hulls without corners, or with NaN or infinity. Without a usable hull there are
+///    no nodes.
 ///
 /// Source: "Binary Space Partition (BSP) Tree".
 pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
@@ -45,9 +45,9 @@ pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
 ///
 /// Exactly:
 ///
-/// - Visit a node at most once, and only if the ray enters it before the best hit.
-/// - A ray in the plane, or that starts on it, is on both sides: a primitive in the plane may be
-///   listed on one side only. Its computed height may be a rounding error in place of 0.
+/// 1. Visit a node at most once, and only if the ray enters it before the best hit.
+/// 2. A ray in the plane, or that starts on it, is on both sides: a primitive in the plane may be
+///    listed on one side only. Its computed height may be a rounding error in place of 0.
 ///
 /// Source: "Binary Space Partition (BSP) Tree".
 pub fn closest_hit(bsp: &Bsp, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {

@@ -39,8 +39,8 @@ pub struct PaddedBoxes {
 ///
 /// Exactly:
 ///
-/// - Boxes that are empty or have a NaN coordinate are left out.
-/// - The result stays within ±`f32::MAX`.
+/// 1. Boxes that are empty or have a NaN coordinate are left out.
+/// 2. The result stays within ±`f32::MAX`.
 pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     todo!("leave out boxes that are empty or NaN, and widen every other box a little")
 }
@@ -53,9 +53,9 @@ pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
 ///
 /// Exactly:
 ///
-/// - With `rate = 0` the result is the whole interval or `None`.
-/// - A ray within the plane is on both sides.
-/// - `None` if no `t` of the interval is above.
+/// 1. With `rate = 0` the result is the whole interval or `None`.
+/// 2. A ray within the plane is on both sides.
+/// 3. `None` if no `t` of the interval is above.
 ///
 /// Source: "kd-Tree Traversal".
 #[inline]
@@ -68,10 +68,10 @@ pub fn part_above(height: f64, rate: f64, room: f64, (t, t_end): (f64, f64)) -> 
 ///
 /// Exactly:
 ///
-/// - Returns the `t` of entry and exit. A ray that starts inside enters at `t_min`.
-/// - Cells are closed: a ray along a face or through a corner is inside.
-/// - The range and the faces have [`ROUNDING`] as room for hits in single precision.
-/// - `None` if the ray misses the cell within its range, and for an empty cell.
+/// 1. Returns the `t` of entry and exit. A ray that starts inside enters at `t_min`.
+/// 2. Cells are closed: a ray along a face or through a corner is inside.
+/// 3. The range and the faces have [`ROUNDING`] as room for hits in single precision.
+/// 4. `None` if the ray misses the cell within its range, and for an empty cell.
 ///
 /// Source: "kd-Tree Traversal".
 #[inline]
@@ -90,9 +90,9 @@ pub fn range(ray: &Ray) -> (f64, f64) {
 ///
 /// Exactly:
 ///
-/// - A hit counts also if it lies outside the cell.
-/// - At equal `t` the smaller primitive number wins.
-/// - A primitive that overlaps several cells may be tested several times.
+/// 1. A hit counts also if it lies outside the cell.
+/// 2. At equal `t` the smaller primitive number wins.
+/// 3. A primitive that overlaps several cells may be tested several times.
 #[inline]
 pub fn test_cell(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best: &mut Option<PrimitiveHit>) {
     todo!("ask probe.hit about each primitive, and keep the closest; at one t the smaller number")

@@ -18,9 +18,9 @@ pub const PACKET: usize = 8;
 ///
 /// Exactly:
 ///
-/// - The answer is that of `search` alone: at equal `t` the smaller number wins, and a hit counts
-///   only within the range of `ray`.
-/// - With `last = None`, or if the ray misses that primitive, `search` gets the whole ray.
+/// 1. The answer is that of `search` alone: at equal `t` the smaller number wins, and a hit counts
+///    only within the range of `ray`.
+/// 2. With `last = None`, or if the ray misses that primitive, `search` gets the whole ray.
 ///
 /// Source: "Cache Node Intersections".
 pub fn closest_hit_cached<P: Cells>(
@@ -37,10 +37,10 @@ pub fn closest_hit_cached<P: Cells>(
 ///
 /// Exactly:
 ///
-/// - One result per ray, in order, the same as alone: each ray keeps its range and best hit. At
-///   equal `t` any of the primitives counts.
-/// - Open a node at most once per packet, and only if at least one ray enters it before its best
-///   hit.
+/// 1. One result per ray, in order, the same as alone: each ray keeps its range and best hit. At
+///    equal `t` any of the primitives counts.
+/// 2. Open a node at most once per packet, and only if at least one ray enters it before its best
+///    hit.
 ///
 /// Source: "Other Accelerations".
 pub fn closest_hit_packet(bvh: &Bvh, probe: &mut impl Probe, rays: &[Ray]) -> Vec<Option<PrimitiveHit>> {

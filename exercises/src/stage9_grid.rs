@@ -21,9 +21,9 @@ use raykata::ray::Ray;
 ///
 /// Exactly:
 ///
-/// - An axis along which the box is thinner than a cell gets one cell, the others share all.
-/// - Every axis gets 1 to [`MOST_CELLS_ALONG`] cells.
-/// - An empty box, a single point and `n_primitives = 0` get one cell.
+/// 1. An axis along which the box is thinner than a cell gets one cell, the others share all.
+/// 2. Every axis gets 1 to [`MOST_CELLS_ALONG`] cells.
+/// 3. An empty box, a single point and `n_primitives = 0` get one cell.
 ///
 /// Source: "Uniform Grid" (How choose suitable grid resolution?).
 pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
@@ -36,9 +36,9 @@ pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
 ///
 /// Exactly:
 ///
-/// - A box that touches a cell overlaps it.
-/// - Empty boxes and boxes with NaN are left out.
-/// - An axis with resolution 0 gets one cell.
+/// 1. A box that touches a cell overlaps it.
+/// 2. Empty boxes and boxes with NaN are left out.
+/// 3. An axis with resolution 0 gets one cell.
 ///
 /// Source: "Uniform Grid" (index primitives according to overlaps).
 pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
@@ -50,9 +50,9 @@ pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
 ///
 /// Exactly:
 ///
-/// - Visit the cells in the order in which the ray enters them, each at most once. At a corner,
-///   visit any sequence of cells that share a face.
-/// - Stop when the best hit lies before the next cell.
+/// 1. Visit the cells in the order in which the ray enters them, each at most once. At a corner,
+///    visit any sequence of cells that share a face.
+/// 2. Stop when the best hit lies before the next cell.
 ///
 /// Source: "Uniform Grid" (trace rays through grid cells).
 pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {

@@ -23,18 +23,18 @@ use raykata::ray::Ray;
 ///
 /// Exactly:
 ///
-/// - Divide a node of more than `leaf_size` primitives, unless it is at depth
-///   [`KdTree::most_depth`] (root: 0), all would be on both sides, or
-///   [`ListGrowth::divide`] returns `None`.
-/// - A plane lies within its cell. The bounds contain all boxes.
-/// - List a primitive once in every leaf that its box touches, on both sides of a touched plane.
-/// - Leave out empty and NaN boxes; without a usable box there are no nodes.
-/// - `longest_axis`: cut across the cell's longest side. Off: x, y, z in turn, x first.
-/// - `balanced_counts`: minimise the difference of counts.
-/// - `few_straddlers`: minimise the number on both sides. With both, minimise the sum; with
-///   neither, cut in the middle.
-/// - `cut_off_empty_space`: first cut off an empty margin of over a tenth of the cell.
-/// - `stop_at_overlap`: make a leaf if at least 60 % of one side, but not 0, would be on both.
+/// 1. Divide a node of more than `leaf_size` primitives, unless it is at depth
+///    [`KdTree::most_depth`] (root: 0), all would be on both sides, or
+///    [`ListGrowth::divide`] returns `None`.
+/// 2. A plane lies within its cell. The bounds contain all boxes.
+/// 3. List a primitive once in every leaf that its box touches, on both sides of a touched plane.
+/// 4. Leave out empty and NaN boxes; without a usable box there are no nodes.
+/// 5. `longest_axis`: cut across the cell's longest side. Off: x, y, z in turn, x first.
+/// 6. `balanced_counts`: minimise the difference of counts.
+/// 7. `few_straddlers`: minimise the number on both sides. With both, minimise the sum; with
+///    neither, cut in the middle.
+/// 8. `cut_off_empty_space`: first cut off an empty margin of over a tenth of the cell.
+/// 9. `stop_at_overlap`: make a leaf if at least 60 % of one side, but not 0, would be on both.
 ///
 /// Source: "Heuristics" 1 to 5.
 pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree {
@@ -47,9 +47,9 @@ pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> Kd
 ///
 /// Exactly:
 ///
-/// - Visit a node at most once, and only if the ray enters it before the best hit.
-/// - A ray in the plane, or that starts on it, is on both sides: a primitive in the plane may be
-///   listed on one side only.
+/// 1. Visit a node at most once, and only if the ray enters it before the best hit.
+/// 2. A ray in the plane, or that starts on it, is on both sides: a primitive in the plane may be
+///    listed on one side only.
 ///
 /// Source: "kd-Tree Traversal" with `t` and `t'`.
 pub fn closest_hit(tree: &KdTree, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {

@@ -26,17 +26,17 @@ use raykata::ray::Ray;
 ///
 /// Exactly:
 ///
-/// - A plane is that of a polygon, or across an axis. Prefer one that splits few polygons and
-///   leaves few primitives on its fuller side.
-/// - A node lists all polygons in its plane, and no solids.
-/// - A point within [`PolygonBsp::room`] of a plane counts as on it; choose it from 0 to a 1000th
-///   of the largest coordinate. Clip at the plane itself.
-/// - Pass each part to its side, and a solid to each side that it reaches.
-/// - Every part of every polygon lies on the plane of a node that lists it, and a leaf lists at
-///   most `leaf_size` solids, or those that no plane divides. Exceptions: at `max_depth` (root: 0),
-///   and where [`ListGrowth::divide`] returns `None`.
-/// - Leave out hulls without corners, or with NaN or infinity; without usable hulls there are
-///   no nodes.
+/// 1. A plane is that of a polygon, or across an axis. Prefer one that splits few polygons and
+///    leaves few primitives on its fuller side.
+/// 2. A node lists all polygons in its plane, and no solids.
+/// 3. A point within [`PolygonBsp::room`] of a plane counts as on it; choose it from 0 to a 1000th
+///    of the largest coordinate. Clip at the plane itself.
+/// 4. Pass each part to its side, and a solid to each side that it reaches.
+/// 5. Every part of every polygon lies on the plane of a node that lists it, and a leaf lists at
+///    most `leaf_size` solids, or those that no plane divides. Exceptions: at `max_depth` (root:
+///    0), and where [`ListGrowth::divide`] returns `None`.
+/// 6. Leave out hulls without corners, or with NaN or infinity; without usable hulls there are
+///    no nodes.
 ///
 /// Source: Fuchs et al., SIGGRAPH 1980.
 pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> PolygonBsp {
@@ -49,11 +49,11 @@ pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Polygon
 ///
 /// Exactly:
 ///
-/// - Test the polygons of a node only if the ray comes to its plane within the part of the ray that
-///   is in the node.
-/// - Visit a node at most once, and only if the ray enters it before the best hit.
-/// - A point within [`PolygonBsp::room`] of a plane counts as on it: a polygon in front of the
-///   plane may extend behind it by this distance.
+/// 1. Test the polygons of a node only if the ray comes to its plane within the part of the ray
+///    that is in the node.
+/// 2. Visit a node at most once, and only if the ray enters it before the best hit.
+/// 3. A point within [`PolygonBsp::room`] of a plane counts as on it: a polygon in front of the
+///    plane may extend behind it by this distance.
 ///
 /// Source: "Binary Space Partition (BSP) Tree" (`ComputeBSPIntersection`).
 pub fn closest_hit(bsp: &PolygonBsp, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {

@@ -131,12 +131,12 @@ fn sphere_pdf(sphere: &Sphere, two_sided: bool, from: Vec3) -> Option<f32> {
 ///
 /// Exactly:
 ///
-/// - `None` if the radiance is 0, if `from` is behind an emitter that is not two-sided (for a
-///   sphere: inside), or in the plane of a triangle or parallelogram.
-/// - Otherwise every `u` gives a sample, with the emitter's `radiance`.
-/// - `distance` is that of the point that a ray from `from` hits first.
-/// - Samples reach each point that is seen; inside a two-sided sphere these are all directions.
-/// - `pdf` is the density of their directions at `from`.
+/// 1. `None` if the radiance is 0, if `from` is behind an emitter that is not two-sided (for a
+///    sphere: inside), or in the plane of a triangle or parallelogram.
+/// 2. Otherwise every `u` gives a sample, with the emitter's `radiance`.
+/// 3. `distance` is that of the point that a ray from `from` hits first.
+/// 4. Samples reach each point that is seen; inside a two-sided sphere these are all directions.
+/// 5. `pdf` is the density of their directions at `from`.
 ///
 /// Source: "Area Lights"; "Physically Based Rendering", chapter "Light Sources".
 pub fn sample_light(emitter: &AreaEmitter, from: Vec3, u: Vec2) -> Option<EmitterSample> {
@@ -179,10 +179,10 @@ pub fn sample_light(emitter: &AreaEmitter, from: Vec3, u: Vec2) -> Option<Emitte
 ///
 /// Exactly:
 ///
-/// - 0 if a ray from `from` in this direction does not meet the emitter, or if `sample_light`
-///   returns `None`.
-/// - For a direction of `sample_light` it is the sample's `pdf`, up to rounding.
-/// - A direction that meets the edge or rim may count either way.
+/// 1. 0 if a ray from `from` in this direction does not meet the emitter, or if `sample_light`
+///    returns `None`.
+/// 2. For a direction of `sample_light` it is the sample's `pdf`, up to rounding.
+/// 3. A direction that meets the edge or rim may count either way.
 pub fn light_pdf(emitter: &AreaEmitter, from: Vec3, direction: Vec3) -> f32 {
     // <solution>
     let AreaEmitter { shape, radiance, two_sided } = *emitter;
@@ -217,13 +217,13 @@ pub fn light_pdf(emitter: &AreaEmitter, from: Vec3, direction: Vec3) -> f32 {
 ///
 /// Exactly:
 ///
-/// - The weight is in `0..=1`.
-/// - Both weights sum to 1, unless both densities are 0 or both ∞.
-/// - The larger density has the larger weight.
-/// - It is 1 if `other` is 0 or `own` is ∞, and 0 if `own` is 0 or `other` is ∞.
-/// - One sample of each technique has a variance of at most a quarter of the squared mean, for
-///   square lights of side 0.02 to 2 at distance 1 and lobes `cosⁿ θ`, n from 1 to 10,000, as with
-///   both heuristics.
+/// 1. The weight is in `0..=1`.
+/// 2. Both weights sum to 1, unless both densities are 0 or both ∞.
+/// 3. The larger density has the larger weight.
+/// 4. It is 1 if `other` is 0 or `own` is ∞, and 0 if `own` is 0 or `other` is ∞.
+/// 5. One sample of each technique has a variance of at most a quarter of the squared mean, for
+///    square lights of side 0.02 to 2 at distance 1 and lobes `cosⁿ θ`, n from 1 to 10,000, as with
+///    both heuristics.
 ///
 /// Source: Veach and Guibas, SIGGRAPH 1995.
 pub fn mis_weight(own: f32, other: f32) -> f32 {
@@ -246,10 +246,10 @@ pub fn mis_weight(own: f32, other: f32) -> f32 {
 ///
 /// Exactly:
 ///
-/// - If w is 0, the factor is 0.
-/// - If w is above 0 and `bounce` is below 3, it is 1.
-/// - Otherwise it is `1 / q` with probability q, and else 0.
-/// - q is at least `min(w, 0.95)`, and at most `(1 + w) / 2` and 1. Any such rule passes.
+/// 1. If w is 0, the factor is 0.
+/// 2. If w is above 0 and `bounce` is below 3, it is 1.
+/// 3. Otherwise it is `1 / q` with probability q, and else 0.
+/// 4. q is at least `min(w, 0.95)`, and at most `(1 + w) / 2` and 1. Any such rule passes.
 ///
 /// Source: Arvo and Kirk, "Particle Transport and Image Synthesis" (1990).
 pub fn survives(weight: Vec3, bounce: u32, u: f32) -> f32 {

@@ -51,11 +51,11 @@ fn choice(scattering: &Scattering, reflectance: Vec3) -> f32 {
 ///
 /// Exactly:
 ///
-/// - A lobe with reflectance 0 in all channels is never chosen; `None` if there is no other.
-/// - q is at least `s / 4`, for example s: the largest channel of the lobe divided by the sum of
-///   those of all lobes. It does not depend on `u`.
-/// - `weight` is reflectance / q, so its mean is the sum of all reflectances.
-/// - `pdf` is q times the density of the direction, and ∞ for a secondary ray.
+/// 1. A lobe with reflectance 0 in all channels is never chosen; `None` if there is no other.
+/// 2. q is at least `s / 4`, for example s: the largest channel of the lobe divided by the sum of
+///    those of all lobes. It does not depend on `u`.
+/// 3. `weight` is reflectance / q, so its mean is the sum of all reflectances.
+/// 4. `pdf` is q times the density of the direction, and ∞ for a secondary ray.
 ///
 /// Source: "Physically Based Rendering", "Layered Materials" and "BSDF Representation".
 pub fn sample_bsdf(scattering: &Scattering, u: Vec3) -> Option<BsdfSample> {
@@ -146,19 +146,19 @@ pub fn emitted_contribution(emission: Vec3, pdf: f32, light_pdf: f32) -> Vec3 {
 ///
 /// Exactly:
 ///
-/// - `light` is the weight of the path times [`emitted_contribution`] of `vertex.emission`, with
-///   `path.pdf` and the probability of `vertex.emitter` times its `light_pdf` from `path.origin`
-///   along `path.direction`; 0 without an emitter.
-/// - A path with `max_depth` bounces has neither `shadow` nor `next`.
-/// - `shadow` is a sample of `vertex.light`: by `sample_light` from `vertex.surface` with
-///   `numbers.light`, its density times the probability of the emitter; or that of an environment
-///   map as it is.
-/// - `shadow.light` is the path's weight times [`sample_light_contribution`], with [`bsdf_pdf`] of
-///   its direction.
-/// - No shadow ray if this light is 0, or its direction not above both normals of the surface.
-/// - `next` is a sample by [`sample_bsdf`] with `numbers.bsdf`. Its weight is multiplied by the
-///   path's, and by `survives` of the product, `path.bounces + 1` and `numbers.roulette`.
-/// - No `next` if this weight is 0, or a diffuse direction is not above `geometric_normal`.
+/// 1. `light` is the weight of the path times [`emitted_contribution`] of `vertex.emission`, with
+///    `path.pdf` and the probability of `vertex.emitter` times its `light_pdf` from `path.origin`
+///    along `path.direction`; 0 without an emitter.
+/// 2. A path with `max_depth` bounces has neither `shadow` nor `next`.
+/// 3. `shadow` is a sample of `vertex.light`: by `sample_light` from `vertex.surface` with
+///    `numbers.light`, its density times the probability of the emitter; or that of an environment
+///    map as it is.
+/// 4. `shadow.light` is the path's weight times [`sample_light_contribution`], with [`bsdf_pdf`] of
+///    its direction.
+/// 5. No shadow ray if this light is 0, or its direction not above both normals of the surface.
+/// 6. `next` is a sample by [`sample_bsdf`] with `numbers.bsdf`. Its weight is multiplied by the
+///    path's, and by `survives` of the product, `path.bounces + 1` and `numbers.roulette`.
+/// 7. No `next` if this weight is 0, or a diffuse direction is not above `geometric_normal`.
 ///
 /// Source: "Physically Based Rendering", "A Better Path Tracer".
 pub fn step(path: &PathState, vertex: &PathVertex, max_depth: u32, numbers: &StepNumbers) -> PathStep {
@@ -226,18 +226,18 @@ fn continued(path: &PathState, vertex: &PathVertex, numbers: &StepNumbers) -> Op
 ///
 /// Exactly:
 ///
-/// - Light is the [`Light::radiance`](raykata::material::Light::radiance) of lights, the emission
-///   of shown materials, and the background: its colour, a gradient's three colours, or a map as
-///   white times `scale`.
-/// - `diffuse`, per material: a shown shape has it, and its `diffuse` and some light are not 0 in
-///   the same channel.
-/// - All are `false` without `indirect_light`, or if `quality.max_depth` is 0.
-/// - `sampled`, per material: its emission and the `diffuse` of a material with diffuse rays are
-///   not 0 in the same channel, and a shown shape with it is no infinite plane and stands still
-///   while the shutter is open.
-/// - The material of a visible light is never sampled.
-/// - `environment`: the background is a map, its `scale` is not 0, and some material has diffuse
-///   rays.
+/// 1. Light is the [`Light::radiance`](raykata::material::Light::radiance) of lights, the emission
+///    of shown materials, and the background: its colour, a gradient's three colours, or a map as
+///    white times `scale`.
+/// 2. `diffuse`, per material: a shown shape has it, and its `diffuse` and some light are not 0 in
+///    the same channel.
+/// 3. All are `false` without `indirect_light`, or if `quality.max_depth` is 0.
+/// 4. `sampled`, per material: its emission and the `diffuse` of a material with diffuse rays are
+///    not 0 in the same channel, and a shown shape with it is no infinite plane and stands still
+///    while the shutter is open.
+/// 5. The material of a visible light is never sampled.
+/// 6. `environment`: the background is a map, its `scale` is not 0, and some material has diffuse
+///    rays.
 pub fn paths_called_for(scene: &Scene) -> PathEffects {
     // <solution>
     // Find the channels in which anything emits light.

@@ -23,11 +23,11 @@ use crate::stage3_traversal::keep_closest;
 ///
 /// Exactly:
 ///
-/// - Of hits at the same `t` the smaller primitive number wins, also in a child entered there.
-/// - A child entered beyond the best `t` is skipped.
-/// - Only primitives of the leaf are asked for.
-/// - No node is visited twice, and none that the ray does not enter.
-/// - Full points need at most 1.05 times the reference's calls of the probe.
+/// 1. Of hits at the same `t` the smaller primitive number wins, also in a child entered there.
+/// 2. A child entered beyond the best `t` is skipped.
+/// 3. Only primitives of the leaf are asked for.
+/// 4. No node is visited twice, and none that the ray does not enter.
+/// 5. Full points need at most 1.05 times the reference's calls of the probe.
 #[inline(always)]
 pub fn wide_closest_hit<P: WideProbe>(probe: &mut P, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>

@@ -169,10 +169,10 @@ pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 ///
 /// Exactly:
 ///
-/// - The corners may have either order.
-/// - Points on an edge are inside.
-/// - A plane whose normal is 0, because o lies on the side's line, accepts every point.
-/// - A NaN gives `false`.
+/// 1. The corners may have either order.
+/// 2. Points on an edge are inside.
+/// 3. A plane whose normal is 0, because o lies on the side's line, accepts every point.
+/// 4. A NaN gives `false`.
 pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // <solution>
     let to_point = point - ray.origin;
@@ -232,8 +232,8 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
 ///
 /// Exactly:
 ///
-/// - `false` for a triangle seen edge-on (`n·d = 0` exactly), a triangle without area, and a NaN.
-/// - The triangle may have any size.
+/// 1. `false` for a triangle seen edge-on (`n·d = 0` exactly), a triangle without area, and a NaN.
+/// 2. The triangle may have any size.
 ///
 /// Source: "Ray-Triangle Intersection III".
 pub fn backfacing(ray: &Ray, triangle: &Triangle) -> bool {
@@ -278,9 +278,9 @@ pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
 ///
 /// Exactly:
 ///
-/// - Each triangle with an area counts once, large or small.
-/// - If the normals cancel, the vertex gets the normal of one of the triangles.
-/// - A vertex without such a triangle gets any unit vector.
+/// 1. Each triangle with an area counts once, large or small.
+/// 2. If the normals cancel, the vertex gets the normal of one of the triangles.
+/// 3. A vertex without such a triangle gets any unit vector.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     // <solution>
     // Start with a sum of zero for each vertex, and with a normal to fall back on. The lecture
@@ -315,8 +315,8 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
 ///
 /// Exactly:
 ///
-/// - Each primitive is asked exactly once.
-/// - Of two hits at the same `t` the smaller number wins, as in all searches.
+/// 1. Each primitive is asked exactly once.
+/// 2. Of two hits at the same `t` the smaller number wins, as in all searches.
 pub fn brute_force(n_primitives: u32, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     let mut ray = *ray;

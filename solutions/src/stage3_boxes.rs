@@ -79,13 +79,13 @@ pub fn surface_area(bounds: &Aabb) -> f32 {
 ///
 /// Exactly:
 ///
-/// - Both lie in `ray.t_min..=ray.t_max`, whose ends count here. A ray that starts inside enters at
-///   `t_min`.
-/// - The box is closed: a ray that touches a face, an edge or a corner, or runs within a face, hits
-///   it. A box may have no thickness.
-/// - For `ray.t_min >= 0`, a ray aimed exactly at a corner does not miss by rounding. The interval
-///   may be a few roundings too wide.
-/// - `None` if the ray misses the box within its range, or for [`Aabb::EMPTY`].
+/// 1. Both lie in `ray.t_min..=ray.t_max`, whose ends count here. A ray that starts inside enters
+///    at `t_min`.
+/// 2. The box is closed: a ray that touches a face, an edge or a corner, or runs within a face,
+///    hits it. A box may have no thickness.
+/// 3. For `ray.t_min >= 0`, a ray aimed exactly at a corner does not miss by rounding. The interval
+///    may be a few roundings too wide.
+/// 4. `None` if the ray misses the box within its range, or for [`Aabb::EMPTY`].
 #[inline]
 pub fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>

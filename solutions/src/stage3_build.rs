@@ -27,8 +27,8 @@ use std::cmp::Ordering;
 ///
 /// Exactly:
 ///
-/// - If n is odd, either side may hold one more.
-/// - Equal centroids may go to either side. A centroid may be NaN.
+/// 1. If n is odd, either side may hold one more.
+/// 2. Equal centroids may go to either side. A centroid may be NaN.
 pub fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize {
     // <solution>
     let axis = longest_axis(&bounds_of(primitives));
@@ -48,8 +48,8 @@ pub fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize {
 ///
 /// Exactly:
 ///
-/// - Neither side is empty: if the cut leaves one empty, any other split is right.
-/// - A centroid exactly on the cut may go to either side.
+/// 1. Neither side is empty: if the cut leaves one empty, any other split is right.
+/// 2. A centroid exactly on the cut may go to either side.
 pub fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize {
     // <solution>
     // Find the middle of the longest axis.
@@ -89,9 +89,9 @@ pub fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize {
 ///
 /// Exactly:
 ///
-/// - At most 64 `union` calls per primitive.
-/// - Of cuts with equal cost any is right.
-/// - For boxes without area all costs are 0, and both a leaf and any cut are right.
+/// 1. At most 64 `union` calls per primitive.
+/// 2. Of cuts with equal cost any is right.
+/// 3. For boxes without area all costs are 0, and both a leaf and any cut are right.
 pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
     // <solution>
     // Find the cheapest cut of all three axes.
@@ -167,15 +167,15 @@ fn along(axis: usize) -> impl Fn(&PrimitiveRef, &PrimitiveRef) -> Ordering {
 ///
 /// Exactly:
 ///
-/// - Each primitive is in exactly one leaf, and each box contains everything below it. Without
-///   primitives there is no node.
-/// - A leaf holds 1 to `leaf_size` primitives. With both medians, `leaf_size` or fewer become a
-///   leaf.
-/// - With [`Split::SurfaceArea`] such a group is still split if that is cheaper. A larger group for
-///   which no cut is cheaper is split by the object median.
-/// - From depth [`DEEPEST_SPLIT`] on (the root has 0) every split is an object median. So there are
-///   at most `DEEPEST_SPLIT + ⌈log₂ n⌉ + 1` levels, for any boxes.
-/// - A box of NaN goes into some leaf and does not change the boxes of other primitives.
+/// 1. Each primitive is in exactly one leaf, and each box contains everything below it. Without
+///    primitives there is no node.
+/// 2. A leaf holds 1 to `leaf_size` primitives. With both medians, `leaf_size` or fewer become a
+///    leaf.
+/// 3. With [`Split::SurfaceArea`] such a group is still split if that is cheaper. A larger group
+///    for which no cut is cheaper is split by the object median.
+/// 4. From depth [`DEEPEST_SPLIT`] on (the root has 0) every split is an object median. So there
+///    are at most `DEEPEST_SPLIT + ⌈log₂ n⌉ + 1` levels, for any boxes.
+/// 5. A box of NaN goes into some leaf and does not change the boxes of other primitives.
 pub fn build(bounds: &[Aabb], split: Split, leaf_size: usize) -> Bvh {
     // <solution>
     // Collect number, box and centroid of each primitive.

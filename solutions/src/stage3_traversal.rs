@@ -71,9 +71,9 @@ pub fn keep_closest(closest: &mut Option<PrimitiveHit>, ray: &mut Ray, hit: Prim
 ///
 /// Exactly:
 ///
-/// - `t_max` is lowered at each hit. After the nearer child, the farther child's entry is compared
-///   with it again.
-/// - If the ray enters both children at the same `t`, either may be first.
+/// 1. `t_max` is lowered at each hit. After the nearer child, the farther child's entry is compared
+///    with it again.
+/// 2. If the ray enters both children at the same `t`, either may be first.
 pub fn closest_hit(bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     // Enter the root, and search below it with a copy of the ray whose range shrinks.

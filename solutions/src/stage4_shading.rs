@@ -18,11 +18,11 @@ use raykata::ray::Ray;
 ///
 /// Exactly:
 ///
-/// - `geometric`, of unit length, is negated if its dot product with `direction` is above 0.
-/// - `interpolated` (length 1e-18 to 1e18) is normalized, and negated if its dot product with the
-///   turned geometric normal is below 0.
-/// - If `interpolated` is `None`, 0 or NaN, the turned geometric normal is returned.
-/// - Where a dot product is 0, either sign passes.
+/// 1. `geometric`, of unit length, is negated if its dot product with `direction` is above 0.
+/// 2. `interpolated` (length 1e-18 to 1e18) is normalized, and negated if its dot product with the
+///    turned geometric normal is below 0.
+/// 3. If `interpolated` is `None`, 0 or NaN, the turned geometric normal is returned.
+/// 4. Where a dot product is 0, either sign passes.
 ///
 /// Source: "Smooth Shading".
 pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3 {
@@ -59,9 +59,9 @@ pub fn diffuse_term(normal: Vec3, to_light: Vec3) -> f32 {
 ///
 /// Exactly:
 ///
-/// - 0 if the light is behind the surface (`cos θ = n·l < 0`) or `cos φ < 0`.
-/// - If one of the two cosines is 0, both 0 and the power pass.
-/// - For an exponent of 0 any result in `0..=1` passes.
+/// 1. 0 if the light is behind the surface (`cos θ = n·l < 0`) or `cos φ < 0`.
+/// 2. If one of the two cosines is 0, both 0 and the power pass.
+/// 3. For an exponent of 0 any result in `0..=1` passes.
 ///
 /// Source: "Local illumination".
 pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f32) -> f32 {
@@ -83,15 +83,15 @@ pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f3
 ///
 /// Exactly:
 ///
-/// - `None` if `light.radiance` is 0, or if the dot product of `light.direction` with either normal
-///   is 0 or less.
-/// - The ray has the direction of the light. It ends between 0.99 and 1 times `light.distance` (not
-///   included); an infinite distance stays infinite.
-/// - It starts on the viewer's side, at least `error·|n|` from the point along the geometric normal
-///   n; `|n|` has the absolute values of its coordinates. Rounding must not make this more than 1 %
-///   smaller.
-/// - It starts at most `4 error·|n|` plus 64 rounding steps of the largest coordinate away, so that
-///   close objects are hit.
+/// 1. `None` if `light.radiance` is 0, or if the dot product of `light.direction` with either
+///    normal is 0 or less.
+/// 2. The ray has the direction of the light. It ends between 0.99 and 1 times `light.distance`
+///    (not included); an infinite distance stays infinite.
+/// 3. It starts on the viewer's side, at least `error·|n|` from the point along the geometric
+///    normal n; `|n|` has the absolute values of its coordinates. Rounding must not make this more
+///    than 1 % smaller.
+/// 4. It starts at most `4 error·|n|` plus 64 rounding steps of the largest coordinate away, so
+///    that close objects are hit.
 ///
 /// Source: "Shadow ray", "Cost of shadow computation".
 #[inline]
@@ -145,11 +145,12 @@ pub fn off_surface(point: Vec3, error: Vec3, side: Vec3) -> Vec3 {
 ///
 /// Exactly:
 ///
-/// - Colours are multiplied channel by channel. The sum is not clamped.
-/// - The cosines are those of [`diffuse_term`] and [`specular_term`] with `surface.shading_normal`.
-/// - V_i is 1 if `visible(i, ray)` is true for the ray of [`shadow_ray`], and 0 otherwise.
-/// - `visible` is called at most once per light, and not if `shadow_ray` is `None` or the light
-///   would add 0 in every channel.
+/// 1. Colours are multiplied channel by channel. The sum is not clamped.
+/// 2. The cosines are those of [`diffuse_term`] and [`specular_term`] with
+///    `surface.shading_normal`.
+/// 3. V_i is 1 if `visible(i, ray)` is true for the ray of [`shadow_ray`], and 0 otherwise.
+/// 4. `visible` is called at most once per light, and not if `shadow_ray` is `None` or the light
+///    would add 0 in every channel.
 ///
 /// Source: "Local illumination", "Shadows", "Cost of shadow computation".
 pub fn shade(

@@ -41,11 +41,11 @@ pub fn jittered(stratum: &Stratum) -> Vec2 {
 ///
 /// Exactly:
 ///
-/// - [`Sampler::Center`]: the centre of the pixel.
-/// - [`Sampler::Random`] and [`Sampler::LowDiscrepancy`]: `u` unchanged.
-/// - [`Sampler::Jittered`]: the result of [`jittered`].
-/// - [`Sampler::Gaussian`]: the result of [`jittered`], scaled to the square that reaches
-///   [`FILTER_RADIUS`] from the centre of the pixel on all sides.
+/// 1. [`Sampler::Center`]: the centre of the pixel.
+/// 2. [`Sampler::Random`] and [`Sampler::LowDiscrepancy`]: `u` unchanged.
+/// 3. [`Sampler::Jittered`]: the result of [`jittered`].
+/// 4. [`Sampler::Gaussian`]: the result of [`jittered`], scaled to the square that reaches
+///    [`FILTER_RADIUS`] from the centre of the pixel on all sides.
 ///
 /// Source: "Antialiasing".
 pub fn pixel_position(sampler: Sampler, stratum: &Stratum) -> Vec2 {
@@ -130,13 +130,13 @@ pub fn sample_disk(u: Vec2) -> Vec2 {
 ///
 /// Exactly:
 ///
-/// - The lens is a disk of diameter `lens.aperture` around `camera.position`, spanned by
-///   `camera.right` and `camera.up`. `on_lens` is in the disk of radius 1.
-/// - The focal plane is at right angles to `camera.towards`, at the distance
-///   `lens.focal_distance > 0`.
-/// - The direction has unit length, and is precise far from the origin.
-/// - From the centre of the lens (`on_lens` or `lens.aperture` is 0) the result is `pinhole`, bit
-///   for bit.
+/// 1. The lens is a disk of diameter `lens.aperture` around `camera.position`, spanned by
+///    `camera.right` and `camera.up`. `on_lens` is in the disk of radius 1.
+/// 2. The focal plane is at right angles to `camera.towards`, at the distance
+///    `lens.focal_distance > 0`.
+/// 3. The direction has unit length, and is precise far from the origin.
+/// 4. From the centre of the lens (`on_lens` or `lens.aperture` is 0) the result is `pinhole`, bit
+///    for bit.
 ///
 /// Source: "Depth of Field".
 pub fn lens_ray(camera: &Camera, pinhole: &Ray, lens: &Lens, on_lens: Vec2) -> Ray {
@@ -185,9 +185,9 @@ pub fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3 {
 ///
 /// Exactly:
 ///
-/// - The directions are uniform over the cone, also of a far sphere, and from inside over all
-///   directions.
-/// - From the centre any unit direction passes, and NaN fails.
+/// 1. The directions are uniform over the cone, also of a far sphere, and from inside over all
+///    directions.
+/// 2. From the centre any unit direction passes, and NaN fails.
 ///
 /// Source: "Soft shadows", "Area Lights".
 pub fn sample_sphere(sphere: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
@@ -226,10 +226,10 @@ pub fn around(axis: Vec3, one_minus_cos: f32, turn: f32) -> Vec3 {
 ///
 /// Exactly:
 ///
-/// - `n = 2 / roughness² - 2`, θ is at most 90°, and the lobe is the same on all sides.
-/// - A slightly rough surface gives many different angles.
-/// - A direction d with `d·normal < 0` becomes `d - 2 (d·normal) normal`.
-/// - If `roughness` is 0, the result is `ideal`, bit for bit.
+/// 1. `n = 2 / roughness² - 2`, θ is at most 90°, and the lobe is the same on all sides.
+/// 2. A slightly rough surface gives many different angles.
+/// 3. A direction d with `d·normal < 0` becomes `d - 2 (d·normal) normal`.
+/// 4. If `roughness` is 0, the result is `ideal`, bit for bit.
 ///
 /// Source: "DRT: Diffuse reflection".
 pub fn sample_phong_lobe(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> Vec3 {
@@ -291,9 +291,9 @@ pub fn time_in_shutter(shutter: &Shutter, slot: u32, slots: u32, u: f32) -> f32 
 ///
 /// Exactly:
 ///
-/// - The result is exactly `start` at time 0, `end` at time 1, and `start` if `start == end`.
-/// - Each coordinate is between those of `start` and `end` (both included), because bounding boxes
-///   rely on it.
+/// 1. The result is exactly `start` at time 0, `end` at time 1, and `start` if `start == end`.
+/// 2. Each coordinate is between those of `start` and `end` (both included), because bounding boxes
+///    rely on it.
 ///
 /// Source: "Motion Blur".
 pub fn lerp(start: Vec3, end: Vec3, time: f32) -> Vec3 {

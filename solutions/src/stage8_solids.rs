@@ -258,13 +258,13 @@ pub fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit> {
 ///
 /// Exactly:
 ///
-/// - Edges and corners belong to the polygon; three corners may lie on a line.
-/// - The normal points to the side from which the corners run anticlockwise, also for rays from
-///   behind.
-/// - A ray in its plane misses it.
-/// - No ray passes between two polygons that share an edge.
-/// - If rounding moved corners off their plane, the triangles of a fan may give other hits near the
-///   rim.
+/// 1. Edges and corners belong to the polygon; three corners may lie on a line.
+/// 2. The normal points to the side from which the corners run anticlockwise, also for rays from
+///    behind.
+/// 3. A ray in its plane misses it.
+/// 4. No ray passes between two polygons that share an edge.
+/// 5. If rounding moved corners off their plane, the triangles of a fan may give other hits near
+///    the rim.
 pub fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit> {
     // <solution>
     // Express the corners relative to the ray's origin.

@@ -6,14 +6,16 @@
 //! === any_hit ===
 //!
 //! wrong any_beyond_t_max: a hit anywhere along the line counts
+//! breaks: any_hit.1
 //! caught_by: any_hit_agrees_with_brute_force
 //! says: beyond t_max
 //! +    let ray = &ray.with_range(ray.t_min, f32::INFINITY);
 //!      bvh.root().is_some_and(|root| any_below(root, bvh, probe, ray))
 //! ```
 //!
-//! A heading names the function that the entries below it change first. A mistake (`wrong`) names the check that must catch it,
-//! and either words that the check's message must contain, or `diagnosis: none`. The lines below are found by their text within
+//! A heading names the function that the entries below it change first. A mistake (`wrong`) names the one item of a contract
+//! that it breaks (`any_hit.1` is the first below `Exactly:`, and `any_hit` the sentence above), the check that must catch it, and
+//! either words that the check's message must contain, or `diagnosis: none`. The lines below are found by their text within
 //! the function: `-` goes, `+` comes, and a line with a space stays and only marks the place. `@` begins another place of the
 //! same function, `@ NAME` a place in another function, and `@ *` a place anywhere in the file.
 
@@ -35,6 +37,8 @@ pub const ANYWHERE: &str = "*";
 pub enum Claim {
     /// A mistake, which a check must find and name.
     Wrong {
+        /// The item of a contract that it breaks: `FUNCTION` or `FUNCTION.N`.
+        breaks: String,
         /// The check that must catch it.
         caught_by: String,
         /// Words that must appear in the message of that check.
@@ -303,7 +307,10 @@ impl CorpusFile {
                 heading = first;
             }
             let _ = write!(text, "\n{} {}: {}\n", entry.kind(), entry.name, entry.title);
-            if let Claim::Wrong { caught_by, says, is_unknown } = &entry.claim {
+            if let Claim::Wrong { breaks, caught_by, says, is_unknown } = &entry.claim {
+                if !breaks.is_empty() {
+                    let _ = writeln!(text, "breaks: {breaks}");
+                }
                 let _ = writeln!(text, "caught_by: {caught_by}");
                 says.iter().for_each(|words| _ = writeln!(text, "says: {words}"));
                 if *is_unknown {
@@ -342,6 +349,7 @@ struct Draft {
     kind: &'static str,
     name: String,
     title: String,
+    breaks: Option<String>,
     caught_by: Option<String>,
     says: Vec<String>,
     is_unknown: bool,
@@ -368,6 +376,7 @@ impl Reader {
                     kind,
                     name: name.to_owned(),
                     title: title.to_owned(),
+                    breaks: None,
                     caught_by: None,
                     says: Vec::new(),
                     is_unknown: false,
@@ -438,23 +447,26 @@ impl Draft {
         let pair = line.split_once(':').map(|(key, value)| (key.trim(), value.trim()));
         match pair.filter(|(_, value)| !value.is_empty()) {
             Some(("caught_by", check)) if self.caught_by.is_none() => self.caught_by = Some(check.to_owned()),
+            Some(("breaks", item)) if self.breaks.is_none() => self.breaks = Some(item.to_owned()),
             Some(("says", words)) => self.says.push(words.to_owned()),
             Some(("diagnosis", "none")) => self.is_unknown = true,
             Some(("diagnosis", _)) => {
                 bail!("`diagnosis:` must be `none`; for words of a diagnosis write `says:`")
             }
-            Some(("caught_by", _)) => bail!("`{}` has two lines `caught_by: …`", self.name),
-            _ => bail!("`{line}` is not `caught_by: CHECK`, `says: WORDS` or `diagnosis: none`"),
+            Some((key @ ("caught_by" | "breaks"), _)) => bail!("`{}` has two lines `{key}: …`", self.name),
+            _ => bail!(
+                "`{line}` is not `breaks: ITEM`, `caught_by: CHECK`, `says: WORDS` or `diagnosis: none`"
+            ),
         }
         Ok(())
     }
 
     fn entry(self, stage: u8, file: &str) -> Result<Entry> {
-        let Draft { kind, name, title, caught_by, says, is_unknown, changes } = self;
+        let Draft { kind, name, title, breaks, caught_by, says, is_unknown, changes } = self;
         let claim = match kind {
             "right" => {
                 ensure!(
-                    caught_by.is_none() && says.is_empty() && !is_unknown,
+                    breaks.is_none() && caught_by.is_none() && says.is_empty() && !is_unknown,
                     "right `{name}` is no mistake: no check catches it or names it"
                 );
                 Claim::Right
@@ -466,7 +478,7 @@ impl Draft {
                     !says.is_empty() || is_unknown,
                     "wrong `{name}` lacks `says: WORDS OF THE MESSAGE` or `diagnosis: none`"
                 );
-                Claim::Wrong { caught_by, says, is_unknown }
+                Claim::Wrong { breaks: breaks.unwrap_or_default(), caught_by, says, is_unknown }
             }
         };
         let is_change = |change: &Change| change.lines.iter().any(|(sign, _)| *sign != Sign::Stays);

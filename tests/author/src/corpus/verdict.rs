@@ -167,7 +167,12 @@ mod tests {
 
     #[test]
     fn fates_follow_from_claims_and_failures() {
-        let claim = Claim::Wrong { caught_by: "b".into(), says: vec!["far root".into()], is_unknown: false };
+        let claim = Claim::Wrong {
+            breaks: String::new(),
+            caught_by: "b".into(),
+            says: vec!["far root".into()],
+            is_unknown: false,
+        };
         let entry = |claim: &Claim| Entry {
             stage: 1,
             name: "n".into(),
@@ -187,7 +192,8 @@ mod tests {
             EntryVerdict::Unnamed(vec!["far root".into()])
         );
         assert_eq!(verdict(&claim, &[("b", "the far\n   root")]), EntryVerdict::Killed);
-        let unknown = Claim::Wrong { caught_by: "b".into(), says: vec![], is_unknown: true };
+        let unknown =
+            Claim::Wrong { breaks: String::new(), caught_by: "b".into(), says: vec![], is_unknown: true };
         assert_eq!(verdict(&unknown, &[("b", "  yours 3\n")]), EntryVerdict::Killed);
         assert_eq!(
             verdict(&unknown, &[("b", "  yours 3\n  looks like: the far root\n")]),

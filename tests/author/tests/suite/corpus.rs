@@ -46,16 +46,52 @@ fn every_check_that_is_to_catch_a_mistake_exists() {
     }
 }
 
-#[test]
-fn there_are_enough_of_each_stage() {
-    let mut counts: BTreeMap<u8, (usize, usize)> = BTreeMap::new();
-    for entry in entries() {
-        let (wrong, right) = counts.entry(entry.stage).or_default();
-        *if entry.claim == Claim::Right { right } else { wrong } += 1;
+/// The items of the contracts of a file: each function, and the numbers below `Exactly:`.
+fn items(text: &str) -> Vec<String> {
+    let (mut numbers, mut items) = (Vec::new(), Vec::new());
+    for line in text.lines() {
+        let number =
+            line.strip_prefix("/// ").and_then(|line| line.split_once(". ")).map(|(number, _)| number);
+        if let Some(function) = line.strip_prefix("pub fn ") {
+            let name: String = function.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            items.push(name.clone());
+            items.extend(numbers.drain(..).map(|number| format!("{name}.{number}")));
+        } else if let Some(number) = number.and_then(|number| number.parse::<u8>().ok()) {
+            numbers.push(number);
+        }
     }
-    assert!((1..=7).chain([10, 11, 12]).all(|stage| counts.contains_key(&stage)), "{counts:?}");
-    assert!(counts.values().all(|(wrong, right)| *wrong >= 6 && *right >= 3), "{counts:?}");
-    assert!(counts.values().map(|(wrong, _)| wrong).sum::<usize>() >= 120, "{counts:?}");
+    items
+}
+
+/// Prints each item, the checks that catch what breaks it, and the mistakes.
+#[test]
+fn every_item_of_a_contract_is_broken_alone_and_caught() {
+    let mut broken: BTreeMap<String, BTreeMap<String, Vec<String>>> = BTreeMap::new();
+    let mut without_item = Vec::new();
+    for entry in entries() {
+        let Claim::Wrong { breaks, caught_by, .. } = &entry.claim else { continue };
+        match breaks.as_str() {
+            "" => without_item.push(entry.to_string()),
+            item => {
+                broken.entry(item.into()).or_default().entry(caught_by.clone()).or_default().push(entry.name)
+            }
+        }
+    }
+    let mut unbroken = Vec::new();
+    for name in read_files(&root()).unwrap().into_iter().map(|(name, _)| name) {
+        let text = std::fs::read_to_string(root().join(format!("exercises/src/{name}.rs"))).unwrap();
+        for item in items(&text) {
+            match broken.remove(&item) {
+                Some(checks) => {
+                    checks.iter().for_each(|(check, names)| println!("{item}: {check}: {}", names.join(" ")))
+                }
+                None => unbroken.push(item),
+            }
+        }
+    }
+    assert!(broken.is_empty(), "no contract has these items: {:?}", broken.keys());
+    assert!(unbroken.is_empty(), "no mistake breaks these items alone: {unbroken:?}");
+    assert!(without_item.is_empty(), "these entries lack `breaks: ITEM`: {without_item:?}");
 }
 
 #[test]

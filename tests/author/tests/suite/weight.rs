@@ -43,8 +43,11 @@ fn docs(text: &str, functions: &str) -> Vec<(usize, usize, String)> {
             doc += &format!("{}\n", line.trim());
         } else if !line.starts_with("#[") {
             let own = doc.split("\n\n").filter(|paragraph| !paragraph.starts_with("Source:"));
-            let words =
-                own.flat_map(str::split_whitespace).filter(|word| word.contains(char::is_alphanumeric));
+            let words = own.flat_map(str::split_whitespace).filter(|word| {
+                // The number of an item is none.
+                word.contains(char::is_alphanumeric)
+                    && word.strip_suffix('.').is_none_or(|number| number.parse::<u8>().is_err())
+            });
             if line.contains(functions) {
                 found.push((doc.split_whitespace().count(), words.count(), line.to_owned()));
             }
