@@ -23,7 +23,8 @@ use std::cmp::Ordering;
 /// them, and put half of them on each side.
 ///
 /// Reorders `primitives`, at least two, and returns an index: those before it go left, the others
-/// right. If n is odd, either side may hold one more. Equal centroids may go to either side.
+/// right. If n is odd, either side may hold one more. Equal centroids may go to either side. The
+/// box around the centroids will do as well.
 pub fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize {
     // <solution>
     let axis = longest_axis(&bounds_of(primitives));
@@ -39,8 +40,8 @@ pub fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize {
 /// Spatial median: cut the box around all primitives in the middle of its longest axis. Each
 /// primitive goes to the side of its centroid. What if all centroids lie on one side?
 ///
-/// Input and result are as for [`split_object_median`]. A centroid exactly on the cut may go to
-/// either side.
+/// Input, result and box are as for [`split_object_median`]. A centroid exactly on the cut may go
+/// to either side.
 ///
 /// Exactly:
 ///
