@@ -424,8 +424,8 @@ pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
 /// Exactly:
 ///
 /// 1. A ray that starts inside hits the far side; one that touches the sphere hits it.
-/// 2. `t` is within 0.51 units in the last place, if the ray starts a millionth of the radius or
-///    more away from the sphere.
+/// 2. `t` is at most one unit in the last place off, if the ray starts a millionth of the radius
+///    or more away from the sphere.
 ///
 /// Source: "Ray-Sphere Intersection".
 pub fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
