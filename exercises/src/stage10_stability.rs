@@ -31,7 +31,6 @@ use raykata::shape::Triangle;
 /// 1. The smaller root comes first, for every sign of `a` and `b`.
 /// 2. A double root is returned twice; for `b = c = 0` both roots are 0.
 /// 3. `None` if there is no real root, if `a` is 0, or if a coefficient is NaN or infinite.
-/// 4. No root is NaN; one too large for `f32` is infinite.
 ///
 /// Source: "Ray-Sphere Intersection".
 pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
@@ -47,12 +46,11 @@ pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
 ///
 /// 1. No ray escapes at a shared edge or corner, at any size and place.
 /// 2. None escapes through a triangle seen edge-on.
-/// 3. Points on edges belong to the triangle.
-/// 4. A ray in its plane misses it.
-/// 5. Scaling by a power of two changes no answer, unless a number over- or underflows.
-/// 6. `t` is accurate also on triangles a million times as long as wide. β and γ are right to
+/// 3. Points on edges belong to the triangle, but a ray in its plane may miss it.
+/// 4. Scaling by a power of two changes no answer, unless a number over- or underflows.
+/// 5. `t` is accurate also on triangles a million times as long as wide. β and γ are right to
 ///    1e-3 well inside.
-/// 7. NaN or infinity gives `None` or a finite hit.
+/// 6. NaN or infinity gives `None` or a finite hit.
 ///
 /// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013; Shewchuk,
 /// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
@@ -143,8 +141,8 @@ pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
 /// Exactly:
 ///
 /// 1. A ray that starts inside hits the far side; one that touches the sphere hits it.
-/// 2. `t` is within 0.51 units in the last place, if the ray starts a millionth of the radius or
-///    more away from the sphere.
+/// 2. `t` is at most one unit in the last place off, if the ray starts a millionth of the radius
+///    or more away from the sphere.
 ///
 /// Source: "Ray-Sphere Intersection".
 pub fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {

@@ -56,10 +56,9 @@ pub fn sample_light(emitter: &AreaEmitter, from: Vec3, u: Vec2) -> Option<Emitte
 ///
 /// Exactly:
 ///
-/// 1. 0 if a ray from `from` in this direction does not meet the emitter, or if `sample_light`
-///    returns `None`.
+/// 1. 0 if a ray from `from` in this direction does not meet the emitter (its edge or rim may count
+///    either way), or if `sample_light` returns `None`.
 /// 2. For a direction of `sample_light` it is the sample's `pdf`, up to rounding.
-/// 3. A direction that meets the edge or rim may count either way.
 pub fn light_pdf(emitter: &AreaEmitter, from: Vec3, direction: Vec3) -> f32 {
     todo!("find the point that the direction meets, and return its density per steradian")
 }
@@ -70,12 +69,13 @@ pub fn light_pdf(emitter: &AreaEmitter, from: Vec3, direction: Vec3) -> f32 {
 /// 1e30²?
 ///
 /// The sample was taken with density `own`; the other technique has density `other` for it. Both
-/// are 0 to ∞; ∞ is a certain direction, as of a mirror.
+/// are 0 to ∞; ∞ is a certain direction, as of a mirror. If both are 0 or both ∞, only item 1
+/// counts.
 ///
 /// Exactly:
 ///
 /// 1. The weight is in `0..=1`.
-/// 2. Both weights sum to 1, unless both densities are 0 or both ∞.
+/// 2. Both weights sum to 1.
 /// 3. The larger density has the larger weight.
 /// 4. It is 1 if `other` is 0 or `own` is ∞, and 0 if `own` is 0 or `other` is ∞.
 /// 5. One sample of each technique has a variance of at most a quarter of the squared mean, for

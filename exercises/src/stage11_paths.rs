@@ -84,8 +84,8 @@ pub fn emitted_contribution(emission: Vec3, pdf: f32, light_pdf: f32) -> Vec3 {
 /// 3. `shadow` is a sample of `vertex.light`: by `sample_light` from `vertex.surface` with
 ///    `numbers.light`, its density times the probability of the emitter; or that of an environment
 ///    map as it is.
-/// 4. `shadow.light` is the path's weight times [`sample_light_contribution`], with [`bsdf_pdf`] of
-///    its direction.
+/// 4. `shadow.light` is the path's weight times [`sample_light_contribution`], with the shading
+///    normal, and with [`bsdf_pdf`] of its direction.
 /// 5. No shadow ray if this light is 0, or its direction not above both normals of the surface.
 /// 6. `next` is a sample by [`sample_bsdf`] with `numbers.bsdf`. Its weight is multiplied by the
 ///    path's, and by `survives` of the product, `path.bounces + 1` and `numbers.roulette`.

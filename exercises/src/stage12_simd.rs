@@ -19,11 +19,10 @@ use raykata::wide::{Entered, Filtered, TriangleBlock, WideNode, WideRay};
 ///
 /// Exactly:
 ///
-/// 1. The `t` of a plane is `plane · scale + offset`, with `scale[0]` and `offset[0]` for near
-///    planes, `scale[1]` and `offset[1]` for far ones.
+/// 1. The `t` of a plane is `plane · scale + offset`, with one or two roundings: with `scale[0]`
+///    and `offset[0]` for near planes, `scale[1]` and `offset[1]` for far ones.
 /// 2. Intersect the axes with the range `ray.t_min..=t_max`. A box is entered if the entry is at
 ///    most the exit, so an empty place never is.
-/// 3. Each `t` has one or two roundings.
 ///
 /// Source: "Ray/box intersection"; Ize, "Robust BVH Ray Traversal", JCGT 2013.
 #[inline(always)]

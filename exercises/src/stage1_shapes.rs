@@ -70,8 +70,7 @@ pub fn sphere_geometric(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
 /// The unit normal of a sphere points from its centre to the point of the surface:
 /// `n = (p - c) / |p - c|`.
 ///
-/// `point` lies on the sphere up to rounding. The result has length 1 up to rounding. At the centre
-/// any unit vector is right.
+/// `point` lies on the sphere up to rounding. The result has length 1 up to rounding.
 pub fn sphere_normal(center: Vec3, point: Vec3) -> Vec3 {
     todo!("return the unit vector from the centre to the point")
 }

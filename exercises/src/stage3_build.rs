@@ -18,12 +18,8 @@ use raykata::scene::Split;
 /// them, and put half of them on each side.
 ///
 /// Reorders `primitives`, at least two, and returns an index: those before it go left, the others
-/// right.
-///
-/// Exactly:
-///
-/// 1. If n is odd, either side may hold one more.
-/// 2. Equal centroids may go to either side. A centroid may be NaN.
+/// right. If n is odd, either side may hold one more. Equal centroids may go to either side. The
+/// box around the centroids will do as well.
 pub fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize {
     todo!("order the primitives by centroid along the longest axis and split in half")
 }
@@ -31,12 +27,12 @@ pub fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize {
 /// Spatial median: cut the box around all primitives in the middle of its longest axis. Each
 /// primitive goes to the side of its centroid. What if all centroids lie on one side?
 ///
-/// Input and result are as for [`split_object_median`].
+/// Input, result and box are as for [`split_object_median`]. A centroid exactly on the cut may go
+/// to either side.
 ///
 /// Exactly:
 ///
 /// 1. Neither side is empty: if the cut leaves one empty, any other split is right.
-/// 2. A centroid exactly on the cut may go to either side.
 pub fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize {
     todo!("cut the box in the middle of its longest axis; handle the case that all go to one side")
 }
@@ -54,11 +50,12 @@ pub fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize {
 ///     ≥ INTERSECTION_COST · A(P) n(P)
 /// ```
 ///
+/// Of cuts with equal cost any is right. For boxes without area all costs are 0, and both a leaf
+/// and any cut are right.
+///
 /// Exactly:
 ///
 /// 1. At most 64 `union` calls per primitive.
-/// 2. Of cuts with equal cost any is right.
-/// 3. For boxes without area all costs are 0, and both a leaf and any cut are right.
 pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
     todo!("find the cut with the least A(L) n(L) + A(R) n(R) over all three axes")
 }

@@ -22,13 +22,13 @@ pub fn closest_hit_both(bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> Option<
 /// Search the nearer child first, and skip every box that begins beyond the best hit so far. Boxes
 /// overlap: is a hit in the nearer child the closest? Does a hit at exactly `t_max` count?
 ///
-/// Returns the same hit as [`closest_hit_both`], also at the same `t`.
+/// Returns the same hit as [`closest_hit_both`], also at the same `t`. If the ray enters both
+/// children at the same `t`, either may be first.
 ///
 /// Exactly:
 ///
 /// 1. `t_max` is lowered at each hit. After the nearer child, the farther child's entry is compared
 ///    with it again.
-/// 2. If the ray enters both children at the same `t`, either may be first.
 pub fn closest_hit(bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
     todo!("enter the nearer child first, and skip boxes beyond the best hit")
 }

@@ -14,15 +14,15 @@ use raykata::ray::Ray;
 /// A smooth surface is shaded with its `interpolated` normal, a flat one with its `geometric`
 /// normal, on the viewer's side. Near a silhouette the two may disagree: which one tells this side?
 ///
-/// Returns a unit normal. `direction` is that of the ray from the viewer.
+/// Returns a unit normal, with either sign where a dot product is 0. `direction` is that of the
+/// ray from the viewer.
 ///
 /// Exactly:
 ///
 /// 1. `geometric`, of unit length, is negated if its dot product with `direction` is above 0.
 /// 2. `interpolated` (length 1e-18 to 1e18) is normalized, and negated if its dot product with the
 ///    turned geometric normal is below 0.
-/// 3. If `interpolated` is `None`, 0 or NaN, the turned geometric normal is returned.
-/// 4. Where a dot product is 0, either sign passes.
+/// 3. If `interpolated` is `None` or 0, the turned geometric normal is returned.
 ///
 /// Source: "Smooth Shading".
 pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3 {
@@ -41,13 +41,13 @@ pub fn diffuse_term(normal: Vec3, to_light: Vec3) -> f32 {
 /// `r = 2 (n·l) n - l` and the viewer. What is a power of a negative cosine? Can a light behind the
 /// surface give a positive one?
 ///
-/// The power n is `exponent`, at least 0.
+/// The power n is `exponent`, at least 0. If it is 0, any result in `0..=1` passes. If one of the
+/// cosines is 0, both 0 and the power pass.
 ///
 /// Exactly:
 ///
-/// 1. 0 if the light is behind the surface (`cos θ = n·l < 0`) or `cos φ < 0`.
-/// 2. If one of the two cosines is 0, both 0 and the power pass.
-/// 3. For an exponent of 0 any result in `0..=1` passes.
+/// 1. 0 if the light is behind the surface (`cos θ = n·l < 0`).
+/// 2. 0 if `cos φ < 0`.
 ///
 /// Source: "Local illumination".
 pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f32) -> f32 {
@@ -109,7 +109,7 @@ pub fn shade(
 /// With gamma 2, the byte for a component of linear light x is `255 √x`, rounded to the nearest
 /// byte. What is the square root of -1e-8?
 ///
-/// `linear` is clamped to `0..=1`, so -∞ gives 0 and ∞ gives 255. NaN gives 0.
+/// `linear` is clamped to `0..=1`, so -∞ gives 0 and ∞ gives 255. It is not NaN.
 ///
 /// Source: "Gamma Correction".
 pub fn encode_gamma(linear: f32) -> u8 {

@@ -47,12 +47,13 @@ pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> 
 /// ```
 ///
 /// The ray comes from the medium of index `n1`. `cos_theta`, in `0..=1`, is the cosine of its angle
-/// θ1 with the normal. θ is the larger one of θ1 and the angle θ2 of the refracted ray.
+/// θ1 with the normal, above 0 if `n1 == n2`. θ is the larger one of θ1 and the angle θ2 of the
+/// refracted ray.
 ///
 /// Exactly:
 ///
-/// 1. The result is in `0..=1`, and 1 beyond the critical angle. Within rounding of it (or if
-///    `n1 == n2` and `cos_theta` is 0) any number in `0..=1` passes.
+/// 1. The result is in `0..=1`, and 1 beyond the critical angle. Within rounding of it any number
+///    in `0..=1` passes.
 ///
 /// Source: Schlick, 1994.
 pub fn fresnel_schlick(cos_theta: f32, n1: f32, n2: f32) -> f32 {
@@ -66,7 +67,7 @@ pub fn fresnel_schlick(cos_theta: f32, n1: f32, n2: f32) -> f32 {
 /// ((n1 cos θ2 - n2 cos θ1) / (n1 cos θ2 + n2 cos θ1))²
 /// ```
 ///
-/// θ1 is the angle of the ray, and θ2 that of the refracted ray. What if both cosines are 0?
+/// θ1 is the angle of the ray, and θ2 that of the refracted ray. What if there is no θ2?
 ///
 /// Input and range of the result, also beyond the critical angle and near it, are those of
 /// [`fresnel_schlick`].

@@ -70,9 +70,9 @@ pub fn effects(scene: &Scene) -> Effects {
 /// Exactly:
 ///
 /// 1. `primary`: one ray per sample of each pixel.
-/// 2. `reflection`: a hit spawns `quality.glossy_samples` rays if its one material is glossy, else
-///    1; `transmission` likewise. The largest number over all materials counts; for the next level,
-///    that of both together.
+/// 2. `reflection`: a hit of a material with `mirror` spawns `quality.glossy_samples` rays if it is
+///    glossy, else 1; `transmission` likewise. The largest number over all materials counts; for
+///    the next level, that of both together.
 /// 3. There are at most `quality.max_depth` bounces, each only if the weight of the whole
 ///    reflection or refraction is above 0 and at least `quality.min_contribution`.
 /// 4. A camera ray weighs 1. A reflection weighs the largest channel of `mirror` (with `fresnel`,

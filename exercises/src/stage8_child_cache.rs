@@ -21,8 +21,7 @@ use raykata::ray::Ray;
 ///    those as `savings` says.
 /// 3. Call `probe.enter` at most once per node, and test each primitive at most once.
 /// 4. In the end, each node on the path from the root to the node with the closest hit has stored
-///    the child on this path.
-/// 5. Other entries may stay or change. A ray without a hit need not change any.
+///    the child on this path. Other entries may stay or change.
 ///
 /// Source: "Ray-Scene Intersection" (coherence).
 pub fn closest_hit_with_child_cache(

@@ -19,8 +19,7 @@ use raykata::shape::Sphere;
 ///
 /// Exactly:
 ///
-/// 1. The origin stays accurate also far from the world's origin, where single precision loses
-///    digits.
+/// 1. The origin is wrong by at most a few rounding errors of its terms.
 /// 2. The direction keeps its transformed length.
 /// 3. `t_min`, `t_max` and `time` stay the same.
 #[inline]
@@ -57,7 +56,7 @@ pub fn placement(path: &[Affine3A]) -> Option<Placement> {
 ///
 /// 1. The box contains all transformed points of `bounds`.
 /// 2. It is larger than the exact box by a few rounding errors of the terms at most.
-/// 3. An empty box (`min` above `max` on some axis) gives [`Aabb::EMPTY`].
+/// 3. An empty box (`min` above `max` on some axis) gives an empty box.
 ///
 /// Source: Arvo, "Transforming axis-aligned bounding boxes", Graphics Gems, 1990; "Rotate Bounding
 /// Boxes".
@@ -84,7 +83,7 @@ pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
 ///
 /// 1. `t` counts lengths of the direction, which may have any length but 0. The radius is above 0.
 /// 2. The result is in `t_min..=t_max`; from inside it is `t_min`.
-/// 3. It is never later than the exact entry, and only a few rounding errors earlier.
+/// 3. It is never later than the exact entry as an `f32`, and only a few rounding errors earlier.
 /// 4. `None` if the sphere lies beside the ray, behind it or beyond `t_max`. The surface belongs to
 ///    the sphere.
 pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {

@@ -72,7 +72,8 @@ pub fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit> {
 
 /// A ray hits a flat convex polygon, from both sides, if it passes all edges on the same side: the
 /// sign of `d · (p × q)`, for the ends of an edge relative to the ray's origin. Which number does
-/// the neighbour at this edge compute?
+/// the neighbour at this edge compute? If rounding moved corners off their plane, the triangles of
+/// a fan may give other hits near the rim.
 ///
 /// Exactly:
 ///
@@ -81,8 +82,6 @@ pub fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit> {
 ///    behind.
 /// 3. A ray in its plane misses it.
 /// 4. No ray passes between two polygons that share an edge.
-/// 5. If rounding moved corners off their plane, the triangles of a fan may give other hits near
-///    the rim.
 pub fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit> {
     todo!("test that the ray passes all edges on the same side; take t from the polygon's plane")
 }

@@ -13,7 +13,8 @@ use raykata::shape::NurbsPatch;
 /// one degree less (Cox, de Boor). What if knots are equal? And which span contains the last knot?
 ///
 /// Knots are finite and never descend, and `index + degree + 1` is a valid index. `u` lies in the
-/// domain `knots[p]..=knots[n]` of `n = knots.len() - p - 1` functions.
+/// domain `knots[p]..=knots[n]` of `n = knots.len() - p - 1` functions. There, ends included, they
+/// are at least 0, and their sum is 1.
 ///
 /// Exactly:
 ///
@@ -21,7 +22,6 @@ use raykata::shape::NurbsPatch;
 ///    that is not empty also contains the last knot.
 /// 2. `N(i, p)(u) = (u - k_i) / (k_{i+p} - k_i) N(i, p-1)(u) + (k_{i+p+1} - u) / (k_{i+p+1} -
 ///    k_{i+1}) N(i+1, p-1)(u)`, without a term whose denominator is 0.
-/// 3. In the domain, ends included, they are at least 0, and their sum is 1.
 ///
 /// Source: Cox 1972; de Boor 1972.
 pub fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32 {

@@ -33,14 +33,13 @@ pub struct PaddedBoxes {
 }
 
 /// Widens every box a little on all sides, so that a hit that rounding moves just outside its box
-/// is still in a cell that lists it. How large is the extent of huge boxes, in single precision?
+/// is still in a cell that lists it.
 ///
 /// The room is 2⁻¹⁸ of the largest extent, and at least 2⁻²² of the largest coordinate.
 ///
 /// Exactly:
 ///
 /// 1. Boxes that are empty or have a NaN coordinate are left out.
-/// 2. The result stays within ±`f32::MAX`.
 pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     todo!("leave out boxes that are empty or NaN, and widen every other box a little")
 }
@@ -90,9 +89,7 @@ pub fn range(ray: &Ray) -> (f64, f64) {
 ///
 /// Exactly:
 ///
-/// 1. A hit counts also if it lies outside the cell.
-/// 2. At equal `t` the smaller primitive number wins.
-/// 3. A primitive that overlaps several cells may be tested several times.
+/// 1. At equal `t` the smaller primitive number wins.
 #[inline]
 pub fn test_cell(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best: &mut Option<PrimitiveHit>) {
     todo!("ask probe.hit about each primitive, and keep the closest; at one t the smaller number")

@@ -14,13 +14,14 @@ use raykata::ray::Ray;
 pub const PACKET: usize = 8;
 
 /// Neighbouring rays often hit the same primitive. Test `last`, the primitive that the previous ray
-/// hit, and give `search` a ray that ends at this hit. What if it then finds nothing?
+/// hit, and give `search` a ray that ends at this hit. The answer is that of `search` alone. What
+/// if it then finds nothing?
 ///
 /// Exactly:
 ///
-/// 1. The answer is that of `search` alone: at equal `t` the smaller number wins, and a hit counts
-///    only within the range of `ray`.
-/// 2. With `last = None`, or if the ray misses that primitive, `search` gets the whole ray.
+/// 1. At equal `t` the smaller number wins.
+/// 2. A hit counts only within the range of `ray`.
+/// 3. With `last = None`, or if the ray misses that primitive, `search` gets the whole ray.
 ///
 /// Source: "Cache Node Intersections".
 pub fn closest_hit_cached<P: Cells>(

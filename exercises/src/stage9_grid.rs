@@ -38,7 +38,6 @@ pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
 ///
 /// 1. A box that touches a cell overlaps it.
 /// 2. Empty boxes and boxes with NaN are left out.
-/// 3. An axis with resolution 0 gets one cell.
 ///
 /// Source: "Uniform Grid" (index primitives according to overlaps).
 pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {

@@ -26,7 +26,7 @@ use raykata::ray::Ray;
 /// Exactly:
 ///
 /// 1. Divide a cell, unless it holds at most `leaf_size` primitives, is at `max_depth` (the root is
-///    at depth 0), its octants together would hold more than three times as many, or
+///    at depth 0), its octants together would hold about three times as many or more, or
 ///    [`ListGrowth::divide`] returns `None`.
 /// 2. List a primitive once in every leaf that its box touches.
 /// 3. Leave out empty boxes and boxes with NaN. Without a usable box the tree has no nodes.

@@ -138,7 +138,25 @@ pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> CheckResult {
     // Exactly leaf_size primitives still fit into a leaf.
     let four: Vec<Aabb> =
         (0..4).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 1.0, 1.0, 1.0))).collect();
-    build_all_ways(trial, &four)
+    build_all_ways(trial, &four)?;
+    for split in [Split::ObjectMedian, Split::SpatialMedian] {
+        let query = BuildQuery { bounds: four.clone(), split, leaf_size: 4 };
+        let nodes = built(trial, &query)?.nodes.len();
+        if nodes != 1 {
+            let describe = |n: usize| format!("{n} nodes");
+            return Err(Broken::with_texts(
+                query.call("build"),
+                describe(nodes),
+                "1 node, a leaf",
+                "the definition",
+            )
+            .explained_by([(
+                nodes > 1,
+                "exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size",
+            )]));
+        }
+    }
+    Ok(())
 }
 
 pub(super) fn build_isolates_what_is_not_a_number(trial: &Trial<'_>) -> CheckResult {

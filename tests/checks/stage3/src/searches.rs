@@ -183,11 +183,21 @@ pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult {
     trial.forall(500, searches(), |queries| {
         compare(queries, trial.kit.any_hit(queries), |query, (_, answer)| {
             let describe = |n: u64| format!("{n} primitive tests after the first hit");
-            match answer.tests_after_hit {
-                0 => Ok(()),
-                n => Err(Broken::with_texts(describe_search(query), describe(n), describe(0), "counted")
-                    .explained_by([(n > 0, "the search goes on after a hit: return true at once")])),
+            let n = answer.tests_after_hit;
+            if n > 0 {
+                return Err(Broken::with_texts(describe_search(query), describe(n), describe(0), "counted")
+                    .explained_by([(n > 0, "the search goes on after a hit: return true at once")]));
             }
+            let met = tree::overlapped(query).len() as u64;
+            let visits = answer.counts.node_visits;
+            if visits <= met {
+                return Ok(());
+            }
+            let describe = |n: u64| format!("{n} nodes opened");
+            let most = format!("at most {met}: the ray meets no more boxes");
+            Err(Broken::with_texts(describe_search(query), describe(visits), most, "counted").explained_by([
+                (visits > met, "you open nodes whose box the ray misses: ask probe.enter first"),
+            ]))
         })
     })
 }

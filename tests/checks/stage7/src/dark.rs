@@ -129,6 +129,10 @@ pub(super) fn what_nothing_lights_needs_nothing(trial: &Trial<'_>) -> CheckResul
             sky(scene);
             scene.lights.push(light(Vec3::X, brightness));
         }),
+        case("the same in red ambient light, before a bright background", true, false, &|scene| {
+            sky(scene);
+            scene.ambient = brightness * Vec3::X;
+        }),
         case("the same with a red highlight under a red light", true, false, &|scene| {
             scene.materials[1].specular = Vec3::X;
             scene.lights.push(light(Vec3::X, brightness));

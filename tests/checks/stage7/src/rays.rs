@@ -3,7 +3,7 @@
 use super::scenes::{ONE_SAMPLE, add_material, light, one_sphere};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use glam::Vec3;
+use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::kit::{BoundQuery, KitError, RayCounts, kit_error};
@@ -90,6 +90,22 @@ fn mirror_and_glass(quality: Quality) -> BoundQuery {
     add_material(&mut query.scene, "glass", glass);
     let glass = MaterialEffects { lights: vec![1], transmission: true, ..MaterialEffects::default() };
     query.effects.materials.push(glass);
+    query
+}
+
+/// A scene with coloured glass under two of three lights, a weaker mirror under one, and a stronger mirror that no shape
+/// has.
+fn unequal(quality: Quality) -> BoundQuery {
+    let glass = Material { transmission: vec3(0.25, 0.5, 0.0), ..Material::default() };
+    let mut query = query(glass, 2, quality);
+    query.scene.lights.push(light(Vec3::ONE, 1.0));
+    query.effects.lights.push(ONE_SAMPLE);
+    let weak = MaterialEffects { lights: vec![1], mirror: true, ..MaterialEffects::default() };
+    for (name, mirror, takes) in [("weak", 0.25, weak), ("hidden", 0.75, MaterialEffects::default())] {
+        let mirror = Material { mirror: Vec3::splat(mirror), ..Material::default() };
+        add_material(&mut query.scene, name, mirror);
+        query.effects.materials.push(takes);
+    }
     query
 }
 
@@ -333,6 +349,14 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
                 (spread(2, [1, 1], 3), SUM_OF_RAYS),
                 (Spread { shadows: 3, ..either }, SUM_OF_LIGHTS),
             ],
+        ),
+        // The largest weight is 1/2, that of one channel of the glass: 1/2, 1/4 and 1/8 are at least 1/8.
+        Spread { onward: 1, ..spread(3, [1, 1], 2) }.scene(
+            "glass of (1/4, 1/2, 0) under 2 of 3 lights, a mirror of 1/4 under 1, and a mirror of 3/4 that no shape has, \
+             glossy_samples 4, max_depth 100, min_contribution 1/8",
+            unequal(Quality { glossy_samples: 4, ..parameters(100, 0.125) }),
+            counts(1, 8, 3, 3),
+            &[],
         ),
         spread(0, [1, 0], 1).scene(
             "a mirror, max_depth 0",

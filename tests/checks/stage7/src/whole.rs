@@ -192,7 +192,11 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
     add_material(&mut scene, "glass", Material { transmission: Vec3::ONE, ..Material::default() });
     add_material(&mut scene, "paint", Material::default());
     let mesh = Mesh { triangles: vec![[0, 1, 2]; 3], face_materials: vec![0, 1, 2], ..one_triangle() };
-    scene.meshes = vec![SceneMesh { mesh: Arc::new(mesh), materials: vec![2, 3, 4], ..SceneMesh::default() }];
+    // The smooth mesh is second now. No node holds it.
+    let smooth = scene.meshes.remove(0);
+    let mesh = SceneMesh { mesh: Arc::new(mesh), materials: vec![2, 3, 4], ..SceneMesh::default() };
+    scene.meshes = vec![mesh, smooth];
+    expected.smooth_meshes = vec![false; 2];
     scene.nodes.push(Node { shape: Some(Shape::Mesh(0)), ..Node::default() });
     scene.roots.push(scene.nodes.len() - 1);
     let lit = expected.materials[1].clone();

@@ -150,7 +150,7 @@ fn judge_build(
 /// Parallel sheets across a diagonal: planes across an axis do not divide them, but their own planes do.
 pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     let n = 31;
-    let query = BspQuery { hulls: hulls::sheets(n), leaf_size: 2, max_depth: 12 };
+    let query = BspQuery { hulls: hulls::sheets(n), leaf_size: 2, max_depth: 32 };
     let yours = trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
     judge_tree(&query, &yours)?;
     let fullest = leaves(&yours).iter().map(|(.., listed)| listed.len()).max().unwrap_or(0);
@@ -175,7 +175,7 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
         ),
     ];
     let yours = format!("up to {fullest} sheets per leaf, {references} references, {depth} levels");
-    let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 12");
+    let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 32");
     Err(Broken::with_texts(
         input,
         yours,
