@@ -76,8 +76,8 @@ fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> Judged {
         Some(_) => average.as_vec3(),
     };
     let input = || format!("{what}, vertex {vertex} at {}", mesh.positions[vertex].paste());
-    let is = |n: DVec3| near(n.normalize_or_zero());
     let has_faces = !sums.faces.is_empty();
+    let is = |n: DVec3| has_faces && near(n.normalize_or_zero());
     let source = if cancels { "a face, because the sum is 0" } else { "double precision" };
     let broken = || {
         Broken::new(input(), yours, expected, source).explained_by([
