@@ -10,6 +10,8 @@ use crate::broken::{Broken, CheckResult};
 use glam::{UVec2, Vec2};
 use raykata::random::{Points, Purpose};
 use raykata::scene::Sampler;
+use std::cell::RefCell;
+use std::ops::Range;
 
 /// The probability that a test rejects a correct sampler.
 pub const FALSE_ALARMS: f64 = 1e-7;
@@ -30,13 +32,13 @@ pub fn pairs(seed: u64, count: usize) -> Vec<Vec2> {
     (0..count as u64).map(pair).collect()
 }
 
-/// The chi-square score of cells with these expected counts. It is normally distributed by the approximation of Wilson and
-/// Hilferty, and large if the counts do not fit. At this threshold and 63 degrees of freedom, the approximation gives about a
-/// seventh fewer false alarms than stated. Each expected count must be above 20 or so, because counts of rare cells are not
+/// The chi-square score of cells that expect equal counts. It is normally distributed by the approximation of Wilson and
+/// Hilferty, and large if the counts are uneven. At this threshold and 63 degrees of freedom, the approximation gives about a
+/// seventh fewer false alarms than stated. The expected count must be above 20 or so, because counts of rare cells are not
 /// normally distributed.
-fn score_of_expected(counts: &[u64], expected: &[f64]) -> f64 {
-    let term = |(&count, &expected): (&u64, &f64)| (count as f64 - expected).powi(2) / expected;
-    let chi_square: f64 = counts.iter().zip(expected).map(term).sum();
+fn score_of_even(counts: &[u64]) -> f64 {
+    let expected = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
+    let chi_square: f64 = counts.iter().map(|&count| (count as f64 - expected).powi(2) / expected).sum();
     let freedom = counts.len() as f64 - 1.0;
     let spread = 2.0 / (9.0 * freedom);
     ((chi_square / freedom).cbrt() - (1.0 - spread)) / spread.sqrt()
@@ -64,65 +66,229 @@ pub fn covers_evenly(
     axes: [&str; 2],
     mistakes: impl Fn(&[u64]) -> Mistakes,
 ) -> CheckResult {
-    let even = vec![1.0; (CELLS * CELLS) as usize];
-    has_shares(what, places, axes, &even, |counts| {
-        let proven = mistakes(counts).into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()));
-        proven.or_else(|| pattern(counts, axes))
-    })
-}
-
-/// Checks that `places`, each in the unit square, are distributed over its cells in proportion to `shares`, which are listed
-/// row by row. `what` is the call. `diagnosis` gets the counts of the cells.
-pub fn has_shares(
-    what: &str,
-    places: &[(f64, f64)],
-    axes: [&str; 2],
-    shares: &[f64],
-    diagnosis: impl Fn(&[u64]) -> Option<String>,
-) -> CheckResult {
+    // The noncentral chi-square that is above the threshold with probability 99.9 % has its centre 163 higher. A deviation of an
+    // eighth of the square, which the rest makes good, moves it by its square over 7 per sample.
+    note_power(0.0, (163.0 * 7.0 / places.len() as f64).sqrt());
     let mut counts = vec![0; (CELLS * CELLS) as usize];
     for &(x, y) in places {
         let cell = |share: f64| ((share * f64::from(CELLS)).max(0.0) as u32).min(CELLS - 1);
         let UVec2 { x, y } = UVec2::new(cell(x), cell(y));
         counts[(y * CELLS + x) as usize] += 1;
     }
-    let scale = places.len() as f64 / shares.iter().sum::<f64>();
-    let expected: Vec<f64> = shares.iter().map(|share| scale * share).collect();
     // A score that is NaN fails.
-    if score_of_expected(&counts, &expected) <= ONE_SIDED {
+    if score_of_even(&counts) <= ONE_SIDED {
         return Ok(());
     }
-    let worst = (0..counts.len())
-        .max_by(|&a, &b| {
-            let off = |cell: usize| (counts[cell] as f64 - expected[cell]).abs();
-            off(a).total_cmp(&off(b))
-        })
-        .unwrap_or(0);
-    let (column, row) = (worst as u32 % CELLS, worst as u32 / CELLS);
+    let expected = places.len() as f64 / f64::from(CELLS * CELLS);
+    let off = |cell: usize| (counts[cell] as f64 - expected).abs();
+    let worst = (0..counts.len()).max_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0);
     let range = |cell: u32| {
         format!("{:.3}..{:.3}", f64::from(cell) / f64::from(CELLS), f64::from(cell + 1) / f64::from(CELLS))
     };
+    let (column, row) = (range(worst as u32 % CELLS), range(worst as u32 / CELLS));
     let input = format!(
-        "{what} for {} pairs u;\nsorted by {} and {} into {} cells{}",
+        "{what} for {} pairs u;\nsorted by {} and {} into {} cells of equal probability",
         places.len(),
         axes[0],
         axes[1],
-        counts.len(),
-        if shares.iter().all(|share| *share == shares[0]) { " of equal probability" } else { "" }
+        counts.len()
     );
-    let yours =
-        format!("{} with {} in {} and {} in {}", counts[worst], axes[0], range(column), axes[1], range(row));
-    let broken = Broken::with_texts(
-        input,
-        yours,
-        format!("about {:.0}", expected[worst]),
-        "chi-square, 1 false alarm in 10 million",
-    );
-    Err(broken.looks_like(diagnosis(&counts)))
+    let yours = format!("{} with {} in {column} and {} in {row}", counts[worst], axes[0], axes[1]);
+    let source = "chi-square, 1 false alarm in 10 million";
+    let broken = Broken::with_texts(input, yours, format!("about {expected:.0}"), source);
+    let proven = mistakes(&counts).into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()));
+    Err(broken.looks_like(proven.or_else(|| pattern(&counts, axes))))
+}
+
+/// A bound on a normally distributed score that any of the [`parts`] exceeds with probability [`FALSE_ALARMS`].
+const OF_ALL_PARTS: f64 = 6.1;
+
+/// The cells along each side of the grid of [`stratified`] numbers. With it a deviation of 2 % is found in each 32nd of the
+/// square.
+const SIDE: u32 = 384;
+
+/// The bounds of bins along each side of the unit square: eighths, and narrow bins at both rims.
+const EDGES: [f64; 15] = {
+    let [a, b, c] = [1.0 / 4096.0, 1.0 / 512.0, 1.0 / 64.0];
+    [0.0, a, b, c, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - c, 1.0 - b, 1.0 - a, 1.0]
+};
+/// The number of bins along each side.
+const BINS: usize = EDGES.len() - 1;
+
+/// The bins of the unit square, row by row: the corner and the size of each.
+pub fn bins() -> impl Iterator<Item = ((f64, f64), (f64, f64))> {
+    let along = |bin: usize| (EDGES[bin], EDGES[bin + 1] - EDGES[bin]);
+    (0..BINS * BINS).map(move |bin| {
+        let ((x, width), (y, height)) = (along(bin % BINS), along(bin / BINS));
+        ((x, y), (width, height))
+    })
+}
+
+/// The parts of the square that are counted, as ranges of bins along x and y.
+fn parts() -> Vec<[Range<usize>; 2]> {
+    let eighth = |index: usize| if index < 8 { index.min(1) * 3 + index } else { BINS };
+    let even = |n: usize| (0..n).map(|i| eighth(8 / n * i)..eighth(8 / n * (i + 1))).collect::<Vec<_>>();
+    let rims = (1..4).flat_map(|n| [0..n, BINS - n..BINS]).collect::<Vec<_>>();
+    let (whole, quarters, eighths) = (even(1), even(4), even(8));
+    let pairs = [(&quarters, &eighths), (&eighths, &quarters), (&eighths, &whole), (&whole, &eighths)];
+    let pairs = pairs.into_iter().chain([(&rims, &whole), (&whole, &rims)]);
+    pairs.flat_map(|(x, y)| x.iter().flat_map(|x| y.iter().map(|y| [x.clone(), y.clone()]))).collect()
+}
+
+/// Random numbers, two pairs in each cell of a grid. A map that keeps areas spreads them over the parts of the square far more
+/// evenly than independent ones.
+fn stratified(seed: u64) -> Vec<Vec2> {
+    let place = |(index, u): (usize, Vec2)| {
+        let cell = UVec2::new(index as u32 / 2 % SIDE, index as u32 / 2 / SIDE);
+        ((cell.as_vec2() + u) / SIDE as f32).min(Vec2::splat(1.0 - f32::EPSILON / 2.0))
+    };
+    pairs(seed, 2 * (SIDE * SIDE) as usize).into_iter().enumerate().map(place).collect()
+}
+
+/// Judges a sampler that maps two random numbers to places in the unit square. It must use both numbers, and each part of the
+/// square must get as many samples as its bins expect: all parts of equal size, and narrow ones at the rims. `what` is the call;
+/// `shares` has the expected share of each bin, and none if they are the areas.
+///
+/// Each cell of the grid of numbers has two samples, whose difference states the variance of the count for any map that is
+/// right. It is at most that of independent numbers, which is the expected count.
+pub fn covers_each_part(
+    what: &str,
+    axes: [&str; 2],
+    seed: u64,
+    shares: Option<&[f64]>,
+    places: impl Fn(&[Vec2]) -> Result<Vec<(f64, f64)>, Broken>,
+    diagnosis: impl Fn(&[u64]) -> Option<String>,
+) -> CheckResult {
+    let u = stratified(seed ^ (1 << 41));
+    let all = places(&u)?;
+    let places_of = |u: &[Vec2]| places(u).unwrap_or_default();
+    let unused = unused_number(places_of).into_iter().find_map(|(proven, text)| proven.then_some(text));
+    if let Some(text) = unused {
+        let broken = Broken::with_texts(what, "one number has no effect", "both have", "two coordinates");
+        return Err(broken.looks_like(Some(text.to_owned())));
+    }
+    // Sort the places into bins. Rounding may put a place of the rim beyond it, by no more than the callers accept.
+    let bin = |place: &(f64, f64)| {
+        let along = |share: f64| {
+            let inside = (-1e-3..=1.001).contains(&share);
+            inside.then(|| EDGES[1..BINS].partition_point(|edge| *edge <= share))
+        };
+        Some([along(place.0)?, along(place.1)?])
+    };
+    let bins_of: Vec<Option<[usize; 2]>> = all.iter().map(bin).collect();
+    let mut counts = vec![0u64; BINS * BINS];
+    bins_of.iter().flatten().for_each(|[x, y]| counts[y * BINS + x] += 1);
+    let areas: Vec<f64> = bins().map(|(_, (width, height))| width * height).collect();
+    let shares = shares.unwrap_or(&areas);
+    let scale = u.len() as f64 / shares.iter().sum::<f64>();
+    let split: Vec<_> = bins_of.chunks(2).filter(|pair| pair[0] != pair[1]).collect();
+    let mut worst: Option<(f64, Broken)> = None;
+    for [x, y] in parts() {
+        let cells = || y.clone().flat_map(|y| x.clone().map(move |x| y * BINS + x));
+        let count: u64 = cells().map(|cell| counts[cell]).sum();
+        let expected: f64 = scale * cells().map(|cell| shares[cell]).sum::<f64>();
+        let is_in = |place: &Option<[usize; 2]>| place.is_some_and(|[i, j]| x.contains(&i) && y.contains(&j));
+        // The variance of a small count is not known from its few samples.
+        let variance = match expected < 1000.0 {
+            true => expected,
+            false => split.iter().filter(|pair| is_in(&pair[0]) != is_in(&pair[1])).count() as f64,
+        };
+        // Ten samples may lie on the other side of a bound because of rounding.
+        let limit = OF_ALL_PARTS * variance.sqrt() + 10.0;
+        let area = (EDGES[x.end] - EDGES[x.start]) * (EDGES[y.end] - EDGES[y.start]);
+        note_power(area, (limit + OF_POWER * variance.sqrt()) / expected);
+        let off = (count as f64 - expected).abs() / limit;
+        if off > 1.0 && worst.as_ref().is_none_or(|(most, _)| off > *most) {
+            let range = |range: &Range<usize>| format!("{:.4}..{:.4}", EDGES[range.start], EDGES[range.end]);
+            let input = format!("{what} for {} pairs u;\nsorted by {} and {}", u.len(), axes[0], axes[1]);
+            let yours = format!("{count} with {} in {} and {} in {}", axes[0], range(&x), axes[1], range(&y));
+            let source = "stratified numbers, 1 false alarm in 10 million";
+            worst = Some((off, Broken::with_texts(input, yours, format!("about {expected:.0}"), source)));
+        }
+    }
+    let Some((_, broken)) = worst else { return Ok(()) };
+    let gap = broken.yours.starts_with("0 with").then_some("your samples leave this part of the range out");
+    // Count in cells of equal size.
+    let mut cells = vec![0; (CELLS * CELLS) as usize];
+    for [x, y] in bins_of.iter().flatten() {
+        let eighth = |bin: usize| bin.clamp(3, BINS - 4) - 3;
+        cells[eighth(*y) * CELLS as usize + eighth(*x)] += 1;
+    }
+    Err(broken.looks_like(diagnosis(&cells).or(gap.map(str::to_owned))))
+}
+
+/// Whether all of these values are the same power of one of the random numbers, or of 1 less it, for an exponent that is not
+/// `right`.
+pub fn is_other_power(u: &[Vec2], values: &[f64], right: f64) -> bool {
+    (0..4).any(|which| {
+        let number = |u: &Vec2| f64::from([u.x, u.y, 1.0 - u.x, 1.0 - u.y][which]);
+        // Logarithms are precise away from both ends.
+        let pairs = u.iter().map(number).zip(values).filter(|(u, _)| (0.1..0.9).contains(u));
+        let mut powers = pairs.map(|(u, value)| value.ln() / u.ln());
+        let first = powers.next().unwrap_or(right);
+        (first - right).abs() > 1e-3 * right && powers.all(|power| (power - first).abs() <= 1e-4 * first)
+    })
+}
+
+/// The number of intervals into which [`measures`] divides the random numbers at first. It finds sets of a measure of 1e-4.
+const STRATA: usize = 16_384;
+
+/// The measures of the sets of random numbers with equal answers, and a bound on their errors. They are exact up to the
+/// spacing of random numbers, because each border between two sets is bisected; if there are very many, they are counted.
+pub fn measures<A: PartialEq + Clone>(answer: impl Fn(&[f32]) -> Vec<A>) -> (Vec<(A, f64)>, f64) {
+    const ALL: usize = 1 << 24;
+    let ask = |numbers: &[usize]| answer(&numbers.iter().map(|n| *n as f32 / ALL as f32).collect::<Vec<_>>());
+    let numbers: Vec<usize> = (0..STRATA).map(|n| n * (ALL / STRATA)).chain([ALL - 1]).collect();
+    let answers = ask(&numbers);
+    let borders = (0..STRATA).filter(|n| answers[*n] != answers[n + 1]);
+    let mut borders: Vec<[usize; 2]> = borders.map(|n| [numbers[n], numbers[n + 1]]).collect();
+    let few = borders.len() <= 64;
+    while few && borders.iter().any(|[low, high]| high - low > 1) {
+        let middles: Vec<usize> = borders.iter().map(|[low, high]| low.midpoint(*high)).collect();
+        let (below, here) = (ask(&borders.iter().map(|border| border[0]).collect::<Vec<_>>()), ask(&middles));
+        for (border, (middle, same)) in
+            borders.iter_mut().zip(middles.into_iter().zip(below.iter().zip(&here).map(|(a, b)| a == b)))
+        {
+            border[usize::from(!same)] = middle;
+        }
+    }
+    let ends = borders.iter().map(|border| border[1]).chain([ALL]);
+    let mut sets: Vec<(A, f64)> = Vec::new();
+    let mut start = 0;
+    for (end, answer) in ends.clone().zip(ask(&ends.map(|end| end - 1).collect::<Vec<_>>())) {
+        let measure = (end - start) as f64 / ALL as f64;
+        match sets.iter_mut().find(|(other, _)| *other == answer) {
+            Some((_, sum)) => *sum += measure,
+            None => sets.push((answer, measure)),
+        }
+        start = end;
+    }
+    let spacing = if few { ALL } else { STRATA } as f64;
+    (sets, (borders.len() + 4) as f64 / spacing)
+}
+
+/// A normally distributed score is below this with probability 99.9 %.
+const OF_POWER: f64 = 3.09;
+
+thread_local! {
+    static POWER: RefCell<Option<Vec<(f64, f64)>>> = const { RefCell::new(None) };
+}
+
+/// Notes the smallest relative deviation that a test finds with 99.9 % power in a part of the square; 1 for a mean, and 0
+/// for an eighth of the square by chi-square.
+fn note_power(part: f64, deviation: f64) {
+    POWER.with_borrow_mut(|power| power.iter_mut().for_each(|power| power.push((part, deviation.abs()))));
+}
+
+/// The parts and deviations that a check [notes](note_power).
+pub fn power_of(check: impl FnOnce()) -> Vec<(f64, f64)> {
+    POWER.set(Some(Vec::new()));
+    check();
+    POWER.take().unwrap_or_default()
 }
 
 /// A description of uneven counts that does not depend on the sampler.
-fn pattern(counts: &[u64], axes: [&str; 2]) -> Option<String> {
+pub fn pattern(counts: &[u64], axes: [&str; 2]) -> Option<String> {
     let sums = [columns(counts), counts.chunks(CELLS as usize).map(|row| row.iter().sum()).collect()];
     for (sums, axis) in sums.iter().zip(axes) {
         let (first, last) = (sums[0], sums[CELLS as usize - 1]);
@@ -178,6 +344,8 @@ pub fn has_mean_within(
     mistakes: impl Fn(f64) -> Mistakes,
 ) -> CheckResult {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let standard_error = (mean - expected) / mean_score(values, expected);
+    note_power(1.0, ((TWO_SIDED + OF_POWER) * standard_error.abs() + slack) / expected);
     // The number in the range of the expected mean that is nearest to the mean. A mean that is NaN fails.
     if mean_score(values, mean.clamp(expected - slack, expected + slack)).abs() <= TWO_SIDED {
         return Ok(());
@@ -238,7 +406,7 @@ mod tests {
             for u in pairs(seed, 1024) {
                 counts[((u.x * 8.0) as usize) * 8 + (u.y * 8.0) as usize] += 1;
             }
-            score_of_expected(&counts, &[16.0; 64])
+            score_of_even(&counts)
         };
         // At 1.645, 5 % of 2,000: 100 ± 10. Four standard deviations either way.
         let n = alarms(chi_square, 1.645);

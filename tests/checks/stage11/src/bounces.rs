@@ -20,7 +20,11 @@ pub(super) fn cut_off_is_the_light_beyond_the_last_bounce(trial: &Trial<'_>) -> 
             let whole = 1.0 / (1.0 - f64::from(*albedo));
             let rest = power(*albedo, n + 1.0);
             let input = || format!("cut_off({albedo:?}, {bounces})");
-            let broken = || Broken::new(input(), yours, rest, "albedo^(bounces + 1)");
+            let overflow = *bounces == u32::MAX && yours == 1.0;
+            let broken = || {
+                Broken::new(input(), yours, rest, "albedo^(bounces + 1)")
+                    .explained_by([(overflow, "bounces + 1 overflows: add in a larger type")])
+            };
             unless(near(yours, rest), broken).formulas([
                 (
                     near(yours, power(*albedo, n)),

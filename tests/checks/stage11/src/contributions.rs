@@ -109,6 +109,14 @@ pub(super) fn light_contributions_have_their_closed_form(trial: &Trial<'_>) -> C
                     "the diffuse reflectance is missing",
                 ),
                 (is(weight * whole / PI, 1.0), "you divide by π twice"),
+                (
+                    is(weight * whole / f64::from(query.sample.distance).powi(2), 1.0),
+                    "you divide by the squared distance: it is in the density of the sample",
+                ),
+                (
+                    is(whole * (pdf / (pdf + other)), 1.0),
+                    "you divide by the sum of both densities and do not weight by mis_weight",
+                ),
             ])
         })
     })
@@ -186,14 +194,16 @@ pub(super) fn emission_counts_by_its_weight(trial: &Trial<'_>) -> CheckResult {
             let by_own = own * query.emission;
             let is_by_own = yours == by_own || yours.is_nan() && by_own.is_nan();
             let input = || call("emitted_contribution", &[&query.emission, &query.pdf, &query.light_pdf]);
-            let broken = || Broken::new(input(), yours, expected.as_vec3(), "emission · mis_weight");
+            let broken = || {
+                Broken::new(input(), yours, expected.as_vec3(), "emission · mis_weight")
+                    .explained_by([(yours.is_nan(), "you return NaN: ∞ / ∞, or 0 · ∞")])
+            };
             let right = near(yours, expected) || query.pdf == f32::INFINITY && is_by_own;
             let whole = query.emission.as_dvec3();
             let is_certain = query.pdf == f32::INFINITY;
             let unless_certain = |weight: f64| if is_certain { whole } else { weight * whole };
             let weight = f64::from(own);
             unless(right, broken).formulas([
-                (yours.is_nan(), "you return NaN"),
                 (near(yours, whole), "all emission counts in full, so light that is sampled counts twice"),
                 (yours == Vec3::ZERO, "no emission counts, so mirrors show no lights"),
                 (

@@ -5,7 +5,9 @@ use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::paste::call;
-use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
+use checks::statistics::{
+    SAMPLES, columns, covers_each_part, covers_evenly, is_other_power, pairs, pattern, unused_number,
+};
 use glam::{Vec2, Vec3, vec2};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -57,39 +59,29 @@ pub(super) fn cosine_directions_stay_above_the_surface(trial: &Trial<'_>) -> Che
 }
 
 pub(super) fn cosine_directions_have_their_density(trial: &Trial<'_>) -> CheckResult {
-    let normals = nasty::directions();
-    have_their_density(trial, &normals, trial.seed)?;
-    // The last eight normals are far from the axes. Among all of them an axis of the frame that is too short goes unnoticed,
-    // because most frames along an axis are right by chance.
-    have_their_density(trial, &normals[normals.len() - 8..], trial.seed ^ (1 << 40))
-}
-
-fn have_their_density(trial: &Trial<'_>, normals: &[Vec3], seed: u64) -> CheckResult {
-    let u = pairs(seed, SAMPLES);
-    let queries: Vec<(Vec3, Vec2)> =
-        u.iter().enumerate().map(|(index, u)| (normals[index % normals.len()], *u)).collect();
-    let (mut shares, mut cosines) = (Vec::new(), Vec::new());
-    let judge = |(query, yours): (&(Vec3, Vec2), Vec3)| {
-        let (normal, direction) = (query.0.as_dvec3().normalize(), yours.as_dvec3());
-        if !((direction.length() - 1.0).abs() < 1e-5) {
-            return Err(Broken::new(
-                call("cosine_direction", &[&query.0, &query.1]),
-                yours,
-                "a unit direction",
-                "the definition",
-            ));
-        }
-        let (x, y) = normal.any_orthonormal_pair();
-        let cosine = direction.dot(normal);
-        // sin² θ is uniform in 0..1, and so is the angle around the normal as a fraction of a full turn.
-        shares.push((
-            direction.cross(normal).length_squared(),
-            direction.dot(y).atan2(direction.dot(x)) / TAU + 0.5,
-        ));
-        cosines.push(cosine);
-        Ok(())
+    let (normals, u) = (nasty::directions(), pairs(trial.seed, SAMPLES));
+    let directions = |normals: &[Vec3], u: &[Vec2]| {
+        let query = |(index, u): (usize, &Vec2)| (normals[index % normals.len()], *u);
+        let queries: Vec<(Vec3, Vec2)> = u.iter().enumerate().map(query).collect();
+        let answers = trial.kit.cosine_direction(&queries);
+        let judge = |(query, yours): (&(Vec3, Vec2), &Vec3)| {
+            if (yours.as_dvec3().length() - 1.0).abs() < 1e-5 {
+                return Ok(());
+            }
+            let input = call("cosine_direction", &[&query.0, &query.1]);
+            Err(Broken::new(input, yours, "a unit direction", "the definition"))
+        };
+        all_hold(queries.iter().zip(&answers).map(judge).collect())?;
+        Ok((queries, answers))
     };
-    all_hold(queries.iter().zip(trial.kit.cosine_direction(&queries)).map(judge).collect())?;
+    let places = |(queries, answers): (Vec<(Vec3, Vec2)>, Vec<Vec3>)| {
+        let of = |((normal, _), direction): (&(Vec3, Vec2), &Vec3)| place(*normal, *direction);
+        queries.iter().zip(&answers).map(of).collect::<Vec<_>>()
+    };
+    let (queries, answers) = directions(&normals, &u)?;
+    let cosine = |((normal, _), yours): (&(Vec3, Vec2), &Vec3)| normal.as_dvec3().dot(yours.as_dvec3());
+    let cosines: Vec<f64> = queries.iter().zip(&answers).map(cosine).collect();
+    let sines: Vec<f64> = cosines.iter().map(|cosine| (1.0 - cosine * cosine).max(0.0).sqrt()).collect();
     // Whether all cosines are those of a wrong formula of one random number.
     let is = |formula: fn(f64) -> f64| {
         let number = |u: &Vec2, which: usize| f64::from([u.x, u.y, 1.0 - u.x, 1.0 - u.y][which]);
@@ -113,17 +105,44 @@ fn have_their_density(trial: &Trial<'_>, normals: &[Vec3], seed: u64) -> CheckRe
                 "the radius on the disk is uniform: it is the root of a uniform number",
             ),
             (is(|u| u.powf(1.0 / 3.0)), "your density is proportional to cos² θ"),
+            (
+                is_other_power(&u, &cosines, 0.5) || is_other_power(&u, &sines, 0.5),
+                "cos θ or sin θ is another power of a random number than its root",
+            ),
+            // Of so many samples the lowest has a cosine of about 0.006, and above 0.018 less than once in a thousand times.
+            (
+                cosines.iter().all(|cosine| *cosine > 0.018),
+                "you never sample grazing directions: cos θ goes down to 0",
+            ),
         ]);
         mistakes
     };
     let what = "cosine_direction(normal, u)";
-    covers_evenly(what, &shares, ["sin² θ", "the angle around the normal"], |counts| {
+    covers_evenly(what, &places((queries, answers)), AXES, |counts| {
         let mut mistakes = mistakes();
         mistakes.push((columns(counts)[7] == 0, "you never sample grazing directions"));
         mistakes
     })?;
-    // ∫ cos θ · cos θ / π dω = 2/3. The test above does not tell the two sides of the surface apart.
-    has_mean("the cosine of cosine_direction", &cosines, 2.0 / 3.0, |_| mistakes())
+    // The last normal is far from the axes, along which most frames are right by chance.
+    let one = &normals[normals.len() - 1..];
+    let places = |u: &[Vec2]| Ok(places(directions(one, u)?));
+    covers_each_part(what, AXES, trial.seed, None, places, |counts| {
+        let proven = mistakes().into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()));
+        proven.or_else(|| pattern(counts, AXES))
+    })
+}
+
+pub(super) const AXES: [&str; 2] = ["sin² θ", "the angle around the normal"];
+
+/// `sin² θ` of a direction, which is uniform in 0..1, and its angle around the normal as a fraction of a full turn. Directions
+/// below the surface have no place.
+pub(super) fn place(normal: Vec3, direction: Vec3) -> (f64, f64) {
+    let (normal, direction) = (normal.as_dvec3().normalize(), direction.as_dvec3());
+    let (x, y) = normal.any_orthonormal_pair();
+    let sine_squared = direction.cross(normal).length_squared();
+    let turn = direction.dot(y).atan2(direction.dot(x)) / TAU + 0.5;
+    // At the rim a rounding decides on which side of the surface a direction is.
+    if direction.dot(normal) < -1e-6 { (f64::INFINITY, turn) } else { (sine_squared, turn) }
 }
 
 pub(super) fn cosine_pdf_is_the_cosine_over_pi(trial: &Trial<'_>) -> CheckResult {
@@ -170,6 +189,10 @@ pub(super) fn cosine_pdf_below_the_surface_is_zero(trial: &Trial<'_>) -> CheckRe
                 (
                     cosine < 0.0 && (f64::from(yours) + cosine / PI).abs() < 1e-5,
                     "you take the absolute value of the cosine: return 0 below the surface",
+                ),
+                (
+                    (f64::from(yours) - (-cosine / PI).max(0.0)).abs() < 1e-5,
+                    "your density is that of the other side: the cosine has the wrong sign",
                 ),
             ]))
         })

@@ -190,6 +190,11 @@ impl Lit {
         (height / (scale + first.length())).abs()
     }
 
+    /// The vector to the centre of a sphere.
+    pub fn toward_center(&self) -> DVec3 {
+        self.cone().0
+    }
+
     /// The distance of the second hit with a sphere in this direction.
     pub fn far_side(&self, direction: DVec3) -> f64 {
         let (to_center, radius, _) = self.cone();

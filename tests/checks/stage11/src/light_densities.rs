@@ -1,16 +1,17 @@
 //! Checks of `light_pdf`, and of the samples of emitters by their density.
 
-use crate::emitters::{KINDS, Layout, Lit, layouts, nodes};
+use crate::emitters::{GAUSS, KINDS, Layout, Lit, layouts, nodes};
 use crate::lights::{bright, judge_sample, missing, of};
-use checks::broken::{Broken, CheckResult, all_hold};
+use checks::broken::{Broken, CheckResult};
 use checks::paste::Arguments;
-use checks::statistics::{CELLS, SAMPLES, has_shares, pairs, unused_number};
+use checks::statistics::{CELLS, bins, covers_each_part, is_other_power};
 use checks::{Trial, nasty};
 use glam::{DVec3, Vec2, Vec3, vec2};
 use proptest::prelude::*;
 use raykata::emitter::{EmitterSample, EmitterShape};
 use raykata::kit::{EmitterPdfQuery, EmitterQuery};
 use raykata::shape::Sphere;
+use std::f64::consts::{PI, TAU};
 
 /// An emitter of each kind, for statistical tests. The nearest and the farthest point of the emitter are at similar distances,
 /// so that no cell is rare if directions are uniform over the solid angle.
@@ -33,41 +34,51 @@ pub(super) fn seen_well(trial: &Trial<'_>) -> [Lit; 3] {
     [0, 1, 2].map(|kind| Layout { kind, ..layout }.lit())
 }
 
-/// The solid angle of each cell of the unit square times the student's density, by a product rule.
-fn shares_of_cells(trial: &Trial<'_>, lit: &Lit) -> Vec<f64> {
-    let nodes = nodes();
+/// The solid angle of each bin of the unit square times the student's density, by a product rule.
+fn shares_of_bins(trial: &Trial<'_>, lit: &Lit) -> Vec<f64> {
+    let mut nodes = Vec::new();
+    for ((x, y), (width, height)) in bins() {
+        for ((s, first), (t, second)) in GAUSS.into_iter().flat_map(|s| GAUSS.map(|t| (s, t))) {
+            nodes.push(((x + s * width, y + t * height), first * second * width * height));
+        }
+    }
     let queries: Vec<EmitterPdfQuery> = nodes.iter().map(|(place, _)| lit.pdf(lit.toward(*place))).collect();
-    let densities = trial.kit.light_pdf(&queries);
-    let parts: Vec<f64> = nodes
-        .iter()
-        .zip(densities)
-        .map(|((place, weight), density)| weight * lit.solid_angle(*place) * f64::from(density))
-        .collect();
-    parts.chunks(parts.len() / (CELLS * CELLS) as usize).map(|cell| cell.iter().sum()).collect()
+    let density = |((place, weight), density): (&((f64, f64), f64), f32)| {
+        weight * lit.solid_angle(*place) * f64::from(density)
+    };
+    let parts: Vec<f64> = nodes.iter().zip(trial.kit.light_pdf(&queries)).map(density).collect();
+    parts.chunks(GAUSS.len() * GAUSS.len()).map(|bin| bin.iter().sum()).collect()
 }
 
 pub(super) fn light_samples_have_their_density(trial: &Trial<'_>) -> CheckResult {
-    for (kind, lit) in seen_well(trial).into_iter().enumerate() {
-        let u = pairs(trial.seed, SAMPLES);
-        let queries: Vec<EmitterQuery> = u.iter().map(|u| lit.sample(*u)).collect();
-        let mut places = Vec::new();
-        let judge = |(query, yours): (&EmitterQuery, Option<EmitterSample>)| {
-            let Some(yours) = yours else { return Err(missing(query)) };
-            judge_sample(query, &yours)?;
-            places.push(lit.place(yours.direction.as_dvec3()));
-            Ok(())
+    let [first, second, sphere] = seen_well(trial);
+    // A point inside of the sphere, from which it is two-sided.
+    let mut inside = sphere;
+    inside.emitter.two_sided = true;
+    if let EmitterShape::Sphere(Sphere { center, .. }) = sphere.emitter.shape {
+        inside.from = center.lerp(sphere.from, 0.25);
+    }
+    for (kind, lit) in [(0, first), (1, second), (2, sphere), (2, inside)] {
+        let samples = |u: &[Vec2]| {
+            let queries: Vec<EmitterQuery> = u.iter().map(|u| lit.sample(*u)).collect();
+            let of = |(yours, query): (Option<EmitterSample>, _)| yours.ok_or_else(|| missing(query));
+            trial.kit.sample_light(&queries).into_iter().zip(&queries).map(of).collect::<Result<Vec<_>, _>>()
         };
-        all_hold(queries.iter().zip(trial.kit.sample_light(&queries)).map(judge).collect())?;
-        let what = format!("sample_light of {}, against your light_pdf", KINDS[kind]);
+        let places = |u: &[Vec2]| {
+            let place = |sample: &EmitterSample| lit.place(sample.direction.as_dvec3());
+            Ok(samples(u)?.iter().map(place).collect::<Vec<_>>())
+        };
+        let from = if lit.is_behind() { " from inside" } else { "" };
+        let what = format!("sample_light of {}{from}, against your light_pdf", KINDS[kind]);
         let axes = match kind {
             2 => ["1 - cos θ, as a fraction of the rim's", "the angle around the axis"],
             1 => ["the part of the area before the point", "the position across"],
             _ => ["the first edge", "the second edge"],
         };
-        has_shares(&what, &places, axes, &shares_of_cells(trial, &lit), |counts| {
-            let sample =
-                |u: &[Vec2]| trial.kit.sample_light(&u.iter().map(|u| lit.sample(*u)).collect::<Vec<_>>());
-            let unused = unused_number(sample);
+        let shares = shares_of_bins(trial, &lit);
+        covers_each_part(&what, axes, trial.seed, Some(&shares), places, |counts| {
+            let u = checks::statistics::pairs(trial.seed, 1000);
+            let places = places(&u).unwrap_or_default();
             let columns = checks::statistics::columns(counts);
             let rows: Vec<u64> = counts.chunks(CELLS as usize).map(|row| row.iter().sum()).collect();
             let is_place = |formula: fn(f64, f64) -> (f64, f64)| {
@@ -81,13 +92,23 @@ pub(super) fn light_samples_have_their_density(trial: &Trial<'_>) -> CheckResult
                 && [|u: f64, v: f64| (1.0 - (1.0 - u) * (1.0 - u), v), |u: f64, v: f64| (1.0 - u * u, v)]
                     .into_iter()
                     .any(is_place);
-            let proven = unused.into_iter().find(|(proven, _)| *proven).map(|(_, text)| text.to_owned());
-            proven
-                .or(without_root.then(|| {
-                    "your points crowd in a corner of the triangle: take the root of one number".to_owned()
-                }))
-                .or((columns.contains(&0) || rows.contains(&0))
-                    .then(|| format!("your samples leave out a part of {}", KINDS[kind])))
+            let rim = lit.solid_angle((0.5, 0.5)) / TAU;
+            let by_angle = |u: f64| (1.0 - (u * (1.0 - rim).acos()).cos()) / rim;
+            let numbers = u.iter().zip(&places);
+            let theta_uniform = kind == 2
+                && numbers.clone().all(|(u, (share, _))| (share - by_angle(f64::from(u.x))).abs() < 1e-3);
+            let [first, second] = [|place: &(f64, f64)| place.0, |place: &(f64, f64)| place.1]
+                .map(|coordinate| places.iter().map(coordinate).collect::<Vec<_>>());
+            let power = kind == 0 && (is_other_power(&u, &first, 1.0) || is_other_power(&u, &second, 1.0));
+            let crowded = "your points crowd in a corner of the triangle: take the root of one number";
+            let gap = format!("your samples leave out a part of {}", KINDS[kind]);
+            let shown = [
+                (without_root, crowded),
+                (theta_uniform, "your θ is uniform: make 1 - cos θ uniform"),
+                (power, "a coordinate is a power of a random number: use the number itself"),
+                (columns.contains(&0) || rows.contains(&0), &gap),
+            ];
+            shown.into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()))
         })?;
     }
     Ok(())
@@ -129,6 +150,14 @@ fn integrates_to_one(trial: &Trial<'_>, lits: &[Lit]) -> Vec<CheckResult> {
             (all, "your density is 0 for every direction to the emitter"),
             (gaps > 0 && !all, "your density is 0 for some directions that meet the emitter"),
             (flat && is_one(over_area), "your density is per area: multiply it by distance² / cos θ"),
+            (
+                densities.iter().all(|density| (f64::from(*density) * 4.0 * PI - 1.0).abs() < 1e-4),
+                "your density is that of all directions, 1 / 4π: divide by the solid angle of the emitter",
+            ),
+            (
+                !flat && densities.iter().all(|density| lit.is_rounded(*density)),
+                "your 1 - cos θ is rounded: compute it as sin² θ / (1 + cos θ)",
+            ),
             (full, "your density is twice too large"),
             (half, "your density is half of what it must be"),
         ]))
@@ -168,6 +197,21 @@ pub(super) fn far_sphere_lights_keep_their_density(trial: &Trial<'_>) -> CheckRe
         };
         queries.iter().zip(&samples).zip(densities).map(judge).collect()
     })
+}
+
+impl Lit {
+    /// Whether this is the density of a sphere by a `1 - cos θ` in single precision, in which the cosine is rounded.
+    fn is_rounded(&self, density: f32) -> bool {
+        let EmitterShape::Sphere(sphere) = self.emitter.shape else { return false };
+        let to_center = sphere.center - self.from;
+        let by_squares = sphere.radius * sphere.radius / to_center.length_squared();
+        let by_sine = (sphere.radius / to_center.length()).powi(2);
+        [by_squares, by_sine].iter().any(|sin_squared| {
+            let rounded = f64::from(1.0 - (1.0 - sin_squared).sqrt());
+            rounded == 0.0 && !(density.is_finite() && density > 0.0)
+                || (f64::from(density) * TAU * rounded - 1.0).abs() < 1e-5
+        })
+    }
 }
 
 /// Asks for the density of the direction of `sample`.

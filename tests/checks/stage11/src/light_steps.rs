@@ -3,7 +3,7 @@
 //! As in `steps`, these checks take the student's samples and densities, and judge how `step` puts them together.
 
 use crate::emitters::layouts;
-use crate::steps::{color, describe, numbers, path, per_some, probability, vertex};
+use crate::steps::{color, describe, numbers, path, path_weight, per_some, probability, vertex};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, compare_formulas};
@@ -17,7 +17,7 @@ use std::f64::consts::{FRAC_1_PI, PI};
 
 /// Queries for the sample of a light: a surface that has the whole emitter above it, or an environment map.
 fn lit_surfaces() -> impl Strategy<Value = StepQuery> + Clone {
-    let state = (color(), 0..3u32, 1..3u32);
+    let state = (path_weight(), 0..3u32, 1..3u32);
     let surface = (color(), nasty::unit(), 0..=6i32, 0..=15i32);
     (layouts(), probability(), 0..3i32, state, surface, numbers()).prop_map(
         |(layout, probability, which, (weight, bounces, more), (diffuse, axis, angle, turn), numbers)| {
@@ -78,14 +78,15 @@ pub(super) fn steps_sample_the_light(trial: &Trial<'_>) -> CheckResult {
             BsdfPdfQuery { scattering: query.vertex.scattering.clone(), direction }
         };
         let bsdf_pdfs = trial.kit.bsdf_pdf(&queries.iter().zip(&samples).map(sampled).collect::<Vec<_>>());
-        let pairs = |scaled: bool| -> Vec<(f32, f32)> {
+        // The density times the probability of the choice to this power.
+        let pairs = |power: i32| -> Vec<(f32, f32)> {
             let own = |sample: &Option<(EmitterSample, f32)>| {
-                sample.map_or(1.0, |(sample, choice)| sample.pdf * if scaled { choice } else { 1.0 })
+                sample.map_or(1.0, |(sample, choice)| sample.pdf * choice.powi(power))
             };
             samples.iter().zip(&bsdf_pdfs).map(|(sample, other)| (own(sample), *other)).collect()
         };
-        let weights: Vec<(f32, f32)> =
-            trial.kit.mis_weight(&pairs(true)).into_iter().zip(trial.kit.mis_weight(&pairs(false))).collect();
+        let all = [1, 0, -1].map(|power| trial.kit.mis_weight(&pairs(power)));
+        let weights: Vec<[f32; 3]> = (0..queries.len()).map(|n| all.each_ref().map(|of| of[n])).collect();
         let answers: Vec<_> = trial.kit.step(queries).into_iter().zip(samples).zip(weights).collect();
         // The light without the weight of the path and that of multiple importance sampling, and the cosine.
         let unweighted = |query: &StepQuery, sample: &EmitterSample, choice: f32| {
@@ -101,7 +102,7 @@ pub(super) fn steps_sample_the_light(trial: &Trial<'_>) -> CheckResult {
         compare_formulas(
             queries,
             answers,
-            |query, ((step, sample), (weight, _))| {
+            |query, ((step, sample), [weight, ..])| {
                 // A triangle can be so far to the side that a sample is below the horizon, and is seen from no angle.
                 let Some((sample, choice)) = sample else { return Ok(()) };
                 let cosine = query.vertex.surface.shading_normal.dot(sample.direction);
@@ -128,20 +129,35 @@ pub(super) fn steps_sample_the_light(trial: &Trial<'_>) -> CheckResult {
                 );
                 let broken =
                     Broken::with_texts(describe(query), yours, expected, "sample_light_contribution");
-                Err(broken.explained_by([(step.shadow.is_none(), "no shadow ray: the light is not sampled")]))
+                let is_endless = |distance: f32| distance > 1e3 * sample.distance;
+                let endless = step.shadow.as_ref().is_some_and(|shadow| is_endless(shadow.distance));
+                Err(broken.explained_by([
+                    (step.shadow.is_none(), "no shadow ray: the light is not sampled"),
+                    (
+                        endless && sample.distance.is_finite(),
+                        "the shadow ray has no end: it ends at the distance of the sample",
+                    ),
+                ]))
             },
-            |query, ((step, sample), (weight, unscaled))| {
+            |query, ((step, sample), weights)| {
                 let (Some((sample, choice)), Some(shadow)) = (sample, &step.shadow) else {
-                    return vec![(false, ""); 7];
+                    return vec![(false, ""); 9];
                 };
-                let (weight, unscaled) = (f64::from(*weight), f64::from(*unscaled));
+                let [weight, unscaled, divided] = weights.map(f64::from);
                 let whole = query.path.weight.as_dvec3() * unweighted(query, sample, *choice);
                 let choice = f64::from(*choice);
+                let surface = &query.vertex.surface;
+                let [by_geometric, by_shading] = [surface.geometric_normal, surface.shading_normal]
+                    .map(|normal| f64::from(normal.dot(sample.direction)).max(1e-9));
                 vec![
                     (shadow.light.is_nan(), "you return NaN"),
                     (
                         near(shadow.light, choice * unscaled * whole),
                         "the probability with which the emitter is chosen is missing in the density",
+                    ),
+                    (
+                        near(shadow.light, choice * choice * divided * whole),
+                        "you divide the density by the probability of the emitter: multiply",
                     ),
                     (
                         near(shadow.light, choice * weight * whole),
@@ -158,6 +174,10 @@ pub(super) fn steps_sample_the_light(trial: &Trial<'_>) -> CheckResult {
                     (
                         near(shadow.light, PI * weight * whole),
                         "a diffuse surface sends kd / π on: the π is missing",
+                    ),
+                    (
+                        near(shadow.light, by_geometric / by_shading * weight * whole),
+                        "the cosine is that of the geometric normal: use the shading normal",
                     ),
                     (
                         (shadow.direction + sample.direction).length() < 1e-5,

@@ -103,6 +103,14 @@ pub(super) fn judge_sample(query: &EmitterQuery, yours: &EmitterSample) -> Check
         (!on_it && far, "your point is on the far side of the sphere: the near one hides it"),
         (!on_it && squared, "your distance is squared"),
         (
+            is_sphere && (distance / lit.toward_center().length() - 1.0).abs() < 1e-5,
+            "your distance is that of the centre: return that of the first hit",
+        ),
+        (
+            unit && is_sphere && lit.outside(direction) > slack && lit.off(-direction, distance) > 2e-4,
+            "your direction misses the sphere",
+        ),
+        (
             unit && off <= 2e-4 && lit.outside(direction) > slack,
             "your point is in the plane of the emitter, but outside of the emitter",
         ),
@@ -195,6 +203,10 @@ pub(super) fn dark_sides_send_no_light(trial: &Trial<'_>) -> CheckResult {
                     (
                         *is_dark && !black && !inside && !lit.emitter.two_sided,
                         "you sample the back of an emitter that is not two-sided",
+                    ),
+                    (
+                        !black && !inside && !lit.emitter.two_sided && yours.is_some() == lit.is_behind(),
+                        "front and back are exchanged: the front is the side of first edge × second edge",
                     ),
                     (!*is_dark, "you leave out emitters that send light"),
                 ]));

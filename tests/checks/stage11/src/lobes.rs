@@ -1,17 +1,17 @@
 //! The choice of a lobe: `sample_bsdf` and `bsdf_pdf`.
 
-use crate::directions::number;
+use crate::directions::{AXES, number, place};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::paste::{Paste, call};
-use checks::statistics::{SAMPLES, covers_evenly, has_mean, pairs};
+use checks::statistics::{SAMPLES, covers_each_part, covers_evenly, measures, pairs, unused_number};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::{Bounce, BsdfPdfQuery, BsdfQuery, SecondaryRay};
 use raykata::light_path::{BsdfSample, Lobe, Scattering};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 fn paste(query: &BsdfQuery) -> String {
     call("sample_bsdf", &[&query.scattering, &query.u])
@@ -178,7 +178,10 @@ pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> 
                     "{} divided by one probability in {least:.3}..=1, for example {share:.3}",
                     reflectance.as_vec3()
                 );
+                let (q, text) =
+                    (probability(scattering, &sample), "this lobe is chosen less often than s / 4");
                 Broken::with_texts(paste(query), yours, expected, "the definition")
+                    .explained_by([(q < least && near(1.0 / q), text)])
             };
             unless(reflectance.max_element() == 0.0 || judge_weight(query, &sample), broken).formulas([
                 (near(share), "you multiply by the probability of the choice: divide by it"),
@@ -206,35 +209,69 @@ fn samples_of(trial: &Trial<'_>, scattering: &Scattering, count: usize) -> Vec<O
     trial.kit.sample_bsdf(&u.chunks(2).map(query).collect::<Vec<_>>())
 }
 
+/// A sample without its direction: the lobe and its weight.
+type Choice = Option<(Lobe, [f32; 3])>;
+
 pub(super) fn bsdf_samples_keep_the_light(trial: &Trial<'_>) -> CheckResult {
     let layered = layered(trial);
-    let two = Scattering { secondary: layered.secondary[..1].to_vec(), ..layered.clone() };
-    for (what, scattering, lobes) in [("two lobes", &two, 2), ("three lobes", &layered, 3)] {
-        let samples = samples_of(trial, scattering, SAMPLES);
-        for lobe in LOBES.into_iter().take(lobes) {
+    let mut surfaces = vec![Scattering { secondary: layered.secondary[..1].to_vec(), ..layered.clone() }];
+    // Lobes that are rarely chosen, down to one of 10,000 times at a quarter of the share.
+    for dim in [0.1, 0.01, 0.001, 0.0004] {
+        surfaces.push(surface(layered.normal, Vec3::splat(0.9), Some(vec3(0.0, dim, 0.0)), None));
+        surfaces.push(surface(layered.normal, vec3(dim, 0.0, 0.0), None, Some(Vec3::splat(0.9))));
+    }
+    surfaces.push(layered);
+    for scattering in &surfaces {
+        // The lobe is a function of one of the three numbers, or of their sum.
+        let choices_along = |axis: usize| {
+            measures(|numbers| {
+                let query = |number: &f32| {
+                    let mut u = vec3(0.3, 0.4, 0.6);
+                    u[axis] = *number;
+                    BsdfQuery { scattering: scattering.clone(), u }
+                };
+                let samples = trial.kit.sample_bsdf(&numbers.iter().map(query).collect::<Vec<_>>());
+                let choice = |sample: BsdfSample| (sample.lobe, sample.weight.to_array());
+                samples.into_iter().map(|sample| sample.map(choice)).collect::<Vec<Choice>>()
+            })
+        };
+        let mut measured = [0, 1, 2].into_iter().map(choices_along);
+        let (choices, slack) = measured.find(|(sets, _)| sets.len() > 1).unwrap_or_else(|| choices_along(0));
+        // A lobe that is never chosen first, because the others then get its share.
+        let is_chosen =
+            |lobe: &Lobe| choices.iter().any(|(choice, _)| choice.is_some_and(|(other, _)| other == *lobe));
+        let (chosen, never): (Vec<Lobe>, Vec<Lobe>) = LOBES.into_iter().partition(is_chosen);
+        for lobe in never.into_iter().chain(chosen) {
             let reflectance = f64::from(reflectance_of(scattering, lobe).max_element());
-            // The largest channel of the weights of one lobe, relative to its reflectance: 1 on average.
-            let value = |sample: &Option<BsdfSample>| match sample {
-                Some(sample) if sample.lobe == lobe => f64::from(sample.weight.max_element()) / reflectance,
-                _ => 0.0,
-            };
-            let values: Vec<f64> = samples.iter().map(value).collect();
-            let chosen = values.iter().filter(|value| **value != 0.0).count();
-            let what = format!(
-                "sample_bsdf of a surface with {what}, weights of {lobe:?} relative to its reflectance"
+            let of_lobe = choices.iter().filter_map(|(choice, measure)| {
+                choice.filter(|(other, _)| *other == lobe).map(|(_, weight)| (weight, *measure))
+            });
+            let largest = |weight: [f32; 3]| f64::from(Vec3::from(weight).max_element()) / reflectance;
+            let frequency: f64 = of_lobe.clone().fold(0.0, |sum, (_, measure)| sum + measure);
+            let mean: f64 =
+                of_lobe.clone().fold(0.0, |sum, (weight, measure)| sum + measure * largest(weight));
+            // Borders of the sets are rounded, as is the weight.
+            let most = of_lobe.map(|(weight, _)| largest(weight)).fold(1.0, f64::max);
+            if reflectance == 0.0 || (mean - 1.0).abs() <= slack * most + 1e-5 {
+                continue;
+            }
+            let input = format!("sample_bsdf of {} for all numbers u", scattering.paste());
+            let yours = format!(
+                "{:.3} % of the samples are {lobe:?}, and their weights sum to {mean:.4} of the reflectance",
+                100.0 * frequency
             );
-            has_mean(&what, &values, 1.0, |mean| {
-                let frequency = chosen as f64 / values.len() as f64;
-                vec![
-                    (chosen == 0, "you never choose this lobe"),
+            let source = "measured by bisection";
+            return Err(Broken::with_texts(input, yours, "1.0000 of the reflectance", source).explained_by(
+                [
+                    (frequency == 0.0, "you never choose this lobe"),
                     (mean.is_nan(), "you return NaN"),
                     (
-                        (mean - frequency).abs() < 1e-3,
+                        (mean - frequency).abs() < 1e-5,
                         "your weight is not divided by the probability of the choice",
                     ),
                     (true, "the lobe is not chosen with the probability by which its weight is divided"),
-                ]
-            })?;
+                ],
+            ));
         }
     }
     Ok(())
@@ -242,16 +279,11 @@ pub(super) fn bsdf_samples_keep_the_light(trial: &Trial<'_>) -> CheckResult {
 
 pub(super) fn diffuse_samples_use_fresh_numbers(trial: &Trial<'_>) -> CheckResult {
     let scattering = layered(trial);
-    let normal = scattering.normal.as_dvec3().normalize();
-    let (x, y) = normal.any_orthonormal_pair();
     let places: Vec<(f64, f64)> = samples_of(trial, &scattering, 2 * SAMPLES)
         .into_iter()
         .flatten()
         .filter(|sample| sample.lobe == Lobe::Diffuse)
-        .map(|sample| {
-            let direction = sample.direction.as_dvec3();
-            (direction.cross(normal).length_squared(), direction.dot(y).atan2(direction.dot(x)) / TAU + 0.5)
-        })
+        .map(|sample| place(scattering.normal, sample.direction))
         .collect();
     // Each lobe is chosen with a probability of at least a quarter of 1/4, and each cell expects more than 20 samples.
     if places.len() < 64 * 20 {
@@ -259,12 +291,25 @@ pub(super) fn diffuse_samples_use_fresh_numbers(trial: &Trial<'_>) -> CheckResul
         let yours = format!("{} diffuse samples", places.len());
         return Err(Broken::with_texts(input, yours, "at least a sixteenth", "the definition"));
     }
-    covers_evenly(
-        "the diffuse directions of sample_bsdf",
-        &places,
-        ["sin² θ", "the angle around the normal"],
-        |_| Vec::new(),
-    )
+    covers_evenly("the diffuse directions of sample_bsdf", &places, AXES, |_| Vec::new())?;
+    // Without other lobes every sample is diffuse. A direction depends on two of the three numbers: judge each pair of which it does.
+    let scattering = surface(scattering.normal, scattering.diffuse, None, None);
+    let places = |pair: [usize; 2], u: &[glam::Vec2]| {
+        let query = |u: &glam::Vec2| {
+            let mut numbers = Vec3::splat(0.3);
+            (numbers[pair[0]], numbers[pair[1]]) = (u.x, u.y);
+            BsdfQuery { scattering: scattering.clone(), u: numbers }
+        };
+        let samples = trial.kit.sample_bsdf(&u.iter().map(query).collect::<Vec<_>>());
+        samples.iter().flatten().map(|sample| place(scattering.normal, sample.direction)).collect::<Vec<_>>()
+    };
+    let is_used = |pair: &[usize; 2]| unused_number(|u| places(*pair, u)).iter().all(|(unused, _)| !unused);
+    let what = "the diffuse directions of sample_bsdf";
+    let Some(pair) = [[1, 2], [0, 1], [0, 2]].into_iter().find(is_used) else {
+        let broken = Broken::with_texts(what, "depend on one number", "depend on two", "the definition");
+        return Err(broken.looks_like(Some("one random number for both coordinates: use u.y and u.z")));
+    };
+    covers_each_part(what, AXES, trial.seed, None, |u| Ok(places(pair, u)), |_| None)
 }
 
 pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
@@ -299,6 +344,8 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
             let (cosine, probability) = factors(query, &sample);
             let expected = probability * cosine / PI;
             let both = |expected: f64| near(yours, expected) && near(sample.pdf, expected);
+            let sum = |lobe: Lobe| f64::from(reflectance_of(&query.scattering, lobe).element_sum());
+            let by_mean = sum(Lobe::Diffuse) / LOBES.into_iter().map(sum).sum::<f64>() * cosine / PI;
             let broken = || {
                 let input = call("bsdf_pdf", &[&query.scattering, &query.direction]);
                 let yours = format!("{yours:?}, and pdf {:?} of sample_bsdf", sample.pdf);
@@ -310,6 +357,10 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
                 (
                     near(sample.pdf, cosine / PI),
                     "the probability of the diffuse lobe is missing in the pdf of sample_bsdf",
+                ),
+                (
+                    near(yours, by_mean) && near(sample.pdf, expected),
+                    "bsdf_pdf chooses by the means of the channels, and sample_bsdf does not: use one q",
                 ),
                 (
                     near(yours, cosine / PI / probability),

@@ -25,12 +25,19 @@ pub(super) fn color() -> impl Strategy<Value = Vec3> + Clone {
     checks::generate::vector(checks::generate::fractions(1..=8, 8.0))
 }
 
+/// The weight of a path: in half of the cases as small as 1e-4.
+pub(super) fn path_weight() -> impl Strategy<Value = Vec3> + Clone {
+    (color(), prop_oneof![Just(1.0f32), magnitude(-4.0, 0.0)]).prop_map(|(color, scale)| scale * color)
+}
+
 pub(super) fn numbers() -> impl Strategy<Value = StepNumbers> + Clone {
     let number = || (0..256u32).prop_map(|n| (n as f32 + 0.5) / 256.0);
-    prop::array::uniform6(number()).prop_map(|u| StepNumbers {
+    // Paths of small weight survive with numbers near an end.
+    let roulette = prop_oneof![4 => number(), 1 => Just(1e-5f32), 1 => Just(1.0 - 1e-5f32)];
+    (prop::array::uniform5(number()), roulette).prop_map(|(u, roulette)| StepNumbers {
         light: Vec2::new(u[0], u[1]),
         bsdf: vec3(u[2], u[3], u[4]),
-        roulette: u[5],
+        roulette,
     })
 }
 
@@ -68,7 +75,7 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
     // The point that the path meets lies on an emitter, which its previous point sees from the front.
     let place = (1..8i32, 1..8i32).prop_map(|(s, t)| (f64::from(s) / 8.0, f64::from(t) / 8.0));
     let emitter = (layouts(), place, probability(), 0..3i32);
-    let state = (color(), 0..4u32, pdf(), 0..3u32);
+    let state = (path_weight(), 0..4u32, pdf(), 0..3u32);
     let strategy = (emitter, state, color(), numbers()).prop_map(
         |((layout, place, probability, is_sampled), state, emission, numbers)| {
             let (weight, bounces, pdf, more) = state;
@@ -90,26 +97,33 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
         },
     );
     trial.forall(500, strategy, |queries| {
-        let density = |query: &StepQuery| {
-            let emitter = query.vertex.emitter.map(|chosen| chosen.emitter);
-            emitter.map(|emitter| EmitterPdfQuery {
-                emitter,
-                from: query.path.origin,
-                direction: query.path.direction,
-            })
-        };
-        let densities = per_some(queries, density, |queries| trial.kit.light_pdf(queries));
+        // The densities from the point that the ray left, or from the one that it met.
+        let densities = [true, false].map(|is_origin| {
+            let density = |query: &StepQuery| {
+                let from = if is_origin { query.path.origin } else { query.vertex.surface.point };
+                let direction = query.path.direction;
+                let emitter = query.vertex.emitter.map(|chosen| chosen.emitter);
+                emitter.map(|emitter| EmitterPdfQuery { emitter, from, direction })
+            };
+            per_some(queries, density, |queries| trial.kit.light_pdf(queries))
+        });
         // The densities of the path and of the emitter's sample, the latter with the probability of the choice or without it.
-        let weights = |by_choice: bool| {
+        let weights = |from: usize, by_choice: bool| {
             let pair = |(query, density): (&StepQuery, &Option<f32>)| {
                 let probability = query.vertex.emitter.map_or(0.0, |chosen| chosen.probability);
                 let factor = if by_choice { probability } else { 1.0 };
                 (query.path.pdf, factor * density.unwrap_or(0.0))
             };
-            trial.kit.mis_weight(&queries.iter().zip(&densities).map(pair).collect::<Vec<_>>())
+            trial.kit.mis_weight(&queries.iter().zip(&densities[from]).map(pair).collect::<Vec<_>>())
         };
-        let answers: Vec<_> =
-            trial.kit.step(queries).into_iter().zip(weights(true)).zip(weights(false)).collect();
+        let answers: Vec<_> = trial
+            .kit
+            .step(queries)
+            .into_iter()
+            .zip(weights(0, true))
+            .zip(weights(0, false))
+            .zip(weights(1, true))
+            .collect();
         // Light counts in full if the ray is certain, or if no sample finds the emitter.
         let counting = |query: &StepQuery, weight: f32| {
             let is_whole = query.path.pdf == CERTAIN || query.vertex.emitter.is_none();
@@ -119,9 +133,10 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
         let near = |yours: Vec3, expected: DVec3| {
             (yours.as_dvec3() - expected).abs().max_element() <= 1e-5 * expected.max_element() + 1e-30
         };
-        compare(queries, answers, |query, ((step, weight), unscaled)| {
+        compare(queries, answers, |query, (((step, weight), unscaled), from_hit)| {
             let whole = (query.path.weight * query.vertex.emission).as_dvec3();
-            let [weight, unscaled] = [weight, unscaled].map(|weight| counting(query, weight));
+            let [weight, unscaled, from_hit] =
+                [weight, unscaled, from_hit].map(|weight| counting(query, weight));
             let broken = || {
                 let (yours, expected) = (format!("light {}", step.light), (weight * whole).as_vec3());
                 let expected = format!("{expected}");
@@ -141,6 +156,10 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
                 (
                     near(step.light, unscaled * whole),
                     "the probability with which the emitter is chosen is missing in its density",
+                ),
+                (
+                    near(step.light, from_hit * whole),
+                    "light_pdf is asked from the surface that the ray met: ask it from path.origin",
                 ),
                 (
                     near(step.light, weight * query.vertex.emission.as_dvec3()),
@@ -207,6 +226,12 @@ pub(super) fn steps_end_at_the_greatest_depth(trial: &Trial<'_>) -> CheckResult 
     })
 }
 
+/// The density of a diffuse sample without the probability of its lobe.
+fn cosine_pdf(query: &StepQuery, sample: &BsdfSample) -> f32 {
+    let cosine = query.vertex.scattering.normal.dot(sample.direction).max(0.0);
+    if sample.lobe == Lobe::Diffuse { cosine / std::f32::consts::PI } else { sample.pdf }
+}
+
 /// The ray along which a path continues, in words.
 fn says(next: Option<NextRay>) -> String {
     next.map_or("None: the path ends".to_owned(), |NextRay { lobe, direction, weight, pdf }| {
@@ -215,7 +240,7 @@ fn says(next: Option<NextRay>) -> String {
 }
 
 pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) -> CheckResult {
-    let state = (color(), 0..8u32, pdf());
+    let state = (path_weight(), 0..8u32, pdf());
     // The geometric normal is at an angle of up to 1 to the shading normal, so some diffuse directions are below it.
     let turned = (0..=4i32, 0..=15i32)
         .prop_map(|(angle, turn)| (f64::from(angle) / 4.0, f64::from(turn) / 16.0 + 0.01));
@@ -236,20 +261,19 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
         };
         let samples = trial.kit.sample_bsdf(&queries.iter().map(ask).collect::<Vec<_>>());
         let roulette = |bounce: u32, query: &StepQuery, sample: &Option<BsdfSample>| {
-            let weight = sample.map_or(Vec3::ZERO, |sample| query.path.weight * sample.weight);
-            RouletteQuery { weight, bounce: query.path.bounces + bounce, u: query.numbers.roulette }
+            // By the weight of the path alone if there is no bounce 3.
+            let of_sample = |sample: BsdfSample| if bounce == 3 { Vec3::ONE } else { sample.weight };
+            let weight = sample.map_or(Vec3::ZERO, |sample| query.path.weight * of_sample(sample));
+            let bounce = query.path.bounces + if bounce == 3 { 1 } else { bounce };
+            RouletteQuery { weight, bounce, u: query.numbers.roulette }
         };
         let factors = |bounce: u32| {
             let queries: Vec<_> =
                 queries.iter().zip(&samples).map(|(query, sample)| roulette(bounce, query, sample)).collect();
             trial.kit.survives(&queries)
         };
-        let factors: Vec<[f32; 3]> = factors(1)
-            .into_iter()
-            .zip(factors(0))
-            .zip(factors(2))
-            .map(|((right, early), late)| [right, early, late])
-            .collect();
+        let all = [1, 0, 2, 3].map(factors);
+        let factors: Vec<[f32; 4]> = (0..queries.len()).map(|n| all.each_ref().map(|of| of[n])).collect();
         let answers: Vec<_> = trial.kit.step(queries).into_iter().zip(samples).zip(factors).collect();
         // Whether a step continues along the sample with this weight, or ends if the weight is 0.
         let is = |step: &PathStep, sample: &BsdfSample, weight: DVec3| match &step.next {
@@ -266,7 +290,7 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
         let above = |query: &StepQuery, sample: &BsdfSample| {
             query.vertex.surface.geometric_normal.as_dvec3().dot(sample.direction.as_dvec3())
         };
-        compare(queries, answers, |query, ((step, sample), [factor, early, late])| {
+        compare(queries, answers, |query, ((step, sample), [factor, early, late, of_path])| {
             let Some(sample) = sample else {
                 return match step.next {
                     None => missing(&ask(query)).map(Into::into),
@@ -288,7 +312,11 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
                 let expected = NextRay { lobe, direction, weight: weight.as_vec3(), pdf };
                 let expected = (weight != DVec3::ZERO).then_some(expected);
                 let source = "path.weight · weight of sample_bsdf · survives";
-                Broken::with_texts(describe(query), says(step.next), says(expected), source)
+                let ended = expected.is_some() && step.next.is_none();
+                Broken::with_texts(describe(query), says(step.next), says(expected), source).explained_by([(
+                    ended,
+                    "a path ends that survives its roulette, and is above the surface",
+                )])
             };
             let whole = (query.path.weight * sample.weight).as_dvec3();
             let is_next = |sample: &BsdfSample, weight: DVec3| is(&step, sample, weight);
@@ -317,6 +345,21 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
                 (
                     is_next(&sample, unless_below(by(factor) * sample.weight.as_dvec3())),
                     "the weight of the path is missing",
+                ),
+                (
+                    is_next(&sample, unless_below(by(of_path) * whole)),
+                    "the roulette gets the weight before the bounce: multiply by that of the sample first",
+                ),
+                (
+                    is_next(&sample, if height < 0.0 { DVec3::ZERO } else { by(factor) * whole }),
+                    "reflected and refracted rays end, too: only diffuse ones must stay above the geometric normal",
+                ),
+                (
+                    is_next(
+                        &BsdfSample { pdf: cosine_pdf(query, &sample), ..sample },
+                        unless_below(by(factor) * whole),
+                    ),
+                    "the density lacks the probability of the diffuse lobe: pass on that of sample_bsdf",
                 ),
                 (
                     is_next(&BsdfSample { pdf: f32::INFINITY, ..sample }, unless_below(by(factor) * whole)),

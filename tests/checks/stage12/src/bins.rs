@@ -164,6 +164,19 @@ fn wrong_numbers(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
     let once = all_bins().all(|(axis, bin)| axis == 0 || yours.0[axis][bin].count == 0);
     let mut mistakes: Vec<_> = ROUNDINGS.map(|(rounding, text)| (gives(rounding), text)).to_vec();
     mistakes.push((once, "the bins of the axes y and z stay empty"));
+    let is_inside = |primitive: &PrimitiveBox, axis: usize| {
+        let place = (primitive.twice_centroid()[axis] - query.grid.low[axis]) * query.grid.scale[axis];
+        (0.0..query.grid.n_bins as f32).contains(&place)
+    };
+    let inside_only = all_bins().all(|(axis, bin)| {
+        let members = members(query, axis, bin, Rounding::Right);
+        let inside = members.iter().filter(|primitive| is_inside(primitive, axis));
+        yours.0[axis][bin].count as usize == inside.count()
+    });
+    mistakes.push((
+        inside_only,
+        "centroids outside of the bins are left out: they count in the first or the last bin",
+    ));
     mistakes
 }
 

@@ -104,7 +104,23 @@ fn queries(drawn: Vec<Lanes>) -> (Vec<Lanes>, Vec<BlockQuery>) {
 
 fn judge_all(trial: &Trial<'_>, drawn: Vec<Lanes>) -> CheckResult {
     let (drawn, queries) = queries(drawn);
-    all_hold(compare(&drawn, trial.kit.may_hit(&queries), judge_hits))
+    all_hold(compare(&drawn, trial.kit.may_hit(&queries), |lanes, filtered| {
+        judge_hits(lanes, filtered).map_err(|broken| {
+            // A direction whose length is multiplied by a power of two, and a range that is divided by it, changes no digit.
+            let length = lanes.ray.direction.abs().max_element();
+            let scale = 2f32.powi(-length.log2().floor().clamp(-120.0, 120.0) as i32);
+            let ray = lanes.ray.with_range(lanes.ray.t_min / scale, lanes.ray.t_max / scale);
+            let ray = Ray { direction: scale * ray.direction, ..ray };
+            let lanes = Lanes { triangles: lanes.triangles.clone(), ray };
+            let query = lanes.query().filter(|_| scale != 1.0);
+            let again = query.map(|query| trial.kit.may_hit(&[query])[0]);
+            let is_right = again.is_some_and(|filtered| judge_hits(&lanes, filtered).is_ok());
+            broken.explained_by([(
+                is_right,
+                "the bound is right for a direction of length 1 only: the error of t grows as 1 / |d_z|",
+            )])
+        })
+    }))
 }
 
 pub(super) fn may_hit_keeps_what_is_hit(trial: &Trial<'_>) -> CheckResult {
@@ -241,6 +257,9 @@ pub(super) fn may_hit_keeps_lanes_without_a_triangle(trial: &Trial<'_>) -> Check
         Err(Broken::with_texts(input, yours, "possible", "the definition").explained_by([(
             yours == "rejected",
             "a lane with NaN is rejected: it holds another shape. A comparison with NaN is false, so reject where a comparison is true",
+        ), (
+            yours == "certain",
+            "a lane with NaN is certain: it holds another shape, whose test must decide",
         )]))
     };
     all_hold(compare(&queries, masks, judge))?;
@@ -276,7 +295,10 @@ fn judge_share(trial: &Trial<'_>, what: &str, drawn: &[Lanes], cause: &'static s
     if 2 * certain < n_hits {
         let input = format!("may_hit of {} blocks: {what}", drawn.len());
         let yours = format!("{certain} of {n_hits} hits are certain");
-        return Err(Broken::with_texts(input, yours, "at least half", "exactly"));
+        return Err(Broken::with_texts(input, yours, "at least half", "exactly").explained_by([(
+            certain == 0,
+            "no lane is certain: it is if U, V, W and N have the same sign for certain",
+        )]));
     }
     if rejected as f64 >= REJECTED * misses as f64 {
         return Ok(());

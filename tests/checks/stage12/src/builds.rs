@@ -5,7 +5,7 @@ use super::scenes::scenes;
 use super::trees::{boxes, broken_by, cost, depth, fault, from_leaves};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
+use checks::judge::{compare, unless};
 use checks::tree::around;
 use glam::{Vec3, vec3};
 use oracle::splitmix::Random;
@@ -72,7 +72,7 @@ pub(super) fn build_binned_boxes_are_tight(trial: &Trial<'_>) -> CheckResult {
 }
 
 /// A name, a set of boxes, the sizes of the leaves that its tree must have, and those that each of [`KNOWN`] gives.
-type Choice = (&'static str, Vec<Aabb>, Vec<u32>, [Leaves; 5]);
+type Choice = (&'static str, Vec<Aabb>, Vec<u32>, [Leaves; 6]);
 
 /// The leaves that a mistake gives, in comparison with the right ones.
 #[derive(Clone, Copy)]
@@ -84,9 +84,10 @@ enum Leaves {
 }
 
 /// The known mistakes, the most specific one first.
-const KNOWN: [&str; 5] = [
+const KNOWN: [&str; 6] = [
     "the costs count single primitives: a leaf pays for whole blocks, block_cost",
     "NODE_COST is left out: visiting a node costs something, too",
+    "NODE_COST is not multiplied by the area of the node",
     "a node of at most BLOCK primitives becomes a leaf",
     "a node is split although a leaf is not more expensive",
     "a node becomes a leaf although a split is cheaper",
@@ -113,47 +114,54 @@ fn choices(random: &mut Random) -> Vec<Choice> {
             "two groups of eight that are far apart",
             pair(8, 8, 0.2),
             vec![8, 8],
-            [Same, Same, More, Same, Fewer],
+            [Same, Same, Same, More, Same, Fewer],
         ),
         (
             "eight boxes at one end and one at the other",
             pair(8, 1, 0.1),
             vec![1, 8],
-            [Same, Same, More, Same, Fewer],
+            [Same, Same, Same, More, Same, Fewer],
         ),
         (
             // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.75. By primitives 12 · 3 and 0.25 · 3 + 12 · 2.75.
             "two groups of six that overlap by three quarters",
             pair(6, 6, 0.875),
             vec![12],
-            [Sizes(&[6, 6]), Sizes(&[6, 6]), More, More, Same],
+            [Sizes(&[6, 6]), Sizes(&[6, 6]), Sizes(&[6, 6]), More, More, Same],
         ),
         (
             // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.85. By primitives 16 · 3 and 0.25 · 3 + 16 · 2.85.
             "two groups of eight that overlap nearly",
             pair(8, 8, 0.925),
             vec![16],
-            [Sizes(&[8, 8]), Sizes(&[8, 8]), Same, More, Same],
+            [Sizes(&[8, 8]), Sizes(&[8, 8]), Sizes(&[8, 8]), Same, More, Same],
+        ),
+        (
+            // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.93, or 0.25 + 2 · 2.93.
+            "two groups of eight that overlap even more",
+            pair(8, 8, 0.965),
+            vec![16],
+            [Sizes(&[8, 8]), Sizes(&[8, 8]), Same, Same, More, Same],
         ),
         (
             // As a leaf 4 · 3; split 0.25 · 3 + 4 · 2.99 at best.
             "two groups of 16 that overlap but for a hundredth",
             pair(16, 16, 0.995),
             vec![32],
-            [Same, More, Same, More, Same],
+            [Same, More, Same, Same, More, Same],
         ),
         (
             // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.91 + 3, because bins do not separate the nine.
             "nine equal boxes in a larger one",
             [vec![bar(0.955); 9], vec![bar(1.0)]].concat(),
             vec![10],
-            [Same, Same, Same, More, Same],
+            [Same, Same, Same, Same, More, Same],
         ),
         (
             "eight boxes that are far apart",
             (0..8).map(|i| apart(i as f32)).collect(),
             vec![8],
-            [Same, Same, More, Same, Same],
+            [Same, Same, Same, More, Same, Same],
         ),
     ]
 }
@@ -168,19 +176,21 @@ pub(super) fn build_binned_makes_leaves_that_pay(trial: &Trial<'_>) -> CheckResu
         let mut sizes: Vec<u32> =
             tree.nodes.iter().filter(|node| node.is_leaf()).map(|node| node.count).collect();
         sizes.sort_unstable();
-        if sizes == *leaves {
-            return Ok(());
-        }
         let gives = |mistake: Leaves| match mistake {
-            Leaves::Same => false,
+            Leaves::Same => sizes == *leaves,
             Leaves::Sizes(given) => *given == sizes,
             Leaves::More => sizes.len() > leaves.len(),
             Leaves::Fewer => sizes.len() < leaves.len(),
         };
         let [yours, expected] = [&sizes, leaves].map(|sizes| format!("leaves of {sizes:?}"));
+        let given: Vec<_> = mistakes.map(gives).into_iter().zip(KNOWN).collect();
+        let (formulas, shown) = given.split_at(4);
         let input = format!("build_binned of {what}");
-        Err(Broken::with_texts(input, yours, expected, "NODE_COST and block_cost")
-            .explained_by(mistakes.map(gives).into_iter().zip(KNOWN)))
+        let broken = || {
+            Broken::with_texts(input, yours, expected, "NODE_COST and block_cost")
+                .explained_by(shown.to_vec())
+        };
+        unless(sizes == *leaves, broken).formulas(formulas.to_vec())
     }))
 }
 
@@ -194,7 +204,17 @@ pub(super) fn build_binned_costs_little_more_than_a_sweep(trial: &Trial<'_>) -> 
             let input = format!("build_binned of {} boxes: {name}", boxes.len());
             let most = format!("at most {:.3}, 1.05 times that of a sweep", 1.05 * sweep);
             let source = "the surface area heuristic";
-            return Err(Broken::with_texts(input, format!("cost {yours:.3}"), most, source));
+            // The number of primitives below each node, and whether all nodes there are divided in half.
+            let halves = from_leaves(
+                &tree,
+                |_, node| (node.count, true),
+                |_, left, right| (left.0 + right.0, left.1 && right.1 && left.0.abs_diff(right.0) <= 1),
+            );
+            let broken = Broken::with_texts(input, format!("cost {yours:.3}"), most, source);
+            return Err(broken.explained_by([(
+                halves.first().is_some_and(|(_, are_halves)| *are_halves),
+                "every node is divided in half: divide it at the cheapest split between bins",
+            )]));
         }
     }
     Ok(())

@@ -113,6 +113,7 @@ fn judge(flat: &Flat, yours: &FlatTree) -> CheckResult {
             *yours == reordered(&flat.tree, Order::SecondSide),
             "the nodes below the second child come before those below the first",
         ),
+        (n == 0 && !yours.nodes.is_empty(), "a hierarchy without nodes gives a tree without nodes"),
         (is_as_given, "the nodes keep the order of the hierarchy, so children need not be neighbours"),
         (only_order_differs, "the list of primitives was changed: copy `order` as it is"),
         (only_boxes_differ, "only the boxes differ: copy the box of each node"),

@@ -7,6 +7,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
+use raykata::bvh::DEEPEST_SPLIT;
 use raykata::wide::{FlatTree, Fork, ForkKind, ForkedTree};
 use std::collections::{HashMap, HashSet};
 
@@ -22,29 +23,43 @@ pub(super) fn build_parallel_gives_the_same_tree(trial: &Trial<'_>) -> CheckResu
     sets.extend(crowds(trial.varied(1.0, 0.25..8f32)));
     let alone = trial.kit.build_binned(&sets);
     let answers = trial.kit.build_parallel(&sets);
-    let judge = |((boxes, alone), forked): ((&Vec<Aabb>, &FlatTree), &ForkedTree)| {
-        let yours = &forked.tree;
-        if yours == alone {
-            // The same empty tree twice is no tree.
-            return judge_tree(boxes, yours);
-        }
-        let kinds = |tree: &FlatTree| -> Vec<(Aabb, u32)> {
-            tree.nodes.iter().map(|node| (node.bounds(), node.count)).collect()
-        };
-        let only_indices = kinds(yours) == kinds(alone) && yours.order == alone.order;
-        let n = yours.nodes.len().max(alone.nodes.len());
-        let different = (0..n).find(|&i| yours.nodes.get(i) != alone.nodes.get(i));
-        let of = |tree: &FlatTree| match different {
-            Some(i) => format!("node {i} of {}: {:?}", tree.nodes.len(), tree.nodes.get(i)),
-            None => format!("order {:?}…", &tree.order[..tree.order.len().min(10)]),
-        };
-        let input = format!("build_parallel of {} boxes", boxes.len());
-        Err(Broken::with_texts(input, of(yours), of(alone), "your build_binned").explained_by([(
+    let judge =
+        |((boxes, alone), forked): ((&Vec<Aabb>, &FlatTree), &ForkedTree)| {
+            let yours = &forked.tree;
+            if yours == alone {
+                // The same empty tree twice is no tree.
+                return judge_tree(boxes, yours);
+            }
+            let kinds = |tree: &FlatTree| -> Vec<(Aabb, u32)> {
+                tree.nodes.iter().map(|node| (node.bounds(), node.count)).collect()
+            };
+            let only_indices = kinds(yours) == kinds(alone) && yours.order == alone.order;
+            let n = yours.nodes.len().max(alone.nodes.len());
+            let different = (0..n).find(|&i| yours.nodes.get(i) != alone.nodes.get(i));
+            let of = |tree: &FlatTree| match different {
+                Some(i) => format!("node {i} of {}: {:?}", tree.nodes.len(), tree.nodes.get(i)),
+                None => format!("order {:?}…", &tree.order[..tree.order.len().min(10)]),
+            };
+            let input = format!("build_parallel of {} boxes", boxes.len());
+            Err(Broken::with_texts(input, of(yours), of(alone), "your build_binned").explained_by([(
             only_indices,
             "only the indices of children differ: they shift when the arrays of both sides are joined",
+        ), (
+            different.is_some_and(|i| depths(alone).get(i).is_some_and(|depth| *depth > DEEPEST_SPLIT)),
+            "the trees differ only below DEEPEST_SPLIT: both sides of a fork are one level deeper",
         )]))
-    };
+        };
     all_hold(sets.iter().zip(&alone).zip(&answers).map(judge).collect())
+}
+
+/// The depth of each node.
+fn depths(tree: &FlatTree) -> Vec<usize> {
+    let mut depths = vec![0; tree.nodes.len()];
+    for (index, node) in tree.nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
+        let depth = depths[index] + 1;
+        depths[node.first as usize..][..2].fill(depth);
+    }
+    depths
 }
 
 /// The first primitive and the number of primitives of each node of a tree without faults.

@@ -155,6 +155,11 @@ fn mistakes(query: &BinSplitQuery, yours: &Option<BinSplit>) -> Vec<(bool, &'sta
         (of_fewer(&|split| split.bin > 1), "the split behind the first bin is not tried"),
         (of_fewer(&|split| split.bin < last), "the split before the last bin is not tried"),
     ];
+    let next = yours.as_ref().map(|yours| BinSplit { bin: yours.bin + 1, ..*yours });
+    mistakes.push((
+        next.map_or_else(|| of_fewer(&|_| true), |next| is_cheapest(query, &next, right_cost, |_| true)),
+        "the bin is the last one of the left side: return the first one of the right side",
+    ));
     mistakes.extend(WRONG_COSTS.map(|(cost, text)| (is_of(cost, &|_| true), text)));
     mistakes
 }

@@ -6,7 +6,9 @@ use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::{Judged, proven, unless};
 use checks::nasty;
 use checks::paste::{Arguments, Paste, call};
-use checks::statistics::{Mistakes, SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
+use checks::statistics::{
+    Mistakes, SAMPLES, columns, covers_each_part, covers_evenly, has_mean, pairs, unused_number,
+};
 use glam::{DVec3, Vec2, Vec3, vec3};
 use raykata::kit::{RectangleQuery, SphereSampleQuery};
 use raykata::shape::{Disk, Sphere};
@@ -44,7 +46,7 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> CheckResult {
     let mut shares = Vec::new();
     let judge = |(query, point): (&RectangleQuery, &Vec3)| judge_rectangle_point(query, *point, &mut shares);
     all_hold(proven(queries.iter().zip(&answers).map(judge)))?;
-    covers_evenly("sample_rectangle(…, u)", &shares, ["the first edge", "the second edge"], |counts| {
+    covers_evenly("sample_rectangle(…, u)", &shares, RECTANGLE_AXES, |counts| {
         // 28 of the 64 cells lie beyond the diagonal.
         let hit = counts.iter().filter(|count| **count > 0).count();
         let mut mistakes = unused_number(|u| {
@@ -53,8 +55,19 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> CheckResult {
         });
         mistakes.push((hit == 36, "your points fill a triangle: half of the rectangle is missing"));
         mistakes
-    })
+    })?;
+    let places = |u: &[Vec2]| {
+        let queries: Vec<RectangleQuery> = u.iter().map(|u| RectangleQuery { u: *u, ..queries[0] }).collect();
+        let mut shares = Vec::new();
+        let judge =
+            |(query, point): (&RectangleQuery, Vec3)| judge_rectangle_point(query, point, &mut shares);
+        all_hold(proven(queries.iter().zip(trial.kit.sample_rectangle(&queries)).map(judge)))?;
+        Ok(shares)
+    };
+    covers_each_part("sample_rectangle(…, u)", RECTANGLE_AXES, trial.seed, None, places, |_| None)
 }
+
+const RECTANGLE_AXES: [&str; 2] = ["the first edge", "the second edge"];
 
 const CORNER_AS_CENTER: &str = "you use the corner as the centre of the rectangle";
 
@@ -117,7 +130,15 @@ pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> CheckResult
             trial.kit.sample_light_disk(&queries)
         }));
         uneven_disk(counts, mistakes)
-    })
+    })?;
+    let places = |u: &[Vec2]| {
+        let queries: Vec<(Disk, Vec2)> = u.iter().map(|u| (disks[disks.len() - 1], *u)).collect();
+        let mut places = Vec::new();
+        let judge = |(query, point): (&(Disk, Vec2), Vec3)| judge_disk_point(query, point, &mut places);
+        all_hold(queries.iter().zip(trial.kit.sample_light_disk(&queries)).map(judge).collect())?;
+        Ok(places.into_iter().map(polar).collect())
+    };
+    covers_each_part("sample_light_disk(…, u)", ["radius²", "angle"], trial.seed, None, places, |_| None)
 }
 
 /// Whether a point belongs to its disk. Adds its place on the disk of radius 1 to `places`.
@@ -201,14 +222,13 @@ impl Seen {
 }
 
 /// Samples spheres in turn. Every direction must have unit length and lead to its sphere.
-fn seen(trial: &Trial<'_>, spheres: &[(Sphere, Vec3)]) -> Result<Seen, Broken> {
-    let u = numbers(trial.seed);
+fn seen(trial: &Trial<'_>, spheres: &[(Sphere, Vec3)], u: &[Vec2]) -> Result<Seen, Broken> {
     let query = |(index, u): (usize, &Vec2)| {
         let (sphere, from) = spheres[index % spheres.len()];
         SphereSampleQuery { sphere, from, u: *u }
     };
     let queries: Vec<SphereSampleQuery> = u.iter().enumerate().map(query).collect();
-    let mut seen = Seen { u, shares: Vec::new(), rims: Vec::new(), local: Vec::new() };
+    let mut seen = Seen { u: u.to_vec(), shares: Vec::new(), rims: Vec::new(), local: Vec::new() };
     let answers = trial.kit.sample_sphere(&queries);
     let all_nan = answers.iter().all(|direction| direction.is_nan());
     let judge = |(query, direction)| judge_direction(query, direction, all_nan, &mut seen);
@@ -275,7 +295,7 @@ const HERE: [Vec3; 2] = [Vec3::ZERO, vec3(1.0, -1.0, 2.0)];
 
 pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> CheckResult {
     let spheres = spheres(1.25, &HERE);
-    let seen = seen(trial, &spheres)?;
+    let seen = seen(trial, &spheres, &numbers(trial.seed))?;
     covers_evenly("sample_sphere from 1.25 radii away", &seen.shares, AXES, |counts| {
         let rings = columns(counts);
         let mut mistakes = unused(trial, spheres[0]);
@@ -294,20 +314,23 @@ pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> CheckResult 
         ]);
         mistakes
     })?;
-    // The irradiance of a surface that faces the sphere: the mean of cos θ over the cone is (1 + cos of its rim) / 2.
-    let cos_rim = 0.6; // its sine is 1 / 1.25
-    let cosines: Vec<f64> = seen.shares.iter().map(|(share, _)| 1.0 - share * (1.0 - cos_rim)).collect();
-    let what = "the cosine of sample_sphere with the direction to the centre";
-    has_mean(what, &cosines, 0.5 * (1.0 + cos_rim), |_| Vec::new())
+    covers_each_part_of(trial, "sample_sphere from 1.25 radii away", &spheres)
+}
+
+/// Judges the directions to the last of these spheres.
+fn covers_each_part_of(trial: &Trial<'_>, what: &str, spheres: &[(Sphere, Vec3)]) -> CheckResult {
+    let places = |u: &[Vec2]| Ok(seen(trial, &spheres[spheres.len() - 1..], u)?.shares);
+    covers_each_part(what, AXES, trial.seed, None, places, |_| None)
 }
 
 pub(super) fn a_far_sphere_is_still_a_sphere(trial: &Trial<'_>) -> CheckResult {
     // Ten thousand radii away 1 - cos θ of the rim is 5e-9, so cos θ is rounded to 1 in f32. The point of view is the origin,
     // so that no rounding of the difference adds to this.
-    let far = seen(trial, &spheres(1e4, &HERE[..1]))?;
+    let u = numbers(trial.seed);
+    let far = seen(trial, &spheres(1e4, &HERE[..1]), &u)?;
     covers_evenly("sample_sphere from 10,000 radii away", &far.shares, AXES, |_| {
         // The formula is right for a near sphere, and gives few angles for a far one.
-        let near = seen(trial, &spheres(1.25, &HERE[..1]));
+        let near = seen(trial, &spheres(1.25, &HERE[..1]), &u);
         let rounded = far.n_angles() <= 8 && near.is_ok_and(|near| near.n_angles() > 500);
         vec![(rounded, "your 1 - cos θ is rounded: compute it as sin²θ / (1 + cos θ)")]
     })
@@ -315,7 +338,7 @@ pub(super) fn a_far_sphere_is_still_a_sphere(trial: &Trial<'_>) -> CheckResult {
 
 pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> CheckResult {
     let spheres = spheres(0.4, &HERE);
-    let seen = seen(trial, &spheres)?;
+    let seen = seen(trial, &spheres, &numbers(trial.seed))?;
     covers_evenly("sample_sphere from inside", &seen.shares, AXES, |_| {
         let mut mistakes = unused(trial, spheres[0]);
         mistakes.push((
@@ -324,6 +347,7 @@ pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> CheckR
         ));
         mistakes
     })?;
+    covers_each_part_of(trial, "sample_sphere from inside", &spheres)?;
     // From the centre any unit direction passes, and NaN fails.
     let query = |u: Vec2| SphereSampleQuery {
         sphere: Sphere { center: vec3(0.0, 1.0, 0.0), radius: 3.0 },
@@ -346,7 +370,7 @@ pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> CheckR
 
 /// The fraction of a sphere that is visible past the straight edge of a wall.
 pub(super) fn half_a_sphere_makes_half_a_shadow(trial: &Trial<'_>) -> CheckResult {
-    let seen = seen(trial, &spheres(3.0, &HERE))?;
+    let seen = seen(trial, &spheres(3.0, &HERE), &numbers(trial.seed))?;
     for normal in [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::new(0.0, 0.6, -0.8)] {
         let visible: Vec<f64> =
             seen.local.iter().map(|direction| f64::from(u8::from(direction.dot(normal) > 0.0))).collect();

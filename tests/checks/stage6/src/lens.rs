@@ -6,7 +6,9 @@ use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::{Judged, compare, unless};
 use checks::nasty;
 use checks::paste::{Paste, call};
-use checks::statistics::{Mistakes, SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
+use checks::statistics::{
+    Mistakes, SAMPLES, columns, covers_each_part, covers_evenly, is_other_power, pairs, unused_number,
+};
 use glam::{DVec3, Vec2, Vec3, vec2, vec3};
 use proptest::prelude::*;
 use raykata::camera::{Camera, Lens};
@@ -35,6 +37,10 @@ pub(super) fn is_polar(u: &[Vec2], places: &[Vec2]) -> Mistakes {
         (radius_is(|u| u * u), "too many points near the centre: your radius is u²; use √u"),
         (radius_is(f32::cbrt), "too many points near the rim: your radius is ∛u, as in a sphere; use √u"),
         (radius_is(|_| 1.0), "too many points near the rim: all of your points are on it"),
+        (
+            is_other_power(u, &places.iter().map(|place| f64::from(place.length())).collect::<Vec<_>>(), 0.5),
+            "your radius is another power of a random number: use √u",
+        ),
     ]
 }
 
@@ -77,8 +83,11 @@ pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> CheckResult {
         mistakes.extend(unused_number(|u| trial.kit.sample_disk(u)));
         uneven_disk(counts, mistakes)
     })?;
-    let radii: Vec<f64> = shares.iter().map(|(squared, _)| squared.sqrt()).collect();
-    has_mean("the length of sample_disk(u)", &radii, 2.0 / 3.0, |_| Vec::new())
+    let places_of_u = places;
+    let places = |u: &[Vec2]| Ok(trial.kit.sample_disk(u).into_iter().map(polar).collect());
+    covers_each_part("sample_disk(u)", ["radius²", "angle"], trial.seed, None, places, |_| {
+        is_polar(&u, &places_of_u).into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()))
+    })
 }
 
 pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> CheckResult {

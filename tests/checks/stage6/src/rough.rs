@@ -8,7 +8,9 @@ use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
 use checks::nasty;
 use checks::paste::Arguments;
-use checks::statistics::{Mistakes, SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
+use checks::statistics::{
+    Mistakes, SAMPLES, columns, covers_each_part, covers_evenly, is_other_power, pairs, unused_number,
+};
 use glam::{Vec2, Vec3, vec2};
 use proptest::prelude::*;
 use raykata::kit::PhongLobeQuery;
@@ -60,7 +62,7 @@ impl Lobe {
     fn is(&self, cosine: impl Fn(f64) -> f64) -> bool {
         let number = |u: &Vec2, which: usize| f64::from([u.x, u.y, 1.0 - u.x, 1.0 - u.y][which]);
         (0..4).any(|which| {
-            self.u.iter().zip(&self.cosines).all(|(u, found)| (found - cosine(number(u, which))).abs() < 1e-4)
+            self.u.iter().zip(&self.cosines).all(|(u, found)| (found - cosine(number(u, which))).abs() < 1e-5)
         })
     }
 
@@ -70,17 +72,15 @@ impl Lobe {
     }
 }
 
-/// Samples lobes in all directions in turn.
-fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Lobe, Broken> {
-    let axes = nasty::directions();
-    let u = pairs(trial.seed, SAMPLES);
+/// Samples lobes in these directions in turn.
+fn lobe(trial: &Trial<'_>, roughness: f32, axes: &[Vec3], u: &[Vec2]) -> Result<Lobe, Broken> {
     let query = |(index, u): (usize, &Vec2)| {
         let axis = axes[index % axes.len()];
         PhongLobeQuery { ideal: axis, normal: axis, roughness, u: *u }
     };
     let queries: Vec<PhongLobeQuery> = u.iter().enumerate().map(query).collect();
     let exponent = 2.0 / f64::from(roughness).powi(2) - 2.0;
-    let mut lobe = Lobe { u, shares: Vec::new(), cosines: Vec::new() };
+    let mut lobe = Lobe { u: u.to_vec(), shares: Vec::new(), cosines: Vec::new() };
     let judge = |(query, direction): (&PhongLobeQuery, Vec3)| {
         let (around, ideal) = (direction.as_dvec3(), query.ideal.as_dvec3().normalize());
         if !((around.length() - 1.0).abs() < 1e-5) {
@@ -96,7 +96,12 @@ fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Lobe, Broken> {
         let sine_squared = around.cross(ideal).length_squared().min(1.0);
         let share = (0.5 * (exponent + 1.0) * (-sine_squared).ln_1p()).exp();
         lobe.shares.push((share, around.dot(y).atan2(around.dot(x)) / std::f64::consts::TAU + 0.5));
-        lobe.cosines.push(around.dot(ideal));
+        let cosine = around.dot(ideal);
+        // Behind the plane of the lobe, by more than a rounding, there is no place.
+        if cosine < -1e-6 {
+            lobe.shares.last_mut().expect("a place was added").0 = f64::INFINITY;
+        }
+        lobe.cosines.push(cosine);
         Ok(())
     };
     all_hold(queries.iter().zip(trial.kit.sample_phong_lobe(&queries)).map(judge).collect())?;
@@ -128,13 +133,19 @@ fn mistakes(trial: &Trial<'_>, lobe: &Lobe, roughness: f32) -> Mistakes {
             "your lobe is too wide: you do not square roughness; n = 2 / roughness² - 2",
         ),
         (power(1.0 / (r + 1.0)), "you use roughness as n: n = 2 / roughness² - 2"),
+        (
+            is_other_power(&lobe.u, &lobe.cosines, 1.0 / (n + 1.0)),
+            "your cos θ is another power of a random number: it is u^(1 / (n + 1))",
+        ),
     ]);
     mistakes
 }
 
 pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -> CheckResult {
+    let (u, axes) = (pairs(trial.seed, SAMPLES), nasty::directions());
     for roughness in [0.2, 0.5, 1.0] {
-        let lobe = lobe(trial, roughness)?;
+        let lobe_of = |u: &[Vec2], axes: &[Vec3]| lobe(trial, roughness, axes, u);
+        let lobe = lobe_of(&u, &axes)?;
         let what = format!("sample_phong_lobe with roughness {roughness}");
         covers_evenly(&what, &lobe.shares, AXES, |counts| {
             let rings = columns(counts);
@@ -143,16 +154,15 @@ pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -
             mistakes.push((4 * rings[7] > 5 * rings[0], "your lobe is too narrow"));
             mistakes
         })?;
-        // The mean of cos θ of a lobe with power n is (n + 1) / (n + 2).
-        let n = 2.0 / f64::from(roughness).powi(2) - 2.0;
-        let cosines: Vec<f64> = lobe.shares.iter().map(|(share, _)| share.powf(1.0 / (n + 1.0))).collect();
-        let expected = (n + 1.0) / (n + 2.0);
-        let what = format!("the cosine of sample_phong_lobe with ideal, roughness {roughness}");
-        has_mean(&what, &cosines, expected, |mean| {
-            let mut mistakes = mistakes(trial, &lobe, roughness);
-            mistakes.push((mean < expected, "your lobe is too wide"));
-            mistakes.push((mean > expected, "your lobe is too narrow"));
-            mistakes
+        let places = |u: &[Vec2]| Ok(lobe_of(u, &axes[axes.len() - 1..])?.shares);
+        covers_each_part(&what, AXES, trial.seed, None, places, |counts| {
+            let rings = columns(counts);
+            let mistakes = mistakes(trial, &lobe, roughness).into_iter();
+            let shown = [
+                (100 * rings[0] > 105 * rings[7], "your lobe is too wide"),
+                (100 * rings[7] > 105 * rings[0], "your lobe is too narrow"),
+            ];
+            mistakes.chain(shown).find_map(|(proven, text)| proven.then(|| text.to_owned()))
         })?;
     }
     Ok(())
@@ -160,10 +170,12 @@ pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -
 
 pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> CheckResult {
     // n is 2,000,000, so cosines differ from 1 in their last four bits only.
-    let slight = lobe(trial, 0.001)?;
+    let (u, axes) = (pairs(trial.seed, SAMPLES), nasty::directions());
+    let slight = lobe(trial, 0.001, &axes, &u)?;
     covers_evenly("sample_phong_lobe with roughness 0.001", &slight.shares, AXES, |_| {
         // The formula gives many angles for a rough surface, and few for a slightly rough one.
-        let few = slight.n_angles() < 64 && lobe(trial, 0.5).is_ok_and(|rough| rough.n_angles() > 500);
+        let few =
+            slight.n_angles() < 64 && lobe(trial, 0.5, &axes, &u).is_ok_and(|rough| rough.n_angles() > 500);
         vec![(few, "your angles take few values: √(1 - cos²) is imprecise; compute 1 - cos θ with exp_m1")]
     })
 }

@@ -186,8 +186,14 @@ fn judge_entries(trial: &Trial<'_>, queries: &[Entry], never_late: bool) -> Vec<
             let asked = entry.asked();
             let input = call("enter_bounding_sphere", &[&asked.ray, &asked.sphere]);
             let expected = format!("{}{remark}", describe(right));
-            Err(Broken::with_texts(input, describe(yours), expected, "exact arithmetic")
-                .explained_by(observations(entry, yours, right)))
+            let mut shown = observations(entry, yours, right);
+            // Powers of two change no digit, so only a limit tells the sizes apart.
+            let plain = trial.kit.enter_bounding_sphere(&[entry.plain])[0];
+            shown.push((
+                plain.is_some() != yours.is_some() && plain.is_some() == right.is_some(),
+                "you compare with a fixed limit: the ray finds the sphere at another size or length of direction",
+            ));
+            Err(Broken::with_texts(input, describe(yours), expected, "exact arithmetic").explained_by(shown))
         };
         if starts_inside(smaller) {
             return match yours {
@@ -259,12 +265,23 @@ fn observations(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(b
     let is = |end: usize| matches!((yours, ends), (Some(t), Some(ends)) if near(t.into(), ends[end].min(ray.t_max.into())));
     let starts_inside = right == Some(ray.t_min);
     let found = yours.is_some() && right.is_none();
+    let to_center = sphere.center.as_dvec3() - ray.origin.as_dvec3();
+    let direction = ray.direction.as_dvec3();
+    let closest = to_center.dot(direction) / direction.length_squared();
     let late = matches!((yours, right), (Some(yours), Some(right)) if yours > right && near(yours.into(), right.into()));
     vec![
         (
             late,
             "you are late by a rounding error, and a search would skip a hit at this t: return a slightly \
              earlier t",
+        ),
+        (
+            starts_inside && yours == Some(0.0) && ray.t_min != 0.0,
+            "you return 0 for a ray that starts inside: it enters the sphere at t_min",
+        ),
+        (
+            yours.is_some_and(|t| near(t.into(), closest.max(ray.t_min.into()))) && right.is_some(),
+            "you return where the ray is closest to the centre: it enters the sphere before",
         ),
         (
             starts_inside && is(0),

@@ -95,8 +95,12 @@ pub(super) fn judge_contents(trial: &Trial<'_>, allowed: f64) -> CheckResult {
         let is = |yours: Vec3, wrong: DVec3| {
             (0..3).all(|row| (f64::from(yours[row]) - wrong[row]).abs() <= 16.0 * U * lacks[row].1)
         };
+        let start = query.to_world.as_daffine3().translation;
+        let all = [0, 1, 2].map(|row| ends(query, row));
+        let [low, high] = [DVec3::from(all.map(|end| end.0)), DVec3::from(all.map(|end| end.1))];
         let [least, most] = [corners[0].min(corners[1]), corners[0].max(corners[1])];
         unless(too_small.is_none(), broken).formulas([
+            (is(yours.min, low - start) && is(yours.max, high - start), "you do not translate the box"),
             (
                 is(yours.min, least) && is(yours.max, most),
                 "your box is much too small, because you transform two corners only: after a rotation any of the eight \

@@ -78,27 +78,33 @@ pub(super) fn child_cache_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
         let yours = format!("{}, {n_boxes} volumes, tested {asked:?}", named(found));
         let expected_text =
             format!("{}, at most {most_boxes} volumes, each primitive at most once", named(expected));
-        // The closest hit of the cached children alone, without the others.
-        let mut in_cache_only: Option<(f32, u32)> = None;
-        let mut waiting = if search.graph.nodes.is_empty() { Vec::new() } else { vec![0] };
-        while let Some(node) = waiting.pop() {
-            for &primitive in &search.graph.nodes[node as usize].primitives {
-                let t = search.table.primitives[primitive as usize];
-                if search.ray.contains(t) && in_cache_only.is_none_or(|best| (t, primitive) < best) {
-                    in_cache_only = Some((t, primitive));
+        // The closest hit of a search that visits some children only: those in the cache, or the others.
+        let closest_of = |is_visited: &dyn Fn(u32, u32) -> bool| {
+            let mut best: Option<(f32, u32)> = None;
+            let mut waiting = if search.graph.nodes.is_empty() { Vec::new() } else { vec![0] };
+            while let Some(node) = waiting.pop() {
+                for &primitive in &search.graph.nodes[node as usize].primitives {
+                    let t = search.table.primitives[primitive as usize];
+                    if search.ray.contains(t) && best.is_none_or(|best| (t, primitive) < best) {
+                        best = Some((t, primitive));
+                    }
                 }
+                let children = search.graph.nodes[node as usize].children.iter();
+                waiting.extend(children.filter(|child| is_visited(node, **child)));
             }
-            match query.cache.get(node) {
-                Some(child) => waiting.push(child),
-                None => waiting.extend(&search.graph.nodes[node as usize].children),
-            }
-        }
-        let is_cached_only = found.map(|hit| (hit.t, hit.primitive)) == in_cache_only && found != expected;
+            best
+        };
+        let is_of = |is_visited: &dyn Fn(u32, u32) -> bool| {
+            found.map(|hit| (hit.t, hit.primitive)) == closest_of(is_visited) && found != expected
+        };
+        let is_cached_only = is_of(&|node, child| query.cache.get(node).is_none_or(|cached| cached == child));
+        let is_left_out = is_of(&|node, child| query.cache.get(node) != Some(child));
         Err(Broken::with_texts(describe_cached(query), yours, expected_text, "brute force").explained_by([
             (
                 is_cached_only,
                 "you visit only the cached child of a node: the others may have a nearer hit, and must be visited, too",
             ),
+            (is_left_out, "you do not visit the cached child: visit it first, and then the others"),
             (
                 is_again || n_boxes > most_boxes && search.savings.volumes,
                 "the cached child takes part twice: leave it out of the other children",
@@ -206,6 +212,10 @@ pub(super) fn child_cache_stores_the_way_to_the_hit(trial: &Trial<'_>) -> CheckR
         Err(Broken::with_texts(describe_cached(query), text, expected, "the definition").explained_by([
             (unchanged, "you do not change the cache: store the child with the closest hit"),
             (root_only, "you store the child of the root only: each node on the path has an entry"),
+            (
+                stray.is_none() && wrong.is_some_and(|(node, _)| yours.cache.get(node).is_some()),
+                "you store another child of the node than the one with the closest hit",
+            ),
         ]))
     };
     all_hold(compare(&queries, trial.kit.closest_hit_with_child_cache(&queries), judge))

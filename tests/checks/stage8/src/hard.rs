@@ -289,13 +289,15 @@ const HAT: Cone = Cone { base: Vec3::ZERO, apex: Vec3::Y, radius: 1.0 };
 /// Rays above the apex, where the equation describes a second cone.
 pub(super) fn cone_is_not_its_mirror_image(trial: &Trial<'_>) -> CheckResult {
     let ask = of(&HAT);
+    let mirrored =
+        "you are wrong above the apex, where the equation has a second cone: it is not part of the solid";
     judge_cases(
         trial,
         &[
-            (ask(vec3(-5.0, 2.0, 0.0), Vec3::X), None, ""),
-            (ask(vec3(-5.0, 1.5, 0.25), Vec3::X), None, ""),
-            (ask(vec3(0.125, 5.0, 0.0), Vec3::NEG_Y), Some(4.125), ""),
-            (ask(vec3(0.0, 3.0, 0.0), Vec3::X), None, ""),
+            (ask(vec3(-5.0, 2.0, 0.0), Vec3::X), None, mirrored),
+            (ask(vec3(-5.0, 1.5, 0.25), Vec3::X), None, mirrored),
+            (ask(vec3(0.125, 5.0, 0.0), Vec3::NEG_Y), Some(4.125), mirrored),
+            (ask(vec3(0.0, 3.0, 0.0), Vec3::X), None, mirrored),
             (ask(vec3(-5.0, 0.5, 0.0), Vec3::X), Some(4.5), ""),
             (ask(vec3(-5.0, -0.5, 0.0), Vec3::X), None, ""),
             (ask(vec3(2.0, -1.0, 0.0), vec3(-2.0, 1.0, 0.0)), Some(1.0), ""),

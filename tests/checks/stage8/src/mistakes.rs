@@ -143,6 +143,12 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>, scal
         let all = ends.iter().flatten().chain(side).copied();
         is(ray, yours, first(ray, all))
     };
+    // The same cylinder whose radius is not squared.
+    let endless_of_root = roots(m.dot(m), n.dot(m), n.dot(n) - radius * line.axis.length_squared());
+    let side_of_root = endless_of_root.into_iter().filter(|t| (0.0..=1.0).contains(&line.height(*t)));
+    let ends_of_root = [0.0, 1.0].map(|height| line.at_height(height));
+    let ends_of_root = ends_of_root.into_iter().filter(|t| line.distance(*t) <= radius.sqrt());
+    let of_root = is(ray, yours, first(ray, side_of_root.chain(ends_of_root)));
     let is_between = (0.0..=1.0).contains(&line.height(0.0));
     let rate = scale * line.direction.dot(line.axis).abs();
     let limited = LIMITS.map(|limit| match rate < limit {
@@ -154,6 +160,7 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>, scal
         (only(&[base], &side), "you leave out the end at `top`: a ray can enter or leave through it"),
         (only(&[top], &side), "you leave out the end at `base`: a ray can enter or leave through it"),
         (only(&[base, top], &[]), "you leave out the side: only the ends are hit"),
+        (of_root, "you use the radius in place of its square: the distance from the axis is squared, too"),
         (
             match endless.first().is_none_or(|enter| *enter <= f64::from(ray.t_min)) {
                 true => yours.is_none(),
@@ -195,13 +202,19 @@ pub(super) fn of_cone(query: &SolidQuery<Cone>, yours: Option<f32>, _: f64) -> M
     let endless = within(slope, 0.0, f64::INFINITY);
     let double = within(slope, f64::NEG_INFINITY, 1.0).chain(base(radius));
     let exchanged = within(height / radius, 0.0, 1.0).chain(base(height * height / radius));
+    let not_squared = within(slope.sqrt(), 0.0, 1.0).chain(base(slope.sqrt() * height));
+    let no_end = endless.clone().next().is_none();
     vec![
         (
             is(ray, yours, first(ray, within(slope, 0.0, 1.0))),
             "you leave out the base: a ray can enter or leave through it",
         ),
         (is(ray, yours, first(ray, base(radius))), "you leave out the side: only the base is hit"),
-        (is(ray, yours, first(ray, endless)), "your cone has no base: it goes on beyond `base`"),
+        (
+            is(ray, yours, first(ray, endless)) || (no_end && yours.is_none_or(|t| t > 1e3)),
+            "your cone has no base: it goes on beyond `base`",
+        ),
+        (is(ray, yours, first(ray, not_squared)), "you do not square the slope of the side, radius / height"),
         (
             is(ray, yours, first(ray, double)),
             "you return a point of the second cone, above the apex, which is not part of the solid",

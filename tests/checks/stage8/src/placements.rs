@@ -61,6 +61,8 @@ fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> Judged {
         .to_cols_array()
         .iter()
         .all(|off| off.abs() <= 1e-5 * size(exact.matrix3));
+    let added = DAffine3 { translation: all().map(|one| one.translation).sum(), ..exact };
+    let ends = product(&mut all().take(1).chain(all().skip(1).last()));
     let own = all().next_back().unwrap_or(DAffine3::IDENTITY);
     let root = all().next().unwrap_or(DAffine3::IDENTITY);
     let is = |world: &DAffine3, object: &DAffine3| {
@@ -85,6 +87,11 @@ fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> Judged {
         (is(&own, &own), OWN_ONLY),
         (is(&root, &exact), ROOT_ONLY),
         (is(&root, &root), ROOT_ONLY),
+        (
+            is(&added, &added) || is(&added, &exact),
+            "you add the translations: each is turned and scaled by the transforms before it",
+        ),
+        (is(&ends, &ends), "you use the first and the last transform of the path only: multiply all of them"),
         (is(&turned, &exact), FROM_THE_NODE),
         (is(&turned, &turned), FROM_THE_NODE),
         (

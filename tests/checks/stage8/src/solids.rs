@@ -143,24 +143,35 @@ pub(super) fn input<S: Solid>(query: &SolidQuery<S>) -> String {
     call(S::NAME, &[&query.ray, &query.solid])
 }
 
+fn is_right(yours: Option<SolidHit>, expected: Option<(f32, f32)>) -> bool {
+    match (yours, expected) {
+        (None, None) => true,
+        (Some(hit), Some((low, high))) => low <= hit.t && hit.t <= high,
+        _ => false,
+    }
+}
+
+const LIMITED: &str = "you compare with a fixed limit: the same ray at another size, or with a direction of another \
+                       length, gets the right answer";
+
 fn judge<S: Solid>(trial: &Trial<'_>, queries: &[Scaled<S>]) -> Vec<CheckResult> {
     let judge = |scaled: &Scaled<S>, yours: Option<SolidHit>| {
         let query = &scaled.plain;
         let Some(expected) = expected(query) else { return Ok(()) };
-        let right = match (yours, expected) {
-            (None, None) => true,
-            (Some(hit), Some((low, high))) => low <= hit.t && hit.t <= high,
-            _ => false,
-        };
-        if right {
+        if is_right(yours, expected) {
             return Ok(());
         }
         let (yours, exact) =
             (yours.map(|hit| hit.t), query.solid.meet(&query.ray).and_then(|meeting| meeting.t));
         let describe =
             |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {:?}", scaled.t_scale() * t));
+        let mut shown = mistakes(scaled, yours, exact);
+        // Powers of two change no digit, so only a limit tells the sizes apart.
+        let plain = || S::ask(trial.kit, std::slice::from_ref(query))[0];
+        let is_limited = (scaled.size, scaled.speed) != (1.0, 1.0) && is_right(plain(), expected);
+        shown.push((is_limited, LIMITED));
         Err(Broken::with_texts(input(&scaled.asked()), describe(yours), describe(exact), "exact arithmetic")
-            .explained_by(mistakes(scaled, yours, exact)))
+            .explained_by(shown))
     };
     // Where the ray passes too near to an edge, each formula may give each answer.
     let formulas = |Scaled { plain, size, speed }: &Scaled<S>, yours: &Option<SolidHit>| {
@@ -319,6 +330,11 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> CheckResult {
             };
             mistakes.extend((S::WRONG_NORMALS)(&query.solid, at).into_iter().map(is));
             mistakes.extend([(!S::FLAT && beyond(-direction) <= 2e-3, "your normal points inwards")]);
+            let plain = || S::ask(trial.kit, std::slice::from_ref(query))[0];
+            let is_plain = |hit: SolidHit| (hit.t - range.0).min(range.1 - hit.t) >= 0.0;
+            let is_fine = |hit: SolidHit| is_plain(hit) && beyond(hit.normal.as_dvec3()) <= 2e-3;
+            let is_scaled = (scaled.size, scaled.speed) != (1.0, 1.0);
+            mistakes.push((is_scaled && !turned && plain().is_some_and(is_fine), LIMITED));
             Err(Broken::with_texts(
                 input(&scaled.asked()),
                 format!("normal {} at t = {:?}", hit.normal, scaled.t_scale() * hit.t),

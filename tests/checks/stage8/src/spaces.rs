@@ -114,6 +114,8 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResul
                 turned(is_along(yours.direction, ray.direction.as_dvec3())),
                 "you do not transform the direction",
             ),
+            (turned(is_along(yours.direction, -direction)), "you reverse the direction"),
+            (moved(there(origin + direction)), "you start at origin + direction: start at the origin"),
             (
                 turned(is_along(yours.direction, direction + exact.translation)),
                 "you translate the direction: only points are translated",
@@ -197,6 +199,10 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
                 describe(exact, ray),
                 "the definition",
             )
+            .explained_by([(
+                same_length && same_time && yours.t_max == ray.t_max && yours.t_min > ray.t_min,
+                "you raise t_min: the range stays, and an offset of the origin belongs to other rays",
+            )])
         }).formulas([
             (
                 only_length && near(1.0),
@@ -215,6 +221,15 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
                 is(yours.t_min, low * factor) && is(yours.t_max, high * factor),
                 "you change the range of the ray by the length of the direction: t is the same number in both spaces, so t_min \
              and t_max stay",
+            ),
+            (
+                is(yours.t_min, low * exact) && is(yours.t_max, high * exact),
+                "you multiply the range by the length of the direction: t is the same number in both spaces, so t_min and \
+                 t_max stay",
+            ),
+            (
+                near(1.0) && is(yours.t_max, high * exact) && (is(yours.t_min, low) || is(yours.t_min, low * exact)),
+                "you normalize the direction and scale the range: t is then another number than in the world",
             ),
             (
                 is(yours.t_min, low / factor) && is(yours.t_max, high / factor),
@@ -242,6 +257,10 @@ fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<CheckResult>
         let broken = || {
             let input = call("normal_to_world", &[&query.normal, &query.to_object]);
             Broken::new(input, yours, right.as_vec3(), "double precision").explained_by([
+                (
+                    yours == Vec3::ZERO,
+                    "your normal is 0: a short product has a direction, too, so normalize it",
+                ),
                 (like(right) && !unit, "your normal does not have unit length"),
                 (
                     like(-right) && unit,
