@@ -62,7 +62,9 @@ fn run_checks(
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker));
         let examined = checks::examine(check, &kit, 0, checks::Inputs::default());
         let call = breaking_call(&examined);
-        let hangs = examined.as_ref().err().filter(|error| matches!(error, KitError::TimedOut { .. }));
+        let is_late =
+            |error: &&KitError| matches!(error, KitError::TimedOut { .. } | KitError::Waited { .. });
+        let hangs = examined.as_ref().err().filter(is_late);
         let hangs = hangs.filter(|_| first_endless.set(check.name).is_ok()).cloned();
         let (mut verdict, entry) =
             (verdict(check, examined, endless), rubric::entry(check.stage, check.name));
@@ -79,14 +81,18 @@ fn run_checks(
 fn verdict(check: &Check, examined: Result<CheckResult, KitError>, endless: Option<&str>) -> Verdict {
     let short = SHORT_PATIENCE.as_secs();
     match (endless, &examined) {
-        (Some(endless), Err(KitError::TimedOut { seconds })) if *seconds == short => checks::without_answer(
-            check,
-            format_args!(
-                "not judged: no answer after {short} s, and a call of the check {endless} does not end.\n  Repair that \
+        (Some(endless), Err(KitError::TimedOut { seconds } | KitError::Waited { seconds }))
+            if *seconds == short =>
+        {
+            checks::without_answer(
+                check,
+                format_args!(
+                    "not judged: no answer after {short} s, and a call of the check {endless} does not end.\n  Repair that \
                  call first: then each call has {} s again.",
-                CALL_PATIENCE.as_secs()
-            ),
-        ),
+                    CALL_PATIENCE.as_secs()
+                ),
+            )
+        }
         _ => checks::verdict(check, examined),
     }
 }

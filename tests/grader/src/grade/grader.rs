@@ -1,6 +1,6 @@
 //! Grades all submissions of a folder, several at the same time.
 
-use super::judge::Judge;
+use super::judge::{Judge, Judgement};
 use super::lint::{self, Finding, Reading};
 use super::once::Once;
 use super::report::clean::{clean, clean_line};
@@ -164,7 +164,18 @@ impl Grader {
         }
         // Run the checks.
         let lost: Lost = refused.into_iter().chain(built.replaced).collect();
-        let (checks, spent) = self.judge.judge(&built.worker, &lost, may_remember, self.call_patience);
+        let Judgement { checks, unsteady, spent } =
+            self.judge.judge(&built.worker, &lost, may_remember, self.call_patience);
+        if let Some(check) = unsteady {
+            let is_of_stage = |file: &&String| stage_of(file) == Some(check.stage);
+            let what = format!(
+                "answers differently in each process: {} failed in one and passed in another, so from there on each \
+                 check had a process of its own and one try; let each answer depend on its arguments alone",
+                check.name
+            );
+            let file = self.builder.exercises().iter().find(is_of_stage).cloned().unwrap_or_default();
+            remarks.push(Remark { file, what });
+        }
         Ok(Judged { checks, remarks, compiler: clean(&compiler, MOST_FROM_COMPILER), cpu: built.cpu + spent })
     }
 

@@ -127,6 +127,12 @@ const ROWS: &[Row] = &[
         allowed: Allowed::None,
     },
     Row {
+        name: "public-then-marks",
+        what: "without a sandbox: right, and quotes public inputs once another process has seen hidden ones",
+        is_slow: false,
+        allowed: Allowed::All,
+    },
+    Row {
         name: "public-then-ends",
         what: "right for public inputs, ends at hidden ones",
         is_slow: false,
@@ -195,14 +201,14 @@ fn hostile() -> &'static PathBuf {
     })
 }
 
-/// Judges the hostile worker `name` with the checks of these stages.
-fn judged(judge: &Judge, name: &str) -> Vec<CheckResult> {
+/// Judges the hostile worker `name`, with this time limit per call.
+fn judged(judge: &Judge, name: &str, call_patience: Duration) -> Vec<CheckResult> {
     let folder = tempfile::tempdir().expect("a folder");
     let worker = folder.path().join(name);
     std::fs::hard_link(hostile(), &worker)
         .or_else(|_| std::fs::copy(hostile(), &worker).map(drop))
         .expect("a copy");
-    judge.judge(&worker, &BTreeMap::new(), false, CALL_PATIENCE).0
+    judge.judge(&worker, &BTreeMap::new(), false, call_patience).checks
 }
 
 #[test]
@@ -218,7 +224,9 @@ fn hostile_workers_that_speak_the_protocol_forge_no_point() {
     let mut two_checks = judge(&[1, 3]);
     two_checks.checks.retain(|put| put.counts || put.check.stage == 1);
     two_checks.checks.drain(1..two_checks.checks.len() - 1);
+    let without_sandbox = Judge { confinement: Confinement::LimitsOnly, ..of_stage_1.only(|_, _| true) };
     let try_one = |row: &Row| match row.allowed {
+        _ if row.name == "public-then-marks" => try_row(row, &without_sandbox),
         _ if row.is_slow => try_row(row, &two_checks),
         Allowed::None => try_row(row, &of_stage_1),
         _ => try_row(row, &with_costs),
@@ -230,6 +238,10 @@ fn hostile_workers_that_speak_the_protocol_forge_no_point() {
         let tried: Vec<_> = rows.into_iter().map(|row| scope.spawn(|| try_one(row))).collect();
         tried.into_iter().map(|row| row.join().expect("a row")).collect()
     });
+    // Right answers after short waits reach no limit of a call, but that of the submission (97 times 40 ms).
+    let results = judged(&judge(&[1]), "waits-a-little", Duration::from_millis(40));
+    let last = results.last().expect("a check");
+    assert!(last.message.contains("used up the time of the submission"), "{}", last.message);
     println!("| worker | what it does | points |\n|---|---|---|\n{}", lines.join("\n"));
 }
 
@@ -238,7 +250,7 @@ const SEED: u64 = 0x5eed_0f7e_57ab_1e00;
 /// Judges a hostile worker and tests that it passes no check that it must not pass, and that nothing that it says about hidden
 /// inputs gets into a message. Returns its line of the table.
 fn try_row(row: &Row, judge: &Judge) -> String {
-    let results = judged(judge, row.name);
+    let results = judged(judge, row.name, CALL_PATIENCE);
     for (prepared, result) in judge.checks.iter().zip(&results) {
         let passed = result.outcome == Outcome::Passed;
         let may_pass = match row.allowed {
@@ -260,4 +272,25 @@ fn try_row(row: &Row, judge: &Judge) -> String {
         assert!(!text.contains("SECRET") && !text.contains("123456"), "{}: {text}", row.name);
     }
     format!("| `{}` | {} | {earned} of {possible} |", row.name, row.what)
+}
+
+#[test]
+fn luck_with_a_process_is_noticed_and_gets_one_try_from_then_on() {
+    let started = std::cell::Cell::new(0);
+    let start = || {
+        started.set(started.get() + 1);
+        Arc::new(Worker::new(PathBuf::new(), CALL_PATIENCE))
+    };
+    let mut processes = Processes::new(&start, false);
+    let checks: Vec<&'static Check> = STAGES[0].1.iter().take(4).collect();
+    // Every second process is wrong about each check but the first.
+    let mut judged = checks.iter().map(|check| {
+        let is_right = |_| check.name == checks[0].name || started.get() % 2 == 0;
+        let outcome = |right| if right { Outcome::Passed } else { Outcome::Wrong };
+        processes.answer(check, |worker| Answered::new(outcome(is_right(worker)), "")).outcome
+    });
+    let passed: Vec<bool> = judged.by_ref().map(|outcome| outcome == Outcome::Passed).collect();
+    // The second check failed in the first process and passed in the second. Then each check has one process.
+    assert_eq!((passed, started.get()), (vec![true, true, false, true], 4));
+    assert_eq!(processes.unsteady.map(|check| check.name), Some(checks[1].name));
 }
