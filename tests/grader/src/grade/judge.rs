@@ -67,6 +67,8 @@ struct PreparedCheck {
     check: &'static Check,
     /// Whether the hidden inputs differ from the public ones.
     varies: bool,
+    /// Whether they are drawn, and not public ones that are turned and scaled.
+    draws: bool,
     /// Whether it judges the cost of a search, so that the judge counts.
     counts: bool,
     /// The functions that it calls.
@@ -105,6 +107,9 @@ impl Judge {
     /// the seed runs only once per submission. If the reference itself fails a check with this seed, the check uses only
     /// the public inputs, and a warning is printed.
     pub fn of(root: &Path, stages: &[u8], seed: u64, confinement: Confinement) -> Result<Judge> {
+        // A small seed draws like any other, and 0 does not mean the public inputs.
+        let digest = Sha256::digest(seed.to_le_bytes());
+        let seed = digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte)).max(1);
         // Collect the checks of the stages, and build the reference.
         checks::golden::seal();
         let reference = Source::prepare(root, Which::Solutions, Need::Checks)?.program;
@@ -129,7 +134,8 @@ impl Judge {
             let costly: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Costly(reference.clone())));
             let counts = known.has_costs && !checks::passes(check, &costly, 0);
             let varies = passes_hidden && known.questions.finalize() != hidden.questions.finalize();
-            Ok(PreparedCheck { check, varies, counts, asks: known.functions })
+            let draws = varies && !check.symmetries.turn_public_inputs();
+            Ok(PreparedCheck { check, varies, draws, counts, asks: known.functions })
         };
         let worker = || Arc::new(Worker::new(reference.clone(), worker::CALL_PATIENCE));
         let workers: Vec<_> = (0..queue::cores()).map(|_| worker()).collect();
@@ -195,28 +201,34 @@ impl Judge {
                 *answered = answer(&mut processes, prepared, self.seed);
             }
         }
+        let checks = self.results(judged);
+        Judgement { checks, unsteady: processes.unsteady, spent: processes.spent() }
+    }
+
+    /// The results of the checks that were answered so.
+    fn results(&self, judged: Vec<Answered>) -> Vec<CheckResult> {
         let proven = self.proven(&judged);
         let results = self.checks.iter().zip(judged).map(|(prepared, answered)| {
             let others = self.missing_proofs(prepared, &proven);
-            // Right answers to known inputs can be a table.
-            if answered.outcome == Outcome::Passed && !prepared.varies && !others.is_empty() {
+            // Right answers to known inputs, turned or not, can be a table.
+            if answered.outcome == Outcome::Passed && !prepared.draws && !others.is_empty() {
                 let message = unproven_message(prepared.check, &others);
                 return result(prepared.check, Answered::new(Outcome::Unproven, message));
             }
             result(prepared.check, answered)
         });
-        Judgement { checks: results.collect(), unsteady: processes.unsteady, spent: processes.spent() }
+        results.collect()
     }
 
-    /// The functions that a check with hidden inputs asks and that pass it.
+    /// The functions that a check with drawn inputs asks and that pass it.
     fn proven(&self, judged: &[Answered]) -> HashSet<Discriminant<Request>> {
         let passed = self.checks.iter().zip(judged);
         let passed =
-            passed.filter(|(prepared, answered)| prepared.varies && answered.outcome == Outcome::Passed);
+            passed.filter(|(prepared, answered)| prepared.draws && answered.outcome == Outcome::Passed);
         passed.flat_map(|(prepared, _)| prepared.asks.iter().copied()).collect()
     }
 
-    /// The checks with hidden inputs that ask the functions of `put` that are not `proven`.
+    /// The checks with drawn inputs that ask the functions of `prepared` that are not `proven`.
     fn missing_proofs(
         &self,
         prepared: &PreparedCheck,
@@ -224,7 +236,7 @@ impl Judge {
     ) -> Vec<&'static str> {
         let open: HashSet<_> = prepared.asks.difference(proven).collect();
         let asks_one =
-            |other: &&PreparedCheck| other.varies && other.asks.iter().any(|asked| open.contains(asked));
+            |other: &&PreparedCheck| other.draws && other.asks.iter().any(|asked| open.contains(asked));
         self.checks.iter().filter(asks_one).map(|other| other.check.name).collect()
     }
 
@@ -374,8 +386,8 @@ fn hidden_message(check: &Check) -> String {
 
 fn unproven_message(check: &Check, others: &[&str]) -> String {
     format!(
-        "{}  right, but its inputs are fixed: it counts when one of these checks of the same function \
-         passes: {}\n",
+        "{}  right, but its inputs are known ones, turned or scaled: it counts when one of these checks of the same \
+         function passes: {}\n",
         rubric::entry(check.stage, check.name).header(),
         others.join(", ")
     )

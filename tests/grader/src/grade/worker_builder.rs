@@ -121,11 +121,9 @@ impl WorkerBuilder {
             Ok(Arc::new(SharedWorker { program: fs::read(worker)?, replaced, cpu }))
         })?;
         let worker = scratch.join("out/worker");
-        if !worker.exists() {
-            fs::create_dir_all(scratch.join("out"))?;
-            fs::write(&worker, &known.program)?;
-            fs::set_permissions(&worker, fs::Permissions::from_mode(0o755))?;
-        }
+        fs::create_dir_all(scratch.join("out"))?;
+        fs::write(&worker, &known.program)?;
+        fs::set_permissions(&worker, fs::Permissions::from_mode(0o755))?;
         Ok(BuiltWorker { worker, replaced: known.replaced.clone(), cpu: known.cpu })
     }
 

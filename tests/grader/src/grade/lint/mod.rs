@@ -28,6 +28,8 @@ pub struct Finding {
 /// The result of the syntax check of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reading {
+    /// Whether the tokens of the file cannot be read, so that no rule was applied.
+    pub is_unreadable: bool,
     /// The constructs that no exercise needs.
     pub findings: Vec<Finding>,
     /// Whether a function may store earlier questions between calls. Only statics and thread-local variables can, if the
@@ -39,7 +41,7 @@ pub struct Reading {
 pub fn read(text: &str) -> Reading {
     // The compiler explains unbalanced tokens better.
     let Ok(tokens) = TokenStream::from_str(text) else {
-        return Reading { findings: Vec::new(), may_remember: true };
+        return Reading { is_unreadable: true, findings: Vec::new(), may_remember: true };
     };
     let tokens = compiled(tokens);
     let mut search = Search { own: declared(tokens.clone()), findings: Vec::new() };
@@ -47,7 +49,7 @@ pub fn read(text: &str) -> Reading {
     let mut findings = search.findings;
     findings.sort_by_key(|finding| finding.line);
     findings.dedup();
-    Reading { findings, may_remember: keeps(tokens) }
+    Reading { is_unreadable: false, findings, may_remember: keeps(tokens) }
 }
 
 /// Returns the names of the modules and types that the tokens declare.
