@@ -1,7 +1,6 @@
 //! Grades all submissions of a folder, several at the same time.
 
 use super::judge::{Judge, Judgement};
-use super::lint::{self, Finding, Reading};
 use super::once::Once;
 use super::report::clean::{clean, clean_line};
 use super::result::{CheckResult, Graded, Outcome, Remark};
@@ -15,6 +14,7 @@ use crate::queue;
 use crate::room::has_room;
 use crate::sandbox::{self, Confinement, How, Purpose, Sandbox};
 use anyhow::{Context, Result};
+use judge::lint::{self, Finding, Reading};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -234,20 +234,15 @@ impl Grader {
             may_remember |= reading.may_remember;
             unreadable.extend(reading.is_unreadable.then(|| name.clone()));
             // Drop the findings of rules that are switched off.
-            let against: Vec<String> = reading
-                .findings
-                .iter()
-                .filter(|finding| !self.allowed.contains(&finding.rule))
-                .map(|finding| format!("{name}:{}: {} [{}]", finding.line, finding.why, finding.rule))
-                .collect();
-            // Refuse the file if findings remain, and report the first ones.
-            if !against.is_empty() {
-                let more = against.len().saturating_sub(MOST_FINDINGS);
-                let mut findings = against[..against.len() - more].join("\n");
-                if more > 0 {
-                    findings += &format!("\nand {more} more");
-                }
-                refuse(name, &findings, &mut lost, remarks);
+            let findings = reading.findings.iter().filter(|finding| !self.allowed.contains(&finding.rule));
+            let findings: Vec<&Finding> = findings.collect();
+            may_remember |= !findings.is_empty();
+            // Refuse the file unless the sandbox stops all that was found.
+            if findings.iter().any(|finding| !finding.is_left_to_sandbox()) {
+                refuse(name, &in_words(name, &findings), &mut lost, remarks);
+            } else if !findings.is_empty() {
+                let what = "is graded, but a function fails that reaches one of these lines:\n".to_owned();
+                remarks.push(Remark { file: name.clone(), what: what + &in_words(name, &findings) });
             }
         }
         Ok(Read { refused: lost, unreadable, may_remember })
@@ -264,6 +259,14 @@ impl Grader {
         }
         Ok(Some(serde_json::from_slice(&ended.stdout).context("the syntax check gave no answer")?))
     }
+}
+
+/// The first findings about a file, one per line.
+fn in_words(name: &str, findings: &[&Finding]) -> String {
+    let lines = findings.iter().take(MOST_FINDINGS);
+    let lines = lines.map(|finding| format!("{name}:{}: {} [{}]", finding.line, finding.why, finding.rule));
+    let more = findings.len().saturating_sub(MOST_FINDINGS);
+    lines.chain((more > 0).then(|| format!("and {more} more"))).collect::<Vec<_>>().join("\n")
 }
 
 /// Leaves a file out of the build because of these findings.

@@ -208,7 +208,9 @@ impl WorkerBuilder {
         fs::create_dir_all(scratch.join("out"))?;
         for (name, pristine) in &self.pristine {
             let text = files.get(name).filter(|_| stage_of(name).is_some() && !replaced.contains_key(name));
-            fs::write(folder.join(name), text.unwrap_or(pristine))?;
+            // The compiler refuses every level but `deny`, also a harmless one.
+            let text = text.unwrap_or(pristine).replace("warn(unsafe_code)", "deny(unsafe_code)");
+            fs::write(folder.join(name), text)?;
         }
         // Add the modules that the student has added.
         let is_module = |name: &&String| !self.pristine.contains_key(*name) && !replaced.contains_key(*name);
