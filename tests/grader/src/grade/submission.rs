@@ -288,6 +288,9 @@ impl Gathering<'_> {
                 "was ignored: the kit's own checks are used"
             }
             _ if path.ends_with(".rs") => "was ignored: there are too many Rust files",
+            name if names::archive_stem(name.as_ref()).is_some() => {
+                "was ignored: an archive within a submission is not unpacked; hand in its files"
+            }
             _ => return,
         };
         self.ignored.push(Remark { file: path.to_owned(), what: what.to_owned() });

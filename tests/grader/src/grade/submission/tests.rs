@@ -133,7 +133,9 @@ fn bombs_and_rubbish_are_trouble_and_nothing_worse() {
     let many: Vec<(String, &[u8])> = (0..300).map(|n| (format!("{n}.txt"), &huge[..])).collect();
     let many: Vec<(&str, &[u8])> = many.iter().map(|(name, bytes)| (name.as_str(), *bytes)).collect();
     for (name, bytes, says) in [
-        ("a.zip", b"no zip at all".to_vec(), "cannot be unpacked"),
+        ("a.zip", b"no zip at all".to_vec(), "download it again, or hand in a new .zip"),
+        ("cut.tgz", gzipped(&tarred(&[(SHAPES, b"one")]))[..40].to_vec(), "download it again"),
+        ("a.7z", b"7z".to_vec(), ".7z is not read here; unpack it"),
         ("a.tar", vec![7; 2000], "cannot be unpacked"),
         ("a.tgz", b"\x1f\x8b and then nothing".to_vec(), "cannot be unpacked"),
         ("bomb.tgz", gzipped(&tarred(&many)), "256 MiB"),
@@ -144,6 +146,10 @@ fn bombs_and_rubbish_are_trouble_and_nothing_worse() {
         let trouble = take(&folder.path().join(name), &wanted(), &wanted()).trouble.unwrap();
         assert!(trouble.contains(says), "{name}: {trouble}");
     }
+    let nested = zipped(&[("work.zip", &zipped(&[(SHAPES, b"one")]))]);
+    fs::write(folder.path().join("nested.zip"), nested).unwrap();
+    let nested = take(&folder.path().join("nested.zip"), &wanted(), &wanted());
+    assert!(remark(&nested, "work.zip").contains("hand in its files"));
     let long = zipped(&[(SHAPES, &huge)]);
     fs::write(folder.path().join("long.zip"), long).unwrap();
     assert!(
