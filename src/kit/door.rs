@@ -40,6 +40,12 @@ pub trait Transport: Sync {
     fn waited(&self) -> Duration {
         Duration::ZERO
     }
+
+    /// Swaps that put the `n` queries of the next request into another order, so that no answer can depend on its place. None by
+    /// default.
+    fn swaps(&self, _n: usize) -> Vec<(usize, usize)> {
+        Vec::new()
+    }
 }
 
 impl<T: Transport + Send> Transport for Arc<T> {
@@ -268,8 +274,14 @@ macro_rules! door {
 
         $(impl<T: Transport> $Trait for Door<T> {
             $(fn $name(&self, queries: &[query_type!($how ($($arguments)*))]) -> Vec<answer_type!($how $Return)> {
-                match self.0.call(Request::$Message(queries.to_vec()), &crate::progress::Unwatched) {
-                    Answer::$Message(answers) if answers.len() == queries.len() => answers,
+                let (mut queries, swaps) = (queries.to_vec(), self.0.swaps(queries.len()));
+                swaps.iter().for_each(|&(i, j)| queries.swap(i, j));
+                let n = queries.len();
+                match self.0.call(Request::$Message(queries), &crate::progress::Unwatched) {
+                    Answer::$Message(mut answers) if answers.len() == n => {
+                        swaps.iter().rev().for_each(|&(i, j)| answers.swap(i, j));
+                        answers
+                    }
                     answer => kit_error::wrong_answer(&answer),
                 }
             })*
