@@ -36,6 +36,11 @@ pub enum KitError {
         /// The time after which it was stopped, in seconds.
         seconds: u64,
     },
+    /// The code did not return in time, and waited for most of it.
+    Waited {
+        /// The time after which it was stopped, in seconds.
+        seconds: u64,
+    },
     /// The answer does not fit the request: it is of another kind, or has another length.
     Malformed {
         /// The beginning of the answer, or a sentence that says what is wrong.
@@ -45,7 +50,7 @@ pub enum KitError {
 
 message! { enum KitError {
     NotWritten { task, place; function }, Panicked { message, place }, Crashed { how }, TimedOut { seconds },
-    Malformed { what }
+    Waited { seconds }, Malformed { what }
 } }
 
 impl fmt::Display for KitError {
@@ -57,6 +62,11 @@ impl fmt::Display for KitError {
             KitError::TimedOut { seconds } => {
                 write!(f, "no answer after {seconds} s: is there an infinite loop or recursion?")
             }
+            KitError::Waited { seconds } => write!(
+                f,
+                "no answer after {seconds} s: your code waits and does not compute. Does it wait for standard input \
+                 (`stdin`), which never comes, or for a lock, or sleep?"
+            ),
             KitError::Malformed { what } => write!(f, "the answer does not fit the request: {what}"),
         }
     }

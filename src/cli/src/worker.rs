@@ -163,9 +163,9 @@ impl Worker {
         let mut tables = blank.as_ref().map(|_| Withheld::of(request));
         match process.ask(blank.as_ref().unwrap_or(request), tables.as_mut(), watch, patience) {
             // A process that answers has neither ended nor exceeded its time.
-            Ok(Some(Reply::KitError(KitError::Crashed { .. } | KitError::TimedOut { .. })))
-                if self.launcher.is_some() =>
-            {
+            Ok(Some(Reply::KitError(
+                KitError::Crashed { .. } | KitError::TimedOut { .. } | KitError::Waited { .. },
+            ))) if self.launcher.is_some() => {
                 Err(KitError::Malformed { what: "an end that did not happen".into() })
             }
             Ok(Some(Reply::KitError(error))) => {
@@ -312,9 +312,9 @@ impl Process {
 
     /// The reason why the process does not answer, or what is wrong with its reply.
     fn post_mortem(mut self, error: &io::Error, patience: Duration) -> KitError {
-        let timed_out = self.watchdog.has_barked();
+        let late = self.watchdog.reason();
         // This kind of error means a refused message; errors of the pipe have other kinds.
-        let malformed = !timed_out && error.kind() == io::ErrorKind::Other;
+        let malformed = late.is_none() && error.kind() == io::ErrorKind::Other;
         // The pipe may close a moment before the process ends, so wait briefly for its own exit status.
         let status = if malformed { None } else { wait_briefly(&self.child) };
         let _ = lock(&self.child).kill();
@@ -323,8 +323,8 @@ impl Process {
         self.from_worker = Box::new(io::empty());
         let stderr =
             std::mem::replace(&mut self.stderr, std::thread::spawn(String::new)).join().unwrap_or_default();
-        if timed_out {
-            return KitError::TimedOut { seconds: patience.as_secs() };
+        if let Some(late) = late {
+            return late;
         }
         if malformed {
             return KitError::Malformed { what: error.to_string() };

@@ -79,6 +79,25 @@ fn no_path_leads_out_of_the_reports() {
 }
 
 #[test]
+fn readers_that_read_nothing_keep_no_page_from_loading() {
+    let kit = new_kit();
+    let view = view(&kit);
+    let page = format!("/{}/", view.token);
+    let open = |_| {
+        let reader = view.connect("GET", &format!("{page}events"), &view.host());
+        // Wait for its first byte, and leave it unread.
+        reader.get_ref().peek(&mut [0]).expect("an answer");
+        reader
+    };
+    let mut readers: Vec<_> = (0..80).map(open).collect();
+    assert_eq!(view.get(&page).0, 200);
+    // The oldest reader is closed, and the newest gets its messages.
+    readers[0].get_ref().set_read_timeout(Some(PATIENCE)).unwrap();
+    std::io::Read::read_to_end(&mut readers[0], &mut Vec::new()).expect("an end");
+    view.events().wait_for_phase("done");
+}
+
+#[test]
 fn messages_show_the_picture_from_coarse_to_fine() {
     let kit = new_kit();
     let view = view(&kit);

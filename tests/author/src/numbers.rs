@@ -10,7 +10,6 @@ use all_checks::STAGES;
 use anyhow::{Context, Result, bail, ensure};
 use checks::Check;
 use checks::rubric::{self, Level};
-use checks::symmetry::Symmetries;
 use grader::exercises::{self, Exercise};
 use grader::files_below::{files_below, last_part};
 use raykata_cli::slides::decks;
@@ -289,7 +288,7 @@ fn entry_of(check: &Check) -> rubric::CheckEntry {
 }
 
 fn is_turned(check: &&Check) -> bool {
-    matches!(check.symmetries, Symmetries::Turned | Symmetries::Mirrored)
+    check.symmetries.turn_public_inputs()
 }
 
 /// A row of a table.

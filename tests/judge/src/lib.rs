@@ -10,6 +10,7 @@ pub mod boxes_and_offsets;
 pub mod gauntlet;
 pub mod hits;
 pub mod leak_table;
+pub mod lint;
 pub mod pixel;
 pub mod scorecard;
 pub mod table;

@@ -1,5 +1,6 @@
 //! `raykata check`, and `raykata` without a command: the points of a student and the next step.
 
+use crate::lint;
 use all_checks::STAGES;
 use anyhow::Result;
 use checks::broken::with_output;
@@ -9,13 +10,13 @@ use checks::{Check, CheckResult, Verdict};
 use raykata::kit::{Door, Kit, KitError};
 use raykata::worker::send;
 use raykata_cli::finish;
-use raykata_cli::kits::{Source, with_exercises};
+use raykata_cli::kits::{Source, Which, with_exercises};
 use raykata_cli::queue;
 use raykata_cli::report::bar_of_steps;
 use raykata_cli::verdicts::CheckVerdict;
 use raykata_cli::worker::{CALL_PATIENCE, Worker};
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
@@ -62,7 +63,9 @@ fn run_checks(
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(worker));
         let examined = checks::examine(check, &kit, 0, checks::Inputs::default());
         let call = breaking_call(&examined);
-        let hangs = examined.as_ref().err().filter(|error| matches!(error, KitError::TimedOut { .. }));
+        let is_late =
+            |error: &&KitError| matches!(error, KitError::TimedOut { .. } | KitError::Waited { .. });
+        let hangs = examined.as_ref().err().filter(is_late);
         let hangs = hangs.filter(|_| first_endless.set(check.name).is_ok()).cloned();
         let (mut verdict, entry) =
             (verdict(check, examined, endless), rubric::entry(check.stage, check.name));
@@ -79,14 +82,18 @@ fn run_checks(
 fn verdict(check: &Check, examined: Result<CheckResult, KitError>, endless: Option<&str>) -> Verdict {
     let short = SHORT_PATIENCE.as_secs();
     match (endless, &examined) {
-        (Some(endless), Err(KitError::TimedOut { seconds })) if *seconds == short => checks::without_answer(
-            check,
-            format_args!(
-                "not judged: no answer after {short} s, and a call of the check {endless} does not end.\n  Repair that \
+        (Some(endless), Err(KitError::TimedOut { seconds } | KitError::Waited { seconds }))
+            if *seconds == short =>
+        {
+            checks::without_answer(
+                check,
+                format_args!(
+                    "not judged: no answer after {short} s, and a call of the check {endless} does not end.\n  Repair that \
                  call first: then each call has {} s again.",
-                CALL_PATIENCE.as_secs()
-            ),
-        ),
+                    CALL_PATIENCE.as_secs()
+                ),
+            )
+        }
         _ => checks::verdict(check, examined),
     }
 }
@@ -130,6 +137,9 @@ fn columns() -> usize {
 
 /// Prints the scorecard, and the finish of the stage if all its checks passed that are asked for; `Ok(true)` if all passed.
 pub fn scorecard(root: &Path, source: &Source, stage: Option<u8>) -> Result<bool> {
+    if source.which == Which::Exercises {
+        warnings(root)?.iter().for_each(|warning| eprintln!("{warning}"));
+    }
     let wanted = |number| is_asked_for(number) && stage.is_none_or(|stage| stage == number);
     let graded = run_checks_with_bar(source, wanted)?;
     for (number, _) in STAGES.iter().filter(|(number, _)| wanted(*number)) {
@@ -165,6 +175,31 @@ pub fn scorecard(root: &Path, source: &Source, stage: Option<u8>) -> Result<bool
         eprintln!("{error:#}");
     }
     Ok(is_done)
+}
+
+/// What the grader refuses or stops in the exercises, one line each.
+fn warnings(root: &Path) -> Result<Vec<String>> {
+    let files = std::fs::read_dir(root.join("exercises/src"))?.flatten().map(|file| file.path());
+    let mut files: Vec<_> = files.filter(|file| !is_of_kit(file)).collect();
+    files.sort();
+    let of_file = |file: &PathBuf| {
+        let findings =
+            std::fs::read_to_string(file).map(|text| lint::read(&text).findings).unwrap_or_default();
+        let place = file.strip_prefix(root).unwrap_or(file).display().to_string();
+        findings.into_iter().map(move |finding| {
+            let then = match finding.is_left_to_sandbox() {
+                true => "when it is graded, a function that reaches this line fails",
+                false => "the grader refuses this file",
+            };
+            format!("warning: {place}:{}: {}; {then}", finding.line, finding.why)
+        })
+    };
+    Ok(files.iter().flat_map(of_file).collect())
+}
+
+/// Whether the file belongs to the programs around the exercises, which are not handed in.
+fn is_of_kit(file: &Path) -> bool {
+    file.file_stem().is_some_and(|name| ["lib", "worker", "frames"].iter().any(|known| name == *known))
 }
 
 /// Whether the course asks for this stage.
@@ -283,5 +318,18 @@ mod tests {
                     .contains("no answer after 10 s: is there an infinite")
             );
         }
+    }
+
+    #[test]
+    fn a_check_warns_of_what_the_grader_refuses_or_stops() {
+        let root = tempfile::tempdir().expect("a folder");
+        let folder = root.path().join("exercises/src");
+        std::fs::create_dir_all(&folder).expect("a folder");
+        std::fs::write(folder.join("worker.rs"), "use std::process::ExitCode;").expect("a file");
+        std::fs::write(folder.join("stage1_shapes.rs"), "use std::fs;\nunsafe fn f() {}\n").expect("a file");
+        let warnings = warnings(root.path()).expect("they are read").join("\n");
+        assert_eq!(warnings.lines().count(), 2, "{warnings}");
+        assert!(warnings.contains("exercises/src/stage1_shapes.rs:1: `std::fs`: an exercise must not read"));
+        assert!(warnings.ends_with("unsafe code is not part of any exercise; the grader refuses this file"));
     }
 }

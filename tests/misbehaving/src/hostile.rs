@@ -71,7 +71,12 @@ impl Hostile {
         let right = || Reply::Answer(Box::new(request.answer(&*solutions::kit(), &Unwatched)));
         let words = || format!("SECRET {request:?}").chars().take(2000).collect::<String>();
         // These names are right for public inputs.
-        if self.name.starts_with("public") && self.is_public(request) {
+        let (path, marks) = (std::env::current_exe().unwrap_or_default(), self.name == "public-then-marks");
+        if self.name.starts_with("public") && self.is_public(request) && !path.with_extension("mark").exists()
+        {
+            return self.say(&right());
+        }
+        if marks && !self.is_public(request) && std::fs::create_dir_all(path.with_extension("mark")).is_ok() {
             return self.say(&right());
         }
         match self.name.as_str() {
@@ -82,7 +87,7 @@ impl Hostile {
                     function: None,
                 }));
             }
-            "public-then-panics" => {
+            "public-then-panics" | "public-then-marks" => {
                 self.say(&Reply::KitError(KitError::Panicked { message: words(), place: words() }));
             }
             "public-then-malformed" => self.say(&Reply::KitError(KitError::Malformed { what: words() })),
@@ -123,6 +128,10 @@ impl Hostile {
                 }
             }
             "answers-nothing" => {}
+            "waits-a-little" => {
+                std::thread::sleep(std::time::Duration::from_millis(60));
+                self.say(&right());
+            }
             "progress-forever" => loop {
                 self.say(&Reply::Progress { done: 0, total: 1 });
             },

@@ -42,6 +42,7 @@ fn an_endless_loop_ends() {
     let door = door();
     let started = Instant::now();
     assert_eq!(ask(&door, -5.0), Err(KitError::TimedOut { seconds: 2 }));
+    assert_eq!(ask(&door, -11.0), Err(KitError::Waited { seconds: 2 }));
     // Test only that the call ends: without the watchdog this test hangs.
     assert!(started.elapsed() < Duration::from_secs(60));
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));

@@ -73,7 +73,7 @@ pub(super) fn shortened(error: KitError) -> KitError {
         }
         KitError::Crashed { how } => KitError::Crashed { how: short(how) },
         KitError::Malformed { what } => KitError::Malformed { what: short(what) },
-        KitError::TimedOut { seconds } => KitError::TimedOut { seconds },
+        late @ (KitError::TimedOut { .. } | KitError::Waited { .. }) => late,
     }
 }
 

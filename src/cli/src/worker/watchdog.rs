@@ -2,10 +2,10 @@
 
 use super::launcher::{Launcher, lock};
 use super::waiting;
+use raykata::kit::KitError;
 use raykata::worker::Thread;
 use std::process::Child;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// The limit of elapsed time in units of the patience, for a process of untrusted code that sleeps or reads. With a larger
@@ -22,7 +22,8 @@ const COUNTED_AFTER: u32 = 20;
 pub(super) struct Watchdog {
     state: Mutex<State>,
     changed: Condvar,
-    barked: AtomicBool,
+    /// Why it has ended the process.
+    barked: OnceLock<KitError>,
     /// Measures the processor time of untrusted code. If it is set, time counts only while the process computes.
     launcher: Option<Arc<dyn Launcher>>,
 }
@@ -54,7 +55,7 @@ struct Call {
 /// The times of a process so far.
 #[derive(Clone, Copy, Default, PartialEq)]
 struct Times {
-    /// Its processor time, if nothing else counts.
+    /// Its processor time, if it is known.
     computed: Option<Duration>,
     /// The time for which it or its caller had no processor.
     waited: Duration,
@@ -66,7 +67,7 @@ impl Watchdog {
         let watchdog = Arc::new(Watchdog {
             state: Mutex::new(State { deadline: Deadline::None, wakes: None }),
             changed: Condvar::new(),
-            barked: AtomicBool::new(false),
+            barked: OnceLock::new(),
             launcher,
         });
         let (on_duty, child) = (watchdog.clone(), child.clone());
@@ -77,7 +78,10 @@ impl Watchdog {
     fn watch(&self, child: &Mutex<Child>) {
         let process = lock(child).id();
         let times = |call: &Call| Times {
-            computed: self.launcher.as_ref().map(|launcher| launcher.cpu_time(process)),
+            computed: match &self.launcher {
+                Some(launcher) => Some(launcher.cpu_time(process)),
+                None => waiting::most(process, |thread| thread.ran()),
+            },
             waited: waiting::waited(process) + call.caller.waited(),
         };
         let mut state = lock(&self.state);
@@ -106,10 +110,10 @@ impl Watchdog {
                 state = waited.unwrap_or_else(PoisonError::into_inner).0;
                 continue;
             }
-            match call.more_time(times(&call)) {
-                Some(later) => state.deadline = Deadline::At(call, later),
-                None => {
-                    self.barked.store(true, Ordering::Relaxed);
+            match call.more_time(times(&call), self.launcher.is_some()) {
+                Ok(later) => state.deadline = Deadline::At(call, later),
+                Err(late) => {
+                    let _ = self.barked.set(late);
                     let _ = lock(child).kill();
                     return;
                 }
@@ -117,8 +121,9 @@ impl Watchdog {
         }
     }
 
-    pub(super) fn has_barked(&self) -> bool {
-        self.barked.load(Ordering::Relaxed)
+    /// The reason why it has ended the process, if it has.
+    pub(super) fn reason(&self) -> Option<KitError> {
+        self.barked.get().cloned()
     }
 
     pub(super) fn bark_after(&self, patience: Duration) {
@@ -142,18 +147,28 @@ impl Watchdog {
 }
 
 impl Call {
-    /// The time of the next test if the process may continue.
-    fn more_time(&self, times: Times) -> Option<Instant> {
+    /// The time of the next test if the process may continue, or else why not. Only the processor time of untrusted code
+    /// counts.
+    fn more_time(&self, times: Times, is_untrusted: bool) -> Result<Instant, KitError> {
         let before = self.before.unwrap_or_default();
         let waited = times.waited.saturating_sub(before.waited);
         let now = Instant::now();
-        let (spent, most) = match times.computed {
-            Some(computed) => (computed.saturating_sub(before.computed.unwrap_or_default()), MOST_TIMES),
-            None => ((now - self.asked).saturating_sub(waited), 1),
+        let elapsed = (now - self.asked).saturating_sub(waited);
+        let computed =
+            times.computed.map(|computed| computed.saturating_sub(before.computed.unwrap_or_default()));
+        let (spent, most) = match computed {
+            Some(computed) if is_untrusted => (computed, MOST_TIMES),
+            _ => (elapsed, 1),
         };
         let last = self.asked + self.patience * most + waited;
-        let wanting = self.patience.checked_sub(spent).filter(|wanting| !wanting.is_zero())?;
-        (now < last).then(|| (now + wanting).min(last))
+        match self.patience.checked_sub(spent).filter(|wanting| !wanting.is_zero() && now < last) {
+            Some(wanting) => Ok((now + wanting).min(last)),
+            // Code that has computed for less than a part of the time waits.
+            None if computed.is_some_and(|computed| computed * MOST_TIMES < elapsed) => {
+                Err(KitError::Waited { seconds: (self.patience * most).as_secs() })
+            }
+            None => Err(KitError::TimedOut { seconds: self.patience.as_secs() }),
+        }
     }
 }
 
@@ -161,36 +176,32 @@ impl Call {
 mod tests {
     use super::*;
 
-    /// Whether a call with a limit of 2 s goes on after so many seconds.
-    fn goes_on(elapsed: u64, computed: Option<u64>, waited: u64) -> bool {
+    /// The reason why a call with a limit of 2 s ends after so many seconds, if it does.
+    fn ends(elapsed: u64, computed: u64, waited: u64, is_untrusted: bool) -> Option<KitError> {
+        let seconds = Duration::from_secs;
         let call = Call {
             caller: Thread::default(),
-            asked: Instant::now() - Duration::from_secs(elapsed),
-            patience: Duration::from_secs(2),
-            before: Some(Times {
-                computed: computed.map(|_| Duration::ZERO),
-                waited: Duration::from_secs(5),
-            }),
+            asked: Instant::now() - seconds(elapsed),
+            patience: seconds(2),
+            before: Some(Times { computed: Some(Duration::ZERO), waited: seconds(5) }),
         };
-        let times = Times {
-            computed: computed.map(Duration::from_secs),
-            waited: Duration::from_secs(5) + Duration::from_secs(waited),
-        };
-        call.more_time(times).is_some()
+        let times = Times { computed: Some(seconds(computed)), waited: seconds(5 + waited) };
+        call.more_time(times, is_untrusted).err()
     }
 
     #[test]
     fn time_without_a_processor_does_not_count() {
-        assert!(!goes_on(3, None, 0));
-        assert!(goes_on(3, None, 2));
-        assert!(!goes_on(9, None, 6));
+        assert_eq!(ends(3, 3, 0, false), Some(KitError::TimedOut { seconds: 2 }));
+        assert_eq!(ends(3, 1, 2, false), None);
+        assert_eq!(ends(9, 3, 6, false), Some(KitError::TimedOut { seconds: 2 }));
     }
 
     #[test]
     fn untrusted_code_may_sleep_for_a_while_but_compute_no_longer() {
-        assert!(goes_on(3, Some(1), 0));
-        assert!(!goes_on(3, Some(2), 0));
-        assert!(!goes_on(7, Some(1), 0));
-        assert!(goes_on(7, Some(1), 3));
+        assert_eq!(ends(3, 1, 0, true), None);
+        assert_eq!(ends(3, 2, 0, true), Some(KitError::TimedOut { seconds: 2 }));
+        assert_eq!(ends(7, 1, 0, true), Some(KitError::Waited { seconds: 6 }));
+        assert_eq!(ends(7, 1, 3, true), None);
+        assert_eq!(ends(7, 0, 0, false), Some(KitError::Waited { seconds: 2 }));
     }
 }

@@ -1,21 +1,34 @@
 //! Messages to all open pages, as server-sent events.
 
 use serde_json::Value;
+use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The most messages that wait for a page. A page that is slower is cut off; it connects again and gets the whole picture.
 const MOST_WAITING: usize = 4096;
 
-/// The open pages.
+/// The most open pages. One more replaces the oldest.
+const MOST_PAGES: usize = 16;
+
+/// Closes the connection of a page, also while a message is written to it.
+pub type Close = Box<dyn FnOnce() + Send>;
+
+/// The open pages, the oldest first.
 #[derive(Default)]
-pub struct Pages(Mutex<Vec<SyncSender<Arc<str>>>>);
+pub struct Pages(Mutex<VecDeque<(SyncSender<Arc<str>>, Close)>>);
 
 impl Pages {
-    /// A new page, which receives all later messages.
-    pub fn open(&self) -> Receiver<Arc<str>> {
+    /// A new page, which receives all later messages until `close` is called.
+    pub fn open(&self, close: Close) -> Receiver<Arc<str>> {
         let (sender, receiver) = sync_channel(MOST_WAITING);
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(sender);
+        let mut pages = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if pages.len() == MOST_PAGES
+            && let Some((_, close)) = pages.pop_front()
+        {
+            close();
+        }
+        pages.push_back((sender, close));
         receiver
     }
 
@@ -25,7 +38,7 @@ impl Pages {
         self.0
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
-            .retain(|page| page.try_send(message.clone()).is_ok());
+            .retain(|(page, _)| page.try_send(message.clone()).is_ok());
     }
 }
 
@@ -53,7 +66,7 @@ mod tests {
     #[test]
     fn a_page_that_reads_nothing_is_cut_off() {
         let pages = Pages::default();
-        let (slow, fast) = (pages.open(), pages.open());
+        let (slow, fast) = (pages.open(Box::new(|| ())), pages.open(Box::new(|| ())));
         for _ in 0..=MOST_WAITING {
             pages.publish("tile", &json!(1));
             assert!(fast.recv().is_ok());

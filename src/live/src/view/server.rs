@@ -6,15 +6,14 @@ use super::studio::Studio;
 use anyhow::{Context, Result};
 use serde_json::{Value, json};
 use std::io::{self, BufReader, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{Shutdown, TcpListener, TcpStream};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
 
 const PAGE: &str = include_str!("page.html");
 
-/// The most connections at the same time.
+/// The most connections at the same time, without the pages that wait for events.
 const MOST_CONNECTIONS: usize = 64;
 
 /// The longest time to wait for the rest of a request, or for a page that reads nothing.
@@ -25,22 +24,20 @@ const ALIVE: Duration = Duration::from_secs(10);
 
 /// Answers requests until the program ends.
 pub fn serve(listener: &TcpListener, port: u16, token: &str, studio: &Arc<Studio>) {
-    let open = Arc::new(AtomicUsize::new(0));
+    let slots = Arc::new(());
     for stream in listener.incoming().flatten() {
-        if open.fetch_add(1, Ordering::Relaxed) >= MOST_CONNECTIONS {
-            open.fetch_sub(1, Ordering::Relaxed);
+        // This clone and the first one are no connections.
+        let slot = slots.clone();
+        if Arc::strong_count(&slots) > MOST_CONNECTIONS + 1 {
             continue;
         }
-        let (open, studio, token) = (open.clone(), studio.clone(), token.to_owned());
-        std::thread::spawn(move || {
-            // A browser may close a connection at any time.
-            let _ = respond(&stream, port, &token, &studio);
-            open.fetch_sub(1, Ordering::Relaxed);
-        });
+        let (studio, token) = (studio.clone(), token.to_owned());
+        // A browser may close a connection at any time.
+        std::thread::spawn(move || drop(respond(&stream, port, &token, &studio, slot)));
     }
 }
 
-fn respond(mut stream: &TcpStream, port: u16, token: &str, studio: &Studio) -> io::Result<()> {
+fn respond(mut stream: &TcpStream, port: u16, token: &str, studio: &Studio, slot: Arc<()>) -> io::Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
     let request = match Request::read(&mut BufReader::new(stream), port, token) {
@@ -56,6 +53,8 @@ fn respond(mut stream: &TcpStream, port: u16, token: &str, studio: &Studio) -> i
         }
     };
     if request.path == "events" {
+        // Pages that wait for events have a limit of their own.
+        drop(slot);
         return events(stream, studio);
     }
     if request.path.is_empty() {
@@ -99,9 +98,10 @@ fn data(request: &Request, studio: &Studio) -> Option<Result<Value>> {
     })
 }
 
-/// Sends messages to a page until it is closed.
+/// Sends messages to a page until it is closed or replaced, or takes nothing for 10 s.
 fn events(mut stream: &TcpStream, studio: &Studio) -> io::Result<()> {
-    let (present, later) = studio.subscribe();
+    let replaced = stream.try_clone()?;
+    let (present, later) = studio.subscribe(Box::new(move || drop(replaced.shutdown(Shutdown::Both))));
     stream.write_all(head("200 OK", "text/event-stream", None).as_bytes())?;
     // A page whose connection is lost tries again after this time.
     stream.write_all(b"retry: 500\n\n")?;

@@ -1,7 +1,7 @@
 //! What is shown at the moment: the scene, the picture as far as it is rendered, and what went wrong. Pages get each change as
 //! a message, and a page that opens gets everything.
 
-use super::events::{Pages, message};
+use super::events::{Close, Pages, message};
 use super::pixel;
 use super::reference::{Origin, Reference};
 use super::reports;
@@ -261,24 +261,24 @@ impl Studio {
         self.status(run, "done", "the picture is finished");
     }
 
-    /// Opens a page: the messages that show the present state, and all later messages.
-    pub fn subscribe(&self) -> (Vec<String>, Receiver<Arc<str>>) {
+    /// Opens a page: the messages that show the present state, and all later messages until `close` is called.
+    pub fn subscribe(&self, close: Close) -> (Vec<String>, Receiver<Arc<str>>) {
+        // Copy the state under its lock, and encode it afterwards.
         let state = self.state();
-        let mut messages = vec![
-            message("scenes", &json!(scenes(&self.root))),
-            message("scene", &scene_of(&self.root, &state)),
-            message("errors", &errors_of(&state)),
-            message("status", &state.status),
-        ];
-        if state.film.width > 0 {
-            let whole = json!({
-                "run": state.run, "pass": "whole", "scale": 1, "x": 0, "y": 0, "width": state.film.width,
-                "rgb": base64(&state.rgb),
-            });
-            messages.push(message("tile", &whole));
-        }
-        messages.push(message("facts", &state.facts));
-        (messages, self.pages.open())
+        let (scene, errors) = (scene_of(&self.root, &state), errors_of(&state));
+        let (run, width, rgb) = (state.run, state.film.width, state.rgb.clone());
+        let (status, facts, later) = (state.status.clone(), state.facts.clone(), self.pages.open(close));
+        drop(state);
+        let scenes = json!(scenes(&self.root));
+        let whole = (width > 0).then(|| {
+            json!({
+                "run": run, "pass": "whole", "scale": 1, "x": 0, "y": 0, "width": width, "rgb": base64(&rgb),
+            })
+        });
+        let before =
+            [("scenes", scenes), ("scene", scene), ("errors", errors), ("status", status)].into_iter();
+        let all = before.chain(whole.map(|whole| ("tile", whole))).chain([("facts", facts)]);
+        (all.map(|(event, data)| message(event, &data)).collect(), later)
     }
 
     /// The reference picture.

@@ -42,6 +42,11 @@ pub enum Symmetries {
 }
 
 impl Symmetries {
+    /// Whether hidden inputs are the public ones in another frame.
+    pub fn turn_public_inputs(self) -> bool {
+        matches!(self, Symmetries::Turned | Symmetries::Mirrored)
+    }
+
     /// Each symmetry exchanges or reverses an axis, because directions are not scaled.
     ///
     /// The scale is between 2⁻³ and 2³ and not 1. A larger scale would fail a solution with a fixed tolerance in all checks

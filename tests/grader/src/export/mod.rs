@@ -72,6 +72,7 @@ impl ExportOptions {
 const MOST_JOBS: u16 = 256;
 
 /// Stages, seed and course file, the same for all students.
+#[derive(Clone)]
 struct Grading {
     course: Option<PathBuf>,
     stages: Option<String>,
@@ -162,10 +163,14 @@ pub fn classroom(options: &ExportOptions) -> Result<()> {
     let folder = options.out.join(".github/workflows");
     let course = options.grading.course()?;
     let file = course.as_ref().map(in_folder).transpose()?;
-    let graded = options.grading.options(file.as_deref());
     let numbers: Vec<String> = (1..=options.parts).map(|part| part.to_string()).collect();
     let (parts, numbers) = (options.parts.to_string(), numbers.join(", "));
-    for (name, template) in [("classroom.yml", EACH_PUSH), ("class.yml", WHOLE_CLASS)] {
+    // Students can read the seed of their own workflow, so the final grades have another.
+    let of_students = Grading { seed: None, ..options.grading.clone() };
+    for (name, template, grading) in
+        [("classroom.yml", EACH_PUSH, &of_students), ("class.yml", WHOLE_CLASS, &options.grading)]
+    {
+        let graded = grading.options(file.as_deref());
         let file = folder.join(name);
         ensure!(!file.exists(), "{} already exists", file.display());
         let text = template.replace(OPTIONS, &graded).replace(PARTS, &parts).replace(NUMBERS, &numbers);

@@ -1,7 +1,6 @@
 //! Grades all submissions of a folder, several at the same time.
 
-use super::judge::Judge;
-use super::lint::{self, Finding, Reading};
+use super::judge::{Judge, Judgement};
 use super::once::Once;
 use super::report::clean::{clean, clean_line};
 use super::result::{CheckResult, Graded, Outcome, Remark};
@@ -15,6 +14,7 @@ use crate::queue;
 use crate::room::has_room;
 use crate::sandbox::{self, Confinement, How, Purpose, Sandbox};
 use anyhow::{Context, Result};
+use judge::lint::{self, Finding, Reading};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -70,6 +70,8 @@ type Lost = BTreeMap<String, (Outcome, String)>;
 struct Read {
     /// The files that contain constructs that no exercise needs.
     refused: Lost,
+    /// The files to which no rule could be applied.
+    unreadable: Vec<String>,
     /// Whether an answer may depend on earlier questions.
     may_remember: bool,
 }
@@ -149,10 +151,25 @@ impl Grader {
         let scratch = scratch::folder()?;
         has_room(scratch.path(), MAKE_ROOM)?;
         // Leave out the files that the syntax check refuses, and build the others.
-        let Read { refused, may_remember } = self.read(&files, &mut remarks)?;
-        let kept: BTreeMap<String, String> =
-            files.into_iter().filter(|(name, _)| !refused.contains_key(name)).collect();
-        let built = self.builder.build(scratch.path(), &kept);
+        let Read { mut refused, unreadable, may_remember } = self.read(&files, &mut remarks)?;
+        let build = |refused: &Lost| {
+            let mut kept = files.clone();
+            kept.retain(|name, _| !refused.contains_key(name));
+            self.builder.build(scratch.path(), &kept)
+        };
+        let mut built = build(&refused);
+        // The compiler explains a file that is not Rust. What it compiles unread may contain anything.
+        let compiles = |name: &String| built.as_ref().is_ok_and(|built| !built.replaced.contains_key(name));
+        let unread: Vec<String> = unreadable.into_iter().filter(compiles).collect();
+        for name in &unread {
+            let why = format!(
+                "{name}:1: the syntax check cannot read this file: is there a first line with `#!`? Remove it [nesting]"
+            );
+            refuse(name, &why, &mut refused, &mut remarks);
+        }
+        if !unread.is_empty() {
+            built = build(&refused);
+        }
         // Blame no file for a disk that has become full.
         if built.as_ref().map_or(true, |built| !built.replaced.is_empty()) {
             has_room(scratch.path(), MAKE_ROOM)?;
@@ -168,7 +185,18 @@ impl Grader {
         }
         // Run the checks.
         let lost: Lost = refused.into_iter().chain(built.replaced).collect();
-        let (checks, spent) = self.judge.judge(&built.worker, &lost, may_remember, self.call_patience);
+        let Judgement { checks, unsteady, spent } =
+            self.judge.judge(&built.worker, &lost, may_remember, self.call_patience);
+        if let Some(check) = unsteady {
+            let is_of_stage = |file: &&String| stage_of(file) == Some(check.stage);
+            let what = format!(
+                "answers differently in each process: {} failed in one and passed in another, so from there on each \
+                 check had a process of its own and one try; let each answer depend on its arguments alone",
+                check.name
+            );
+            let file = self.builder.exercises().iter().find(is_of_stage).cloned().unwrap_or_default();
+            remarks.push(Remark { file, what });
+        }
         Ok(Judged { checks, remarks, compiler: clean(&compiler, MOST_FROM_COMPILER), cpu: built.cpu + spent })
     }
 
@@ -195,7 +223,7 @@ impl Grader {
 
     /// Runs the syntax check on the files, each in a sandbox: a file that attacks the compiler may also attack the check.
     fn read(&self, files: &BTreeMap<String, String>, remarks: &mut Vec<Remark>) -> Result<Read> {
-        let mut lost = Lost::new();
+        let (mut lost, mut unreadable) = (Lost::new(), Vec::new());
         // Code that is allowed by `--allow` may store data in ways that the syntax check does not know.
         let mut may_remember = !self.allowed.is_empty();
         for (name, text) in files.iter().filter(|(name, text)| !self.builder.is_untouched(name, text)) {
@@ -204,29 +232,24 @@ impl Grader {
                 None => {
                     let why = "the syntax check failed: the code is nested too deeply".to_owned();
                     let broke = Finding { rule: "nesting".into(), line: 1, why };
-                    Reading { findings: vec![broke], may_remember: true }
+                    Reading { is_unreadable: false, findings: vec![broke], may_remember: true }
                 }
             };
             may_remember |= reading.may_remember;
+            unreadable.extend(reading.is_unreadable.then(|| name.clone()));
             // Drop the findings of rules that are switched off.
-            let against: Vec<String> = reading
-                .findings
-                .iter()
-                .filter(|finding| !self.allowed.contains(&finding.rule))
-                .map(|finding| format!("{name}:{}: {} [{}]", finding.line, finding.why, finding.rule))
-                .collect();
-            // Refuse the file if findings remain, and report the first ones.
-            if !against.is_empty() {
-                let more = against.len().saturating_sub(MOST_FINDINGS);
-                let mut findings = against[..against.len() - more].join("\n");
-                if more > 0 {
-                    findings += &format!("\nand {more} more");
-                }
-                remarks.push(Remark { file: name.clone(), what: format!("was refused:\n{findings}") });
-                lost.insert(name.clone(), (Outcome::Refused, format!("refused:\n{findings}")));
+            let findings = reading.findings.iter().filter(|finding| !self.allowed.contains(&finding.rule));
+            let findings: Vec<&Finding> = findings.collect();
+            may_remember |= !findings.is_empty();
+            // Refuse the file unless the sandbox stops all that was found.
+            if findings.iter().any(|finding| !finding.is_left_to_sandbox()) {
+                refuse(name, &in_words(name, &findings), &mut lost, remarks);
+            } else if !findings.is_empty() {
+                let what = "is graded, but a function fails that reaches one of these lines:\n".to_owned();
+                remarks.push(Remark { file: name.clone(), what: what + &in_words(name, &findings) });
             }
         }
-        Ok(Read { refused: lost, may_remember })
+        Ok(Read { refused: lost, unreadable, may_remember })
     }
 
     /// Runs the syntax check on one file. Returns `None` if the check crashed.
@@ -240,6 +263,20 @@ impl Grader {
         }
         Ok(Some(serde_json::from_slice(&ended.stdout).context("the syntax check gave no answer")?))
     }
+}
+
+/// The first findings about a file, one per line.
+fn in_words(name: &str, findings: &[&Finding]) -> String {
+    let lines = findings.iter().take(MOST_FINDINGS);
+    let lines = lines.map(|finding| format!("{name}:{}: {} [{}]", finding.line, finding.why, finding.rule));
+    let more = findings.len().saturating_sub(MOST_FINDINGS);
+    lines.chain((more > 0).then(|| format!("and {more} more"))).collect::<Vec<_>>().join("\n")
+}
+
+/// Leaves a file out of the build because of these findings.
+fn refuse(name: &str, findings: &str, lost: &mut Lost, remarks: &mut Vec<Remark>) {
+    remarks.push(Remark { file: name.into(), what: format!("was refused:\n{findings}") });
+    lost.insert(name.into(), (Outcome::Refused, format!("refused:\n{findings}")));
 }
 
 /// Returns the remark without control characters, which a file name may contain.

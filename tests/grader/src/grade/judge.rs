@@ -22,7 +22,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::mem::{Discriminant, discriminant};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Time limit per call, in processor time. The reference's slowest call takes half a second without optimisation.
@@ -32,8 +32,12 @@ pub const CALL_PATIENCE: Duration = Duration::from_secs(4);
 /// 70 of them. Checks beyond the limit are not tried.
 const BUDGET: Duration = Duration::from_secs(300);
 
-/// Elapsed time for all checks of a submission together, for code that waits and does not compute.
-const LONGEST: Duration = Duration::from_secs(900);
+/// Elapsed time for all checks of a submission together, in limits of a call (6.5 minutes), for code that waits and does not
+/// compute. With the last check and the compiler, a submission takes less than 8 minutes; Gradescope stops after 10.
+const LONGEST: u32 = 97;
+
+/// The calls of a function that may wait and not compute. Checks that call it are not tried afterwards.
+const MOST_WAITS: usize = 2;
 
 /// The part of its inputs that a check uses with a hidden seed. All known inputs have passed before, and a table of known
 /// answers fails on each hidden input, so an eighth is enough, and a class is graded in less time.
@@ -63,6 +67,8 @@ struct PreparedCheck {
     check: &'static Check,
     /// Whether the hidden inputs differ from the public ones.
     varies: bool,
+    /// Whether they are drawn, and not public ones that are turned and scaled.
+    draws: bool,
     /// Whether it judges the cost of a search, so that the judge counts.
     counts: bool,
     /// The functions that it calls.
@@ -74,12 +80,26 @@ struct Answered {
     outcome: Outcome,
     message: String,
     picture: Option<Picture>,
+    /// The function that waited and did not compute.
+    waits: Option<Discriminant<Request>>,
+    /// The elapsed time, without that in which the worker had no processor.
+    took: Duration,
 }
 
 impl Answered {
     fn new(outcome: Outcome, message: impl Into<String>) -> Answered {
-        Answered { outcome, message: message.into(), picture: None }
+        Answered { outcome, message: message.into(), picture: None, waits: None, took: Duration::ZERO }
     }
+}
+
+/// The results of all checks on a submission.
+pub struct Judgement {
+    /// The results, in the order of the checks.
+    pub checks: Vec<CheckResult>,
+    /// The first check that failed in one process and passed in another.
+    pub unsteady: Option<&'static Check>,
+    /// The processor time of the submission's processes.
+    pub spent: Duration,
 }
 
 impl Judge {
@@ -87,6 +107,9 @@ impl Judge {
     /// the seed runs only once per submission. If the reference itself fails a check with this seed, the check uses only
     /// the public inputs, and a warning is printed.
     pub fn of(root: &Path, stages: &[u8], seed: u64, confinement: Confinement) -> Result<Judge> {
+        // A small seed draws like any other, and 0 does not mean the public inputs.
+        let digest = Sha256::digest(seed.to_le_bytes());
+        let seed = digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte)).max(1);
         // Collect the checks of the stages, and build the reference.
         checks::golden::seal();
         let reference = Source::prepare(root, Which::Solutions, Need::Checks)?.program;
@@ -111,7 +134,8 @@ impl Judge {
             let costly: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Costly(reference.clone())));
             let counts = known.has_costs && !checks::passes(check, &costly, 0);
             let varies = passes_hidden && known.questions.finalize() != hidden.questions.finalize();
-            Ok(PreparedCheck { check, varies, counts, asks: known.functions })
+            let draws = varies && !check.symmetries.turn_public_inputs();
+            Ok(PreparedCheck { check, varies, draws, counts, asks: known.functions })
         };
         let worker = || Arc::new(Worker::new(reference.clone(), worker::CALL_PATIENCE));
         let workers: Vec<_> = (0..queue::cores()).map(|_| worker()).collect();
@@ -127,70 +151,84 @@ impl Judge {
         Judge { checks, drawn: self.drawn.clone(), reference: self.reference.clone(), ..*self }
     }
 
-    /// Runs all checks against the program `worker`, and returns their results and the processor time of the program. Checks
-    /// of the files in `replaced` get the outcome given there.
+    /// Runs all checks against the program `worker`. Checks of the files in `replaced` get the outcome given there.
     ///
-    /// No check may depend on an earlier one. If the program `may_remember` earlier questions, each check gets new
-    /// processes. Public and hidden inputs always go to different processes, so that no message about public inputs
-    /// depends on hidden ones.
+    /// No check may depend on an earlier one. If the program `may_remember` earlier questions, or has answered one check in
+    /// two ways, each check gets a new process. All public inputs come before all hidden ones, and to other processes, so that
+    /// no message about public inputs depends on hidden ones.
     pub fn judge(
         &self,
         worker: &Path,
         replaced: &BTreeMap<String, (Outcome, String)>,
         may_remember: bool,
         call_patience: Duration,
-    ) -> (Vec<CheckResult>, Duration) {
+    ) -> Judgement {
         let start = || {
             let sandbox = Sandbox::with(self.confinement, Purpose::Worker);
             Arc::new(Worker::sandboxed(worker.to_owned(), call_patience, sandbox))
         };
-        let processes = || Processes { start: &start, may_remember, seasoned: None, spent: Duration::ZERO };
-        let (mut public, mut hidden) = (processes(), processes());
-        let started = Instant::now();
-        let judged: Vec<Answered> = self
-            .checks
-            .iter()
-            .map(|prepared| {
-                if public.spent() + hidden.spent() > BUDGET || started.elapsed() > LONGEST {
-                    let message = "not tried: earlier checks used up the time of the submission";
-                    return Answered::new(Outcome::NotTried, message);
-                }
-                // Use the public inputs first, so that students can reproduce the message.
-                let answered = public.answer(|worker| self.ask_public(prepared, worker));
-                // The message of an empty exercise names its file. Replace it by the reason why the file was replaced.
-                let mut lost = replaced.iter().filter(|_| answered.outcome == Outcome::NotWritten);
-                let lost = lost.find(|(file, _)| answered.message.contains(file.as_str()));
-                match (lost, answered.outcome) {
-                    (Some((_, (outcome, message))), _) => Answered::new(*outcome, message),
-                    (None, Outcome::Passed) if prepared.varies => {
-                        hidden.answer(|worker| self.ask_hidden(prepared, worker))
-                    }
-                    (None, _) => answered,
-                }
-            })
-            .collect();
+        let mut processes = Processes::new(&start, may_remember);
+        let (mut waits, mut took) = (Vec::new(), Duration::ZERO);
+        let mut answer = |processes: &mut Processes<'_>, prepared: &PreparedCheck, seed| {
+            if processes.spent() > BUDGET || took > LONGEST * call_patience {
+                let message = "not tried: earlier checks used up the time of the submission";
+                return Answered::new(Outcome::NotTried, message);
+            }
+            if waits.iter().filter(|function| prepared.asks.contains(function)).count() >= MOST_WAITS {
+                let message =
+                    "not tried: in earlier checks it waited twice and gave no answer; repair these first";
+                return Answered::new(Outcome::NotTried, message);
+            }
+            let answered = processes.answer(prepared.check, |worker| {
+                let answered = self.ask(prepared, worker, seed);
+                took += answered.took;
+                answered
+            });
+            waits.extend(answered.waits);
+            answered
+        };
+        let mut judged: Vec<Answered> = Vec::new();
+        for prepared in &self.checks {
+            let answered = answer(&mut processes, prepared, 0);
+            // The message of an empty exercise names its file. Replace it by the reason why the file was replaced.
+            let mut lost = replaced.iter().filter(|_| answered.outcome == Outcome::NotWritten);
+            let lost = lost.find(|(file, _)| answered.message.contains(file.as_str()));
+            judged.push(lost.map_or(answered, |(_, (outcome, message))| Answered::new(*outcome, message)));
+        }
+        processes.renew();
+        for (prepared, answered) in self.checks.iter().zip(&mut judged) {
+            if answered.outcome == Outcome::Passed && prepared.varies {
+                *answered = answer(&mut processes, prepared, self.seed);
+            }
+        }
+        let checks = self.results(judged);
+        Judgement { checks, unsteady: processes.unsteady, spent: processes.spent() }
+    }
+
+    /// The results of the checks that were answered so.
+    fn results(&self, judged: Vec<Answered>) -> Vec<CheckResult> {
         let proven = self.proven(&judged);
         let results = self.checks.iter().zip(judged).map(|(prepared, answered)| {
             let others = self.missing_proofs(prepared, &proven);
-            // Right answers to known inputs can be a table.
-            if answered.outcome == Outcome::Passed && !prepared.varies && !others.is_empty() {
+            // Right answers to known inputs, turned or not, can be a table.
+            if answered.outcome == Outcome::Passed && !prepared.draws && !others.is_empty() {
                 let message = unproven_message(prepared.check, &others);
                 return result(prepared.check, Answered::new(Outcome::Unproven, message));
             }
             result(prepared.check, answered)
         });
-        (results.collect(), public.spent() + hidden.spent())
+        results.collect()
     }
 
-    /// The functions that a check with hidden inputs asks and that pass it.
+    /// The functions that a check with drawn inputs asks and that pass it.
     fn proven(&self, judged: &[Answered]) -> HashSet<Discriminant<Request>> {
         let passed = self.checks.iter().zip(judged);
         let passed =
-            passed.filter(|(prepared, answered)| prepared.varies && answered.outcome == Outcome::Passed);
+            passed.filter(|(prepared, answered)| prepared.draws && answered.outcome == Outcome::Passed);
         passed.flat_map(|(prepared, _)| prepared.asks.iter().copied()).collect()
     }
 
-    /// The checks with hidden inputs that ask the functions of `put` that are not `proven`.
+    /// The checks with drawn inputs that ask the functions of `prepared` that are not `proven`.
     fn missing_proofs(
         &self,
         prepared: &PreparedCheck,
@@ -198,7 +236,7 @@ impl Judge {
     ) -> Vec<&'static str> {
         let open: HashSet<_> = prepared.asks.difference(proven).collect();
         let asks_one =
-            |other: &&PreparedCheck| other.varies && other.asks.iter().any(|asked| open.contains(asked));
+            |other: &&PreparedCheck| other.draws && other.asks.iter().any(|asked| open.contains(asked));
         self.checks.iter().filter(asks_one).map(|other| other.check.name).collect()
     }
 
@@ -217,31 +255,24 @@ impl Judge {
         self.checks.iter().map(|prepared| result(prepared.check, Answered::new(outcome, message))).collect()
     }
 
-    /// Runs one check with the public inputs.
-    fn ask_public(&self, prepared: &PreparedCheck, worker: Arc<Worker>) -> Answered {
+    /// Runs one check with the inputs of this seed, which are the public ones for 0.
+    fn ask(&self, prepared: &PreparedCheck, worker: Arc<Worker>, seed: u64) -> Answered {
         // If the hidden inputs decide, count only there.
-        worker.withhold_tables(prepared.counts && !prepared.varies);
-        let known = self.examine(prepared, worker, 0);
-        let (outcome, picture) = (outcome(&known), picture(&known));
-        match checks::verdict(prepared.check, known) {
-            Verdict::Passed => Answered::new(Outcome::Passed, ""),
-            Verdict::Failed(message) => Answered { picture, ..Answered::new(outcome, message) },
-            Verdict::NotWritten { task, place } => {
-                Answered::new(outcome, format!("not written yet: {place}\n  {task}"))
-            }
+        worker.withhold_tables(prepared.counts && (seed != 0 || !prepared.varies));
+        let calls = Arc::<Calls>::default();
+        let (begin, computed, lacked) = (Instant::now(), worker.cpu_time(), worker.waited());
+        let mut examined = self.examine(prepared, worker.clone(), seed, &calls);
+        let took = begin.elapsed().saturating_sub(worker.waited().saturating_sub(lacked));
+        // A check has more time than a call. Calls that return may also wait.
+        if let Err(KitError::TimedOut { seconds }) = examined
+            && seconds > CALL_PATIENCE.as_secs()
+            && 3 * worker.cpu_time().saturating_sub(computed) < Duration::from_secs(seconds)
+        {
+            examined = Err(KitError::Waited { seconds });
         }
-    }
-
-    /// Runs one check with the hidden inputs. The message quotes nothing, because the worker knows these inputs.
-    fn ask_hidden(&self, prepared: &PreparedCheck, worker: Arc<Worker>) -> Answered {
-        worker.withhold_tables(prepared.counts);
-        match outcome(&self.examine(prepared, worker, self.seed)) {
-            Outcome::Passed => Answered::new(Outcome::Passed, ""),
-            Outcome::Wrong | Outcome::NotWritten => {
-                Answered::new(Outcome::WrongOnHidden, hidden_message(prepared.check))
-            }
-            other => Answered::new(other, format!("{}\n  on hidden inputs", other.words())),
-        }
+        let waits = matches!(examined, Err(KitError::Waited { .. })).then(|| *lock(&calls.last)).flatten();
+        let answered = if seed == 0 { public(prepared, examined) } else { hidden(prepared, &examined) };
+        Answered { waits, took, ..answered }
     }
 
     fn examine(
@@ -249,55 +280,89 @@ impl Judge {
         prepared: &PreparedCheck,
         worker: Arc<Worker>,
         seed: u64,
+        calls: &Arc<Calls>,
     ) -> Result<checks::CheckResult, KitError> {
-        let over = Arc::new(AtomicBool::new(false));
-        let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(StoppableWorker { worker, over: over.clone() }));
+        let kit: Arc<dyn Kit + Send + Sync> =
+            Arc::new(Door(StoppableWorker { worker, calls: calls.clone() }));
         let inputs = inputs(seed, &self.drawn, &self.reference);
         let examined = checks::examine(prepared.check, &kit, seed, inputs);
         // A check that hangs continues on its own thread. It ends there, because it gets no more answers.
-        over.store(true, Ordering::Relaxed);
+        calls.over.store(true, Ordering::Relaxed);
         examined
     }
 }
 
-/// The processes of a submission that get inputs of one kind, one process at a time.
+/// The answer of a check with the public inputs.
+fn public(prepared: &PreparedCheck, examined: Result<checks::CheckResult, KitError>) -> Answered {
+    let (outcome, picture) = (outcome(&examined), picture(&examined));
+    match checks::verdict(prepared.check, examined) {
+        Verdict::Passed => Answered::new(Outcome::Passed, ""),
+        Verdict::Failed(message) => Answered { picture, ..Answered::new(outcome, message) },
+        Verdict::NotWritten { task, place } => {
+            Answered::new(outcome, format!("not written yet: {place}\n  {task}"))
+        }
+    }
+}
+
+/// The answer of a check with the hidden inputs. The message quotes nothing, because the worker knows these inputs.
+fn hidden(prepared: &PreparedCheck, examined: &Result<checks::CheckResult, KitError>) -> Answered {
+    match outcome(examined) {
+        Outcome::Passed => Answered::new(Outcome::Passed, ""),
+        Outcome::Wrong | Outcome::NotWritten => {
+            Answered::new(Outcome::WrongOnHidden, hidden_message(prepared.check))
+        }
+        other => Answered::new(other, format!("{}\n  on hidden inputs", other.words())),
+    }
+}
+
+/// The processes of a submission, one at a time.
 struct Processes<'a> {
     start: &'a dyn Fn() -> Arc<Worker>,
     /// Whether an answer may depend on earlier questions, so that no process may be used twice.
     may_remember: bool,
+    /// The first check that failed in one process and passed in another. From then on no process is used twice either.
+    unsteady: Option<&'static Check>,
     /// The process of the check before, if it may be used again.
     seasoned: Option<Arc<Worker>>,
     /// The processor time of the processes before.
     spent: Duration,
 }
 
-impl Processes<'_> {
+impl<'a> Processes<'a> {
+    fn new(start: &'a dyn Fn() -> Arc<Worker>, may_remember: bool) -> Processes<'a> {
+        Processes { start, may_remember, unsteady: None, seasoned: None, spent: Duration::ZERO }
+    }
+
     /// Asks the process of the check before, or else a new one. An answer that earlier questions may have caused is not
     /// used: a new process is asked.
-    fn answer(&mut self, ask: impl Fn(Arc<Worker>) -> Answered) -> Answered {
-        let mut spent = self.spent;
-        let asked = self.seasoned.take().map(|worker| (ask(worker.clone()), worker));
+    fn answer(&mut self, check: &'static Check, mut ask: impl FnMut(Arc<Worker>) -> Answered) -> Answered {
+        let asked = self.seasoned.clone().map(&mut ask);
         // Earlier questions cannot cause these outcomes.
-        let settled = |asked: &(Answered, Arc<Worker>)| {
-            matches!(asked.0.outcome, Outcome::Passed | Outcome::NotWritten | Outcome::TooLong)
+        let settled = |asked: &Answered| {
+            matches!(asked.outcome, Outcome::Passed | Outcome::NotWritten | Outcome::TooLong)
         };
-        let (answered, worker) = match asked {
+        let answered = match asked {
             Some(asked) if settled(&asked) => asked,
             unsettled => {
-                spent += unsettled.map_or(Duration::ZERO, |(_, worker)| worker.cpu_time());
-                let worker = (self.start)();
-                (ask(worker.clone()), worker)
+                self.renew();
+                let answered = ask(self.seasoned.insert((self.start)()).clone());
+                if unsettled.is_some() && answered.outcome == Outcome::Passed {
+                    self.unsteady.get_or_insert(check);
+                }
+                answered
             }
         };
         // After a timeout the thread of the check may still send questions.
-        let is_alone = answered.outcome != Outcome::TooLong;
-        if is_alone && !self.may_remember {
-            self.seasoned = Some(worker);
-        } else {
-            spent += worker.cpu_time();
+        if answered.outcome == Outcome::TooLong || self.may_remember || self.unsteady.is_some() {
+            self.renew();
         }
-        self.spent = spent;
         answered
+    }
+
+    /// Ends the process, so that the next check gets a new one.
+    fn renew(&mut self) {
+        self.spent = self.spent();
+        self.seasoned = None;
     }
 
     /// The processor time of all processes so far.
@@ -321,8 +386,8 @@ fn hidden_message(check: &Check) -> String {
 
 fn unproven_message(check: &Check, others: &[&str]) -> String {
     format!(
-        "{}  right, but its inputs are fixed: it counts when one of these checks of the same function \
-         passes: {}\n",
+        "{}  right, but its inputs are known ones, turned or scaled: it counts when one of these checks of the same \
+         function passes: {}\n",
         rubric::entry(check.stage, check.name).header(),
         others.join(", ")
     )
@@ -333,7 +398,7 @@ fn outcome(examined: &Result<checks::CheckResult, KitError>) -> Outcome {
         Ok(Ok(())) => Outcome::Passed,
         Ok(Err(_)) | Err(KitError::Panicked { .. } | KitError::Malformed { .. }) => Outcome::Wrong,
         Err(KitError::NotWritten { .. }) => Outcome::NotWritten,
-        Err(KitError::TimedOut { .. }) => Outcome::TooLong,
+        Err(KitError::TimedOut { .. } | KitError::Waited { .. }) => Outcome::TooLong,
         Err(KitError::Crashed { .. }) => Outcome::Crashed,
     }
 }
@@ -346,7 +411,7 @@ fn picture(examined: &Result<checks::CheckResult, KitError>) -> Option<Picture> 
 }
 
 fn result(check: &Check, answered: Answered) -> CheckResult {
-    let Answered { outcome, message, picture } = answered;
+    let Answered { outcome, message, picture, .. } = answered;
     let message = clean::clean(message.trim_end(), MOST_SAID);
     CheckResult { picture, ..CheckResult::new(check.stage, check.name, outcome, message) }
 }
@@ -368,8 +433,12 @@ fn asked(reference: &Arc<Worker>, check: &Check, seed: u64, inputs: Inputs) -> (
     let recording = RecordingWorker { reference: reference.clone(), record: record.clone() };
     let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(recording));
     let passes = matches!(checks::examine(check, &kit, seed, inputs), Ok(Ok(())));
-    let record = record.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let record = lock(&record).clone();
     (record, passes)
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The reference, with a record of the questions.
@@ -385,7 +454,7 @@ impl Transport for RecordingWorker {
         let _ = raykata::worker::send(&mut message, &request);
         let function = discriminant(&request);
         let mut answer = self.reference.call(request, watch);
-        let mut record = self.record.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut record = lock(&self.record);
         record.questions.update(message);
         record.functions.insert(function);
         record.has_costs |= !answer.costs().is_empty();
@@ -398,17 +467,27 @@ impl Transport for RecordingWorker {
     }
 }
 
+/// The calls of a check.
+#[derive(Default)]
+struct Calls {
+    /// Whether the check has its verdict.
+    over: AtomicBool,
+    /// The function that was called last.
+    last: Mutex<Option<Discriminant<Request>>>,
+}
+
 /// A worker that gets questions until the check has its verdict.
 struct StoppableWorker {
     worker: Arc<Worker>,
-    over: Arc<AtomicBool>,
+    calls: Arc<Calls>,
 }
 
 impl Transport for StoppableWorker {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
-        if self.over.load(Ordering::Relaxed) {
+        if self.calls.over.load(Ordering::Relaxed) {
             kit_error::unwind(KitError::Crashed { how: "the check has ended".into() });
         }
+        *lock(&self.calls.last) = Some(discriminant(&request));
         let answer = self.worker.call(request, watch);
         match sanity::fault(&answer) {
             None => answer,

@@ -7,7 +7,6 @@
 mod counted;
 mod grader;
 mod judge;
-mod lint;
 mod merge;
 mod once;
 mod one;

@@ -13,8 +13,9 @@ mod archive;
 pub(super) mod helpers;
 mod names;
 
-/// Longest source file, in bytes. The longest one of the reference has 20 KiB. Files of many megabytes compile slowly.
-const LONGEST_FILE: u64 = 512 * 1024;
+/// Most bytes of source files, one or all of a submission together. The reference has a third of this. Files of many megabytes
+/// compile slowly, and have room for tables of answers.
+const MOST_BYTES: u64 = 1 << 20;
 
 /// Most files and folders of a submission. A working copy with its target folder has thousands.
 const MOST_ENTRIES: usize = 50_000;
@@ -148,6 +149,11 @@ pub fn take(path: &Path, wanted: &[String], expected: &[String]) -> SubmittedFil
     // Name the reason if there is no file at all.
     taken.trouble = match trouble {
         Err(error) => Some(error.to_string()),
+        Ok(()) if taken.files.values().map(String::len).sum::<usize>() as u64 > MOST_BYTES => Some(format!(
+            "has source files of more than {} KiB together, and no solution needs that much: hand in without tables of \
+             numbers and without files that no exercise uses",
+            MOST_BYTES / 1024
+        )),
         Ok(()) if taken.files.is_empty() => Some(format!(
             "contains none of the exercise files ({} …): is it the right folder?",
             wanted.first().map_or("", String::as_str)
@@ -282,6 +288,9 @@ impl Gathering<'_> {
                 "was ignored: the kit's own checks are used"
             }
             _ if path.ends_with(".rs") => "was ignored: there are too many Rust files",
+            name if names::archive_stem(name.as_ref()).is_some() => {
+                "was ignored: an archive within a submission is not unpacked; hand in its files"
+            }
             _ => return,
         };
         self.ignored.push(Remark { file: path.to_owned(), what: what.to_owned() });
@@ -316,10 +325,10 @@ fn open(path: &Path) -> Result<fs::File, String> {
 /// Reads a source file. Returns its text without byte order mark and with LF line ends, and a remark if that changed it.
 fn text(content: impl Read) -> Result<(String, Option<String>), String> {
     let mut bytes = Vec::new();
-    let read = content.take(LONGEST_FILE + 1).read_to_end(&mut bytes);
+    let read = content.take(MOST_BYTES + 1).read_to_end(&mut bytes);
     read.map_err(|error| format!("was ignored: it cannot be read ({error})"))?;
-    if bytes.len() as u64 > LONGEST_FILE {
-        let most = LONGEST_FILE / 1024;
+    if bytes.len() as u64 > MOST_BYTES {
+        let most = MOST_BYTES / 1024;
         return Err(format!("was ignored: it is longer than {most} KiB, and no exercise needs that much"));
     }
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {

@@ -42,6 +42,9 @@ const LIBRARIES: [&str; 9] = [
 /// The dynamic loaders, which must be executable.
 const LOADERS: [&str; 2] = ["ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"];
 
+/// Where the loader looks up libraries.
+const CACHE: &str = "/etc/ld.so.cache";
+
 /// Folders with compiler drivers, linkers, their libraries and start-up code.
 const TOOL_FOLDERS: [&str; 7] =
     ["/usr/bin", "/usr/lib", "/usr/lib64", "/usr/libexec", "/bin", "/lib", "/lib64"];
@@ -69,7 +72,7 @@ pub(super) fn restrict(
             rules = allow_if_there(rules, &Path::new(folder).join(name), run)?;
         }
     }
-    rules = allow_if_there(rules, Path::new("/etc/ld.so.cache"), AccessFs::ReadFile.into())?;
+    rules = allow_if_there(rules, Path::new(CACHE), AccessFs::ReadFile.into())?;
     if purpose.writes() {
         rules = allow_if_there(rules, Path::new("/dev/null"), AccessFs::ReadFile | AccessFs::WriteFile)?;
     }
@@ -131,4 +134,13 @@ pub(super) fn level() -> Result<String> {
         LandlockStatus::Available { effective_abi, .. } => format!("Landlock ABI {}", effective_abi as i32),
         other => bail!("Landlock: {other:?}"),
     })
+}
+
+#[test]
+fn the_manual_lists_what_a_worker_may_read() {
+    let manual = include_str!("../../README.md");
+    let start = manual.find("a worker may read: ").expect("the list");
+    let list = manual[start..].split("None of them").next().unwrap_or_default();
+    let named = list.split('`').skip(1).step_by(2).collect::<std::collections::BTreeSet<_>>();
+    assert_eq!(named, LIBRARIES.into_iter().chain(LOADERS).chain([CACHE]).collect());
 }

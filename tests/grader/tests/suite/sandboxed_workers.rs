@@ -76,9 +76,8 @@ fn files_and_processes_are_out_of_reach() {
 #[test]
 fn loops_and_sleepers_end_and_a_slow_machine_is_no_loop() {
     let door = door();
-    for radius in [-5.0, -11.0] {
-        assert_eq!(ask(&door, radius), Err(KitError::TimedOut { seconds: 1 }));
-    }
+    assert_eq!(ask(&door, -5.0), Err(KitError::TimedOut { seconds: 1 }));
+    assert_eq!(ask(&door, -11.0), Err(KitError::Waited { seconds: 3 }));
     // It sleeps for three seconds, as on a busy machine. The limit counts processor time, so the call succeeds.
     assert!(ask(&sandboxed(misbehaving(), 2), -14.0).is_ok());
 }
@@ -104,7 +103,7 @@ fn a_worker_that_does_not_read_does_not_stop_the_judge() {
     let door = door();
     assert_eq!(ask(&door, -24.0), Ok(vec![Some(1.0)]));
     let outcome = kit_error::catch(|| door.sphere_algebraic(&many));
-    assert_eq!(outcome, Err(KitError::TimedOut { seconds: 1 }));
+    assert_eq!(outcome, Err(KitError::Waited { seconds: 3 }));
 }
 
 #[test]

@@ -29,161 +29,53 @@ enum Allowed {
     Some,
 }
 
-const ROWS: &[Row] = &[
-    Row {
-        name: "honest",
-        what: "control: the reference, by its own protocol code",
-        is_slow: false,
-        allowed: Allowed::All,
-    },
-    Row {
-        name: "learns-all-and-forges-counts",
-        what: "learns all tables by questions, then answers as the reference with the reference's costs",
-        is_slow: false,
-        allowed: Allowed::AllButCosts,
-    },
-    Row {
-        name: "learns-primitives-and-forges-counts",
-        what: "tests all primitives, and reports one visit, or the visits of the reference",
-        is_slow: false,
-        allowed: Allowed::AllButCosts,
-    },
-    Row {
-        name: "never-asks",
-        what: "answers searches without a question",
-        is_slow: false,
-        allowed: Allowed::AllButCosts,
-    },
-    Row {
-        name: "asks-of-another-query",
-        what: "asks about queries that do not exist",
-        is_slow: false,
-        allowed: Allowed::AllButCosts,
-    },
-    Row {
-        name: "asks-of-nodes-that-do-not-exist",
-        what: "asks about nodes, primitives and cells that do not exist",
-        is_slow: false,
-        allowed: Allowed::AllButCosts,
-    },
-    Row {
-        name: "asks-the-wrong-kind",
-        what: "asks questions of other searches",
-        is_slow: false,
-        allowed: Allowed::AllButCosts,
-    },
-    Row {
-        name: "asks-forever",
-        what: "asks the same question without end",
-        is_slow: true,
-        allowed: Allowed::AllButCosts,
-    },
-    Row {
-        name: "asks-with-a-million-visits",
-        what: "reports two million visits",
-        is_slow: false,
-        allowed: Allowed::AllButCosts,
-    },
-    Row {
-        name: "asks-without-need",
-        what: "asks although its request has all tables",
-        is_slow: false,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "public-then-tells",
-        what: "right for public inputs, quotes hidden ones as \"not written yet\"",
-        is_slow: false,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "public-then-panics",
-        what: "right for public inputs, quotes hidden ones as a panic",
-        is_slow: false,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "public-then-malformed",
-        what: "right for public inputs, quotes hidden ones as a malformed answer",
-        is_slow: false,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "public-then-crashed",
-        what: "right for public inputs, says that it crashed on hidden ones",
-        is_slow: false,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "public-then-late",
-        what: "right for public inputs, says that it was late on hidden ones",
-        is_slow: false,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "public-then-another-kind",
-        what: "right for public inputs, then answers of another function",
-        is_slow: false,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "public-then-ends",
-        what: "right for public inputs, ends at hidden ones",
-        is_slow: false,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "public-then-writes",
-        what: "right for public inputs, prints hidden ones and aborts",
-        is_slow: false,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "answers-in-advance",
-        what: "eight answers per request",
-        is_slow: false,
-        allowed: Allowed::Some,
-    },
-    Row {
-        name: "answers-before-the-question",
-        what: "one answer too many, at the start",
-        is_slow: false,
-        allowed: Allowed::Some,
-    },
-    Row { name: "no-message", what: "bytes that are no message", is_slow: false, allowed: Allowed::None },
-    Row { name: "endless-message", what: "a message without end", is_slow: true, allowed: Allowed::None },
-    Row {
-        name: "promises-a-gigabyte",
-        what: "the length of a message that never comes",
-        is_slow: true,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "sends-60-megabytes",
-        what: "60 MB of words per answer",
-        is_slow: true,
-        allowed: Allowed::None,
-    },
-    Row { name: "byte-by-byte", what: "20 bytes per second", is_slow: true, allowed: Allowed::None },
-    Row {
-        name: "answers-nothing",
-        what: "reads requests and answers nothing",
-        is_slow: true,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "progress-forever",
-        what: "reports progress without end",
-        is_slow: true,
-        allowed: Allowed::None,
-    },
-    Row {
-        name: "fewer-answers",
-        what: "no answers to a request with many queries",
-        is_slow: false,
-        allowed: Allowed::None,
-    },
-];
+/// The workers: which checks each may pass, whether it is slow, its name, and what it does.
+const ROWS: &str = r#"
+All quick honest control: the reference, by its own protocol code
+AllButCosts quick learns-all-and-forges-counts learns all tables by questions, then answers as the reference with the reference's costs
+AllButCosts quick learns-primitives-and-forges-counts tests all primitives, and reports one visit, or the visits of the reference
+AllButCosts quick never-asks answers searches without a question
+AllButCosts quick asks-of-another-query asks about queries that do not exist
+AllButCosts quick asks-of-nodes-that-do-not-exist asks about nodes, primitives and cells that do not exist
+AllButCosts quick asks-the-wrong-kind asks questions of other searches
+AllButCosts slow asks-forever asks the same question without end
+AllButCosts quick asks-with-a-million-visits reports two million visits
+None quick asks-without-need asks although its request has all tables
+None quick public-then-tells right for public inputs, quotes hidden ones as "not written yet"
+None quick public-then-panics right for public inputs, quotes hidden ones as a panic
+None quick public-then-malformed right for public inputs, quotes hidden ones as a malformed answer
+None quick public-then-crashed right for public inputs, says that it crashed on hidden ones
+None quick public-then-late right for public inputs, says that it was late on hidden ones
+None quick public-then-another-kind right for public inputs, then answers of another function
+All quick public-then-marks without a sandbox: right, and quotes public inputs once another process has seen hidden ones
+None quick public-then-ends right for public inputs, ends at hidden ones
+None quick public-then-writes right for public inputs, prints hidden ones and aborts
+Some quick answers-in-advance eight answers per request
+Some quick answers-before-the-question one answer too many, at the start
+None quick no-message bytes that are no message
+None slow endless-message a message without end
+None slow promises-a-gigabyte the length of a message that never comes
+None slow sends-60-megabytes 60 MB of words per answer
+None slow byte-by-byte 20 bytes per second
+None slow answers-nothing reads requests and answers nothing
+None slow progress-forever reports progress without end
+None quick fewer-answers no answers to a request with many queries"#;
+
+fn rows() -> Vec<Row> {
+    let row = |line: &'static str| {
+        let [allowed, pace, name, what] = line.splitn(4, ' ').collect::<Vec<_>>()[..] else {
+            panic!("{line}")
+        };
+        let allowed = match allowed {
+            "None" => Allowed::None,
+            "AllButCosts" => Allowed::AllButCosts,
+            "All" => Allowed::All,
+            _ => Allowed::Some,
+        };
+        Row { name, what, is_slow: pace == "slow", allowed }
+    };
+    ROWS.trim().lines().map(row).collect()
+}
 
 fn hostile() -> &'static PathBuf {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
@@ -195,14 +87,14 @@ fn hostile() -> &'static PathBuf {
     })
 }
 
-/// Judges the hostile worker `name` with the checks of these stages.
-fn judged(judge: &Judge, name: &str) -> Vec<CheckResult> {
+/// Judges the hostile worker `name`, with this time limit per call.
+fn judged(judge: &Judge, name: &str, call_patience: Duration) -> Vec<CheckResult> {
     let folder = tempfile::tempdir().expect("a folder");
     let worker = folder.path().join(name);
     std::fs::hard_link(hostile(), &worker)
         .or_else(|_| std::fs::copy(hostile(), &worker).map(drop))
         .expect("a copy");
-    judge.judge(&worker, &BTreeMap::new(), false, CALL_PATIENCE).0
+    judge.judge(&worker, &BTreeMap::new(), false, call_patience).checks
 }
 
 #[test]
@@ -218,18 +110,24 @@ fn hostile_workers_that_speak_the_protocol_forge_no_point() {
     let mut two_checks = judge(&[1, 3]);
     two_checks.checks.retain(|put| put.counts || put.check.stage == 1);
     two_checks.checks.drain(1..two_checks.checks.len() - 1);
+    let without_sandbox = Judge { confinement: Confinement::LimitsOnly, ..of_stage_1.only(|_, _| true) };
     let try_one = |row: &Row| match row.allowed {
+        _ if row.name == "public-then-marks" => try_row(row, &without_sandbox),
         _ if row.is_slow => try_row(row, &two_checks),
         Allowed::None => try_row(row, &of_stage_1),
         _ => try_row(row, &with_costs),
     };
     let is_long = std::env::var_os("CI_LONG").is_some();
-    let rows: Vec<&Row> = ROWS.iter().filter(|row| is_long || !row.is_slow).collect();
+    let rows: Vec<Row> = rows().into_iter().filter(|row| is_long || !row.is_slow).collect();
     // Most slow workers only wait, so judge all at the same time.
     let lines: Vec<String> = std::thread::scope(|scope| {
-        let tried: Vec<_> = rows.into_iter().map(|row| scope.spawn(|| try_one(row))).collect();
+        let tried: Vec<_> = rows.iter().map(|row| scope.spawn(|| try_one(row))).collect();
         tried.into_iter().map(|row| row.join().expect("a row")).collect()
     });
+    // Right answers after short waits reach no limit of a call, but that of the submission (97 times 40 ms).
+    let results = judged(&judge(&[1]), "waits-a-little", Duration::from_millis(40));
+    let last = results.last().expect("a check");
+    assert!(last.message.contains("used up the time of the submission"), "{}", last.message);
     println!("| worker | what it does | points |\n|---|---|---|\n{}", lines.join("\n"));
 }
 
@@ -238,7 +136,7 @@ const SEED: u64 = 0x5eed_0f7e_57ab_1e00;
 /// Judges a hostile worker and tests that it passes no check that it must not pass, and that nothing that it says about hidden
 /// inputs gets into a message. Returns its line of the table.
 fn try_row(row: &Row, judge: &Judge) -> String {
-    let results = judged(judge, row.name);
+    let results = judged(judge, row.name, CALL_PATIENCE);
     for (prepared, result) in judge.checks.iter().zip(&results) {
         let passed = result.outcome == Outcome::Passed;
         let may_pass = match row.allowed {
@@ -260,4 +158,25 @@ fn try_row(row: &Row, judge: &Judge) -> String {
         assert!(!text.contains("SECRET") && !text.contains("123456"), "{}: {text}", row.name);
     }
     format!("| `{}` | {} | {earned} of {possible} |", row.name, row.what)
+}
+
+#[test]
+fn luck_with_a_process_is_noticed_and_gets_one_try_from_then_on() {
+    let started = std::cell::Cell::new(0);
+    let start = || {
+        started.set(started.get() + 1);
+        Arc::new(Worker::new(PathBuf::new(), CALL_PATIENCE))
+    };
+    let mut processes = Processes::new(&start, false);
+    let checks: Vec<&'static Check> = STAGES[0].1.iter().take(4).collect();
+    // Every second process is wrong about each check but the first.
+    let mut judged = checks.iter().map(|check| {
+        let is_right = |_| check.name == checks[0].name || started.get() % 2 == 0;
+        let outcome = |right| if right { Outcome::Passed } else { Outcome::Wrong };
+        processes.answer(check, |worker| Answered::new(outcome(is_right(worker)), "")).outcome
+    });
+    let passed: Vec<bool> = judged.by_ref().map(|outcome| outcome == Outcome::Passed).collect();
+    // The second check failed in the first process and passed in the second. Then each check has one process.
+    assert_eq!((passed, started.get()), (vec![true, true, false, true], 4));
+    assert_eq!(processes.unsteady.map(|check| check.name), Some(checks[1].name));
 }

@@ -28,10 +28,21 @@ pub fn gather(path: &Path, gathering: &mut Gathering<'_>) -> io::Result<()> {
         () if is(&".tar.gz") || is(&".tgz") => tar(flate2::read::MultiGzDecoder::new(file), gathering),
         () => {
             let ending = UNREADABLE.iter().find(|ending| is(ending)).unwrap_or(&"");
-            Err(io::Error::other(format!("{ending} is not read here; hand in the folder, .zip or .tar.gz")))
+            Err(io::Error::other(format!(
+                "{ending} is not read here; unpack it, and hand in the folder, .zip or .tar.gz"
+            )))
         }
     };
-    unpacked.map_err(|error| io::Error::other(format!("cannot be unpacked: {error}")))
+    unpacked.map_err(|error| {
+        let error = error.to_string();
+        let help = match error.contains("hand in") {
+            true => "",
+            false => {
+                "; it may be cut off: download it again, or hand in a new .zip or .tar.gz of exercises/src"
+            }
+        };
+        io::Error::other(format!("cannot be unpacked: {error}{help}"))
+    })
 }
 
 fn zip(file: impl Read + Seek, gathering: &mut Gathering<'_>) -> io::Result<()> {

@@ -5,9 +5,6 @@ use proc_macro2::{TokenStream, TokenTree};
 use std::collections::BTreeMap;
 use std::str::FromStr;
 
-/// Most modules that are taken. A submission has a few.
-const MOST: usize = 64;
-
 /// Returns the modules of a submission, by their path in `exercises/src`. `files` are the Rust files that are no exercises, by
 /// their path in the submission; `folder` is that of the exercises.
 pub fn modules(
@@ -24,7 +21,7 @@ pub fn modules(
         let of_exercise = wanted.iter().any(|wanted| wanted.strip_suffix(".rs") == Some(top));
         of_exercise || declared.iter().any(|name| name == stem)
     };
-    let taken = inside.into_iter().filter(|(path, _)| is_module(path) && is_plain(path)).take(MOST);
+    let taken = inside.into_iter().filter(|(path, _)| is_module(path) && is_plain(path));
     taken.map(|(path, text)| (path.to_owned(), text.clone())).collect()
 }
 

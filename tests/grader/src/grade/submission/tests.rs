@@ -71,7 +71,7 @@ fn text_that_is_none_is_refused_with_what_to_do() {
     for (bytes, says) in [
         (b"\xff\xfea\0".to_vec(), "UTF-16"),
         (b"ab\xffcd".to_vec(), "byte 2"),
-        (vec![b' '; LONGEST_FILE as usize + 1], "512 KiB"),
+        (vec![b' '; MOST_BYTES as usize + 1], "1024 KiB"),
     ] {
         let error = text(&bytes[..]).unwrap_err();
         assert!(error.contains(says), "{error}");
@@ -128,23 +128,33 @@ fn archives_give_the_same_as_folders_and_lead_nowhere() {
 #[test]
 fn bombs_and_rubbish_are_trouble_and_nothing_worse() {
     let folder = tempfile::tempdir().unwrap();
-    let huge = vec![0; 1 << 20];
+    let huge = vec![0; (1 << 20) + 1];
+    let half = &huge[..600 << 10];
     let many: Vec<(String, &[u8])> = (0..300).map(|n| (format!("{n}.txt"), &huge[..])).collect();
     let many: Vec<(&str, &[u8])> = many.iter().map(|(name, bytes)| (name.as_str(), *bytes)).collect();
     for (name, bytes, says) in [
-        ("a.zip", b"no zip at all".to_vec(), "cannot be unpacked"),
+        ("a.zip", b"no zip at all".to_vec(), "download it again, or hand in a new .zip"),
+        ("cut.tgz", gzipped(&tarred(&[(SHAPES, b"one")]))[..40].to_vec(), "download it again"),
+        ("a.7z", b"7z".to_vec(), ".7z is not read here; unpack it"),
         ("a.tar", vec![7; 2000], "cannot be unpacked"),
         ("a.tgz", b"\x1f\x8b and then nothing".to_vec(), "cannot be unpacked"),
         ("bomb.tgz", gzipped(&tarred(&many)), "256 MiB"),
         ("empty.zip", zipped(&[]), "right folder"),
+        ("sum.zip", zipped(&[(SHAPES, half), ("stage2_triangles.rs", half)]), "1024 KiB together"),
     ] {
         fs::write(folder.path().join(name), bytes).unwrap();
         let trouble = take(&folder.path().join(name), &wanted(), &wanted()).trouble.unwrap();
         assert!(trouble.contains(says), "{name}: {trouble}");
     }
+    let nested = zipped(&[("work.zip", &zipped(&[(SHAPES, b"one")]))]);
+    fs::write(folder.path().join("nested.zip"), nested).unwrap();
+    let nested = take(&folder.path().join("nested.zip"), &wanted(), &wanted());
+    assert!(remark(&nested, "work.zip").contains("hand in its files"));
     let long = zipped(&[(SHAPES, &huge)]);
     fs::write(folder.path().join("long.zip"), long).unwrap();
-    assert!(remark(&take(&folder.path().join("long.zip"), &wanted(), &wanted()), SHAPES).contains("512 KiB"));
+    assert!(
+        remark(&take(&folder.path().join("long.zip"), &wanted(), &wanted()), SHAPES).contains("1024 KiB")
+    );
 }
 
 #[test]

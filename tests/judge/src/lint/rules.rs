@@ -1,7 +1,11 @@
 //! The constructs that no exercise needs, by rule.
 
+/// Rules about what the sandbox stops, or what harms only the functions that use it. A file with such constructs is graded.
+pub(super) const LEFT_TO_SANDBOX: [&str; 8] =
+    ["process", "files", "network", "environment", "threads", "system", "panics", "input"];
+
 /// Modules of the standard library that no exercise needs, by rule.
-pub(super) const MODULES: [(&str, &str, &str); 12] = [
+pub(super) const MODULES: [(&str, &str, &str); 11] = [
     ("process", "process", "an exercise must not start or end processes"),
     ("files", "fs", "an exercise must not read or write files: the scaffold loads scenes"),
     ("network", "net", "an exercise must not use the network"),
@@ -13,8 +17,11 @@ pub(super) const MODULES: [(&str, &str, &str); 12] = [
     ("panics", "panic", "an exercise may panic, and the kit reports it; it must not catch or hide a panic"),
     ("intrinsics", "arch", "an exercise must not use assembly or intrinsics"),
     ("intrinsics", "intrinsics", "an exercise must not use assembly or intrinsics"),
-    ("input", "stdin", "no input is typed while exercises are graded"),
 ];
+
+/// Why standard input is not read.
+pub(super) const STDIN: &str =
+    "no input is typed while exercises are graded, so this waits in vain; take values from the arguments";
 
 /// Macros that read data from outside of the file, by rule.
 pub(super) const MACROS: [(&str, &str, &str); 8] = [
@@ -47,8 +54,14 @@ pub(super) const ATTRIBUTES: [(&str, &str, &str); 11] = [
     ("linkage", "no_main", "an exercise must not change how it is built"),
 ];
 
-/// Lints that a file must not switch off, each with the reason. Forbidding them is allowed.
-pub(super) const LINTS: [(&str, &str); 2] = [
-    ("unsafe_code", "unsafe code is not part of any exercise"),
-    ("long_running_const_eval", "this lint stops constants whose evaluation never ends"),
+/// Levels of lints that a file must not set, each with the reason. Forbidding both lints is allowed.
+pub(super) const LINTS: [(&str, &str, &str); 5] = [
+    ("allow", "unsafe_code", UNSAFE),
+    ("expect", "unsafe_code", UNSAFE),
+    ("allow", "long_running_const_eval", ENDLESS),
+    ("expect", "long_running_const_eval", ENDLESS),
+    ("warn", "long_running_const_eval", ENDLESS),
 ];
+
+const UNSAFE: &str = "unsafe code is not part of any exercise";
+const ENDLESS: &str = "this lint stops constants whose evaluation never ends";

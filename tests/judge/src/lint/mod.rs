@@ -1,15 +1,17 @@
-//! The syntax check: before compilation it lists constructs that no exercise needs, each with line and reason.
+//! The syntax check: lists constructs that no exercise needs, each with line and reason. The grader refuses files with some of
+//! them, and `raykata check` warns in time.
 //!
 //! It gives early and clear messages but no security. Safe Rust can avoid it, and only the sandbox stops such code. The
-//! check reads tokens instead of syntax trees, so that it also sees the contents of macros. It leaves out top-level items
-//! under `#[cfg(test)]`, which are not compiled. The compiler reports files that are not valid Rust.
+//! check reads tokens instead of syntax trees, so that it also sees the contents of macros, but no words that a macro puts
+//! together. It leaves out what stands under `#[cfg(test)]`, which is not compiled. The compiler reports files that are not valid
+//! Rust.
 
 mod compiled;
 mod rules;
 
 use compiled::compiled;
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
-use rules::{ATTRIBUTES, LINTS, MACROS, MODULES};
+use rules::{ATTRIBUTES, LEFT_TO_SANDBOX, LINTS, MACROS, MODULES, STDIN};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::str::FromStr;
@@ -25,9 +27,18 @@ pub struct Finding {
     pub why: String,
 }
 
+impl Finding {
+    /// Whether the file is graded all the same, because the sandbox stops the construct or its own function alone suffers.
+    pub fn is_left_to_sandbox(&self) -> bool {
+        LEFT_TO_SANDBOX.contains(&self.rule.as_str())
+    }
+}
+
 /// The result of the syntax check of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reading {
+    /// Whether the tokens of the file cannot be read, so that no rule was applied.
+    pub is_unreadable: bool,
     /// The constructs that no exercise needs.
     pub findings: Vec<Finding>,
     /// Whether a function may store earlier questions between calls. Only statics and thread-local variables can, if the
@@ -39,7 +50,7 @@ pub struct Reading {
 pub fn read(text: &str) -> Reading {
     // The compiler explains unbalanced tokens better.
     let Ok(tokens) = TokenStream::from_str(text) else {
-        return Reading { findings: Vec::new(), may_remember: true };
+        return Reading { is_unreadable: true, findings: Vec::new(), may_remember: true };
     };
     let tokens = compiled(tokens);
     let mut search = Search { own: declared(tokens.clone()), findings: Vec::new() };
@@ -47,7 +58,7 @@ pub fn read(text: &str) -> Reading {
     let mut findings = search.findings;
     findings.sort_by_key(|finding| finding.line);
     findings.dedup();
-    Reading { findings, may_remember: keeps(tokens) }
+    Reading { is_unreadable: false, findings, may_remember: keeps(tokens) }
 }
 
 /// Returns the names of the modules and types that the tokens declare.
@@ -108,6 +119,9 @@ impl Search {
                 TokenTree::Ident(word) => match plain(word).as_str() {
                     "unsafe" => say("unsafe", "`unsafe`".into(), "unsafe code is not part of any exercise"),
                     "extern" => say("linkage", "`extern`".into(), "an exercise must not call foreign code"),
+                    "stdin" if in_use || is_empty_group(rest.first()) => {
+                        say("input", "`stdin`".into(), STDIN);
+                    }
                     root @ ("std" | "core" | "alloc") if is_crate(root, &tokens[..index], &self.own) => {
                         if in_use && matches!(rest.first(), Some(TokenTree::Ident(word)) if word == "as") {
                             say("system", format!("`{root} as …`"), "a renamed import hides what is used");
@@ -142,11 +156,9 @@ impl Search {
                                 "exercises are built with a stable compiler",
                             );
                         }
-                        let allows =
-                            words.iter().any(|word| ["allow", "expect", "warn"].contains(&word.as_str()));
-                        for (name, why) in LINTS.iter().filter(|_| allows) {
-                            if words.iter().any(|word| word == name) {
-                                say("linkage", format!("`#[allow({name})]`"), why);
+                        for (level, name, why) in LINTS {
+                            if [level, name].iter().all(|one| words.iter().any(|word| word == one)) {
+                                say("linkage", format!("`#[{level}({name})]`"), why);
                             }
                         }
                     }
@@ -237,6 +249,10 @@ fn plain(word: &Ident) -> String {
     text.strip_prefix("r#").map_or(text.clone(), str::to_owned)
 }
 
+fn is_empty_group(token: Option<&TokenTree>) -> bool {
+    matches!(token, Some(TokenTree::Group(group)) if group.stream().is_empty())
+}
+
 fn is(token: Option<&TokenTree>, mark: char) -> bool {
     matches!(token, Some(TokenTree::Punct(punct)) if punct.as_char() == mark)
 }
@@ -284,6 +300,16 @@ mod tests {
             ("m! { #[cfg(test)] mod a { use std::fs; } }", "files", 1),
             ("fn f() { match x { #[cfg(test)] 1 => std::process::exit(0), _ => {} } }", "process", 1),
             ("#[cfg(not(test))] use std::fs;", "files", 1),
+            (
+                "fn f() { let s = S { #[cfg(test)] x: a as fn(u8), y: { std::process::exit(0) } }; }",
+                "process",
+                1,
+            ),
+            ("fn f() { g(#[cfg(test)] 1, std::process::exit(0)); }", "process", 1),
+            ("macro_rules! m { () => { #[cfg(test)] use std::fs; } }", "files", 1),
+            ("fn f() { std::io::stdin().read_line(&mut s); }", "input", 1),
+            ("use std::io::{self, stdin as typed};", "input", 1),
+            ("#![warn(long_running_const_eval)]", "linkage", 1),
         ];
         for (text, rule, line) in cases {
             assert!(rules(text).contains(&(rule.into(), line)), "{text}: {:?}", rules(text));
@@ -330,6 +356,10 @@ mod tests {
             "#[cfg(test)] use std::time::Instant; #[cfg(test)] #[allow(unused)] use std::fs;",
             "mod core { pub fn env() {} } fn f() { core::env(); self::core::env(); crate::core::env() }",
             "use crate::core::thread; use super::std::process;",
+            "mod a { #[cfg(test)] mod tests { use std::fs; } } #[cfg(test)] pub(crate) const fn f() { std::env::args() }",
+            "impl S { #[cfg(test)] #[inline] pub fn f() { std::process::exit(0) } fn g() {} }",
+            "fn f() { #[cfg(test)] std::thread::sleep(x); #[cfg(test)] let y = { std::env::args() }; #[cfg(test)] { std::env::vars() } }",
+            "#![warn(unsafe_code)] fn stdin(x: &str) { let stdin = \"std::fs, unsafe, #[path]\"; stdin.len(); }",
         ];
         for text in honest {
             assert_eq!(rules(text), [], "{text}");
