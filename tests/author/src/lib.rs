@@ -11,7 +11,6 @@ pub mod corpus;
 pub mod gaps;
 pub mod gauntlet;
 pub mod generate;
-pub mod new_check;
 pub mod numbers;
 pub mod pictures;
 pub mod printed;

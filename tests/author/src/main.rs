@@ -1,6 +1,6 @@
 //! `author`: generates the exercises, and tests the checks and the grader. It is the program of the kit's authors.
 
-use author::{bars, corpus, gaps, gauntlet, generate, new_check, sync, weaken};
+use author::{bars, corpus, gaps, gauntlet, generate, sync, weaken};
 #[cfg(target_os = "linux")]
 use author::{rehearsal, run_attacks};
 use grader::kits::root;
@@ -24,7 +24,6 @@ or files differ; 2 the command line is wrong.",
 
 const COMMANDS: &[Command] = &[
     (&sync::SPEC, |given| done(in_kit(sync::SyncOptions::read(given), sync::run))),
-    (&new_check::SPEC, |given| in_kit(new_check::NewCheckOptions::read(given), new_check::run)),
     (&corpus::SPEC, |given| in_kit(corpus::CorpusOptions::read(given), corpus::run)),
     (&gaps::SPEC, |given| gaps::run(&gaps::GapsOptions::read(given)?)),
     (&weaken::SPEC, |given| in_kit(weaken::WeakenOptions::read(given), weaken::run)),

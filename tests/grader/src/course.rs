@@ -1,5 +1,6 @@
 //! The course file on the command line (`--course`), and `grader course`, which says what a course file means.
 
+use crate::platform::{self, Column, PlatformTable};
 use anyhow::{Context, Result, bail, ensure};
 use raykata::course::{self, Course, Moment};
 use raykata::rubric;
@@ -124,22 +125,23 @@ pub fn name(course: &Course) -> String {
 /// When submissions were handed in, by student.
 pub type HandedIn = BTreeMap<String, Moment>;
 
-/// Reads a table of students and times, with a header. Returns an error if a time cannot be compared with the dates of the
-/// course.
-pub fn handed_in(file: &Path, course: &Course) -> Result<HandedIn> {
-    let mut reader = csv::ReaderBuilder::new()
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .from_path(file)
-        .with_context(|| format!("cannot read {}", file.display()))?;
+/// Reads a table of students and times: the grading worksheet of Moodle, or any table with a header whose first two columns are
+/// students and times. Returns the times of `students`, and a line about each student and each row that found no other.
+/// Returns an error if a time cannot be compared with the dates of the course.
+pub fn handed_in(file: &Path, course: &Course, students: &[&str]) -> Result<(HandedIn, Vec<String>)> {
+    let table = PlatformTable::read(file)?;
+    let column = table.column(Column::HandedIn).unwrap_or(1);
+    ensure!(
+        column < table.headers().len(),
+        "{}: a table of times needs a header and a column of times, such as `student,time`",
+        file.display()
+    );
+    // Who has handed in nothing has no time.
+    let found = table.find(students, |row| platform::date(&table.cell(row, column)).is_some());
     let mut times = HandedIn::new();
-    for row in reader.records() {
-        let row = row.with_context(|| format!("{} is not a table in UTF-8", file.display()))?;
-        let line = row.position().map_or(0, csv::Position::line);
-        let place = format!("{}:{line}", file.display());
-        let (Some(student), Some(time)) = (row.get(0), row.get(1)) else {
-            bail!("{place}: a row needs a student and a time: `ann,2026-11-02T18:30:00`");
-        };
+    for (student, row) in found.rows {
+        let place = table.place(row);
+        let time = platform::date(&table.cell(row, column)).unwrap_or_default();
         let time: Moment = time.parse().map_err(|why| anyhow::anyhow!("{place}: {why}"))?;
         if let Some((stage, due)) = course.due.iter().find(|(_, due)| time.compare(due).is_none()) {
             bail!(
@@ -147,9 +149,9 @@ pub fn handed_in(file: &Path, course: &Course) -> Result<HandedIn> {
                  such as +01:00, or both without"
             );
         }
-        ensure!(times.insert(student.to_owned(), time).is_none(), "{place}: {student} is in the table twice");
+        times.insert(student, time);
     }
-    Ok(times)
+    Ok((times, [found.students, found.others].concat()))
 }
 
 /// Prints what a course file means.
@@ -206,15 +208,25 @@ mod tests {
         let file = folder.path().join("times.csv");
         let read = |text: &str, course: &str| {
             fs::write(&file, text).unwrap();
-            handed_in(&file, &parsed(course)).map_err(|error| format!("{error:#}"))
+            handed_in(&file, &parsed(course), &["ann", "b, c"]).map_err(|error| format!("{error:#}"))
         };
-        let times = read("student,time\nann, 2026-11-02 18:30:00\n\"b, c\",2026-11-03\n", "").unwrap();
+        let (times, others) =
+            read("student,time\nann, 2026-11-02 18:30:00\n\"b, c\",2026-11-03\nEve,2026-11-03\n", "")
+                .unwrap();
         assert_eq!(times["ann"].to_string(), "2026-11-02 18:30:00");
         assert_eq!(times.len(), 2);
+        assert!(others[0].ends_with(":4: Eve: no submission") && others.len() == 1, "{others:?}");
+        let twice = read("student,time\nann,2026-11-02\nann,2026-11-03\n", "").unwrap();
+        assert!(twice.0.is_empty() && twice.1[0].contains("have this name"), "{twice:?}");
+        let moodle = "Identifier;\"Full name\";\"Last modified (submission)\"\n\
+                      Participant 7;\"Ann Lee\";\"Montag, 2. November 2026, 18:30\"\nParticipant 8;Bob;-\n";
+        std::fs::write(&file, moodle).unwrap();
+        let student = "Ann Lee_7_assignsubmission_file_";
+        let (times, others) = handed_in(&file, &parsed(""), &[student]).unwrap();
+        assert_eq!((times[student].to_string().as_str(), others.len()), ("2026-11-02 18:30:00", 0));
         for (text, words) in [
-            ("student,time\nann\n", ":2: a row needs a student and a time"),
+            ("ann\n", ": a table of times needs a header and a column of times"),
             ("student,time\nann,monday\n", ":2: `monday` is not a date such as"),
-            ("student,time\nann,2026-11-02\nann,2026-11-03\n", ":3: ann is in the table twice"),
             (
                 "student,time\nann,2026-11-02T12:00:00Z\n",
                 ":2: 2026-11-02 12:00:00Z cannot be compared with 2026-11-02",

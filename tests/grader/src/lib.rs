@@ -12,6 +12,7 @@ pub mod files_below;
 #[cfg(target_os = "linux")]
 pub mod grade;
 pub mod handout;
+pub mod platform;
 pub mod program;
 pub mod release;
 pub mod room;

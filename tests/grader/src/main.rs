@@ -17,7 +17,10 @@ or files differ; 2 the command line is wrong.",
     commands: COMMANDS,
     groups: &[
         #[cfg(target_os = "linux")]
-        ("export", "Write the files with which Gradescope, GitHub Classroom or Slurm grade."),
+        (
+            "export",
+            "Write what Gradescope, GitHub Classroom or Slurm need, or fill the table of Moodle or Canvas.",
+        ),
     ],
     without_command: None,
     elsewhere: |_| Ok(String::new()),
@@ -42,6 +45,10 @@ const COMMANDS: &[Command] = &[
     (&export::SLURM, |given| done(in_kit(export::SlurmOptions::read(given), export::slurm))),
     #[cfg(target_os = "linux")]
     (&export::PICTURE, |given| done(in_kit(export::PictureOptions::read(given), export::picture))),
+    #[cfg(target_os = "linux")]
+    (&export::MOODLE, |given| done(export::platform(&export::PlatformOptions::read(given)?, false))),
+    #[cfg(target_os = "linux")]
+    (&export::CANVAS, |given| done(export::platform(&export::PlatformOptions::read(given)?, true))),
     #[cfg(target_os = "linux")]
     (&export::CLASSROOM, |given| done(export::classroom(&export::ExportOptions::of_classroom(given)?))),
 ];

@@ -3,13 +3,12 @@ use super::program_runs::{does_not_understand, explains};
 use std::process::Command;
 
 /// The commands with their arguments and options.
-const COMMANDS: [(&str, &[&str]); 10] = [
+const COMMANDS: [(&str, &[&str]); 9] = [
     ("gauntlet", &["--kit", "--inputs", "--seed", "--out", "20000"]),
     ("cost", &["[SCENE]", "--headline", "--rounds", "--set"]),
     ("attacks", &["[NAME]...", "--shard"]),
     ("rehearse", &["--students", "--out", "--jobs", "--honest", "200"]),
     ("sync", &["--check", "--force"]),
-    ("new-check", &["NAME", "--stage", "--function", "--module", "--after"]),
     (
         "corpus",
         &[

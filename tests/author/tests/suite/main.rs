@@ -10,7 +10,6 @@ mod full_disk;
 #[cfg(target_os = "linux")]
 mod long_runs;
 #[cfg(target_os = "linux")]
-mod new_check;
 mod one_build;
 mod paste;
 mod pictures;

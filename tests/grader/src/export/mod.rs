@@ -1,8 +1,11 @@
-//! `grader export`: writes the files with which Gradescope, GitHub Classroom and Slurm grade as `grader grade` does.
+//! `grader export`: writes the files with which Gradescope, GitHub Classroom and Slurm grade as `grader grade` does, and fills
+//! the tables of Moodle and Canvas.
 
 mod bundle;
+mod platforms;
 mod slurm;
 
+pub use platforms::{CANVAS, MOODLE, PlatformOptions, platform};
 pub use slurm::{PICTURE, PictureOptions, SLURM, SlurmOptions, picture, slurm};
 
 use crate::course::{self, CourseFiles};

@@ -19,6 +19,7 @@ use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, KitError, Request, Transport, kit_error};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::mem::{Discriminant, discriminant};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -283,7 +284,7 @@ impl Judge {
         calls: &Arc<Calls>,
     ) -> Result<checks::CheckResult, KitError> {
         let kit: Arc<dyn Kit + Send + Sync> =
-            Arc::new(Door(StoppableWorker { worker, calls: calls.clone() }));
+            Arc::new(Door(StoppableWorker { worker, calls: calls.clone(), seed }));
         let inputs = inputs(seed, &self.drawn, &self.reference);
         let examined = checks::examine(prepared.check, &kit, seed, inputs);
         // A check that hangs continues on its own thread. It ends there, because it gets no more answers.
@@ -480,6 +481,8 @@ struct Calls {
 struct StoppableWorker {
     worker: Arc<Worker>,
     calls: Arc<Calls>,
+    /// The seed of the inputs; 0 for public ones.
+    seed: u64,
 }
 
 impl Transport for StoppableWorker {
@@ -497,6 +500,14 @@ impl Transport for StoppableWorker {
 
     fn waited(&self) -> Duration {
         self.worker.waited()
+    }
+
+    // No one earns points by the places of known questions: hidden ones come in another order in each class.
+    fn swaps(&self, n: usize) -> Vec<(usize, usize)> {
+        let draw = |i: usize| {
+            BuildHasherDefault::<DefaultHasher>::default().hash_one((self.seed, n, i)) as usize % (i + 1)
+        };
+        if self.seed == 0 { Vec::new() } else { (1..n).map(|i| (i, draw(i))).collect() }
     }
 }
 

@@ -27,7 +27,7 @@ pub use once::Once;
 pub use one::{GradeOneOptions, SPEC as ONE, run as one};
 pub(crate) use options::{draw_seed, stages};
 pub use shard::{Shard, shard};
-pub use store::Store;
+pub use store::{FILE as STORE, Store};
 pub use worker_builder::{COMPILER_PATIENCE, WorkerBuilder};
 
 use crate::course::CourseFiles;
@@ -75,9 +75,15 @@ pub static SPEC: Spec = Spec {
             Opt::value(
                 "--handed-in",
                 "FILE",
-                "A table of students and times, such as `ann,2026-11-02T18:30:00` below a header. Reports mark what was handed in \
-                 after the dates of the course file; the points stay the same.",
+                "A table of students and times: the grading worksheet of Moodle, or `ann,2026-11-02T18:30:00` below a header. \
+                 Reports mark what was handed in after the dates of the course file; the points stay the same.",
             ),
+            Opt::value(
+                "--again",
+                "STUDENT",
+                "With `--resume`: grade the submission of this student again, although it has not changed.",
+            )
+            .many(),
             Opt::flag(
                 "--forget-missing",
                 "With `--resume`: delete the grades of submissions that are not in SUBMISSIONS.",
@@ -96,6 +102,7 @@ pub struct GradeOptions {
     resume: bool,
     forget_missing: bool,
     handed_in: Option<PathBuf>,
+    again: Vec<String>,
     grading: GradingOptions,
 }
 
@@ -110,10 +117,12 @@ impl GradeOptions {
             resume: given.has("--resume"),
             forget_missing: given.has("--forget-missing"),
             handed_in: given.path("--handed-in"),
+            again: given.list("--again", |student| Ok::<_, String>(student.to_owned()))?,
             grading: GradingOptions::read(given)?,
         };
         given.require("--shard", "--seed")?;
         given.require("--forget-missing", "--resume")?;
+        given.require("--again", "--resume")?;
         Ok(options)
     }
 }
@@ -152,22 +161,26 @@ pub fn run(root: &Path, options: &GradeOptions) -> Result<bool> {
     let course = course.or(store.course()?);
     course.as_ref().map_or(Ok(()), CourseFiles::apply)?;
     let (mut grader, session) = options.grading.begin(root, begun.as_ref())?;
-    if let Some(file) = &options.handed_in {
-        grader.handed_in = crate::course::handed_in(file, rubric::course())?;
-        let unknown = |student: &&String| !submissions.iter().any(|one| one.student == **student);
-        if let (None, Some(student)) = (options.shard, grader.handed_in.keys().find(unknown)) {
-            eprintln!(
-                "note: {} has a time for {}, who has handed in nothing here",
-                file.display(),
-                clean_line(student, 80)
-            );
-        }
-    }
-    store.begin(&session)?;
-    store.keep_course(course.as_ref())?;
-    store.begin_part(part.as_ref())?;
     // Keep the grades of submissions that are not there, unless the instructor says otherwise.
     let names: Vec<&str> = submissions.iter().map(|one| one.student.as_str()).collect();
+    if let Some(file) = &options.handed_in {
+        let (times, unmatched) = crate::course::handed_in(file, rubric::course(), &names)?;
+        grader.handed_in = times;
+        // The rows of other parts find nobody here.
+        let unmatched = unmatched.iter().filter(|_| options.shard.is_none());
+        unmatched.for_each(|line| eprintln!("note: --handed-in: {}", clean_line(line, 200)));
+    }
+    store.begin(session)?;
+    for student in &options.again {
+        ensure!(
+            names.contains(&student.as_str()),
+            "--again: there is no submission of {student} in {}",
+            options.submissions.display()
+        );
+        store.forget(student)?;
+    }
+    store.keep_course(course.as_ref())?;
+    store.begin_part(part.as_ref())?;
     let others = store.others(&names)?;
     if options.forget_missing {
         others.iter().try_for_each(|student| store.forget(student))?;
@@ -197,6 +210,7 @@ const MOST_LISTED: usize = 20;
 /// Writes the reports and prints a summary. Returns whether every submission could be graded.
 fn finish(store: &Store, out: &Path) -> Result<bool> {
     let session = store.session()?.context("nothing has been graded here yet")?;
+    store.notes()?.1.iter().for_each(|line| eprintln!("note: {}", clean_line(line, 200)));
     let summary = report::write_from(&session, &|each| store.each(each), out)?;
     for (student, trouble) in summary.troubled.iter().take(MOST_LISTED) {
         eprintln!("{student}: {trouble}");

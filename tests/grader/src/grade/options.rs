@@ -72,11 +72,17 @@ impl GradingOptions {
         if let Some(stage) = stages.iter().flatten().find(|stage| course.leaves_out(**stage)) {
             bail!("--stages names stage {stage}, which the course file leaves out: change one of the two");
         }
+        // Another course file decides which of the graded stages count.
+        let begun_stages = begun.map(|begun| match begun.course == course::name(course) {
+            true => begun.stages.clone(),
+            false => begun.graded().into_iter().filter(|stage| !course.leaves_out(*stage)).collect(),
+        });
         let session = Session {
             kit: kit(root, &self.allow, &builder)?,
-            stages: stages.or(begun.map(|session| session.stages.clone())).unwrap_or_else(stages_of_course),
+            stages: stages.or(begun_stages).unwrap_or_else(stages_of_course),
             seed: self.seed.or(begun.map(|session| session.seed)).unwrap_or_else(draw_seed),
             isolation,
+            dropped: Vec::new(),
             course: course::name(course),
             due: course.due.iter().map(|(stage, due)| (*stage, due.to_string())).collect(),
         };

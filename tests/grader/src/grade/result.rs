@@ -3,7 +3,7 @@
 use checks::rubric::{self, Level, Score};
 use raykata::course::Moment;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// How a check ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -128,6 +128,18 @@ pub struct Graded {
     /// When the submission was handed in, as the instructor's table says; empty if unknown.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub handed_in: String,
+    /// What the instructor adds, from `notes.csv`. It is not stored with the grade.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<Note>,
+}
+
+/// Points and a note of the instructor.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Note {
+    /// Points that are added; negative ones are taken away.
+    pub points: i32,
+    /// The text, which the student sees.
+    pub text: String,
 }
 
 impl CheckResult {
@@ -141,9 +153,25 @@ impl CheckResult {
 }
 
 impl Graded {
-    /// Returns the earned points and the possible points.
+    /// Returns the earned points and the possible points of the checks.
     pub fn score(&self) -> Score {
         score(self.checks.iter())
+    }
+
+    /// Returns the earned points, with those of the instructor; at least 0.
+    pub fn earned(&self) -> u32 {
+        self.score().points().0.saturating_add_signed(self.note.as_ref().map_or(0, |note| note.points))
+    }
+
+    /// Returns the grade with the stages that count and the points that the course file gives now. Outcomes stay as they are.
+    pub fn valued(mut self, stages: &[u8]) -> Graded {
+        self.checks.retain(|check| stages.contains(&check.stage));
+        for check in &mut self.checks {
+            let CheckResult { points, earned, level, .. } =
+                CheckResult::new(check.stage, &check.name, check.outcome, String::new());
+            (check.points, check.earned, check.level) = (points, earned, level);
+        }
+        self
     }
 
     /// Returns the stages in ascending order.
@@ -184,8 +212,11 @@ pub fn in_words(score: Score) -> String {
 pub struct Session {
     /// Version of the kit and fingerprint of its checks and rubric.
     pub kit: String,
-    /// The graded stages, in ascending order.
+    /// The stages that count, in ascending order.
     pub stages: Vec<u8>,
+    /// The stages that were graded and count no more. Their outcomes stay stored.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub dropped: Vec<u8>,
     /// The seed of the hidden inputs, the same for all students.
     pub seed: u64,
     /// The kind of sandbox, in one line.
@@ -196,6 +227,13 @@ pub struct Session {
     /// When stages are due. No grade depends on it.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub due: BTreeMap<u8, String>,
+}
+
+impl Session {
+    /// All stages that were graded, also those that count no more.
+    pub fn graded(&self) -> BTreeSet<u8> {
+        self.stages.iter().chain(&self.dropped).copied().collect()
+    }
 }
 
 /// A class, graded.

@@ -2,20 +2,24 @@
 //! is complete, so a killed run loses only the submissions that were in progress.
 
 use super::report::clean::clean_line;
-use super::result::{Class, Graded, Session};
+use super::result::{Class, Graded, Note, Session};
 use super::shard::Part;
 use crate::course::CourseFiles;
+use crate::platform::PlatformTable;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use raykata_cli::lock::Lock;
 use rusqlite::{Connection, OptionalExtension, params};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The name of the database in the folder of results.
 pub const FILE: &str = "grades.sqlite";
+
+/// The table of the instructor in the folder of results: students, points that are added, and notes.
+pub const NOTES: &str = "notes.csv";
 
 /// The file that a grader locks while it writes grades. The database itself cannot be locked in this way: closing a second
 /// handle of it would drop the locks of SQLite.
@@ -77,19 +81,23 @@ impl Store {
         self.one("session")
     }
 
-    /// Stores the session. Returns an error if the stored grades were made in another way, and leaves them as they are.
-    pub fn begin(&self, session: &Session) -> Result<()> {
+    /// Stores the session. Another course file or fewer stages change what stored outcomes count. Returns an error if outcomes
+    /// were made in another way, and leaves them as they are.
+    pub fn begin(&self, mut session: Session) -> Result<()> {
         if let Some(begun) = self.session()? {
+            let mut graded = begun.graded();
             ensure!(
-                begun.same_grades(session),
+                (&begun.kit, begun.seed) == (&session.kit, session.seed)
+                    && session.stages.iter().all(|stage| graded.remove(stage)),
                 "the grades there were made in another way ({}) than asked for now ({}){}; choose another folder, or use \
-                 the same kit, course file and options",
+                 the same kit, stages and options",
                 begun.words(),
                 session.words(),
                 if begun.seed == session.seed { "" } else { ", with another --seed" }
             );
+            session.dropped = graded.into_iter().collect();
         }
-        self.keep_one("session", session)
+        self.keep_one("session", &session)
     }
 
     /// Returns the course file with which the grades were made.
@@ -161,14 +169,40 @@ impl Store {
         Ok(Class { session, students })
     }
 
-    /// Calls `each` with one grade after the other, sorted by the names of the students. Only one grade is in memory at a time.
+    /// The points and notes of the instructor by student, and the rows that belong to no student. The file is the
+    /// instructor's: no run writes to it.
+    pub fn notes(&self) -> Result<(BTreeMap<String, Note>, Vec<String>)> {
+        let file = self.file.with_file_name(NOTES);
+        if !file.exists() {
+            return Ok(Default::default());
+        }
+        let table = PlatformTable::read(&file)?;
+        let names = self.names()?;
+        let found = table.find(&names.iter().map(String::as_str).collect::<Vec<_>>(), |_| true);
+        let note = |(student, row): (String, usize)| {
+            let [points, text] = [1, 2].map(|column| table.cell(row, column));
+            let points = if points.is_empty() { Ok(0) } else { points.parse() };
+            let points = points.map_err(|_| {
+                anyhow!("{}: `{}` is not a whole number of points", table.place(row), table.cell(row, 1))
+            })?;
+            Ok((student, Note { points, text }))
+        };
+        Ok((found.rows.into_iter().map(note).collect::<Result<_>>()?, found.others))
+    }
+
+    /// Calls `each` with one grade after the other, sorted by the names of the students, with the stages that count, their points
+    /// and the instructor's. Only one grade is in memory at a time.
     pub fn each(&self, each: &mut dyn FnMut(Graded) -> Result<()>) -> Result<()> {
+        let stages = self.session()?.unwrap_or_default().stages;
+        let mut notes = self.notes()?.0;
         let connection = self.lock();
         let mut statement = connection.prepare("SELECT json FROM graded ORDER BY student")?;
         let mut rows = statement.query([])?;
         while let Some(row) = rows.next()? {
             let json: String = row.get(0)?;
-            each(serde_json::from_str(&json).context("a grade is from another version")?)?;
+            let graded: Graded = serde_json::from_str(&json).context("a grade is from another version")?;
+            let note = notes.remove(&graded.student);
+            each(Graded { note, ..graded.valued(&stages) })?;
         }
         Ok(())
     }
@@ -227,7 +261,7 @@ impl Store {
             );
             self.copy_from(folder)?;
         }
-        self.begin(&known.context("there are no parts")?)
+        self.begin(known.context("there are no parts")?)
     }
 
     /// Copies all grades of the store in `folder` in one transaction.
@@ -323,20 +357,20 @@ mod tests {
     fn stored_grades_survive_a_crash_another_class_and_other_options() {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
-        store.begin(&session(7)).unwrap();
+        store.begin(session(7)).unwrap();
         store.keep(&graded("ann", "x")).unwrap();
         // Leave the database open, as a killed process does.
         std::mem::forget(store);
         let store = Store::open(folder.path()).unwrap();
-        store.begin(&session(7)).unwrap();
+        store.begin(session(7)).unwrap();
         assert!(store.known("ann", "x").unwrap().is_some());
         assert!(store.known("ann", "y").unwrap().is_none());
         // Another class, and other options, change nothing.
         assert_eq!(store.others(&["bob"]).unwrap(), ["ann"]);
-        let error = store.begin(&session(8)).unwrap_err().to_string();
+        let error = store.begin(session(8)).unwrap_err().to_string();
         assert!(error.contains("another --seed"), "{error}");
         let stages = Session { stages: vec![2], ..session(7) };
-        assert!(store.begin(&stages).unwrap_err().to_string().contains("stages 1, kit 1"));
+        assert!(store.begin(stages).unwrap_err().to_string().contains("stages 1, kit 1"));
         assert!(store.known("ann", "x").unwrap().is_some());
         store.forget("ann").unwrap();
         assert!(store.known("ann", "x").unwrap().is_none());
@@ -359,7 +393,7 @@ mod tests {
         let paths: Vec<PathBuf> = folders.iter().map(|folder| folder.path().to_owned()).collect();
         for (folder, student, seed) in [(1, "ann", 1), (2, "bob", 1), (3, "cat", 2)] {
             let part = Store::open(&paths[folder]).unwrap();
-            part.begin(&session(seed)).unwrap();
+            part.begin(session(seed)).unwrap();
             part.keep(&graded(student, "x")).unwrap();
         }
         let store = Store::open(&paths[0]).unwrap();
@@ -378,7 +412,7 @@ mod tests {
     fn a_folder_holds_one_part_of_a_class() {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
-        store.begin(&session(1)).unwrap();
+        store.begin(session(1)).unwrap();
         let part = |index| Part {
             shard: Shard { index, of: 3 },
             submissions: 5,

@@ -2,7 +2,7 @@
 use super::program_runs::{does_not_understand, explains, said};
 
 /// The commands with their arguments and options.
-const COMMANDS: [(&str, &[&str]); 8] = [
+const COMMANDS: [(&str, &[&str]); 10] = [
     (
         "grade",
         &[
@@ -26,6 +26,8 @@ const COMMANDS: [(&str, &[&str]); 8] = [
     ("export gradescope", &["--out", "--stages", "--seed", "autograder.zip"]),
     ("export slurm", &["SUBMISSIONS", "--out", "--chunk", "--stages", "--seed"]),
     ("export slurm-picture", &["SCENE", "--out", "--pieces", "--seed", "--size", "--tone"]),
+    ("export moodle", &["TABLE", "GRADES", "--out", "--column", "--stages", "--scale"]),
+    ("export canvas", &["TABLE", "GRADES", "--out", "--column", "--stages", "--scale"]),
     ("export classroom", &["--out", "--stages", "--seed", "--parts"]),
 ];
 
@@ -47,7 +49,7 @@ fn what_is_not_understood_ends_with_2() {
     let lines = [
         ("", "a command is missing"),
         ("exprot", "there is no command `exprot`; did you mean `export`?"),
-        ("export", "the commands are gradescope, slurm, slurm-picture, classroom"),
+        ("export", "the commands are gradescope, slurm, slurm-picture, moodle, canvas, classroom"),
         ("export classroom --out a --parts 257", "a whole number from 1 to 256"),
         ("export slurm --out a", "SUBMISSIONS is missing"),
         ("export slurm-picture a.toml --out a --sed 1", "did you mean `--seed`?"),

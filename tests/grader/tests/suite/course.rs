@@ -59,16 +59,20 @@ fn a_course_file_decides_stages_points_and_titles_of_a_class_and_marks_what_is_l
     assert!(text(out, "gradescope/bob.json").contains("stage 1 was handed in 1 day late"));
     assert!(text(out, "index.html").contains("Handed in late"));
 
-    // Another course is refused, and so is none, if the points were those of a course.
+    // Other points count without grading again, and stages that were not graded are refused.
     let other = tempfile::tempdir().unwrap();
     let more_points = tempfile::tempdir().unwrap();
     let changed = written(more_points.path(), &COURSE.replace("200", "300"));
-    let output = grade(out, &["--course", &changed, "--resume"]);
+    assert!(grade(out, &["--course", &changed, "--resume"]).status.success());
+    assert!(text(out, "grades.csv").contains("\"ann\",300,300,100"));
+    let output =
+        grade(out, &["--stages", "2", "--resume", "--course", &written(other.path(), "title = \"x\"\n")]);
     assert!(
-        !output.status.success() && said_by(&output).contains("course file: Computergrafik ("),
+        !output.status.success() && said_by(&output).contains("were made in another way (stages 1,"),
         "{}",
         said_by(&output)
     );
+    assert!(grade(out, &["--course", &course, "--resume"]).status.success());
     // A later date grades nothing again; a run without the option takes the stored file.
     let before = graded(out);
     let later = written(other.path(), &COURSE.replace("2026-11-02", "2026-11-09"));

@@ -12,6 +12,7 @@ mod full_disk;
 #[cfg(target_os = "linux")]
 mod grade;
 mod handout;
+mod platforms;
 mod program_runs;
 mod release;
 #[cfg(target_os = "linux")]

@@ -1,7 +1,7 @@
 //! What the overview of a class keeps of each submission. A class may have many thousands, so it is little.
 
 use super::names::FileNames;
-use crate::grade::result::{Graded, Outcome, Session, score};
+use crate::grade::result::{Graded, Note, Outcome, Session, score};
 
 /// A submission in the overview.
 pub(super) struct Line {
@@ -9,8 +9,10 @@ pub(super) struct Line {
     pub student: String,
     /// The name of the files of the student, without an ending.
     pub page: String,
-    /// The earned points of all stages, without bonus points.
+    /// The earned points of all stages, without bonus points, and with those of the instructor.
     pub points: u32,
+    /// What the instructor adds.
+    pub note: Option<Note>,
     /// The earned points of the core of all stages.
     pub core: u32,
     /// The earned bonus points of all stages.
@@ -37,7 +39,8 @@ impl Line {
         Line {
             student: graded.student.clone(),
             page: names.name(student),
-            points: graded.score().points().0,
+            points: graded.earned(),
+            note: graded.note.clone(),
             core: graded.score().core.0,
             bonus: graded.score().bonus.0,
             of_stages: graded.stages().into_iter().map(of_stage).collect(),

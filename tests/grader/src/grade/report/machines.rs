@@ -2,7 +2,7 @@
 
 use super::clean::clean_line;
 use super::{Each, messages, presentable};
-use crate::grade::result::{CheckResult, Graded, Outcome, Remark, Session};
+use crate::grade::result::{CheckResult, Graded, Note, Outcome, Remark, Session};
 use anyhow::Result;
 use checks::rubric::Level;
 use serde::Serialize;
@@ -25,6 +25,8 @@ struct GradedView<'a> {
     trouble: &'a str,
     #[serde(skip_serializing_if = "str::is_empty")]
     handed_in: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    note: Option<&'a Note>,
 }
 
 /// Writes the class as JSON for the instructor's tools, one submission after the other. It can be read back as a
@@ -34,12 +36,12 @@ pub(super) fn results(session: &Session, each: &Each<'_>, out: &mut dyn Write) -
     let mut before = "";
     each(&mut |graded| {
         let score = graded.score();
-        let ((earned, of), (core, core_of)) = (score.points(), score.core);
+        let (of, (core, core_of)) = (score.points().1, score.core);
         let without_picture = |check: &CheckResult| CheckResult { picture: None, ..check.clone() };
         let view = GradedView {
             student: &graded.student,
             content: &graded.content,
-            earned,
+            earned: graded.earned(),
             of,
             core,
             core_of,
@@ -49,6 +51,7 @@ pub(super) fn results(session: &Session, each: &Each<'_>, out: &mut dyn Write) -
             compiler: &graded.compiler,
             trouble: &graded.trouble,
             handed_in: &graded.handed_in,
+            note: graded.note.as_ref(),
         };
         write!(out, "{before}\n    {}", indented(&view, 4)?)?;
         before = ",";
@@ -77,7 +80,7 @@ pub(super) fn pretty(value: &impl Serialize) -> Result<Vec<u8>> {
 pub fn gradescope(graded: &Graded, session: &Session) -> Value {
     let graded = &presentable(graded);
     let mut place = (0, 0);
-    let tests: Vec<Value> = graded
+    let mut tests: Vec<Value> = graded
         .checks
         .iter()
         .map(|check| {
@@ -96,6 +99,9 @@ pub fn gradescope(graded: &Graded, session: &Session) -> Value {
             })
         })
         .collect();
+    tests.extend(messages::note(graded).zip(graded.note.as_ref()).map(|(name, note)| {
+        json!({ "name": name, "score": note.points, "max_score": 0, "name_format": "text", "visibility": "visible" })
+    }));
     let kit = clean_line(&session.kit, super::LINE);
     let course = match clean_line(&session.course, super::LINE) {
         course if course.is_empty() => String::new(),
@@ -134,10 +140,15 @@ pub fn classroom(graded: &Graded) -> Value {
                     let title = format!("{title} (bonus: {} of {})", check.earned, check.points);
                     classroom_test(&title, status(check.outcome), &message, 0)
                 }
-                _ => classroom_test(&title, status(check.outcome), &message, check.earned),
+                _ => classroom_test(&title, status(check.outcome), &message, check.earned as i32),
             }
         })
         .collect();
+    tests.extend(
+        messages::note(graded)
+            .zip(graded.note.as_ref())
+            .map(|(name, note)| classroom_test(&name, "pass", "", note.points)),
+    );
     if graded.checks.is_empty() {
         tests.push(classroom_test("submission", "error", &graded.trouble, 0));
     }
@@ -149,7 +160,7 @@ pub fn classroom(graded: &Graded) -> Value {
     json!({ "version": 1, "status": status, "max_score": of, "tests": tests })
 }
 
-fn classroom_test(name: &str, status: &str, message: &str, score: u32) -> Value {
+fn classroom_test(name: &str, status: &str, message: &str, score: i32) -> Value {
     let message = if message.is_empty() { Value::Null } else { json!(message) };
     json!({
         "name": name,

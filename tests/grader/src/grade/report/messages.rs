@@ -69,12 +69,37 @@ pub fn late(graded: &Graded, session: &Session) -> Vec<String> {
     graded.late(session).into_iter().map(line).collect()
 }
 
+/// What the instructor adds, as a sentence.
+pub fn note(graded: &Graded) -> Option<String> {
+    let note = graded.note.as_ref()?;
+    let text = if note.text.is_empty() { String::new() } else { format!(": {}", note.text) };
+    Some(match note.points {
+        0 => format!("from your instructor{text}"),
+        points => format!("{points:+} points from your instructor{text}"),
+    })
+}
+
+/// The points in one line: those of all stages, of each stage, and of the instructor.
+pub fn in_short(graded: &Graded) -> String {
+    let mut parts = vec![graded.trouble.clone(), in_words(graded.score())];
+    parts.extend(
+        graded
+            .stages()
+            .into_iter()
+            .map(|stage| format!("stage {stage}: {}", result::score(graded.of_stage(stage)))),
+    );
+    parts.extend(note(graded));
+    parts.retain(|part| !part.is_empty());
+    parts.join("; ")
+}
+
 /// Summarises a submission as plain text: points, reasons and the compiler's messages.
 pub fn summary(graded: &Graded) -> String {
     let mut lines = Vec::new();
     if !graded.checks.is_empty() {
         lines.push(in_words(graded.score()));
     }
+    lines.extend(note(graded));
     if !graded.trouble.is_empty() {
         lines.push(format!("This submission could not be graded: {}", graded.trouble));
     }

@@ -9,7 +9,7 @@ pub mod clean;
 mod junit;
 mod line;
 mod machines;
-mod messages;
+pub mod messages;
 mod names;
 mod page;
 mod student_list;
@@ -21,8 +21,9 @@ mod tests;
 
 pub use clean::{clean, clean_line};
 pub use machines::{classroom, gradescope};
+pub use names::FileNames;
 
-use super::result::{CheckResult, Graded, Picture, Remark, Session};
+use super::result::{CheckResult, Graded, Note, Picture, Remark, Session};
 use anyhow::{Context, Result};
 use line::Line;
 use raykata::film::write_atomically;
@@ -128,6 +129,7 @@ fn presentable(graded: &Graded) -> Graded {
         trouble: clean_line(&graded.trouble, MESSAGE),
         cpu_ms: graded.cpu_ms,
         handed_in: clean_line(&graded.handed_in, LINE),
+        note: graded.note.as_ref().map(|note| Note { text: clean_line(&note.text, MESSAGE), ..*note }),
     }
 }
 

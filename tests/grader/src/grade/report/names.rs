@@ -12,7 +12,7 @@ const RESERVED: [&str; 5] = ["con", "prn", "aux", "nul", "index"];
 /// Makes a file name for each student. It contains only letters, digits, `-`, `_` and `.`. The names also differ on file
 /// systems that ignore case. A changed name ends in a fingerprint of the old one.
 #[derive(Default)]
-pub(super) struct FileNames {
+pub struct FileNames {
     taken: BTreeSet<String>,
 }
 

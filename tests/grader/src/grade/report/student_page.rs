@@ -11,11 +11,12 @@ use maud::{Markup, html};
 
 /// Returns the page of a student as HTML.
 pub(super) fn student_page(graded: &Graded, session: &Session) -> String {
-    let (earned, of) = graded.score().points();
+    let (earned, of) = (graded.earned(), graded.score().points().1);
     let body = html! {
         header {
             h1.student { (graded.student) }
             @if !graded.checks.is_empty() { p.points { b { (earned) } " of " (of) " points (" (tally::percent(earned, of)) " %): " (graded.score()) } }
+            @if let Some(note) = messages::note(graded) { p.points { (note) } }
             (session_line(session))
         }
         @if !graded.trouble.is_empty() {

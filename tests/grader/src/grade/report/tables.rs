@@ -16,7 +16,9 @@ pub(super) fn grades(lines: &[Line], tallies: &[Tally], session: &Session) -> Re
     let header = header.chain(["bonus".to_owned()]);
     let dates: &[&str] = if session.due.is_empty() { &[] } else { &["handed_in", "late_stages"] };
     let header = header.chain(dates.iter().map(|&name| name.to_owned()));
-    table.row(header.chain(["remarks", "trouble", "page", "core", "core_of"].map(str::to_owned)))?;
+    table.row(
+        header.chain(["remarks", "trouble", "page", "added", "note", "core", "core_of"].map(str::to_owned)),
+    )?;
     for line in lines {
         let percent = tally::percent(line.points, of);
         let [points, of, core, of_core] = [line.points, of, line.core, core].map(|points| points.to_string());
@@ -26,7 +28,11 @@ pub(super) fn grades(lines: &[Line], tallies: &[Tally], session: &Session) -> Re
         let late: Vec<String> = line.late.iter().map(u8::to_string).collect();
         let row = row.chain([line.handed_in.clone(), late.join(" ")].into_iter().take(dates.len()));
         let remarks = [line.n_remarks.to_string(), line.trouble.clone(), line.page.clone()];
-        table.row(row.chain(remarks).chain([core, of_core]))?;
+        let added = line
+            .note
+            .as_ref()
+            .map_or([String::new(), String::new()], |note| [note.points.to_string(), note.text.clone()]);
+        table.row(row.chain(remarks).chain(added).chain([core, of_core]))?;
     }
     table.finish()
 }
@@ -75,7 +81,8 @@ impl<W: Write> Table<W> {
 
 /// Returns the cell in a form that no spreadsheet takes for a formula.
 fn defused(cell: &str) -> String {
-    match cell.trim_start().starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠']) {
+    let may_be_formula = cell.trim_start().starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠']);
+    match may_be_formula && cell.parse::<i64>().is_err() {
         true => format!("'{cell}"),
         false => cell.to_owned(),
     }
@@ -87,11 +94,11 @@ mod tests {
 
     #[test]
     fn formulas_are_text() -> Result<()> {
-        let row = ["=1+1", "+1", "-1", "@SUM(A1)", " =1", "a=1", "12", "a,\"b\"", "x;=1+1", "x\t=1"];
+        let row = ["=1+1", "+1 ", "-1", "@SUM(A1)", " =1", "a=1", "12", "a,\"b\"", "x;=1+1", "x\t=1"];
         let mut table = Table::new(Vec::new());
         table.row(row.map(str::to_owned))?;
         let bytes = table.finish()?;
-        let expected = r#""'=1+1","'+1","'-1","'@SUM(A1)","' =1","a=1",12,"a,""b""","x;=1+1","x	=1""#;
+        let expected = r#""'=1+1","'+1 ",-1,"'@SUM(A1)","' =1","a=1",12,"a,""b""","x;=1+1","x	=1""#;
         assert_eq!(String::from_utf8_lossy(&bytes), format!("{expected}\n"));
         Ok(())
     }

@@ -190,7 +190,7 @@ fn points_are_the_same_in_every_format() -> Result<()> {
     assert_eq!(rows.len(), back.students.len());
     for (graded, row) in back.students.iter().zip(&rows) {
         let (earned, of) = graded.score().points();
-        let [page, core] = [3, 2].map(|place| &row[row.len() - place]);
+        let [page, core] = [5, 2].map(|place| &row[row.len() - place]);
         assert_eq!(core, graded.score().core.0.to_string());
         assert_eq!(row[1], earned.to_string());
         assert_eq!(&row[2], "17");
@@ -300,7 +300,7 @@ fn an_empty_class_has_reports_too() -> Result<()> {
     let files = files_of(&class)?;
     assert_eq!(
         files["grades.csv"],
-        "\"name\",\"points\",\"of\",\"percent\",\"bonus\",\"remarks\",\"trouble\",\"page\",\"core\",\"core_of\"\n"
+        "\"name\",\"points\",\"of\",\"percent\",\"bonus\",\"remarks\",\"trouble\",\"page\",\"added\",\"note\",\"core\",\"core_of\"\n"
     );
     assert!(files["index.html"].contains("No submission tried a check and failed."));
     Ok(())

@@ -1,0 +1,235 @@
+//! `grader export moodle` and `grader export canvas`: the platform's own table of grades with the points of a class, and the
+//! reports as a zip of feedback files.
+
+use crate::course::CourseFiles;
+use crate::grade::report::{FileNames, clean_line, messages};
+use crate::grade::result::{Graded, score};
+use crate::grade::{Store, stages};
+use crate::platform::{Column, PlatformTable, numbered};
+use anyhow::{Context, Result, bail, ensure};
+use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use std::fs;
+use std::io::{Cursor, Write};
+use std::path::PathBuf;
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+const ARGUMENTS: &[Argument] = &[
+    Argument::required("TABLE", "The table that was downloaded from the platform, as CSV."),
+    Argument::required("GRADES", "The folder with the grades of the class."),
+];
+
+const OPTIONS: &[&[Opt]] = &[&[
+    Opt::value("--out", "FOLDER", "The folder for the filled table and for feedback.zip.").required(),
+    Opt::value(
+        "--column",
+        "NAME",
+        "The header of the column for the points [default: the only one that can be meant].",
+    ),
+    Opt::value(
+        "--stages",
+        "LIST",
+        "The stages of the assignment, as `3` or `1-4` [default: all that were graded].",
+    ),
+    Opt::flag("--scale", "Convert the points to the most points of the assignment, rounded to two decimals."),
+]];
+
+/// `grader export moodle`.
+pub static MOODLE: Spec = Spec {
+    name: "grader export moodle",
+    about: "Fill a grading worksheet of Moodle with points and feedback, and pack the reports as feedback files.",
+    arguments: ARGUMENTS,
+    options: OPTIONS,
+};
+
+/// `grader export canvas`.
+pub static CANVAS: Spec = Spec {
+    name: "grader export canvas",
+    about: "Fill a gradebook of Canvas with points, and pack the reports for `Upload Submissions`.",
+    arguments: ARGUMENTS,
+    options: OPTIONS,
+};
+
+/// The options of both commands.
+pub struct PlatformOptions {
+    table: PathBuf,
+    grades: PathBuf,
+    out: PathBuf,
+    column: Option<String>,
+    stages: Option<Vec<u8>>,
+    scale: bool,
+}
+
+impl PlatformOptions {
+    /// Reads the options from the command line.
+    pub fn read(given: &Given) -> Result<PlatformOptions, Misuse> {
+        Ok(PlatformOptions {
+            table: given.required(0)?.into(),
+            grades: given.required(1)?.into(),
+            out: given.required_path("--out")?,
+            column: given.parsed("--column", |name| Ok::<_, String>(name.to_owned()))?,
+            stages: given.parsed("--stages", |text| stages(text).map(|stages| stages.0))?,
+            scale: given.has("--scale"),
+        })
+    }
+}
+
+/// A student's part of the result.
+struct Entry {
+    student: String,
+    points: u32,
+    feedback: String,
+    /// The path of the report below the folder of grades.
+    page: String,
+}
+
+/// Fills a table and writes it with the feedback files.
+pub fn platform(options: &PlatformOptions, is_canvas: bool) -> Result<()> {
+    let mut table = PlatformTable::read(&options.table)?;
+    let (entries, of) = entries(options)?;
+    let (points, most) = columns(&table, options, is_canvas)?;
+
+    // Canvas has rows that are no students: the most points, and a test student.
+    let name = table.column(Column::Name);
+    let named = |row: usize, name: Option<usize>| {
+        name.map_or_else(String::new, |name| table.cell(row, name).to_lowercase())
+    };
+    let limits = table.rows().find(|&row| is_canvas && named(row, name) == "points possible");
+    let is_row = |row: usize| {
+        !is_canvas
+            || (Some(row) != limits
+                && named(row, name) != "student, test"
+                && !named(row, table.column(Column::Identifier)).is_empty())
+    };
+    let students: Vec<&str> = entries.iter().map(|entry| entry.student.as_str()).collect();
+    let found = table.find(&students, is_row);
+
+    // Take the decimal sign and the most points from the table.
+    let limit = match (limits, most) {
+        (Some(row), _) => table.cell(row, points),
+        (None, Some(most)) => {
+            table.rows().map(|row| table.cell(row, most)).find(|cell| !cell.is_empty()).unwrap_or_default()
+        }
+        (None, None) => String::new(),
+    };
+    let with_comma = |cell: String| cell.contains(',') && cell.replace(',', ".").parse::<f64>().is_ok();
+    let has_comma = with_comma(limit.clone()) || table.rows().any(|row| with_comma(table.cell(row, points)));
+    let limit: Option<f64> = limit.replace(',', ".").parse().ok();
+    if let Some(limit) = limit.filter(|limit| *limit != f64::from(of) && !options.scale) {
+        bail!(
+            "the assignment has {limit} points at most, and the graded stages have {of}: set it to {of} on the platform and \
+             download the table again, choose other --stages, or convert the points with --scale"
+        );
+    }
+    let factor = limit.filter(|_| options.scale).map_or(1.0, |limit| limit / f64::from(of.max(1)));
+    let feedback = table.column(Column::Feedback).filter(|_| !is_canvas);
+
+    // Fill the rows, and pack the reports under the names by which the platform knows them.
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    let mut without_file = 0;
+    for entry in &entries {
+        let Some(&row) = found.rows.get(&entry.student) else { continue };
+        let shown = (f64::from(entry.points) * factor * 100.0).round() / 100.0;
+        let shown = if has_comma { shown.to_string().replace('.', ",") } else { shown.to_string() };
+        table.set(row, points, &shown);
+        feedback.into_iter().for_each(|column| table.set(row, column, &entry.feedback));
+        let file = if is_canvas {
+            numbered(&entry.student).then(|| format!("{}.html", entry.student))
+        } else {
+            moodle_file(&table, row)
+        };
+        let Some(file) = file else {
+            without_file += 1;
+            continue;
+        };
+        zip.start_file(file, SimpleFileOptions::default())?;
+        let page = options.grades.join(&entry.page);
+        zip.write_all(&fs::read(&page).with_context(|| format!("cannot read {}", page.display()))?)?;
+    }
+    let filled = options.out.join(options.table.file_name().context("the table has no file name")?);
+    ensure!(
+        fs::canonicalize(&filled).ok() != fs::canonicalize(&options.table).ok() || !filled.exists(),
+        "{} is the downloaded table: choose another --out",
+        filled.display()
+    );
+    super::write(&filled, &table.bytes())?;
+    super::write(&options.out.join("feedback.zip"), &zip.finish()?.into_inner())?;
+
+    for line in found.students.iter().chain(&found.others) {
+        eprintln!("not matched: {}", clean_line(line, 200));
+    }
+    if without_file > 0 {
+        eprintln!(
+            "note: feedback.zip has no file for {without_file} students, whose submissions are not named as the platform names them"
+        );
+    }
+    println!("{}: {} of {} submissions filled in", filled.display(), found.rows.len(), entries.len());
+    Ok(())
+}
+
+/// What the class has earned in the chosen stages, and the possible points.
+fn entries(options: &PlatformOptions) -> Result<(Vec<Entry>, u32)> {
+    ensure!(
+        options.grades.join(crate::grade::STORE).is_file(),
+        "{} contains no grades: give the folder of `grader grade --out`",
+        options.grades.display()
+    );
+    let store = Store::open(&options.grades)?;
+    store.course()?.as_ref().map_or(Ok(()), CourseFiles::apply)?;
+    let (mut entries, mut of, mut names) = (Vec::new(), 0, FileNames::default());
+    store.each(&mut |graded| {
+        let page = format!("students/{}.html", names.name(&graded.student));
+        // The instructor's points are for the whole course.
+        let graded = match &options.stages {
+            Some(stages) => Graded { note: None, ..graded.valued(stages) },
+            None => graded,
+        };
+        of = of.max(score(graded.checks.iter()).points().1);
+        let feedback = clean_line(&messages::in_short(&graded), 1000);
+        entries.push(Entry { points: graded.earned(), feedback, page, student: graded.student });
+        Ok(())
+    })?;
+    ensure!(!entries.is_empty(), "{} contains no grades", options.grades.display());
+    Ok((entries, of))
+}
+
+/// The columns of the points and of the most points.
+fn columns(
+    table: &PlatformTable,
+    options: &PlatformOptions,
+    is_canvas: bool,
+) -> Result<(usize, Option<usize>)> {
+    let headers = table.headers();
+    let most = table.column(Column::MostPoints);
+    // An assignment of Canvas has its number in parentheses.
+    let is_assignment = |header: &str| {
+        let number = header.strip_suffix(')').and_then(|header| header.rsplit_once('('));
+        number.is_some_and(|(_, number)| number.parse::<u64>().is_ok())
+    };
+    let candidates: Vec<usize> = match &options.column {
+        Some(name) => {
+            let exact = headers.iter().position(|header| header == name);
+            let starts = |i: &usize| headers[*i].starts_with(&format!("{name} ("));
+            exact.map_or_else(|| (0..headers.len()).filter(starts).collect(), |column| vec![column])
+        }
+        None if is_canvas => (0..headers.len()).filter(|&i| is_assignment(&headers[i])).collect(),
+        None => table.column(Column::Points).into_iter().collect(),
+    };
+    match candidates[..] {
+        [column] => Ok((column, most)),
+        _ => bail!(
+            "{}: choose the column of the points with --column; the table has {}",
+            options.table.display(),
+            headers.iter().map(|header| format!("`{header}`")).collect::<Vec<_>>().join(", ")
+        ),
+    }
+}
+
+/// The path of a student's file in Moodle's zip of feedback files: that of the downloaded submission.
+fn moodle_file(table: &PlatformTable, row: usize) -> Option<String> {
+    let cell = |column| table.column(column).map(|column| table.cell(row, column));
+    let identifier = cell(Column::Identifier)?;
+    let number = &identifier[identifier.trim_end_matches(|c: char| c.is_ascii_digit()).len()..];
+    let name = cell(Column::Name).unwrap_or_default().replace(['_', '/', '\\', '\n', '\r'], " ");
+    (!number.is_empty()).then(|| format!("{name}_{number}_assignsubmission_file_/feedback.html"))
+}
