@@ -3,7 +3,6 @@ use all_checks::STAGES;
 use grader::grade::result::{CheckResult, Graded, Outcome, Remark};
 use grader::queue;
 use std::collections::BTreeSet;
-use std::os::unix::fs::FileTypeExt;
 use std::sync::Mutex;
 
 fn root() -> PathBuf {
@@ -15,17 +14,6 @@ fn attack(text: &str) -> Attack {
     let mut attack: Attack = toml::from_str(&format!("{head}{text}\n[expect]\nearned = \"none\"\n")).unwrap();
     attack.fragments = Arc::new(BTreeMap::from([("shared".to_owned(), "// of several".to_owned())]));
     attack
-}
-
-fn made(text: &str) -> Result<(tempfile::TempDir, PathBuf)> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = make(&attack(text), &AttackFolders { root: &root(), folder: folder.path() })?;
-    Ok((folder, path))
-}
-
-fn shapes_of(text: &str) -> String {
-    let (_folder, path) = made(text).unwrap();
-    fs::read_to_string(path.join("exercises/src/stage1_shapes.rs")).unwrap()
 }
 
 /// A graded submission with these outcomes in stage 1.
@@ -102,35 +90,6 @@ fn what_is_expected_names_checks_that_there_are() {
 }
 
 #[test]
-fn files_of_attacks_that_are_wrong_say_where_and_what_to_do() {
-    let folder = tempfile::tempdir().unwrap();
-    let files = folder.path().join(FOLDER);
-    fs::create_dir_all(&files).unwrap();
-    let attack = |name: &str| {
-        format!("[[attack]]\nname = \"{name}\"\ntitle = \"a\"\nwhat = \"b\"\nexpect.earned = \"none\"\n")
-    };
-    let error = |name: &str, text: &str| {
-        let file = files.join(name);
-        fs::write(&file, text).unwrap();
-        let error = load(folder.path()).map(drop).unwrap_err();
-        fs::remove_file(file).unwrap();
-        format!("{error:#}")
-    };
-    fs::write(files.join("honest.toml"), format!("[fragments]\nf = \"\"\n{}", attack("b"))).unwrap();
-    assert_eq!(load(folder.path()).unwrap()[0].family, Family::Honest);
-    let unknown = error("cooking.toml", &attack("a"));
-    assert!(unknown.contains("cooking.toml: the file has the name of no family"), "{unknown}");
-    let unsorted = error("words.toml", &(attack("z") + &attack("a")));
-    assert!(unsorted.contains("words.toml: `z` stands before `a`: sort"), "{unsorted}");
-    let twice = error("words.toml", &attack("b"));
-    assert!(twice.contains("two attacks are called `b` (Honest, Words): rename one"), "{twice}");
-    let twice = error("words.toml", &format!("[fragments]\nf = \"\"\n{}", attack("a")));
-    assert!(twice.contains("words.toml: another file has a fragment `f`"), "{twice}");
-    let key = error("words.toml", &(attack("a") + "family = \"words\"\n"));
-    assert!(key.contains("unknown field `family`"), "{key}");
-}
-
-#[test]
 fn attacks_of_every_family_are_there() {
     let families: BTreeSet<Family> = load(&root()).unwrap().iter().map(|attack| attack.family).collect();
     assert_eq!(families.len(), 13, "{families:?}");
@@ -146,71 +105,6 @@ fn five_parts_hold_every_attack_once() {
     let mut names: Vec<String> = parts.into_iter().flatten().map(|attack| attack.name).collect();
     names.sort();
     assert_eq!(names, all.into_iter().map(|attack| attack.name).collect::<Vec<_>>());
-}
-
-#[test]
-fn bodies_are_right_or_wrong_as_a_step_says() {
-    assert!(shapes_of("").contains("todo!(\"solve the quadratic"));
-    assert!(shapes_of("base = \"solutions\"").contains("let half_chord_squared ="));
-    let wrong = shapes_of("base = \"wrong\"");
-    assert!(wrong.contains("{ Some(-1.25) }") && !wrong.contains("let half_chord_squared ="));
-    let step = "base = \"wrong\"\n[[step]]\ndo = \"body\"\nfunction = \"face_forward\"\ntext = \"if true @right@ else @wrong@\"";
-    let both = shapes_of(step);
-    assert!(both.contains("if normal.dot(direction) > 0.0 { -normal } else { normal }"));
-    assert!(both.contains("else { Vec3::splat(-7.25) }"), "{both}");
-    assert!(shapes_of("[[step]]\ndo = \"append\"\nfragment = \"shared\"").ends_with("// of several"));
-}
-
-#[test]
-fn files_links_and_pipes_are_made_where_a_step_says() {
-    let steps = "[[step]]\ndo = \"many\"\npath = \"a/@n@.txt\"\ntimes = 3\ntext = \"x\"\n\
-                 [[step]]\ndo = \"write\"\npath = \"b\"\npath_hex = \"ff 2e\"\ncontent = { hex = \"00 01\", times = 2 }\n\
-                 [[step]]\ndo = \"link\"\npath = \"exercises/src/stage1_shapes.rs\"\nto = \"@secret@\"\n\
-                 [[step]]\ndo = \"pipe\"\npath = \"exercises/src/stage2_triangles.rs\"\n\
-                 [[step]]\ndo = \"append\"\npath = \"a/1.txt\"\ncontent = { text = \"@n@;\", times = 3, before = \"<\", after = \">\" }\n";
-    let (folder, path) = made(steps).unwrap();
-    assert_eq!(fs::read_to_string(path.join("a/2.txt")).unwrap(), "x");
-    assert_eq!(fs::read_to_string(path.join("a/1.txt")).unwrap(), "x<0;1;2;>");
-    let odd: Vec<_> = fs::read_dir(path.join("b")).unwrap().map(|entry| entry.unwrap()).collect();
-    assert_eq!(odd[0].file_name().as_encoded_bytes(), b"\xff.");
-    assert_eq!(fs::read(odd[0].path()).unwrap(), [0, 1, 0, 1]);
-    let target = fs::read_link(path.join("exercises/src/stage1_shapes.rs")).unwrap();
-    assert_eq!(target, folder.path().join("beside/secret.txt"));
-    assert_eq!(fs::read_to_string(target).unwrap(), CANARY);
-    let pipe = fs::symlink_metadata(path.join("exercises/src/stage2_triangles.rs")).unwrap();
-    assert!(pipe.file_type().is_fifo());
-}
-
-#[test]
-fn a_step_that_lacks_something_or_has_too_much_is_an_error() {
-    let error = |text: &str| format!("{:#}", made(text).unwrap_err());
-    let without = error("[[step]]\ndo = \"link\"\npath = \"a\"");
-    assert!(without.contains("ann: step 1: `to` is missing"), "{without}");
-    assert!(error("[[step]]\ndo = \"link\"\npath = \"a\"\nto = \"b\"\ntimes = 3").contains("does not need"));
-    assert!(error("[[step]]\ndo = \"write\"\npath = \"a\"").contains("`content` is missing"));
-    assert!(error("[[step]]\ndo = \"top\"\nfragment = \"nobody's\"").contains("a fragment `nobody's`"));
-    assert!(error("[[step]]\ndo = \"write\"\npath = \"/a\"\ntext = \"\"").contains("`path` is missing"));
-    assert!(error("[[step]]\ndo = \"body\"\nfunction = \"spher\"\ntext = \"\"").contains("`pub fn spher`"));
-    assert!(
-        error("[[step]]\ndo = \"write\"\npath = \"a\"\ncontent = { hex = \"0x\" }").contains("not a byte")
-    );
-}
-
-#[test]
-fn archives_take_the_place_of_the_folder() {
-    let steps = "base = \"stubs\"\nstudent = \"bob\"\n[[step]]\ndo = \"pack\"\nformat = \"tar.gz\"\nprefix = \"main/\"\n\
-                 entries = [{ name = \"../@n@\", times = 2 }]\n";
-    let (_folder, path) = made(steps).unwrap();
-    assert!(path.ends_with("submissions/bob.tar.gz"), "{}", path.display());
-    let gzip = flate2::read::GzDecoder::new(fs::File::open(path).unwrap());
-    let mut archive = tar::Archive::new(gzip);
-    let names: Vec<String> = archive
-        .entries()
-        .unwrap()
-        .map(|entry| String::from_utf8(entry.unwrap().path_bytes().into_owned()).unwrap())
-        .collect();
-    assert!(names.contains(&"main/exercises/src/stage1_shapes.rs".into()), "{names:?}");
-    assert_eq!(names[names.len() - 2..], ["../0", "../1"]);
 }
 
 #[test]

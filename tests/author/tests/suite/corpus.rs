@@ -53,7 +53,7 @@ fn items(text: &str) -> Vec<String> {
     for function in text.split("\npub fn ") {
         let name: String = function.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
         let (body, next_docs) = function.split_once("\n}").unwrap_or(("", function));
-        let number = |line: &str| Some(line.strip_prefix("/// ")?.split_once(". ")?.0.parse::<u8>().ok()?);
+        let number = |line: &str| line.strip_prefix("/// ")?.split_once(". ")?.0.parse::<u8>().ok();
         let numbered: Vec<String> =
             docs.lines().filter_map(number).map(|number| format!("{name}.{number}")).collect();
         docs = next_docs;
