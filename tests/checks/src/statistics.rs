@@ -283,7 +283,7 @@ fn note_power(part: f64, deviation: f64) {
     POWER.with_borrow_mut(|power| power.iter_mut().for_each(|power| power.push((part, deviation.abs()))));
 }
 
-/// The parts and deviations that a check [notes](note_power).
+/// The parts and deviations that the tests of a check find, for the table in CONTRIBUTING.md.
 pub fn power_of(check: impl FnOnce()) -> Vec<(f64, f64)> {
     POWER.set(Some(Vec::new()));
     check();
