@@ -81,9 +81,8 @@ pub fn emitted_contribution(emission: Vec3, pdf: f32, light_pdf: f32) -> Vec3 {
 ///    `path.pdf` and the probability of `vertex.emitter` times its `light_pdf` from `path.origin`
 ///    along `path.direction`; 0 without an emitter.
 /// 2. A path with `max_depth` bounces has neither `shadow` nor `next`.
-/// 3. `shadow` is a sample of `vertex.light`: by `sample_light` from `vertex.surface` with
-///    `numbers.light`, its density times the probability of the emitter; or that of an environment
-///    map as it is.
+/// 3. `shadow` samples `vertex.light`: by `sample_light` from `vertex.surface` with
+///    `numbers.light`, its density times the emitter's probability; or an environment map's sample.
 /// 4. `shadow.light` is the path's weight times [`sample_light_contribution`], with the shading
 ///    normal, and with [`bsdf_pdf`] of its direction.
 /// 5. No shadow ray if this light is 0, or its direction not above both normals of the surface.

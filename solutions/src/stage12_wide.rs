@@ -73,7 +73,7 @@ fn flatten_below(bvh: &Bvh, node: u32, index: usize, nodes: &mut Vec<FlatNode>) 
 /// 2. A leaf has the box and all primitives of a binary node, in order, at most [`MAX_LEAF`]. Free
 ///    lanes of its last block have [`NO_PRIMITIVE`].
 /// 3. The children of a node come before its empty places.
-/// 4. A parent has a smaller index than its children.
+/// 4. A parent has a smaller index than its children, and each node and block is used once.
 /// 5. A tree that is best as one leaf has one node with one child; no nodes give no nodes.
 pub fn collapse(tree: &FlatTree, node_cost: f32) -> WideTree {
     // <solution>

@@ -31,29 +31,15 @@ pub enum Column {
 }
 
 /// The headers of the platforms in English and German, folded.
-const HEADERS: [(Column, &[&str]); 9] = [
+const HEADERS: [(Column, &[&str]); 11] = [
     (Column::Identifier, &["identifier", "id"]),
     (Column::Name, &["full name", "student", "name", "vollständiger name"]),
     (Column::FirstName, &["first name", "vorname"]),
     (Column::LastName, &["last name", "surname", "nachname"]),
-    (
-        Column::Login,
-        &[
-            "email address",
-            "email",
-            "e-mail-adresse",
-            "username",
-            "anmeldename",
-            "id number",
-            "matrikelnummer",
-            "sis user id",
-            "sis login id",
-        ],
-    ),
-    (
-        Column::HandedIn,
-        &["last modified (submission)", "zuletzt geändert (abgabe)", "handed in", "handed_in", "time"],
-    ),
+    (Column::Login, &["email address", "email", "username", "id number"]),
+    (Column::Login, &["e-mail-adresse", "anmeldename", "matrikelnummer"]),
+    (Column::Login, &["sis user id", "sis login id"]),
+    (Column::HandedIn, &["last modified (submission)", "zuletzt geändert (abgabe)", "handed_in", "time"]),
     (Column::Points, &["grade", "bewertung"]),
     (Column::MostPoints, &["maximum grade", "bestwertung"]),
     (Column::Feedback, &["feedback comments", "feedback als kommentar"]),
@@ -69,6 +55,8 @@ pub struct PlatformTable {
     separator: char,
     /// The header first.
     rows: Vec<Row>,
+    /// What each column holds, as far as its header is known.
+    kinds: Vec<Option<Column>>,
 }
 
 #[derive(Debug, Default)]
@@ -112,7 +100,13 @@ impl PlatformTable {
         let count = |separator: &char| header.matches(*separator).count();
         let separator = [',', ';', '\t'].into_iter().max_by_key(count).unwrap_or(',');
         let rows = rows(&text, separator).map_err(|why| anyhow!("{}:{why}", file.display()))?;
-        Ok(PlatformTable { file: file.to_owned(), encoding, has_mark: marked.is_some(), separator, rows })
+        let kind = |header: &String| {
+            let header = folded(unquoted(header).trim());
+            HEADERS.iter().find(|(_, names)| names.contains(&header.as_str())).map(|(kind, _)| *kind)
+        };
+        let kinds = rows.first().map_or(Vec::new(), |row| row.cells.iter().map(kind).collect());
+        let has_mark = marked.is_some();
+        Ok(PlatformTable { file: file.to_owned(), encoding, has_mark, separator, rows, kinds })
     }
 
     /// The table as bytes, in its encoding.
@@ -143,18 +137,18 @@ impl PlatformTable {
         self.rows[row].cells.get(column).map_or_else(String::new, |raw| unquoted(raw).trim().to_owned())
     }
 
-    /// Replaces the text of a cell that the row has.
+    /// Replaces the text of a cell. A row that is too short gets empty cells before it.
     pub fn set(&mut self, row: usize, column: usize, text: &str) {
-        let separator = self.separator;
-        let Some(raw) = self.rows[row].cells.get_mut(column) else { return };
-        let needs_quotes = raw.starts_with('"') || text.contains(['"', '\n', '\r', separator]);
+        let cells = &mut self.rows[row].cells;
+        cells.resize(cells.len().max(column + 1), String::new());
+        let raw = &mut cells[column];
+        let needs_quotes = raw.starts_with('"') || text.contains(['"', '\n', '\r', self.separator]);
         *raw = if needs_quotes { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() };
     }
 
     /// The texts of the header.
     pub fn headers(&self) -> Vec<String> {
-        let n = self.rows.first().map_or(0, |row| row.cells.len());
-        (0..n).map(|column| self.cell(0, column)).collect()
+        (0..self.kinds.len()).map(|column| self.cell(0, column)).collect()
     }
 
     /// The first column that holds this.
@@ -163,18 +157,12 @@ impl PlatformTable {
     }
 
     fn columns(&self, wanted: Column) -> Vec<usize> {
-        let known =
-            |header: &String| HEADERS.iter().find(|(_, names)| names.contains(&folded(header).as_str()));
-        let headers = self.headers();
-        let columns = headers.iter().enumerate();
-        columns
-            .filter(|(_, header)| known(header).is_some_and(|(column, _)| *column == wanted))
-            .map(|(i, _)| i)
-            .collect()
+        (0..self.kinds.len()).filter(|&column| self.kinds[column] == Some(wanted)).collect()
     }
 
     /// Finds the rows of students. The name of a student is that of a folder or an archive, as people or the downloads of
-    /// the platforms name it. An identifier comes before a name; where two have the same name, a name decides nothing.
+    /// the platforms name it. An identifier decides alone where both sides have one; where two have the same name, a name decides
+    /// nothing.
     pub fn find(&self, students: &[&str], is_row: impl Fn(usize) -> bool) -> Matches {
         let rows: Vec<usize> = self.rows().filter(|&row| is_row(row)).collect();
         let keys: Vec<[BTreeSet<String>; 2]> = rows.iter().map(|&row| self.keys(row)).collect();
@@ -186,7 +174,11 @@ impl PlatformTable {
             for (index, keys) in keys.iter().enumerate() {
                 keys[strength].iter().for_each(|key| by_key.entry(key).or_default().push(index));
             }
-            for (found, keys) in found.iter_mut().zip(&of_students).filter(|(found, _)| found.is_empty()) {
+            let by_number = strength == 1 && self.column(Column::Identifier).is_some();
+            for (found, keys) in found.iter_mut().zip(&of_students) {
+                if !found.is_empty() || by_number && has_number(&keys[0]) {
+                    continue;
+                }
                 let rows = keys[strength].iter().filter_map(|key| by_key.get(key.as_str())).flatten();
                 *found = rows.copied().collect::<BTreeSet<_>>().into_iter().collect();
             }
@@ -237,7 +229,7 @@ impl PlatformTable {
         };
         let mut strong = BTreeSet::new();
         for text in texts(Column::Identifier) {
-            strong.insert(format!("#{}", &text[text.trim_end_matches(|c: char| c.is_ascii_digit()).len()..]));
+            strong.insert(format!("#{}", number_of(&text)));
             strong.insert(text);
         }
         for text in texts(Column::Login) {
@@ -282,7 +274,16 @@ fn keys_of(student: &str) -> [BTreeSet<String>; 2] {
 
 /// Whether a submission has the platform's number in its name, as in its downloads.
 pub fn numbered(student: &str) -> bool {
-    keys_of(student)[0].iter().any(|key| key.starts_with('#'))
+    has_number(&keys_of(student)[0])
+}
+
+fn has_number(identifiers: &BTreeSet<String>) -> bool {
+    identifiers.iter().any(|key| key.starts_with('#'))
+}
+
+/// The digits at the end of an identifier: `123` of `Participant 123`; empty if there are none.
+pub fn number_of(identifier: &str) -> &str {
+    &identifier[identifier.trim_end_matches(|c: char| c.is_ascii_digit()).len()..]
 }
 
 /// A text as it is compared: in normal form C, in small letters, with single spaces.
@@ -334,19 +335,10 @@ fn unquoted(raw: &str) -> String {
 /// A date of a platform as TOML writes it: `Monday, 2 November 2026, 6:30 PM` and `Montag, 2. November 2026, 18:30` of Moodle,
 /// `02.11.2026 18:30`, or as it is. `None` if there is none: the cell is empty or `-`.
 pub fn date(text: &str) -> Option<String> {
-    const MONTHS: [&[&str]; 12] = [
-        &["jan", "jän"],
-        &["feb"],
-        &["mar", "mär"],
-        &["apr"],
-        &["may", "mai"],
-        &["jun"],
-        &["jul"],
-        &["aug"],
-        &["sep"],
-        &["oct", "okt"],
-        &["nov"],
-        &["dec", "dez"],
+    // The beginnings of the names in English and German.
+    const MONTHS: [&str; 2] = [
+        "jan feb mar apr may jun jul aug sep oct nov dec",
+        "jän feb mär apr mai jun jul aug sep okt nov dez",
     ];
     let text = text.trim();
     if text.is_empty() || text == "-" {
@@ -356,7 +348,8 @@ pub fn date(text: &str) -> Option<String> {
     let words: Vec<&str> = folded.split([' ', ',', '.']).filter(|word| !word.is_empty()).collect();
     let number = |word: &str| word.parse::<u32>().ok();
     let month = |word: &str| {
-        let named = MONTHS.iter().position(|names| names.iter().any(|name| word.starts_with(name)));
+        let among = |names: &str| names.split(' ').position(|name| word.starts_with(name));
+        let named = MONTHS.iter().find_map(|names| among(names));
         number(word).or(named.map(|month| month as u32 + 1))
     };
     // A day, a month and a year side by side.
@@ -421,7 +414,14 @@ mod tests {
         let found = find(&["Ann Lee_12_assignsubmission_file_", "Zoe\u{308} Bo\u{308}ll", "tom"]);
         assert_eq!(found.rows.values().collect::<Vec<_>>(), [&2, &3, &4]);
         assert_eq!(found.others, ["table.csv:2: Ann Lee, Participant 11, ann@uni.edu: no submission"]);
-        let found = find(&["Ann Lee", "zoe", "zoe boll_13_assignsubmission_file_", "eve"]);
+        let found = find(&[
+            "Ann Lee",
+            "zoe",
+            "zoe boll_13_assignsubmission_file_",
+            "eve",
+            "Tom Fox_99_assignsubmission",
+        ]);
+        // Another student of the same name has number 99.
         assert!(found.rows.is_empty());
         assert!(
             found.students[0].starts_with("Ann Lee: table.csv:2 and table.csv:3 have this name: put the")

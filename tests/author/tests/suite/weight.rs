@@ -6,7 +6,7 @@ use std::process::Command;
 
 /// The most lines of Rust in the repository. It rose from 133,732 with tables of learning platforms, samplers that are judged in every
 /// part of their range, diagnoses, and a grader that refuses less. What comes in from here takes something out.
-const MOST_LINES: usize = 135_013;
+const MOST_LINES: usize = 134_998;
 
 #[test]
 fn what_comes_in_takes_something_out() {
@@ -42,15 +42,14 @@ fn docs(text: &str, functions: &str) -> Vec<(usize, usize, String)> {
         if let Some(line) = line.strip_prefix("///") {
             doc += &format!("{}\n", line.trim());
         } else if !line.starts_with("#[") {
-            // The number of an item is no word.
+            // The number of an item is no word of the contract.
             let is_word =
                 |word: &&str| word.strip_suffix('.').is_none_or(|number| number.parse::<u8>().is_err());
             let own = doc.split("\n\n").filter(|paragraph| !paragraph.starts_with("Source:"));
             let words = own.flat_map(str::split_whitespace).filter(is_word);
             let words = words.filter(|word| word.contains(char::is_alphanumeric));
             if line.contains(functions) {
-                let all = doc.split_whitespace().filter(is_word).count();
-                found.push((all, words.count(), line.to_owned()));
+                found.push((doc.split_whitespace().count(), words.count(), line.to_owned()));
             }
             doc.clear();
         }

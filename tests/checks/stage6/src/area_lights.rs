@@ -42,11 +42,14 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> CheckResult {
         RectangleQuery { corner, edges, u }
     };
     let queries: Vec<RectangleQuery> = numbers(trial.seed).into_iter().enumerate().map(query).collect();
-    let answers = trial.kit.sample_rectangle(&queries);
-    let mut shares = Vec::new();
-    let judge = |(query, point): (&RectangleQuery, &Vec3)| judge_rectangle_point(query, *point, &mut shares);
-    all_hold(proven(queries.iter().zip(&answers).map(judge)))?;
-    covers_evenly("sample_rectangle(…, u)", &shares, RECTANGLE_AXES, |counts| {
+    let shares_of = |queries: &[RectangleQuery]| {
+        let mut shares = Vec::new();
+        let judge =
+            |(query, point): (&RectangleQuery, Vec3)| judge_rectangle_point(query, point, &mut shares);
+        all_hold(proven(queries.iter().zip(trial.kit.sample_rectangle(queries)).map(judge)))?;
+        Ok(shares)
+    };
+    covers_evenly("sample_rectangle(…, u)", &shares_of(&queries)?, RECTANGLE_AXES, |counts| {
         // 28 of the 64 cells lie beyond the diagonal.
         let hit = counts.iter().filter(|count| **count > 0).count();
         let mut mistakes = unused_number(|u| {
@@ -58,11 +61,7 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> CheckResult {
     })?;
     let places = |u: &[Vec2]| {
         let queries: Vec<RectangleQuery> = u.iter().map(|u| RectangleQuery { u: *u, ..queries[0] }).collect();
-        let mut shares = Vec::new();
-        let judge =
-            |(query, point): (&RectangleQuery, Vec3)| judge_rectangle_point(query, point, &mut shares);
-        all_hold(proven(queries.iter().zip(trial.kit.sample_rectangle(&queries)).map(judge)))?;
-        Ok(shares)
+        shares_of(&queries)
     };
     covers_each_part("sample_rectangle(…, u)", RECTANGLE_AXES, trial.seed, None, places, |_| None)
 }
@@ -118,10 +117,13 @@ pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> CheckResult
     let u = numbers(trial.seed);
     let queries: Vec<(Disk, Vec2)> =
         u.iter().enumerate().map(|(index, u)| (disks[index % disks.len()], *u)).collect();
-    let answers = trial.kit.sample_light_disk(&queries);
-    let mut places = Vec::new();
-    let judge = |(query, point): (&(Disk, Vec2), &Vec3)| judge_disk_point(query, *point, &mut places);
-    all_hold(queries.iter().zip(&answers).map(judge).collect())?;
+    let places_of = |queries: &[(Disk, Vec2)]| {
+        let mut places = Vec::new();
+        let judge = |(query, point): (&(Disk, Vec2), Vec3)| judge_disk_point(query, point, &mut places);
+        all_hold(queries.iter().zip(trial.kit.sample_light_disk(queries)).map(judge).collect())?;
+        Ok(places)
+    };
+    let places = places_of(&queries)?;
     let shares: Vec<(f64, f64)> = places.iter().map(|place| polar(*place)).collect();
     covers_evenly("sample_light_disk(…, u)", &shares, ["radius²", "angle"], |counts| {
         let mut mistakes = is_polar(&u, &places);
@@ -133,10 +135,7 @@ pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> CheckResult
     })?;
     let places = |u: &[Vec2]| {
         let queries: Vec<(Disk, Vec2)> = u.iter().map(|u| (disks[disks.len() - 1], *u)).collect();
-        let mut places = Vec::new();
-        let judge = |(query, point): (&(Disk, Vec2), Vec3)| judge_disk_point(query, point, &mut places);
-        all_hold(queries.iter().zip(trial.kit.sample_light_disk(&queries)).map(judge).collect())?;
-        Ok(places.into_iter().map(polar).collect())
+        Ok(places_of(&queries)?.into_iter().map(polar).collect())
     };
     covers_each_part("sample_light_disk(…, u)", ["radius²", "angle"], trial.seed, None, places, |_| None)
 }

@@ -5,7 +5,7 @@ use crate::course::CourseFiles;
 use crate::grade::report::{FileNames, clean_line, messages};
 use crate::grade::result::{Graded, score};
 use crate::grade::{Store, stages};
-use crate::platform::{Column, PlatformTable, numbered};
+use crate::platform::{Column, PlatformTable, number_of, numbered};
 use anyhow::{Context, Result, bail, ensure};
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use std::fs;
@@ -90,17 +90,10 @@ pub fn platform(options: &PlatformOptions, is_canvas: bool) -> Result<()> {
     let (points, most) = columns(&table, options, is_canvas)?;
 
     // Canvas has rows that are no students: the most points, and a test student.
-    let name = table.column(Column::Name);
-    let named = |row: usize, name: Option<usize>| {
-        name.map_or_else(String::new, |name| table.cell(row, name).to_lowercase())
-    };
-    let limits = table.rows().find(|&row| is_canvas && named(row, name) == "points possible");
-    let is_row = |row: usize| {
-        !is_canvas
-            || (Some(row) != limits
-                && named(row, name) != "student, test"
-                && !named(row, table.column(Column::Identifier)).is_empty())
-    };
+    let [name, identifier] = [Column::Name, Column::Identifier].map(|kind| table.column(kind));
+    let text = |row, column: Option<usize>| column.map_or_else(String::new, |column| table.cell(row, column));
+    let limits = table.rows().find(|&row| is_canvas && text(row, name) == "Points Possible");
+    let is_row = |row| !is_canvas || !text(row, identifier).is_empty() && text(row, name) != "Student, Test";
     let students: Vec<&str> = entries.iter().map(|entry| entry.student.as_str()).collect();
     let found = table.find(&students, is_row);
 
@@ -229,7 +222,7 @@ fn columns(
 fn moodle_file(table: &PlatformTable, row: usize) -> Option<String> {
     let cell = |column| table.column(column).map(|column| table.cell(row, column));
     let identifier = cell(Column::Identifier)?;
-    let number = &identifier[identifier.trim_end_matches(|c: char| c.is_ascii_digit()).len()..];
+    let number = number_of(&identifier);
     let name = cell(Column::Name).unwrap_or_default().replace(['_', '/', '\\', '\n', '\r'], " ");
     (!number.is_empty()).then(|| format!("{name}_{number}_assignsubmission_file_/feedback.html"))
 }

@@ -166,7 +166,7 @@ pub fn run(root: &Path, options: &GradeOptions) -> Result<bool> {
     if let Some(file) = &options.handed_in {
         let (times, unmatched) = crate::course::handed_in(file, rubric::course(), &names)?;
         grader.handed_in = times;
-        // The rows of other parts find nobody here.
+        // The rows of other parts have no submission here.
         let unmatched = unmatched.iter().filter(|_| options.shard.is_none());
         unmatched.for_each(|line| eprintln!("note: --handed-in: {}", clean_line(line, 200)));
     }

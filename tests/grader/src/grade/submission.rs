@@ -215,9 +215,9 @@ impl Gathering<'_> {
     fn count(&mut self) -> io::Result<()> {
         self.entries += 1;
         if self.entries > MOST_ENTRIES {
-            return Err(io::Error::other(format!(
-                "contains more than {MOST_ENTRIES} files and folders; hand in only exercises/src"
-            )));
+            let why =
+                format!("contains more than {MOST_ENTRIES} files and folders; hand in only exercises/src");
+            return Err(io::Error::new(io::ErrorKind::FileTooLarge, why));
         }
         Ok(())
     }

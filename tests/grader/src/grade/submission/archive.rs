@@ -28,18 +28,15 @@ pub fn gather(path: &Path, gathering: &mut Gathering<'_>) -> io::Result<()> {
         () if is(&".tar.gz") || is(&".tgz") => tar(flate2::read::MultiGzDecoder::new(file), gathering),
         () => {
             let ending = UNREADABLE.iter().find(|ending| is(ending)).unwrap_or(&"");
-            Err(io::Error::other(format!(
-                "{ending} is not read here; unpack it, and hand in the folder, .zip or .tar.gz"
-            )))
+            return Err(io::Error::other(format!(
+                "cannot be unpacked: {ending} is not read here; unpack it, and hand in the folder, .zip or .tar.gz"
+            )));
         }
     };
     unpacked.map_err(|error| {
-        let error = error.to_string();
-        let help = match error.contains("hand in") {
-            true => "",
-            false => {
-                "; it may be cut off: download it again, or hand in a new .zip or .tar.gz of exercises/src"
-            }
+        let help = match error.kind() {
+            io::ErrorKind::FileTooLarge => "",
+            _ => "; it may be cut off: download it again, or hand in a new .zip or .tar.gz of exercises/src",
         };
         io::Error::other(format!("cannot be unpacked: {error}{help}"))
     })
@@ -112,5 +109,8 @@ impl<R: Read> Read for Bounded<'_, R> {
 
 fn too_much() -> io::Error {
     let most = MOST_UNPACKED >> 20;
-    io::Error::other(format!("it contains more than {most} MiB; hand in only exercises/src"))
+    io::Error::new(
+        io::ErrorKind::FileTooLarge,
+        format!("it contains more than {most} MiB; hand in only exercises/src"),
+    )
 }
