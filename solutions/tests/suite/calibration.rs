@@ -22,14 +22,14 @@ fn seeds() -> u64 {
 /// The percentage of seeds with which a wrong distribution must be rejected.
 const CAUGHT: u64 = 99;
 
-/// The statistical checks, and how many chi-square and t-tests each makes.
+/// The statistical checks, and how many tests each makes.
 const STATISTICAL: [(&str, u32); 23] = [
     ("jittered_samples_cover_the_pixel_evenly", 1),
     ("places_on_the_disk_are_even", 1),
     ("places_on_a_rectangle_are_even", 1),
     ("places_on_a_round_light_are_even", 1),
     ("directions_to_a_sphere_are_even", 1),
-    ("a_far_sphere_is_still_a_sphere", 1),
+    ("a_far_sphere_is_still_a_sphere", 2),
     ("from_inside_a_sphere_it_is_everywhere", 1),
     ("half_a_sphere_makes_half_a_shadow", 4),
     ("phong_lobe_falls_with_the_power_of_the_cosine", 3),
@@ -40,7 +40,7 @@ const STATISTICAL: [(&str, u32); 23] = [
     ("polygon_lights_give_lamberts_irradiance", 4),
     ("sphere_lights_give_their_irradiance", 2),
     ("paths_in_an_integrating_sphere_find_its_light", 1),
-    ("diffuse_samples_use_fresh_numbers", 2),
+    ("diffuse_samples_use_fresh_numbers", 3),
     ("paths_in_a_furnace_find_all_light", 2),
     ("paths_in_a_corner_find_its_sky", 4),
     ("steps_in_an_integrating_sphere_find_its_light", 1),
@@ -94,9 +94,8 @@ fn the_reference_is_rejected_as_rarely_as_stated() {
     assert!((alarms as f64) <= expected + 4.0 * expected.sqrt(), "{alarms} false alarms, stated {expected}");
 }
 
-/// The parts of the unit square in which deviations are stated: the columns of the table. 0 is an eighth by chi-square, and 1
-/// a mean.
-const PARTS: [f64; 7] = [0.125, 1.0 / 32.0, 1.0 / 64.0, 1.0 / 512.0, 1.0 / 4096.0, 0.0, 1.0];
+/// The parts of the unit square in which deviations are stated: the columns of the table. 1 is a mean.
+const PARTS: [f64; 6] = [0.125, 1.0 / 32.0, 1.0 / 64.0, 1.0 / 512.0, 1.0 / 4096.0, 1.0];
 
 #[test]
 fn the_smallest_deviations_that_are_found_stand_in_the_table() {

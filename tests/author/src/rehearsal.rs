@@ -25,10 +25,6 @@ pub static SPEC: Spec = Spec {
         Opt::value("--out", "FOLDER", "The folder for the grades [default: a temporary one]."),
         Opt::value("--jobs", "N", "How many submissions to grade at the same time [default: one per core]."),
         Opt::flag("--honest", "Leave out the attacks."),
-        Opt::flag(
-            "--resume",
-            "Continue a run that was stopped, with the same --out and --students: grade only what it has not graded.",
-        ),
     ]],
 };
 
@@ -38,19 +34,16 @@ pub struct RehearsalOptions {
     out: Option<PathBuf>,
     jobs: Option<u16>,
     honest: bool,
-    resume: bool,
 }
 
 impl RehearsalOptions {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<RehearsalOptions, Misuse> {
-        given.require("--resume", "--out")?;
         Ok(RehearsalOptions {
             students: given.number("--students", 0..=usize::MAX)?.unwrap_or(200),
             out: given.path("--out"),
             jobs: given.number("--jobs", 1..=u16::MAX)?,
             honest: given.has("--honest"),
-            resume: given.has("--resume"),
         })
     }
 }
@@ -105,9 +98,6 @@ fn grade_options(class: &Path, out: &Path, options: &RehearsalOptions) -> Result
     let mut words: Vec<OsString> = vec![class.into(), "--out".into(), out.into()];
     words.extend(["--stages".into(), STAGES_OF_CLASS.map(|stage| stage.to_string()).join(",").into()]);
     words.extend(options.jobs.iter().flat_map(|jobs| ["--jobs".into(), jobs.to_string().into()]));
-    if options.resume {
-        words.extend(["--resume", "--forget-missing"].map(OsString::from));
-    }
     match grade::SPEC.read(words)? {
         Read::Given(given) => Ok(GradeOptions::read(&given)?),
         Read::Help(help) => bail!("{help}"),

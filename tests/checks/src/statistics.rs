@@ -15,33 +15,18 @@ use std::ops::Range;
 
 /// The probability that a test rejects a correct sampler.
 pub const FALSE_ALARMS: f64 = 1e-7;
-/// A normally distributed score is above this with probability [`FALSE_ALARMS`].
-const ONE_SIDED: f64 = 5.2;
 /// A normally distributed score is beyond ± this with probability [`FALSE_ALARMS`].
 const TWO_SIDED: f64 = 5.327;
 
-/// The number of cells along each side of the square into which samples are sorted.
+/// The number of cells along each side of the square for a diagnosis.
 pub const CELLS: u32 = 8;
-/// The number of samples of a test: 384 per cell in 64 cells. With two thirds of them the test missed `u^1.1` in place
-/// of `u` twice in a hundred times; with this number it hardly ever misses it.
+/// The number of samples of a mean.
 pub const SAMPLES: usize = 24_576;
 
 /// `count` pairs of random numbers in `0.0..1.0`, the same for the same seed.
 pub fn pairs(seed: u64, count: usize) -> Vec<Vec2> {
     let pair = |index| Points::new(Sampler::Random, seed, index, 0, 1).stratum(Purpose::Pixel, 0, 1).u;
     (0..count as u64).map(pair).collect()
-}
-
-/// The chi-square score of cells that expect equal counts. It is normally distributed by the approximation of Wilson and
-/// Hilferty, and large if the counts are uneven. At this threshold and 63 degrees of freedom, the approximation gives about a
-/// seventh fewer false alarms than stated. The expected count must be above 20 or so, because counts of rare cells are not
-/// normally distributed.
-fn score_of_even(counts: &[u64]) -> f64 {
-    let expected = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
-    let chi_square: f64 = counts.iter().map(|&count| (count as f64 - expected).powi(2) / expected).sum();
-    let freedom = counts.len() as f64 - 1.0;
-    let spread = 2.0 / (9.0 * freedom);
-    ((chi_square / freedom).cbrt() - (1.0 - spread)) / spread.sqrt()
 }
 
 /// The score of Student's t-test: the error of the mean of `values` in standard errors. With thousands of values it is
@@ -57,48 +42,6 @@ pub fn mean_score(values: &[f64], expected: f64) -> f64 {
 
 /// The known mistakes, each with whether it is proven by the answers.
 pub type Mistakes = Vec<(bool, &'static str)>;
-
-/// Checks that `places`, each in the unit square, cover it evenly. `what` is the call. `mistakes` gets the counts of the
-/// cells; if none of its mistakes is proven, the pattern of the counts is described.
-pub fn covers_evenly(
-    what: &str,
-    places: &[(f64, f64)],
-    axes: [&str; 2],
-    mistakes: impl Fn(&[u64]) -> Mistakes,
-) -> CheckResult {
-    // The noncentral chi-square that is above the threshold with probability 99.9 % has its centre 163 higher. A deviation of an
-    // eighth of the square, which the rest makes good, moves it by its square over 7 per sample.
-    note_power(0.0, (163.0 * 7.0 / places.len() as f64).sqrt());
-    let mut counts = vec![0; (CELLS * CELLS) as usize];
-    for &(x, y) in places {
-        let cell = |share: f64| ((share * f64::from(CELLS)).max(0.0) as u32).min(CELLS - 1);
-        let UVec2 { x, y } = UVec2::new(cell(x), cell(y));
-        counts[(y * CELLS + x) as usize] += 1;
-    }
-    // A score that is NaN fails.
-    if score_of_even(&counts) <= ONE_SIDED {
-        return Ok(());
-    }
-    let expected = places.len() as f64 / f64::from(CELLS * CELLS);
-    let off = |cell: usize| (counts[cell] as f64 - expected).abs();
-    let worst = (0..counts.len()).max_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0);
-    let range = |cell: u32| {
-        format!("{:.3}..{:.3}", f64::from(cell) / f64::from(CELLS), f64::from(cell + 1) / f64::from(CELLS))
-    };
-    let (column, row) = (range(worst as u32 % CELLS), range(worst as u32 / CELLS));
-    let input = format!(
-        "{what} for {} pairs u;\nsorted by {} and {} into {} cells of equal probability",
-        places.len(),
-        axes[0],
-        axes[1],
-        counts.len()
-    );
-    let yours = format!("{} with {} in {column} and {} in {row}", counts[worst], axes[0], axes[1]);
-    let source = "chi-square, 1 false alarm in 10 million";
-    let broken = Broken::with_texts(input, yours, format!("about {expected:.0}"), source);
-    let proven = mistakes(&counts).into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()));
-    Err(broken.looks_like(proven.or_else(|| pattern(&counts, axes))))
-}
 
 /// A bound on a normally distributed score that any of the [`parts`] exceeds with probability [`FALSE_ALARMS`].
 const OF_ALL_PARTS: f64 = 6.1;
@@ -280,8 +223,7 @@ thread_local! {
     static POWER: RefCell<Option<Vec<(f64, f64)>>> = const { RefCell::new(None) };
 }
 
-/// Notes the smallest relative deviation that a test finds with 99.9 % power in a part of the square; 1 for a mean, and 0
-/// for an eighth of the square by chi-square.
+/// Notes the smallest relative deviation that a test finds with 99.9 % power in a part of the square; 1 for a mean.
 fn note_power(part: f64, deviation: f64) {
     POWER.with_borrow_mut(|power| power.iter_mut().for_each(|power| power.push((part, deviation.abs()))));
 }
@@ -381,8 +323,7 @@ mod tests {
         (0..2000).filter(|&seed| score(seed) > threshold).count()
     }
 
-    /// Too many seeds would be needed to observe one case in ten million, so this computes the tails. For an odd number
-    /// of degrees of freedom the tail of chi-square is a sum.
+    /// Too many seeds would be needed to observe one case in ten million, so this computes the tails.
     #[test]
     fn thresholds_are_where_tails_are_as_thin_as_stated() {
         // Compute Φ(-z) by its continued fraction, which is accurate from z = 3 on.
@@ -391,32 +332,10 @@ mod tests {
             (-0.5 * z * z).exp() / (std::f64::consts::TAU.sqrt() * fraction)
         };
         assert!((normal(TWO_SIDED) * 2.0 / FALSE_ALARMS - 1.0).abs() < 0.01);
-        // Compute the chi-square with the score ONE_SIDED, and the probability of a larger one.
-        let freedom = f64::from(CELLS * CELLS) - 1.0;
-        let spread = 2.0 / (9.0 * freedom);
-        let half = 0.5 * freedom * (1.0 - spread + ONE_SIDED * spread.sqrt()).powi(3);
-        // 2 Φ(-√(2h)) + Σ e⁻ʰ h^(j - ½) / Γ(j + ½)
-        let (mut term, mut tail) = ((-half).exp() * (half / std::f64::consts::PI).sqrt() * 2.0, 0.0);
-        for j in 1..=(freedom as u32 - 1) / 2 {
-            tail += term;
-            term *= half / (f64::from(j) + 0.5);
-        }
-        tail += 2.0 * normal((2.0 * half).sqrt());
-        assert!((0.8..1.0).contains(&(tail / FALSE_ALARMS)), "{tail:e}");
     }
 
     #[test]
     fn right_numbers_raise_false_alarms_at_the_stated_rate() {
-        let chi_square = |seed| {
-            let mut counts = [0; 64];
-            for u in pairs(seed, 1024) {
-                counts[((u.x * 8.0) as usize) * 8 + (u.y * 8.0) as usize] += 1;
-            }
-            score_of_even(&counts)
-        };
-        // At 1.645, 5 % of 2,000: 100 ± 10. Four standard deviations either way.
-        let n = alarms(chi_square, 1.645);
-        assert!((60..140).contains(&n), "chi-square: {n}");
         let mean = |seed| {
             let values: Vec<f64> = pairs(seed, 1024).iter().map(|u| f64::from(u.x)).collect();
             mean_score(&values, 0.5)

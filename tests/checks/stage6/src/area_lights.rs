@@ -6,7 +6,7 @@ use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::{Judged, proven, unless};
 use checks::nasty;
 use checks::paste::{Arguments, Paste, call};
-use checks::statistics::{SAMPLES, columns, covers_each_part, covers_evenly, has_mean, pairs};
+use checks::statistics::{SAMPLES, columns, covers_each_part, has_mean, pairs};
 use glam::{DVec3, Vec2, Vec3, vec3};
 use raykata::kit::{RectangleQuery, SphereSampleQuery};
 use raykata::shape::{Disk, Sphere};
@@ -298,12 +298,16 @@ pub(super) fn a_far_sphere_is_still_a_sphere(trial: &Trial<'_>) -> CheckResult {
     // so that no rounding of the difference adds to this.
     let u = numbers(trial.seed);
     let far = seen(trial, &spheres(1e4, &HERE[..1]), &u)?;
-    covers_evenly("sample_sphere from 10,000 radii away", &far.shares, AXES, |_| {
-        // The formula is right for a near sphere, and gives few angles for a far one.
-        let near = seen(trial, &spheres(1.25, &HERE[..1]), &u);
-        let rounded = far.n_angles() <= 8 && near.is_ok_and(|near| near.n_angles() > 500);
-        vec![(rounded, "your 1 - cos θ is rounded: compute it as sin²θ / (1 + cos θ)")]
-    })
+    let (rings, turns): (Vec<f64>, Vec<f64>) = far.shares.iter().copied().unzip();
+    for (axis, shares) in AXES.iter().zip([rings, turns]) {
+        has_mean(&format!("sample_sphere from 10,000 radii away, {axis}"), &shares, 0.5, |_| {
+            // The formula is right for a near sphere, and gives few angles for a far one.
+            let near = seen(trial, &spheres(1.25, &HERE[..1]), &u);
+            let rounded = far.n_angles() <= 8 && near.is_ok_and(|near| near.n_angles() > 500);
+            vec![(rounded, "your 1 - cos θ is rounded: compute it as sin²θ / (1 + cos θ)")]
+        })?;
+    }
+    Ok(())
 }
 
 pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> CheckResult {

@@ -8,9 +8,7 @@ use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
 use checks::nasty;
 use checks::paste::Arguments;
-use checks::statistics::{
-    Mistakes, SAMPLES, columns, covers_each_part, covers_evenly, is_other_power, pairs,
-};
+use checks::statistics::{Mistakes, SAMPLES, columns, covers_each_part, has_mean, is_other_power, pairs};
 use glam::{Vec2, Vec3, vec2};
 use proptest::prelude::*;
 use raykata::kit::PhongLobeQuery;
@@ -159,12 +157,25 @@ pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> CheckResu
     // n is 2,000,000, so cosines differ from 1 in their last four bits only.
     let (u, axes) = (pairs(trial.seed, SAMPLES), nasty::directions());
     let slight = lobe(trial, 0.001, &axes, &u)?;
-    covers_evenly("sample_phong_lobe with roughness 0.001", &slight.shares, AXES, |_| {
+    let what = "sample_phong_lobe with roughness 0.001";
+    let n_angles = slight.n_angles();
+    // Of a thousand intervals of equal probability a few roundings leave none out.
+    if n_angles < 500 {
+        let yours = format!("angles in {n_angles} of 1,000 intervals of equal probability");
+        let broken = Broken::with_texts(
+            format!("{what} for {SAMPLES} pairs u"),
+            yours,
+            "in all of them",
+            "the definition",
+        );
         // The formula gives many angles for a rough surface, and few for a slightly rough one.
-        let few =
-            slight.n_angles() < 64 && lobe(trial, 0.5, &axes, &u).is_ok_and(|rough| rough.n_angles() > 500);
-        vec![(few, "your angles take few values: √(1 - cos²) is imprecise; compute 1 - cos θ with exp_m1")]
-    })
+        let few = n_angles < 64 && lobe(trial, 0.5, &axes, &u).is_ok_and(|rough| rough.n_angles() > 500);
+        let imprecise =
+            "your angles take few values: √(1 - cos²) is imprecise; compute 1 - cos θ with exp_m1";
+        return Err(broken.explained_by([(few, imprecise)]));
+    }
+    let shares: Vec<f64> = slight.shares.iter().map(|(share, _)| *share).collect();
+    has_mean(&format!("{what}, {}", AXES[0]), &shares, 0.5, |_| Vec::new())
 }
 
 pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
