@@ -24,38 +24,59 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A value that can be sent to another program.
-pub trait Message: Sized {
+pub trait Message {
     /// Appends the value to `bytes`.
     fn write(&self, bytes: &mut Vec<u8>);
 
-    /// Takes the value from the start of `bytes`. Memory grows with the bytes that are there, and not with an announced
-    /// length.
-    ///
-    /// # Errors
-    ///
-    /// If `bytes` does not begin with a value of this type.
-    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed>;
+    /// Takes the value from the start of what is left. Memory grows with the bytes that are there, and not with an announced
+    /// length. If a value of this type does not begin there, the reader remembers the error, and the value means nothing.
+    fn read(bytes: &mut Reader) -> Self
+    where
+        Self: Sized;
 
     /// The value as a Rust expression with all digits, to paste into a test. The names are those of
     /// [`types`](crate::kit::types) and of `glam`.
     fn rust(&self) -> String;
 }
 
-/// Expressions between two brackets, such as `vec3(` and `)`.
-#[doc(hidden)]
-pub fn listed(open: &str, items: &[String], close: &str) -> String {
-    format!("{open}{}{close}", items.join(", "))
+/// The expressions of `n` values between two brackets, such as `vec3(` and `)`. It is compiled once for all types.
+fn listed<'a>(open: &str, n: usize, value: &dyn Fn(usize) -> &'a dyn Message, close: &str) -> String {
+    let values: Vec<String> = (0..n).map(|index| value(index).rust()).collect();
+    format!("{open}{}{close}", values.join(", "))
 }
 
-fn each<T: Message>(items: &[T]) -> Vec<String> {
-    items.iter().map(Message::rust).collect()
+fn each<T: Message>(open: &str, items: &[T], close: &str) -> String {
+    listed(open, items.len(), &|index| &items[index], close)
+}
+
+/// The parts of a tuple between brackets.
+#[doc(hidden)]
+pub fn parts(name: &str, parts: &[&dyn Message]) -> String {
+    listed(&format!("{name}("), parts.len(), &|index| parts[index], ")")
 }
 
 /// The fields of a structure with their values.
 #[doc(hidden)]
-pub fn fields(fields: &[(&str, String)]) -> String {
-    let fields: Vec<String> = fields.iter().map(|(name, value)| format!("{name}: {value}")).collect();
-    listed(" { ", &fields, " }")
+pub fn fields(name: &str, fields: &[(&str, &dyn Message)]) -> String {
+    let fields: Vec<String> =
+        fields.iter().map(|(name, value)| format!("{name}: {}", value.rust())).collect();
+    format!("{name} {{ {} }}", fields.join(", "))
+}
+
+/// The value of a field that is not sent.
+#[doc(hidden)]
+pub struct Unsent;
+
+impl Message for Unsent {
+    fn write(&self, _bytes: &mut Vec<u8>) {}
+
+    fn read(_bytes: &mut Reader) -> Self {
+        Unsent
+    }
+
+    fn rust(&self) -> String {
+        "Default::default()".into()
+    }
 }
 
 /// Bytes that are no message, and why.
@@ -68,9 +89,37 @@ pub struct Malformed(&'static str);
 /// # Errors
 ///
 /// If the bytes are not exactly one value of this type.
-pub fn from_bytes<T: Message>(mut bytes: &[u8]) -> Result<T, Malformed> {
-    let value = T::read(&mut bytes)?;
-    if bytes.is_empty() { Ok(value) } else { Err(Malformed("bytes are left after its end")) }
+pub fn from_bytes<T: Message>(bytes: &[u8]) -> Result<T, Malformed> {
+    let mut reader = Reader { bytes, error: None };
+    let value = T::read(&mut reader);
+    if !reader.bytes.is_empty() {
+        reader.fail("bytes are left after its end");
+    }
+    reader.error.map_or(Ok(value), Err)
+}
+
+/// Bytes that are not read yet. After an error they are all zero and have no end, so that only [`from_bytes`] and lists ask for it.
+#[derive(Debug)]
+pub struct Reader<'a> {
+    bytes: &'a [u8],
+    error: Option<Malformed>,
+}
+
+impl Reader<'_> {
+    #[doc(hidden)]
+    pub fn fail(&mut self, why: &'static str) {
+        self.error.get_or_insert(Malformed(why));
+        self.bytes = &[];
+    }
+
+    fn take<const N: usize>(&mut self) -> [u8; N] {
+        if let Some((first, rest)) = self.bytes.split_first_chunk() {
+            self.bytes = rest;
+            return *first;
+        }
+        self.fail("it ends too early");
+        [0; N]
+    }
 }
 
 /// The bytes of a value.
@@ -80,12 +129,6 @@ pub fn to_bytes(value: &impl Message) -> Vec<u8> {
     bytes
 }
 
-fn take<const N: usize>(bytes: &mut &[u8]) -> Result<[u8; N], Malformed> {
-    let (first, rest) = bytes.split_first_chunk().ok_or(Malformed("it ends too early"))?;
-    *bytes = rest;
-    Ok(*first)
-}
-
 macro_rules! numbers {
     ($($Type:ty)*) => {
         $(impl Message for $Type {
@@ -93,8 +136,8 @@ macro_rules! numbers {
                 bytes.extend_from_slice(&self.to_le_bytes());
             }
 
-            fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-                take(bytes).map(<$Type>::from_le_bytes)
+            fn read(bytes: &mut Reader) -> Self {
+                <$Type>::from_le_bytes(bytes.take())
             }
 
             fn rust(&self) -> String {
@@ -114,15 +157,15 @@ numbers! { u8 u32 u64 i64 f32 f64 }
 
 /// Types that are written as another one.
 macro_rules! like {
-    ($($Type:ty: |$value:ident| $to:expr, $Other:ty, |$other:ident| $from:expr, $rust:expr;)*) => {
+    ($($Type:ty: |$value:ident| $to:expr, $Other:ty, |$other:ident, $bytes:ident| $from:expr, $rust:expr;)*) => {
         $(impl Message for $Type {
             fn write(&self, bytes: &mut Vec<u8>) {
                 let $value = self;
                 $to.write(bytes);
             }
 
-            fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-                let $other = <$Other>::read(bytes)?;
+            fn read($bytes: &mut Reader) -> Self {
+                let $other = <$Other>::read($bytes);
                 $from
             }
 
@@ -135,22 +178,26 @@ macro_rules! like {
 }
 
 like! {
-    usize: |n| (*n as u64), u64, |n| n.try_into().map_err(|_| Malformed("a number is too large")), n.to_string();
-    bool: |truth| u8::from(*truth), u8, |byte| match byte {
-        0 => Ok(false),
-        1 => Ok(true),
-        _ => Err(Malformed("a truth value is neither 0 nor 1")),
+    usize: |n| (*n as u64), u64, |n, bytes| n.try_into().unwrap_or_else(|_| {
+        bytes.fail("a number is too large");
+        0
+    }), n.to_string();
+    bool: |truth| u8::from(*truth), u8, |byte, bytes| {
+        if byte > 1 {
+            bytes.fail("a truth value is neither 0 nor 1");
+        }
+        byte == 1
     }, truth.to_string();
-    Vec2: |v| v.to_array(), [f32; 2], |v| Ok(v.into()), listed("vec2(", &each(&v.to_array()), ")");
-    Vec3: |v| v.to_array(), [f32; 3], |v| Ok(v.into()), listed("vec3(", &each(&v.to_array()), ")");
-    Vec3A: |v| v.to_array(), [f32; 3], |v| Ok(v.into()), listed("vec3a(", &each(&v.to_array()), ")");
-    DVec3: |v| v.to_array(), [f64; 3], |v| Ok(v.into()), listed("dvec3(", &each(&v.to_array()), ")");
-    UVec2: |v| v.to_array(), [u32; 2], |v| Ok(v.into()), listed("uvec2(", &each(&v.to_array()), ")");
-    UVec3: |v| v.to_array(), [u32; 3], |v| Ok(v.into()), listed("uvec3(", &each(&v.to_array()), ")");
-    PathBuf: |path| path.to_string_lossy().into_owned(), String, |path| Ok(path.into()), format!("{path:?}.into()");
-    Affine3A: |transform| transform.to_cols_array(), [f32; 12], |columns| Ok(Affine3A::from_cols_array(&columns)), {
+    Vec2: |v| v.to_array(), [f32; 2], |v, bytes| v.into(), each("vec2(", &v.to_array(), ")");
+    Vec3: |v| v.to_array(), [f32; 3], |v, bytes| v.into(), each("vec3(", &v.to_array(), ")");
+    Vec3A: |v| v.to_array(), [f32; 3], |v, bytes| v.into(), each("vec3a(", &v.to_array(), ")");
+    DVec3: |v| v.to_array(), [f64; 3], |v, bytes| v.into(), each("dvec3(", &v.to_array(), ")");
+    UVec2: |v| v.to_array(), [u32; 2], |v, bytes| v.into(), each("uvec2(", &v.to_array(), ")");
+    UVec3: |v| v.to_array(), [u32; 3], |v, bytes| v.into(), each("uvec3(", &v.to_array(), ")");
+    PathBuf: |path| path.to_string_lossy().into_owned(), String, |path, bytes| path.into(), format!("{path:?}.into()");
+    Affine3A: |transform| transform.to_cols_array(), [f32; 12], |columns, bytes| Affine3A::from_cols_array(&columns), {
         let columns = [transform.matrix3.x_axis, transform.matrix3.y_axis, transform.matrix3.z_axis];
-        listed("Affine3A::from_cols(", &each(&[&columns[..], &[transform.translation]].concat()), ")")
+        each("Affine3A::from_cols(", &[&columns[..], &[transform.translation]].concat(), ")")
     };
 }
 
@@ -160,11 +207,11 @@ impl Message for String {
         bytes.extend_from_slice(self.as_bytes());
     }
 
-    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-        let length = u32::read(bytes)? as usize;
-        let (text, rest) = bytes.split_at_checked(length).ok_or(Malformed("it ends too early"))?;
-        *bytes = rest;
-        String::from_utf8(text.into()).map_err(|_| Malformed("a text is not UTF-8"))
+    fn read(bytes: &mut Reader) -> Self {
+        String::from_utf8(Vec::read(bytes)).unwrap_or_else(|_| {
+            bytes.fail("a text is not UTF-8");
+            String::new()
+        })
     }
 
     fn rust(&self) -> String {
@@ -185,18 +232,18 @@ impl<T: Message> Message for Vec<T> {
         }
     }
 
-    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-        let length = u32::read(bytes)? as usize;
+    fn read(bytes: &mut Reader) -> Self {
+        let length = u32::read(bytes) as usize;
         // Most items have about as many bytes in a message as in memory.
-        let mut items = Vec::with_capacity(length.min(bytes.len() / size_of::<T>().max(1)));
-        for _ in 0..length {
-            items.push(T::read(bytes)?);
+        let mut items = Vec::with_capacity(length.min(bytes.bytes.len() / size_of::<T>().max(1)));
+        while items.len() < length && bytes.error.is_none() {
+            items.push(T::read(bytes));
         }
-        Ok(items)
+        items
     }
 
     fn rust(&self) -> String {
-        listed("vec![", &each(self), "]")
+        each("vec![", self, "]")
     }
 }
 
@@ -208,8 +255,8 @@ impl<T: Message> Message for Option<T> {
         }
     }
 
-    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-        if bool::read(bytes)? { T::read(bytes).map(Some) } else { Ok(None) }
+    fn read(bytes: &mut Reader) -> Self {
+        bool::read(bytes).then(|| T::read(bytes))
     }
 
     fn rust(&self) -> String {
@@ -224,8 +271,8 @@ macro_rules! pointers {
                 (**self).write(bytes);
             }
 
-            fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-                T::read(bytes).map($Pointer::new)
+            fn read(bytes: &mut Reader) -> Self {
+                $Pointer::new(T::read(bytes))
             }
 
             fn rust(&self) -> String {
@@ -244,17 +291,12 @@ impl<T: Message, const N: usize> Message for [T; N] {
         }
     }
 
-    fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-        let mut error = None;
-        let parts = std::array::from_fn(|_| T::read(bytes).map_err(|why| *error.get_or_insert(why)).ok());
-        match error {
-            Some(error) => Err(error),
-            None => Ok(parts.map(|part: Option<T>| part.expect("there was no error"))),
-        }
+    fn read(bytes: &mut Reader) -> Self {
+        std::array::from_fn(|_| T::read(bytes))
     }
 
     fn rust(&self) -> String {
-        listed("[", &each(self), "]")
+        each("[", self, "]")
     }
 }
 
@@ -265,12 +307,12 @@ macro_rules! tuples {
                 $(self.$part.write(bytes);)*
             }
 
-            fn read(bytes: &mut &[u8]) -> Result<Self, Malformed> {
-                Ok(($($T::read(bytes)?,)*))
+            fn read(bytes: &mut Reader) -> Self {
+                ($($T::read(bytes),)*)
             }
 
             fn rust(&self) -> String {
-                listed("(", &[$(self.$part.rust()),*], ")")
+                parts("", &[$(&self.$part),*])
             }
         })*
     };
@@ -307,31 +349,33 @@ macro_rules! message {
             }
 
             #[allow(unused_assignments, reason = "the number after the last variant")]
-            fn read(bytes: &mut &[u8]) -> Result<Self, $crate::message::Malformed> {
-                let variant = <u8 as $crate::message::Message>::read(bytes)?;
+            fn read(bytes: &mut $crate::message::Reader) -> Self {
+                let variant = <u8 as $crate::message::Message>::read(bytes);
                 let mut number = 0;
                 $(
                     if variant == number {
-                        $($(let $part = $crate::message::Message::read(bytes)?;)+)?
-                        $($(let $field = $crate::message::Message::read(bytes)?;)+)?
-                        return Ok($Name::$Variant $(($($part),+))? $({ $($field,)+ $($unsent: Default::default())? })?);
+                        $($(let $part = $crate::message::Message::read(bytes);)+)?
+                        $($(let $field = $crate::message::Message::read(bytes);)+)?
+                        return $Name::$Variant $(($($part),+))? $({ $($field,)+ $($unsent: Default::default())? })?;
                     }
                     number += 1;
                 )*
-                Err($crate::message::no_such_variant())
+                // Only zeros follow an error, so this returns the first variant.
+                bytes.fail("there is no variant of this number");
+                <Self as $crate::message::Message>::read(bytes)
             }
 
             fn rust(&self) -> String {
                 $(
                     if let $Name::$Variant $(($($part),+))? $({ $($field,)+ .. })? = self {
-                        return [
-                            concat!(stringify!($Name), "::", stringify!($Variant)).to_owned(),
-                            $($crate::message::listed("(", &[$($crate::message::Message::rust($part)),+], ")"),)?
-                            $($crate::message::fields(&[
-                                $((stringify!($field), $crate::message::Message::rust($field)),)+
-                                $((stringify!($unsent), "Default::default()".into()))?
-                            ]),)?
-                        ].concat();
+                        let name = concat!(stringify!($Name), "::", stringify!($Variant));
+                        $(return $crate::message::parts(name, &[$($part as &dyn $crate::message::Message),+]);)?
+                        $(return $crate::message::fields(name, &[
+                            $((stringify!($field), $field as &dyn $crate::message::Message),)+
+                            $((stringify!($unsent), &$crate::message::Unsent))?
+                        ]);)?
+                        #[allow(unreachable_code, reason = "a variant with parts has returned")]
+                        return name.into();
                     }
                 )*
                 String::new()
@@ -344,23 +388,17 @@ macro_rules! message {
                 $($crate::message::Message::write(&self.$field, bytes);)*
             }
 
-            fn read(bytes: &mut &[u8]) -> Result<Self, $crate::message::Malformed> {
-                Ok($Name { $($field: $crate::message::Message::read(bytes)?),* })
+            fn read(bytes: &mut $crate::message::Reader) -> Self {
+                $Name { $($field: $crate::message::Message::read(bytes)),* }
             }
 
             fn rust(&self) -> String {
-                let fields = [$((stringify!($field), $crate::message::Message::rust(&self.$field))),*];
                 let names = [stringify!($Name) $(, stringify!($Rust))?];
-                [names[names.len() - 1].to_owned(), $crate::message::fields(&fields)].concat()
+                let fields = [$((stringify!($field), &self.$field as &dyn $crate::message::Message)),*];
+                $crate::message::fields(names[names.len() - 1], &fields)
             }
         }
     };
-}
-
-/// The error of a number that no variant has.
-#[doc(hidden)]
-pub fn no_such_variant() -> Malformed {
-    Malformed("there is no variant of this number")
 }
 
 #[cfg(test)]

@@ -220,21 +220,18 @@ macro_rules! door {
 
             /// The call of a [`Kit`] as Rust, to paste into a test; `None` for frames and their rays.
             pub fn call(&self) -> Option<String> {
-                match self {
-                    $($(Request::$Message(queries) => {
-                        Some(format!("{}(&{})", stringify!($name), message::Message::rust(queries)))
-                    })*)*
-                    Request::Withheld(request) => request.call(),
-                    _ => None,
-                }
+                let (name, queries): (_, &dyn message::Message) = match self {
+                    $($(Request::$Message(queries) => (stringify!($name), queries),)*)*
+                    Request::Withheld(request) => return request.call(),
+                    _ => return None,
+                };
+                Some(format!("{name}(&{})", queries.rust()))
             }
 
             /// The request with one of its queries only; `None` for frames and their rays, and if there is no such query.
             pub fn only(&self, index: usize) -> Option<Request> {
                 match self {
-                    $($(Request::$Message(queries) => {
-                        queries.get(index).map(|query| Request::$Message(vec![query.clone()]))
-                    })*)*
+                    $($(Request::$Message(queries) => Some(Request::$Message(vec![queries.get(index)?.clone()])),)*)*
                     _ => None,
                 }
             }

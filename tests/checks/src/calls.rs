@@ -1,8 +1,9 @@
 //! The calls that a check makes, with their answers.
 
 use crate::broken::{Broken, CheckResult, words};
+use crate::structure;
 use raykata::frame::Watch;
-use raykata::kit::{Answer, Kit, KitError, Request, Transport};
+use raykata::kit::{Answer, Kit, KitError, Request, Transport, kit_error};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -66,19 +67,22 @@ pub fn breaking_call(examined: &Result<CheckResult, KitError>) -> Option<Request
     examined.as_ref().ok()?.as_ref().err()?.details.call.clone()
 }
 
-/// Passes each request on, and keeps it with its answer.
+/// Passes each request on, and the answer back unless it is malformed.
 pub(crate) struct Recorder<'a> {
     pub(crate) kit: &'a dyn Kit,
-    pub(crate) calls: Calls,
+    /// Where requests and answers are kept, if a message needs them.
+    pub(crate) calls: Option<Calls>,
 }
 
 impl Transport for Recorder<'_> {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
-        self.calls.batches().push((request.clone(), None));
+        self.calls.iter().for_each(|calls| calls.batches().push((request.clone(), None)));
         let answer = request.answer(self.kit, watch);
-        if let Some(batch) = self.calls.batches().last_mut() {
-            batch.1 = Some(answer.clone());
+        if let Some(what) = structure::fault(&answer) {
+            kit_error::unwind(KitError::Malformed { what });
         }
+        let keep = |batch: &mut Batch| batch.1 = Some(answer.clone());
+        self.calls.iter().for_each(|calls| calls.batches().last_mut().into_iter().for_each(keep));
         answer
     }
 

@@ -27,7 +27,7 @@ pub(crate) fn shrink<T: ValueTree>(
     }
 }
 
-/// The broken law of one input, if it breaks one, with the call that breaks it. A panic counts.
+/// The broken law of one input, if it breaks one, with the call that breaks it. A panic and a malformed answer count.
 pub(crate) fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, calls: &Calls) -> Option<Broken> {
     calls.batches().clear();
     let mut broken = match kit_error::catch(judge) {
@@ -36,6 +36,12 @@ pub(crate) fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, calls: &Calls) -> 
             let panic = format!("a panic at {place}: {message}");
             Broken::with_texts("one with which your code panics", panic, "an answer", "the definition")
         }
+        Err(KitError::Malformed { what }) => Broken::with_texts(
+            "one for which the answer is malformed",
+            what,
+            "a well-formed answer",
+            "the definition",
+        ),
         Err(error) => kit_error::unwind(error),
     };
     broken.details.call = calls.of(&broken, true);

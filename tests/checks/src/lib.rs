@@ -22,6 +22,7 @@ mod process;
 pub mod radiosity;
 pub mod rubric;
 pub mod statistics;
+mod structure;
 pub mod symmetry;
 pub mod tree;
 pub mod trial;

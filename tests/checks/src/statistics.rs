@@ -150,14 +150,15 @@ fn stratified(seed: u64) -> Vec<Vec2> {
 /// `shares` has the expected share of each bin, and none if they are the areas.
 ///
 /// Each cell of the grid of numbers has two samples, whose difference states the variance of the count for any map that is
-/// right. It is at most that of independent numbers, which is the expected count.
+/// right. It is at most that of independent numbers, which is the expected count. `mistakes` gets the counts of [`CELLS`]² equal
+/// cells; if none of them is proven, the pattern of counts that should be equal is described.
 pub fn covers_each_part(
     what: &str,
     axes: [&str; 2],
     seed: u64,
     shares: Option<&[f64]>,
     places: impl Fn(&[Vec2]) -> Result<Vec<(f64, f64)>, Broken>,
-    diagnosis: impl Fn(&[u64]) -> Option<String>,
+    mistakes: impl Fn(&[u64]) -> Mistakes,
 ) -> CheckResult {
     let u = stratified(seed ^ (1 << 41));
     // A message of a worker is at most some megabytes long.
@@ -180,7 +181,7 @@ pub fn covers_each_part(
     let mut counts = vec![0u64; BINS * BINS];
     bins_of.iter().flatten().for_each(|[x, y]| counts[y * BINS + x] += 1);
     let areas: Vec<f64> = bins().map(|(_, (width, height))| width * height).collect();
-    let shares = shares.unwrap_or(&areas);
+    let (even, shares) = (shares.is_none(), shares.unwrap_or(&areas));
     let scale = u.len() as f64 / shares.iter().sum::<f64>();
     let split: Vec<_> = bins_of.chunks(2).filter(|pair| pair[0] != pair[1]).collect();
     let mut worst: Option<(f64, Broken)> = None;
@@ -217,7 +218,9 @@ pub fn covers_each_part(
         let eighth = |bin: usize| bin.clamp(3, BINS - 4) - 3;
         cells[eighth(*y) * CELLS as usize + eighth(*x)] += 1;
     }
-    Err(broken.looks_like(diagnosis(&cells).or(gap.map(str::to_owned))))
+    let proven = mistakes(&cells).into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()));
+    let described = if even { pattern(&cells, axes) } else { None };
+    Err(broken.looks_like(proven.or(described).or(gap.map(str::to_owned))))
 }
 
 /// Whether all of these values are the same power of one of the random numbers, or of 1 less it, for an exponent that is not
@@ -291,7 +294,7 @@ pub fn power_of(check: impl FnOnce()) -> Vec<(f64, f64)> {
 }
 
 /// A description of uneven counts that does not depend on the sampler.
-pub fn pattern(counts: &[u64], axes: [&str; 2]) -> Option<String> {
+fn pattern(counts: &[u64], axes: [&str; 2]) -> Option<String> {
     let sums = [columns(counts), counts.chunks(CELLS as usize).map(|row| row.iter().sum()).collect()];
     for (sums, axis) in sums.iter().zip(axes) {
         let (first, last) = (sums[0], sums[CELLS as usize - 1]);

@@ -197,8 +197,8 @@ impl<'a> Trial<'a> {
         let alone = |index: usize| judge_one(&|| judge(index..index + 1), &self.calls);
         let outcomes = match kit_error::catch(|| judge(0..n_inputs)) {
             Ok(outcomes) => outcomes,
-            // The code panicked on an input of the batch: judge the inputs one by one to find it.
-            Err(KitError::Panicked { .. }) => {
+            // The code panicked on an input of the batch, or built no tree: judge the inputs one by one to find it.
+            Err(KitError::Panicked { .. } | KitError::Malformed { .. }) => {
                 let panics = (0..n_inputs).find_map(|index| Some((index, alone(index)?)));
                 panics.map_or_else(Vec::new, |(n_passed, broken)| {
                     [vec![Ok(()); n_passed], vec![Err(broken)]].concat()
@@ -305,8 +305,7 @@ fn on_a_thread(
         .spawn(move || {
             let _ = itself.set(Thread::current());
             let calls = inputs.calls.clone().unwrap_or_default();
-            let recorder = Door(Recorder { kit: &*its_kit, calls: calls.clone() });
-            let kit: &dyn Kit = if shrinks { &recorder } else { &*its_kit };
+            let kit: &dyn Kit = &Door(Recorder { kit: &*its_kit, calls: shrinks.then(|| calls.clone()) });
             let trial = Trial { inputs, shrinks, calls: calls.clone(), ..Trial::new(kit, check.name, seed) };
             // A scene that is drawn needs no turn.
             let is_drawn = check.symmetries == Symmetries::Composed && trial.reference().is_some();

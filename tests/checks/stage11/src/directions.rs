@@ -5,9 +5,7 @@ use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::{compare, unless};
 use checks::nasty;
 use checks::paste::call;
-use checks::statistics::{
-    SAMPLES, columns, covers_each_part, covers_evenly, is_other_power, pairs, pattern, unused_number,
-};
+use checks::statistics::{SAMPLES, columns, covers_each_part, is_other_power, pairs};
 use glam::{Vec2, Vec3, vec2};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -89,11 +87,8 @@ pub(super) fn cosine_directions_have_their_density(trial: &Trial<'_>) -> CheckRe
             u.iter().zip(&cosines).all(|(u, found)| (found - formula(number(u, which))).abs() < 1e-4)
         })
     };
-    let mistakes = || {
-        let mut mistakes = unused_number(|u| {
-            trial.kit.cosine_direction(&u.iter().map(|u| (normals[0], *u)).collect::<Vec<_>>())
-        });
-        mistakes.extend([
+    let mistakes = |counts: &[u64]| {
+        vec![
             (
                 is(|u| u),
                 "your directions are uniform over the hemisphere: cos θ is the root of a uniform number",
@@ -114,22 +109,13 @@ pub(super) fn cosine_directions_have_their_density(trial: &Trial<'_>) -> CheckRe
                 cosines.iter().all(|cosine| *cosine > 0.018),
                 "you never sample grazing directions: cos θ goes down to 0",
             ),
-        ]);
-        mistakes
+            (columns(counts)[7] == 0, "you never sample grazing directions"),
+        ]
     };
-    let what = "cosine_direction(normal, u)";
-    covers_evenly(what, &places((queries, answers)), AXES, |counts| {
-        let mut mistakes = mistakes();
-        mistakes.push((columns(counts)[7] == 0, "you never sample grazing directions"));
-        mistakes
-    })?;
     // The last normal is far from the axes, along which most frames are right by chance.
     let one = &normals[normals.len() - 1..];
     let places = |u: &[Vec2]| Ok(places(directions(one, u)?));
-    covers_each_part(what, AXES, trial.seed, None, places, |counts| {
-        let proven = mistakes().into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()));
-        proven.or_else(|| pattern(counts, AXES))
-    })
+    covers_each_part("cosine_direction(normal, u)", AXES, trial.seed, None, places, mistakes)
 }
 
 pub(super) const AXES: [&str; 2] = ["sin² θ", "the angle around the normal"];

@@ -309,7 +309,7 @@ pub(super) fn diffuse_samples_use_fresh_numbers(trial: &Trial<'_>) -> CheckResul
         let broken = Broken::with_texts(what, "depend on one number", "depend on two", "the definition");
         return Err(broken.looks_like(Some("one random number for both coordinates: use u.y and u.z")));
     };
-    covers_each_part(what, AXES, trial.seed, None, |u| Ok(places(pair, u)), |_| None)
+    covers_each_part(what, AXES, trial.seed, None, |u| Ok(places(pair, u)), |_| Vec::new())
 }
 
 pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {

@@ -6,9 +6,7 @@ use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::{Judged, compare, unless};
 use checks::nasty;
 use checks::paste::{Paste, call};
-use checks::statistics::{
-    Mistakes, SAMPLES, columns, covers_each_part, covers_evenly, is_other_power, pairs, unused_number,
-};
+use checks::statistics::{Mistakes, SAMPLES, columns, covers_each_part, is_other_power, pairs};
 use glam::{DVec3, Vec2, Vec3, vec2, vec3};
 use proptest::prelude::*;
 use raykata::camera::{Camera, Lens};
@@ -77,16 +75,9 @@ pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> CheckResult {
         ]))
     };
     all_hold(u.iter().zip(&places).map(judge).collect())?;
-    let shares: Vec<(f64, f64)> = places.iter().map(|place| polar(*place)).collect();
-    covers_evenly("sample_disk(u)", &shares, ["radius²", "angle"], |counts| {
-        let mut mistakes = is_polar(&u, &places);
-        mistakes.extend(unused_number(|u| trial.kit.sample_disk(u)));
-        uneven_disk(counts, mistakes)
-    })?;
-    let places_of_u = places;
-    let places = |u: &[Vec2]| Ok(trial.kit.sample_disk(u).into_iter().map(polar).collect());
-    covers_each_part("sample_disk(u)", ["radius²", "angle"], trial.seed, None, places, |_| {
-        is_polar(&u, &places_of_u).into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()))
+    let shares = |u: &[Vec2]| Ok(trial.kit.sample_disk(u).into_iter().map(polar).collect());
+    covers_each_part("sample_disk(u)", ["radius²", "angle"], trial.seed, None, shares, |counts| {
+        uneven_disk(counts, is_polar(&u, &places))
     })
 }
 

@@ -7,8 +7,8 @@ use checks::generate::{magnitude, point, rough_point};
 use checks::judge::{Judged, compare, proven, unless};
 use checks::nasty;
 use checks::paste::{Paste, call};
-use checks::statistics::{SAMPLES, columns, covers_evenly, pairs};
-use glam::{DVec3, Vec3};
+use checks::statistics::{columns, covers_each_part};
+use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::camera::Shutter;
@@ -136,22 +136,20 @@ fn judge_time(query: &TimeQuery, yours: f32) -> Judged {
 
 pub(super) fn times_are_even(trial: &Trial<'_>) -> CheckResult {
     let shutter = Shutter { open: 0.25, close: 0.75 };
-    let u = pairs(trial.seed, SAMPLES);
-    let queries: Vec<TimeQuery> = u
-        .iter()
-        .enumerate()
-        .map(|(index, u)| TimeQuery { shutter, slot: 1 + index as u32 % 16, slots: 16, u: u.x })
-        .collect();
-    let times = trial.kit.time_in_shutter(&queries);
-    // Times must be uniform over the whole interval and within each slot.
-    let place = |time: &f32| {
-        let share = 2.0 * (f64::from(*time) - 0.25);
-        ((16.0 * share).fract(), share)
+    // A time depends on one number. The other one spreads the times over the square.
+    let places = |u: &[Vec2]| {
+        let query = |u: &Vec2| TimeQuery { shutter, slot: 7, slots: 16, u: u.x };
+        let times = trial.kit.time_in_shutter(&u.iter().map(query).collect::<Vec<_>>());
+        let share = |time: &f32| 32.0 * (f64::from(*time) - 0.25) - 6.0;
+        Ok(times.iter().map(share).zip(u.iter().map(|u| f64::from(u.y))).collect())
     };
-    let places: Vec<(f64, f64)> = times.iter().map(place).collect();
-    covers_evenly("time_in_shutter in 16 slots", &places, ["the time in its slot", "the time"], |counts| {
+    let axes = ["the time in its slot", "another number"];
+    covers_each_part("time_in_shutter in slot 7 of 16", axes, trial.seed, None, places, |counts| {
         let of_slot = columns(counts);
-        vec![(of_slot.contains(&0), "you do not use the whole slot: u is the position in the slot")]
+        vec![(
+            of_slot.contains(&0) && of_slot.iter().any(|n| *n > 0),
+            "you do not use the whole slot: u is the position in the slot",
+        )]
     })
 }
 

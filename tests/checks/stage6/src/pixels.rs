@@ -5,7 +5,7 @@ use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::rough_point;
 use checks::judge::{Judged, compare, proven, unless};
 use checks::paste::{Paste, call, list};
-use checks::statistics::{SAMPLES, covers_evenly, pairs, unused_number};
+use checks::statistics::{SAMPLES, covers_each_part, pairs};
 use glam::{DVec2, DVec3, Vec2, Vec2Swizzles, Vec3, uvec2, vec2, vec3};
 use proptest::prelude::*;
 use raykata::kit::{FILTER_RADIUS, WeightedColor};
@@ -279,21 +279,17 @@ pub(super) fn jittered_samples_cover_the_pixel_evenly(trial: &Trial<'_>) -> Chec
             Stratum { cell: uvec2(cell % 4, cell / 4), grid: uvec2(4, 4), u }
         })
         .collect();
-    let places: Vec<(f64, f64)> =
-        trial.kit.jittered(&strata).iter().map(|p| (f64::from(p.x), f64::from(p.y))).collect();
-    let in_cells: Vec<(f64, f64)> =
-        places.iter().map(|(x, y)| ((4.0 * x).fract(), (4.0 * y).fract())).collect();
-    covers_evenly("jittered in 4 × 4 cells", &in_cells, ["x in its cell", "y in its cell"], |_| {
-        unused_number(|u| {
-            let stratum = |u: &Vec2| Stratum { u: *u, ..strata[5] };
-            trial.kit.jittered(&u.iter().map(stratum).collect::<Vec<_>>())
-        })
-    })?;
-    covers_evenly("jittered in 4 × 4 cells", &places, ["x", "y"], |_| Vec::new())?;
+    let in_cell = |place: &Vec2| (4.0 * place.as_dvec2() - strata[6].cell.as_dvec2()).into();
+    let places = |u: &[Vec2]| {
+        let strata: Vec<Stratum> = u.iter().map(|u| Stratum { u: *u, ..strata[6] }).collect();
+        Ok(trial.kit.jittered(&strata).iter().map(in_cell).collect())
+    };
+    let what = "jittered in the cell (2, 1) of 4 × 4";
+    covers_each_part(what, ["x in its cell", "y in its cell"], trial.seed, None, places, |_| Vec::new())?;
     // Each sample must lie in its own cell, whatever the random numbers. Two roundings of a number below 1 may move it
     // onto the border with the next cell.
-    for (stratum, &(x, y)) in strata.iter().zip(&places) {
-        let (place, corner) = (4.0 * DVec2::new(x, y), stratum.cell.as_dvec2());
+    for (stratum, place) in strata.iter().zip(trial.kit.jittered(&strata)) {
+        let (place, corner) = (4.0 * place.as_dvec2(), stratum.cell.as_dvec2());
         let slack = 4.0 * 2e-7;
         if place.cmplt(corner - slack).any() || place.cmpgt(corner + 1.0 + slack).any() {
             let cell = place.as_uvec2();

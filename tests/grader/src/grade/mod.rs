@@ -13,7 +13,6 @@ mod one;
 mod options;
 pub mod report;
 pub mod result;
-mod sanity;
 mod scratch;
 mod shard;
 mod store;

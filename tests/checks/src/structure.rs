@@ -1,5 +1,6 @@
-//! Rejects malformed structures in the answers of a worker. The checks traverse trees with loops and recursion. A tree
-//! whose root is its own child would make them loop without end or overflow the judge's stack.
+//! Rejects malformed structures in answers before a law looks at them. The laws traverse trees with loops and recursion. A tree
+//! whose root is its own child would make them loop without end or overflow the stack. A flat or wide tree of stage 12 has one
+//! order of nodes, which its laws compare before they follow a child.
 
 use raykata::bvh::Contents;
 use raykata::count::Counts;
@@ -11,7 +12,7 @@ use raykata::partition::{Grid, Tree, TreeNode};
 const DEEPEST: usize = 2_000;
 
 /// Describes the first malformed structure of an answer.
-pub fn fault(answer: &Answer) -> Option<String> {
+pub(crate) fn fault(answer: &Answer) -> Option<String> {
     match answer {
         Answer::Build(trees) => trees.iter().find_map(|tree| {
             let node = |index: usize| match tree.nodes[index].contents {
@@ -45,12 +46,14 @@ fn fault_of_nodes(
     node: impl Fn(usize) -> (Vec<u32>, Option<(u32, u32)>),
 ) -> Option<String> {
     let mut reached = vec![false; n_nodes];
-    let mut waiting = if n_nodes > 0 { vec![(0, 1)] } else { Vec::new() };
+    let mut waiting = if n_nodes > 0 { vec![(0, 0, 1)] } else { Vec::new() };
     // Traverse the tree without recursion. Each node must be reached once, within the depth limit.
-    while let Some((index, depth)) = waiting.pop() {
+    while let Some((parent, index, depth)) = waiting.pop() {
+        let child = || format!("a child of node {parent} is node {index}");
         match reached.get_mut(index) {
-            None => return Some(format!("a child has index {index}, but there are {n_nodes} nodes")),
-            Some(true) => return Some(format!("node {index} has two parents or is its own parent")),
+            None => return Some(format!("{}, but there are {n_nodes} nodes", child())),
+            Some(true) if index == 0 => return Some(format!("{}, the root, which has no parent", child())),
+            Some(true) => return Some(format!("{}, which is a child already: it has one parent", child())),
             Some(reached) => *reached = true,
         }
         if depth > DEEPEST {
@@ -64,7 +67,7 @@ fn fault_of_nodes(
                 return Some(format!("{kind} {index} ends at position {end} of a list of {n_items}"));
             }
         }
-        waiting.extend(children.into_iter().map(|child| (child as usize, depth + 1)));
+        waiting.extend(children.into_iter().map(|child| (index, child as usize, depth + 1)));
     }
     None
 }
@@ -94,10 +97,15 @@ fn fault_of_grid(grid: &Grid) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::symmetry::Symmetries;
+    use crate::{Check, Verdict, passes, run};
     use raykata::aabb::Aabb;
     use raykata::bvh::{Bvh, Node as BvhNode};
-    use raykata::partition::KdNode;
-    use raykata::partition::KdTree;
+    use raykata::frame::Watch;
+    use raykata::kit::{BuildQuery, Door, Request, Transport};
+    use raykata::partition::{KdNode, KdTree};
+    use raykata::scene::Split;
+    use std::sync::Arc;
 
     fn tree(children: &[Option<(u32, u32)>]) -> Answer {
         let contents = |node: &Option<(u32, u32)>| match *node {
@@ -116,12 +124,51 @@ mod tests {
     fn rings_and_strange_children_are_no_trees() {
         assert_eq!(fault(&tree(&[Some((1, 2)), None, None])), None);
         assert_eq!(fault(&tree(&[])), None);
-        assert!(fault(&tree(&[Some((0, 0))])).unwrap().contains("its own parent"));
-        assert!(fault(&tree(&[Some((1, 1)), None])).unwrap().contains("two parents"));
-        assert!(fault(&tree(&[Some((1, 9)), None])).unwrap().contains("index 9, but there are 2"));
+        assert!(fault(&tree(&[Some((0, 0))])).unwrap().contains("of node 0 is node 0, the root"));
+        assert!(
+            fault(&tree(&[Some((1, 1)), None])).unwrap().contains("of node 0 is node 1, which is a child")
+        );
+        assert!(
+            fault(&tree(&[Some((1, 9)), None])).unwrap().contains("of node 0 is node 9, but there are 2")
+        );
         let mut tree = KdTree::new(Aabb::EMPTY);
         tree.nodes = vec![KdNode::Leaf { first: u32::MAX, count: u32::MAX }];
         assert!(fault(&Answer::KdBuild(vec![tree])).unwrap().contains("ends at"));
+    }
+
+    /// Answers each call with a tree of one node, which is its own child.
+    struct Ring;
+
+    impl Transport for Ring {
+        fn call(&self, _: Request, _: &dyn Watch) -> Answer {
+            tree(&[Some((0, 0))])
+        }
+    }
+
+    #[test]
+    fn no_law_follows_a_ring() {
+        let law = |trial: &crate::Trial<'_>| {
+            trial.forall(3, 1..3usize, |sizes| {
+                let query = |&leaf_size: &usize| BuildQuery {
+                    bounds: Vec::new(),
+                    split: Split::ObjectMedian,
+                    leaf_size,
+                };
+                sizes
+                    .iter()
+                    .map(|size| {
+                        trial.kit.build(&[query(size)])[0].depth();
+                        Ok(())
+                    })
+                    .collect()
+            })
+        };
+        let check =
+            Check { stage: 3, name: "build_holds_every_primitive_once", law, symmetries: Symmetries::None };
+        let ring: Arc<dyn raykata::kit::Kit + Send + Sync> = Arc::new(Door(Ring));
+        assert!(!passes(&check, &ring, 0));
+        let Verdict::Failed(message) = run(&check, &ring, 0) else { panic!("a ring passes") };
+        assert!(message.contains("a child of node 0 is node 0, the root"), "{message}");
     }
 
     #[test]
