@@ -8,7 +8,7 @@ use raykata::film::Film;
 use raykata::kit::{Kit, RayKind, TriangleQuery};
 use raykata::mesh::Mesh;
 use raykata::ray::Ray;
-use raykata::scene::NextEvent;
+use raykata::scene::{NextEvent, TriangleMethod};
 use raykata::shape::Triangle;
 use std::collections::{BTreeSet, HashMap};
 use std::f32::consts::{PI, TAU};
@@ -99,6 +99,21 @@ fn map_of_directions(rays: &[Ray], is_hit: &[bool]) -> Film {
         }
     }
     film
+}
+
+/// scenes/leak.toml with two tests of triangles, and the number of primary rays without a hit.
+pub fn leak_room(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
+    let mut scene = load(root, "leak.toml")?;
+    let mut parts = Vec::new();
+    for (method, name) in
+        [(TriangleMethod::Cramer, "triangle_cramer"), (TriangleMethod::Watertight, "watertight")]
+    {
+        scene.quality.triangle_method = method;
+        let rendering = render(kit, &scene)?;
+        let leaks = rendering.counts.primary - rendering.counts.hits;
+        parts.push((rendering.film.toned(scene.film.tone), format!("{name}: {leaks} rays leak")));
+    }
+    panels(&parts, 2)
 }
 
 /// scenes/shadows.toml, and the number of shadow rays of each pixel.

@@ -84,7 +84,7 @@ const FROM_SCENES: &[(&str, FromScenes)] = drawings! {
     solids: scene_graph, loop_subdivision;
     transport: furnace_bias;
     acne: shadow_acne, offset_strip;
-    leaks: leaks, shadow_ray_map, cornell_next_event;
+    leaks: leaks, leak_room, shadow_ray_map, cornell_next_event;
     speed: wide_heatmaps;
 };
 

@@ -158,6 +158,19 @@ impl Film {
         self.write_rgb(file, &self.to_bytes(encode).rgb)
     }
 
+    /// The picture in sRGB bytes, rounded by ordered dithering, so that a smooth sky shows no bands: each pixel is rounded up from
+    /// its own threshold in an 8 by 8 Bayer matrix (Bayer 1973). Red, green and blue of a pixel share it.
+    pub fn dithered_srgb(&self) -> Vec<u8> {
+        let bytes = |(index, pixel): (u32, &Vec3)| {
+            // Interleave the lowest three bits of x ^ y and of y, the lowest bits first.
+            let (x, y) = (index % self.width, index / self.width);
+            let rank = (0..3).fold(0, |rank, bit| rank << 2 | ((x ^ y) >> bit & 1) << 1 | y >> bit & 1);
+            let threshold = (rank as f32 + 0.5) / 64.0;
+            pixel.to_array().map(|linear| (srgb_curve(linear) + threshold) as u8)
+        };
+        (0..).zip(&self.pixels).flat_map(bytes).collect()
+    }
+
     /// Writes a PNG file of components that were encoded by the caller: `components` has red, green and blue
     /// of each pixel of this film, in the same order. Pixels that are NaN in the film turn magenta, as in
     /// [`Film::to_bytes`].
@@ -219,9 +232,13 @@ impl Film {
 /// The sRGB byte for a component of linear light, by the curve of IEC 61966-2-1, rounded to nearest. Input
 /// below 0 gives 0, input above 1 gives 255, and NaN gives 0.
 pub fn encode_srgb(linear: f32) -> u8 {
+    (srgb_curve(linear) + 0.5) as u8
+}
+
+/// The curve of [`encode_srgb`] before it is rounded, from 0 to 255.
+fn srgb_curve(linear: f32) -> f32 {
     let linear = linear.clamp(0.0, 1.0);
-    let curve = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
-    (255.0 * curve + 0.5) as u8
+    255.0 * if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// Writes a file so that it is complete or absent: `write` fills a temporary file in the same folder, which

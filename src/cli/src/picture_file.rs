@@ -4,7 +4,7 @@ use crate::args::wrapped;
 use crate::piece;
 use crate::report::{Bytes, Thousands};
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use raykata::film::{Film, encode_srgb};
+use raykata::film::Film;
 use raykata::kit::{Kit, Rendering, View, kit_error};
 use raykata::scene::{Encoding, FilmSettings, Quality};
 use std::path::Path;
@@ -73,7 +73,7 @@ pub(crate) fn write_picture(
 /// Writes a PNG file. The kit that rendered the picture encodes it, because gamma 2 is an exercise.
 pub(crate) fn write_png(film: &Film, out: &Path, encoding: Encoding, kit: Option<&dyn Kit>) -> Result<()> {
     match encoding {
-        Encoding::Srgb => film.write_png(out, encode_srgb)?,
+        Encoding::Srgb => film.write_png_bytes(out, &film.dithered_srgb())?,
         Encoding::Gamma2 => {
             let kit = kit.context("gamma 2 needs a kit")?;
             let components: Vec<f32> = film.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();

@@ -5,7 +5,7 @@ use raykata::film::Film;
 use std::f32::consts::{PI, TAU};
 
 /// Returns every image with its file name. Files that end in `.hdr` hold linear light, the others sRGB.
-pub fn all() -> [(&'static str, Film); 10] {
+pub fn all() -> [(&'static str, Film); 11] {
     [
         ("tiles.png", paint(256, 256, tiles)),
         ("bricks.png", paint(256, 128, bricks)),
@@ -17,6 +17,7 @@ pub fn all() -> [(&'static str, Film); 10] {
         ("billiard8.png", paint(512, 256, |at| billiard(at, 8, vec3(0.012, 0.012, 0.014), false))),
         ("billiard9.png", paint(512, 256, |at| billiard(at, 9, vec3(0.85, 0.48, 0.02), true))),
         ("studio.hdr", paint(512, 256, studio)),
+        ("sunset.hdr", paint(512, 256, sunset)),
     ]
 }
 
@@ -181,4 +182,24 @@ fn studio(at: Vec2) -> Vec3 {
         + softbox(vec2(1.35, 0.45), vec2(0.16, 0.62), vec3(3.6, 4.6, 6.4))
         + softbox(vec2(2.75, 0.95), vec2(0.30, 0.16), vec3(5.0, 4.8, 4.5))
         + softbox(vec2(0.0, 0.05), vec2(1.1, 0.35), vec3(0.30, 0.20, 0.12))
+}
+
+/// Returns the light of a sunset: a large sun behind haze, which lights long clouds from behind, above a dark sea.
+fn sunset(at: Vec2) -> Vec3 {
+    let (longitude, latitude) = (TAU * (at.x - 0.5), PI * (at.y - 0.5));
+    let (up, level) = latitude.sin_cos();
+    let direction = vec3(level * longitude.sin(), up, -level * longitude.cos());
+    let angle = direction.angle_between(vec3(0.50, 0.50, -0.70));
+    let glow = (-angle / 0.7).exp();
+    // The haze at the horizon is orange towards the sun and mauve on the other side.
+    let haze = vec3(0.42, 0.20, 0.22).lerp(vec3(2.1, 0.74, 0.20), (1.6 * glow).min(1.0));
+    let sky =
+        vec3(0.05, 0.13, 0.36).lerp(haze, (-8.0 * up.abs()).exp()) + vec3(0.9, 0.5, 0.22) * glow.powi(3);
+    // Clouds lie in a plane above the sea.
+    let place = 0.11 * vec2(direction.x, direction.z) / (up.max(0.0) + 0.10);
+    let cover = ((turbulence(place + vec2(0.2, 0.6)) - 0.47) / 0.16).clamp(0.0, 1.0);
+    let cloud = vec3(0.16, 0.08, 0.10) + vec3(2.8, 1.0, 0.34) * glow * (1.3 - cover);
+    let sky = sky.lerp(cloud, 0.8 * cover * (up / 0.04).clamp(0.0, 1.0));
+    let sun = vec3(58.0, 37.0, 18.0) * ((0.25 - angle) / 0.03).clamp(0.0, 1.0);
+    if up > 0.0 { sky + sun } else { 0.2 * sky }
 }

@@ -100,7 +100,7 @@ const KEPT_BACK: [&str; 8] = [
 ];
 
 /// Files that are handed out unchanged.
-const FILES: [&str; 11] = [
+const FILES: [&str; 12] = [
     ".cargo/config.toml",
     ".gitignore",
     "Cargo.lock",
@@ -109,6 +109,7 @@ const FILES: [&str; 11] = [
     "exercises/Cargo.toml",
     "rustfmt.toml",
     "scenes/showcase.png",
+    "scenes/terrace.png",
     "tests/course.toml",
     "tests/language.toml",
     "tests/stubs.toml",
