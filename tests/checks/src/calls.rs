@@ -4,11 +4,19 @@ use crate::broken::{Broken, CheckResult, words};
 use crate::structure;
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Kit, KitError, Request, Transport, kit_error};
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// A batch of calls of one function, and their answers once they are known.
 pub type Batch = (Request, Option<Answer>);
+
+/// Swaps that put `n` queries into another order for each seed but 0, whose inputs are public.
+pub fn swaps(seed: u64, n: usize) -> Vec<(usize, usize)> {
+    let draw =
+        |i: usize| BuildHasherDefault::<DefaultHasher>::default().hash_one((seed, n, i)) as usize % (i + 1);
+    if seed == 0 { Vec::new() } else { (1..n).map(|i| (i, draw(i))).collect() }
+}
 
 /// The batches of a check, in the order in which it asks.
 #[derive(Clone, Default)]

@@ -32,7 +32,9 @@ use std::sync::Arc;
 
 pub use broken::{Broken, CheckResult};
 pub use drawn::Drawn;
-pub use trial::{Check, Inputs, Trial, Verdict, examine, grade, passes, run, verdict, without_answer};
+pub use trial::{
+    Check, Inputs, ONE_HIDDEN_IN, Trial, Verdict, examine, grade, passes, run, verdict, without_answer,
+};
 
 /// The functions of a crate as a kit that checks can call.
 pub fn linked(functions: impl StudentKit) -> Arc<dyn Kit + Send + Sync> {

@@ -18,7 +18,7 @@ checks::stage! { ($ crate) 2 [
     meet::triangle_cramer_agrees_with_double_precision => triangle_agrees(method::CRAMER)
     meet::triangle_cramer_knows_inside_from_outside => triangle_regions(method::CRAMER): turned
     meet::triangle_cramer_is_hit_from_either_side => triangle_windings(method::CRAMER)
-    meet::triangle_cramer_respects_the_range => triangle_in_range(method::CRAMER)
+    meet::triangle_cramer_respects_the_range => triangle_in_range(method::CRAMER): turned
     meet::triangle_cramer_owns_its_edges => triangle_edges(method::CRAMER): turned
     meet::triangle_cramer_has_no_smallest_size => triangle_sizes(method::CRAMER)
     meet::triangle_cramer_far_from_the_origin => triangle_far(method::CRAMER)
@@ -26,7 +26,7 @@ checks::stage! { ($ crate) 2 [
     meet::triangle_gram_agrees_with_double_precision => triangle_agrees(method::GRAM)
     meet::triangle_gram_knows_inside_from_outside => triangle_regions(method::GRAM): turned
     meet::triangle_gram_is_hit_from_either_side => triangle_windings(method::GRAM)
-    meet::triangle_gram_respects_the_range => triangle_in_range(method::GRAM)
+    meet::triangle_gram_respects_the_range => triangle_in_range(method::GRAM): turned
     meet::triangle_gram_owns_its_edges => triangle_edges(method::GRAM): turned
     meet::triangle_gram_has_no_smallest_size => triangle_sizes(method::GRAM)
     meet::triangle_gram_far_from_the_origin => triangle_far(method::GRAM)
@@ -34,7 +34,7 @@ checks::stage! { ($ crate) 2 [
     meet::triangle_choice_agrees_with_double_precision => triangle_agrees(method::CHOICE)
     meet::triangle_choice_knows_inside_from_outside => triangle_regions(method::CHOICE): turned
     meet::triangle_choice_is_hit_from_either_side => triangle_windings(method::CHOICE)
-    meet::triangle_choice_respects_the_range => triangle_in_range(method::CHOICE)
+    meet::triangle_choice_respects_the_range => triangle_in_range(method::CHOICE): turned
     meet::triangle_choice_owns_its_edges => triangle_edges(method::CHOICE): turned
     meet::triangle_choice_has_no_smallest_size => triangle_sizes(method::CHOICE)
     meet::triangle_choice_far_from_the_origin => triangle_far(method::CHOICE)

@@ -28,7 +28,7 @@ checks::stage! { ($ crate) 3 [
     slabs::slab_of_a_flat_box_is_hit: turned
     slabs::slab_respects_the_range: turned
     slabs::slab_misses_the_empty_box: turned
-    slabs::slab_hits_the_corners_it_is_aimed_at
+    slabs::slab_hits_the_corners_it_is_aimed_at: turned
     splits::object_median_makes_equal_halves
     splits::spatial_median_cuts_in_the_middle
     splits::spatial_median_never_leaves_a_side_empty: turned
@@ -43,12 +43,12 @@ checks::stage! { ($ crate) 3 [
     stadium::surface_area_heuristic_is_cheap_in_a_stadium: turned
     builds::trees_of_eight_boxes: composed
     searches::closest_hit_both_agrees_with_brute_force => agrees(|kit, queries| kit.closest_hit_both(queries))
-    searches::closest_hit_both_enters_only_boxes_it_meets
+    searches::closest_hit_both_enters_only_boxes_it_meets: turned
     searches::closest_hit_agrees_with_brute_force => agrees(|kit, queries| kit.closest_hit(queries))
     stadium::closest_hit_skips_what_lies_behind: turned
     searches::hits_at_one_t_prefer_the_smaller_number
     searches::any_hit_agrees_with_brute_force
-    searches::any_hit_stops_at_the_first
+    searches::any_hit_stops_at_the_first: turned
     stadium::each_split_strategy_is_worth_its_cost: turned
     picture::picture_of_depth: composed
 ] }

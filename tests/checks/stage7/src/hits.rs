@@ -124,8 +124,8 @@ fn broken(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'st
     Broken::new(input, yours, expected, source)
 }
 
-/// Tables of a single hit of each kind and of a single light sample, each with the rays that it needs.
-fn single_hits_and_places() -> Vec<(HitsQuery, RayCounts)> {
+/// Tables of `n` hits of each kind and of `n` samples of a light, each with the rays that it needs.
+fn single_hits_and_places(n: u64) -> Vec<(HitsQuery, RayCounts)> {
     let single = |kind: &Kind, listed: &[usize], casts: bool, row: MaterialHits, glossy_samples: u32| {
         let lights = [2, 3, 1].map(|samples| light(samples, casts));
         query(vec![row], lights.to_vec(), vec![material(kind, listed.to_vec())], glossy_samples)
@@ -133,8 +133,13 @@ fn single_hits_and_places() -> Vec<(HitsQuery, RayCounts)> {
     let mut singles = Vec::new();
     for kind in &KINDS {
         for (glossy_samples, [reflection, transmission]) in [(1, kind.1), (4, kind.2)] {
-            let expected = RayCounts { primary: 1, shadow: 0, reflection, transmission };
-            let hit = single(kind, &[0, 1, 2], true, row(0, 1, [0, 0, 0]), glossy_samples);
+            let expected = RayCounts {
+                primary: n,
+                shadow: 0,
+                reflection: n * reflection,
+                transmission: n * transmission,
+            };
+            let hit = single(kind, &[0, 1, 2], true, row(0, n, [0, 0, 0]), glossy_samples);
             singles.push((hit, expected));
         }
         // One sample of light 1: the lights that matter, whether they cast shadows, and the number of shadow rays.
@@ -142,8 +147,8 @@ fn single_hits_and_places() -> Vec<(HitsQuery, RayCounts)> {
         for (listed, casts, shadow) in
             [(with, true, 1), (with, false, 0), (without, true, 0), (without, false, 0)]
         {
-            let place = single(kind, listed, casts, row(0, 0, [0, 1, 0]), 4);
-            singles.push((place, RayCounts { shadow, ..RayCounts::default() }));
+            let place = single(kind, listed, casts, row(0, 0, [0, n, 0]), 4);
+            singles.push((place, RayCounts { shadow: n * shadow, ..RayCounts::default() }));
         }
     }
     singles
@@ -171,7 +176,7 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> CheckResult {
         let mistakes = MISTAKES.iter().map(|(counts, text)| (*counts == yours, *text));
         return Err(broken(&query, yours, DRAWN, "counted by hand").explained_by(mistakes));
     }
-    let singles = single_hits_and_places();
+    let singles = single_hits_and_places(trial.varied(1, 2..50u64));
     let queries: Vec<HitsQuery> = singles.iter().map(|(query, _)| query.clone()).collect();
     for ((query, expected), yours) in singles.iter().zip(trial.kit.rays_of_hits(&queries)) {
         if yours != *expected {

@@ -115,7 +115,7 @@ pub(super) fn child_cache_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn child_cache_goes_first(trial: &Trial<'_>) -> CheckResult {
-    let row = Row::new(trial);
+    let row = Row::all(trial).swap_remove(0);
     let ignored = "you do not visit the cached child first";
     let cached_only = "you visit the cached child only";
     let as_listed = "you do not sort the other children although `sort` is on";

@@ -278,11 +278,12 @@ pub(super) struct Row {
 }
 
 impl Row {
-    pub(super) fn new(trial: &Trial<'_>) -> Self {
+    /// One row for the public seed, and four for a hidden one.
+    pub(super) fn all(trial: &Trial<'_>) -> Vec<Row> {
         let public = [2, 4, 1, 3];
         let hidden = (Just(public).prop_shuffle(), 0.25f32..8.0);
-        let (numbers, step) = trial.varied((public, 1.0), hidden);
-        Row { numbers, step }
+        let drawn = trial.varied(vec![(public, 1.0)], prop::collection::vec(hidden, 4));
+        drawn.into_iter().map(|(numbers, step)| Row { numbers, step }).collect()
     }
 
     /// A root with up to four children one behind the other along the ray, each with one primitive at its centre. The root
@@ -332,16 +333,21 @@ pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> Check
         you are about to visit it";
     let sorted = "you sort the children although `sort` is off: visit them as listed";
     let always = "you skip a volume although `skip` is off";
-    let row = Row::new(trial);
-    judge_orders(
-        trial,
-        &[
-            (row.query(&[0, 1, 2, 3], SKIP), &[0], &[(&[0, 1, 2, 3], never)]),
-            (row.query(&[3, 2, 1, 0], SKIP), &[3, 2, 1, 0], &[(&[0], sorted), (&[0, 1, 2, 3], never)]),
-            (row.query(&[1, 3, 0, 2], SKIP), &[1, 0], &[(&[1, 3, 0, 2], never), (&[0], sorted)]),
-            (row.query(&[2, 0, 3, 1], VOLUMES), &[2, 0, 3, 1], &[(&[2, 0], always), (&[0, 1, 2, 3], sorted)]),
-        ],
-    )
+    Row::all(trial).iter().try_for_each(|row| {
+        judge_orders(
+            trial,
+            &[
+                (row.query(&[0, 1, 2, 3], SKIP), &[0], &[(&[0, 1, 2, 3], never)]),
+                (row.query(&[3, 2, 1, 0], SKIP), &[3, 2, 1, 0], &[(&[0], sorted), (&[0, 1, 2, 3], never)]),
+                (row.query(&[1, 3, 0, 2], SKIP), &[1, 0], &[(&[1, 3, 0, 2], never), (&[0], sorted)]),
+                (
+                    row.query(&[2, 0, 3, 1], VOLUMES),
+                    &[2, 0, 3, 1],
+                    &[(&[2, 0], always), (&[0, 1, 2, 3], sorted)],
+                ),
+            ],
+        )
+    })
 }
 
 pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> CheckResult {
@@ -354,47 +360,48 @@ pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> CheckResu
     let nearest_only = "you bring only the nearest child to the front: with `sort` and without `skip`, visit all four \
         children, the nearest first";
     let always = "you skip a volume although `skip` is off";
-    let row = Row::new(trial);
-    judge_orders(
-        trial,
-        &[
-            (
-                row.query(&[3, 2, 1, 0], ALL),
-                &[0],
-                &[
-                    (&[3, 2, 1, 0], listed),
-                    (&[3, 2, 1, 0], backwards),
-                    (&[2, 0], numbers),
-                    (&[1, 0], numbers),
-                    (&[0, 1, 2, 3], never),
-                ],
-            ),
-            (
-                row.query(&[1, 3, 0, 2], ALL),
-                &[0],
-                &[
-                    (&[1, 0], listed),
-                    (&[3, 2, 1, 0], backwards),
-                    (&[2, 0], numbers),
-                    (&[1, 0], numbers),
-                    (&[0, 1, 2, 3], never),
-                    (&[1, 3, 0, 2], "you neither sort nor skip"),
-                ],
-            ),
-            (
-                row.query(&[3, 1, 0, 2], SORT),
-                &[0, 1, 2, 3],
-                &[
-                    (&[3, 1, 0, 2], to_skip),
-                    (&[3, 1, 0, 2], listed),
-                    (&[3, 2, 1, 0], backwards),
-                    (&[2, 0, 3, 1], numbers),
-                    (&[1, 3, 0, 2], numbers),
-                    (&[0, 3, 1, 2], nearest_only),
-                    (&[0, 1, 3, 2], nearest_only),
-                    (&[0], always),
-                ],
-            ),
-        ],
-    )
+    Row::all(trial).iter().try_for_each(|row| {
+        judge_orders(
+            trial,
+            &[
+                (
+                    row.query(&[3, 2, 1, 0], ALL),
+                    &[0],
+                    &[
+                        (&[3, 2, 1, 0], listed),
+                        (&[3, 2, 1, 0], backwards),
+                        (&[2, 0], numbers),
+                        (&[1, 0], numbers),
+                        (&[0, 1, 2, 3], never),
+                    ],
+                ),
+                (
+                    row.query(&[1, 3, 0, 2], ALL),
+                    &[0],
+                    &[
+                        (&[1, 0], listed),
+                        (&[3, 2, 1, 0], backwards),
+                        (&[2, 0], numbers),
+                        (&[1, 0], numbers),
+                        (&[0, 1, 2, 3], never),
+                        (&[1, 3, 0, 2], "you neither sort nor skip"),
+                    ],
+                ),
+                (
+                    row.query(&[3, 1, 0, 2], SORT),
+                    &[0, 1, 2, 3],
+                    &[
+                        (&[3, 1, 0, 2], to_skip),
+                        (&[3, 1, 0, 2], listed),
+                        (&[3, 2, 1, 0], backwards),
+                        (&[2, 0, 3, 1], numbers),
+                        (&[1, 3, 0, 2], numbers),
+                        (&[0, 3, 1, 2], nearest_only),
+                        (&[0, 1, 3, 2], nearest_only),
+                        (&[0], always),
+                    ],
+                ),
+            ],
+        )
+    })
 }

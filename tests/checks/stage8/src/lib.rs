@@ -56,13 +56,13 @@ checks::stage! { ($ crate) 8 [
     solids::cylinder_normals_point_outwards
     solids::cylinder_keeps_to_the_rules
     hard::cylinder_seen_along_its_axis: turned
-    hard::cylinder_at_its_rim
+    hard::cylinder_at_its_rim: turned
     solids::cone_agrees_with_exact_arithmetic
     solids::cone_normals_point_outwards
     solids::cone_keeps_to_the_rules
     hard::cone_is_not_its_mirror_image: turned
     hard::cone_seen_along_its_side: turned
-    hard::cone_at_its_tip_and_rim
+    hard::cone_at_its_tip_and_rim: turned
     flat::disk_agrees_with_exact_arithmetic
     solids::disk_keeps_to_the_rules
     solids::polygon_agrees_with_exact_arithmetic

@@ -267,7 +267,7 @@ pub(super) fn agrees_flat<S: Solid>(trial: &Trial<'_>) -> CheckResult {
 fn through_the_middle<S: Solid>(trial: &Trial<'_>) -> CheckResult {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let Ok(tree) = S::any().new_tree(&mut runner) else { return Ok(()) };
-    let solid = proptest::strategy::ValueTree::current(&tree);
+    let solid = trial.varied(proptest::strategy::ValueTree::current(&tree), S::any());
     let from = solid.inside(Vec3::ZERO) + 8.0 * Vec3::new(0.5, 0.75, -0.625);
     let query = SolidQuery { ray: Ray::new(from, solid.inside(Vec3::ZERO) - from), solid };
     // The t of a constant is not that of the hit.

@@ -13,12 +13,11 @@ use anyhow::{Result, ensure};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use checks::rubric;
-use checks::{Broken, Check, Drawn, Inputs, Verdict};
+use checks::{Broken, Check, Drawn, Inputs, ONE_HIDDEN_IN, Verdict};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, KitError, Request, Transport, kit_error};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
-use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::mem::{Discriminant, discriminant};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -38,10 +37,6 @@ const LONGEST: u32 = 97;
 
 /// The calls of a function that may wait and not compute. Checks that call it are not tried afterwards.
 const MOST_WAITS: usize = 2;
-
-/// The part of its inputs that a check uses with a hidden seed. All known inputs have passed before, and a table of known
-/// answers fails on each hidden input, so an eighth is enough, and a class is graded in less time.
-const ONE_HIDDEN_IN: usize = 8;
 
 /// Longest message that is kept, in bytes.
 const MOST_SAID: usize = 2048;
@@ -499,10 +494,7 @@ impl Transport for StoppableWorker {
 
     // No one earns points by the places of known questions: hidden ones come in another order in each class.
     fn swaps(&self, n: usize) -> Vec<(usize, usize)> {
-        let draw = |i: usize| {
-            BuildHasherDefault::<DefaultHasher>::default().hash_one((self.seed, n, i)) as usize % (i + 1)
-        };
-        if self.seed == 0 { Vec::new() } else { (1..n).map(|i| (i, draw(i))).collect() }
+        checks::calls::swaps(self.seed, n)
     }
 }
 
