@@ -4,12 +4,13 @@
 
 use all_checks::STAGES;
 use checks::calls::swaps;
-use checks::{Check, Inputs, ONE_HIDDEN_IN, rubric};
+use checks::{Check, Drawn, Inputs, ONE_HIDDEN_IN, rubric};
 use raykata::frame::{Unwatched, Watch};
 use raykata::kit::{Answer, Door, Kit, Request, Transport};
 use raykata::message::{from_bytes, to_bytes};
+use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// The bytes before the items of a request or an answer: the number of its function, and how many items there are.
 const HEADER: usize = 5;
@@ -17,12 +18,26 @@ const HEADER: usize = 5;
 /// A public question and its right answer.
 struct Example {
     question: Request,
-    query: Vec<u8>,
     answer: Vec<u8>,
+    /// The numbers of the question, once they are needed.
+    numbers: OnceLock<Vec<f64>>,
 }
 
-/// The examples of each function, in batches.
-type Known = HashMap<u8, Vec<Vec<Arc<Example>>>>;
+/// The public questions of a check to one function.
+#[derive(Default)]
+struct Known {
+    batches: Vec<Vec<Example>>,
+    /// The answer to each question.
+    answers: HashMap<Vec<u8>, Vec<u8>>,
+    /// All answers, the most frequent one first.
+    frequent: Vec<Vec<u8>>,
+}
+
+/// By function.
+type Knowledge = HashMap<u8, Known>;
+
+/// A check with what is known of it.
+type Learnt = (&'static Check, Arc<Knowledge>);
 
 /// How a question that is not known is answered.
 #[derive(Clone, Copy, Debug)]
@@ -62,30 +77,72 @@ fn joined(function: u8, items: &[&[u8]]) -> Answer {
 /// Asks the reference, and keeps questions and answers.
 struct Learner {
     reference: Arc<dyn Kit + Send + Sync>,
-    known: Arc<Mutex<Known>>,
+    knowledge: Arc<Mutex<Knowledge>>,
 }
 
 impl Transport for Learner {
     fn call(&self, request: Request, _: &dyn Watch) -> Answer {
         let learn = |question: Request| {
             let answer = to_bytes(&question.answer(&*self.reference, &Unwatched))[HEADER..].to_vec();
-            Arc::new(Example { query: to_bytes(&question)[HEADER..].to_vec(), answer, question })
+            Example { question, answer, numbers: OnceLock::new() }
         };
         let function = to_bytes(&request)[0];
         let batch: Vec<_> = questions(&request).into_iter().map(learn).collect();
         let answer = joined(function, &batch.iter().map(|one| &one.answer[..]).collect::<Vec<_>>());
-        self.known.lock().expect("no panic").entry(function).or_default().push(batch);
+        self.knowledge.lock().expect("no panic").entry(function).or_default().batches.push(batch);
         answer
+    }
+}
+
+impl Known {
+    /// Finds the answer to each question and the most frequent answers.
+    fn complete(&mut self) {
+        let mut times = HashMap::<&[u8], usize>::new();
+        for one in self.batches.iter().flatten() {
+            *times.entry(&one.answer).or_default() += 1;
+            self.answers.insert(to_bytes(&one.question)[HEADER..].to_vec(), one.answer.clone());
+        }
+        let mut times: Vec<_> =
+            times.into_iter().map(|(answer, times)| (Reverse(times), answer.to_vec())).collect();
+        times.sort_unstable();
+        self.frequent = times.into_iter().map(|(_, answer)| answer).collect();
     }
 }
 
 /// Answers hidden questions by `guess`.
 struct Guesser {
-    known: Arc<Mutex<Known>>,
+    knowledge: Arc<Knowledge>,
     guess: Guess,
     seed: u64,
     /// How many batches of each function came.
     batches: Mutex<HashMap<u8, usize>>,
+}
+
+impl Guesser {
+    /// The answers to the questions of a batch, if there are any to choose from.
+    fn answers(&self, known: &Known, batch: usize, questions: Vec<Request>) -> Option<Vec<Vec<u8>>> {
+        // Compare a large batch with few known questions, so that a picture takes seconds.
+        let n_near = (100_000 / questions.len().max(1)).max(16);
+        let all: Vec<&Example> = known.batches.iter().flatten().collect();
+        let near: Vec<&Example> = all.iter().step_by(all.len().div_ceil(n_near).max(1)).copied().collect();
+        let answer = |(place, question): (usize, Request)| -> Option<&Vec<u8>> {
+            if let Some(answer) = known.answers.get(&to_bytes(&question)[HEADER..]) {
+                return Some(answer);
+            }
+            match self.guess {
+                Guess::Place => Some(&known.batches.get(batch)?.get(place)?.answer),
+                Guess::Nearest => {
+                    let these = numbers(&question);
+                    let distance =
+                        |one: &Example| distance(one.numbers.get_or_init(|| numbers(&one.question)), &these);
+                    let distances = near.iter().map(|one| (distance(one), &one.answer));
+                    Some(distances.min_by(|p, q| p.0.total_cmp(&q.0))?.1)
+                }
+                Guess::Frequent(rank) => known.frequent.get(rank),
+            }
+        };
+        questions.into_iter().enumerate().map(|question| answer(question).cloned()).collect()
+    }
 }
 
 impl Transport for Guesser {
@@ -93,38 +150,11 @@ impl Transport for Guesser {
         let function = to_bytes(&request)[0];
         let mut batches = self.batches.lock().expect("no panic");
         let batch = batches.entry(function).or_default();
-        let known = self.known.lock().expect("no panic").get(&function).cloned().unwrap_or_default();
-        let all: Vec<&Example> = known.iter().flatten().map(|one| &**one).collect();
-        let table: HashMap<&[u8], &Example> = all.iter().map(|one| (&one.query[..], *one)).collect();
-        let mut times = HashMap::<&[u8], usize>::new();
-        all.iter().for_each(|one| *times.entry(&one.answer).or_default() += 1);
-        let mut frequent: Vec<_> = times.into_iter().map(|(answer, times)| (usize::MAX - times, answer)).collect();
-        frequent.sort_unstable();
-        let questions = questions(&request);
-        // Compare a large batch with few known questions, so that a picture takes seconds.
-        let n_near = if matches!(self.guess, Guess::Nearest) { (100_000 / questions.len().max(1)).max(16) } else { 0 };
-        let near: Vec<_> = all.iter().step_by(1 + all.len() / n_near.max(1)).take(n_near).collect();
-        let near: Vec<_> = near.into_iter().map(|one| (numbers(&one.question), &one.answer)).collect();
-        let answer = |(place, question): (usize, Request)| -> Option<&[u8]> {
-            if let Some(one) = table.get(&to_bytes(&question)[HEADER..]) {
-                return Some(&one.answer);
-            }
-            match self.guess {
-                Guess::Place => Some(&known.get(*batch)?.get(place)?.answer),
-                Guess::Nearest => {
-                    let numbers = numbers(&question);
-                    let distances = near.iter().map(|(known, answer)| (distance(known, &numbers), answer));
-                    Some(distances.min_by(|p, q| p.0.total_cmp(&q.0))?.1)
-                }
-                Guess::Frequent(rank) => Some(frequent.get(rank)?.1),
-            }
-        };
-        let answers: Option<Vec<_>> = questions.into_iter().enumerate().map(answer).collect();
+        let known = self.knowledge.get(&function);
+        let answers =
+            known.and_then(|known| self.answers(known, *batch, questions(&request))).unwrap_or_default();
         *batch += 1;
-        match answers {
-            Some(answers) => joined(function, &answers),
-            None => joined(function, &[]),
-        }
+        joined(function, &answers.iter().map(|one| &one[..]).collect::<Vec<_>>())
     }
 
     fn swaps(&self, n: usize) -> Vec<(usize, usize)> {
@@ -136,7 +166,13 @@ impl Transport for Guesser {
 fn distance(these: &[f64], those: &[f64]) -> f64 {
     let difference = |(p, q): (&f64, &f64)| {
         let part = (p - q).abs() / (p.abs() + q.abs() + 1.0);
-        if p.to_bits() == q.to_bits() { 0.0 } else if part.is_nan() { 1.0 } else { part }
+        if p.to_bits() == q.to_bits() {
+            0.0
+        } else if part.is_nan() {
+            1.0
+        } else {
+            part
+        }
     };
     these.len().abs_diff(those.len()) as f64 + these.iter().zip(those).map(difference).sum::<f64>()
 }
@@ -146,45 +182,48 @@ fn guesses_earn_little(stage: u8) {
     let reference = checks::linked(solutions::Kit);
     let (_, checks) = STAGES.iter().find(|(number, _)| *number == stage).expect("a stage");
     let points = |check: &Check| rubric::entry(stage, check.name).points;
+    let drawn = Arc::<Drawn>::default();
     let passes = |check: &Check, kit: Arc<dyn Kit + Send + Sync>, seed, one_in| {
-        let inputs =
-            Inputs { reference: Some(reference.clone()), one_in, shrinks: false, ..Inputs::default() };
+        let (drawn, reference) = (Some(drawn.clone()), Some(reference.clone()));
+        let inputs = Inputs { drawn, reference, one_in, shrinks: false, ..Inputs::default() };
         matches!(checks::examine(check, &kit, seed, inputs), Ok(Ok(())))
     };
     let learn = |check: &'static Check| {
-        let known = Arc::<Mutex<Known>>::default();
-        let learner = Learner { reference: reference.clone(), known: known.clone() };
+        let knowledge = Arc::<Mutex<Knowledge>>::default();
+        let learner = Learner { reference: reference.clone(), knowledge: knowledge.clone() };
         assert!(passes(check, Arc::new(Door(learner)), 0, 1), "the reference fails {}", check.name);
-        let functions: HashSet<u8> = known.lock().expect("no panic").keys().copied().collect();
-        (check, known, functions)
+        let mut knowledge = std::mem::take(&mut *knowledge.lock().expect("no panic"));
+        knowledge.values_mut().for_each(Known::complete);
+        (check, Arc::new(knowledge))
     };
-    let learnt: Vec<_> = checks.iter().map(learn).collect();
+    let (mut most, learnt): (u32, Vec<Learnt>) = (0, checks.iter().map(learn).collect());
     for (seed, check) in SEEDS.into_iter().flat_map(|seed| checks.iter().map(move |check| (seed, check))) {
         let is_right = passes(check, reference.clone(), seed, ONE_HIDDEN_IN);
         assert!(is_right, "the reference fails {} with the seed {seed}", check.name);
     }
-    let draws = |check: &Check| !check.symmetries.turn_public_inputs();
     let total: u32 = checks.iter().map(points).sum();
     for (seed, guess) in SEEDS.into_iter().flat_map(|seed| GUESSES.map(|guess| (seed, guess))) {
-        let passes = |(check, known, _): &&(&'static Check, Arc<Mutex<Known>>, _)| {
-            let guesser = Guesser { known: known.clone(), guess, seed, batches: Mutex::default() };
+        let is_passed = |(check, knowledge): &&Learnt| {
+            let batches = Mutex::default();
+            let guesser = Guesser { knowledge: knowledge.clone(), guess, seed, batches };
             passes(check, Arc::new(Door(guesser)), seed, ONE_HIDDEN_IN)
         };
-        let passed: Vec<_> = learnt.iter().filter(passes).collect();
-        // As the grader counts: known inputs that are turned prove nothing if drawn ones fail.
-        let drawn = passed.iter().filter(|(check, ..)| draws(check));
-        let proven: HashSet<u8> = drawn.flat_map(|(.., functions)| functions.clone()).collect();
-        let is_proven = |(check, _, functions): &(&Check, _, HashSet<u8>)| {
-            let open: HashSet<u8> = functions.difference(&proven).copied().collect();
-            let proves = |(other, _, asked): &(&Check, _, HashSet<u8>)| draws(other) && !asked.is_disjoint(&open);
-            draws(check) || !learnt.iter().any(proves)
+        let passed: Vec<&Learnt> = learnt.iter().filter(is_passed).collect();
+        // As the grader counts: turned inputs count if a check of the same function with drawn ones passes, or if there is none.
+        let draws = |(check, _): &&Learnt| !check.symmetries.turn_public_inputs();
+        let asks = |(_, knowledge): &Learnt| knowledge.keys().copied().collect::<HashSet<u8>>();
+        let proven: HashSet<u8> = passed.iter().copied().filter(draws).flat_map(asks).collect();
+        let counts = |one: &&Learnt| {
+            let open: HashSet<u8> = asks(one).difference(&proven).copied().collect();
+            draws(one) || !learnt.iter().filter(draws).any(|other| !asks(other).is_disjoint(&open))
         };
-        let earned: Vec<&Check> = passed.into_iter().filter(|one| is_proven(one)).map(|(check, ..)| *check).collect();
-        let points: u32 = earned.iter().map(|check| points(check)).sum();
+        let earned: Vec<&Check> = passed.into_iter().filter(counts).map(|(check, _)| *check).collect();
+        let points: u32 = earned.iter().copied().map(points).sum();
         let names: Vec<&str> = earned.iter().map(|check| check.name).collect();
-        println!("stage {stage}, {points} of {total} points by {guess:?}, seed {seed}: {names:?}");
-        assert!(20 * points <= total || std::env::var("X").is_ok(), "{points} of {total} points of stage {stage} by {guess:?}");
+        println!("stage {stage}, seed {seed}, {guess:?}: {points} of {total} points, {names:?}");
+        most = most.max(points);
     }
+    assert!(20 * most <= total, "{most} of {total} points of stage {stage} for guesses");
 }
 
 macro_rules! stages {

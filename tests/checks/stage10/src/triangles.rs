@@ -378,7 +378,8 @@ pub(super) fn finite_hits(trial: &Trial<'_>, (name, ask): TriangleTest) -> Check
     // One ordinary hit and one ordinary miss.
     let triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
     let at = |x: f32| TriangleQuery { ray: Ray::new(vec3(x, 0.25, 1.0), Vec3::NEG_Z), triangle };
-    let (ordinary, beside) = (at(0.25), at(4.0));
+    let (inside, outside) = trial.varied((0.25, 4.0), (0.1..0.6f32, 0.8..1.2f32));
+    let (ordinary, beside) = (at(inside), at(outside));
     queries.extend([ordinary, beside]);
     let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| match yours {
         None if *query == ordinary => Err(Broken::new(query.call(name), yours, "a hit at t = 1", "exactly")),
