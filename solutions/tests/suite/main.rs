@@ -11,6 +11,7 @@ mod digits;
 mod distribution;
 mod edges;
 mod frames;
+mod guesses;
 mod hard_cases;
 mod heckbert;
 mod indirect;
