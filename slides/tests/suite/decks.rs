@@ -83,19 +83,6 @@ fn every_slide_has_a_heading_and_a_note() {
 }
 
 #[test]
-fn a_deck_explains_on_twenty_to_forty_slides() {
-    for deck in &decks() {
-        // Questions to the class, the lab card and the appendix come on top.
-        let explains = |slide: &&String| {
-            let heading = heading(slide).unwrap_or_default();
-            !["Predict: ", "Lab card: ", "Appendix: "].iter().any(|start| heading.starts_with(start))
-        };
-        let n = deck.slides.iter().filter(explains).count();
-        assert!((20..=40).contains(&n), "{} explains on {n} slides", deck.name);
-    }
-}
-
-#[test]
 fn every_row_of_the_lectures_stands_on_a_slide() {
     let decks = decks();
     let notes: Vec<&str> =

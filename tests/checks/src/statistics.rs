@@ -273,8 +273,8 @@ pub fn unused_number<A: PartialEq>(sample: impl Fn(&[Vec2]) -> Vec<A>) -> Mistak
     };
     vec![
         (ignores(true) && ignores(false), "your answer does not depend on u"),
-        (ignores(true), "one random number for both: you do not use u.x"),
-        (ignores(false), "one random number for both: you do not use u.y"),
+        (ignores(true), "you do not use u.x"),
+        (ignores(false), "you do not use u.y"),
     ]
 }
 
@@ -322,11 +322,6 @@ pub fn columns(counts: &[u64]) -> Vec<u64> {
 mod tests {
     use super::*;
 
-    /// How often the score of correct numbers is above the threshold, for 2,000 seeds.
-    fn alarms(score: impl Fn(u64) -> f64, threshold: f64) -> usize {
-        (0..2000).filter(|&seed| score(seed) > threshold).count()
-    }
-
     /// Too many seeds would be needed to observe one case in ten million, so this computes the tails.
     #[test]
     fn thresholds_are_where_tails_are_as_thin_as_stated() {
@@ -336,15 +331,5 @@ mod tests {
             (-0.5 * z * z).exp() / (std::f64::consts::TAU.sqrt() * fraction)
         };
         assert!((normal(TWO_SIDED) * 2.0 / FALSE_ALARMS - 1.0).abs() < 0.01);
-    }
-
-    #[test]
-    fn right_numbers_raise_false_alarms_at_the_stated_rate() {
-        let mean = |seed| {
-            let values: Vec<f64> = pairs(seed, 1024).iter().map(|u| f64::from(u.x)).collect();
-            mean_score(&values, 0.5)
-        };
-        let n = alarms(mean, 1.645);
-        assert!((60..140).contains(&n), "mean: {n}");
     }
 }

@@ -97,15 +97,9 @@ fn fault_of_grid(grid: &Grid) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::symmetry::Symmetries;
-    use crate::{Check, Verdict, passes, run};
     use raykata::aabb::Aabb;
     use raykata::bvh::{Bvh, Node as BvhNode};
-    use raykata::frame::Watch;
-    use raykata::kit::{BuildQuery, Door, Request, Transport};
     use raykata::partition::{KdNode, KdTree};
-    use raykata::scene::Split;
-    use std::sync::Arc;
 
     fn tree(children: &[Option<(u32, u32)>]) -> Answer {
         let contents = |node: &Option<(u32, u32)>| match *node {
@@ -134,41 +128,6 @@ mod tests {
         let mut tree = KdTree::new(Aabb::EMPTY);
         tree.nodes = vec![KdNode::Leaf { first: u32::MAX, count: u32::MAX }];
         assert!(fault(&Answer::KdBuild(vec![tree])).unwrap().contains("ends at"));
-    }
-
-    /// Answers each call with a tree of one node, which is its own child.
-    struct Ring;
-
-    impl Transport for Ring {
-        fn call(&self, _: Request, _: &dyn Watch) -> Answer {
-            tree(&[Some((0, 0))])
-        }
-    }
-
-    #[test]
-    fn no_law_follows_a_ring() {
-        let law = |trial: &crate::Trial<'_>| {
-            trial.forall(3, 1..3usize, |sizes| {
-                let query = |&leaf_size: &usize| BuildQuery {
-                    bounds: Vec::new(),
-                    split: Split::ObjectMedian,
-                    leaf_size,
-                };
-                sizes
-                    .iter()
-                    .map(|size| {
-                        trial.kit.build(&[query(size)])[0].depth();
-                        Ok(())
-                    })
-                    .collect()
-            })
-        };
-        let check =
-            Check { stage: 3, name: "build_holds_every_primitive_once", law, symmetries: Symmetries::None };
-        let ring: Arc<dyn raykata::kit::Kit + Send + Sync> = Arc::new(Door(Ring));
-        assert!(!passes(&check, &ring, 0));
-        let Verdict::Failed(message) = run(&check, &ring, 0) else { panic!("a ring passes") };
-        assert!(message.contains("a child of node 0 is node 0, the root"), "{message}");
     }
 
     #[test]
