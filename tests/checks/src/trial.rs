@@ -197,12 +197,12 @@ impl<'a> Trial<'a> {
         let alone = |index: usize| judge_one(&|| judge(index..index + 1), &self.calls);
         let outcomes = match kit_error::catch(|| judge(0..n_inputs)) {
             Ok(outcomes) => outcomes,
-            // The code panicked on an input of the batch, or built no tree: judge the inputs one by one to find it.
-            Err(KitError::Panicked { .. } | KitError::Malformed { .. }) => {
-                let panics = (0..n_inputs).find_map(|index| Some((index, alone(index)?)));
-                panics.map_or_else(Vec::new, |(n_passed, broken)| {
-                    [vec![Ok(()); n_passed], vec![Err(broken)]].concat()
-                })
+            // The code panicked on an input of the batch, or built no tree: judge the inputs one by one to find it. If none fails
+            // alone, the batch has failed all the same.
+            Err(error @ (KitError::Panicked { .. } | KitError::Malformed { .. })) => {
+                let failing = (0..n_inputs).find_map(|index| Some((index, alone(index)?)));
+                let (n_passed, broken) = failing.unwrap_or_else(|| kit_error::unwind(error));
+                [vec![Ok(()); n_passed], vec![Err(broken)]].concat()
             }
             Err(error) => kit_error::unwind(error),
         };
@@ -441,6 +441,16 @@ mod tests {
         };
         let broken = with_trial(|trial| trial.forall(200, 0..1000i32, law)).unwrap_err();
         assert!(broken.yours.ends_with(": 42 is too large"), "{}", broken.yours);
+    }
+
+    #[test]
+    fn a_batch_fails_although_each_of_its_inputs_passes_alone() {
+        let law = |values: &[i32]| {
+            assert!(values.len() < 5, "too many at once");
+            vec![Ok(()); values.len()]
+        };
+        let failed = kit_error::catch(|| with_trial(|trial| trial.forall(5, 0..9i32, law)));
+        assert!(matches!(failed, Err(KitError::Panicked { .. })), "{failed:?}");
     }
 
     #[test]
