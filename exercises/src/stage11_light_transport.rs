@@ -64,8 +64,8 @@ pub fn light_pdf(emitter: &AreaEmitter, from: Vec3, direction: Vec3) -> f32 {
 }
 
 /// The weight of a sample in multiple importance sampling. Two techniques find the same light,
-/// which must count once. The one with the larger density has less noise, so it gets more: `p₁ / (p₁ + p₂)` (balance heuristic) or `p₁² / (p₁² + p₂²)` (power heuristic). What is
-/// 1e30²?
+/// which must count once. The one with the larger density has less noise, so it gets more:
+/// `p₁ / (p₁ + p₂)` (balance heuristic) or `p₁² / (p₁² + p₂²)` (power heuristic). What is 1e30²?
 ///
 /// The sample was taken with density `own`; the other technique has density `other` for it, both
 /// 0 to ∞; a mirror has ∞. If both are 0 or both ∞, only item 1 counts.

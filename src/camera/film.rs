@@ -185,11 +185,8 @@ impl Film {
     /// If `pixels` does not have `width * height` colours.
     pub fn write_png_bytes(&self, file: &Path, components: &[u8]) -> io::Result<()> {
         if components.len() != 3 * self.pixels.len() {
-            return Err(io::Error::other(format!(
-                "{} bytes for {} pixels",
-                components.len(),
-                self.pixels.len()
-            )));
+            let (n_bytes, n_pixels) = (components.len(), self.pixels.len());
+            return Err(io::Error::other(format!("{n_bytes} bytes for {n_pixels} pixels")));
         }
         let seen = self.to_bytes(|_| 0).rgb;
         let magenta = |(pixel, ours): (&[u8], &[u8])| {

@@ -5,8 +5,10 @@ use super::deck::{Deck, decks, root};
 use std::collections::BTreeSet;
 use std::fs;
 
-fn heading(slide: &str) -> Option<&str> {
-    slide.lines().find_map(|line| line.strip_prefix("## ").or_else(|| line.strip_prefix("# ")))
+/// The heading of a slide; empty if it has none.
+fn title(slide: &str) -> &str {
+    let heading = slide.lines().find_map(|line| line.strip_prefix("## ").or_else(|| line.strip_prefix("# ")));
+    heading.unwrap_or_default()
 }
 
 /// The speaker note: the last comment.
@@ -74,12 +76,104 @@ fn every_slide_has_a_heading_and_a_note() {
     for Deck { name, slides, .. } in &decks() {
         let mut headings = BTreeSet::new();
         for (slide, number) in slides.iter().zip(1..) {
-            let heading = heading(slide).unwrap_or_else(|| panic!("{name}, slide {number}: no heading"));
+            let heading = title(slide);
+            assert!(!heading.is_empty(), "{name}, slide {number}: no heading");
             assert!(headings.insert(heading), "{name}: two slides are called {heading}");
             let note = note(slide).unwrap_or_else(|| panic!("{name}, {heading}: no speaker note"));
             assert!(note.len() > 40, "{name}, {heading}: {note}");
         }
     }
+}
+
+#[test]
+fn a_deck_explains_on_twenty_to_forty_slides() {
+    for deck in &decks() {
+        // Questions to the class, the lab card and the appendix come on top.
+        let extra = ["Predict: ", "Lab card: ", "Appendix: "];
+        let explains = |slide: &&String| !extra.iter().any(|start| title(slide).starts_with(start));
+        let n = deck.slides.iter().filter(explains).count();
+        assert!((20..=40).contains(&n), "{} explains on {n} slides", deck.name);
+    }
+}
+
+/// The minutes that the speaker note states, as in `3 min.` or `1 minute.`
+fn minutes(slide: &str) -> Option<usize> {
+    let words: Vec<&str> = note(slide)?.split_whitespace().collect();
+    let stated = words.windows(2).filter(|pair| ["min.", "minute.", "minutes."].contains(&pair[1]));
+    let mut stated = stated.filter_map(|pair| pair[0].parse().ok());
+    let first = stated.next();
+    assert_eq!(stated.next(), None, "{}: the note states the minutes twice", title(slide));
+    first
+}
+
+#[test]
+fn the_minutes_of_a_deck_are_the_sum_of_its_notes() {
+    for deck in decks() {
+        let mut sum = 0;
+        for slide in &deck.slides {
+            let is_appendix = title(slide).starts_with("Appendix: ");
+            let its_minutes = minutes(slide);
+            assert_eq!(its_minutes.is_none(), is_appendix, "{}, {}: minutes", deck.name, title(slide));
+            sum += its_minutes.unwrap_or_default();
+            // A deck of two lectures states the minutes of each in the last column of a table.
+            if title(slide) == "The first lecture ends here" {
+                let cells = |lecture: &str| {
+                    let row = slide.lines().find(|line| line.starts_with(&format!("| {lecture} |")));
+                    row.and_then(|row| row.trim_end_matches(" |").rsplit("| ").next()?.parse().ok())
+                };
+                let rest = deck.minutes().unwrap() - sum;
+                assert_eq!((cells("1"), cells("2")), (Some(sum), Some(rest)), "{}: two lectures", deck.name);
+            }
+        }
+        assert_eq!(deck.minutes(), Some(sum), "{}: the minutes of the notes", deck.name);
+    }
+}
+
+#[test]
+fn a_deck_asks_for_a_prediction_every_fifteen_minutes() {
+    for deck in decks() {
+        let asks = |slide: &&String| title(slide).starts_with("Predict: ");
+        let n = deck.slides.iter().filter(asks).count();
+        let least = deck.minutes().unwrap() / 15;
+        assert!(n >= least, "{}: {n} predictions in {} minutes", deck.name, deck.minutes().unwrap());
+        // The answer is on the next slide.
+        for pair in deck.slides.windows(2).filter(|pair| asks(&&pair[0])) {
+            assert!(!asks(&&pair[1]), "{}: no answer to {}", deck.name, title(&pair[0]));
+        }
+        assert!(!deck.slides.last().is_some_and(|slide| asks(&slide)), "{}: no answer", deck.name);
+    }
+}
+
+#[test]
+fn a_deck_has_a_lab_card() {
+    for deck in decks() {
+        let cards = deck.slides.iter().filter(|slide| title(slide).starts_with("Lab card: "));
+        let [card] = cards.collect::<Vec<_>>()[..] else { panic!("{} needs one lab card", deck.name) };
+        for step in ["**Run**", "**Note**", "**Change**", "**Predict**", "**run again**"] {
+            assert!(card.contains(step), "{}: the lab card lacks {step}", deck.name);
+        }
+        assert!(card.contains("\ncargo run"), "{}: a lab card without a command", deck.name);
+    }
+}
+
+#[test]
+fn a_title_states_the_pitfall() {
+    for slide in decks().iter().flat_map(|deck| &deck.slides) {
+        assert!(!title(slide).starts_with("Pitfall"), "the title must be a claim: {}", title(slide));
+    }
+}
+
+#[test]
+fn two_of_five_slides_have_a_figure() {
+    let has_figure = |slide: &&String| slide.contains("](figures/");
+    let [mut n_slides, mut n_figures] = [0; 2];
+    for deck in decks() {
+        let n = deck.slides.iter().filter(has_figure).count();
+        assert!(4 * n >= deck.slides.len(), "{}: {n} figures on {} slides", deck.name, deck.slides.len());
+        n_slides += deck.slides.len();
+        n_figures += n;
+    }
+    assert!(5 * n_figures >= 2 * n_slides, "{n_figures} figures on {n_slides} slides");
 }
 
 #[test]
@@ -109,10 +203,10 @@ fn every_check_is_taught_on_a_page_of_the_deck_of_its_stage() {
     let decks = decks();
     let page = |stage: u8, slide: &str| {
         let number = slide.strip_prefix(&format!("{}, page ", checks::rubric::deck(stage)))?;
-        let (number, title) = number.split_once(": ")?;
+        let (number, heading) = number.split_once(": ")?;
         let deck = decks.iter().find(|deck| deck.stage() == Some(stage))?;
         let page = deck.slides.get(number.parse::<usize>().ok()?.checked_sub(1)?)?;
-        (heading(page)? == title && number != "1").then_some(())
+        (title(page) == heading && number != "1").then_some(())
     };
     let all =
         all_checks::STAGES.iter().flat_map(|(stage, list)| list.iter().map(move |check| (*stage, check)));

@@ -1,6 +1,6 @@
 //! Answers without knowledge of the task: a program that knows the rubric and all public questions with their answers, and
 //! answers hidden questions by their place in the check, as the nearest public question was answered, or by a constant, earns at
-//! most 5 % of the points of a stage, and 12 % of stage 11. Functions that do not look at their arguments pass no check.
+//! most 5 % of the points of any stage. Functions that do not look at their arguments pass no check.
 
 use all_checks::STAGES;
 use checks::calls::swaps;
@@ -8,6 +8,7 @@ use checks::{Check, Drawn, Inputs, ONE_HIDDEN_IN, rubric};
 use raykata::frame::{Unwatched, Watch};
 use raykata::kit::{Answer, Door, Kit, Request, Transport};
 use raykata::message::{from_bytes, to_bytes};
+use std::borrow::Borrow;
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, Mutex, OnceLock};
@@ -69,7 +70,7 @@ fn numbers(question: &Request) -> Vec<f64> {
 }
 
 /// The answer with these items.
-fn joined(function: u8, items: &[&[u8]]) -> Answer {
+fn joined<T: Borrow<[u8]>>(function: u8, items: &[T]) -> Answer {
     let header = [&[function][..], &(items.len() as u32).to_le_bytes()].concat();
     from_bytes(&[header, items.concat()].concat()).expect("an answer")
 }
@@ -154,7 +155,7 @@ impl Transport for Guesser {
         let answers =
             known.and_then(|known| self.answers(known, *batch, questions(&request))).unwrap_or_default();
         *batch += 1;
-        joined(function, &answers.iter().map(|one| &one[..]).collect::<Vec<_>>())
+        joined(function, &answers)
     }
 
     fn swaps(&self, n: usize) -> Vec<(usize, usize)> {
@@ -163,18 +164,31 @@ impl Transport for Guesser {
 }
 
 /// What a function answers to every question.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Constant {
     /// `None`, `false`, 0 or an empty list.
     Least,
-    /// This number in each place.
-    Filled(f32),
-    /// The first argument unchanged, or `Some` of it.
-    Argument,
+    /// These words again and again.
+    Filled([u32; 3]),
+    /// An argument that begins at this byte, unchanged, or `Some` of it.
+    Argument(usize),
 }
 
-const CONSTANTS: [Constant; 4] =
-    [Constant::Least, Constant::Filled(1.0), Constant::Filled(f32::NAN), Constant::Argument];
+const ONE: u32 = 1f32.to_bits();
+
+/// The last words are the vertical axis.
+const CONSTANTS: [Constant; 7] = [
+    Constant::Least,
+    Constant::Filled([1; 3]),
+    Constant::Filled([ONE; 3]),
+    Constant::Filled([f32::NAN.to_bits(); 3]),
+    Constant::Filled([0, ONE, 0]),
+    Constant::Argument(0),
+    Constant::Argument(12),
+];
+
+/// Constants that are right in all that a check asks. The point from which a shadow ray starts is not too high above itself.
+const RIGHT_BY_CHANCE: [(&str, Constant); 1] = [("shadow_ray_sees_what_is_close", Constant::Argument(0))];
 
 /// Functions that do not look at their arguments.
 struct Constants {
@@ -190,8 +204,10 @@ impl Transport for Constants {
         let answer = |question: Request| {
             let bytes = match self.constant {
                 Constant::Least => Vec::new(),
-                Constant::Filled(number) => number.to_le_bytes().repeat(length / 4 + 1),
-                Constant::Argument => to_bytes(&question)[HEADER..].to_vec(),
+                Constant::Filled(words) => words.map(u32::to_le_bytes).as_flattened().repeat(length / 12 + 1),
+                Constant::Argument(start) => {
+                    to_bytes(&question)[HEADER..].iter().skip(start).copied().collect()
+                }
             };
             let value = bytes.get(..length).map(<[u8]>::to_vec);
             let some = bytes.get(..length.saturating_sub(1)).map(|value| [&[1], value].concat());
@@ -200,8 +216,7 @@ impl Transport for Constants {
             constants
                 .find(|bytes| from_bytes::<Answer>(&[&[function, 1, 0, 0, 0], &bytes[..]].concat()).is_ok())
         };
-        let answers: Option<Vec<_>> = questions(&request).into_iter().map(answer).collect();
-        joined(function, &answers.iter().flatten().map(|one| &one[..]).collect::<Vec<_>>())
+        joined(function, &questions(&request).into_iter().filter_map(answer).collect::<Vec<_>>())
     }
 }
 
@@ -209,13 +224,8 @@ impl Transport for Constants {
 fn distance(these: &[f64], those: &[f64]) -> f64 {
     let difference = |(p, q): (&f64, &f64)| {
         let part = (p - q).abs() / (p.abs() + q.abs() + 1.0);
-        if p.to_bits() == q.to_bits() {
-            0.0
-        } else if part.is_nan() {
-            1.0
-        } else {
-            part
-        }
+        // An infinite distance over an infinite sum is NaN, of which `min` returns 1.
+        if p.to_bits() == q.to_bits() { 0.0 } else { part.min(1.0) }
     };
     these.len().abs_diff(those.len()) as f64 + these.iter().zip(those).map(difference).sum::<f64>()
 }
@@ -241,16 +251,14 @@ fn guesses_earn_little(stage: u8) {
     };
     let (mut most, learnt): (u32, Vec<Learnt>) = (0, checks.iter().map(learn).collect());
     let total: u32 = checks.iter().map(points).sum();
-    // A check that asks for `None` or 0 in some cases has others. The bytes of an argument may be right in one respect.
+    // A check that asks for `None` or 0 in some cases has others.
     for constant in CONSTANTS {
         let is_passed = |(check, knowledge): &&Learnt| {
             passes(check, Arc::new(Door(Constants { knowledge: knowledge.clone(), constant })), 0, 1)
         };
-        let passed: Vec<&Check> = learnt.iter().filter(is_passed).map(|(check, _)| *check).collect();
-        let names: Vec<&str> = passed.iter().map(|check| check.name).collect();
-        let points: u32 = passed.into_iter().map(points).sum();
-        let allowed = if matches!(constant, Constant::Argument) { total / 10 } else { 0 };
-        assert!(points <= allowed, "{constant:?} passes {names:?} of stage {stage}");
+        let passed = learnt.iter().filter(is_passed).map(|(check, _)| check.name);
+        let named: Vec<&str> = passed.filter(|name| !RIGHT_BY_CHANCE.contains(&(*name, constant))).collect();
+        assert!(named.is_empty(), "{constant:?} passes {named:?} of stage {stage}");
     }
     let n_seeds = if std::env::var_os("CI_LONG").is_some() { 2 } else { 1 };
     for (seed, guess) in SEEDS.into_iter().take(n_seeds).flat_map(|seed| GUESSES.map(|guess| (seed, guess))) {
@@ -274,9 +282,7 @@ fn guesses_earn_little(stage: u8) {
         println!("stage {stage}, seed {seed}, {guess:?}: {points} of {total} points, {names:?}");
         most = most.max(points);
     }
-    // In stage 11 laws of special cases, where most answers are 1 or 0, still earn more.
-    let percent = if stage == 11 { 12 } else { 5 };
-    assert!(100 * most <= percent * total, "{most} of {total} points of stage {stage} for guesses");
+    assert!(20 * most <= total, "{most} of {total} points of stage {stage} for guesses");
 }
 
 macro_rules! stages {

@@ -43,16 +43,16 @@ checks::stage! { ($ crate) 11 [
     irradiance::polygon_lights_give_lamberts_irradiance
     irradiance::sphere_lights_give_their_irradiance
     weights::mis_weights_sum_to_one
-    weights::mis_weight_of_a_lone_density_is_one
+    weights::mis_weight_of_a_lone_density_is_one: turned
     weights::mis_weight_survives_extreme_densities
     weights::mis_weights_keep_the_variance_low
     roulette::roulette_keeps_the_mean
-    roulette::roulette_ends_no_young_path
-    roulette::roulette_ends_paths_without_weight
+    roulette::roulette_ends_no_young_path: turned
+    roulette::roulette_ends_paths_without_weight: turned
     integrating_sphere::paths_in_an_integrating_sphere_find_its_light
     bounces::cut_off_is_the_light_beyond_the_last_bounce
     bounces::bounces_for_error_is_the_smallest_number
-    bounces::bounces_for_error_at_the_limits
+    bounces::bounces_for_error_at_the_limits: turned
     lobes::bsdf_samples_choose_lobes_that_reflect
     lobes::bsdf_weights_are_divided_by_the_probability
     lobes::bsdf_samples_keep_the_light
@@ -69,7 +69,7 @@ checks::stage! { ($ crate) 11 [
     steps::steps_continue_with_the_weight_of_the_sample
     references::paths_in_a_furnace_count_every_bounce
     references::paths_in_a_furnace_find_all_light
-    references::paths_of_a_white_corner_lose_nothing
+    references::paths_of_a_white_corner_lose_nothing: turned
     references::paths_in_a_corner_find_its_sky
     references::steps_in_an_integrating_sphere_find_its_light
     references::steps_count_sampled_light_once

@@ -300,12 +300,12 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
                 };
             };
             let height = above(query, &sample);
-            // At the horizon a rounding decides.
-            if sample.lobe == Lobe::Diffuse && height.abs() < 1e-5 {
+            // At the horizon a rounding decides, but not for a direction of length 0.
+            if sample.lobe == Lobe::Diffuse && height.abs() < 1e-5 * sample.direction.as_dvec3().length() {
                 return Ok(().into());
             }
             let ends = sample.lobe == Lobe::Diffuse && height < 0.0;
-            let weight = f64::from(factor) * (query.path.weight * sample.weight).as_dvec3();
+            let weight = f64::from(factor) * query.path.weight.as_dvec3() * sample.weight.as_dvec3();
             let weight = if ends { DVec3::ZERO } else { weight };
             let broken = || {
                 let BsdfSample { lobe, direction, pdf, .. } = sample;
