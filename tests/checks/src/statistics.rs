@@ -11,6 +11,8 @@ use glam::{UVec2, Vec2};
 use raykata::random::{Points, Purpose};
 use raykata::scene::Sampler;
 use std::cell::RefCell;
+use std::collections::HashMap;
+use std::fmt::Debug;
 use std::ops::Range;
 
 /// The probability that a test rejects a correct sampler.
@@ -189,7 +191,7 @@ const STRATA: usize = 16_384;
 
 /// The measures of the sets of random numbers with equal answers, and a bound on their errors. They are exact up to the
 /// spacing of random numbers, because each border between two sets is bisected; if there are very many, they are counted.
-pub fn measures<A: PartialEq + Clone>(answer: impl Fn(&[f32]) -> Vec<A>) -> (Vec<(A, f64)>, f64) {
+pub fn measures<A: PartialEq + Debug>(answer: impl Fn(&[f32]) -> Vec<A>) -> (Vec<(A, f64)>, f64) {
     const ALL: usize = 1 << 24;
     let ask = |numbers: &[usize]| answer(&numbers.iter().map(|n| *n as f32 / ALL as f32).collect::<Vec<_>>());
     let numbers: Vec<usize> = (0..STRATA).map(|n| n * (ALL / STRATA)).chain([ALL - 1]).collect();
@@ -207,11 +209,11 @@ pub fn measures<A: PartialEq + Clone>(answer: impl Fn(&[f32]) -> Vec<A>) -> (Vec
         }
     }
     let ends = borders.iter().map(|border| border[1]).chain([ALL]);
-    let mut sets: Vec<(A, f64)> = Vec::new();
-    let mut start = 0;
+    let (mut sets, mut places, mut start): (Vec<(A, f64)>, _, _) = (Vec::new(), HashMap::new(), 0);
     for (end, answer) in ends.clone().zip(ask(&ends.map(|end| end - 1).collect::<Vec<_>>())) {
         let measure = (end - start) as f64 / ALL as f64;
-        match sets.iter_mut().find(|(other, _)| *other == answer) {
+        let place = *places.entry(format!("{answer:?}")).or_insert(sets.len());
+        match sets.get_mut(place) {
             Some((_, sum)) => *sum += measure,
             None => sets.push((answer, measure)),
         }
