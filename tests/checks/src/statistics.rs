@@ -7,7 +7,7 @@
 //! and on wrong distributions, of which each must be caught 990 times.
 
 use crate::broken::{Broken, CheckResult};
-use glam::{UVec2, Vec2};
+use glam::{DVec2, Vec2};
 use raykata::random::{Points, Purpose};
 use raykata::scene::Sampler;
 use std::cell::RefCell;
@@ -48,9 +48,11 @@ pub type Mistakes = Vec<(bool, &'static str)>;
 /// A bound on a normally distributed score that any of the [`parts`] exceeds with probability [`FALSE_ALARMS`].
 const OF_ALL_PARTS: f64 = 6.1;
 
-/// The cells along each side of the grid of [`stratified`] numbers. With it a deviation of 2 % is found in each 32nd of the
-/// square.
-const SIDE: u32 = 384;
+/// The strata along each side of the square of [`stratified`] numbers, before those at both ends are divided. With it a
+/// deviation of 2 % is found in each 32nd of the square.
+const SIDE: usize = 384;
+/// The parts of the first and of the last stratum. They grow with the square of their number, so that a narrow rim has many.
+const FINE: usize = 24;
 
 /// The bounds of bins along each side of the unit square: eighths, and narrow bins at both rims.
 const EDGES: [f64; 15] = {
@@ -80,14 +82,22 @@ fn parts() -> Vec<[Range<usize>; 2]> {
     pairs.flat_map(|(x, y)| x.iter().flat_map(|x| y.iter().map(|y| [x.clone(), y.clone()]))).collect()
 }
 
-/// Random numbers, two pairs in each cell of a grid. A map that keeps areas spreads them over the parts of the square far more
+/// Random numbers, two pairs in each cell of a grid whose cells are narrow at the rims, and the weight of each: the area of its
+/// cell, so that all weights sum to their number. A map that keeps areas spreads them over the parts of the square far more
 /// evenly than independent ones.
-fn stratified(seed: u64) -> Vec<Vec2> {
+fn stratified(seed: u64) -> (Vec<Vec2>, Vec<f64>) {
+    let rim = |part: usize| (part as f64 / FINE as f64).powi(2) / SIDE as f64;
+    let middle = (1..SIDE).map(|stratum| stratum as f64 / SIDE as f64);
+    let edges: Vec<f64> =
+        (0..FINE).map(rim).chain(middle).chain((0..FINE).rev().map(|part| 1.0 - rim(part))).collect();
+    let side = edges.len() - 1;
+    let stratum = |index: usize| (edges[index], edges[index + 1] - edges[index]);
     let place = |(index, u): (usize, Vec2)| {
-        let cell = UVec2::new(index as u32 / 2 % SIDE, index as u32 / 2 / SIDE);
-        ((cell.as_vec2() + u) / SIDE as f32).min(Vec2::splat(1.0 - f32::EPSILON / 2.0))
+        let ((x, width), (y, height)) = (stratum(index / 2 % side), stratum(index / 2 / side));
+        let place = DVec2::new(x + width * f64::from(u.x), y + height * f64::from(u.y)).as_vec2();
+        (place.min(Vec2::splat(1.0 - f32::EPSILON / 2.0)), width * height * (side * side) as f64)
     };
-    pairs(seed, 2 * (SIDE * SIDE) as usize).into_iter().enumerate().map(place).collect()
+    pairs(seed, 2 * side * side).into_iter().enumerate().map(place).unzip()
 }
 
 /// Judges a sampler that maps two random numbers to places in the unit square. It must use both numbers, and each part of the
@@ -95,8 +105,8 @@ fn stratified(seed: u64) -> Vec<Vec2> {
 /// `shares` has the expected share of each bin, and none if they are the areas.
 ///
 /// Each cell of the grid of numbers has two samples, whose difference states the variance of the count for any map that is
-/// right. It is at most that of independent numbers, which is the expected count. `mistakes` gets the counts of [`CELLS`]² equal
-/// cells; if none of them is proven, the pattern of counts that should be equal is described.
+/// right. `mistakes` gets the counts of [`CELLS`]² equal cells; if none of them is proven, the pattern of counts that should be
+/// equal is described.
 pub fn covers_each_part(
     what: &str,
     axes: [&str; 2],
@@ -105,7 +115,7 @@ pub fn covers_each_part(
     places: impl Fn(&[Vec2]) -> Result<Vec<(f64, f64)>, Broken>,
     mistakes: impl Fn(&[u64]) -> Mistakes,
 ) -> CheckResult {
-    let u = stratified(seed ^ (1 << 41));
+    let (u, weights) = stratified(seed ^ (1 << 41));
     // A message of a worker is at most some megabytes long.
     let all = u.chunks(1 << 16).map(&places).collect::<Result<Vec<_>, _>>()?.concat();
     // A list of even places is no sampler: the same numbers give the same places in another batch.
@@ -128,46 +138,59 @@ pub fn covers_each_part(
         Some([along(place.0)?, along(place.1)?])
     };
     let bins_of: Vec<Option<[usize; 2]>> = all.iter().map(bin).collect();
-    let mut counts = vec![0u64; BINS * BINS];
-    bins_of.iter().flatten().for_each(|[x, y]| counts[y * BINS + x] += 1);
+    let weighted = || bins_of.iter().zip(&weights).filter_map(|(bin, weight)| Some(((*bin)?, *weight)));
+    // The weight of the samples in each bin, and the largest weight of one.
+    let mut counts = vec![(0.0, 0f64); BINS * BINS];
+    for ([x, y], weight) in weighted() {
+        let (count, most) = &mut counts[y * BINS + x];
+        (*count, *most) = (*count + weight, most.max(weight));
+    }
     let areas: Vec<f64> = bins().map(|(_, (width, height))| width * height).collect();
     let (even, shares) = (shares.is_none(), shares.unwrap_or(&areas));
     let scale = u.len() as f64 / shares.iter().sum::<f64>();
-    let split: Vec<_> = bins_of.chunks(2).filter(|pair| pair[0] != pair[1]).collect();
-    let mut worst: Option<(f64, Broken)> = None;
+    let pairs = bins_of.chunks(2).zip(weights.iter().step_by(2));
+    let split: Vec<_> = pairs.filter(|(pair, _)| pair[0] != pair[1]).collect();
+    let mut worst: Option<(f64, f64, Broken)> = None;
     for [x, y] in parts() {
         let cells = || y.clone().flat_map(|y| x.clone().map(move |x| y * BINS + x));
-        let count: u64 = cells().map(|cell| counts[cell]).sum();
+        let count: f64 = cells().map(|cell| counts[cell].0).sum();
+        let most = cells().map(|cell| counts[cell].1).fold(0.0, f64::max);
+        // A part without samples could have had one of the usual weight.
+        let most = if most > 0.0 { most } else { 1.0 };
         let expected: f64 = scale * cells().map(|cell| shares[cell]).sum::<f64>();
         let is_in = |place: &Option<[usize; 2]>| place.is_some_and(|[i, j]| x.contains(&i) && y.contains(&j));
-        // The variance of a small count is not known from its few samples.
-        let variance = match expected < 1000.0 {
-            true => expected,
-            false => split.iter().filter(|pair| is_in(&pair[0]) != is_in(&pair[1])).count() as f64,
-        };
+        let crossing = split.iter().filter(|(pair, _)| is_in(&pair[0]) != is_in(&pair[1]));
+        // A few pairs may by chance state no difference.
+        let variance = crossing.map(|(_, weight)| *weight * *weight).sum::<f64>() + 3.0 * most * most;
         // Ten samples may lie on the other side of a bound because of rounding.
-        let limit = OF_ALL_PARTS * variance.sqrt() + 10.0;
-        let area = (EDGES[x.end] - EDGES[x.start]) * (EDGES[y.end] - EDGES[y.start]);
-        note_power(area, (limit + OF_POWER * variance.sqrt()) / expected);
+        let limit = OF_ALL_PARTS * variance.sqrt() + 10.0 * most;
+        // State what is found, but for narrow ranges of an angle: it has no rim.
+        let [width, height] = [&x, &y].map(|range| EDGES[range.end] - EDGES[range.start]);
+        if !(axes[1].contains("angle") && height < 0.1) {
+            note_power(width * height, (limit + OF_POWER * variance.sqrt()) / expected);
+        }
         // A NaN among the shares is off, too.
-        let off = (count as f64 - expected).abs() / limit;
+        let off = (count - expected).abs() / limit;
         let off = if off.is_nan() { f64::INFINITY } else { off };
-        if off > 1.0 && worst.as_ref().is_none_or(|(most, _)| off > *most) {
+        if off > 1.0 && worst.as_ref().is_none_or(|(most, ..)| off > *most) {
             let range = |range: &Range<usize>| format!("{:.4}..{:.4}", EDGES[range.start], EDGES[range.end]);
             let input = format!("{what} for {} pairs u;\nsorted by {} and {}", u.len(), axes[0], axes[1]);
-            let yours = format!("{count} with {} in {} and {} in {}", axes[0], range(&x), axes[1], range(&y));
+            let yours =
+                format!("{count:.0} with {} in {} and {} in {}", axes[0], range(&x), axes[1], range(&y));
             let source = "stratified numbers, 1 false alarm in 10 million";
-            worst = Some((off, Broken::with_texts(input, yours, format!("about {expected:.0}"), source)));
+            worst =
+                Some((off, count, Broken::with_texts(input, yours, format!("about {expected:.0}"), source)));
         }
     }
-    let Some((_, broken)) = worst else { return Ok(()) };
-    let gap = broken.yours.starts_with("0 with").then_some("your samples leave this part of the range out");
+    let Some((_, count, broken)) = worst else { return Ok(()) };
+    let gap = (count == 0.0).then_some("your samples leave this part of the range out");
     // Count in cells of equal size.
-    let mut cells = vec![0; (CELLS * CELLS) as usize];
-    for [x, y] in bins_of.iter().flatten() {
+    let mut cells = vec![0.0; (CELLS * CELLS) as usize];
+    for ([x, y], weight) in weighted() {
         let eighth = |bin: usize| bin.clamp(3, BINS - 4) - 3;
-        cells[eighth(*y) * CELLS as usize + eighth(*x)] += 1;
+        cells[eighth(y) * CELLS as usize + eighth(x)] += weight;
     }
+    let cells: Vec<u64> = cells.into_iter().map(|count: f64| count.round() as u64).collect();
     let proven = mistakes(&cells).into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()));
     let described = if even { pattern(&cells, axes) } else { None };
     Err(broken.looks_like(proven.or(described).or(gap.map(str::to_owned))))

@@ -90,15 +90,12 @@ fn lobe(trial: &Trial<'_>, roughness: f32, axes: &[Vec3], u: &[Vec2]) -> Result<
             ]));
         }
         let (x, y) = ideal.any_orthonormal_pair();
-        // cosⁿ⁺¹ θ is uniform in 0..1. Compute ln cos θ from the sine, which is precise for small angles.
-        let sine_squared = around.cross(ideal).length_squared().min(1.0);
-        let share = (0.5 * (exponent + 1.0) * (-sine_squared).ln_1p()).exp();
+        // cosⁿ⁺¹ θ is uniform in 0..1. Compute ln cos θ from the sine for small angles, and from the cosine for large ones:
+        // each is precise there. Behind the plane of the lobe, by more than a rounding, there is no place.
+        let (cosine, sine_squared) = (around.dot(ideal), around.cross(ideal).length_squared());
+        let ln = if cosine > 0.7 { 0.5 * (-sine_squared).ln_1p() } else { cosine.max(0.0).ln() };
+        let share = if cosine < -1e-6 { f64::INFINITY } else { ((exponent + 1.0) * ln).exp() };
         lobe.shares.push((share, around.dot(y).atan2(around.dot(x)) / std::f64::consts::TAU + 0.5));
-        let cosine = around.dot(ideal);
-        // Behind the plane of the lobe, by more than a rounding, there is no place.
-        if cosine < -1e-6 {
-            lobe.shares.last_mut().expect("a place was added").0 = f64::INFINITY;
-        }
         lobe.cosines.push(cosine);
         Ok(())
     };
