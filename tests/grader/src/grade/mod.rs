@@ -142,6 +142,15 @@ pub fn run(root: &Path, options: &GradeOptions) -> Result<bool> {
     for other in others {
         eprintln!("not a submission: {}", other.display());
     }
+    // An archive keeps its extension if its name alone stands for another submission too.
+    let is_twin =
+        |one: &&Submission| one.path.is_file() && one.path.file_name() == Some(one.student.as_ref());
+    for twin in submissions.iter().filter(is_twin) {
+        let path = twin.path.display();
+        eprintln!(
+            "note: {path} has the name of another submission, so they are two students: remove one if they are not"
+        );
+    }
     ensure!(!submissions.is_empty(), "there is no submission in {}", options.submissions.display());
     let part = options.shard.map(|shard| Part::of(shard, &submissions));
     // A part of a small class may be empty.

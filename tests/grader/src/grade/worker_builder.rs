@@ -291,7 +291,7 @@ fn option(name: &str, path: &Path) -> OsString {
 fn why(ended: &Ended) -> String {
     match blame::texts(ended) {
         errors if errors.is_empty() => died(ended),
-        errors => format!("a function has other arguments or another result than the exercise:\n{errors}"),
+        errors => format!("{}{errors}", blame::OLDER),
     }
 }
 

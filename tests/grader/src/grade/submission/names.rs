@@ -26,12 +26,12 @@ pub fn archive_stem(name: &OsStr) -> Option<&OsStr> {
 }
 
 /// Returns the exercise file that a name stands for, and whether it is exactly its name. Accepts another case, and what
-/// browsers and systems add: `.txt`, ` (1)`, ` - Copy`, `Copy of `.
+/// browsers and systems add: `.txt`, ` (1)`, ` - Copy`, `Copy of `, a dot at the end.
 pub fn of_exercise<'a>(name: &str, wanted: &'a [String]) -> Option<(&'a str, bool)> {
     if let Some(exact) = wanted.iter().find(|wanted| *wanted == name) {
         return Some((exact, true));
     }
-    let lower = name.to_lowercase();
+    let lower = name.trim_end_matches(['.', ' ']).to_lowercase();
     let plain = lower.strip_suffix(".txt").unwrap_or(&lower);
     let stem = plain.strip_suffix(".rs")?;
     let stem = stem.strip_prefix("copy of ").unwrap_or(stem);
@@ -87,6 +87,7 @@ mod tests {
             "stage1_shapes copy 2.rs",
             "stage1_shapes - Copy.rs",
             "Copy of stage1_shapes.rs",
+            "stage1_shapes.rs.",
             "stage1_shapes - Copy (3).RS",
         ] {
             assert_eq!(of_exercise(name, &wanted), Some(("stage1_shapes.rs", false)), "{name}");

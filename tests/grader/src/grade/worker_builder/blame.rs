@@ -7,6 +7,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Most bytes of compiler messages that a student sees per file.
 const SHOWN: usize = 4000;
 
+/// What to do if the kit cannot call a file as it calls the exercise.
+pub const OLDER: &str = "the kit cannot use this file: a name or a function is missing, or has other arguments or another \
+                         result than in the exercise. If your exercises are from an older kit, move your code into a new one\n";
+
 /// Returns the suspects that an error points to.
 type Sign = fn(&Value, &[&String]) -> BTreeSet<String>;
 
@@ -16,13 +20,19 @@ pub fn blame(ended: &Ended, suspects: &[&String]) -> BTreeMap<String, String> {
     // Try the most reliable sign first: the place of the error, then the places it points to, then the modules it names. If
     // an exercise is missing or has other arguments, the error lies in the glue that calls it.
     let signs: [Sign; 3] = [primary, pointed_to, named];
-    for sign in signs {
+    for (index, sign) in signs.into_iter().enumerate() {
         let mut blamed: BTreeMap<String, String> = BTreeMap::new();
         for error in &errors {
             for name in sign(error, suspects) {
                 let text = blamed.entry(name).or_default();
+                let rendered = error["rendered"].as_str().unwrap_or_default();
+                // E0432: the file imports what this kit does not have.
+                if text.is_empty()
+                    && (index > 0 || error["code"]["code"] == "E0432" && rendered.contains("`raykata"))
+                {
+                    text.push_str(OLDER);
+                }
                 if text.len() < SHOWN {
-                    let rendered = error["rendered"].as_str().unwrap_or_default();
                     text.extend(rendered.chars().take(SHOWN));
                 }
             }
