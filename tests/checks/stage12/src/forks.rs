@@ -18,7 +18,8 @@ fn cloud(seed: u64, n: usize) -> Vec<Aabb> {
 }
 
 pub(super) fn build_parallel_gives_the_same_tree(trial: &Trial<'_>) -> CheckResult {
-    let mut sets = vec![cloud(trial.seed, 6), Vec::new(), cloud(trial.seed, 1), cloud(trial.seed, 10_000)];
+    let mut sets = vec![cloud(trial.seed, 6), Vec::new(), cloud(trial.seed, 1)];
+    sets.push(cloud(trial.seed, trial.varied(10_000, 9000..11_000usize)));
     sets.push(scenes().swap_remove(2).1);
     sets.extend(crowds(trial.varied(1.0, 0.25..8f32)));
     let alone = trial.kit.build_binned(&sets);
@@ -111,7 +112,9 @@ struct Forked {
     forks: Vec<Fork>,
 }
 
+/// The build of `n` boxes, or with a hidden seed of up to a tenth more.
 fn build_many(trial: &Trial<'_>, n: usize) -> Result<Forked, Broken> {
+    let n = trial.varied(n, n..n + n / 10);
     let boxes = cloud(trial.seed, n);
     let ForkedTree { tree, forks } = trial.kit.build_parallel(std::slice::from_ref(&boxes)).remove(0);
     if let Some(fault) = fault(&tree, &boxes) {
@@ -135,8 +138,13 @@ pub(super) fn build_parallel_logs_the_nodes_that_it_forks(trial: &Trial<'_>) -> 
     let mut seen = HashSet::new();
     let broken = |fork: Option<&Fork>, expected: &str, cause: &'static str| {
         let yours = fork.map_or("no fork".into(), |fork| format!("{fork:?}"));
-        Err(Broken::with_texts("build_parallel of 10,000 boxes", yours, expected, "the finished tree")
-            .explained_by([(!cause.is_empty(), cause)]))
+        Err(Broken::with_texts(
+            format!("build_parallel of {} boxes", tree.order.len()),
+            yours,
+            expected,
+            "the finished tree",
+        )
+        .explained_by([(!cause.is_empty(), cause)]))
     };
     if forks.is_empty() {
         return broken(
@@ -174,7 +182,7 @@ pub(super) fn judge_span(trial: &Trial<'_>, n: usize, share: u64) -> CheckResult
     let at = |index: usize| ranges[index].1 > 2000;
     let (_, possible) = work_and_span(&tree, &ranges, at);
     let yours = format!("work {work}, span {span}: a ratio of {:.2}", work as f64 / span as f64);
-    let input = format!("build_parallel of {n} boxes, with {} forks", forks.len());
+    let input = format!("build_parallel of {} boxes, with {} forks", tree.order.len(), forks.len());
     Err(Broken::with_texts(input, yours, format!("a span of at most {}", work / share), "the tree and the log of forks")
         .explained_by([
             (forks.is_empty(), "nothing is forked: join both sides of a large node by `forks.join`"),
@@ -195,11 +203,10 @@ fn own_span(count: u32, pieces: u32) -> u64 {
 }
 
 pub(super) fn build_parallel_has_an_eighth_of_the_span(trial: &Trial<'_>) -> CheckResult {
-    let n = 100_000;
-    let Forked { tree, ranges, forks } = build_many(trial, n)?;
+    let Forked { tree, ranges, forks } = build_many(trial, 100_000)?;
     let children = forked_ranges(&forks);
     let mut binning = HashSet::new();
-    let input = format!("build_parallel of {n} boxes, with {} forks", forks.len());
+    let input = format!("build_parallel of {} boxes, with {} forks", tree.order.len(), forks.len());
     for fork in &forks {
         let ForkKind::Binning { pieces } = fork.kind else { continue };
         let most = fork.count / LEAST_PIECE;

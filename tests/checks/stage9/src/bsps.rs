@@ -111,7 +111,8 @@ pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResu
 }
 
 pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
-    for (name, hulls, most) in hulls::infinite_polygons().into_iter().chain(hulls::infinite_boxes()) {
+    let boxes = hulls::infinite_boxes(trial.varied(1000, 700..1300usize));
+    for (name, hulls, most) in hulls::infinite_polygons().into_iter().chain(boxes) {
         judge_build(trial, name, hulls, 12, most)?;
     }
     judge_build(trial, "400 crossing needles", crossing_needles(400), 20, MOST_REFERENCES)

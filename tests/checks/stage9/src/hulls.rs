@@ -55,10 +55,10 @@ pub(super) fn infinite_polygons() -> [(&'static str, Vec<Vec<Vec3>>, usize); 3] 
     ]
 }
 
-/// The hulls of boxes for which the recursion may not end, each set with the most references per box.
-pub(super) fn infinite_boxes() -> impl Iterator<Item = (&'static str, Vec<Vec<Vec3>>, usize)> {
+/// The hulls of boxes for which the recursion may not end, each set with the most references per box. `n` are in one place.
+pub(super) fn infinite_boxes(n: usize) -> impl Iterator<Item = (&'static str, Vec<Vec<Vec3>>, usize)> {
     let hulls = |(name, all): (_, Vec<Aabb>)| (name, all.iter().map(corners).collect(), MOST_REFERENCES);
-    lists::infinite().into_iter().map(hulls)
+    lists::infinite(n).into_iter().map(hulls)
 }
 
 /// `n` parallel squares side by side across a diagonal: planes across an axis do not divide them, but their own planes

@@ -212,8 +212,8 @@ pub(super) fn needles(n: usize) -> Vec<Aabb> {
     (0..n).map(needle).collect()
 }
 
-/// Named sets of boxes for which the recursion of a builder may not end.
-pub(super) fn infinite() -> Vec<(&'static str, Vec<Aabb>)> {
+/// Named sets of boxes for which the recursion of a builder may not end. `n` of them are in one place.
+pub(super) fn infinite(n: usize) -> Vec<(&'static str, Vec<Aabb>)> {
     let cube = Aabb::new(Vec3::ZERO, Vec3::ONE);
     let corner = Aabb::new(Vec3::splat(9.0), Vec3::splat(9.0));
     let concentric = (1..=24).map(|i| Aabb::new(Vec3::splat(-i as f32), Vec3::splat(i as f32))).collect();
@@ -233,9 +233,9 @@ pub(super) fn infinite() -> Vec<(&'static str, Vec<Aabb>)> {
         ("no boxes", Vec::new()),
         ("one box", vec![cube]),
         ("two boxes", vec![cube, corner]),
-        ("1000 boxes in one place", vec![cube; 1000]),
-        ("1000 points in one place", vec![Aabb::new(Vec3::ONE, Vec3::ONE); 1000]),
-        ("1000 boxes in one place and a point", std::iter::repeat_n(cube, 1000).chain([corner]).collect()),
+        ("many boxes in one place", vec![cube; n]),
+        ("many points in one place", vec![Aabb::new(Vec3::ONE, Vec3::ONE); n]),
+        ("many boxes in one place and a point", std::iter::repeat_n(cube, n).chain([corner]).collect()),
         ("24 concentric boxes", concentric),
         ("64 points in a line", line),
         ("100 points, each half as far as the one before", halving),
