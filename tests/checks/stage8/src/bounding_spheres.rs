@@ -179,7 +179,8 @@ fn judge_entries(trial: &Trial<'_>, queries: &[Entry], never_late: bool) -> Vec<
         let first =
             |radius: f32| meet(&ray, Body::Sphere(Sphere { radius, ..sphere })).and_then(|meeting| meeting.t);
         let starts_inside = |radius: f32| (ray.at(ray.t_min) - sphere.center).length() < radius;
-        let near = |t: f32, right: f32| (t - right).abs() <= 1e-4 * right.abs().max(1.0);
+        let way = ((sphere.center - ray.origin).length() + sphere.radius) / ray.direction.length();
+        let near = |t: f32, right: f32| (t - right).abs() <= 1e-5 * way;
         let (smaller, larger) = (0.999 * sphere.radius, 1.001 * sphere.radius);
         let describe = |t: Option<f32>| format!("{:?}", t.map(|t| entry.size / entry.speed * t));
         let broken = |right: Option<f32>, remark: &str| {
