@@ -21,7 +21,7 @@ use raykata::wide::{
 /// Exactly:
 ///
 /// 1. c is `primitive.twice_centroid()`.
-/// 2. A bin below 0 or a NaN counts as bin 0, a bin above the last one as the last one.
+/// 2. A bin below 0 counts as bin 0, a bin above the last one as the last one.
 /// 3. The empty box changes no box, but its primitive is counted.
 pub fn fill_bins(primitives: &[PrimitiveBox], grid: &BinGrid) -> Bins {
     todo!("find the bin of each primitive along each axis; extend its box and count the primitive")
@@ -76,8 +76,7 @@ pub fn partition_bins(primitives: &mut [PrimitiveBox], grid: &BinGrid, split: &B
 ///    halved in any order.
 /// 4. Leaves stand in `order` as in the tree.
 /// 5. Boxes are the smallest possible.
-/// 6. An empty box or one with NaN goes into some leaf and changes no other box.
-/// 7. The cost (`NODE_COST · A` per inner node, `A · c` per leaf) is at most 1.05 times that of a
+/// 6. The cost (`NODE_COST · A` per inner node, `A · c` per leaf) is at most 1.05 times that of a
 ///    full sweep, unless sizes differ a millionfold.
 pub fn build_binned(bounds: &[Aabb]) -> FlatTree {
     todo!("make a leaf or fill bins, choose a split, partition, and build both sides")

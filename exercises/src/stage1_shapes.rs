@@ -43,8 +43,7 @@ pub fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32> {
 ///
 /// 1. A tangent ray (discriminant exactly 0) hits.
 /// 2. A root `t = 0`, of a ray that starts on the sphere, does not count.
-/// 3. `None` for a radius of 0 or less, a direction of 0, an infinite origin, and a NaN anywhere.
-/// 4. Hits of near, distant and tiny spheres (sizes 1e-6 to 1e6) are right up to a few roundings.
+/// 3. Hits of near, distant and tiny spheres (sizes 1e-6 to 1e6) are right up to a few roundings.
 #[inline]
 pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     todo!("solve the quadratic for t and return the nearest root that counts")
@@ -84,8 +83,7 @@ pub fn sphere_normal(center: Vec3, point: Vec3) -> Vec3 {
 /// Exactly:
 ///
 /// 1. The plane is infinite and is hit from both sides. `normal` need not be a unit vector.
-/// 2. `None` for a ray parallel to the plane (`n·d = 0` exactly) or starting in it, a normal of 0,
-///    and a NaN anywhere.
+/// 2. `None` for a ray parallel to the plane (`n·d = 0` exactly) or starting in it, and a normal of 0.
 /// 3. `t` keeps its digits far from the origin.
 pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     todo!("solve n·(o + t d - p0) = 0 for t and return it if ray.contains(t)")

@@ -92,7 +92,6 @@ pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 /// 1. The corners may have either order.
 /// 2. Points on an edge are inside.
 /// 3. A plane whose normal is 0, because o lies on the side's line, accepts every point.
-/// 4. A NaN gives `false`.
 pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     todo!("test on which side of the plane through ray.origin and each side the point lies")
 }
@@ -102,7 +101,7 @@ pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
 /// sign is that from behind?
 ///
 /// `point` lies in the plane of the triangle, up to rounding. The corners may have either order.
-/// Points on an edge are inside. A NaN gives `false`.
+/// Points on an edge are inside.
 pub fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     todo!("test the sign of d · ((T2 - P) × (T1 - P)) for each side")
 }
@@ -111,8 +110,8 @@ pub fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool 
 /// coordinates: `α = Area(P b c) / Area(a b c)`, and so on for β (P c a) and γ (P a b). Which areas
 /// has a point outside?
 ///
-/// Returns `(α, β, γ)`, or `None` for a point outside, a triangle without area, or a NaN. `point`
-/// lies in the plane of the triangle, up to rounding. Points on an edge are inside.
+/// Returns `(α, β, γ)`, or `None` for a point outside or a triangle without area. `point` lies in
+/// the plane of the triangle, up to rounding. Points on an edge are inside.
 pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
     todo!("return the three signed areas, divided by the area of the triangle, if none is negative")
 }
@@ -125,7 +124,7 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
 ///
 /// Exactly:
 ///
-/// 1. `false` for a triangle seen edge-on (`n·d = 0` exactly), a triangle without area, and a NaN.
+/// 1. `false` for a triangle seen edge-on (`n·d = 0` exactly) and for one without area.
 /// 2. The triangle may have any size.
 ///
 /// Source: "Ray-Triangle Intersection III".
@@ -143,7 +142,7 @@ pub fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3 {
 /// `|u × v|²` if the edges are 1e-12 long?
 ///
 /// The result has length 1 up to rounding for a triangle of any size. It is `None` for a triangle
-/// without area and for a NaN.
+/// without area.
 pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
     todo!("normalize u × v, and return None for a triangle without area")
 }

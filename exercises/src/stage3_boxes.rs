@@ -24,11 +24,10 @@ pub fn sphere_bounds(sphere: &Sphere) -> Aabb {
     todo!("go one radius from the centre on each axis")
 }
 
-/// The smallest box around two boxes: the smaller minima and the larger maxima. What is the minimum
-/// of 1 and NaN?
+/// The smallest box around two boxes: the smaller minima and the larger maxima. Which box changes
+/// no other one?
 ///
-/// The union of a box and [`Aabb::EMPTY`] is the box. A coordinate that is NaN is ignored: the
-/// result has that of the other box.
+/// The union of a box and [`Aabb::EMPTY`] is the box.
 pub fn union(first: &Aabb, second: &Aabb) -> Aabb {
     todo!("take the smaller min and the larger max")
 }

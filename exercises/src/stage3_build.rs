@@ -76,7 +76,6 @@ pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
 ///    for which no cut is cheaper is split by the object median.
 /// 4. From depth [`DEEPEST_SPLIT`] on (the root has 0) every split is an object median. So there
 ///    are at most `DEEPEST_SPLIT + ⌈log₂ n⌉ + 1` levels, for any boxes.
-/// 5. A box of NaN goes into some leaf and does not change the boxes of other primitives.
 pub fn build(bounds: &[Aabb], split: Split, leaf_size: usize) -> Bvh {
     todo!("make a leaf if the primitives are few enough; otherwise split them and build both halves")
 }

@@ -131,7 +131,6 @@ pub fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
 /// Exactly:
 ///
 /// 1. [`texel`] with `texture.wrap` gives the column and row of each pixel.
-/// 2. A coordinate counts as 0 if it, or its product with the width or height, is NaN or infinite.
 pub fn texture_color(texture: &Texture, uv: Vec2) -> Vec3 {
     todo!("find the four pixels around uv and interpolate between them")
 }

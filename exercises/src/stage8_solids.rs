@@ -10,11 +10,10 @@
 //! All functions have the same contract. `t` counts lengths of the direction, which may have any
 //! length but 0. A hit counts if [`Ray::contains`] accepts its `t`. From inside a solid the hit is
 //! the point where the ray leaves. The normal has unit length and points out of the solid; at
-//! edges, rims and tips each of the possible normals is right. The result is `None` for a ray or
-//! shape with NaN or infinite coordinates, and for a direction of 0. Otherwise radii are above 0,
-//! axes and normals have any length but 0, and `min` is not above `max`: nothing else is asked.
+//! edges, rims and tips each of the possible normals is right. Radii are above 0, axes and normals
+//! have any length but 0, and `min` is not above `max`: nothing else is asked.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use raykata::kit::SolidHit;
 use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
@@ -65,7 +64,7 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
 /// from the centre. What is this `t` for a ray parallel to the disk?
 ///
 /// The rim belongs to the disk. The normal is `disk.normal` as a unit vector on both sides. The
-/// result is `None` for a radius that is NaN, and for a ray parallel to the disk.
+/// result is `None` for a ray parallel to the disk.
 pub fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit> {
     todo!("intersect the plane of the disk, then compare the distance from the centre with the radius")
 }

@@ -31,8 +31,7 @@ use raykata::ray::Ray;
 ///    [`ListGrowth::divide`] returns `None`.
 /// 3. List a primitive once in every leaf that it overlaps; one that touches a plane is on both
 ///    sides.
-/// 4. Leave out hulls without corners, or with NaN or infinity. Without a usable hull there are
-///    no nodes.
+/// 4. Leave out hulls without corners. Without a usable hull there are no nodes.
 ///
 /// Source: "Binary Space Partition (BSP) Tree".
 pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {

@@ -39,9 +39,9 @@ pub struct PaddedBoxes {
 ///
 /// Exactly:
 ///
-/// 1. Boxes that are empty or have a NaN coordinate are left out.
+/// 1. Empty boxes are left out.
 pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
-    todo!("leave out boxes that are empty or NaN, and widen every other box a little")
+    todo!("leave out empty boxes, and widen every other box a little")
 }
 
 /// The height of a ray above a plane is `height + rate · t`. It is at least `-room` from some `t`

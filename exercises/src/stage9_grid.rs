@@ -37,7 +37,7 @@ pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
 /// Exactly:
 ///
 /// 1. A box that touches a cell overlaps it.
-/// 2. Empty boxes and boxes with NaN are left out.
+/// 2. Empty boxes are left out.
 ///
 /// Source: "Uniform Grid" (index primitives according to overlaps).
 pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {

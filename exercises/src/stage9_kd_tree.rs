@@ -28,7 +28,7 @@ use raykata::ray::Ray;
 ///    [`ListGrowth::divide`] returns `None`.
 /// 2. A plane lies within its cell. The bounds contain all boxes.
 /// 3. List a primitive once in every leaf that its box touches, on both sides of a touched plane.
-/// 4. Leave out empty and NaN boxes; without a usable box there are no nodes.
+/// 4. Leave out empty boxes. Without a usable box there are no nodes.
 /// 5. `longest_axis`: cut across the cell's longest side. Off: x, y, z in turn, x first.
 /// 6. `balanced_counts`: minimise the difference of counts.
 /// 7. `few_straddlers`: minimise the number on both sides. With both, minimise the sum; with

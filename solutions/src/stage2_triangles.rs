@@ -172,7 +172,6 @@ pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 /// 1. The corners may have either order.
 /// 2. Points on an edge are inside.
 /// 3. A plane whose normal is 0, because o lies on the side's line, accepts every point.
-/// 4. A NaN gives `false`.
 pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // <solution>
     let to_point = point - ray.origin;
@@ -188,7 +187,7 @@ pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
 /// sign is that from behind?
 ///
 /// `point` lies in the plane of the triangle, up to rounding. The corners may have either order.
-/// Points on an edge are inside. A NaN gives `false`.
+/// Points on an edge are inside.
 pub fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // <solution>
     let side = |from: Vec3, to: Vec3| (to - point).cross(from - point).dot(ray.direction);
@@ -198,7 +197,7 @@ pub fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool 
 }
 
 // <solution>
-/// Whether all values are `>= 0` or all values are `<= 0`. Zero fits both, NaN fits neither.
+/// Whether all values are `>= 0` or all values are `<= 0`. Zero fits both.
 fn same_side(sides: [f32; 3]) -> bool {
     sides.iter().all(|&side| side >= 0.0) || sides.iter().all(|&side| side <= 0.0)
 }
@@ -208,8 +207,8 @@ fn same_side(sides: [f32; 3]) -> bool {
 /// coordinates: `α = Area(P b c) / Area(a b c)`, and so on for β (P c a) and γ (P a b). Which areas
 /// has a point outside?
 ///
-/// Returns `(α, β, γ)`, or `None` for a point outside, a triangle without area, or a NaN. `point`
-/// lies in the plane of the triangle, up to rounding. Points on an edge are inside.
+/// Returns `(α, β, γ)`, or `None` for a point outside or a triangle without area. `point` lies in
+/// the plane of the triangle, up to rounding. Points on an edge are inside.
 pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
     // <solution>
     let normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
@@ -232,7 +231,7 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
 ///
 /// Exactly:
 ///
-/// 1. `false` for a triangle seen edge-on (`n·d = 0` exactly), a triangle without area, and a NaN.
+/// 1. `false` for a triangle seen edge-on (`n·d = 0` exactly) and for one without area.
 /// 2. The triangle may have any size.
 ///
 /// Source: "Ray-Triangle Intersection III".
@@ -240,7 +239,6 @@ pub fn backfacing(ray: &Ray, triangle: &Triangle) -> bool {
     // <solution>
     // Compute in double precision, in which no product of three `f32` overflows or underflows.
     let [a, b, c, d] = [triangle.a, triangle.b, triangle.c, ray.direction].map(Vec3::as_dvec3);
-    // NaN makes the comparison false.
     (b - a).cross(c - a).dot(d) > 0.0
     // <stub> todo!("return whether n·d > 0 for n = (b - a) × (c - a)")
     // </solution>
@@ -259,7 +257,7 @@ pub fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3 {
 /// `|u × v|²` if the edges are 1e-12 long?
 ///
 /// The result has length 1 up to rounding for a triangle of any size. It is `None` for a triangle
-/// without area and for a NaN.
+/// without area.
 pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
     // <solution>
     // Divide each edge by its largest component, so that no product underflows.

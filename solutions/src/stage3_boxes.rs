@@ -33,18 +33,13 @@ pub fn sphere_bounds(sphere: &Sphere) -> Aabb {
     // </solution>
 }
 
-/// The smallest box around two boxes: the smaller minima and the larger maxima. What is the minimum
-/// of 1 and NaN?
+/// The smallest box around two boxes: the smaller minima and the larger maxima. Which box changes
+/// no other one?
 ///
-/// The union of a box and [`Aabb::EMPTY`] is the box. A coordinate that is NaN is ignored: the
-/// result has that of the other box.
+/// The union of a box and [`Aabb::EMPTY`] is the box.
 pub fn union(first: &Aabb, second: &Aabb) -> Aabb {
     // <solution>
-    // Use f32::min and f32::max on each axis, because they drop a NaN in either order.
-    let pick = |choose: fn(f32, f32) -> f32, p: Vec3, q: Vec3| {
-        Vec3::new(choose(p.x, q.x), choose(p.y, q.y), choose(p.z, q.z))
-    };
-    Aabb::new(pick(f32::min, first.min, second.min), pick(f32::max, first.max, second.max))
+    Aabb::new(first.min.min(second.min), first.max.max(second.max))
     // <stub> todo!("take the smaller min and the larger max")
     // </solution>
 }

@@ -172,7 +172,6 @@ fn along(axis: usize) -> impl Fn(&PrimitiveRef, &PrimitiveRef) -> Ordering {
 ///    for which no cut is cheaper is split by the object median.
 /// 4. From depth [`DEEPEST_SPLIT`] on (the root has 0) every split is an object median. So there
 ///    are at most `DEEPEST_SPLIT + ⌈log₂ n⌉ + 1` levels, for any boxes.
-/// 5. A box of NaN goes into some leaf and does not change the boxes of other primitives.
 pub fn build(bounds: &[Aabb], split: Split, leaf_size: usize) -> Bvh {
     // <solution>
     // Collect number, box and centroid of each primitive.

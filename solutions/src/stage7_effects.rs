@@ -348,7 +348,6 @@ pub fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
 /// Exactly:
 ///
 /// 1. [`texel`] with `texture.wrap` gives the column and row of each pixel.
-/// 2. A coordinate counts as 0 if it, or its product with the width or height, is NaN or infinite.
 pub fn texture_color(texture: &Texture, uv: Vec2) -> Vec3 {
     // <solution>
     // Replace a coordinate by 0 if it is NaN or infinite, or if its product with the size

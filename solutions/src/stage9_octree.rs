@@ -33,7 +33,7 @@ use crate::stage9_cells::{ROUNDING, crossing, first_axis, part_above};
 ///    at depth 0), its octants together would hold about three times as many or more, or
 ///    [`ListGrowth::divide`] returns `None`.
 /// 2. List a primitive once in every leaf that its box touches.
-/// 3. Leave out empty boxes and boxes with NaN. Without a usable box the tree has no nodes.
+/// 3. Leave out empty boxes. Without a usable box the tree has no nodes.
 ///
 /// Source: "Octree" (recursively subdivide box-shaped cells into 8 octants).
 pub fn build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree {

@@ -39,8 +39,7 @@ use raykata::ray::Ray;
 /// 5. Every part of every polygon lies on the plane of a node that lists it, and a leaf lists at
 ///    most `leaf_size` solids, or those that no plane divides. Exceptions: at `max_depth` (root:
 ///    0), and where [`ListGrowth::divide`] returns `None`.
-/// 6. Leave out hulls without corners, or with NaN or infinity; without usable hulls there are
-///    no nodes.
+/// 6. Leave out hulls without corners. Without a usable hull there are no nodes.
 ///
 /// Source: Fuchs et al., SIGGRAPH 1980.
 pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> PolygonBsp {

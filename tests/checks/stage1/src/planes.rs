@@ -36,7 +36,7 @@ pub(super) fn observations(ray: &Ray, yours: Option<f32>) -> [(bool, &'static st
     [
         (
             yours.is_some_and(|t| !t.is_finite()),
-            "a ray along the plane makes t infinite or NaN (as a NaN in the input does), and neither counts: ask ray.contains(t)",
+            "a ray along the plane makes t infinite or NaN, and neither counts: ask ray.contains(t)",
         ),
         (
             yours.is_some_and(|t| t == ray.t_min || t == ray.t_max),
@@ -176,8 +176,8 @@ fn judge_ends(trial: &Trial<'_>, inputs: &[(Vec3, Vec3, Vec3)]) -> Vec<CheckResu
     outcomes
 }
 
-/// Rays along a plane, rays and a plane with NaN, a plane without a normal, and rays that hit.
-pub(super) fn along_planes() -> [(PlaneQuery, Expected); 9] {
+/// Rays along a plane, a plane without a normal, and rays that hit.
+pub(super) fn along_planes() -> [(PlaneQuery, Expected); 8] {
     let plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let slanted = Plane { point: vec3(0.0, 1.0, 0.0), normal: vec3(1.0, 2.0, -1.0) };
     let hit = |t| Expected::exactly(Some(t));
@@ -187,7 +187,6 @@ pub(super) fn along_planes() -> [(PlaneQuery, Expected); 9] {
         (Ray::new(Vec3::NEG_Y, Vec3::new(1.0, -0.0, 1.0)), plane, Expected::Miss),
         (Ray::new(Vec3::ONE, vec3(1.0, 1.0, 3.0)), slanted, Expected::Miss),
         (Ray::new(Vec3::ZERO, Vec3::NEG_Y), plane, Expected::Miss),
-        (Ray::new(Vec3::Y, Vec3::NAN), plane, Expected::Miss),
         (Ray::new(Vec3::Y, Vec3::NEG_Y), Plane { normal: Vec3::ZERO, ..plane }, Expected::Miss),
         (Ray::new(Vec3::Y, Vec3::NEG_Y), plane, hit(1.0)),
         (Ray::new(2.0 * Vec3::NEG_Y, vec3(4.0, 0.5, 0.0)), plane, hit(4.0)),

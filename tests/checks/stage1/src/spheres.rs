@@ -223,25 +223,6 @@ pub(super) fn sphere_on_surface(trial: &Trial<'_>, method: SphereFunction) -> Ch
     )
 }
 
-pub(super) fn sphere_invalid_numbers(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
-    let unit = query((-5.0, 0.0, 0.0), Vec3::X, 1.0);
-    let ray = unit.ray;
-    let of_radius = |radius| query((-5.0, 0.0, 0.0), Vec3::X, radius);
-    method.judge_exact(
-        trial,
-        &[
-            (unit, Some(4.0)),
-            (of_radius(0.0), None),
-            (of_radius(-1.0), None),
-            (of_radius(f32::NAN), None),
-            (SphereQuery { sphere: Sphere { center: Vec3::NAN, ..unit.sphere }, ..unit }, None),
-            (SphereQuery { ray: Ray { direction: Vec3::NAN, ..ray }, ..unit }, None),
-            (SphereQuery { ray: Ray { direction: Vec3::ZERO, ..ray }, ..unit }, None),
-            (SphereQuery { ray: Ray { origin: Vec3::INFINITY, ..ray }, ..unit }, None),
-        ],
-    )
-}
-
 pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> CheckResult {
     // All sizes together times 2⁻¹⁶ to 2¹⁶, and centres that are far away in comparison with the radius.
     let inputs = (sphere(), nasty::unit(), nasty::scale(-16..=16), nasty::scale(-8..=0)).prop_map(

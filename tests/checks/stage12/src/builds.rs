@@ -301,35 +301,3 @@ pub(super) fn crowds(x: f32) -> [Vec<Aabb>; 2] {
     let other = mirrored(&crowd);
     [crowd, other]
 }
-
-pub(super) fn build_binned_isolates_what_is_not_a_number(trial: &Trial<'_>) -> CheckResult {
-    let mut random = Random::new(trial.seed, 21);
-    let mut boxes: Vec<Aabb> = (0..200)
-        .map(|_| {
-            let low = 8.0 * random.in_cube();
-            Aabb::new(low, low + 0.25 + random.unit())
-        })
-        .collect();
-    let ordinary = boxes.clone();
-    for place in [7, 8, 100, 199] {
-        boxes[place].min.y = f32::NAN;
-    }
-    boxes[50] = Aabb::EMPTY;
-    boxes[51] = Aabb::new(Vec3::NAN, Vec3::NAN);
-    let judge = |boxes: &[Aabb]| judge_tight(boxes, &build(trial, boxes, describe(boxes))?);
-    let outcome = judge(&boxes);
-    // The same boxes without NaN, to prove that the NaN is the cause.
-    let is_cause = outcome.is_err() && judge(&ordinary).is_ok();
-    outcome.map_err(|broken| {
-        let panics = broken.yours.starts_with("a panic");
-        if broken.diagnosis.is_some() {
-            return broken;
-        }
-        let [a, b] = [is_cause && panics, is_cause && !panics];
-        Broken { input: "build_binned of 200 boxes, of which 6 are empty or have NaN".into(), ..broken }.explained_by([
-            (a, "a NaN or an empty box makes the builder panic"),
-            (b, "a NaN or an empty box got into the box of a node: PrimitiveBox makes such boxes empty, and the empty box \
-                 changes no union"),
-        ])
-    })
-}

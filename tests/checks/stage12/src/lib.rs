@@ -44,7 +44,6 @@ checks::stage! { ($ crate) 12 [
     builds::build_binned_costs_little_more_than_a_sweep: turned
     builds::build_binned_ends_where_centroids_are_equal
     builds::build_binned_is_not_too_deep
-    builds::build_binned_isolates_what_is_not_a_number
     forks::build_parallel_gives_the_same_tree
     forks::build_parallel_logs_the_nodes_that_it_forks
     forks::build_parallel_has_a_third_of_the_span => judge_span(30_000, 3)

@@ -150,7 +150,7 @@ pub(super) fn partition_bins_agrees_with_the_bins(trial: &Trial<'_>) -> CheckRes
 }
 
 pub(super) fn partition_bins_of_one_side(trial: &Trial<'_>) -> CheckResult {
-    // All primitives in one bin, none at all, and primitives with NaN, which are in bin 0.
+    // All primitives in one bin, none at all, and empty boxes, which are in bin 0.
     let cube = |x: f32| Aabb::new(Vec3::splat(x), Vec3::splat(x + 1.0));
     let place = |boxes: &[Aabb], bin: u32| {
         let mut query = query(boxes, 2, 8, 0, 0);

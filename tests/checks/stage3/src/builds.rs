@@ -160,27 +160,6 @@ pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> CheckResult {
     Ok(())
 }
 
-pub(super) fn build_isolates_what_is_not_a_number(trial: &Trial<'_>) -> CheckResult {
-    let mut bounds: Vec<Aabb> =
-        (0..20).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 1.0, 1.0))).collect();
-    bounds[7] = Aabb::new(Vec3::NAN, Vec3::NAN);
-    bounds[13] = Aabb::new(Vec3::NAN, Vec3::NAN);
-    let outcome = build_all_ways(trial, &bounds);
-    // The same boxes without NaN, to prove that the NaN is the cause.
-    let ordinary: Vec<Aabb> = bounds.iter().filter(|b| !b.min.is_nan()).copied().collect();
-    let is_cause = outcome.is_err() && build_all_ways(trial, &ordinary).is_ok();
-    outcome.map_err(|broken| {
-        let panics = broken.yours.starts_with("a panic");
-        broken.explained_by([
-            (is_cause && panics, "a sort or a split panics because of a NaN: sort with total_cmp"),
-            (
-                is_cause && !panics,
-                "a NaN got into the box of a node, or changed a split: use f32::min and f32::max on each axis",
-            ),
-        ])
-    })
-}
-
 pub(super) fn object_median_is_balanced(trial: &Trial<'_>) -> CheckResult {
     let n = 512;
     let bounds: Vec<Aabb> = (0..n)

@@ -2,10 +2,10 @@
 
 use super::texels::{WRAPS, row};
 use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
+use checks::broken::{Broken, CheckResult};
 use glam::{DVec3, Vec3, vec2, vec3};
 use proptest::prelude::*;
-use raykata::kit::{KitError, Request, TextureQuery, kit_error};
+use raykata::kit::{Request, TextureQuery};
 use raykata::material::{Texture, Wrap};
 use std::sync::Arc;
 
@@ -267,84 +267,4 @@ pub(super) fn images_are_blended(trial: &Trial<'_>) -> CheckResult {
         let each = stretches.iter().zip(queries.chunks(7)).zip(yours.chunks(7));
         each.map(|((stretch, queries), yours)| judge_stretch(stretch, queries, yours)).collect()
     })
-}
-
-pub(super) fn images_survive_invalid_numbers(trial: &Trial<'_>) -> CheckResult {
-    let strange = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e30, -0.0, 1e-40];
-    let first = trial.varied(0, any::<u32>());
-    let mut outcomes = Vec::new();
-    for wrap in WRAPS {
-        let image = texture_from(first, 3, 2, wrap);
-        // Test ordinary coordinates and one strange coordinate at a time first, so that the message shows which one is
-        // wrong.
-        let ordinary = [(0.5, 0.75), (0.5, 0.25)];
-        let single = strange.iter().flat_map(|&share| [(share, 0.5), (0.5, share)]);
-        let both = strange.iter().flat_map(|&u| strange.map(|v| (u, v)));
-        outcomes.extend(
-            ordinary.into_iter().chain(single).chain(both).map(|(u, v)| judge_strange(trial, &image, u, v)),
-        );
-    }
-    all_hold(outcomes)
-}
-
-/// Judges a colour at strange coordinates. The middle of a pixel has its colour.
-fn judge_strange(trial: &Trial<'_>, image: &Texture, u: f32, v: f32) -> CheckResult {
-    let query = |u, v| TextureQuery { texture: image.clone(), uv: vec2(u, v) };
-    let ask = |u, v| trial.kit.texture_color(&[query(u, v)])[0];
-    let input = format!("texture_color of 3 by 2 pixels, Wrap::{:?}, at {:?}", image.wrap, vec2(u, v));
-    let yours = match kit_error::catch(|| ask(u, v)) {
-        Ok(color) => color,
-        Err(KitError::Panicked { message, place }) => {
-            let yours = format!("a panic at {place}: {message}");
-            return Err(Broken::with_texts(input, yours, "a colour", "the definition").explained_by([(
-                message.contains("overflow"),
-                "an integer overflows: compute the next column and row with saturating_add",
-            )]));
-        }
-        Err(error) => kit_error::unwind(error),
-    };
-    let is_finite = u.is_finite() && v.is_finite();
-    // A coordinate that is NaN or infinite counts as 0, and so does one that overflows.
-    let overflows = [u * 3.0, v * 2.0].iter().any(|product| product.is_infinite()) && is_finite;
-    if !(yours.min_element() >= -1e-6 && yours.max_element() <= 1.0 + 1e-6) {
-        let expected = "a colour between those of the image";
-        return Err(Broken::new(input, yours, expected, "bilinear interpolation").explained_by([
-            (overflows, "coordinate * size overflows: test is_finite after the product"),
-            (
-                !is_finite,
-                "a coordinate that is NaN or infinite counts as 0: you return no colour of the image",
-            ),
-            (
-                !is_finite || overflows,
-                "a coordinate that is NaN or infinite counts as 0, also after the product with the size",
-            ),
-        ]));
-    }
-    if u == 0.5 && is_finite && (v == 0.75 || v == 0.25) {
-        let expected = at(image, 1, if v == 0.75 { 0 } else { 1 });
-        return match apart(yours, expected) < NEAR {
-            true => Ok(()),
-            false => Err(Broken::new(input, yours, expected.as_vec3(), "the pixel's colour, at its centre")),
-        };
-    }
-    let finite = |share: f32| if share.is_finite() { share } else { 0.0 };
-    if is_finite || finite(u).abs() > 1.0 || finite(v).abs() > 1.0 {
-        return Ok(());
-    }
-    let (expected, top) = (ask(finite(u), finite(v)), ask(finite(u), 1.0));
-    if apart(yours, expected.as_dvec3()) < NEAR {
-        return Ok(());
-    }
-    let source = "your own colour with 0 in place of NaN or infinity";
-    Err(Broken::new(input, yours, expected, source).explained_by([
-        (
-            !v.is_finite() && apart(yours, top.as_dvec3()) < NEAR,
-            "you treat an invalid v as 1: it counts as 0, the lower border of the image",
-        ),
-        (
-            u.is_infinite() || v.is_infinite(),
-            "you do not replace infinity: a coordinate that is NaN or infinite counts as 0",
-        ),
-        (true, "a coordinate that is NaN or infinite counts as 0: you use another number in its place"),
-    ]))
 }

@@ -34,7 +34,6 @@ checks::stage! { ($ crate) 7 [
     texels::texels_wrap_as_they_should
     images::middles_of_pixels_show_the_pixel
     images::images_are_blended
-    images::images_survive_invalid_numbers
     table::table_of_effects: composed
     picture::picture_of_an_image_on_spheres: composed
 ] }

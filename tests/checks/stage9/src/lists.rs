@@ -11,7 +11,7 @@ use raykata::kit::kit_error::{self, KitError};
 use raykata::partition::{Cell, CellTree, Tree, TreeNode};
 use std::collections::BTreeSet;
 
-/// Boxes on a lattice, so that many touch or are flat, on a finer grid, and with full mantissas. Some have NaN coordinates.
+/// Boxes on a lattice, so that many touch or are flat, on a finer grid, and with full mantissas. Some are empty.
 /// A volume is a normal number in single precision at any of these scales.
 pub(super) fn some_boxes() -> impl Strategy<Value = Vec<Aabb>> + Clone {
     let corner_and_size = prop_oneof![
@@ -20,7 +20,7 @@ pub(super) fn some_boxes() -> impl Strategy<Value = Vec<Aabb>> + Clone {
         1 => (rough_point(4.0), rough_point(2.0)),
     ];
     let one = (corner_and_size, 0..20i32).prop_map(|((corner, size), kind)| match kind {
-        0 => Aabb::new(Vec3::NAN, Vec3::NAN),
+        0 => Aabb::EMPTY,
         _ => Aabb::new(corner, corner + size.abs()),
     });
     (prop::collection::vec(one, 1..24), nasty::scale(-30..=30)).prop_map(|(boxes, scale)| {
@@ -95,7 +95,7 @@ pub(super) fn listing_fault<N: std::fmt::Display>(
             let describe = |times: usize| format!("primitive {id} is listed {times} times in {kind} {node}");
             if one.is_empty() {
                 if times > 0 {
-                    let mistake = "you list an empty box or one with NaN: leave it out";
+                    let mistake = "you list an empty box: leave it out";
                     return Some(fact(describe(times), describe(0), mistake));
                 }
                 continue;
@@ -241,6 +241,6 @@ pub(super) fn infinite(n: usize) -> Vec<(&'static str, Vec<Aabb>)> {
         ("100 points, each half as far as the one before", halving),
         ("ten boxes of which six cover everything", long.collect()),
         ("400 long needles along the axes", needles(400)),
-        ("boxes with NaN coordinates", vec![Aabb::new(Vec3::NAN, Vec3::NAN); 3]),
+        ("empty boxes", vec![Aabb::EMPTY; 3]),
     ]
 }

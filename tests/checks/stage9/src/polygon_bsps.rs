@@ -95,7 +95,7 @@ fn listing_fault(
         };
         let says = |what: &str| format!("node {node} lists primitive {id}{what}");
         if !usable(hull) {
-            let mistake = "you list a hull with NaN or without corners: leave it out";
+            let mistake = "you list a hull without corners: leave it out";
             return Some(fact(says(""), "not listed".into(), mistake));
         }
         if listed[..index].contains(&id) {
@@ -198,7 +198,7 @@ fn is_covered(bsp: &PolygonBsp, node: u32, point: DVec3, id: u32, room: f64) -> 
 pub(super) fn polygon_bsp_puts_polygons_on_planes(trial: &Trial<'_>) -> CheckResult {
     let corner = || prop_oneof![2 => point(4), 1 => nasty::lattice(2), 1 => rough_point(4.0)];
     let hull = (corner(), corner(), corner(), 0..16i32).prop_map(|(a, b, c, kind)| match kind {
-        0 => vec![a, Vec3::NAN, c],
+        0 => Vec::new(),
         1..=2 => vec![vec3(a.x, a.y, 1.0), vec3(b.x, b.y, 1.0), vec3(c.x, c.y, 1.0)],
         3 => corners(&Aabb::new(a, a + b.abs())),
         // A parallelogram.

@@ -13,7 +13,7 @@ use raykata::partition::{Bsp, BspNode, Cell, CutPlane, Grid, KdTree, Octree, Pol
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// Numbered boxes with room for rounding. Empty boxes and boxes with NaN are left out.
+/// Numbered boxes with room for rounding. Empty boxes are left out.
 fn loose(boxes: &[Aabb]) -> (Vec<(u32, Aabb)>, Aabb) {
     let usable = |one: &&Aabb| !one.is_empty();
     let all = around(boxes.iter().filter(usable));
