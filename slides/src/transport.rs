@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3, vec3};
 use raykata::emitter::{AreaEmitter, EmitterShape};
 use raykata::kit::{EmitterPdfQuery, Kit};
 use raykata_cli::svg::{
-    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, View, offset, plane, polar,
+    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, View, offset, plane, polar, steps,
 };
 use std::path::Path;
 
@@ -102,6 +102,73 @@ pub fn light_solid_angle(kit: &dyn Kit) -> Result<String> {
         format!("light_pdf: {pdf:.2}"),
     ];
     drawing.lines([650.0, 400.0], 42.0, TEXT, Ink::Text, &lines);
+    Ok(drawing.svg())
+}
+
+/// The densities of two ways to sample a direction at a surface below a long light, and the weights of both.
+pub fn mis_weights(kit: &dyn Kit) -> Result<String> {
+    // The light is seen from its edge, and it is eight units deep.
+    let [from, to] = [vec3(0.1, 1.0, 0.0), vec3(1.6, 0.7, 0.0)];
+    let shape =
+        EmitterShape::Parallelogram { corner: from - 4.0 * Vec3::Z, edges: (8.0 * Vec3::Z, to - from) };
+    let emitter = AreaEmitter { shape, radiance: Vec3::ONE, two_sided: true };
+    let densities = |degrees: f64| {
+        let (sin, cos) = (degrees.to_radians() as f32).sin_cos();
+        let direction = vec3(sin, cos, 0.0);
+        let light = kit.light_pdf(&[EmitterPdfQuery { emitter, from: Vec3::ZERO, direction }])[0];
+        [light, kit.cosine_pdf(&[(Vec3::Y, direction)])[0]]
+    };
+    let weight = |own: f32, other: f32| f64::from(kit.mis_weight(&[(own, other)])[0]);
+    let angles: Vec<f64> = steps(-90.0, 90.0, 360).collect();
+    let values: Vec<[f32; 2]> = angles.iter().map(|&degrees| densities(degrees)).collect();
+    let curve = |value: &dyn Fn([f32; 2]) -> f64| -> Vec<[f64; 2]> {
+        angles.iter().zip(&values).map(|(&degrees, &both)| [degrees, value(both)]).collect()
+    };
+
+    let mut drawing = Drawing::new("The densities of two ways to sample, and their weights", 1000.0, 640.0);
+    let (of_light, of_bsdf, of_both) = (Ink::Color(0), Ink::Color(1), Ink::Color(3));
+    let x = Axis::linear(-90.0, 90.0);
+    let above = Plot::new(x, Axis::linear(0.0, 0.5), [100.0, 280.0], [860.0, 220.0]);
+    let below = Plot::new(x, Axis::linear(0.0, 1.0), [100.0, 560.0], [860.0, 170.0]);
+    // Draw the axes, and the directions that meet the light.
+    drawing.step();
+    let ticks = [(-90.0, "-90°"), (-45.0, "-45°"), (0.0, "0°"), (45.0, "45°"), (90.0, "90°")];
+    above.draw_axes(&mut drawing, &ticks, &[(0.0, "0"), (0.4, "0.4")], ["", "density per steradian"]);
+    let [first, last] = [from, to].map(|end| f64::from(end.x.atan2(end.y).to_degrees()));
+    drawing.rectangle(above.at(first, 0.0), above.at(last, 0.5), of_both, 0.15);
+    drawing.text(above.at(last, 0.53), End, SMALL, of_both, "directions to the light");
+    // Draw both densities.
+    drawing.step();
+    above.draw_curve(&mut drawing, curve(&|both| f64::from(both[0])), of_light.pen(4.0));
+    drawing.text(above.at(first + 4.0, 0.42), Start, SMALL, of_light, "light_pdf");
+    drawing.step();
+    above.draw_curve(&mut drawing, curve(&|both| f64::from(both[1])), of_bsdf.pen(4.0));
+    drawing.text(above.at(-40.0, 0.3), End, SMALL, of_bsdf, "cosine_pdf");
+    // Draw the weight of each from its side, so that both fill the height of 1.
+    let light = curve(&|both| weight(both[0], both[1]));
+    let bsdf = curve(&|both| 1.0 - weight(both[1], both[0]));
+    for (share, base, ink, name, x, y) in [
+        (light, 0.0, of_light, "of the light's samples", 61.0, 0.15),
+        (bsdf, 1.0, of_bsdf, "of the BSDF's samples", -8.0, 0.65),
+    ] {
+        drawing.step();
+        let corners = share.into_iter().chain([[90.0, base], [-90.0, base]]).map(|[x, y]| below.at(x, y));
+        drawing.area(&corners.collect::<Vec<Point>>(), ink, 0.4);
+        drawing.text(below.at(x, y), End, SMALL, Ink::Text, name);
+        below.draw_axes(
+            &mut drawing,
+            &ticks,
+            &[(0.0, "0"), (1.0, "1")],
+            ["angle with the normal", "mis_weight"],
+        );
+    }
+    // Compute both weights of one direction.
+    drawing.step();
+    let [light, bsdf] = densities(45.0);
+    let [one, other] = [weight(light, bsdf), weight(bsdf, light)];
+    drawing.line(above.at(45.0, 0.5), below.at(45.0, 0.0), Ink::Text.pen(2.0).dashed());
+    let text = format!("45°: {one:.2} + {other:.2} = {:.2}", one + other);
+    drawing.text(below.at(43.0, 1.1), End, SMALL, Ink::Text, &text);
     Ok(drawing.svg())
 }
 
