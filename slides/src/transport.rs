@@ -134,6 +134,7 @@ pub fn mis_weights(kit: &dyn Kit) -> Result<String> {
     drawing.step();
     let ticks = [(-90.0, "-90°"), (-45.0, "-45°"), (0.0, "0°"), (45.0, "45°"), (90.0, "90°")];
     above.draw_axes(&mut drawing, &ticks, &[(0.0, "0"), (0.4, "0.4")], ["", "density per steradian"]);
+    below.draw_axes(&mut drawing, &ticks, &[(0.0, "0"), (1.0, "1")], ["angle with the normal", "mis_weight"]);
     let [first, last] = [from, to].map(|end| f64::from(end.x.atan2(end.y).to_degrees()));
     drawing.rectangle(above.at(first, 0.0), above.at(last, 0.5), of_both, 0.15);
     drawing.text(above.at(last, 0.53), End, SMALL, of_both, "directions to the light");
@@ -155,12 +156,6 @@ pub fn mis_weights(kit: &dyn Kit) -> Result<String> {
         let corners = share.into_iter().chain([[90.0, base], [-90.0, base]]).map(|[x, y]| below.at(x, y));
         drawing.area(&corners.collect::<Vec<Point>>(), ink, 0.4);
         drawing.text(below.at(x, y), End, SMALL, Ink::Text, name);
-        below.draw_axes(
-            &mut drawing,
-            &ticks,
-            &[(0.0, "0"), (1.0, "1")],
-            ["angle with the normal", "mis_weight"],
-        );
     }
     // Compute both weights of one direction.
     drawing.step();
