@@ -44,6 +44,7 @@ pub fn slab_intervals(kit: &dyn Kit) -> Result<String> {
     let row = |drawing: &mut Drawing, row: usize| {
         let ((enter, leave), (name, y, ink)) = (intervals[row], rows[row]);
         drawing.text([40.0, y + 9.0], Start, TEXT, ink, name);
+        drawing.text([axis(7.8) + 8.0, y + 9.0], Start, TEXT, Ink::Text, "t");
         drawing.line([axis(0.0), y], [axis(7.8), y], Ink::Faint.pen(1.5));
         drawing.line([axis(enter), y], [axis(leave), y], ink.pen(14.0));
         drawing.text([axis(enter), y - 14.0], Middle, SMALL, ink, &format!("{enter:.2}"));
@@ -64,7 +65,6 @@ pub fn slab_intervals(kit: &dyn Kit) -> Result<String> {
         }
         drawing.step();
         row(&mut drawing, slab);
-        drawing.text([axis(7.8) + 8.0, rows[slab].1 + 9.0], Start, TEXT, Ink::Text, "t");
     }
 
     // Draw the interval that both have in common, from the last entry to the first exit.

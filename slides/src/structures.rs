@@ -135,7 +135,7 @@ pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
     let tree = kit.kd_build(&[query]).remove(0);
     let answer = kit.kd_search(&[CellsQuery { cells: tree.clone(), ray, hits }]).remove(0);
 
-    let mut drawing = Drawing::new("The leaves of a kd-tree that a ray visits, in order", 1000.0, 620.0);
+    let mut drawing = Drawing::new("The leaves of a kd-tree that a ray visits, in order", 1000.0, 612.0);
     draw_boxes(&mut drawing, &ray);
     // Draw the cells of each level over those of the level above.
     let mut level = vec![(0, tree.bounds)];
