@@ -1,5 +1,6 @@
 //! `raykata strip`: one scene at growing depths of recursion (lecture "Example: Reflection", "Example: Refraction"), with
-//! each sampler ("Antialiasing", "Generate pixel samples"), or with the levels of its hierarchy, side by side.
+//! each sampler ("Antialiasing", "Generate pixel samples"), with the levels of its hierarchy, or with the functions of stage 1, of
+//! stages 1 and 2, and so on, side by side.
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names, whole_number};
 use crate::caption;
@@ -11,15 +12,33 @@ use crate::quality_options::{QualityOptions, ToneOptions};
 use crate::report::{Thousands, job, make_folder_of, name_of, render};
 use anyhow::{Context, Error, Result};
 use raykata::film::Film;
-use raykata::kit::kit_error;
-use raykata::scene::{Quality, Sampler, Scene};
+use raykata::kit::{RenderJob, View, kit_error};
+use raykata::scene::{Accelerator, Quality, Sampler, Scene};
 use raykata::world::camera_for;
 use std::fmt::Display;
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::Path;
 use std::process::ExitCode;
 
 /// Pixels between two pictures.
 const GAP: u32 = 4;
+
+/// What each stage adds, for captions.
+const STAGES: [&str; 12] = [
+    "spheres",
+    "triangles",
+    "hierarchy",
+    "light",
+    "glass",
+    "soft shadows",
+    "textures",
+    "curves",
+    "kd-tree",
+    "stability",
+    "paths",
+    "wide nodes",
+];
 
 /// `raykata strip`.
 pub static SPEC: Spec = Spec {
@@ -45,6 +64,11 @@ pub static SPEC: Spec = Spec {
                  picture each. Level 0 is the root.",
             )
             .many(),
+            Opt::flag(
+                "--stages",
+                "Instead of depths: the scene with the functions of stage 1, of stages 1 and 2, up to all twelve, in three \
+                 rows. Below each: primitive tests per ray. Writes each picture and an animated PNG file, too.",
+            ),
             Opt::value("--out", "FILE", "The PNG file [default: out/NAME-strip.png].").short("-o"),
         ],
         Choice::OPTIONS,
@@ -67,28 +91,45 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let kit = kit.start()?;
     let pictures = chosen.pictures(&scene);
     let (width, height, tone) = (scene.film.width, scene.film.height, scene.film.tone);
-    let n = pictures.len() as u32;
-    let mut strip = Film::new(n * width + (n - 1) * GAP, height + caption::HEIGHT);
+    let columns = pictures.len() as u32 / chosen.rows();
+    let mut strip =
+        Film::new(columns * width + (columns - 1) * GAP, chosen.rows() * (height + caption::HEIGHT));
+    let beside = |name: &str| Ok::<_, Error>(out.with_file_name(format!("{}-{name}.png", name_of(&out)?)));
+    let mut frames = Vec::new();
     const COLUMNS: Columns = Columns("  ", &[15, 14, 14, 14, 9]);
     let heads: [&dyn Display; 5] =
         [&"picture", &"reflected rays", &"refracted rays", &"indirect rays", &"seconds"];
     println!("{}", COLUMNS.row(&heads));
-    for (column, Picture { what, scene, level }) in pictures.into_iter().enumerate() {
+    for (index, Picture { mut what, scene, level, view }) in (0..).zip(pictures) {
         let camera = camera_for(&scene);
-        let job = job(scene);
+        let job = RenderJob { view, ..job(scene) };
         let rendering = render(&*kit, &job)?;
         let (counts, seconds) = (rendering.counts, format!("{:.3}", rendering.render_seconds));
         let [reflected, refracted, indirect] =
             [counts.reflection, counts.transmission, counts.indirect].map(Thousands);
         println!("{}", COLUMNS.row(&[&what, &reflected, &refracted, &indirect, &seconds]));
-        let left = column as u32 * (width + GAP);
+        let left = index % columns * (width + GAP);
+        let top = index / columns * (height + caption::HEIGHT);
         // Draw the boxes of the level over the picture.
-        let mut film = rendering.film.toned(tone);
+        let mut film = match view {
+            // Before stage 4 the picture shows normals, which are no light.
+            View::UpToStage(..4) => rendering.film,
+            _ => rendering.film.toned(tone),
+        };
         if let Some(level) = level {
             film = with_edges(&film, &camera, &kit_error::catch(|| kit.outlines(&job, level))?);
         }
-        paste(&film, &mut strip, left);
-        caption::write(&mut strip, &what, [left, height], width);
+        if let View::UpToStage(stage) = view {
+            let file = beside(&format!("stage{stage:02}"))?;
+            write_png(&film, &file, job.scene.film.encoding, Some(&*kit))?;
+            what += &format!(": {:.1}", counts.primitive_tests as f64 / counts.rays() as f64);
+            frames.push(film.dithered_srgb());
+        }
+        paste(&film, &mut strip, [left, top]);
+        caption::write(&mut strip, &what, [left, top + height], width);
+    }
+    if !frames.is_empty() {
+        write_animated(&frames, [width, height], &beside("animated")?)?;
     }
     write_png(&strip, &out, scene.film.encoding, Some(&*kit))
         .with_context(|| format!("cannot write {}", out.display()))?;
@@ -103,6 +144,7 @@ struct Picture {
     scene: Scene,
     /// The level of the acceleration structure that is drawn over it.
     level: Option<u32>,
+    view: View,
 }
 
 /// What the pictures of a strip differ in.
@@ -110,6 +152,7 @@ enum Chosen {
     Depths(Vec<u32>),
     Samplers(Vec<Sampler>),
     Levels(Vec<u32>),
+    Stages,
 }
 
 impl Chosen {
@@ -117,6 +160,12 @@ impl Chosen {
         given.exclude("--samplers", "--depths")?;
         given.exclude("--levels", "--depths")?;
         given.exclude("--levels", "--samplers")?;
+        for other in ["--depths", "--samplers", "--levels"] {
+            given.exclude("--stages", other)?;
+        }
+        if given.has("--stages") {
+            return Ok(Chosen::Stages);
+        }
         let numbers = |option| given.list(option, |text| whole_number(text, &(0..=1000)));
         let (depths, levels) = (numbers("--depths")?, numbers("--levels")?);
         let samplers = given.choices("--samplers", &Sampler::NAMES)?;
@@ -128,19 +177,34 @@ impl Chosen {
         })
     }
 
-    /// The scene once for each depth, sampler or level.
+    fn rows(&self) -> u32 {
+        if matches!(self, Chosen::Stages) { 3 } else { 1 }
+    }
+
+    /// The scene once for each depth, sampler, level or stage.
     fn pictures(&self, scene: &Scene) -> Vec<Picture> {
         let picture = |what: String, quality: Quality, level: Option<u32>| Picture {
             what,
             scene: Scene { quality, ..scene.clone() },
             level,
+            view: View::Shaded,
         };
         let own = scene.quality;
         let of_depth = |max_depth| picture(format!("depth {max_depth}"), Quality { max_depth, ..own }, None);
         let of_level = |level| picture(format!("level {level}"), own, Some(level));
         let of_sampler =
             |sampler: Sampler| picture(sampler.name().replace('_', "-"), Quality { sampler, ..own }, None);
+        // Samples of a pixel are an exercise of stage 6, and the kd-tree is one of stage 9.
+        let of_stage = |(stage, name): (u8, &&str)| {
+            let quality = match stage {
+                1..=5 => Quality { samples_per_pixel: 1, sampler: Sampler::Center, ..own },
+                9 => Quality { accelerator: Accelerator::KdTree, ..own },
+                _ => own,
+            };
+            Picture { view: View::UpToStage(stage), ..picture(format!("{stage} {name}"), quality, None) }
+        };
         match self {
+            Chosen::Stages => (1..).zip(&STAGES).map(of_stage).collect(),
             Chosen::Depths(depths) => depths.iter().copied().map(of_depth).collect(),
             Chosen::Samplers(samplers) => samplers.iter().copied().map(of_sampler).collect(),
             Chosen::Levels(levels) => levels.iter().copied().map(of_level).collect(),
@@ -148,9 +212,20 @@ impl Chosen {
     }
 }
 
-fn paste(picture: &Film, strip: &mut Film, x: u32) {
-    for (row, pixels) in picture.pixels.chunks(picture.width as usize).enumerate() {
-        let start = row * strip.width as usize + x as usize;
+fn paste(picture: &Film, strip: &mut Film, [x, y]: [u32; 2]) {
+    for (row, pixels) in (y..).zip(picture.pixels.chunks(picture.width as usize)) {
+        let start = (row * strip.width + x) as usize;
         strip.pixels[start..start + pixels.len()].copy_from_slice(pixels);
     }
+}
+
+/// Writes an animated PNG file that shows each frame, sRGB bytes of `width` by `height` pixels, for a second and a half.
+fn write_animated(frames: &[Vec<u8>], [width, height]: [u32; 2], out: &Path) -> Result<()> {
+    let mut encoder = png::Encoder::new(BufWriter::new(File::create(out)?), width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_animated(frames.len() as u32, 0)?;
+    encoder.set_frame_delay(3, 2)?;
+    let mut writer = encoder.write_header()?;
+    frames.iter().try_for_each(|frame| writer.write_image_data(frame))?;
+    Ok(writer.finish()?)
 }
