@@ -75,12 +75,7 @@ pub fn slab_intervals(kit: &dyn Kit) -> Result<String> {
     }
     drawing.step();
     row(&mut drawing, 2);
-    drawing.text(
-        [axis(0.0), 605.0],
-        Start,
-        SMALL,
-        Ink::Text,
-        "the last entry and the first exit: the ray meets the box",
-    );
+    let text = "the last entry and the first exit: the ray meets the box";
+    drawing.text([axis(0.0), 605.0], Start, SMALL, Ink::Text, text);
     Ok(drawing.svg())
 }

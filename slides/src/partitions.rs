@@ -1,10 +1,10 @@
 //! Diagrams of partitions of space: three searches of an octree, and sheets across a diagonal in two trees.
 
-use crate::structures::{boxes, leaves};
+use crate::structures::{boxes, hits, leaves};
 use anyhow::Result;
 use glam::{DVec2, DVec3, Vec3, dvec2, vec3};
 use raykata::aabb::Aabb;
-use raykata::kit::{BspQuery, CellsAnswer, CellsQuery, KdQuery, Kit, OctreeQuery, SlabQuery};
+use raykata::kit::{BspQuery, CellsAnswer, CellsQuery, KdQuery, Kit, OctreeQuery};
 use raykata::partition::{Bsp, BspNode, KdHeuristics, Octree, OctreeNode};
 use raykata::ray::Ray;
 use raykata_cli::svg::{Drawing, Ink, LARGE, Middle, Point, SMALL, Start, View, plane};
@@ -17,7 +17,7 @@ struct Node {
     column: usize,
 }
 
-/// The nodes of a flat octree: of each eight children the four with the smaller z.
+/// The nodes of a flat octree, level by level: of each eight children the four with the smaller z.
 fn flat_nodes(octree: &Octree) -> Vec<Node> {
     let mut nodes: Vec<Node> = Vec::new();
     octree.walk(16, |index, cell, depth| {
@@ -27,18 +27,16 @@ fn flat_nodes(octree: &Octree) -> Vec<Node> {
             nodes.push(Node { index, cell, depth, column });
         }
     });
+    nodes.sort_by_key(|node| node.depth);
     nodes
 }
 
 /// An octree over boxes in the plane, searched in three ways along the same ray.
 pub fn octree_searches(kit: &dyn Kit) -> Result<String> {
-    let bounds = boxes();
     // The ray stays in the lower half of all cells.
     let ray = Ray::new(vec3(-0.6, 1.95, 0.3), vec3(1.0, 0.085, 0.0));
-    let queries: Vec<_> = bounds.iter().map(|&bounds| SlabQuery { ray, bounds }).collect();
-    let hits: Vec<f32> =
-        kit.slab(&queries).into_iter().map(|hit| hit.map_or(f32::INFINITY, |(enter, _)| enter)).collect();
-    let query = OctreeQuery { bounds: bounds.clone(), leaf_size: 1, max_depth: 4 };
+    let hits = hits(kit, ray);
+    let query = OctreeQuery { bounds: boxes(), leaf_size: 1, max_depth: 4 };
     let octree = kit.octree_build(&[query]).remove(0);
     let query = [CellsQuery { cells: octree.clone(), ray, hits }];
     let mut drawing = Drawing::new("Three searches of one octree", 1000.0, 470.0);
@@ -48,12 +46,12 @@ pub fn octree_searches(kit: &dyn Kit) -> Result<String> {
     draw_objects(&mut drawing, 14.0);
     let at = cells_at(14.0);
     for depth in 0..octree.depth() {
-        let level: Vec<&Node> = nodes.iter().filter(|node| node.depth == depth).collect();
-        drawing.remark([14.0, 428.0], &format!("level {depth}; cells: {}", level.len()));
-        for node in level {
+        let shown = &nodes[..nodes.partition_point(|node| node.depth <= depth)];
+        drawing.remark([14.0, 428.0], &format!("levels {}; nodes: {}", depth + 1, shown.len()));
+        for node in shown {
             drawing.frame(at(node.cell.min), at(node.cell.max), Ink::Faint.pen(1.5));
-            drawing.dot(level_at(&nodes, node, 14.0), 2.0, Ink::Faint);
         }
+        draw_levels(&mut drawing, shown, &CellsAnswer::default(), 14.0);
     }
     for (panel, (name, answer)) in [
         ("closest_hit", kit.octree_search(&query).remove(0)),
@@ -114,16 +112,13 @@ fn draw_objects(drawing: &mut Drawing, left: f64) {
     }
 }
 
-/// Where a node stands in the tree below the panel that begins at `left`.
-fn level_at(nodes: &[Node], node: &Node, left: f64) -> Point {
-    let row = nodes.iter().filter(|one| one.depth == node.depth).count();
-    let share = (node.column as f64 + 0.5) / row as f64;
-    [left + 312.0 * share, 262.0 + 40.0 * node.depth as f64]
-}
-
 /// The tree as rows of dots, which are larger for more visits.
 fn draw_levels(drawing: &mut Drawing, nodes: &[Node], answer: &CellsAnswer, left: f64) {
-    let at = |node: &Node| level_at(nodes, node, left);
+    let row = |depth: usize| nodes.iter().filter(|node| node.depth == depth).count();
+    let at = |node: &Node| -> Point {
+        let share = (node.column as f64 + 0.5) / row(node.depth) as f64;
+        [left + 312.0 * share, 262.0 + 40.0 * node.depth as f64]
+    };
     for node in nodes {
         match visits(answer, node.index) {
             0 => drawing.dot(at(node), 2.0, Ink::Faint),
@@ -173,7 +168,7 @@ pub fn bsp_sheets(kit: &dyn Kit) -> Result<String> {
             drawing.frame(view.at(0.0, 0.0), view.at(4.4, 4.4), Ink::Faint.pen(2.0));
             for level in 1..bsp.depth() {
                 drawing.step();
-                draw_planes(&mut drawing, &view, &bsp, (0, level), square.to_vec());
+                draw_planes(&mut drawing, view, &bsp, 0, level, square.to_vec());
             }
         }
         let text = format!("{name}: {references} references");
@@ -183,13 +178,7 @@ pub fn bsp_sheets(kit: &dyn Kit) -> Result<String> {
 }
 
 /// Draws the planes of a level below `node`, whose own plane is level 1, each in its region of the plane z = 0.
-fn draw_planes(
-    drawing: &mut Drawing,
-    view: &View,
-    bsp: &Bsp,
-    (node, level): (u32, usize),
-    region: Vec<DVec2>,
-) {
+fn draw_planes(drawing: &mut Drawing, view: View, bsp: &Bsp, node: u32, level: usize, region: Vec<DVec2>) {
     let BspNode::Inner { plane, back, front } = bsp.nodes[node as usize] else { return };
     let distance = |point: DVec2| plane.normal.truncate().dot(point) - plane.offset;
     let (mut behind, mut before, mut cut) = (Vec::new(), Vec::new(), Vec::new());
@@ -211,6 +200,6 @@ fn draw_planes(
     if level == 1 {
         return drawing.polyline(&cut, Ink::Color(1).pen(2.5).dashed());
     }
-    draw_planes(drawing, view, bsp, (back, level - 1), behind);
-    draw_planes(drawing, view, bsp, (front, level - 1), before);
+    draw_planes(drawing, view, bsp, back, level - 1, behind);
+    draw_planes(drawing, view, bsp, front, level - 1, before);
 }

@@ -101,12 +101,8 @@ pub fn grid_resolution(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let formula = measure(0)?;
 
     let mut drawing = Drawing::new("Tests and visited cells over the resolution of a grid", 1000.0, 620.0);
-    let plot = Plot::new(
-        Axis::logarithmic(8.0, 256.0),
-        Axis::logarithmic(1.0, 2000.0),
-        [100.0, 530.0],
-        [580.0, 450.0],
-    );
+    let (x, y) = (Axis::logarithmic(8.0, 256.0), Axis::logarithmic(1.0, 2000.0));
+    let plot = Plot::new(x, y, [100.0, 530.0], [580.0, 450.0]);
     let x = [(8.0, "8"), (16.0, "16"), (32.0, "32"), (64.0, "64"), (128.0, "128"), (256.0, "256")];
     let y = [(1.0, "1"), (10.0, "10"), (100.0, "100"), (1000.0, "1,000")];
     plot.draw_axes(&mut drawing, &x, &y, ["cells along the longest side", "per ray"]);

@@ -4,7 +4,7 @@ use crate::structures::{CAPTION, at, boxes, draw_boxes, draw_hit, draw_tested, h
 use anyhow::{Result, ensure};
 use glam::vec3;
 use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, Contents};
+use raykata::bvh::Contents;
 use raykata::kit::{BuildQuery, Kit, SearchQuery, SlabQuery, Table, WideBoxesQuery};
 use raykata::ray::Ray;
 use raykata::scene::Split;
@@ -21,6 +21,10 @@ pub fn bvh_descent(kit: &dyn Kit) -> Result<String> {
     let table = Table { boxes: spans, primitives: hits(kit, ray) };
     let mut drawing = Drawing::new("A hierarchy of boxes, and the search of a ray in it", 1000.0, 620.0);
     draw_boxes(&mut drawing, &ray);
+    let children = |node: u32| match bvh.nodes[node as usize].contents {
+        Contents::Inner { left, right } => vec![left, right],
+        Contents::Leaf { .. } => Vec::new(),
+    };
     let frame = |drawing: &mut Drawing, node: u32, ink: Ink, width: f64| {
         let bounds = bvh.nodes[node as usize].bounds;
         drawing.frame(at(bounds.min), at(bounds.max), ink.pen(width));
@@ -28,11 +32,9 @@ pub fn bvh_descent(kit: &dyn Kit) -> Result<String> {
     // Draw the boxes of each level.
     let mut level = vec![0];
     for depth in 0..bvh.depth() {
-        drawing.step_with(CAPTION, &format!("level {depth}; nodes: {}", level.len()), |drawing| {
-            level.iter().for_each(|&node| frame(drawing, node, Ink::Color(0), 5.0));
-        });
+        drawing.remark(CAPTION, &format!("level {depth}; nodes: {}", level.len()));
         level.iter().for_each(|&node| frame(&mut drawing, node, Ink::Color(0), 2.0));
-        level = level.iter().flat_map(|&node| children(&bvh, node)).collect();
+        level = level.iter().flat_map(|&node| children(node)).collect();
     }
     // Search as stage 3 does: nearest child first, and no node that begins behind the closest hit.
     let (mut open, mut visited, mut within) = (vec![0], 0, ray);
@@ -41,10 +43,8 @@ pub fn bvh_descent(kit: &dyn Kit) -> Result<String> {
             Some(_) => ("opened", Ink::Color(1)),
             None => ("skipped", Ink::Faint),
         };
-        let text = format!(
-            "entered at t = {:.2}, {what}; t_max = {:.2}",
-            table.boxes[node as usize].0, within.t_max
-        );
+        let (enter, t_max) = (table.boxes[node as usize].0, within.t_max);
+        let text = format!("entered at t = {enter:.2}, {what}; t_max = {t_max:.2}");
         drawing.step_with(CAPTION, &text, |drawing| frame(drawing, node, Ink::Color(3), 12.0));
         frame(&mut drawing, node, ink, 5.0);
         if what == "skipped" {
@@ -58,7 +58,7 @@ pub fn bvh_descent(kit: &dyn Kit) -> Result<String> {
             }
         }
         let enter = |child: &u32| table.boxes[*child as usize].0;
-        let mut below = children(&bvh, node);
+        let mut below = children(node);
         below.retain(|&child| table.enter(child, &ray).is_some());
         below.sort_by(|p, q| enter(q).total_cmp(&enter(p)));
         open.extend(below);
@@ -73,15 +73,7 @@ pub fn bvh_descent(kit: &dyn Kit) -> Result<String> {
     Ok(drawing.svg())
 }
 
-/// The children of a node; none of a leaf.
-fn children(bvh: &Bvh, node: u32) -> Vec<u32> {
-    match bvh.nodes[node as usize].contents {
-        Contents::Inner { left, right } => vec![left, right],
-        Contents::Leaf { .. } => Vec::new(),
-    }
-}
-
-/// The boxes of a node with eight children: for each two opposite corners, and the x of a triangle within; 99 for none.
+/// The boxes of a node with eight children: for each two opposite corners, and the x of a triangle within, or 99, which is outside.
 const EIGHT: [f32; 40] = [
     5.9, 1.6, 7.4, 3.0, 6.5, 0.6, 3.2, 1.8, 4.4, 1.2, 1.2, 1.4, 3.0, 2.8, 99.0, 3.3, 0.2, 4.6, 1.5, 4.0, 3.6,
     1.9, 5.2, 3.4, 4.8, 6.0, 3.6, 7.6, 4.6, 7.0, 2.6, 1.8, 4.2, 4.0, 4.0, 5.2, 0.2, 7.8, 1.0, 6.0,
@@ -112,13 +104,12 @@ pub fn wide_search(kit: &dyn Kit) -> Result<String> {
     let lane = |child: usize, x: f64, y: f64| [x + 120.0 * child as f64, y];
     // Draw the boxes, and one lane of a register for each.
     drawing.remark(caption, "eight boxes in one node, one lane of a register each");
+    drawing.arrow(at(ray.origin), at(ray.at(8.4)), Ink::Text.pen(3.0));
     for child in 0..8 {
         fill(&mut drawing, child, Ink::Faint, 0.0);
         drawing.frame(lane(child, 20.0, 500.0), lane(child, 140.0, 560.0), Ink::Text.pen(2.0));
         drawing.text(lane(child, 80.0, 490.0), Middle, SMALL, Ink::Faint, &child.to_string());
     }
-    drawing.step();
-    drawing.arrow(at(ray.origin), at(ray.at(8.4)), Ink::Text.pen(3.0));
     // Test all boxes at once, and sort the entered ones.
     drawing.remark(caption, &format!("one test: the ray enters {} of eight boxes", order.len()));
     for child in 0..8 {
@@ -131,26 +122,21 @@ pub fn wide_search(kit: &dyn Kit) -> Result<String> {
     }
     drawing.remark(caption, &format!("sorted by t: {order:?}; the farther ones wait on a stack"));
     // Open one after the other.
-    let (mut t_max, mut opened) = (f32::INFINITY, 0);
+    let mut t_max = f32::INFINITY;
     for (place, &child) in order.iter().enumerate() {
-        let (enter, t) = (entered.t[child], EIGHT[5 * child + 4]);
+        let (enter, t, stack) = (entered.t[child], EIGHT[5 * child + 4], &order[place + 1..]);
         if enter >= t_max {
             drawing.remark(caption, &format!("{child} is dropped: {enter:.2} is behind t = {t_max:.2}"));
             continue;
         }
-        opened += 1;
         t_max = if t < 9.0 { t_max.min(t) } else { t_max };
-        let stack = &order[place + 1..];
         drawing.remark(caption, &format!("{child} is opened; t_max = {t_max:.2}, stack: {stack:?}"));
         fill(&mut drawing, child, Ink::Color(1), 0.15);
-        if t < 9.0 {
-            let [x, y] = at(ray.at(t));
-            drawing.line([x - 9.0, y + 31.0], [x + 9.0, y - 31.0], Ink::Color(1).pen(7.0));
-        }
+        let [x, y] = at(ray.at(t));
+        drawing.line([x - 9.0, y + 31.0], [x + 9.0, y - 31.0], Ink::Color(1).pen(7.0));
     }
     drawing.step();
     drawing.dot(at(ray.at(t_max)), 10.0, Ink::Color(1));
-    let text = format!("one test of eight boxes, {opened} children opened, closest hit t = {t_max:.2}");
-    drawing.text(caption, Start, SMALL, Ink::Text, &text);
+    drawing.text(caption, Start, SMALL, Ink::Text, &format!("the closest hit: t = {t_max:.2}"));
     Ok(drawing.svg())
 }

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
-use raykata::kit::{CellsAnswer, CellsQuery, GridQuery, KdQuery, Kit, SlabQuery};
+use raykata::kit::{CellsQuery, GridQuery, KdQuery, Kit, SlabQuery};
 use raykata::partition::{KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
 use raykata_cli::svg::{Drawing, Ink, Middle, Point, SMALL, Start, TEXT, View};
@@ -57,17 +57,12 @@ pub fn draw_boxes(drawing: &mut Drawing, ray: &Ray) {
     drawing.arrow(at(ray.origin), at(ray.at(9.2)), Ink::Faint.pen(2.0));
 }
 
-/// A cell, and the boxes that it lists.
-type Listed = (Aabb, Vec<u32>);
-
-/// Draws a step for each visited cell: what it is called and lists, up to which `t` the ray is within it, and which of its boxes
-/// are tested.
-fn draw_visits(drawing: &mut Drawing, kit: &dyn Kit, ray: &Ray, cells: &[Listed], answer: &CellsAnswer) {
+/// Draws a step for each visited cell, with the boxes that it lists, then the ray up to its hit. Circles mark the far planes.
+fn draw_visits(drawing: &mut Drawing, kit: &dyn Kit, ray: &Ray, cells: &[(Aabb, Vec<u32>)], t: f32) {
     let leaves = |bounds: Aabb| kit.slab(&[SlabQuery { ray: *ray, bounds }])[0].map_or(0.0, |span| span.1);
     for (step, (cell, listed)) in (1..).zip(cells) {
         let text = format!("cell {step}, up to t = {:.2}; boxes: {}", leaves(*cell), listed.len());
         drawing.step_with(CAPTION, &text, |drawing| {
-            // Mark the far planes of both axes.
             for (axis, ink) in [(Vec3::X, Ink::Color(0)), (Vec3::Y, Ink::Color(3))] {
                 let far = 1000.0 * (Vec3::ONE - axis);
                 let slab = Aabb::new(axis * cell.min - far, axis * cell.max + far);
@@ -79,7 +74,7 @@ fn draw_visits(drawing: &mut Drawing, kit: &dyn Kit, ray: &Ray, cells: &[Listed]
         drawing.text([x + 8.0, y + 24.0], Start, SMALL, Ink::Color(4), &step.to_string());
         listed.iter().for_each(|&index| draw_tested(drawing, index));
     }
-    draw_hit(drawing, ray, answer.hit.map_or(9.2, |hit| hit.t));
+    draw_hit(drawing, ray, t);
 }
 
 /// Marks a box that was tested.
@@ -118,11 +113,11 @@ pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
         }
     }
     let cell = |&number: &u32| {
-        let [x, y] = [number % grid.resolution.x, number / grid.resolution.x];
-        (grid.cell(UVec3::new(x, y, 0)).to_box(), grid.primitives(number).to_vec())
+        let at = UVec3::new(number % grid.resolution.x, number / grid.resolution.x, 0);
+        (grid.cell(at).to_box(), grid.primitives(number).to_vec())
     };
     let cells: Vec<_> = answer.visits.iter().map(cell).collect();
-    draw_visits(&mut drawing, kit, &ray, &cells, &answer);
+    draw_visits(&mut drawing, kit, &ray, &cells, answer.hit.map_or(9.2, |hit| hit.t));
     let text = format!("{} cells visited, boxes tested: {}", answer.visits.len(), answer.tests.len());
     drawing.text(CAPTION, Start, TEXT, Ink::Text, &text);
     Ok(drawing.svg())
@@ -147,19 +142,13 @@ pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
         level = level.iter().flat_map(|&(node, cell)| divided(&tree, node, cell)).flatten().collect();
     }
     let cells = leaves(&tree);
-    let leaf = |node: &u32| {
-        let (_, cell) = cells.iter().find(|(leaf, _)| leaf == node)?;
-        Some((*cell, tree.listed(*node).to_vec()))
-    };
+    let listed = |&(node, cell): &(u32, Aabb)| (cell, tree.listed(node).to_vec());
+    let leaf = |node: &u32| cells.iter().find(|(leaf, _)| leaf == node).map(listed);
     let visited: Vec<_> = answer.visits.iter().filter_map(leaf).collect();
-    draw_visits(&mut drawing, kit, &ray, &visited, &answer);
-    let text = format!(
-        "{} of {} leaves and {} inner nodes visited, {} boxes tested",
-        visited.len(),
-        cells.len(),
-        answer.visits.len() - visited.len(),
-        answer.tests.len()
-    );
+    draw_visits(&mut drawing, kit, &ray, &visited, answer.hit.map_or(9.2, |hit| hit.t));
+    let (n, tests) = (visited.len(), answer.tests.len());
+    let (all, inner) = (cells.len(), answer.visits.len() - n);
+    let text = format!("{n} of {all} leaves and {inner} inner nodes visited, {tests} boxes tested");
     drawing.text([500.0, CAPTION[1]], Middle, SMALL, Ink::Text, &text);
     Ok(drawing.svg())
 }

@@ -37,8 +37,8 @@ pub fn barycentric(kit: &dyn Kit) -> Result<String> {
     }
     // Go to one point by both sides, then divide the triangle at it.
     let inside = point(0.5, 0.25);
-    let found = ask(inside).context("`inside_by_areas` does not find the point inside")?;
-    let [alpha, beta, gamma] = found.to_array();
+    let [alpha, beta, gamma] =
+        ask(inside).context("`inside_by_areas` does not find the point inside")?.to_array();
     let text = format!("p = a + β (b - a) + γ (c - a) with β = {beta}, γ = {gamma}");
     drawing.step_with(remark, &text, |drawing| {
         drawing.arrow(at(a), at(point(beta, 0.0)), Ink::Color(0).pen(5.0));

@@ -59,9 +59,8 @@ impl<F> Renderer<F> {
 
 impl<F: StudentFunctions> Frames for Renderer<F> {
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
-        let (rendering, notes) = with_written_functions::<F, _>(job.view, |written| {
-            render(&decoded(job, written), written, watch)
-        });
+        let (rendering, notes) =
+            with_written::<F, _>(job.view, |written| render(&decoded(job, written), written, watch));
         rendering.map(|mut rendering| {
             rendering.notes.extend(notes);
             rendering
@@ -69,13 +68,11 @@ impl<F: StudentFunctions> Frames for Renderer<F> {
     }
 
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
-        with_written_functions::<F, _>(job.view, |written| trace(&decoded(job, written), written, x, y)).0.0
+        with_written::<F, _>(job.view, |written| trace(&decoded(job, written), written, x, y)).0.0
     }
 
     fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<(TracedRay, RayVisits)> {
-        let traced =
-            with_written_functions::<F, _>(job.view, |written| trace(&decoded(job, written), written, x, y))
-                .0;
+        let traced = with_written::<F, _>(job.view, |written| trace(&decoded(job, written), written, x, y)).0;
         traced.0.into_iter().zip(traced.1).collect()
     }
 
@@ -84,20 +81,17 @@ impl<F: StudentFunctions> Frames for Renderer<F> {
             let frame = Frame::new(job, written, &Unwatched);
             outlines::outlines(&frame.intersector.scene.structure, depth as usize)
         };
-        with_written_functions::<F, _>(job.view, outlines).0
+        with_written::<F, _>(job.view, outlines).0
     }
 
     fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>> {
-        with_written_functions::<F, _>(job.view, |written| first_hits(job, written, rays)).0
+        with_written::<F, _>(job.view, |written| first_hits(job, written, rays)).0
     }
 }
 
 /// Calls `work` with the functions that are written and that `view` allows. If `work` reaches a `todo!` anyway, calls it again without
 /// that function. Returns the result and a note for each such function.
-fn with_written_functions<F: StudentFunctions, R>(
-    view: View,
-    work: impl Fn(&Written<F>) -> R,
-) -> (R, Vec<String>) {
+fn with_written<F: StudentFunctions, R>(view: View, work: impl Fn(&Written<F>) -> R) -> (R, Vec<String>) {
     let mut written = Written::of(view);
     let mut notes = Vec::new();
     loop {

@@ -25,20 +25,8 @@ use std::process::ExitCode;
 const GAP: u32 = 4;
 
 /// What each stage adds, for captions.
-const STAGES: [&str; 12] = [
-    "spheres",
-    "triangles",
-    "hierarchy",
-    "light",
-    "glass",
-    "soft shadows",
-    "textures",
-    "curves",
-    "kd-tree",
-    "stability",
-    "paths",
-    "wide nodes",
-];
+const STAGES: &str =
+    "spheres,triangles,hierarchy,light,glass,soft shadows,textures,curves,kd-tree,stability,paths,wide nodes";
 
 /// `raykata strip`.
 pub static SPEC: Spec = Spec {
@@ -82,18 +70,17 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let (quality, tone, kit) =
         (QualityOptions::read(given)?, ToneOptions::read(given)?, Choice::read(given)?);
     let scene_file = Path::new(given.required(0)?);
-    let chosen = Chosen::read(given)?;
     let mut scene = quality.load(scene_file)?;
     tone.apply(&mut scene);
+    let pictures = pictures(given, &scene)?;
     let default = || Ok::<_, Error>(Path::new("out").join(format!("{}-strip.png", name_of(scene_file)?)));
     let out = given.path("--out").map_or_else(default, Ok)?;
     make_folder_of(&out)?;
     let kit = kit.start()?;
-    let pictures = chosen.pictures(&scene);
     let (width, height, tone) = (scene.film.width, scene.film.height, scene.film.tone);
-    let columns = pictures.len() as u32 / chosen.rows();
-    let mut strip =
-        Film::new(columns * width + (columns - 1) * GAP, chosen.rows() * (height + caption::HEIGHT));
+    let rows = if given.has("--stages") { 3 } else { 1 };
+    let columns = pictures.len() as u32 / rows;
+    let mut strip = Film::new(columns * width + (columns - 1) * GAP, rows * (height + caption::HEIGHT));
     let beside = |name: &str| Ok::<_, Error>(out.with_file_name(format!("{}-{name}.png", name_of(&out)?)));
     let mut frames = Vec::new();
     const COLUMNS: Columns = Columns("  ", &[15, 14, 14, 14, 9]);
@@ -111,11 +98,8 @@ pub fn run(given: &Given) -> Result<ExitCode> {
         let left = index % columns * (width + GAP);
         let top = index / columns * (height + caption::HEIGHT);
         // Draw the boxes of the level over the picture.
-        let mut film = match view {
-            // Before stage 4 the picture shows normals, which are no light.
-            View::UpToStage(..4) => rendering.film,
-            _ => rendering.film.toned(tone),
-        };
+        let is_light = !matches!(view, View::UpToStage(..4)); // normals are no light
+        let mut film = if is_light { rendering.film.toned(tone) } else { rendering.film };
         if let Some(level) = level {
             film = with_edges(&film, &camera, &kit_error::catch(|| kit.outlines(&job, level))?);
         }
@@ -147,69 +131,46 @@ struct Picture {
     view: View,
 }
 
-/// What the pictures of a strip differ in.
-enum Chosen {
-    Depths(Vec<u32>),
-    Samplers(Vec<Sampler>),
-    Levels(Vec<u32>),
-    Stages,
-}
-
-impl Chosen {
-    fn read(given: &Given) -> Result<Chosen, Misuse> {
-        given.exclude("--samplers", "--depths")?;
-        given.exclude("--levels", "--depths")?;
-        given.exclude("--levels", "--samplers")?;
-        for other in ["--depths", "--samplers", "--levels"] {
-            given.exclude("--stages", other)?;
-        }
-        if given.has("--stages") {
-            return Ok(Chosen::Stages);
-        }
-        let numbers = |option| given.list(option, |text| whole_number(text, &(0..=1000)));
-        let (depths, levels) = (numbers("--depths")?, numbers("--levels")?);
-        let samplers = given.choices("--samplers", &Sampler::NAMES)?;
-        Ok(match (levels.is_empty(), samplers.is_empty()) {
-            (false, _) => Chosen::Levels(levels),
-            (_, false) => Chosen::Samplers(samplers),
-            _ if depths.is_empty() => Chosen::Depths(vec![1, 2, 5, 10]),
-            _ => Chosen::Depths(depths),
-        })
+/// The scene once for each depth, sampler, level or stage.
+fn pictures(given: &Given, scene: &Scene) -> Result<Vec<Picture>, Misuse> {
+    let kinds = ["--depths", "--samplers", "--levels", "--stages"];
+    for (index, kind) in kinds.iter().enumerate() {
+        kinds[..index].iter().try_for_each(|other| given.exclude(kind, other))?;
     }
-
-    fn rows(&self) -> u32 {
-        if matches!(self, Chosen::Stages) { 3 } else { 1 }
-    }
-
-    /// The scene once for each depth, sampler, level or stage.
-    fn pictures(&self, scene: &Scene) -> Vec<Picture> {
-        let picture = |what: String, quality: Quality, level: Option<u32>| Picture {
-            what,
-            scene: Scene { quality, ..scene.clone() },
-            level,
-            view: View::Shaded,
-        };
-        let own = scene.quality;
-        let of_depth = |max_depth| picture(format!("depth {max_depth}"), Quality { max_depth, ..own }, None);
-        let of_level = |level| picture(format!("level {level}"), own, Some(level));
-        let of_sampler =
-            |sampler: Sampler| picture(sampler.name().replace('_', "-"), Quality { sampler, ..own }, None);
+    let numbers = |option| given.list(option, |text| whole_number(text, &(0..=1000)));
+    let (mut depths, levels) = (numbers("--depths")?, numbers("--levels")?);
+    let samplers = given.choices("--samplers", &Sampler::NAMES)?;
+    let own = scene.quality;
+    let picture = |what: String, quality: Quality| {
+        let scene = Scene { quality, ..scene.clone() };
+        Picture { what, scene, level: None, view: View::Shaded }
+    };
+    if given.has("--stages") {
         // Samples of a pixel are an exercise of stage 6, and the kd-tree is one of stage 9.
-        let of_stage = |(stage, name): (u8, &&str)| {
+        let of_stage = |(stage, name): (u8, &str)| {
             let quality = match stage {
                 1..=5 => Quality { samples_per_pixel: 1, sampler: Sampler::Center, ..own },
                 9 => Quality { accelerator: Accelerator::KdTree, ..own },
                 _ => own,
             };
-            Picture { view: View::UpToStage(stage), ..picture(format!("{stage} {name}"), quality, None) }
+            Picture { view: View::UpToStage(stage), ..picture(format!("{stage} {name}"), quality) }
         };
-        match self {
-            Chosen::Stages => (1..).zip(&STAGES).map(of_stage).collect(),
-            Chosen::Depths(depths) => depths.iter().copied().map(of_depth).collect(),
-            Chosen::Samplers(samplers) => samplers.iter().copied().map(of_sampler).collect(),
-            Chosen::Levels(levels) => levels.iter().copied().map(of_level).collect(),
-        }
+        return Ok((1..).zip(STAGES.split(',')).map(of_stage).collect());
     }
+    if !levels.is_empty() {
+        let of_level = |level| Picture { level: Some(level), ..picture(format!("level {level}"), own) };
+        return Ok(levels.into_iter().map(of_level).collect());
+    }
+    if !samplers.is_empty() {
+        let of_sampler =
+            |sampler: Sampler| picture(sampler.name().replace('_', "-"), Quality { sampler, ..own });
+        return Ok(samplers.into_iter().map(of_sampler).collect());
+    }
+    if depths.is_empty() {
+        depths = vec![1, 2, 5, 10];
+    }
+    let of_depth = |max_depth| picture(format!("depth {max_depth}"), Quality { max_depth, ..own });
+    Ok(depths.into_iter().map(of_depth).collect())
 }
 
 fn paste(picture: &Film, strip: &mut Film, [x, y]: [u32; 2]) {
