@@ -54,10 +54,11 @@ pub fn ray_tree(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
         }
         for (index, ray) in of_level {
             let (place, ink) = (at(index), ink_of(ray.kind));
-            drawing.dot(place, if ray.kind == RayKind::Shadow { 7.0 } else { 10.0 }, ink);
             if ray.kind == RayKind::Shadow {
+                drawing.dot(place, 7.0, ink);
                 continue;
             }
+            drawing.dot(place, 10.0, ink);
             // The line to the parent is on the other side.
             let is_left = ray.parent.is_some_and(|parent| columns[parent] > columns[index]);
             let (anchor, x) = if is_left { (End, -15.0) } else { (Start, 15.0) };

@@ -173,10 +173,8 @@ pub fn wide_node(kit: &dyn Kit) -> Result<String> {
         Drawing::new("A binary tree becomes a tree with eight children per node", 1000.0, 600.0);
     let at = |index: usize| {
         let middle = f64::from(all.first[index]) + f64::from(all.count[index]) / 2.0;
-        [
-            20.0 + 960.0 * middle / tree.order.len() as f64,
-            80.0 + 330.0 * f64::from(all.depth[index]) / deepest,
-        ]
+        let x = 20.0 + 960.0 * middle / tree.order.len() as f64;
+        [x, 80.0 + 330.0 * f64::from(all.depth[index]) / deepest]
     };
     for (index, node) in tree.nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
         for child in [node.first as usize, node.first as usize + 1] {

@@ -127,8 +127,7 @@ pub enum Anchor {
 
 /// A drawing that grows call by call; later calls cover earlier ones.
 ///
-/// What is drawn before the first [`step`](Drawing::step) is always shown. The address `FILE.svg#step2` shows the steps up to
-/// step 2, and `FILE.svg` shows all.
+/// The address `FILE.svg#step2` shows what is drawn up to the end of the second [`step`](Drawing::step), and `FILE.svg` shows all.
 pub struct Drawing {
     width: f64,
     height: f64,
