@@ -23,8 +23,7 @@ pub fn slab_intervals(kit: &dyn Kit) -> Result<String> {
     let intervals: Option<Vec<(f32, f32)>> = kit.slab(&queries).into_iter().collect();
     let intervals = intervals.context("`slab` does not find this box")?;
 
-    let mut drawing =
-        Drawing::new("A ray through two slabs, and the interval that both have in common", 1000.0, 620.0);
+    let mut drawing = Drawing::new("Two slabs, and the interval that both have in common", 1000.0, 620.0);
     let (view, at) = plane([40.0, 370.0], 105.0);
     let point = |t: f32| at(ray.at(t));
     let (x_slab, y_slab, both) = (Ink::Color(4), Ink::Color(1), Ink::Color(2));

@@ -32,8 +32,7 @@ pub fn thin_lens(kit: &dyn Kit) -> Result<String> {
     let rays = kit.lens_ray(&[-1.0, -0.5, 0.0, 0.5, 1.0].map(|y| query(pinhole(sharp), y)));
     let reach = |ray: &Ray, x: f32| ray.at((x - ray.origin.x) / ray.direction.x);
 
-    let mut drawing =
-        Drawing::new("A thin lens, the focal plane, and the circle of confusion", 1000.0, 560.0);
+    let mut drawing = Drawing::new("A thin lens and the circle of confusion", 1000.0, 560.0);
     let (view, at) = plane([90.0, 290.0], 112.0);
     let (half, focus) = (f64::from(lens.aperture / 2.0), f64::from(lens.focal_distance));
     let (meet, blur) = (Ink::Color(0), Ink::Color(1));

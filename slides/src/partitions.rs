@@ -149,9 +149,8 @@ pub fn bsp_sheets(kit: &dyn Kit) -> Result<String> {
     let query = BspQuery { hulls: hulls.clone(), leaf_size: 1, max_depth: 16 };
     let bsp = kit.bsp_build(&[query]).remove(0);
     let mut drawing = Drawing::new("Six sheets in a kd-tree and in a BSP tree", 1000.0, 560.0);
-    for (panel, (name, references)) in
-        [("kd-tree", kd_tree.items.len()), ("BSP tree", bsp.items.len())].into_iter().enumerate()
-    {
+    let trees = [("kd-tree", kd_tree.items.len()), ("BSP tree", bsp.items.len())];
+    for (panel, (name, references)) in trees.into_iter().enumerate() {
         let view = View { origin: [40.0 + 500.0 * panel as f64, 460.0], scale: 98.0 };
         let at = |v: DVec3| -> Point { view.at(v.x, v.y) };
         drawing.step();

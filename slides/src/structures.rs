@@ -107,8 +107,7 @@ pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
     for (axis, count) in [(0, grid.resolution.x), (1, grid.resolution.y)] {
         for index in 0..=count {
             let plane = grid.plane(axis, index) as f32;
-            let end =
-                |limit: Vec3| if axis == 0 { vec3(plane, limit.y, 0.0) } else { vec3(limit.x, plane, 0.0) };
+            let end = |p: Vec3| if axis == 0 { vec3(plane, p.y, 0.0) } else { vec3(p.x, plane, 0.0) };
             drawing.line(at(end(grid.bounds.min)), at(end(grid.bounds.max)), Ink::Faint.pen(1.5));
         }
     }

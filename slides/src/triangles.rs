@@ -54,9 +54,8 @@ pub fn barycentric(kit: &dyn Kit) -> Result<String> {
         }
     });
     // Extend the sides, one after the other: on the far side of each one coordinate is negative.
-    for (from, to, low, high, name) in
-        [(b, c, -0.45, 1.65, "α"), (c, a, -0.45, 1.55, "β"), (a, b, -0.9, 1.85, "γ")]
-    {
+    let sides = [(b, c, -0.45, 1.65, "α"), (c, a, -0.45, 1.55, "β"), (a, b, -0.9, 1.85, "γ")];
+    for (from, to, low, high, name) in sides {
         drawing.remark(remark, &format!("beyond this line: {name} < 0"));
         drawing.line(at(from.lerp(to, low)), at(from.lerp(to, high)), Ink::Text.pen(2.0));
     }
