@@ -121,7 +121,7 @@ fn draw_levels(drawing: &mut Drawing, nodes: &[Node], answer: &CellsAnswer, left
     };
     for node in nodes {
         match visits(answer, node.index) {
-            0 => drawing.dot(at(node), 2.0, Ink::Faint),
+            0 => drawing.dot(at(node), 3.5, Ink::Faint),
             n => drawing.dot(at(node), 2.5 + 2.0 * (n as f64).min(6.0), Ink::Color(1)),
         }
     }
