@@ -23,52 +23,58 @@ pub fn slab_intervals(kit: &dyn Kit) -> Result<String> {
     let intervals: Option<Vec<(f32, f32)>> = kit.slab(&queries).into_iter().collect();
     let intervals = intervals.context("`slab` does not find this box")?;
 
-    let mut drawing =
-        Drawing::new("A ray through two slabs, and the interval that both have in common", 1000.0, 620.0);
+    let mut drawing = Drawing::new("Two slabs, and the interval that both have in common", 1000.0, 620.0);
     let (view, at) = plane([40.0, 370.0], 105.0);
     let point = |t: f32| at(ray.at(t));
     let (x_slab, y_slab, both) = (Ink::Color(4), Ink::Color(1), Ink::Color(2));
 
-    // Draw the slabs as bands, and the box where they overlap.
+    // Draw the ray and the box.
+    drawing.step();
     let (left, right, bottom, top) = (0.0, 8.9, 0.0, 3.4);
     let [x0, x1, y0, y1] = [low.x, high.x, low.y, high.y].map(f64::from);
-    drawing.rectangle(view.at(x0, bottom), view.at(x1, top), x_slab, 0.16);
-    drawing.rectangle(view.at(left, y0), view.at(right, y1), y_slab, 0.16);
     drawing.frame(at(low), at(high), Ink::Text.pen(3.0));
-    drawing.text(view.at(x1 + 0.1, top - 0.28), Start, TEXT, x_slab, "slab of x");
-    drawing.text(view.at(right, y0 + 0.12), End, TEXT, y_slab, "slab of y");
-
-    // Draw the ray, and where it enters and leaves the slabs.
     drawing.arrow(at(ray.origin), point(7.4), Ink::Text.pen(3.0));
     drawing.dot(at(ray.origin), 7.0, Ink::Text);
     drawing.text(offset(at(ray.origin), [4.0, 34.0]), Start, TEXT, Ink::Text, "o");
-    for (&(enter, leave), ink) in intervals.iter().zip([x_slab, y_slab]) {
-        for t in [enter, leave] {
-            drawing.dot(point(t), 8.0, ink);
-        }
-    }
 
-    // Draw the three intervals over t.
+    // Draw each slab as a band, where the ray enters and leaves it, and its interval of t.
     let axis = |t: f32| 130.0 + 105.0 * f64::from(t);
     let rows = [("x", 440.0, x_slab), ("y", 495.0, y_slab), ("box", 550.0, both)];
-    for (&(enter, leave), (name, y, ink)) in intervals.iter().zip(rows) {
+    let row = |drawing: &mut Drawing, row: usize| {
+        let ((enter, leave), (name, y, ink)) = (intervals[row], rows[row]);
         drawing.text([40.0, y + 9.0], Start, TEXT, ink, name);
+        drawing.text([axis(7.8) + 8.0, y + 9.0], Start, TEXT, Ink::Text, "t");
         drawing.line([axis(0.0), y], [axis(7.8), y], Ink::Faint.pen(1.5));
         drawing.line([axis(enter), y], [axis(leave), y], ink.pen(14.0));
         drawing.text([axis(enter), y - 14.0], Middle, SMALL, ink, &format!("{enter:.2}"));
         drawing.text([axis(leave), y - 14.0], Middle, SMALL, ink, &format!("{leave:.2}"));
+    };
+    for (slab, &(enter, leave)) in intervals[..2].iter().enumerate() {
+        let ink = rows[slab].2;
+        drawing.step();
+        if slab == 0 {
+            drawing.rectangle(view.at(x0, bottom), view.at(x1, top), ink, 0.16);
+            drawing.text(view.at(x1 + 0.1, top - 0.28), Start, TEXT, ink, "slab of x");
+        } else {
+            drawing.rectangle(view.at(left, y0), view.at(right, y1), ink, 0.16);
+            drawing.text(view.at(right, y0 + 0.12), End, TEXT, ink, "slab of y");
+        }
+        for t in [enter, leave] {
+            drawing.dot(point(t), 8.0, ink);
+        }
+        drawing.step();
+        row(&mut drawing, slab);
     }
-    drawing.text([axis(7.8) + 8.0, 559.0], Start, TEXT, Ink::Text, "t");
+
+    // Draw the interval that both have in common, from the last entry to the first exit.
     let (enter, leave) = intervals[2];
-    for t in [enter, leave] {
+    for (t, text) in [(enter, "the last entry"), (leave, "and the first exit")] {
+        drawing.remark([axis(0.0), 605.0], &format!("{text}: {t:.2}"));
         drawing.line([axis(t), 430.0], [axis(t), 575.0], both.pen(2.0).dashed());
     }
-    drawing.text(
-        [axis(0.0), 605.0],
-        Start,
-        SMALL,
-        Ink::Text,
-        "the last entry and the first exit: the ray meets the box",
-    );
+    drawing.step();
+    row(&mut drawing, 2);
+    let text = "the last entry and the first exit: the ray meets the box";
+    drawing.text([axis(0.0), 605.0], Start, SMALL, Ink::Text, text);
     Ok(drawing.svg())
 }

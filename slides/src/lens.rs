@@ -32,17 +32,35 @@ pub fn thin_lens(kit: &dyn Kit) -> Result<String> {
     let rays = kit.lens_ray(&[-1.0, -0.5, 0.0, 0.5, 1.0].map(|y| query(pinhole(sharp), y)));
     let reach = |ray: &Ray, x: f32| ray.at((x - ray.origin.x) / ray.direction.x);
 
-    let mut drawing =
-        Drawing::new("A thin lens, the focal plane, and the circle of confusion", 1000.0, 560.0);
+    let mut drawing = Drawing::new("A thin lens and the circle of confusion", 1000.0, 560.0);
     let (view, at) = plane([90.0, 290.0], 112.0);
     let (half, focus) = (f64::from(lens.aperture / 2.0), f64::from(lens.focal_distance));
     let (meet, blur) = (Ink::Color(0), Ink::Color(1));
 
-    // Draw the optical axis and the focal plane.
+    // Draw the lens and the optical axis.
+    drawing.step();
     drawing.line(view.at(-0.4, 0.0), view.at(7.9, 0.0), Ink::Faint.pen(1.5));
+    let lens_pen = Ink::Color(4).pen(9.0);
+    drawing.line(view.at(0.0, -half), view.at(0.0, half), lens_pen);
+    drawing.text(view.at(0.0, half + 0.18), Middle, TEXT, lens_pen.ink, "lens");
+    drawing.text(view.at(-0.3, -0.08), Middle, TEXT, lens_pen.ink, "A");
+    // Draw the focal plane, the ray through the centre, and the other rays, which meet it there.
+    let meeting = |drawing: &mut Drawing, ray: &Ray| {
+        drawing.line(at(ray.origin), at(reach(ray, lens.focal_distance + 0.7)), meet.pen(2.0));
+    };
+    drawing.step();
+    meeting(&mut drawing, &rays[2]);
+    drawing.step();
     drawing.line(view.at(focus, -1.6), view.at(focus, 1.9), Ink::Text.pen(2.0).dashed());
     drawing.text(view.at(focus, 2.05), Middle, TEXT, Ink::Text, "focal plane");
+    drawing.dot(at(reach(&rays[2], lens.focal_distance)), 9.0, meet);
+    drawing.step();
+    for ray in [0, 1, 3, 4] {
+        meeting(&mut drawing, &rays[ray]);
+    }
+    drawing.text(offset(at(sharp), [90.0, -14.0]), Start, SMALL, meet, "sharp");
     // Draw the cone of a point behind the focal plane: from the ends of the lens to the point.
+    drawing.step();
     let behind = vec3(7.2, -0.45, 0.0);
     let ends = [&rays[0], &rays[4]].map(|ray| ray.origin);
     let crossings = ends.map(|end| end.lerp(behind, lens.focal_distance / behind.x));
@@ -50,21 +68,13 @@ pub fn thin_lens(kit: &dyn Kit) -> Result<String> {
     for end in ends {
         drawing.line(at(end), at(behind), blur.pen(2.0));
     }
+    drawing.dot(at(behind), 9.0, blur);
+    drawing.step();
     drawing.line(at(crossings[0]), at(crossings[1]), blur.pen(9.0));
     drawing.text(offset(at((crossings[0] + crossings[1]) / 2.0), [14.0, 8.0]), Start, TEXT, blur, "c");
-    drawing.dot(at(behind), 9.0, blur);
-    // Draw the rays that meet, up to the focal plane and a little beyond.
-    for ray in &rays {
-        drawing.line(at(ray.origin), at(reach(ray, lens.focal_distance + 0.7)), meet.pen(2.0));
-    }
-    drawing.dot(at(reach(&rays[2], lens.focal_distance)), 9.0, meet);
-    drawing.text(offset(at(sharp), [90.0, -14.0]), Start, SMALL, meet, "sharp");
     drawing.text(offset(at(behind), [0.0, -20.0]), Middle, SMALL, blur, "blurred");
-    // Draw the lens, and mark the lengths.
-    let lens_pen = Ink::Color(4).pen(9.0);
-    drawing.line(view.at(0.0, -half), view.at(0.0, half), lens_pen);
-    drawing.text(view.at(0.0, half + 0.18), Middle, TEXT, lens_pen.ink, "lens");
-    drawing.text(view.at(-0.3, -0.08), Middle, TEXT, lens_pen.ink, "A");
+    // Mark the lengths.
+    drawing.step();
     for (y, length, name) in [(-1.75, focus, "f"), (-2.1, f64::from(behind.x), "z")] {
         let pen = Ink::Text.pen(2.0);
         let middle = view.at(length / 2.0, y);

@@ -20,6 +20,7 @@ mod pipeline;
 mod rays;
 mod rounding;
 mod sampling;
+mod searches;
 mod solids;
 mod speed;
 mod spheres;
@@ -65,13 +66,14 @@ const DIAGRAMS: &[(&str, Draw)] = drawings! {
     sampling: gaussian_weight, disk_samples, penumbra, motion_bounds;
     lens: thin_lens;
     splits: sah_cuts, object_median_problem, spatial_median_corner;
+    searches: bvh_descent, wide_search;
     structures: grid_steps, kd_traversal;
     curves: ray_to_object, normal_transform, de_casteljau, bspline_basis;
     surfaces: inside_tests, vertex_normals, texture_coordinates, bilinear;
     rounding: silhouette_normal, rounded_point, edge_gap, offset_bound;
     solids: solid_intervals, double_cone;
     partitions: octree_searches, bsp_sheets;
-    transport: malley, light_solid_angle, corner;
+    transport: malley, light_solid_angle, mis_weights, corner;
     speed: bins_and_cuts, blocks_that_pay, wide_node, work_and_span;
 };
 

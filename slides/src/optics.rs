@@ -28,6 +28,7 @@ fn panel(kit: &dyn Kit, drawing: &mut Drawing, center: Point, degrees: f32, from
         kit.refract(&[RefractQuery { direction, normal, n1, n2 }])[0].context("no refracted ray")?;
 
     // Shade the glass, and draw surface and normal.
+    drawing.step();
     drawing.rectangle(view.at(-1.22, 0.0), view.at(1.22, -1.35), Ink::Color(4), 0.14);
     drawing.line(view.at(-1.22, 0.0), view.at(1.22, 0.0), Ink::Text.pen(3.0));
     drawing.line(view.at(0.0, 1.35), view.at(0.0, -1.35), Ink::Faint.pen(2.0).dashed());
@@ -38,6 +39,21 @@ fn panel(kit: &dyn Kit, drawing: &mut Drawing, center: Point, degrees: f32, from
     for (name, way, end, ink) in
         [("1", direction, -direction, Ink::Color(0)), ("2", refracted, refracted, Ink::Color(1))]
     {
+        // The angle is written on the free side of the normal.
+        if name == "2" {
+            drawing.step();
+        }
+        let ends = if end == -direction { [at(end), at(Vec3::ZERO)] } else { [at(Vec3::ZERO), at(end)] };
+        drawing.arrow(ends[0], ends[1], ink.pen(4.0));
+        let vertical: f64 = if end.y > 0.0 { 90.0 } else { 270.0 };
+        let angle = f64::from(way.x.abs().atan2(way.y.abs()).to_degrees());
+        let turn = if (end.x > 0.0) == (end.y > 0.0) { -angle } else { angle };
+        drawing.arc(center, 75.0, [vertical, vertical + turn], ink.pen(2.0));
+        let (anchor, x) = if end.x > 0.0 { (End, -10.0) } else { (Start, 10.0) };
+        let y = if end.y > 0.0 { -62.0 } else { 78.0 };
+        drawing.text(offset(center, [x, y]), anchor, SMALL, ink, &format!("θ{name} = {angle:.1}°"));
+        // The part along the surface is the sine of the angle.
+        drawing.step();
         let foot = vec3(0.0, end.y, 0.0);
         drawing.line(at(foot), at(end), Ink::Color(2).pen(5.0));
         let below = if end.y > 0.0 { -12.0 } else { 28.0 };
@@ -48,16 +64,6 @@ fn panel(kit: &dyn Kit, drawing: &mut Drawing, center: Point, degrees: f32, from
             (End, [at(foot)[0] - 8.0, middle[1]])
         };
         drawing.text(middle, anchor, SMALL, Ink::Color(2), &format!("sin θ{name} = {:.2}", way.x.abs()));
-        let ends = if end == -direction { [at(end), at(Vec3::ZERO)] } else { [at(Vec3::ZERO), at(end)] };
-        drawing.arrow(ends[0], ends[1], ink.pen(4.0));
-        let vertical: f64 = if end.y > 0.0 { 90.0 } else { 270.0 };
-        let angle = f64::from(way.x.abs().atan2(way.y.abs()).to_degrees());
-        let turn = if (end.x > 0.0) == (end.y > 0.0) { -angle } else { angle };
-        drawing.arc(center, 75.0, [vertical, vertical + turn], ink.pen(2.0));
-        // The angle is written on the free side of the normal.
-        let (anchor, x) = if end.x > 0.0 { (End, -10.0) } else { (Start, 10.0) };
-        let y = if end.y > 0.0 { -62.0 } else { 78.0 };
-        drawing.text(offset(center, [x, y]), anchor, SMALL, ink, &format!("θ{name} = {angle:.1}°"));
     }
     Ok(())
 }

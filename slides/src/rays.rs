@@ -22,6 +22,7 @@ fn ink_of(kind: RayKind) -> Ink {
 pub fn ray_tree(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let rays = kit.trace(&job(&load(root, "stage5.toml")?), 430, 240);
     let mut drawing = Drawing::new("The rays of one pixel as a tree", 1000.0, 620.0);
+    drawing.text([60.0, 50.0], Start, TEXT, Ink::Text, "pixel 430, 240");
     // Give each ray without successors a column, and each other ray the middle of its successors.
     let mut columns = vec![0.0; rays.len()];
     let mut free = 0.0;
@@ -31,18 +32,33 @@ pub fn ray_tree(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let at = |ray: usize| -> Point {
         [60.0 + 880.0 * (columns[ray] + 0.5) / free, 90.0 + 440.0 * (depth(ray) - 1.0) / (deepest - 1.0)]
     };
-    for (index, ray) in rays.iter().enumerate() {
-        let Some(parent) = ray.parent else { continue };
-        // The width shows the weight: the square root, so that small weights are still seen.
-        let width = 1.5 + 9.0 * f64::from(ray.weight.max_element()).clamp(0.0, 1.0).sqrt();
-        let shadow = ray.kind == RayKind::Shadow;
-        let pen = ink_of(ray.kind).pen(if shadow { 2.0 } else { width });
-        drawing.line(at(parent), at(index), if shadow { pen.dashed() } else { pen });
+    for (column, (kind, name, ink)) in (0..).zip(KINDS) {
+        let x = 60.0 + 230.0 * f64::from(column);
+        drawing.line([x, 592.0], [x + 40.0, 592.0], ink.pen(5.0));
+        let n = rays.iter().filter(|ray| ray.kind == kind).count();
+        drawing.text([x + 50.0, 599.0], Start, SMALL, ink, &format!("{n} {name}"));
     }
-    for (index, ray) in rays.iter().enumerate() {
-        let (place, ink) = (at(index), ink_of(ray.kind));
-        drawing.dot(place, if ray.kind == RayKind::Shadow { 7.0 } else { 10.0 }, ink);
-        if ray.kind != RayKind::Shadow {
+    // Draw the rays bounce by bounce.
+    for level in 1..=deepest as usize {
+        let of_level: Vec<(usize, &TracedRay)> =
+            rays.iter().enumerate().filter(|&(index, _)| depth(index) as usize == level).collect();
+        drawing.remark([360.0, 50.0], &format!("level {level}; rays: {}", of_level.len()));
+        for &(index, ray) in &of_level {
+            let Some(parent) = ray.parent else { continue };
+            // The width shows the weight: the square root, so that small weights are still seen.
+            let width = 1.5 + 9.0 * f64::from(ray.weight.max_element()).clamp(0.0, 1.0).sqrt();
+            let shadow = ray.kind == RayKind::Shadow;
+            let pen = ink_of(ray.kind).pen(if shadow { 2.0 } else { width });
+            drawing.line(at(parent), at(index), if shadow { pen.dashed() } else { pen });
+            drawing.dot(at(parent), 10.0, ink_of(rays[parent].kind));
+        }
+        for (index, ray) in of_level {
+            let (place, ink) = (at(index), ink_of(ray.kind));
+            if ray.kind == RayKind::Shadow {
+                drawing.dot(place, 7.0, ink);
+                continue;
+            }
+            drawing.dot(place, 10.0, ink);
             // The line to the parent is on the other side.
             let is_left = ray.parent.is_some_and(|parent| columns[parent] > columns[index]);
             let (anchor, x) = if is_left { (End, -15.0) } else { (Start, 15.0) };
@@ -51,13 +67,6 @@ pub fn ray_tree(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
             let (anchor, by) = if is_last { (Middle, [0.0, 34.0]) } else { (anchor, [x, -8.0]) };
             drawing.text(offset(place, by), anchor, SMALL, ink, &format!("{:.3}", ray.weight.max_element()));
         }
-    }
-    drawing.text([60.0, 50.0], Start, TEXT, Ink::Text, "pixel 430, 240");
-    for (column, (kind, name, ink)) in (0..).zip(KINDS) {
-        let x = 60.0 + 230.0 * f64::from(column);
-        drawing.line([x, 592.0], [x + 40.0, 592.0], ink.pen(5.0));
-        let n = rays.iter().filter(|ray| ray.kind == kind).count();
-        drawing.text([x + 50.0, 599.0], Start, SMALL, ink, &format!("{n} {name}"));
     }
     Ok(drawing.svg().into_bytes())
 }
@@ -93,12 +102,8 @@ pub fn grid_resolution(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let formula = measure(0)?;
 
     let mut drawing = Drawing::new("Tests and visited cells over the resolution of a grid", 1000.0, 620.0);
-    let plot = Plot::new(
-        Axis::logarithmic(8.0, 256.0),
-        Axis::logarithmic(1.0, 2000.0),
-        [100.0, 530.0],
-        [580.0, 450.0],
-    );
+    let (x, y) = (Axis::logarithmic(8.0, 256.0), Axis::logarithmic(1.0, 2000.0));
+    let plot = Plot::new(x, y, [100.0, 530.0], [580.0, 450.0]);
     let x = [(8.0, "8"), (16.0, "16"), (32.0, "32"), (64.0, "64"), (128.0, "128"), (256.0, "256")];
     let y = [(1.0, "1"), (10.0, "10"), (100.0, "100"), (1000.0, "1,000")];
     plot.draw_axes(&mut drawing, &x, &y, ["cells along the longest side", "per ray"]);

@@ -105,13 +105,8 @@ pub fn rounded_point(kit: &dyn Kit) -> Result<String> {
     let start = ((ray.origin.as_dvec3() - 1.0) / unit).with_z(0.0);
     let half = dvec3(0.5, 0.5, 0.0);
     drawing.frame(place(grid - half), place(grid + half), Ink::Color(3).pen(3.0));
-    drawing.text(
-        offset(place(grid + half.with_y(-0.5)), [8.0, 24.0]),
-        Start,
-        SMALL,
-        Ink::Color(3),
-        "error box",
-    );
+    let label = offset(place(grid + half.with_y(-0.5)), [8.0, 24.0]);
+    drawing.text(label, Start, SMALL, Ink::Color(3), "error box");
     drawing.arrow(place(grid), place(start), Ink::Color(3).pen(3.0));
     drawing.arrow(place(start), place(start + 0.8 * to_light), Ink::Color(2).pen(4.0));
     drawing.dot(place(start), 9.0, Ink::Color(2));

@@ -49,12 +49,8 @@ pub fn bins_and_cuts(kit: &dyn Kit) -> Result<String> {
     let best = kit.cheapest_split(&[query]).remove(0).context("these boxes can be split")?;
 
     let mut drawing = Drawing::new("32 bins, and the cost of each cut", 1000.0, 640.0);
-    let plot = Plot::new(
-        Axis::linear(f64::from(low) / 2.0, f64::from(high) / 2.0),
-        Axis::linear(1000.0, 8000.0),
-        [110.0, 400.0],
-        [850.0, 310.0],
-    );
+    let x = Axis::linear(f64::from(low) / 2.0, f64::from(high) / 2.0);
+    let plot = Plot::new(x, Axis::linear(1000.0, 8000.0), [110.0, 400.0], [850.0, 310.0]);
     // Draw the cost of each cut of the sorted boxes.
     let mut sorted = boxes.clone();
     sorted.sort_by(|p, q| p.min.x.total_cmp(&q.min.x));
@@ -123,12 +119,8 @@ pub fn blocks_that_pay(kit: &dyn Kit) -> Result<String> {
     for (&n, &cost) in sizes.iter().zip(&costs) {
         let top = plot.at(f64::from(n), f64::from(cost));
         let ink = if n % 8 == 0 { Ink::Color(1) } else { Ink::Color(0) };
-        drawing.rectangle(
-            offset(top, [-9.0, 0.0]),
-            offset(plot.at(f64::from(n), 0.0), [9.0, 0.0]),
-            ink,
-            0.85,
-        );
+        let foot = offset(plot.at(f64::from(n), 0.0), [9.0, 0.0]);
+        drawing.rectangle(offset(top, [-9.0, 0.0]), foot, ink, 0.85);
     }
     drawing.text(plot.at(0.6, 3.6), Start, SMALL, Ink::Color(1), "full blocks cost an eighth per primitive");
     Ok(drawing.svg())
@@ -181,10 +173,8 @@ pub fn wide_node(kit: &dyn Kit) -> Result<String> {
         Drawing::new("A binary tree becomes a tree with eight children per node", 1000.0, 600.0);
     let at = |index: usize| {
         let middle = f64::from(all.first[index]) + f64::from(all.count[index]) / 2.0;
-        [
-            20.0 + 960.0 * middle / tree.order.len() as f64,
-            80.0 + 330.0 * f64::from(all.depth[index]) / deepest,
-        ]
+        let x = 20.0 + 960.0 * middle / tree.order.len() as f64;
+        [x, 80.0 + 330.0 * f64::from(all.depth[index]) / deepest]
     };
     for (index, node) in tree.nodes.iter().enumerate().filter(|(_, node)| !node.is_leaf()) {
         for child in [node.first as usize, node.first as usize + 1] {

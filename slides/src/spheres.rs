@@ -46,13 +46,8 @@ pub fn sphere_roots(kit: &dyn Kit) -> Result<String> {
         let text = hit.map_or("None".into(), |t| format!("Some({t:.2})"));
         drawing.text(offset(view.at(2.0, f64::from(y)), [10.0, 9.0]), Start, TEXT, ink, &text);
     }
-    drawing.text(
-        [30.0, 606.0],
-        Start,
-        SMALL,
-        Ink::Text,
-        "filled: a root with t above 0; hollow: behind the origin",
-    );
+    let text = "filled: a root with t above 0; hollow: behind the origin";
+    drawing.text([30.0, 606.0], Start, SMALL, Ink::Text, text);
     Ok(drawing.svg())
 }
 

@@ -1,12 +1,12 @@
-//! Diagrams of acceleration structures: the steps of a ray through them, and the costs of cuts.
+//! Diagrams of acceleration structures: the steps of a ray through them.
 
 use anyhow::Result;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
-use raykata::kit::{CellsAnswer, CellsQuery, GridQuery, KdQuery, Kit};
+use raykata::kit::{CellsQuery, GridQuery, KdQuery, Kit, SlabQuery};
 use raykata::partition::{KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
-use raykata_cli::svg::{Drawing, Ink, Middle, SMALL, Start, TEXT, View};
+use raykata_cli::svg::{Drawing, Ink, Middle, Point, SMALL, Start, TEXT, View};
 
 /// Boxes in the plane, in a square of 8 by 5 units.
 const BOXES: [[f32; 4]; 11] = [
@@ -31,39 +31,68 @@ pub fn boxes() -> Vec<Aabb> {
 /// The ray of the diagrams, and the `t` at which it enters each box.
 fn ray_and_hits(kit: &dyn Kit) -> (Ray, Vec<f32>) {
     let ray = Ray::new(vec3(-0.6, 1.35, 0.5), vec3(1.0, 0.29, 0.0));
-    let queries: Vec<_> = boxes().into_iter().map(|bounds| raykata::kit::SlabQuery { ray, bounds }).collect();
-    let hits =
-        kit.slab(&queries).into_iter().map(|hit| hit.map_or(f32::INFINITY, |(enter, _)| enter)).collect();
-    (ray, hits)
+    (ray, hits(kit, ray))
+}
+
+/// The `t` at which a ray enters each box; infinite if it misses the box.
+pub fn hits(kit: &dyn Kit, ray: Ray) -> Vec<f32> {
+    let queries: Vec<_> = boxes().into_iter().map(|bounds| SlabQuery { ray, bounds }).collect();
+    kit.slab(&queries).into_iter().map(|hit| hit.map_or(f32::INFINITY, |(enter, _)| enter)).collect()
 }
 
 const VIEW: View = View { origin: [100.0, 560.0], scale: 104.0 };
 
-fn at(point: Vec3) -> [f64; 2] {
+/// Where a point stands in the diagrams of the boxes.
+pub fn at(point: Vec3) -> [f64; 2] {
     VIEW.at(f64::from(point.x), f64::from(point.y))
 }
 
-/// Draws boxes and ray; the boxes that the search tested are filled darker.
-fn draw_search(drawing: &mut Drawing, ray: &Ray, answer: &CellsAnswer) {
-    for (index, bounds) in (0..).zip(boxes()) {
-        let tested = answer.tests.contains(&index);
-        let ink = if tested { Ink::Color(1) } else { Ink::Faint };
-        drawing.rectangle(at(bounds.min), at(bounds.max), ink, if tested { 0.55 } else { 0.35 });
-        drawing.frame(at(bounds.min), at(bounds.max), ink.pen(2.0));
+/// Begins with boxes and ray, as far as the drawing reaches.
+pub fn draw_boxes(drawing: &mut Drawing, ray: &Ray) {
+    drawing.step();
+    for bounds in boxes() {
+        drawing.rectangle(at(bounds.min), at(bounds.max), Ink::Faint, 0.35);
+        drawing.frame(at(bounds.min), at(bounds.max), Ink::Faint.pen(2.0));
     }
-    let end = answer.hit.map_or(9.2, |hit| hit.t);
-    drawing.arrow(at(ray.origin), at(ray.at(end)), Ink::Text.pen(3.5));
-    if answer.hit.is_some() {
-        drawing.dot(at(ray.at(end)), 9.0, Ink::Text);
-    }
+    drawing.arrow(at(ray.origin), at(ray.at(9.2)), Ink::Faint.pen(2.0));
 }
 
-/// Marks a cell, and writes when it was visited.
-fn draw_visit(drawing: &mut Drawing, bounds: &Aabb, step: usize) {
-    drawing.rectangle(at(bounds.min), at(bounds.max), Ink::Color(4), 0.2);
-    let [x, y] = at(vec3(bounds.min.x, bounds.max.y, 0.0));
-    drawing.text([x + 8.0, y + 24.0], Start, SMALL, Ink::Color(4), &step.to_string());
+/// Draws a step for each visited cell, with the boxes that it lists, then the ray up to its hit. Circles mark the far planes.
+fn draw_visits(drawing: &mut Drawing, kit: &dyn Kit, ray: &Ray, cells: &[(Aabb, Vec<u32>)], t: f32) {
+    let leaves = |bounds: Aabb| kit.slab(&[SlabQuery { ray: *ray, bounds }])[0].map_or(0.0, |span| span.1);
+    for (step, (cell, listed)) in (1..).zip(cells) {
+        let text = format!("cell {step}, up to t = {:.2}; boxes: {}", leaves(*cell), listed.len());
+        drawing.step_with(CAPTION, &text, |drawing| {
+            for (axis, ink) in [(Vec3::X, Ink::Color(0)), (Vec3::Y, Ink::Color(3))] {
+                let far = 1000.0 * (Vec3::ONE - axis);
+                let slab = Aabb::new(axis * cell.min - far, axis * cell.max + far);
+                drawing.circle(at(ray.at(leaves(slab))), 9.0, ink.pen(4.0));
+            }
+        });
+        drawing.rectangle(at(cell.min), at(cell.max), Ink::Color(4), 0.2);
+        let [x, y] = at(vec3(cell.min.x, cell.max.y, 0.0));
+        drawing.text([x + 8.0, y + 24.0], Start, SMALL, Ink::Color(4), &step.to_string());
+        listed.iter().for_each(|&index| draw_tested(drawing, index));
+    }
+    draw_hit(drawing, ray, t);
 }
+
+/// Marks a box that was tested.
+pub fn draw_tested(drawing: &mut Drawing, index: u32) {
+    let bounds = boxes()[index as usize];
+    drawing.rectangle(at(bounds.min), at(bounds.max), Ink::Color(1), 0.4);
+    drawing.frame(at(bounds.min), at(bounds.max), Ink::Color(1).pen(2.0));
+}
+
+/// Ends with the ray up to its hit.
+pub fn draw_hit(drawing: &mut Drawing, ray: &Ray, t: f32) {
+    drawing.step();
+    drawing.arrow(at(ray.origin), at(ray.at(t)), Ink::Text.pen(3.5));
+    drawing.dot(at(ray.at(t)), 9.0, Ink::Text);
+}
+
+/// Where the caption stands.
+pub const CAPTION: Point = [100.0, 604.0];
 
 /// A ray through a uniform grid: the cells that it visits, numbered, up to the first hit.
 pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
@@ -73,54 +102,63 @@ pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
     let answer = kit.grid_search(&[CellsQuery { cells: grid.clone(), ray, hits }]).remove(0);
 
     let mut drawing = Drawing::new("The cells of a grid that a ray visits, in order", 1000.0, 620.0);
-    for (step, &visited) in (1..).zip(&answer.visits) {
-        let [x, y] = [visited % grid.resolution.x, visited / grid.resolution.x];
-        draw_visit(&mut drawing, &grid.cell(UVec3::new(x, y, 0)).to_box(), step);
-    }
+    draw_boxes(&mut drawing, &ray);
+    drawing.remark(CAPTION, "8 by 5 cells of one size");
     for (axis, count) in [(0, grid.resolution.x), (1, grid.resolution.y)] {
         for index in 0..=count {
             let plane = grid.plane(axis, index) as f32;
-            let end =
-                |limit: Vec3| if axis == 0 { vec3(plane, limit.y, 0.0) } else { vec3(limit.x, plane, 0.0) };
+            let end = |p: Vec3| if axis == 0 { vec3(plane, p.y, 0.0) } else { vec3(p.x, plane, 0.0) };
             drawing.line(at(end(grid.bounds.min)), at(end(grid.bounds.max)), Ink::Faint.pen(1.5));
         }
     }
-    draw_search(&mut drawing, &ray, &answer);
-    caption(&mut drawing, "cells", &answer);
+    let cell = |&number: &u32| {
+        let at = UVec3::new(number % grid.resolution.x, number / grid.resolution.x, 0);
+        (grid.cell(at).to_box(), grid.primitives(number).to_vec())
+    };
+    let cells: Vec<_> = answer.visits.iter().map(cell).collect();
+    draw_visits(&mut drawing, kit, &ray, &cells, answer.hit.map_or(9.2, |hit| hit.t));
+    let text = format!("{} cells visited, boxes tested: {}", answer.visits.len(), answer.tests.len());
+    drawing.text(CAPTION, Start, TEXT, Ink::Text, &text);
     Ok(drawing.svg())
 }
 
-fn caption(drawing: &mut Drawing, what: &str, answer: &CellsAnswer) {
-    let text = format!("{} {what} visited, boxes tested: {}", answer.visits.len(), answer.tests.len());
-    drawing.text([100.0, 604.0], Start, TEXT, Ink::Text, &text);
-}
-
-/// A ray through a kd-tree: its leaves in the order of the visits, up to the first hit.
+/// The planes of a kd-tree, level by level, and a ray through it: its leaves in the order of the visits, up to the first hit.
 pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
     let (ray, hits) = ray_and_hits(kit);
     let query = KdQuery { bounds: boxes(), heuristics: KdHeuristics::default(), leaf_size: 2 };
     let tree = kit.kd_build(&[query]).remove(0);
     let answer = kit.kd_search(&[CellsQuery { cells: tree.clone(), ray, hits }]).remove(0);
 
-    let mut drawing = Drawing::new("The leaves of a kd-tree that a ray visits, in order", 1000.0, 600.0);
+    let mut drawing = Drawing::new("The leaves of a kd-tree that a ray visits, in order", 1000.0, 612.0);
+    draw_boxes(&mut drawing, &ray);
+    // Draw the cells of each level over those of the level above.
+    let mut level = vec![(0, tree.bounds)];
+    for depth in 0..tree.depth() {
+        drawing.remark(CAPTION, &format!("level {depth}; cells: {}", level.len()));
+        for (_, cell) in &level {
+            drawing.frame(at(cell.min), at(cell.max), Ink::Faint.pen(3.0));
+        }
+        level = level.iter().flat_map(|&(node, cell)| divided(&tree, node, cell)).flatten().collect();
+    }
     let cells = leaves(&tree);
-    let visited = answer.visits.iter().filter_map(|node| cells.iter().find(|(leaf, _)| leaf == node));
-    for (step, (_, cell)) in (1..).zip(visited) {
-        draw_visit(&mut drawing, cell, step);
-    }
-    for (_, cell) in &cells {
-        drawing.frame(at(cell.min), at(cell.max), Ink::Faint.pen(2.0));
-    }
-    draw_search(&mut drawing, &ray, &answer);
-    let n_leaves = answer.visits.iter().filter(|&node| cells.iter().any(|(leaf, _)| leaf == node)).count();
-    let text = format!(
-        "{n_leaves} of {} leaves and {} inner nodes visited, {} boxes tested",
-        cells.len(),
-        answer.visits.len() - n_leaves,
-        answer.tests.len()
-    );
-    drawing.text([500.0, 588.0], Middle, SMALL, Ink::Text, &text);
+    let listed = |&(node, cell): &(u32, Aabb)| (cell, tree.listed(node).to_vec());
+    let leaf = |node: &u32| cells.iter().find(|(leaf, _)| leaf == node).map(listed);
+    let visited: Vec<_> = answer.visits.iter().filter_map(leaf).collect();
+    draw_visits(&mut drawing, kit, &ray, &visited, answer.hit.map_or(9.2, |hit| hit.t));
+    let (n, tests) = (visited.len(), answer.tests.len());
+    let (all, inner) = (cells.len(), answer.visits.len() - n);
+    let text = format!("{n} of {all} leaves and {inner} inner nodes visited, {tests} boxes tested");
+    drawing.text([500.0, CAPTION[1]], Middle, SMALL, Ink::Text, &text);
     Ok(drawing.svg())
+}
+
+/// The two cells below a node; `None` for a leaf.
+fn divided(tree: &KdTree, node: u32, cell: Aabb) -> Option<[(u32, Aabb); 2]> {
+    let KdNode::Inner { axis, at, left, right } = tree.nodes[node as usize] else { return None };
+    let (mut below, mut above) = (cell, cell);
+    below.max[usize::from(axis)] = at;
+    above.min[usize::from(axis)] = at;
+    Some([(left, below), (right, above)])
 }
 
 /// All leaves, each with its cell.
@@ -128,14 +166,9 @@ pub fn leaves(tree: &KdTree) -> Vec<(u32, Aabb)> {
     let mut found = Vec::new();
     let mut open = vec![(0u32, tree.bounds)];
     while let Some((node, cell)) = open.pop() {
-        match tree.nodes[node as usize] {
-            KdNode::Leaf { .. } => found.push((node, cell)),
-            KdNode::Inner { axis, at, left, right } => {
-                let (mut below, mut above) = (cell, cell);
-                below.max[usize::from(axis)] = at;
-                above.min[usize::from(axis)] = at;
-                open.extend([(right, above), (left, below)]);
-            }
+        match divided(tree, node, cell) {
+            None => found.push((node, cell)),
+            Some([left, right]) => open.extend([right, left]),
         }
     }
     found

@@ -2,11 +2,11 @@
 
 use crate::pictures::{load, render};
 use anyhow::{Context, Result};
-use glam::{Vec2, Vec3, vec3};
+use glam::{Vec2, Vec2Swizzles, Vec3, vec3};
 use raykata::emitter::{AreaEmitter, EmitterShape};
 use raykata::kit::{EmitterPdfQuery, Kit};
 use raykata_cli::svg::{
-    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, View, offset, plane, polar,
+    Axis, Drawing, End, Ink, Middle, Plot, Point, SMALL, Start, TEXT, View, offset, plane, polar, steps,
 };
 use std::path::Path;
 
@@ -33,11 +33,8 @@ pub fn malley(kit: &dyn Kit) -> Result<String> {
     }
     // Half of the directions are within 45 degrees, because sin² 45° = 1/2.
     for degrees in [45.0, 135.0] {
-        drawing.line(
-            polar(view.origin, 330.0, degrees),
-            polar(view.origin, 440.0, degrees),
-            Ink::Color(3).pen(4.0),
-        );
+        let [from, to] = [330.0, 440.0].map(|radius| polar(view.origin, radius, degrees));
+        drawing.line(from, to, Ink::Color(3).pen(4.0));
     }
     drawing.text(polar(view.origin, 462.0, 45.0), Start, TEXT, Ink::Color(3), "45°");
     let within = directions_in_plane(kit, 12).iter().filter(|[x, y]| x.abs() < *y).count();
@@ -105,6 +102,64 @@ pub fn light_solid_angle(kit: &dyn Kit) -> Result<String> {
     Ok(drawing.svg())
 }
 
+/// The densities of two ways to sample a direction at a surface below a long light, and the weights of both.
+pub fn mis_weights(kit: &dyn Kit) -> Result<String> {
+    // The light is seen from its edge, and it is eight units deep.
+    let [from, to] = [vec3(0.1, 1.0, 0.0), vec3(1.6, 0.7, 0.0)];
+    let (corner, edges) = (from - 4.0 * Vec3::Z, (8.0 * Vec3::Z, to - from));
+    let shape = EmitterShape::Parallelogram { corner, edges };
+    let emitter = AreaEmitter { shape, radiance: Vec3::ONE, two_sided: true };
+    let densities = |degrees: f64| {
+        let direction = Vec3::from((Vec2::from_angle(degrees.to_radians() as f32).yx(), 0.0));
+        let light = kit.light_pdf(&[EmitterPdfQuery { emitter, from: Vec3::ZERO, direction }])[0];
+        [light, kit.cosine_pdf(&[(Vec3::Y, direction)])[0]]
+    };
+    let weight = |own: f32, other: f32| f64::from(kit.mis_weight(&[(own, other)])[0]);
+    let curve = |value: &dyn Fn([f32; 2]) -> f64| -> Vec<[f64; 2]> {
+        steps(-90.0, 90.0, 360).map(|degrees| [degrees, value(densities(degrees))]).collect()
+    };
+
+    let mut drawing = Drawing::new("The densities of two ways to sample, and their weights", 1000.0, 640.0);
+    let x = Axis::linear(-90.0, 90.0);
+    let above = Plot::new(x, Axis::linear(0.0, 0.5), [100.0, 280.0], [860.0, 220.0]);
+    let below = Plot::new(x, Axis::linear(0.0, 1.0), [100.0, 560.0], [860.0, 170.0]);
+    // Draw the axes, and the directions that meet the light.
+    drawing.step();
+    let ticks = [(-90.0, "-90°"), (-45.0, "-45°"), (0.0, "0°"), (45.0, "45°"), (90.0, "90°")];
+    above.draw_axes(&mut drawing, &ticks, &[(0.0, "0"), (0.4, "0.4")], ["", "density per steradian"]);
+    below.draw_axes(&mut drawing, &ticks, &[(0.0, "0"), (1.0, "1")], ["angle with the normal", "mis_weight"]);
+    let [first, last] = [from, to].map(|end| f64::from(end.x.atan2(end.y).to_degrees()));
+    drawing.rectangle(above.at(first, 0.0), above.at(last, 0.5), Ink::Color(3), 0.15);
+    drawing.text(above.at(last, 0.53), End, SMALL, Ink::Color(3), "directions to the light");
+    // Draw both densities.
+    drawing.step();
+    above.draw_curve(&mut drawing, curve(&|both| f64::from(both[0])), Ink::Color(0).pen(4.0));
+    drawing.text(above.at(first + 4.0, 0.42), Start, SMALL, Ink::Color(0), "light_pdf");
+    drawing.step();
+    above.draw_curve(&mut drawing, curve(&|both| f64::from(both[1])), Ink::Color(1).pen(4.0));
+    drawing.text(above.at(-40.0, 0.3), End, SMALL, Ink::Color(1), "cosine_pdf");
+    // Draw the weight of each from its side, so that both fill the height of 1.
+    let light = curve(&|both| weight(both[0], both[1]));
+    let bsdf = curve(&|both| 1.0 - weight(both[1], both[0]));
+    for (share, base, ink, name, x, y) in [
+        (light, 0.0, Ink::Color(0), "of the light's samples", 61.0, 0.15),
+        (bsdf, 1.0, Ink::Color(1), "of the BSDF's samples", -8.0, 0.65),
+    ] {
+        drawing.step();
+        let corners = share.into_iter().chain([[90.0, base], [-90.0, base]]).map(|[x, y]| below.at(x, y));
+        drawing.area(&corners.collect::<Vec<Point>>(), ink, 0.4);
+        drawing.text(below.at(x, y), End, SMALL, Ink::Text, name);
+    }
+    // Compute both weights of one direction.
+    drawing.step();
+    let [light, bsdf] = densities(45.0);
+    let (one, other) = (weight(light, bsdf), weight(bsdf, light));
+    drawing.line(above.at(45.0, 0.5), below.at(45.0, 0.0), Ink::Text.pen(2.0).dashed());
+    let text = format!("45°: {one:.2} + {other:.2} = {:.2}", one + other);
+    drawing.text(below.at(43.0, 1.1), End, SMALL, Ink::Text, &text);
+    Ok(drawing.svg())
+}
+
 /// A corner of two planes under a sky, with a fan of cosine-weighted directions.
 pub fn corner(kit: &dyn Kit) -> Result<String> {
     let mut drawing = Drawing::new("A corner of two planes under a sky", 1000.0, 600.0);
@@ -137,11 +192,8 @@ pub fn corner(kit: &dyn Kit) -> Result<String> {
     drawing.text([left - 50.0, 290.0], End, TEXT, Ink::Text, "B₂");
     drawing.text([900.0, floor + 29.0], Middle, TEXT, Ink::Text, "B₁");
     let all = directions_in_plane(kit, 8);
-    let text = format!(
-        "{} of {} directions meet the wall: F = (1 + cos 90°) / 2 = 1/2",
-        all.iter().filter(|[x, _]| *x < 0.0).count(),
-        all.len()
-    );
+    let (meet, n) = (all.iter().filter(|[x, _]| *x < 0.0).count(), all.len());
+    let text = format!("{meet} of {n} directions meet the wall: F = (1 + cos 90°) / 2 = 1/2");
     drawing.text([left, floor + 72.0], Start, SMALL, Ink::Text, &text);
     Ok(drawing.svg())
 }

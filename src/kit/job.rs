@@ -18,9 +18,11 @@ pub enum View {
     /// The cost of a pixel: node visits, box tests and primitive tests of all its rays, per sample, in place
     /// of red, green and blue.
     Work,
+    /// The light, by the functions of the stages up to this one. Those of later stages count as not written.
+    UpToStage(u8),
 }
 
-message! { enum View { Shaded, Normals, Work } }
+message! { enum View { Shaded, Normals, Work, UpToStage(stage) } }
 
 /// A request to render a whole frame in the process that contains the student's code.
 #[derive(Clone, Debug, PartialEq)]

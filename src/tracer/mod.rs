@@ -60,7 +60,7 @@ impl<F> Renderer<F> {
 impl<F: StudentFunctions> Frames for Renderer<F> {
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         let (rendering, notes) =
-            with_written_functions::<F, _>(|written| render(&decoded(job, written), written, watch));
+            with_written::<F, _>(job.view, |written| render(&decoded(job, written), written, watch));
         rendering.map(|mut rendering| {
             rendering.notes.extend(notes);
             rendering
@@ -68,11 +68,11 @@ impl<F: StudentFunctions> Frames for Renderer<F> {
     }
 
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
-        with_written_functions::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0.0
+        with_written::<F, _>(job.view, |written| trace(&decoded(job, written), written, x, y)).0.0
     }
 
     fn visits(&self, job: &RenderJob, x: u32, y: u32) -> Vec<(TracedRay, RayVisits)> {
-        let traced = with_written_functions::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0;
+        let traced = with_written::<F, _>(job.view, |written| trace(&decoded(job, written), written, x, y)).0;
         traced.0.into_iter().zip(traced.1).collect()
     }
 
@@ -81,18 +81,18 @@ impl<F: StudentFunctions> Frames for Renderer<F> {
             let frame = Frame::new(job, written, &Unwatched);
             outlines::outlines(&frame.intersector.scene.structure, depth as usize)
         };
-        with_written_functions::<F, _>(outlines).0
+        with_written::<F, _>(job.view, outlines).0
     }
 
     fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>> {
-        with_written_functions::<F, _>(|written| first_hits(job, written, rays)).0
+        with_written::<F, _>(job.view, |written| first_hits(job, written, rays)).0
     }
 }
 
-/// Calls `work` with the functions that are written. If `work` reaches a `todo!` anyway, calls it again without
+/// Calls `work` with the functions that are written and that `view` allows. If `work` reaches a `todo!` anyway, calls it again without
 /// that function. Returns the result and a note for each such function.
-fn with_written_functions<F: StudentFunctions, R>(work: impl Fn(&Written<F>) -> R) -> (R, Vec<String>) {
-    let mut written = Written::all();
+fn with_written<F: StudentFunctions, R>(view: View, work: impl Fn(&Written<F>) -> R) -> (R, Vec<String>) {
+    let mut written = Written::of(view);
     let mut notes = Vec::new();
     loop {
         // Run the work, and return if no student function panics.
@@ -159,7 +159,7 @@ fn pixels<F: StudentFunctions, T: Tally>(frame: &Frame<'_, F>, watch: &dyn Watch
         // Compute what the pixel shows: normals, light or work.
         let mut color = match frame.plan.view {
             View::Normals => frame.normal_as_color(&path, hit, scratch, &mut NoRecord),
-            View::Shaded | View::Work => match &frame.indirect {
+            _ => match &frame.indirect {
                 None => frame.radiance(path, hit, scratch, &mut NoRecord),
                 Some(indirect) => frame.radiance_of_path(indirect, path, hit, scratch, &mut NoRecord),
             },
@@ -197,7 +197,7 @@ fn trace<F: StudentFunctions>(
     let hit = frame.closest_hit(&path.ray, &mut scratch);
     match frame.plan.view {
         View::Normals => frame.normal_as_color(&path, hit, &mut scratch, &mut record),
-        View::Shaded | View::Work => match &frame.indirect {
+        _ => match &frame.indirect {
             None => frame.radiance(path, hit, &mut scratch, &mut record),
             Some(indirect) => frame.radiance_of_path(indirect, path, hit, &mut scratch, &mut record),
         },

@@ -88,9 +88,10 @@ fn every_slide_has_a_heading_and_a_note() {
 #[test]
 fn a_deck_explains_on_twenty_to_forty_slides() {
     for deck in &decks() {
-        // Questions to the class, the lab card and the appendix come on top.
+        // Questions to the class, the lab card, the appendix and the steps of a figure come on top.
         let extra = ["Predict: ", "Lab card: ", "Appendix: "];
-        let explains = |slide: &&String| !extra.iter().any(|start| title(slide).starts_with(start));
+        let is_extra = |slide: &str| extra.iter().any(|start| title(slide).starts_with(start));
+        let explains = |slide: &&String| !is_extra(slide) && !slide.contains(".svg#step");
         let n = deck.slides.iter().filter(explains).count();
         assert!((20..=40).contains(&n), "{} explains on {n} slides", deck.name);
     }
@@ -264,11 +265,16 @@ fn every_figure_is_listed_and_used() {
     let mut used = BTreeSet::new();
     for deck in &decks() {
         let text = deck.text();
-        for picture in between(&text, "](figures/", ")") {
+        for address in between(&text, "](figures/", ")") {
+            let (picture, step) = address.split_once('#').unwrap_or((address, ""));
             assert!(listed.contains(picture), "{}: slides/figures.toml does not list {picture}", deck.name);
             let exists = root().join("slides/figures").join(picture).is_file();
             assert_eq!(exists, !planned.contains(picture), "{}: {picture}", deck.name);
             used.insert(picture.to_owned());
+            // A page that shows a step of a figure names one that the file has.
+            let file = fs::read(root().join("slides/figures").join(picture)).unwrap_or_default();
+            let has_step = String::from_utf8_lossy(&file).contains(&format!("id=\"{step}\""));
+            assert!(step.is_empty() || has_step, "{}: {picture} has no {step}", deck.name);
         }
         // Whoever cannot see a figure reads what it shows.
         for words in between(&text, "![", "](figures/") {
@@ -286,7 +292,7 @@ fn letters_of_diagrams_have_eighteen_pixels_or_more() {
     for deck in &decks() {
         for figure in deck.text().split("![").skip(1) {
             let Some((words, rest)) = figure.split_once("](figures/") else { continue };
-            let file = rest.split(')').next().unwrap_or_default();
+            let file = rest.split([')', '#']).next().unwrap_or_default();
             if !file.ends_with(".svg") {
                 continue;
             }

@@ -41,6 +41,15 @@ shape = { sphere = { center = [1.2, 1, 0], radius = 1 } }
 "#;
 
 #[test]
+fn a_frame_up_to_a_stage_calls_no_later_function() {
+    let job = |view| RenderJob { scene: scene(VASES), view, seed: 1, threads: 1, count: true, reuse: false };
+    let render = |view| solutions::kit().render(&job(view), &Unwatched).expect("not cancelled");
+    assert_eq!(render(View::UpToStage(12)).film, render(View::Shaded).film);
+    let shadow_rays = [3, 4].map(|stage| render(View::UpToStage(stage)).counts.shadow);
+    assert!(shadow_rays[0] == 0 && shadow_rays[1] > 0, "{shadow_rays:?}");
+}
+
+#[test]
 fn every_search_and_every_number_of_threads_makes_the_same_picture() {
     let mut scene = scene(VASES);
     scene.quality.accelerator = Accelerator::BruteForce;

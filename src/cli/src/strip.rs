@@ -1,5 +1,6 @@
 //! `raykata strip`: one scene at growing depths of recursion (lecture "Example: Reflection", "Example: Refraction"), with
-//! each sampler ("Antialiasing", "Generate pixel samples"), or with the levels of its hierarchy, side by side.
+//! each sampler ("Antialiasing", "Generate pixel samples"), with the levels of its hierarchy, or with the functions of stage 1, of
+//! stages 1 and 2, and so on, side by side.
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names, whole_number};
 use crate::caption;
@@ -11,15 +12,21 @@ use crate::quality_options::{QualityOptions, ToneOptions};
 use crate::report::{Thousands, job, make_folder_of, name_of, render};
 use anyhow::{Context, Error, Result};
 use raykata::film::Film;
-use raykata::kit::kit_error;
-use raykata::scene::{Quality, Sampler, Scene};
+use raykata::kit::{RenderJob, View, kit_error};
+use raykata::scene::{Accelerator, Quality, Sampler, Scene};
 use raykata::world::camera_for;
 use std::fmt::Display;
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::Path;
 use std::process::ExitCode;
 
 /// Pixels between two pictures.
 const GAP: u32 = 4;
+
+/// What each stage adds, for captions.
+const STAGES: &str =
+    "spheres,triangles,hierarchy,light,glass,soft shadows,textures,curves,kd-tree,stability,paths,wide nodes";
 
 /// `raykata strip`.
 pub static SPEC: Spec = Spec {
@@ -45,6 +52,11 @@ pub static SPEC: Spec = Spec {
                  picture each. Level 0 is the root.",
             )
             .many(),
+            Opt::flag(
+                "--stages",
+                "Instead of depths: the scene with the functions of stage 1, of stages 1 and 2, up to all twelve, in three \
+                 rows. Below each: primitive tests per ray. Writes each picture and an animated PNG file, too.",
+            ),
             Opt::value("--out", "FILE", "The PNG file [default: out/NAME-strip.png].").short("-o"),
         ],
         Choice::OPTIONS,
@@ -58,37 +70,50 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let (quality, tone, kit) =
         (QualityOptions::read(given)?, ToneOptions::read(given)?, Choice::read(given)?);
     let scene_file = Path::new(given.required(0)?);
-    let chosen = Chosen::read(given)?;
     let mut scene = quality.load(scene_file)?;
     tone.apply(&mut scene);
+    let pictures = pictures(given, &scene)?;
     let default = || Ok::<_, Error>(Path::new("out").join(format!("{}-strip.png", name_of(scene_file)?)));
     let out = given.path("--out").map_or_else(default, Ok)?;
     make_folder_of(&out)?;
     let kit = kit.start()?;
-    let pictures = chosen.pictures(&scene);
     let (width, height, tone) = (scene.film.width, scene.film.height, scene.film.tone);
-    let n = pictures.len() as u32;
-    let mut strip = Film::new(n * width + (n - 1) * GAP, height + caption::HEIGHT);
+    let rows = if given.has("--stages") { 3 } else { 1 };
+    let columns = pictures.len() as u32 / rows;
+    let mut strip = Film::new(columns * width + (columns - 1) * GAP, rows * (height + caption::HEIGHT));
+    let beside = |name: &str| Ok::<_, Error>(out.with_file_name(format!("{}-{name}.png", name_of(&out)?)));
+    let mut frames = Vec::new();
     const COLUMNS: Columns = Columns("  ", &[15, 14, 14, 14, 9]);
     let heads: [&dyn Display; 5] =
         [&"picture", &"reflected rays", &"refracted rays", &"indirect rays", &"seconds"];
     println!("{}", COLUMNS.row(&heads));
-    for (column, Picture { what, scene, level }) in pictures.into_iter().enumerate() {
+    for (index, Picture { mut what, scene, level, view }) in (0..).zip(pictures) {
         let camera = camera_for(&scene);
-        let job = job(scene);
+        let job = RenderJob { view, ..job(scene) };
         let rendering = render(&*kit, &job)?;
         let (counts, seconds) = (rendering.counts, format!("{:.3}", rendering.render_seconds));
         let [reflected, refracted, indirect] =
             [counts.reflection, counts.transmission, counts.indirect].map(Thousands);
         println!("{}", COLUMNS.row(&[&what, &reflected, &refracted, &indirect, &seconds]));
-        let left = column as u32 * (width + GAP);
+        let left = index % columns * (width + GAP);
+        let top = index / columns * (height + caption::HEIGHT);
         // Draw the boxes of the level over the picture.
-        let mut film = rendering.film.toned(tone);
+        let is_light = !matches!(view, View::UpToStage(..4)); // normals are no light
+        let mut film = if is_light { rendering.film.toned(tone) } else { rendering.film };
         if let Some(level) = level {
             film = with_edges(&film, &camera, &kit_error::catch(|| kit.outlines(&job, level))?);
         }
-        paste(&film, &mut strip, left);
-        caption::write(&mut strip, &what, [left, height], width);
+        if let View::UpToStage(stage) = view {
+            let file = beside(&format!("stage{stage:02}"))?;
+            write_png(&film, &file, job.scene.film.encoding, Some(&*kit))?;
+            what += &format!(": {:.1}", counts.primitive_tests as f64 / counts.rays() as f64);
+            frames.push(film.dithered_srgb());
+        }
+        paste(&film, &mut strip, [left, top]);
+        caption::write(&mut strip, &what, [left, top + height], width);
+    }
+    if !frames.is_empty() {
+        write_animated(&frames, [width, height], &beside("animated")?)?;
     }
     write_png(&strip, &out, scene.film.encoding, Some(&*kit))
         .with_context(|| format!("cannot write {}", out.display()))?;
@@ -103,54 +128,65 @@ struct Picture {
     scene: Scene,
     /// The level of the acceleration structure that is drawn over it.
     level: Option<u32>,
+    view: View,
 }
 
-/// What the pictures of a strip differ in.
-enum Chosen {
-    Depths(Vec<u32>),
-    Samplers(Vec<Sampler>),
-    Levels(Vec<u32>),
-}
-
-impl Chosen {
-    fn read(given: &Given) -> Result<Chosen, Misuse> {
-        given.exclude("--samplers", "--depths")?;
-        given.exclude("--levels", "--depths")?;
-        given.exclude("--levels", "--samplers")?;
-        let numbers = |option| given.list(option, |text| whole_number(text, &(0..=1000)));
-        let (depths, levels) = (numbers("--depths")?, numbers("--levels")?);
-        let samplers = given.choices("--samplers", &Sampler::NAMES)?;
-        Ok(match (levels.is_empty(), samplers.is_empty()) {
-            (false, _) => Chosen::Levels(levels),
-            (_, false) => Chosen::Samplers(samplers),
-            _ if depths.is_empty() => Chosen::Depths(vec![1, 2, 5, 10]),
-            _ => Chosen::Depths(depths),
-        })
+/// The scene once for each depth, sampler, level or stage.
+fn pictures(given: &Given, scene: &Scene) -> Result<Vec<Picture>, Misuse> {
+    let kinds = ["--depths", "--samplers", "--levels", "--stages"];
+    for (index, kind) in kinds.iter().enumerate() {
+        kinds[..index].iter().try_for_each(|other| given.exclude(kind, other))?;
     }
-
-    /// The scene once for each depth, sampler or level.
-    fn pictures(&self, scene: &Scene) -> Vec<Picture> {
-        let picture = |what: String, quality: Quality, level: Option<u32>| Picture {
-            what,
-            scene: Scene { quality, ..scene.clone() },
-            level,
+    let numbers = |option| given.list(option, |text| whole_number(text, &(0..=1000)));
+    let (mut depths, levels) = (numbers("--depths")?, numbers("--levels")?);
+    let samplers = given.choices("--samplers", &Sampler::NAMES)?;
+    let own = scene.quality;
+    let picture = |what: String, quality: Quality| {
+        let scene = Scene { quality, ..scene.clone() };
+        Picture { what, scene, level: None, view: View::Shaded }
+    };
+    if given.has("--stages") {
+        // Samples of a pixel are an exercise of stage 6, and the kd-tree is one of stage 9.
+        let of_stage = |(stage, name): (u8, &str)| {
+            let quality = match stage {
+                1..=5 => Quality { samples_per_pixel: 1, sampler: Sampler::Center, ..own },
+                9 => Quality { accelerator: Accelerator::KdTree, ..own },
+                _ => own,
+            };
+            Picture { view: View::UpToStage(stage), ..picture(format!("{stage} {name}"), quality) }
         };
-        let own = scene.quality;
-        let of_depth = |max_depth| picture(format!("depth {max_depth}"), Quality { max_depth, ..own }, None);
-        let of_level = |level| picture(format!("level {level}"), own, Some(level));
-        let of_sampler =
-            |sampler: Sampler| picture(sampler.name().replace('_', "-"), Quality { sampler, ..own }, None);
-        match self {
-            Chosen::Depths(depths) => depths.iter().copied().map(of_depth).collect(),
-            Chosen::Samplers(samplers) => samplers.iter().copied().map(of_sampler).collect(),
-            Chosen::Levels(levels) => levels.iter().copied().map(of_level).collect(),
-        }
+        return Ok((1..).zip(STAGES.split(',')).map(of_stage).collect());
     }
+    if !levels.is_empty() {
+        let of_level = |level| Picture { level: Some(level), ..picture(format!("level {level}"), own) };
+        return Ok(levels.into_iter().map(of_level).collect());
+    }
+    if !samplers.is_empty() {
+        let of_sampler =
+            |sampler: Sampler| picture(sampler.name().replace('_', "-"), Quality { sampler, ..own });
+        return Ok(samplers.into_iter().map(of_sampler).collect());
+    }
+    if depths.is_empty() {
+        depths = vec![1, 2, 5, 10];
+    }
+    let of_depth = |max_depth| picture(format!("depth {max_depth}"), Quality { max_depth, ..own });
+    Ok(depths.into_iter().map(of_depth).collect())
 }
 
-fn paste(picture: &Film, strip: &mut Film, x: u32) {
-    for (row, pixels) in picture.pixels.chunks(picture.width as usize).enumerate() {
-        let start = row * strip.width as usize + x as usize;
+fn paste(picture: &Film, strip: &mut Film, [x, y]: [u32; 2]) {
+    for (row, pixels) in (y..).zip(picture.pixels.chunks(picture.width as usize)) {
+        let start = (row * strip.width + x) as usize;
         strip.pixels[start..start + pixels.len()].copy_from_slice(pixels);
     }
+}
+
+/// Writes an animated PNG file that shows each frame, sRGB bytes of `width` by `height` pixels, for a second and a half.
+fn write_animated(frames: &[Vec<u8>], [width, height]: [u32; 2], out: &Path) -> Result<()> {
+    let mut encoder = png::Encoder::new(BufWriter::new(File::create(out)?), width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_animated(frames.len() as u32, 0)?;
+    encoder.set_frame_delay(3, 2)?;
+    let mut writer = encoder.write_header()?;
+    frames.iter().try_for_each(|frame| writer.write_image_data(frame))?;
+    Ok(writer.finish()?)
 }

@@ -126,17 +126,44 @@ pub enum Anchor {
 }
 
 /// A drawing that grows call by call; later calls cover earlier ones.
+///
+/// The address `FILE.svg#step2` shows what is drawn up to the end of the second [`step`](Drawing::step), and `FILE.svg` shows all.
 pub struct Drawing {
     width: f64,
     height: f64,
     title: String,
     body: String,
+    n_steps: usize,
 }
+
+/// Hides the steps after the one that the address names, and the passing parts of all others.
+const STEP_STYLE: &str = ".step:target~.step,.step:not(:target)>.passing{display:none}";
 
 impl Drawing {
     /// An empty drawing of this size. `title` is read aloud by screen readers.
     pub fn new(title: &str, width: f64, height: f64) -> Drawing {
-        Drawing { width, height, title: title.into(), body: String::new() }
+        Drawing { width, height, title: title.into(), body: String::new(), n_steps: 0 }
+    }
+
+    /// Begins the next step: all that follows belongs to it, up to the next call.
+    pub fn step(&mut self) {
+        let end = if self.n_steps > 0 { "</g>\n" } else { "" };
+        self.n_steps += 1;
+        let _ = writeln!(self.body, "{end}<g class=\"step\" id=\"step{}\">", self.n_steps);
+    }
+
+    /// Begins the next step with a remark at `at`, and with marks that `draw` draws. Both are seen on the page of this step only.
+    pub fn step_with(&mut self, at: Point, remark: &str, draw: impl FnOnce(&mut Drawing)) {
+        self.step();
+        self.body += "<g class=\"passing\">\n";
+        draw(self);
+        self.text(at, Start, SMALL, Ink::Text, remark);
+        self.body += "</g>\n";
+    }
+
+    /// Begins the next step with a remark at `at` that is seen on its page only.
+    pub fn remark(&mut self, at: Point, remark: &str) {
+        self.step_with(at, remark, |_| ());
     }
 
     /// A line from `a` to `b`.
@@ -245,7 +272,7 @@ impl Drawing {
 
     /// The file.
     pub fn svg(self) -> String {
-        let Drawing { width, height, title, body } = self;
+        let Drawing { width, height, title, body, n_steps } = self;
         let styles = |colors: &[&str; 11]| -> String {
             let one = |(index, color): (usize, &&str)| {
                 format!(".l{index}{{stroke:{color}}}.f{index}{{fill:{color}}}")
@@ -254,13 +281,15 @@ impl Drawing {
         };
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" role=\"img\">\n\
-             <title>{}</title>\n<style>{}@media(prefers-color-scheme:dark){{{}}}</style>\n\
-             <rect width=\"100%\" height=\"100%\" class=\"f2\"/>\n{body}</svg>\n",
+             <title>{}</title>\n<style>{}@media(prefers-color-scheme:dark){{{}}}{}</style>\n\
+             <rect width=\"100%\" height=\"100%\" class=\"f2\"/>\n{body}{}</svg>\n",
             number(width),
             number(height),
             escaped(&title),
             styles(&LIGHT),
-            styles(&DARK)
+            styles(&DARK),
+            if n_steps > 0 { STEP_STYLE } else { "" },
+            if n_steps > 0 { "</g>\n" } else { "" }
         )
     }
 }
@@ -329,7 +358,9 @@ mod tests {
         let view = View { origin: [10.0, 40.0], scale: 10.0 };
         drawing.arrow(view.at(0.0, 0.0), view.at(3.0, 0.0), Ink::Color(9).pen(3.0));
         drawing.rectangle(view.at(1.0, 1.0), view.at(2.0, 3.0), Ink::Faint, 0.25);
+        drawing.step();
         drawing.circle([50.0, 25.0], 10.0, Ink::Text.pen(1.5).dashed());
+        drawing.remark([5.0, 30.0], "seen in step 2 only");
         drawing.text([5.0, 12.0], Start, TEXT, Ink::Text, "t & u");
         insta::assert_snapshot!(drawing.svg());
     }

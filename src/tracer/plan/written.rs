@@ -1,6 +1,6 @@
 //! Which student functions a frame may call.
 
-use crate::kit::{Function, StudentFunctions, is_written};
+use crate::kit::{Function, StudentFunctions, View, is_written};
 use std::marker::PhantomData;
 
 /// The student functions that are written, except those that a frame has found unfinished.
@@ -10,9 +10,11 @@ pub struct Written<F> {
 }
 
 impl<F: StudentFunctions> Written<F> {
-    /// All functions that do more than `todo!` for the simplest input.
-    pub fn all() -> Self {
-        Written { left_out: Vec::new(), functions: PhantomData }
+    /// All functions that do more than `todo!` for the simplest input, of the stages that `view` allows.
+    pub fn of(view: View) -> Self {
+        let last = if let View::UpToStage(stage) = view { stage } else { u8::MAX };
+        let later = Function::ALL.iter().copied().filter(|function| function.stage() > last);
+        Written { left_out: later.collect(), functions: PhantomData }
     }
 
     /// Whether a frame may call `function`: it is written and has not been left out.

@@ -224,6 +224,10 @@ fn a_strip_shows_one_picture_a_depth() {
         |at: usize| u32::from_be_bytes([picture[at], picture[at + 1], picture[at + 2], picture[at + 3]]);
     // A caption of 24 rows is below each picture.
     assert_eq!((number(16), number(20)), (3 * 32 + 2 * 4, 32 + 24));
+    // With stages, the animated file beside the strip has a chunk that counts its frames.
+    self::said(&format!("strip scenes/heckbert.toml --stages --out {}", file.display()));
+    let animated = std::fs::read(out.path().join("strip-animated.png")).expect("a picture");
+    assert!(animated.windows(8).any(|bytes| bytes == b"acTL\0\0\0\x0c"), "twelve frames");
 }
 
 #[test]

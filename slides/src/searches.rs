@@ -1,0 +1,142 @@
+//! Diagrams of searches: down a hierarchy with two children per node, and in a node with eight.
+
+use crate::structures::{CAPTION, at, boxes, draw_boxes, draw_hit, draw_tested, hits};
+use anyhow::{Result, ensure};
+use glam::vec3;
+use raykata::aabb::Aabb;
+use raykata::bvh::Contents;
+use raykata::kit::{BuildQuery, Kit, SearchQuery, SlabQuery, Table, WideBoxesQuery};
+use raykata::ray::Ray;
+use raykata::scene::Split;
+use raykata::wide::{Child, WideNode};
+use raykata_cli::svg::{Drawing, Ink, Middle, SMALL, Start, TEXT, plane};
+
+/// A hierarchy over the boxes, level by level, and the search for the closest hit of a ray in it.
+pub fn bvh_descent(kit: &dyn Kit) -> Result<String> {
+    let ray = Ray::new(vec3(-0.6, 0.9, 0.5), vec3(1.0, 0.607, 0.0));
+    let bvh = kit.build(&[BuildQuery { bounds: boxes(), split: Split::SurfaceArea, leaf_size: 2 }]).remove(0);
+    let queries: Vec<_> = bvh.nodes.iter().map(|node| SlabQuery { ray, bounds: node.bounds }).collect();
+    let miss = (f32::INFINITY, f32::NEG_INFINITY);
+    let spans = kit.slab(&queries).into_iter().map(|span| span.unwrap_or(miss)).collect();
+    let table = Table { boxes: spans, primitives: hits(kit, ray) };
+    let mut drawing = Drawing::new("A hierarchy of boxes, and the search of a ray in it", 1000.0, 620.0);
+    draw_boxes(&mut drawing, &ray);
+    let children = |node: u32| match bvh.nodes[node as usize].contents {
+        Contents::Inner { left, right } => vec![left, right],
+        Contents::Leaf { .. } => Vec::new(),
+    };
+    let frame = |drawing: &mut Drawing, node: u32, ink: Ink, width: f64| {
+        let bounds = bvh.nodes[node as usize].bounds;
+        drawing.frame(at(bounds.min), at(bounds.max), ink.pen(width));
+    };
+    // Draw the boxes of each level.
+    let mut level = vec![0];
+    for depth in 0..bvh.depth() {
+        drawing.remark(CAPTION, &format!("level {depth}; nodes: {}", level.len()));
+        level.iter().for_each(|&node| frame(&mut drawing, node, Ink::Color(0), 2.0));
+        level = level.iter().flat_map(|&node| children(node)).collect();
+    }
+    // Search as stage 3 does: nearest child first, and no node that begins behind the closest hit.
+    let (mut open, mut visited, mut within) = (vec![0], 0, ray);
+    while let Some(node) = open.pop() {
+        let (what, ink) = match table.enter(node, &within) {
+            Some(_) => ("opened", Ink::Color(1)),
+            None => ("skipped", Ink::Faint),
+        };
+        let (enter, t_max) = (table.boxes[node as usize].0, within.t_max);
+        let text = format!("entered at t = {enter:.2}, {what}; t_max = {t_max:.2}");
+        drawing.step_with(CAPTION, &text, |drawing| frame(drawing, node, Ink::Color(3), 12.0));
+        frame(&mut drawing, node, ink, 5.0);
+        if what == "skipped" {
+            continue;
+        }
+        visited += 1;
+        if let Contents::Leaf { first, count } = bvh.nodes[node as usize].contents {
+            for &index in bvh.primitives(first, count) {
+                draw_tested(&mut drawing, index);
+                within.t_max = table.hit(index, &within).unwrap_or(within.t_max);
+            }
+        }
+        let enter = |child: &u32| table.boxes[*child as usize].0;
+        let mut below = children(node);
+        below.retain(|&child| table.enter(child, &ray).is_some());
+        below.sort_by(|p, q| enter(q).total_cmp(&enter(p)));
+        open.extend(below);
+    }
+    // The search of the kit must open as many nodes, and find the same hit.
+    let answer = kit.closest_hit(&[SearchQuery { bvh: bvh.clone(), ray, table }]).remove(0);
+    let found = (answer.counts.node_visits, answer.hit.map(|hit| hit.t));
+    ensure!(found == (visited, Some(within.t_max)), "`closest_hit` opens and finds {found:?}");
+    draw_hit(&mut drawing, &ray, within.t_max);
+    let text = format!("{visited} of {} nodes opened, closest hit t = {:.2}", bvh.nodes.len(), within.t_max);
+    drawing.text(CAPTION, Start, TEXT, Ink::Text, &text);
+    Ok(drawing.svg())
+}
+
+/// The boxes of a node with eight children: for each two opposite corners, and the x of a triangle within, or 99, which is outside.
+const EIGHT: [f32; 40] = [
+    5.9, 1.6, 7.4, 3.0, 6.5, 0.6, 3.2, 1.8, 4.4, 1.2, 1.2, 1.4, 3.0, 2.8, 99.0, 3.3, 0.2, 4.6, 1.5, 4.0, 3.6,
+    1.9, 5.2, 3.4, 4.8, 6.0, 3.6, 7.6, 4.6, 7.0, 2.6, 1.8, 4.2, 4.0, 4.0, 5.2, 0.2, 7.8, 1.0, 6.0,
+];
+
+/// A node with eight children: all boxes are tested at once, the entered ones are sorted, and the farther ones wait on a stack.
+pub fn wide_search(kit: &dyn Kit) -> Result<String> {
+    let ray = Ray::new(vec3(0.0, 2.3, 0.5), vec3(1.0, 0.0, 0.0));
+    let mut node = WideNode::EMPTY;
+    let corner = |child: usize, x: usize, z: f32| vec3(EIGHT[5 * child + x], EIGHT[5 * child + x + 1], z);
+    for child in 0..8 {
+        let bounds = Aabb::new(corner(child, 0, 0.0), corner(child, 2, 1.0));
+        node.set(child, &bounds, Child::leaf(child as u32, 1));
+    }
+    let entered = kit.enter_boxes(&[WideBoxesQuery { node: Box::new(node), ray }]).remove(0);
+    let mut order: Vec<usize> = (0..8).filter(|child| entered.mask >> child & 1 == 1).collect();
+    order.sort_by(|&p, &q| entered.t[p].total_cmp(&entered.t[q]));
+
+    let mut drawing = Drawing::new("The search in a node with eight children", 1000.0, 620.0);
+    let (_, at) = plane([110.0, 425.0], 88.0);
+    let fill = |drawing: &mut Drawing, child: usize, ink: Ink, opacity: f64| {
+        let (low, high) = (at(corner(child, 0, 0.0)), at(corner(child, 2, 0.0)));
+        drawing.rectangle(low, high, ink, opacity);
+        drawing.frame(low, high, ink.pen(3.0));
+        drawing.text([low[0] + 8.0, high[1] + 28.0], Start, SMALL, ink, &child.to_string());
+    };
+    let caption = [20.0, 600.0];
+    let lane = |child: usize, x: f64, y: f64| [x + 120.0 * child as f64, y];
+    // Draw the boxes, and one lane of a register for each.
+    drawing.remark(caption, "eight boxes in one node, one lane of a register each");
+    drawing.arrow(at(ray.origin), at(ray.at(8.4)), Ink::Text.pen(3.0));
+    for child in 0..8 {
+        fill(&mut drawing, child, Ink::Faint, 0.0);
+        drawing.frame(lane(child, 20.0, 500.0), lane(child, 140.0, 560.0), Ink::Text.pen(2.0));
+        drawing.text(lane(child, 80.0, 490.0), Middle, SMALL, Ink::Faint, &child.to_string());
+    }
+    // Test all boxes at once, and sort the entered ones.
+    drawing.remark(caption, &format!("one test: the ray enters {} of eight boxes", order.len()));
+    for child in 0..8 {
+        let (text, ink, opacity) = match order.contains(&child) {
+            true => (format!("{:.2}", entered.t[child]), Ink::Color(0), 0.1),
+            false => ("miss".into(), Ink::Faint, 0.0),
+        };
+        drawing.text(lane(child, 80.0, 540.0), Middle, SMALL, ink, &text);
+        fill(&mut drawing, child, ink, opacity);
+    }
+    drawing.remark(caption, &format!("sorted by t: {order:?}; the farther ones wait on a stack"));
+    // Open one after the other.
+    let mut t_max = f32::INFINITY;
+    for (place, &child) in order.iter().enumerate() {
+        let (enter, t, stack) = (entered.t[child], EIGHT[5 * child + 4], &order[place + 1..]);
+        if enter >= t_max {
+            drawing.remark(caption, &format!("{child} is dropped: {enter:.2} is behind t = {t_max:.2}"));
+            continue;
+        }
+        t_max = if t < 9.0 { t_max.min(t) } else { t_max };
+        drawing.remark(caption, &format!("{child} is opened; t_max = {t_max:.2}, stack: {stack:?}"));
+        fill(&mut drawing, child, Ink::Color(1), 0.15);
+        let [x, y] = at(ray.at(t));
+        drawing.line([x - 9.0, y + 31.0], [x + 9.0, y - 31.0], Ink::Color(1).pen(7.0));
+    }
+    drawing.step();
+    drawing.dot(at(ray.at(t_max)), 10.0, Ink::Color(1));
+    drawing.text(caption, Start, SMALL, Ink::Text, &format!("the closest hit: t = {t_max:.2}"));
+    Ok(drawing.svg())
+}
