@@ -1,54 +1,11 @@
-//! Diagrams of triangles, and of the order in which boxes are searched.
+//! A diagram of the order in which boxes are searched.
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
-use raykata::kit::{InsideQuery, Kit, SlabQuery};
+use raykata::kit::{Kit, SlabQuery};
 use raykata::ray::Ray;
-use raykata::shape::Triangle;
-use raykata_cli::svg::{Drawing, End, Ink, Middle, SMALL, Start, TEXT, View, offset, plane};
-
-/// A triangle, and the signs of the barycentric coordinates in the seven regions of its plane.
-pub fn barycentric(kit: &dyn Kit) -> Result<String> {
-    let triangle = Triangle { a: Vec3::ZERO, b: vec3(3.4, -0.2, 0.0), c: vec3(1.3, 2.7, 0.0) };
-    let Triangle { a, b, c } = triangle;
-    let mut drawing = Drawing::new("Barycentric coordinates and their signs", 1000.0, 620.0);
-    let (_, at) = plane([330.0, 420.0], 105.0);
-    drawing.area(&[at(a), at(b), at(c)], Ink::Color(4), 0.2);
-    // Draw the lines on which beta and gamma are constant.
-    for share in [0.25, 0.5, 0.75] {
-        let beta = [a.lerp(b, share), c.lerp(b, share)];
-        let gamma = [a.lerp(c, share), b.lerp(c, share)];
-        drawing.line(at(beta[0]), at(beta[1]), Ink::Color(0).pen(1.5));
-        drawing.line(at(gamma[0]), at(gamma[1]), Ink::Color(1).pen(1.5));
-    }
-    for (from, to, low, high) in [(a, b, -0.9, 1.85), (b, c, -0.45, 1.65), (c, a, -0.45, 1.55)] {
-        drawing.line(at(from.lerp(to, low)), at(from.lerp(to, high)), Ink::Text.pen(2.0));
-    }
-    for (corner, name, by) in [(a, "a", [-4.0, 32.0]), (b, "b", [10.0, 34.0]), (c, "c", [26.0, 4.0])] {
-        drawing.dot(at(corner), 8.0, Ink::Text);
-        drawing.text(offset(at(corner), by), Middle, TEXT, Ink::Text, name);
-    }
-    // Ask whether one point of each region is inside.
-    let point = |beta: f32, gamma: f32| a + beta * (b - a) + gamma * (c - a);
-    let ray = Ray::new(Vec3::Z, -Vec3::Z);
-    let places =
-        [(0.375, 0.125), (0.95, 0.75), (-0.7, 0.7), (0.55, -0.42), (-0.5, -0.4), (1.75, -0.4), (-0.17, 1.35)];
-    for (beta, gamma) in places {
-        let point = point(beta, gamma);
-        let answer = kit.inside_by_areas(&[InsideQuery { ray, point, triangle }])[0];
-        let sign = |x: f32| if x < 0.0 { "-" } else { "+" };
-        let [alpha, beta, gamma] = [1.0 - beta - gamma, beta, gamma].map(sign);
-        let text = format!("({alpha} {beta} {gamma})");
-        // The test of the kit must find the point inside exactly if no coordinate is negative.
-        ensure!(answer.is_some() != text.contains('-'), "`inside_by_areas` contradicts {text}");
-        drawing.text(offset(at(point), [0.0, 9.0]), Middle, TEXT, Ink::Text, &text);
-    }
-    drawing.text([700.0, 60.0], Start, SMALL, Ink::Text, "signs of (α β γ)");
-    drawing.text([700.0, 92.0], Start, SMALL, Ink::Color(0), "β = 0.25, 0.5, 0.75");
-    drawing.text([700.0, 124.0], Start, SMALL, Ink::Color(1), "γ = 0.25, 0.5, 0.75");
-    Ok(drawing.svg())
-}
+use raykata_cli::svg::{Drawing, End, Ink, SMALL, Start, TEXT, View, offset};
 
 /// Two boxes that overlap, and the steps of a search for the closest hit.
 pub fn traversal_order(kit: &dyn Kit) -> Result<String> {

@@ -1,12 +1,13 @@
 //! Diagrams of acceleration structures: the steps of a ray through them, and the costs of cuts.
 
+use crate::Touch;
+use crate::svg::{Drawing, Ink, Middle, SMALL, Start, TEXT, View};
 use anyhow::Result;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsAnswer, CellsQuery, GridQuery, KdQuery, Kit};
 use raykata::partition::{KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
-use raykata_cli::svg::{Drawing, Ink, Middle, SMALL, Start, TEXT, View};
 
 /// Boxes in the plane, in a square of 8 by 5 units.
 const BOXES: [[f32; 4]; 11] = [
@@ -29,13 +30,18 @@ pub fn boxes() -> Vec<Aabb> {
 }
 
 /// The ray of the diagrams, and the `t` at which it enters each box.
-fn ray_and_hits(kit: &dyn Kit) -> (Ray, Vec<f32>) {
-    let ray = Ray::new(vec3(-0.6, 1.35, 0.5), vec3(1.0, 0.29, 0.0));
+fn ray_and_hits(kit: &dyn Kit, touch: &mut Touch) -> (Ray, Vec<f32>) {
+    let names = ["origin of the ray", "end of the ray"];
+    let [from, to] = names.map(|name| touch.point(VIEW, name, [-0.9, -0.2], [8.6, 5.3]).with_z(0.5));
+    let ray = Ray::new(from, (to - from) / END);
     let queries: Vec<_> = boxes().into_iter().map(|bounds| raykata::kit::SlabQuery { ray, bounds }).collect();
     let hits =
         kit.slab(&queries).into_iter().map(|hit| hit.map_or(f32::INFINITY, |(enter, _)| enter)).collect();
     (ray, hits)
 }
+
+/// The `t` at the end of a ray that hits nothing.
+const END: f32 = 9.2;
 
 const VIEW: View = View { origin: [100.0, 560.0], scale: 104.0 };
 
@@ -51,7 +57,7 @@ fn draw_search(drawing: &mut Drawing, ray: &Ray, answer: &CellsAnswer) {
         drawing.rectangle(at(bounds.min), at(bounds.max), ink, if tested { 0.55 } else { 0.35 });
         drawing.frame(at(bounds.min), at(bounds.max), ink.pen(2.0));
     }
-    let end = answer.hit.map_or(9.2, |hit| hit.t);
+    let end = answer.hit.map_or(END, |hit| hit.t);
     drawing.arrow(at(ray.origin), at(ray.at(end)), Ink::Text.pen(3.5));
     if answer.hit.is_some() {
         drawing.dot(at(ray.at(end)), 9.0, Ink::Text);
@@ -66,9 +72,11 @@ fn draw_visit(drawing: &mut Drawing, bounds: &Aabb, step: usize) {
 }
 
 /// A ray through a uniform grid: the cells that it visits, numbered, up to the first hit.
-pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
-    let (ray, hits) = ray_and_hits(kit);
-    let query = GridQuery { bounds: boxes(), resolution: UVec3::new(8, 5, 1) };
+pub fn draw_grid(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
+    let (ray, hits) = ray_and_hits(kit, touch);
+    let columns = touch.whole(4, 1, 16);
+    let resolution = UVec3::new(columns, (5 * columns).div_ceil(8), 1);
+    let query = GridQuery { bounds: boxes(), resolution };
     let grid = kit.grid_build(&[query]).remove(0);
     let answer = kit.grid_search(&[CellsQuery { cells: grid.clone(), ray, hits }]).remove(0);
 
@@ -86,19 +94,24 @@ pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
         }
     }
     draw_search(&mut drawing, &ray, &answer);
-    caption(&mut drawing, "cells", &answer);
+    let text = format!("{} cells visited, boxes tested: {}", answer.visits.len(), answer.tests.len());
+    drawing.text([100.0, 604.0], Start, TEXT, Ink::Text, &text);
+    show(touch, "cells visited", answer.visits.len(), &answer);
     Ok(drawing.svg())
 }
 
-fn caption(drawing: &mut Drawing, what: &str, answer: &CellsAnswer) {
-    let text = format!("{} {what} visited, boxes tested: {}", answer.visits.len(), answer.tests.len());
-    drawing.text([100.0, 604.0], Start, TEXT, Ink::Text, &text);
+/// Shows what a search cost, and its hit.
+fn show(touch: &mut Touch, what: &str, visits: usize, answer: &CellsAnswer) {
+    touch.value(what, visits);
+    touch.value("boxes tested", format!("{} of {}", answer.tests.len(), BOXES.len()));
+    touch.value("t of the hit", answer.hit.map_or("none".to_owned(), |hit| hit.t.to_string()));
 }
 
 /// A ray through a kd-tree: its leaves in the order of the visits, up to the first hit.
-pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
-    let (ray, hits) = ray_and_hits(kit);
-    let query = KdQuery { bounds: boxes(), heuristics: KdHeuristics::default(), leaf_size: 2 };
+pub fn draw_kd_tree(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
+    let (ray, hits) = ray_and_hits(kit, touch);
+    let leaf_size = touch.whole(4, 1, 11) as usize;
+    let query = KdQuery { bounds: boxes(), heuristics: KdHeuristics::default(), leaf_size };
     let tree = kit.kd_build(&[query]).remove(0);
     let answer = kit.kd_search(&[CellsQuery { cells: tree.clone(), ray, hits }]).remove(0);
 
@@ -120,6 +133,7 @@ pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
         answer.tests.len()
     );
     drawing.text([500.0, 588.0], Middle, SMALL, Ink::Text, &text);
+    show(touch, "leaves visited", n_leaves, &answer);
     Ok(drawing.svg())
 }
 

@@ -1,0 +1,133 @@
+//! Figures that a reader can touch. Each is one function of handles: points to drag, and numbers of sliders and choices. With the
+//! handles at their start it draws the still figure of the slides; in a web page the reference, compiled to WebAssembly, draws it
+//! again at each move. So both are the same drawing, from the answers of the same functions.
+//!
+//! `page.html` is the page, with the script that moves the handles. `raykata slides` puts this library into it.
+
+mod barycentric;
+#[cfg(target_family = "wasm")]
+mod exports;
+mod frame;
+mod lens;
+mod mis;
+mod slab;
+mod snell;
+// The drawings of `raykata-cli`, which itself does not run in a page: it starts programs and catches signals.
+#[path = "../../../src/cli/src/svg.rs"]
+pub mod svg;
+pub mod walk;
+
+use anyhow::{Context, Result, ensure};
+use glam::{Vec3, vec3};
+use raykata::kit::Kit;
+use std::fmt::{Display, Write};
+use svg::View;
+
+/// A figure, with its name in the slides and in the page.
+pub struct Figure {
+    /// The name.
+    pub name: &'static str,
+    /// The handles at the start: x and y of each point, then the numbers of the page's inputs.
+    pub start: &'static [f64],
+    /// Draws the figure, and notes handles and values.
+    draw: fn(&dyn Kit, &mut Touch) -> Result<String>,
+}
+
+/// All figures.
+pub const FIGURES: &[Figure] = &[
+    Figure {
+        name: "barycentric",
+        start: &[0.0, 0.0, 3.4, -0.2, 1.3, 2.7, 1.4, 0.8],
+        draw: barycentric::draw,
+    },
+    Figure { name: "slab-intervals", start: &[0.5, 0.3, 7.9, 3.408, 2.0, 0.7, 5.2, 2.7], draw: slab::draw },
+    Figure { name: "snell", start: &snell::START, draw: snell::draw },
+    Figure { name: "thin-lens", start: &[0.0, 1.2, 4.6, 1.3, 7.2, -0.45], draw: lens::draw },
+    Figure { name: "mis-weights", start: &[1.2, 2.2, 2.4, 1.4, -0.8, 1.6], draw: mis::draw },
+    Figure { name: "grid-steps", start: &[-0.6, 1.35, 8.6, 4.018, 8.0], draw: walk::draw_grid },
+    Figure { name: "kd-traversal", start: &[-0.6, 1.35, 8.6, 4.018, 2.0], draw: walk::draw_kd_tree },
+    Figure { name: "live-frame", start: &[1.0, 0.0, 0.0, 4.0, 2.0, 5.0], draw: frame::draw },
+];
+
+/// What a figure reads from its handles, and what it shows beside its drawing.
+pub struct Touch {
+    handles: Vec<f64>,
+    is_still: bool,
+    points: Vec<(View, &'static str)>,
+    values: String,
+}
+
+impl Touch {
+    /// The next point, which stays between two corners; its name is read aloud. `view` maps it to the drawing.
+    fn point(&mut self, view: View, name: &'static str, low: [f64; 2], high: [f64; 2]) -> Vec3 {
+        let place = 2 * self.points.len();
+        for axis in 0..2 {
+            self.handles[place + axis] = self.handles[place + axis].clamp(low[axis], high[axis]);
+        }
+        self.points.push((view, name));
+        vec3(self.handles[place] as f32, self.handles[place + 1] as f32, 0.0)
+    }
+
+    /// Moves the handle of the last point to where the figure shows it.
+    fn place_last(&mut self, point: Vec3) {
+        let place = 2 * (self.points.len() - 1);
+        (self.handles[place], self.handles[place + 1]) = (point.x.into(), point.y.into());
+    }
+
+    /// The whole number in this place of the handles, within a range.
+    fn whole(&mut self, place: usize, least: u32, most: u32) -> u32 {
+        self.handles[place] = self.handles[place].round().clamp(least.into(), most.into());
+        self.handles[place] as u32
+    }
+
+    /// Shows a value below the drawing. The text of an `f32` has as many digits as it takes to distinguish it from others.
+    fn value(&mut self, name: &str, value: impl Display) {
+        let _ = write!(self.values, "<dt>{name}</dt><dd>{value}</dd>");
+    }
+}
+
+/// The still figure of this name, as an SVG file; `None` if it cannot be touched.
+pub fn still(kit: &dyn Kit, name: &str) -> Option<Result<String>> {
+    let figure = FIGURES.iter().find(|figure| figure.name == name)?;
+    Some(touched(kit, figure, figure.start, true).map(|(svg, _)| svg))
+}
+
+/// The figure of this name as HTML: the drawing with its handles, and the values. The attribute `data-handles` has the handles,
+/// each within its range. Without handles it is drawn as at the start.
+///
+/// # Errors
+///
+/// If there is no such figure, if the handles are others than it has, or if it cannot be drawn with them.
+pub fn html(kit: &dyn Kit, name: &str, handles: &[f64]) -> Result<String> {
+    let figure = FIGURES.iter().find(|figure| figure.name == name);
+    let figure = figure.with_context(|| format!("there is no figure `{name}`"))?;
+    let handles = if handles.is_empty() { figure.start } else { handles };
+    let (svg, touch) = touched(kit, figure, handles, false)?;
+    let numbers: Vec<String> = touch.handles.iter().map(f64::to_string).collect();
+    let mut circles = String::new();
+    for (place, (view, name)) in touch.points.iter().enumerate() {
+        let [x, y] = [touch.handles[2 * place], touch.handles[2 * place + 1]];
+        let ([cx, cy], View { origin, scale }) = (view.at(x, y), *view);
+        let _ = write!(
+            circles,
+            "<circle class=\"handle\" data-place=\"{}\" data-view=\"{} {} {scale}\" cx=\"{cx:.2}\" cy=\"{cy:.2}\" r=\"17\" \
+             tabindex=\"0\" role=\"slider\" aria-label=\"{name}\" aria-valuetext=\"{x:.2}, {y:.2}\"/>",
+            2 * place,
+            origin[0],
+            origin[1]
+        );
+    }
+    let drawing =
+        svg.replace("</svg>", &format!("{circles}</svg>")).replace("role=\"img\"", "role=\"group\"");
+    Ok(format!("<div data-handles=\"{}\">{drawing}<dl>{}</dl></div>", numbers.join(" "), touch.values))
+}
+
+/// Draws a figure with these handles.
+fn touched(kit: &dyn Kit, figure: &Figure, handles: &[f64], is_still: bool) -> Result<(String, Touch)> {
+    let n = figure.start.len();
+    let are_right = handles.len() == n && handles.iter().all(|handle| handle.is_finite());
+    ensure!(are_right, "`{}` has {n} handles, all finite; there are {handles:?}", figure.name);
+    let mut touch = Touch { handles: handles.to_vec(), is_still, points: Vec::new(), values: String::new() };
+    let svg = (figure.draw)(kit, &mut touch)?;
+    Ok((svg, touch))
+}
