@@ -48,12 +48,15 @@ pub fn draw(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
     };
     // Render the frame with the accuracy of the handles.
     let (triangle_method, precision) = TESTS[touch.whole(0, 0, 2) as usize];
+    // Without a structure, a sample per pixel takes a second.
+    let accelerator = STRUCTURES[touch.whole(2, 0, 6) as usize];
+    let most_samples = if accelerator == Accelerator::BruteForce { 1 } else { 16 };
     let quality = Quality {
         triangle_method,
         precision,
         ray_offset: OFFSETS[touch.whole(1, 0, 5) as usize],
-        accelerator: STRUCTURES[touch.whole(2, 0, 6) as usize],
-        samples_per_pixel: touch.whole(3, 1, 16),
+        accelerator,
+        samples_per_pixel: touch.whole(3, 1, most_samples),
         max_depth: touch.whole(4, 0, 8),
         ..Quality::default()
     };
@@ -73,7 +76,7 @@ pub fn draw(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
 
     let counts = made.counts;
     touch.value("rays", counts.rays());
-    touch.value("primary rays without a hit", counts.primary - counts.hits);
+    touch.value("rays that leave the scene", counts.rays() - counts.shadow - counts.hits);
     touch.value("box tests", counts.box_tests);
     touch.value("tests of primitives", counts.primitive_tests);
     touch.value("shadow acne, light leaks", format!("{}, {}", counts.shadow_acne, counts.light_leaks));

@@ -46,7 +46,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { name: "mis-weights", start: &[1.2, 2.2, 2.4, 1.4, -0.8, 1.6], draw: mis::draw },
     Figure { name: "grid-steps", start: &[-0.6, 1.35, 8.6, 4.018, 8.0], draw: walk::draw_grid },
     Figure { name: "kd-traversal", start: &[-0.6, 1.35, 8.6, 4.018, 2.0], draw: walk::draw_kd_tree },
-    Figure { name: "live-frame", start: &[1.0, 0.0, 0.0, 4.0, 2.0, 5.0], draw: frame::draw },
+    Figure { name: "live-frame", start: &[1.0, 0.0, 0.0, 4.0, 5.0], draw: frame::draw },
 ];
 
 /// What a figure reads from its handles, and what it shows beside its drawing.

@@ -1,0 +1,96 @@
+//! The page of the figures that a reader can touch, for `raykata slides`.
+//!
+//! `slides/touch` draws them. It is compiled to WebAssembly and put into the page, so that the page works from a folder and
+//! offline. Without the target of the compiler, the page shows the still figures.
+
+use crate::html::base64;
+use crate::kits::run_build;
+use crate::report::write_file;
+use anyhow::{Context, Result};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// Writes `touch.html` to the folder of the decks, and returns the names of its figures; none if this kit has no such figures.
+pub fn write_page(root: &Path, out: &Path) -> Result<Vec<String>> {
+    let template = root.join("slides/touch/page.html");
+    if !template.is_file() {
+        return Ok(Vec::new());
+    }
+    let page =
+        fs::read_to_string(&template).with_context(|| format!("cannot read {}", template.display()))?;
+    // Put the library into the page.
+    let library = match library(root)? {
+        Some(file) => fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?,
+        None => Vec::new(),
+    };
+    let place = "type=\"text/plain\">";
+    write_file(
+        &out.join("touch.html"),
+        page.replace(place, &format!("{place}{}", base64(&library))).as_bytes(),
+    )?;
+    let sections = page.split("<section id=\"").skip(1);
+    Ok(sections.filter_map(|rest| Some(rest.split_once('"')?.0.to_owned())).collect())
+}
+
+/// Builds the library, and returns its file; `None` if the compiler has no such target or cannot build it. A line says so.
+fn library(root: &Path) -> Result<Option<PathBuf>> {
+    let folder = Command::new("rustc")
+        .args(["--print", "target-libdir", "--target", TARGET])
+        .current_dir(root)
+        .output();
+    let is_installed =
+        folder.is_ok_and(|folder| Path::new(String::from_utf8_lossy(&folder.stdout).trim()).is_dir());
+    if !is_installed {
+        eprintln!(
+            "figures cannot be touched without WebAssembly, and stay still: `rustup target add {TARGET}` installs it"
+        );
+        return Ok(None);
+    }
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(root).args([
+        "rustc",
+        "--package",
+        "touch",
+        "--profile",
+        "touch",
+        "--crate-type",
+        "cdylib",
+    ]);
+    cargo.args(["--target", TARGET]);
+    match run_build(cargo, "the library of figures that can be touched") {
+        Ok(built) => built.path("touch").map(Some),
+        Err(error) => {
+            eprintln!("figures cannot be touched, and stay still: {error}");
+            Ok(None)
+        }
+    }
+}
+
+/// A page of a deck in which each figure that can be touched is a link to it.
+pub fn with_links(deck: &str, names: &[String]) -> String {
+    let start = "<img src=\"figures/";
+    let mut parts = deck.split(start);
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| {
+        let name = part.split_once(".svg\"").map_or("", |(name, _)| name);
+        match part.split_once('>').filter(|_| names.iter().any(|known| known == name)) {
+            Some((image, rest)) => text + &format!("<a href=\"touch.html#{name}\">{start}{image}></a>{rest}"),
+            None => text + start + part,
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_that_can_be_touched_are_links() {
+        let deck = "<p><img src=\"figures/a.svg\" alt=\"\" /></p><p><img src=\"figures/b.svg\" /></p>";
+        let linked = "<p><a href=\"touch.html#a\"><img src=\"figures/a.svg\" alt=\"\" /></a></p>";
+        assert_eq!(with_links(deck, &["a".into()]), deck.replacen(&deck[..46], linked, 1));
+    }
+}
