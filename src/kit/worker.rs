@@ -48,9 +48,6 @@ impl Thread {
 
     /// The exact time that the calling thread has spent on a processor. It sleeps for a moment, which is such a switch.
     pub fn processor_time() -> Option<Duration> {
-        if cfg!(target_family = "wasm") {
-            return None;
-        }
         std::thread::sleep(Duration::from_nanos(1));
         Thread::current().ran()
     }

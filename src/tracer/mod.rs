@@ -117,12 +117,17 @@ fn render<F: StudentFunctions>(
     written: &Written<F>,
     watch: &dyn Watch,
 ) -> Option<Rendering> {
+    // In a web page the standard library has no clock, and all times are 0.
+    let clock = || (!cfg!(target_family = "wasm")).then(Instant::now);
+    let seconds_since =
+        |started: Option<Instant>| started.map_or(0.0, |started| started.elapsed().as_secs_f64());
     // Build the acceleration structures.
     let started = clock();
     let frame = Frame::new(job, written, watch);
     let build_seconds = seconds_since(started) + frame.earlier_seconds;
     // Render the pixels, with or without counts.
-    let (started, ran_before) = (clock(), Thread::processor_time());
+    let started = clock();
+    let ran_before = started.and_then(|_| Thread::processor_time());
     let (film, counts) =
         if job.count { pixels::<F, Counts>(&frame, watch)? } else { pixels::<F, Uncounted>(&frame, watch)? };
     let render_seconds = seconds_since(started);
@@ -140,15 +145,6 @@ fn render<F: StudentFunctions>(
         processor_seconds: processor_time.map(|time| time.as_secs_f64()),
         notes: [&frame.plan.notes, &frame.intersector.notes, &scene.world.notes].map(Vec::as_slice).concat(),
     })
-}
-
-/// The time now; `None` in a web page, where the standard library has no clock.
-fn clock() -> Option<Instant> {
-    (!cfg!(target_family = "wasm")).then(Instant::now)
-}
-
-fn seconds_since(started: Option<Instant>) -> f64 {
-    started.map_or(0.0, |started| started.elapsed().as_secs_f64())
 }
 
 /// Renders all pixels of a frame; `None` if `watch` cancelled it.

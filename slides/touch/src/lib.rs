@@ -29,7 +29,7 @@ pub struct Figure {
     pub name: &'static str,
     /// The handles at the start: x and y of each point, then the numbers of the page's inputs.
     pub start: &'static [f64],
-    /// Draws the figure, and notes handles and values.
+    /// Draws the figure, and notes points and values.
     draw: fn(&dyn Kit, &mut Touch) -> Result<String>,
 }
 
@@ -43,13 +43,14 @@ pub const FIGURES: &[Figure] = &[
     Figure { name: "slab-intervals", start: &[0.5, 0.3, 7.9, 3.408, 2.0, 0.7, 5.2, 2.7], draw: slab::draw },
     Figure { name: "snell", start: &snell::START, draw: snell::draw },
     Figure { name: "thin-lens", start: &[0.0, 1.2, 4.6, 1.3, 7.2, -0.45], draw: lens::draw },
-    Figure { name: "mis-weights", start: &[1.2, 2.2, 2.4, 1.4, -0.8, 1.6], draw: mis::draw },
+    Figure { name: "mis-weights", start: &[-1.5, 1.3, 1.9, 1.1, 0.9, 2.2], draw: mis::draw },
     Figure { name: "grid-steps", start: &[-0.6, 1.35, 8.6, 4.018, 8.0], draw: walk::draw_grid },
     Figure { name: "kd-traversal", start: &[-0.6, 1.35, 8.6, 4.018, 2.0], draw: walk::draw_kd_tree },
-    Figure { name: "live-frame", start: &[1.0, 0.0, 0.0, 4.0, 5.0], draw: frame::draw },
+    Figure { name: "live-frame", start: &[6.0, 0.0, 0.0, 5.0, 4.0, 5.0], draw: frame::draw },
 ];
 
 /// What a figure reads from its handles, and what it shows beside its drawing.
+#[derive(Default)]
 pub struct Touch {
     handles: Vec<f64>,
     is_still: bool,
@@ -82,52 +83,40 @@ impl Touch {
 
     /// Shows a value below the drawing. The text of an `f32` has as many digits as it takes to distinguish it from others.
     fn value(&mut self, name: &str, value: impl Display) {
-        let _ = write!(self.values, "<dt>{name}</dt><dd>{value}</dd>");
+        let _ = write!(self.values, "<div><dt>{name}</dt><dd>{value}</dd></div>");
     }
 }
 
 /// The still figure of this name, as an SVG file; `None` if it cannot be touched.
 pub fn still(kit: &dyn Kit, name: &str) -> Option<Result<String>> {
     let figure = FIGURES.iter().find(|figure| figure.name == name)?;
-    Some(touched(kit, figure, figure.start, true).map(|(svg, _)| svg))
+    let mut touch = Touch { handles: figure.start.to_vec(), is_still: true, ..Touch::default() };
+    Some((figure.draw)(kit, &mut touch))
 }
 
-/// The figure of this name as HTML: the drawing with its handles, and the values. The attribute `data-handles` has the handles,
-/// each within its range. Without handles it is drawn as at the start.
+/// The answer to a question of the page, which is the name of a figure and its handles, or only the name for those at the start.
+/// It is HTML: the drawing, and the values. Its attributes have the handles, each within its range, and for each point the origin
+/// and the scale of its view, and its name.
 ///
 /// # Errors
 ///
 /// If there is no such figure, if the handles are others than it has, or if it cannot be drawn with them.
-pub fn html(kit: &dyn Kit, name: &str, handles: &[f64]) -> Result<String> {
+pub fn answer(kit: &dyn Kit, question: &str) -> Result<String> {
+    let mut words = question.split(' ');
+    let name = words.next().unwrap_or_default();
     let figure = FIGURES.iter().find(|figure| figure.name == name);
     let figure = figure.with_context(|| format!("there is no figure `{name}`"))?;
-    let handles = if handles.is_empty() { figure.start } else { handles };
-    let (svg, touch) = touched(kit, figure, handles, false)?;
-    let numbers: Vec<String> = touch.handles.iter().map(f64::to_string).collect();
-    let mut circles = String::new();
-    for (place, (view, name)) in touch.points.iter().enumerate() {
-        let [x, y] = [touch.handles[2 * place], touch.handles[2 * place + 1]];
-        let ([cx, cy], View { origin, scale }) = (view.at(x, y), *view);
-        let _ = write!(
-            circles,
-            "<circle class=\"handle\" data-place=\"{}\" data-view=\"{} {} {scale}\" cx=\"{cx:.2}\" cy=\"{cy:.2}\" r=\"17\" \
-             tabindex=\"0\" role=\"slider\" aria-label=\"{name}\" aria-valuetext=\"{x:.2}, {y:.2}\"/>",
-            2 * place,
-            origin[0],
-            origin[1]
-        );
+    let mut handles: Vec<f64> = words.map(|word| word.parse().unwrap_or(f64::NAN)).collect();
+    if handles.is_empty() {
+        handles = figure.start.to_vec();
     }
-    let drawing =
-        svg.replace("</svg>", &format!("{circles}</svg>")).replace("role=\"img\"", "role=\"group\"");
-    Ok(format!("<div data-handles=\"{}\">{drawing}<dl>{}</dl></div>", numbers.join(" "), touch.values))
-}
-
-/// Draws a figure with these handles.
-fn touched(kit: &dyn Kit, figure: &Figure, handles: &[f64], is_still: bool) -> Result<(String, Touch)> {
-    let n = figure.start.len();
-    let are_right = handles.len() == n && handles.iter().all(|handle| handle.is_finite());
-    ensure!(are_right, "`{}` has {n} handles, all finite; there are {handles:?}", figure.name);
-    let mut touch = Touch { handles: handles.to_vec(), is_still, points: Vec::new(), values: String::new() };
-    let svg = (figure.draw)(kit, &mut touch)?;
-    Ok((svg, touch))
+    let are_right = handles.len() == figure.start.len() && handles.iter().all(|handle| handle.is_finite());
+    ensure!(are_right, "`{question}` needs {} finite numbers after the name", figure.start.len());
+    let mut touch = Touch { handles, ..Touch::default() };
+    let drawing = (figure.draw)(kit, &mut touch)?;
+    let numbers: Vec<String> = touch.handles.iter().map(f64::to_string).collect();
+    let point = |(View { origin: [x, y], scale }, name): &(View, &str)| format!("{x} {y} {scale} {name}");
+    let points: Vec<String> = touch.points.iter().map(point).collect();
+    let (numbers, points, values) = (numbers.join(" "), points.join(","), touch.values);
+    Ok(format!("<div data-handles=\"{numbers}\" data-points=\"{points}\">{drawing}<dl>{values}</dl></div>"))
 }

@@ -27,15 +27,16 @@ pub fn draw(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
     // Draw the ring: the weight of the light from the inside, the other one outside of it.
     let mut drawing = Drawing::new("The weights of two densities, in each direction", 1000.0, 560.0);
     let (light, cosine) = (Ink::Color(3), Ink::Color(0));
-    let [inside, outside] = [0.62, 1.0];
-    for degrees in steps(1.0, 179.0, 89) {
+    let on_circle = |degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
-        let direction = vec3(cos as f32, sin as f32, 0.0);
-        let limit = inside + (outside - inside) * ask(direction)[2];
-        for (ends, ink) in [([inside, limit], light), ([limit, outside], cosine)] {
-            if ends[0] < ends[1] {
-                drawing.line(at(ends[0] * direction), at(ends[1] * direction), ink.pen(5.0));
-            }
+        vec3(cos as f32, sin as f32, 0.0)
+    };
+    for degrees in steps(1.0, 179.0, 89) {
+        let limit = 0.5 + 0.4 * ask(on_circle(degrees))[2];
+        let sides = [degrees - 1.0, degrees + 1.0].map(on_circle);
+        for ([inside, outside], ink) in [([0.5, limit], light), ([limit, 0.9], cosine)] {
+            let corners = [inside * sides[0], outside * sides[0], outside * sides[1], inside * sides[1]];
+            drawing.area(&corners.map(at), ink, 0.8);
         }
     }
     // Draw surface, light and direction.
@@ -44,7 +45,7 @@ pub fn draw(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
     drawing.line(at(from), at(to), light.pen(9.0));
     drawing.text(offset(at(from), [0.0, -24.0]), Middle, TEXT, light, "light");
     let direction = aim.normalize();
-    drawing.arrow(view.origin, at(1.25 * direction), Ink::Text.pen(3.0));
+    drawing.arrow(view.origin, at(aim), Ink::Text.pen(3.0));
     let [by_light, by_cosine, of_light, of_cosine] = ask(direction);
     for (anchor, x, ink, name, pdf, weight) in [
         (Start, 20.0, cosine, "cosine", by_cosine, of_cosine),

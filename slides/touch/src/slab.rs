@@ -62,10 +62,12 @@ pub fn draw(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
         drawing.line([axis(0.0), y], [axis(7.8), y], Ink::Faint.pen(1.5));
         let shown = interval.map_or("missed".to_owned(), |(enter, leave)| format!("{enter} to {leave}"));
         touch.value(name, shown);
-        let Some((enter, leave)) = *interval else { continue };
+        let Some((enter, leave)) = interval.filter(|(enter, _)| *enter < 7.8) else { continue };
         drawing.line([axis(enter), y], [axis(leave), y], ink.pen(14.0));
         drawing.text([axis(enter), y - 14.0], Middle, SMALL, ink, &format!("{enter:.2}"));
-        drawing.text([axis(leave), y - 14.0], Middle, SMALL, ink, &format!("{leave:.2}"));
+        if leave < 7.8 {
+            drawing.text([axis(leave), y - 14.0], Middle, SMALL, ink, &format!("{leave:.2}"));
+        }
     }
     drawing.text([axis(7.8) + 8.0, 559.0], Start, TEXT, Ink::Text, "t");
     for t in intervals[2].iter().flat_map(|(enter, leave)| [*enter, *leave]) {

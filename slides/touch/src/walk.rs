@@ -50,12 +50,15 @@ fn at(point: Vec3) -> [f64; 2] {
 }
 
 /// Draws boxes and ray; the boxes that the search tested are filled darker.
-fn draw_search(drawing: &mut Drawing, ray: &Ray, answer: &CellsAnswer) {
+fn draw_search(drawing: &mut Drawing, ray: &Ray, answer: &CellsAnswer, touch: &Touch) {
     for (index, bounds) in (0..).zip(boxes()) {
         let tested = answer.tests.contains(&index);
         let ink = if tested { Ink::Color(1) } else { Ink::Faint };
         drawing.rectangle(at(bounds.min), at(bounds.max), ink, if tested { 0.55 } else { 0.35 });
         drawing.frame(at(bounds.min), at(bounds.max), ink.pen(2.0));
+    }
+    if !touch.is_still {
+        drawing.line(at(ray.origin), at(ray.at(END)), Ink::Text.pen(1.5).dashed());
     }
     let end = answer.hit.map_or(END, |hit| hit.t);
     drawing.arrow(at(ray.origin), at(ray.at(end)), Ink::Text.pen(3.5));
@@ -93,7 +96,7 @@ pub fn draw_grid(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
             drawing.line(at(end(grid.bounds.min)), at(end(grid.bounds.max)), Ink::Faint.pen(1.5));
         }
     }
-    draw_search(&mut drawing, &ray, &answer);
+    draw_search(&mut drawing, &ray, &answer, touch);
     let text = format!("{} cells visited, boxes tested: {}", answer.visits.len(), answer.tests.len());
     drawing.text([100.0, 604.0], Start, TEXT, Ink::Text, &text);
     show(touch, "cells visited", answer.visits.len(), &answer);
@@ -124,7 +127,7 @@ pub fn draw_kd_tree(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
     for (_, cell) in &cells {
         drawing.frame(at(cell.min), at(cell.max), Ink::Faint.pen(2.0));
     }
-    draw_search(&mut drawing, &ray, &answer);
+    draw_search(&mut drawing, &ray, &answer, touch);
     let n_leaves = answer.visits.iter().filter(|&node| cells.iter().any(|(leaf, _)| leaf == node)).count();
     let text = format!(
         "{n_leaves} of {} leaves and {} inner nodes visited, {} boxes tested",

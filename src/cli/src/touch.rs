@@ -6,67 +6,40 @@
 use crate::html::base64;
 use crate::kits::run_build;
 use crate::report::write_file;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Writes `touch.html` to the folder of the decks, and returns the names of its figures; none if this kit has no such figures.
 pub fn write_page(root: &Path, out: &Path) -> Result<Vec<String>> {
-    let template = root.join("slides/touch/page.html");
-    if !template.is_file() {
-        return Ok(Vec::new());
-    }
-    let page =
-        fs::read_to_string(&template).with_context(|| format!("cannot read {}", template.display()))?;
-    // Put the library into the page.
-    let library = match library(root)? {
-        Some(file) => fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?,
-        None => Vec::new(),
-    };
+    let Ok(page) = fs::read_to_string(root.join("slides/touch/page.html")) else { return Ok(Vec::new()) };
+    let library = library(root).unwrap_or_else(|problem| {
+        eprintln!("figures cannot be touched, and stay still: {problem:#}");
+        Vec::new()
+    });
     let place = "type=\"text/plain\">";
-    write_file(
-        &out.join("touch.html"),
-        page.replace(place, &format!("{place}{}", base64(&library))).as_bytes(),
-    )?;
+    let whole = page.replace(place, &format!("{place}{}", base64(&library)));
+    write_file(&out.join("touch.html"), whole.as_bytes())?;
     let sections = page.split("<section id=\"").skip(1);
     Ok(sections.filter_map(|rest| Some(rest.split_once('"')?.0.to_owned())).collect())
 }
 
-/// Builds the library, and returns its file; `None` if the compiler has no such target or cannot build it. A line says so.
-fn library(root: &Path) -> Result<Option<PathBuf>> {
-    let folder = Command::new("rustc")
-        .args(["--print", "target-libdir", "--target", TARGET])
-        .current_dir(root)
-        .output();
-    let is_installed =
-        folder.is_ok_and(|folder| Path::new(String::from_utf8_lossy(&folder.stdout).trim()).is_dir());
-    if !is_installed {
-        eprintln!(
-            "figures cannot be touched without WebAssembly, and stay still: `rustup target add {TARGET}` installs it"
-        );
-        return Ok(None);
+/// Builds the library as WebAssembly.
+fn library(root: &Path) -> Result<Vec<u8>> {
+    let ask = ["--print", "target-libdir", "--target", TARGET];
+    let folder =
+        Command::new("rustc").args(ask).current_dir(root).output().context("rustc cannot be started")?;
+    if !Path::new(String::from_utf8_lossy(&folder.stdout).trim()).is_dir() {
+        bail!("`rustup target add {TARGET}` installs what they need");
     }
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(root).args([
-        "rustc",
-        "--package",
-        "touch",
-        "--profile",
-        "touch",
-        "--crate-type",
-        "cdylib",
-    ]);
-    cargo.args(["--target", TARGET]);
-    match run_build(cargo, "the library of figures that can be touched") {
-        Ok(built) => built.path("touch").map(Some),
-        Err(error) => {
-            eprintln!("figures cannot be touched, and stay still: {error}");
-            Ok(None)
-        }
-    }
+    cargo.current_dir(root).args(["rustc", "--package", "touch", "--profile", "touch", "--target", TARGET]);
+    cargo.args(["--crate-type", "cdylib"]);
+    let file = run_build(cargo, "the library of figures that can be touched")?.path("touch")?;
+    fs::read(&file).with_context(|| format!("cannot read {}", file.display()))
 }
 
 /// A page of a deck in which each figure that can be touched is a link to it.
