@@ -16,7 +16,7 @@ fn compare(browser: &mut Browser, expression: &str) -> BTreeSet<String> {
     for [question, shown] in pairs {
         let expected = touch::answer(&*solutions::kit(), question).unwrap();
         let first = shown.split('<').zip(expected.split('<')).find(|(a, b)| a != b);
-        assert!(*shown == expected, "{question}: the page shows {first:?}, first what the page shows");
+        assert!(*shown == expected, "{question}: page and kit differ in {first:?}");
     }
     pairs.iter().map(|[question, _]| (*question).to_owned()).collect()
 }

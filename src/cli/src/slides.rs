@@ -108,7 +108,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     for deck in &chosen {
         let file = out.join(format!("{}.html", deck.name));
         let html = fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
-        write_file(&file, touch::with_links(&html, &names).as_bytes())?;
+        write_file(&file, touch::with_links(html, &names).as_bytes())?;
     }
     let index = out.join("index.html");
     write_file(&index, page(&chosen, pdf, !names.is_empty()).as_bytes())?;
