@@ -2,8 +2,8 @@
 //! RAYKATA make|check DECK NAME…`. `raykata figures` starts it.
 //!
 //! `slides/figures.toml` lists them, each with the command that makes it. Diagrams are drawn here from the answers of a kit's own
-//! functions, so a figure cannot contradict the code. [`DIAGRAMS`], [`FROM_SCENES`] and [`touch::FIGURES`] list them by name. Other commands of
-//! `raykata` make pictures and plots.
+//! functions, so a figure cannot contradict the code. [`DIAGRAMS`], [`FROM_SCENES`] and [`touch::FIGURES`] list them by name. Other
+//! commands of `raykata` make pictures and plots.
 
 mod acne;
 mod camera_frame;

@@ -119,8 +119,7 @@ fn render<F: StudentFunctions>(
 ) -> Option<Rendering> {
     // In a web page the standard library has no clock, and all times are 0.
     let clock = || (!cfg!(target_family = "wasm")).then(Instant::now);
-    let seconds_since =
-        |started: Option<Instant>| started.map_or(0.0, |started| started.elapsed().as_secs_f64());
+    let seconds_since = |time: Option<Instant>| time.map_or(0.0, |time| time.elapsed().as_secs_f64());
     // Build the acceleration structures.
     let started = clock();
     let frame = Frame::new(job, written, watch);

@@ -5,7 +5,6 @@ use anyhow::{Context, Result};
 use raykata::film::Film;
 use raykata::frame::Unwatched;
 use raykata::kit::{Kit, RenderJob, Rendering, View};
-
 use raykata::scene::{Accelerator, Precision, Quality, Scene, TriangleMethod, load};
 use std::cell::RefCell;
 use std::path::Path;
@@ -15,9 +14,8 @@ thread_local! {
     static BEST: RefCell<Option<Vec<u8>>> = const { RefCell::new(None) };
 }
 
-/// The pixels of the frame and of the reference, as hexadecimal numbers. The handles are the numbers
-/// of triangle test, precision and structure in the lists of their names, with the offset of rays before the structure, then the
-/// samples per pixel and the depth.
+/// The pixels of the frame and of the reference, as hexadecimal numbers. The handles are the places of triangle test and precision
+/// in the lists of their names, the offset of rays, the place of the structure, the samples per pixel and the depth.
 pub fn draw(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
     let scene = load::parse(Path::new("frame.toml"), include_str!("frame.toml"))?;
     let frame = |quality: Quality| -> Result<Rendering> {

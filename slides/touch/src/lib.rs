@@ -4,7 +4,6 @@
 //!
 //! `page.html` is the page, with the script that moves the handles. `raykata slides` puts this library into it.
 
-mod barycentric;
 #[cfg(target_family = "wasm")]
 mod exports;
 mod frame;
@@ -12,6 +11,7 @@ mod lens;
 mod mis;
 mod slab;
 mod snell;
+mod triangle;
 // The drawings of `raykata-cli`, which itself does not run in a page: it starts programs and catches signals.
 #[path = "../../../src/cli/src/svg.rs"]
 pub mod svg;
@@ -35,11 +35,7 @@ pub struct Figure {
 
 /// All figures.
 pub const FIGURES: &[Figure] = &[
-    Figure {
-        name: "barycentric",
-        start: &[0.0, 0.0, 3.4, -0.2, 1.3, 2.7, 1.4, 0.8],
-        draw: barycentric::draw,
-    },
+    Figure { name: "barycentric", start: &[0.0, 0.0, 3.4, -0.2, 1.3, 2.7, 1.4, 0.8], draw: triangle::draw },
     Figure { name: "slab-intervals", start: &[0.5, 0.3, 7.9, 3.408, 2.0, 0.7, 5.2, 2.7], draw: slab::draw },
     Figure { name: "snell", start: &snell::START, draw: snell::draw },
     Figure { name: "thin-lens", start: &[0.0, 1.2, 4.6, 1.3, 7.2, -0.45], draw: lens::draw },
