@@ -48,6 +48,7 @@ pub fn draw(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
     let counts = made.counts;
     touch.value("rays", counts.rays());
     touch.value("rays that leave the scene", counts.rays() - counts.shadow - counts.hits);
+    touch.value("node visits", counts.node_visits);
     touch.value("box tests", counts.box_tests);
     touch.value("tests of primitives", counts.primitive_tests);
     touch.value("shadow acne, light leaks", format!("{}, {}", counts.shadow_acne, counts.light_leaks));
