@@ -1,6 +1,5 @@
 //! Diagrams of partitions of space: three searches of an octree, and sheets across a diagonal in two trees.
 
-use crate::structures::{boxes, hits, leaves};
 use anyhow::Result;
 use glam::{DVec2, DVec3, Vec3, dvec2, vec3};
 use raykata::aabb::Aabb;
@@ -8,6 +7,7 @@ use raykata::kit::{BspQuery, CellsAnswer, CellsQuery, KdQuery, Kit, OctreeQuery}
 use raykata::partition::{Bsp, BspNode, KdHeuristics, Octree, OctreeNode};
 use raykata::ray::Ray;
 use raykata_cli::svg::{Drawing, Ink, LARGE, Middle, Point, SMALL, Start, View, plane};
+use touch::walk::{boxes, hits, leaves};
 
 /// A node of the lower half of an octree, with its cell, its depth and its position in the row of this depth.
 struct Node {

@@ -1,6 +1,5 @@
 //! Diagrams of searches: down a hierarchy with two children per node, and in a node with eight.
 
-use crate::structures::{CAPTION, at, boxes, draw_boxes, draw_hit, draw_tested, hits};
 use anyhow::{Result, ensure};
 use glam::vec3;
 use raykata::aabb::Aabb;
@@ -9,7 +8,8 @@ use raykata::kit::{BuildQuery, Kit, SearchQuery, SlabQuery, Table, WideBoxesQuer
 use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::wide::{Child, WideNode};
-use raykata_cli::svg::{Drawing, Ink, Middle, SMALL, Start, TEXT, plane};
+use touch::svg::{Drawing, Ink, Middle, SMALL, Start, TEXT, plane};
+use touch::walk::{CAPTION, at, boxes, draw_boxes, draw_hit, draw_tested, hits};
 
 /// A hierarchy over the boxes, level by level, and the search for the closest hit of a ray in it.
 pub fn bvh_descent(kit: &dyn Kit) -> Result<String> {
@@ -67,7 +67,7 @@ pub fn bvh_descent(kit: &dyn Kit) -> Result<String> {
     let answer = kit.closest_hit(&[SearchQuery { bvh: bvh.clone(), ray, table }]).remove(0);
     let found = (answer.counts.node_visits, answer.hit.map(|hit| hit.t));
     ensure!(found == (visited, Some(within.t_max)), "`closest_hit` opens and finds {found:?}");
-    draw_hit(&mut drawing, &ray, within.t_max);
+    draw_hit(&mut drawing, &ray, Some(within.t_max));
     let text = format!("{visited} of {} nodes opened, closest hit t = {:.2}", bvh.nodes.len(), within.t_max);
     drawing.text(CAPTION, Start, TEXT, Ink::Text, &text);
     Ok(drawing.svg())

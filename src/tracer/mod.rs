@@ -117,15 +117,19 @@ fn render<F: StudentFunctions>(
     written: &Written<F>,
     watch: &dyn Watch,
 ) -> Option<Rendering> {
+    // In a web page the standard library has no clock, and all times are 0.
+    let clock = || (!cfg!(target_family = "wasm")).then(Instant::now);
+    let seconds_since = |time: Option<Instant>| time.map_or(0.0, |time| time.elapsed().as_secs_f64());
     // Build the acceleration structures.
-    let started = Instant::now();
+    let started = clock();
     let frame = Frame::new(job, written, watch);
-    let build_seconds = started.elapsed().as_secs_f64() + frame.earlier_seconds;
+    let build_seconds = seconds_since(started) + frame.earlier_seconds;
     // Render the pixels, with or without counts.
-    let (started, ran_before) = (Instant::now(), Thread::processor_time());
+    let started = clock();
+    let ran_before = started.and_then(|_| Thread::processor_time());
     let (film, counts) =
         if job.count { pixels::<F, Counts>(&frame, watch)? } else { pixels::<F, Uncounted>(&frame, watch)? };
-    let render_seconds = started.elapsed().as_secs_f64();
+    let render_seconds = seconds_since(started);
     let processor_time = ran_before.and_then(|before| Some(Thread::processor_time()? - before));
     let scene = &frame.intersector.scene;
     Some(Rendering {

@@ -4,3 +4,4 @@ mod built;
 mod deck;
 mod decks;
 mod overflow;
+mod touch;

@@ -192,11 +192,13 @@ pub fn run_build(mut cargo: Command, what: &str) -> Result<BuiltPrograms> {
 pub struct BuiltPrograms(Vec<(String, PathBuf)>);
 
 impl BuiltPrograms {
-    /// Adds the program of a line that cargo writes in the format JSON, if the line is about one.
+    /// Adds the program, or the library of WebAssembly, of a line that cargo writes in the format JSON, if the line is about one.
     pub fn add(&mut self, line: &str) {
         let Ok(message) = serde_json::from_str::<serde_json::Value>(line) else { return };
-        if let (Some(name), Some(path)) = (message["target"]["name"].as_str(), message["executable"].as_str())
-        {
+        let files = message["filenames"].as_array().into_iter().flatten().filter_map(|file| file.as_str());
+        let library = || files.clone().find(|file| file.ends_with(".wasm"));
+        let path = message["executable"].as_str().or_else(library);
+        if let (Some(name), Some(path)) = (message["target"]["name"].as_str(), path) {
             self.0.push((name.to_owned(), path.into()));
         }
     }

@@ -37,6 +37,7 @@ pub mod report;
 pub mod slides;
 pub mod strip;
 pub mod svg;
+pub mod touch;
 pub mod tree;
 pub mod verdicts;
 pub mod worker;

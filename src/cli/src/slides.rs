@@ -6,6 +6,7 @@ use crate::args::{Argument, Given, Opt, Spec, did_you_mean};
 use crate::html::escape;
 use crate::kits::root;
 use crate::report::{make_folder, write_file};
+use crate::touch;
 use anyhow::{Context, Error, Result, bail};
 use std::collections::BTreeMap;
 use std::fs;
@@ -86,7 +87,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
         let text = fs::read_to_string(&from).with_context(|| format!("cannot read {}", from.display()))?;
         write_file(&to, without_names(&text).as_bytes())?;
     }
-    // Build the pages, and an index of them.
+    // Build the pages.
     for is_pdf in [false, true].into_iter().take(1 + usize::from(pdf)) {
         let mut command = Command::new(&marp);
         command
@@ -102,8 +103,15 @@ pub fn run(given: &Given) -> Result<ExitCode> {
             bail!("Marp could not build the slides: its messages are above");
         }
     }
+    // Write the page of the figures that can be touched, link to it, and write an index of the decks.
+    let names = touch::write_page(&root()?, &out)?;
+    for deck in &chosen {
+        let file = out.join(format!("{}.html", deck.name));
+        let html = fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+        write_file(&file, touch::with_links(html, &names).as_bytes())?;
+    }
     let index = out.join("index.html");
-    write_file(&index, page(&chosen, pdf).as_bytes())?;
+    write_file(&index, page(&chosen, pdf, !names.is_empty()).as_bytes())?;
     println!("decks: {}, in {}", chosen.len(), index.display());
     Ok(ExitCode::SUCCESS)
 }
@@ -167,7 +175,7 @@ fn installed(slides: &Path) -> Result<PathBuf> {
 }
 
 /// The page that links to all decks.
-fn page(decks: &[&Deck], pdf: bool) -> String {
+fn page(decks: &[&Deck], pdf: bool, touch: bool) -> String {
     let row = |deck: &&Deck| {
         let minutes = deck.minutes().map_or(String::new(), |minutes| format!("{minutes} min"));
         let pdf = if pdf { format!("<a href=\"{}.pdf\">PDF</a>", deck.name) } else { String::new() };
@@ -177,11 +185,12 @@ fn page(decks: &[&Deck], pdf: bool) -> String {
             escape(deck.title())
         )
     };
+    let touch = if touch { "<p><a href=\"touch.html\">Figures to touch</a></p>\n" } else { "" };
     format!(
         "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\
          <title>Slides</title>\n<style>:root{{color-scheme:light dark}}body{{font:18px/1.6 sans-serif;max-width:40em;margin:2em \
          auto;padding:0 1em}}td{{padding-right:2em}}</style>\n<h1>Slides</h1>\n<p>In a deck, the key P opens the window with the \
-         speaker notes, F fills the screen.</p>\n<table>\n{}</table>\n</html>\n",
+         speaker notes, F fills the screen.</p>\n<table>\n{}</table>\n{touch}</html>\n",
         decks.iter().map(row).collect::<String>()
     )
 }
@@ -195,7 +204,9 @@ mod tests {
         let text = "---\nmarp: true\ntitle: \"Stage 1: rays & shapes\"\nminutes: 60\n---\n\n# Rays\n";
         let deck = deck("stage01".into(), text).unwrap();
         assert_eq!((deck.title(), deck.minutes()), ("Stage 1: rays & shapes", Some(60)));
-        assert!(page(&[&deck], true).contains("<a href=\"stage01.html\">Stage 1: rays &amp; shapes</a>"));
+        assert!(
+            page(&[&deck], true, false).contains("<a href=\"stage01.html\">Stage 1: rays &amp; shapes</a>")
+        );
         assert!(super::deck("README".into(), "# Slides\n").is_none());
         assert_eq!(
             without_names("29<!--=checks 1--> checks\n\n<!-- a note -->\n"),

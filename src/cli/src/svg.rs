@@ -3,6 +3,8 @@
 //! Colours are Paul Tol's, which colour-blind readers can distinguish. Each is given twice, for light and for dark pages:
 //! the file follows the setting of the reader's system.
 
+// The crate `touch` compiles this file, too, from its own folder.
+#[path = "svg/plot.rs"]
 mod plot;
 
 pub use Anchor::{End, Middle, Start};

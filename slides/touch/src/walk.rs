@@ -1,12 +1,13 @@
 //! Diagrams of acceleration structures: the steps of a ray through them.
 
+use crate::Touch;
+use crate::svg::{Drawing, Ink, Middle, Point, SMALL, Start, TEXT, View};
 use anyhow::Result;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
-use raykata::kit::{CellsQuery, GridQuery, KdQuery, Kit, SlabQuery};
+use raykata::kit::{CellsAnswer, CellsQuery, GridQuery, KdQuery, Kit, SlabQuery};
 use raykata::partition::{KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
-use raykata_cli::svg::{Drawing, Ink, Middle, Point, SMALL, Start, TEXT, View};
 
 /// Boxes in the plane, in a square of 8 by 5 units.
 const BOXES: [[f32; 4]; 11] = [
@@ -29,8 +30,10 @@ pub fn boxes() -> Vec<Aabb> {
 }
 
 /// The ray of the diagrams, and the `t` at which it enters each box.
-fn ray_and_hits(kit: &dyn Kit) -> (Ray, Vec<f32>) {
-    let ray = Ray::new(vec3(-0.6, 1.35, 0.5), vec3(1.0, 0.29, 0.0));
+fn ray_and_hits(kit: &dyn Kit, touch: &mut Touch) -> (Ray, Vec<f32>) {
+    let names = ["origin of the ray", "end of the ray"];
+    let [from, to] = names.map(|name| touch.point(VIEW, name, [-0.9, -0.2], [8.6, 5.3]).with_z(0.5));
+    let ray = Ray::new(from, (to - from) / END);
     (ray, hits(kit, ray))
 }
 
@@ -39,6 +42,9 @@ pub fn hits(kit: &dyn Kit, ray: Ray) -> Vec<f32> {
     let queries: Vec<_> = boxes().into_iter().map(|bounds| SlabQuery { ray, bounds }).collect();
     kit.slab(&queries).into_iter().map(|hit| hit.map_or(f32::INFINITY, |(enter, _)| enter)).collect()
 }
+
+/// The `t` at the end of a ray that hits nothing.
+const END: f32 = 9.2;
 
 const VIEW: View = View { origin: [100.0, 560.0], scale: 104.0 };
 
@@ -54,11 +60,17 @@ pub fn draw_boxes(drawing: &mut Drawing, ray: &Ray) {
         drawing.rectangle(at(bounds.min), at(bounds.max), Ink::Faint, 0.35);
         drawing.frame(at(bounds.min), at(bounds.max), Ink::Faint.pen(2.0));
     }
-    drawing.arrow(at(ray.origin), at(ray.at(9.2)), Ink::Faint.pen(2.0));
+    drawing.arrow(at(ray.origin), at(ray.at(END)), Ink::Faint.pen(2.0));
 }
 
 /// Draws a step for each visited cell, with the boxes that it lists, then the ray up to its hit. Circles mark the far planes.
-fn draw_visits(drawing: &mut Drawing, kit: &dyn Kit, ray: &Ray, cells: &[(Aabb, Vec<u32>)], t: f32) {
+fn draw_visits(
+    drawing: &mut Drawing,
+    kit: &dyn Kit,
+    ray: &Ray,
+    cells: &[(Aabb, Vec<u32>)],
+    hit: Option<f32>,
+) {
     let leaves = |bounds: Aabb| kit.slab(&[SlabQuery { ray: *ray, bounds }])[0].map_or(0.0, |span| span.1);
     for (step, (cell, listed)) in (1..).zip(cells) {
         let text = format!("cell {step}, up to t = {:.2}; boxes: {}", leaves(*cell), listed.len());
@@ -74,7 +86,7 @@ fn draw_visits(drawing: &mut Drawing, kit: &dyn Kit, ray: &Ray, cells: &[(Aabb, 
         drawing.text([x + 8.0, y + 24.0], Start, SMALL, Ink::Color(4), &step.to_string());
         listed.iter().for_each(|&index| draw_tested(drawing, index));
     }
-    draw_hit(drawing, ray, t);
+    draw_hit(drawing, ray, hit);
 }
 
 /// Marks a box that was tested.
@@ -84,26 +96,30 @@ pub fn draw_tested(drawing: &mut Drawing, index: u32) {
     drawing.frame(at(bounds.min), at(bounds.max), Ink::Color(1).pen(2.0));
 }
 
-/// Ends with the ray up to its hit.
-pub fn draw_hit(drawing: &mut Drawing, ray: &Ray, t: f32) {
+/// Ends with the ray up to its hit, or up to its end.
+pub fn draw_hit(drawing: &mut Drawing, ray: &Ray, hit: Option<f32>) {
     drawing.step();
-    drawing.arrow(at(ray.origin), at(ray.at(t)), Ink::Text.pen(3.5));
-    drawing.dot(at(ray.at(t)), 9.0, Ink::Text);
+    drawing.arrow(at(ray.origin), at(ray.at(hit.unwrap_or(END))), Ink::Text.pen(3.5));
+    if let Some(t) = hit {
+        drawing.dot(at(ray.at(t)), 9.0, Ink::Text);
+    }
 }
 
 /// Where the caption stands.
 pub const CAPTION: Point = [100.0, 604.0];
 
 /// A ray through a uniform grid: the cells that it visits, numbered, up to the first hit.
-pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
-    let (ray, hits) = ray_and_hits(kit);
-    let query = GridQuery { bounds: boxes(), resolution: UVec3::new(8, 5, 1) };
+pub fn draw_grid(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
+    let (ray, hits) = ray_and_hits(kit, touch);
+    let columns = touch.whole(4, 1, 16);
+    let resolution = UVec3::new(columns, (5 * columns).div_ceil(8), 1);
+    let query = GridQuery { bounds: boxes(), resolution };
     let grid = kit.grid_build(&[query]).remove(0);
     let answer = kit.grid_search(&[CellsQuery { cells: grid.clone(), ray, hits }]).remove(0);
 
     let mut drawing = Drawing::new("The cells of a grid that a ray visits, in order", 1000.0, 620.0);
     draw_boxes(&mut drawing, &ray);
-    drawing.remark(CAPTION, "8 by 5 cells of one size");
+    drawing.remark(CAPTION, &format!("{} by {} cells of one size", resolution.x, resolution.y));
     for (axis, count) in [(0, grid.resolution.x), (1, grid.resolution.y)] {
         for index in 0..=count {
             let plane = grid.plane(axis, index) as f32;
@@ -116,16 +132,25 @@ pub fn grid_steps(kit: &dyn Kit) -> Result<String> {
         (grid.cell(at).to_box(), grid.primitives(number).to_vec())
     };
     let cells: Vec<_> = answer.visits.iter().map(cell).collect();
-    draw_visits(&mut drawing, kit, &ray, &cells, answer.hit.map_or(9.2, |hit| hit.t));
+    draw_visits(&mut drawing, kit, &ray, &cells, answer.hit.map(|hit| hit.t));
     let text = format!("{} cells visited, boxes tested: {}", answer.visits.len(), answer.tests.len());
     drawing.text(CAPTION, Start, TEXT, Ink::Text, &text);
+    show(touch, "cells visited", answer.visits.len(), &answer);
     Ok(drawing.svg())
 }
 
+/// Shows what a search cost, and its hit.
+fn show(touch: &mut Touch, what: &str, visits: usize, answer: &CellsAnswer) {
+    touch.value(what, visits);
+    touch.value("boxes tested", format!("{} of {}", answer.tests.len(), BOXES.len()));
+    touch.value("t of the hit", answer.hit.map_or("none".to_owned(), |hit| hit.t.to_string()));
+}
+
 /// The planes of a kd-tree, level by level, and a ray through it: its leaves in the order of the visits, up to the first hit.
-pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
-    let (ray, hits) = ray_and_hits(kit);
-    let query = KdQuery { bounds: boxes(), heuristics: KdHeuristics::default(), leaf_size: 2 };
+pub fn draw_kd_tree(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
+    let (ray, hits) = ray_and_hits(kit, touch);
+    let leaf_size = touch.whole(4, 1, 11) as usize;
+    let query = KdQuery { bounds: boxes(), heuristics: KdHeuristics::default(), leaf_size };
     let tree = kit.kd_build(&[query]).remove(0);
     let answer = kit.kd_search(&[CellsQuery { cells: tree.clone(), ray, hits }]).remove(0);
 
@@ -144,11 +169,12 @@ pub fn kd_traversal(kit: &dyn Kit) -> Result<String> {
     let listed = |&(node, cell): &(u32, Aabb)| (cell, tree.listed(node).to_vec());
     let leaf = |node: &u32| cells.iter().find(|(leaf, _)| leaf == node).map(listed);
     let visited: Vec<_> = answer.visits.iter().filter_map(leaf).collect();
-    draw_visits(&mut drawing, kit, &ray, &visited, answer.hit.map_or(9.2, |hit| hit.t));
+    draw_visits(&mut drawing, kit, &ray, &visited, answer.hit.map(|hit| hit.t));
     let (n, tests) = (visited.len(), answer.tests.len());
     let (all, inner) = (cells.len(), answer.visits.len() - n);
     let text = format!("{n} of {all} leaves and {inner} inner nodes visited, {tests} boxes tested");
     drawing.text([500.0, CAPTION[1]], Middle, SMALL, Ink::Text, &text);
+    show(touch, "leaves visited", n, &answer);
     Ok(drawing.svg())
 }
 
