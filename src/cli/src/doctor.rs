@@ -132,10 +132,8 @@ fn compiler(said: Option<&str>, oldest: (u32, u32)) -> Finding {
 }
 
 fn formatter() -> Finding {
-    match said("cargo", &["fmt", "--version"]) {
-        Some(said) => good(said),
-        None => optional("there is no rustfmt", "run `rustup component add rustfmt`"),
-    }
+    let said = said("cargo", &["fmt", "--version"]);
+    said.map_or_else(|| optional("there is no rustfmt", "run `rustup component add rustfmt`"), good)
 }
 
 fn linker() -> Finding {
@@ -200,10 +198,8 @@ fn terminal() -> Finding {
 }
 
 fn editor() -> Finding {
-    match ["VISUAL", "EDITOR"]
-        .iter()
-        .find_map(|name| std::env::var(name).ok().filter(|editor| !editor.is_empty()))
-    {
+    let chosen = ["VISUAL", "EDITOR"].iter().filter_map(|name| std::env::var(name).ok());
+    match chosen.into_iter().find(|editor| !editor.is_empty()) {
         Some(editor) => good(editor),
         None => optional(
             "none is chosen for the key `o` of `raykata watch`",

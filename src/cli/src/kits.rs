@@ -106,7 +106,12 @@ pub struct Source {
 impl Source {
     /// Builds the worker if it is not up to date.
     pub fn prepare(root: &Path, which: Which, need: Need) -> Result<Source> {
-        Ok(Source { which, program: build_worker(root, which, need)? })
+        let what = match which {
+            Which::Exercises => "your exercises",
+            Which::Solutions => "the solutions",
+        };
+        let [program] = build(root, what, [Program::worker(which, need)])?;
+        Ok(Source { which, program })
     }
 
     /// A new kit, with a process of its own.
@@ -156,16 +161,6 @@ impl Program {
 
     /// The program that renders and measures.
     pub const RAYKATA: Program = Program { package: "raykata-cli", name: "raykata", feature: None };
-}
-
-/// Builds the worker of a kit in the profile of this program, and returns its path.
-pub fn build_worker(root: &Path, which: Which, need: Need) -> Result<PathBuf> {
-    let what = match which {
-        Which::Exercises => "your exercises",
-        Which::Solutions => "the solutions",
-    };
-    let [program] = build(root, what, [Program::worker(which, need)])?;
-    Ok(program)
 }
 
 /// Builds programs of the workspace at `root` in the profile of this program, and returns their paths. If

@@ -1,6 +1,7 @@
 //! Output for people: readable numbers, errors with the line of the file, and the progress of a frame.
 
 use crate::progress::ProgressBar;
+use crate::queue::lock;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use anyhow::{Context, Result, anyhow};
 use raykata::film::write_atomically;
@@ -12,7 +13,7 @@ use raykata::scene::load::{self, Limits, Loaded};
 use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, OnceLock};
 
 /// Why words that were to be printed are lost, if any are.
 static LOST: OnceLock<std::io::Error> = OnceLock::new();
@@ -47,6 +48,12 @@ impl fmt::Display for Thousands {
         }
         f.pad(&grouped)
     }
+}
+
+/// A number of things, with their name in the singular or in the plural.
+pub fn counted(n: impl Into<u64>, name: &str) -> String {
+    let n = n.into();
+    format!("{n} {name}{}", if n == 1 { "" } else { "s" })
 }
 
 /// A size in bytes, shown in a readable unit.
@@ -199,7 +206,7 @@ impl FrameBar {
     /// Starts the progress of something else.
     pub fn begin(&self, what: String) {
         self.bar.begin(what.as_str(), 0);
-        *self.now.lock().unwrap_or_else(PoisonError::into_inner) = Some(what);
+        *lock(&self.now) = Some(what);
     }
 
     /// Removes the bar.
@@ -215,7 +222,7 @@ impl Watch for FrameBar {
 
     fn progress(&self, done: u64, total: u64) {
         // Start the bar again with the first pixels, because the time before them says nothing about that of the others.
-        if let Some(what) = self.now.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        if let Some(what) = lock(&self.now).take() {
             self.bar.begin(what, total);
         }
         self.bar.set(done, total);

@@ -9,9 +9,9 @@ mod waiting;
 mod watchdog;
 mod withheld;
 
+use crate::queue::lock;
 pub use autopsy::last_words;
 use autopsy::{cause_of_death, keep_start, shortened, wait_briefly};
-use launcher::lock;
 pub use launcher::{Death, Launcher};
 use raykata::frame::{Unwatched, Watch};
 use raykata::kit::{Answer, KitError, Request, Transport, kit_error};

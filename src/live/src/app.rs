@@ -33,13 +33,8 @@ pub enum Phase {
     Compiling,
     /// The checks run, or the picture is rendered.
     Working,
-    /// The run has ended.
-    Ended {
-        /// The time of the compiler.
-        compiled: Duration,
-        /// The time of the checks.
-        checked: Duration,
-    },
+    /// The run has ended, after these times of the compiler and of the checks.
+    Ended { compiled: Duration, checked: Duration },
     /// The exercises do not compile.
     Errors(Vec<CompilerError>),
     /// The run could not go on, for this reason.
@@ -50,37 +45,16 @@ pub enum Phase {
 #[derive(Debug, PartialEq)]
 pub enum Page {
     /// A check, with this many of its hints, and with its long lines in full or not.
-    Check {
-        /// The number of hints.
-        hints: usize,
-        /// Whether long lines are shown in full.
-        unfolded: bool,
-    },
-    /// All checks whose name or title contains a word.
-    List {
-        /// The word.
-        word: String,
-        /// Whether keys change the word.
-        is_typing: bool,
-        /// The chosen one of these checks.
-        at: usize,
-    },
-    /// The picture of the stage.
-    Picture {
-        /// The picture, when it is rendered.
-        picture: Option<Picture>,
-        /// Whether it is shown because the last check of the stage passes now. The next save then leads back to the checks.
-        is_finish: bool,
-    },
+    Check { hints: usize, unfolded: bool },
+    /// All checks whose name or title contains a word, of which one is chosen. Keys may change the word.
+    List { word: String, is_typing: bool, at: usize },
+    /// The picture of the stage, when it is rendered. It is shown at the finish if the last check of the stage passes now. The next
+    /// save then leads back to the checks.
+    Picture { picture: Option<Picture>, is_finish: bool },
     /// The call of the check alone, when it has answered.
     Tried(String),
-    /// A question: shall this function, in this file, be reset?
-    Reset {
-        /// The file, from the root of the kit.
-        file: String,
-        /// The function.
-        name: String,
-    },
+    /// A question: shall this function, in this file from the root of the kit, be reset?
+    Reset { file: String, name: String },
 }
 
 impl Page {

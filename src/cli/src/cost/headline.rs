@@ -272,7 +272,7 @@ fn frame(
     let mut job = RenderJob { view: View::Normals, ..bench.job(scene, bench.seed, count) };
     (job.scene.film.width, job.scene.film.height) = (width, height);
     job.scene.quality.accelerator = accelerator;
-    bench.render(&job, None, Some(bar))
+    bench.render(&job, None, bar)
 }
 
 /// The time in a readable unit.

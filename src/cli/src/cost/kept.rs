@@ -3,6 +3,7 @@
 
 use crate::fingerprint::fingerprint;
 use crate::journal::Journal;
+use crate::queue::lock;
 use anyhow::{Context, Result};
 use glam::Vec3;
 use raykata::film::Film;
@@ -11,7 +12,7 @@ use raykata::message::to_bytes;
 use raykata::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
 
 /// A picture as it is kept. JSON has no NaN, so the numbers of the pixels are written as bits.
 #[derive(Serialize, Deserialize)]
@@ -35,11 +36,12 @@ impl KeptPictures {
         let file = out.join("unfinished.jsonl");
         let about = format!("pictures by the program {code}");
         let journal: Journal<Picture> = Journal::open(&file, &about)?;
-        match journal.kept().count() {
-            0 => {}
-            n => {
-                println!("continues a run that was stopped: {n} measured pictures are in {}", file.display())
-            }
+        let n_kept = journal.kept().count();
+        if n_kept > 0 {
+            println!(
+                "continues a run that was stopped: {n_kept} measured pictures are in {}",
+                file.display()
+            );
         }
         Ok(KeptPictures { journal: Mutex::new(journal), scene: Mutex::default() })
     }
@@ -88,10 +90,6 @@ impl KeptPictures {
     pub fn finish(&self) -> Result<()> {
         lock(&self.journal).finish()
     }
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]

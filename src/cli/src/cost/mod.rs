@@ -341,7 +341,7 @@ fn look(bench: &Bench<'_>, scene: &Scene) -> Result<Option<Rendering>> {
     let mut pixel = scene.clone();
     (pixel.film.width, pixel.film.height, pixel.quality.samples_per_pixel) = (1, 1, 1);
     let bar = FrameBar::new("looking at the scene");
-    let frame = bench.render(&bench.job(&pixel, 0, true), None, Some(&bar));
+    let frame = bench.render(&bench.job(&pixel, 0, true), None, &bar);
     bar.finish();
     frame
 }

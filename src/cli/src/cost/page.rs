@@ -8,7 +8,7 @@ use super::parameter::Parameter;
 use super::search::Advice;
 use super::table::{about_hits, cells, goal, heading, heads as special_heads, named, ratio, verdict, waste};
 use crate::html::{around, base64, element, escape};
-use crate::report::write_file;
+use crate::report::{counted, write_file};
 use anyhow::{Context, Result};
 use image::RgbImage;
 use std::path::Path;
@@ -21,10 +21,8 @@ pub fn write(file: &Path, report: &Report<'_>) -> Result<()> {
 fn page(report: &Report<'_>) -> Result<String> {
     let title = format!("What accuracy costs: {}", report.scene);
     let mut body = element("h1", &title);
-    let rounds = match report.measured.rounds {
-        1 => "1 round".to_owned(),
-        n => format!("{n} rounds with other random numbers each"),
-    };
+    let others = if report.measured.rounds == 1 { "" } else { " with other random numbers each" };
+    let rounds = counted(report.measured.rounds, "round") + others;
     let about = format!(
         "{} × {} pixels by {}, {rounds}, all pictures in turn. Errors are \
          root mean squares in linear light against a picture of {} samples per pixel, whose own error is \

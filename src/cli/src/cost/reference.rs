@@ -12,6 +12,7 @@ use crate::report::bar_of_steps;
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};
 use raykata::film::{Film, write_atomically};
+use raykata::frame::Unwatched;
 use raykata::message::to_bytes;
 use raykata::scene::{Accelerator, NextEvent, Quality, Sampler, Scene, Split, TextureFilter};
 use std::io::Write;
@@ -79,7 +80,8 @@ pub fn reference(
     bar.set_message("reference");
     // A kept reference may have more batches than requested.
     while sums.batches < wanted {
-        let Some(frame) = bench.frame(&scene, FIRST_SEED + u64::from(sums.batches), false)? else {
+        let job = bench.job(&scene, FIRST_SEED + u64::from(sums.batches), false);
+        let Some(frame) = bench.render(&job, None, &Unwatched)? else {
             bar.finish_and_clear();
             return Ok(None);
         };

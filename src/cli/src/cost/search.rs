@@ -129,7 +129,7 @@ pub fn advise(
     let verified = others.point(small, &now.setting, right, false)?;
     let bar = FrameBar::new("the proposal, in full size");
     let job = others.job(&now.setting.apply(full), others.seed, false);
-    let frame = others.render(&job, None, Some(&bar))?;
+    let frame = others.render(&job, None, &bar)?;
     bar.finish();
     Ok(Some(Advice {
         goal,

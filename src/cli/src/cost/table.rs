@@ -8,7 +8,7 @@ use super::search::{Advice, Goal, KEPT};
 use crate::args::wrapped;
 use crate::columns::Columns;
 use crate::race::statistics::Median;
-use crate::report::Thousands;
+use crate::report::{Thousands, counted};
 
 /// The columns of a ladder: name and marks, error, two that depend on the parameter, time with its ratio, and one more.
 const COLUMNS: Columns = Columns("", &[-24, -2, 8, 8, 7, 8, 17, 6]);
@@ -18,14 +18,13 @@ const BIASED: Columns = Columns("", &[-24, -2, 8, 15, 0, 8, 17, 6]);
 
 /// Prints the report.
 pub fn print(report: &Report<'_>) {
-    let rounds = if report.measured.rounds == 1 { "round" } else { "rounds" };
     let about = format!(
-        "{}: {} × {} pixels, {} {rounds}; ms: {}, the median; ratio: to the line marked =, the median of the rounds and its 95 % \
+        "{}: {} × {} pixels, {}; ms: {}, the median; ratio: to the line marked =, the median of the rounds and its 95 % \
          interval; rays are per pixel, tests per ray",
         report.scene,
         report.width,
         report.height,
-        report.measured.rounds,
+        counted(report.measured.rounds, "round"),
         report.about_times()
     );
     println!("{}", wrapped(&about, 0));

@@ -15,7 +15,7 @@ use crate::args::{Argument, Given, Opt, Spec};
 use crate::kits::{Choice, Which, root};
 use crate::program::exit_code;
 use crate::quality_options::QualityOptions;
-use crate::report::{bar_of_steps, job, render, with_at_most};
+use crate::report::{bar_of_steps, counted, job, render, with_at_most};
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result};
 use pictures::different_pixels;
@@ -72,10 +72,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     racers.push(racers::of_kit(&root, kit.or_exercises())?);
     let programs = racers::build(&root, &racers)?;
 
-    let samples = match scene.quality.samples_per_pixel {
-        1 => "1 sample".to_owned(),
-        n => format!("{n} samples"),
-    };
+    let samples = counted(scene.quality.samples_per_pixel, "sample");
     let (width, height) = (scene.film.width, scene.film.height);
     let title = format!("{}, {width} × {height} pixels, {samples} each", file.display());
     let race = measure(&scene, title, &racers, &programs, rounds)?;

@@ -18,6 +18,17 @@ pub fn printed(output: &Output) -> (String, String) {
     (String::from_utf8_lossy(&output.stdout).into(), String::from_utf8_lossy(&output.stderr).into())
 }
 
+/// Checks that a command line is understood, and that its scenes exist. `place` is where it stands.
+#[track_caller]
+pub fn is_understood(place: &str, line: &str) {
+    // `--help` prints the help in place of the work, after all words before it were understood.
+    let output = raykata(&format!("{line} --help"));
+    assert!(output.status.success(), "{place}: {line}: {}", printed(&output).1);
+    for scene in line.split_whitespace().filter(|word| word.starts_with("scenes/")) {
+        assert!(root().join(scene).is_file(), "{place}: there is no {scene}");
+    }
+}
+
 /// What a command printed to standard output; it must succeed.
 #[track_caller]
 pub fn said(line: &str) -> String {

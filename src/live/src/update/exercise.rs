@@ -22,10 +22,6 @@ pub struct Merged {
 
 /// Brings the file `new`, in which no function is written, into `yours`. The functions of the two kits before they were written are
 /// `old_stubs` and `new_stubs`.
-///
-/// # Errors
-///
-/// A function of `new` is not found in it.
 pub fn merge(yours: &str, old_stubs: &StubsOfFile, new: &str, new_stubs: &StubsOfFile) -> Result<Merged> {
     // Take the new file as a whole if nothing of the student's is in it.
     let given = beside_unwritten(new, new_stubs).unwrap_or_default();

@@ -26,10 +26,7 @@ pub struct Plan {
 
 impl Plan {
     /// Compares the kits.
-    ///
-    /// # Errors
-    ///
-    /// A file cannot be read, or exercises of the new kit are written already.
+    /// An error if exercises of the new kit are written already.
     pub fn new(yours: &Kit, new: &Kit) -> Result<Plan> {
         let mut plan = Plan { files: BTreeMap::new(), merged: BTreeMap::new() };
         for path in &new.files {
@@ -126,10 +123,6 @@ impl Plan {
 
     /// Makes the changes. Returns the folder in which the old files are kept, if there were any. A second call after an error goes
     /// on where this one stopped.
-    ///
-    /// # Errors
-    ///
-    /// A file cannot be read or written.
     pub fn make(&self, root: &Path) -> Result<Option<PathBuf>> {
         // Keep all old files before the first one changes.
         let mut kept = None;

@@ -24,10 +24,7 @@ const BAD: Refusal = "400 Bad Request";
 
 impl Request {
     /// Reads the head of a request.
-    ///
-    /// # Errors
-    ///
-    /// The status of the answer, if the request must be refused.
+    /// The error is the status of the answer to a request that must be refused.
     pub fn read(from: &mut impl BufRead, port: u16, token: &str) -> Result<Request, Refusal> {
         // Read the head, up to the empty line.
         let mut head = from.take(LONGEST_HEAD);
