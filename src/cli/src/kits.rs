@@ -21,15 +21,12 @@ pub enum Which {
 }
 
 impl Which {
-    /// The names of both.
+    /// The names of both, which are those of their packages.
     pub const NAMES: [(&str, Which); 2] = [("exercises", Which::Exercises), ("solutions", Which::Solutions)];
 
     /// The name of the kit's package.
     pub fn package(self) -> &'static str {
-        match self {
-            Which::Exercises => "exercises",
-            Which::Solutions => "solutions",
-        }
+        Which::NAMES[self as usize].0
     }
 }
 

@@ -10,8 +10,8 @@ use crate::columns::Columns;
 use crate::journal::Journal;
 use crate::report::{FrameBar, Thousands, make_folder, write_file};
 use anyhow::Result;
-use raykata::kit::{RenderJob, Rendering, View};
-use raykata::scene::{Accelerator, Scene};
+use raykata::kit::{RenderJob, View};
+use raykata::scene::Accelerator;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 use std::path::Path;
@@ -47,10 +47,6 @@ struct Row {
 impl Row {
     fn rays() -> f64 {
         f64::from(SCREEN.0) * f64::from(SCREEN.1)
-    }
-
-    fn nanoseconds_a_ray(&self) -> f64 {
-        1e9 * self.frame_seconds / Row::rays()
     }
 
     fn nanoseconds_a_test(&self) -> f64 {
@@ -103,7 +99,7 @@ pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, cod
             &duration(row.build_seconds),
             &format!("{:.1}", row.box_tests),
             &format!("{:.2}", row.triangle_tests),
-            &format!("{:.0}", row.nanoseconds_a_ray()),
+            &format!("{:.0}", 1e9 * row.frame_seconds / Row::rays()),
             &duration(row.frame_seconds),
             &duration(row.brute_seconds()),
             &Thousands((row.brute_seconds() / row.frame_seconds) as u64),
@@ -222,14 +218,16 @@ fn measure(
     let scene = scene(SCREEN, sides)?;
     // No progress can be shown before the first leaf, so estimate the build time from the smaller landscape.
     let expected = smaller.map_or(0.0, |row| row.build_seconds_of(exact));
-    let frame = |what: &str, accelerator: Accelerator, size: (u32, u32), count: bool| {
-        match accelerator {
-            one if one == hierarchy && expected >= 1.0 => {
-                say(&format!("{what}, about {expected:.0} s to build"))
-            }
-            _ => say(what),
+    let frame = |what: &str, accelerator: Accelerator, (width, height): (u32, u32), count: bool| {
+        if accelerator == hierarchy && expected >= 1.0 {
+            say(&format!("{what}, about {expected:.0} s to build"));
+        } else {
+            say(what);
         }
-        frame(bench, &bar, &scene, accelerator, size, count)
+        let mut job = RenderJob { view: View::Normals, ..bench.job(&scene, bench.seed, count) };
+        (job.scene.film.width, job.scene.film.height) = (width, height);
+        job.scene.quality.accelerator = accelerator;
+        bench.render(&job, None, &bar)
     };
 
     // The hierarchy is built for each picture, because a kit keeps nothing between two pictures.
@@ -258,21 +256,6 @@ fn measure(
         slice_seconds: brute.render_seconds,
         different_pixels: different,
     }))
-}
-
-/// `None` if the program is being stopped.
-fn frame(
-    bench: &Bench<'_>,
-    bar: &FrameBar,
-    scene: &Scene,
-    accelerator: Accelerator,
-    (width, height): (u32, u32),
-    count: bool,
-) -> Result<Option<Rendering>> {
-    let mut job = RenderJob { view: View::Normals, ..bench.job(scene, bench.seed, count) };
-    (job.scene.film.width, job.scene.film.height) = (width, height);
-    job.scene.quality.accelerator = accelerator;
-    bench.render(&job, None, bar)
 }
 
 /// The time in a readable unit.

@@ -163,28 +163,24 @@ impl Bench<'_> {
             bar.set_message(format!("{}: counting", ladder.name));
             let mut levels = Vec::new();
             for (name, setting) in ladder.levels {
-                let known = measured.points.iter().position(|point| point.setting == setting);
-                let point = match known {
-                    Some(_) => None,
-                    None => self.point(scene, &setting, right, true)?,
-                };
-                match (known, point) {
-                    (Some(known), _) => levels.push((name, known)),
-                    (None, Some(point)) => match missing(&point, own_notes) {
-                        Some(why) => measured.left_out.push(format!("{} {name}: {why}", ladder.name)),
-                        None => {
-                            levels.push((name, measured.points.len()));
-                            measured.points.push(point);
-                        }
-                    },
-                    (None, None) if self.stopped() => {}
-                    (None, None) => measured.left_out.push(format!(
-                        "{} {name}: a small picture takes longer than {} s",
-                        ladder.name,
-                        PATIENCE.as_secs()
-                    )),
-                }
                 bar.inc(1);
+                if let Some(known) = measured.points.iter().position(|point| point.setting == setting) {
+                    levels.push((name, known));
+                    continue;
+                }
+                let point = self.point(scene, &setting, right, true)?;
+                let why = match &point {
+                    Some(point) => missing(point, own_notes),
+                    None => Some(format!("a small picture takes longer than {} s", PATIENCE.as_secs())),
+                };
+                match (point, why) {
+                    (None, _) if self.stopped() => {}
+                    (_, Some(why)) => measured.left_out.push(format!("{} {name}: {why}", ladder.name)),
+                    (point, None) => {
+                        levels.push((name, measured.points.len()));
+                        measured.points.extend(point);
+                    }
+                }
             }
             measured.left_out.extend(ladder.left_out);
             let own = Setting::of(scene);

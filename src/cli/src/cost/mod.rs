@@ -28,6 +28,7 @@ mod slope;
 mod table;
 
 use crate::args::{Given, wrapped};
+use crate::fingerprint::of_files;
 use crate::kits::{Need, Source, Which, has_solutions, root};
 use crate::lock::Lock;
 use crate::quality_options::arguments;
@@ -201,7 +202,7 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
         let out = options.out.clone().unwrap_or_else(|| Path::new("out").join("headline"));
         let hierarchy = options.quality.accelerator().unwrap_or(Accelerator::Auto);
         let _lock = Lock::on(&out)?;
-        return headline::run(&bench, hierarchy, options.most, &out, &fingerprint([&source])?);
+        return headline::run(&bench, hierarchy, options.most, &out, &of_files([&source.program])?);
     };
     // Read the scene, in its own size and in that of the measured pictures.
     let mut full = load_scene(file, options.quality.limits)?;
@@ -221,8 +222,8 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
     let _lock = Lock::on(&out)?;
 
-    // Continue a run that was stopped.
-    let code = fingerprint(beside.iter().chain([&source]))?;
+    // Continue a run that was stopped. Each code that renders has its own pictures and its own reference.
+    let code = of_files(beside.iter().chain([&source]).map(|source| &source.program))?;
     let kept = KeptPictures::open(&out, &code)?;
     let bench = Bench { kept: Some(&kept), ..bench };
 
@@ -428,16 +429,6 @@ fn slopes(measured: &Measured) -> Vec<(String, Slope)> {
     let of_samples =
         |series: &&measured::Series| matches!(series.parameter, Parameter::Samples | Parameter::Sampler);
     measured.series.iter().filter(of_samples).filter_map(of_series).collect()
-}
-
-/// A name for the code that renders, because each code has its own reference.
-fn fingerprint<'a>(sources: impl IntoIterator<Item = &'a Source>) -> Result<String> {
-    let read = |source: &Source| {
-        let program = &source.program;
-        std::fs::read(program).with_context(|| format!("cannot read {}", program.display()))
-    };
-    let programs: Vec<Vec<u8>> = sources.into_iter().map(read).collect::<Result<_>>()?;
-    Ok(crate::fingerprint::fingerprint(programs.iter().map(Vec::as_slice)))
 }
 
 /// The command line with which this program was started: by cargo, which says so in a variable, or directly.

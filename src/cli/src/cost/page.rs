@@ -61,22 +61,14 @@ fn page(report: &Report<'_>) -> Result<String> {
     }
     body += &numerics(report);
     body += &element("h2", "Not measured");
-    let mut left_out = String::new();
-    for (parameter, why) in &report.not_offered {
-        left_out += &element("li", format!("{}: {why}", parameter.name()));
-    }
-    for words in &report.measured.left_out {
-        left_out += &element("li", words);
-    }
-    for lacking in &report.measured.lacking {
-        left_out += &element("li", format!("Note: {lacking}"));
-    }
-    left_out += &element(
-        "li",
-        "Lens and time have no samples of their own: each sample of a pixel has its own point on the lens \
-         and its own time.",
-    );
-    body += &around("ul", "", &left_out);
+    let not_offered =
+        report.not_offered.iter().map(|(parameter, why)| format!("{}: {why}", parameter.name()));
+    let lacking = report.measured.lacking.iter().map(|lacking| format!("Note: {lacking}"));
+    let left_out = not_offered.chain(report.measured.left_out.iter().cloned()).chain(lacking);
+    let always = "Lens and time have no samples of their own: each sample of a pixel has its own point on the lens \
+                  and its own time.";
+    let items: String = left_out.chain([always.into()]).map(|words| element("li", words)).collect();
+    body += &around("ul", "", &items);
     Ok(format!(
         "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">{}<style>{}</style></head>\
@@ -143,15 +135,10 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     let mut levels = Vec::new();
     for (value, index) in &series.levels {
         let point = &report.measured.points[*index];
-        let is_front = report.pareto_front.contains(index);
+        let points = [point, &report.measured.points[series.base]];
         let name = format!("{} {}", named(report, value, *index), report.mark(*index));
-        levels.push(level(
-            report,
-            series,
-            [point, &report.measured.points[series.base]],
-            name.trim_end(),
-            is_front,
-        ));
+        let is_front = report.pareto_front.contains(index);
+        levels.push(level(report, series, points, name.trim_end(), is_front));
         if let Some(reference) = &point.reference {
             levels.push(level(report, series, [reference, point], "the reference", false));
         }

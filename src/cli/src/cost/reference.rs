@@ -16,7 +16,7 @@ use raykata::frame::Unwatched;
 use raykata::message::to_bytes;
 use raykata::scene::{Accelerator, NextEvent, Quality, Sampler, Scene, Split, TextureFilter};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Samples per pixel and batch.
 const BATCH: u32 = 64;
@@ -68,7 +68,8 @@ pub fn reference(
     // The sums are kept in a file of their own.
     let bench = &Bench { kept: None, ..bench.of_reference() };
     let scene = converged(scene);
-    let file = file_of(&scene, cache, code)?;
+    let name = fingerprint([code.as_bytes(), &to_bytes(&scene)]);
+    let file = cache.join(format!("{name}.sums"));
     let pixels = scene.film.width as usize * scene.film.height as usize;
     let mut sums = read(&file, pixels).unwrap_or_else(|| Sums {
         batches: 0,
@@ -110,12 +111,6 @@ impl Sums {
             own_error: (square / (3 * evens.len()).max(1) as f64).sqrt(),
         }
     }
-}
-
-/// The file of a reference, named after the scene and the code that renders it.
-fn file_of(scene: &Scene, cache: &Path, code: &str) -> Result<PathBuf> {
-    let name = fingerprint([code.as_bytes(), &to_bytes(scene)]);
-    Ok(cache.join(format!("{name}.sums")))
 }
 
 /// The kept sums; `None` if there is no file or it cannot be used, so that the reference starts again.

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-/// Runs `cost` with this command line in a folder.
-fn cost(folder: &Path, line: &str) -> Output {
+/// `cost` with this command line in a folder.
+fn command(folder: &Path, line: &str) -> Command {
     let root = raykata_cli::kits::root().unwrap();
     // References lie below the current folder; `root` is only where the scenes are.
     let scenes = folder.join("scenes");
@@ -15,13 +15,12 @@ fn cost(folder: &Path, line: &str) -> Output {
         std::os::unix::fs::symlink(root.join("scenes"), &scenes).unwrap();
     }
     let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
+    command.current_dir(folder).stdin(Stdio::null()).arg("cost").args(line.split_whitespace());
     command
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .arg("cost")
-        .args(line.split_whitespace())
-        .output()
-        .unwrap()
+}
+
+fn cost(folder: &Path, line: &str) -> Output {
+    command(folder, line).output().unwrap()
 }
 
 fn said(output: &Output) -> String {
@@ -128,10 +127,10 @@ fn a_measurement_that_is_killed_continues_and_gives_the_same_report() {
         format!("scenes/stage5.toml {parameters} --out {out} {QUICK}")
     };
     report(folder.path(), &arguments("whole"));
-    let mut run = Command::new(env!("CARGO_BIN_EXE_raykata"));
-    run.current_dir(folder.path()).arg("cost").args(arguments("killed").split(' ')).stdout(Stdio::null());
+    let mut run = command(folder.path(), &arguments("killed"));
+    run.stdout(Stdio::null()).stderr(Stdio::null());
     let unfinished = folder.path().join("killed/unfinished.jsonl");
-    kill_when(&mut run.stderr(Stdio::null()).spawn().unwrap(), &unfinished, 5);
+    kill_when(&mut run.spawn().unwrap(), &unfinished, 5);
     let kept = fs::read_to_string(&unfinished).unwrap().lines().count() - 1;
     let said = report(folder.path(), &arguments("killed"));
     // The last line may be incomplete.
@@ -219,12 +218,9 @@ fn what_buys_nothing_is_said() {
 fn what_is_stopped_leaves_a_report() {
     use std::io::{BufRead, BufReader};
     let folder = tempfile::tempdir().unwrap();
-    let scenes = raykata_cli::kits::root().unwrap().join("scenes");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
-    command.current_dir(folder.path()).arg("cost").arg(scenes.join("stage1.toml"));
-    let line = "--size 16x12 --rounds 1000 --reference 128 --parameter samples_per_pixel,sampler";
-    command.args(line.split(' '));
-    let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
+    let line =
+        "scenes/stage1.toml --size 16x12 --rounds 1000 --reference 128 --parameter samples_per_pixel,sampler";
+    let mut child = command(folder.path(), line).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
     lines.find(|line| line.starts_with("its own error")).expect("it has begun");
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();

@@ -113,16 +113,13 @@ fn imports(text: &str) -> Vec<Range<usize>> {
     begins.filter_map(|(at, _)| text[at..].find(";\n").map(|end| at..at + end + 2)).collect()
 }
 
-/// The paths that a file imports.
+/// The paths that a file imports, one by one.
 fn imported(text: &str) -> Vec<String> {
-    imports(text).into_iter().flat_map(|statement| paths(&text[statement])).collect()
-}
-
-/// The paths that a `use` statement brings in, one by one.
-fn paths(statement: &str) -> Vec<String> {
-    let tree: String = statement.trim_start_matches("use ").trim_end().trim_end_matches(';').into();
     let mut found = Vec::new();
-    expand("", tree.trim(), &mut found);
+    for statement in imports(text) {
+        let tree = text[statement].trim_start_matches("use ").trim_end().trim_end_matches(';');
+        expand("", tree.trim(), &mut found);
+    }
     found
 }
 

@@ -105,9 +105,8 @@ impl Plan {
                     let stay = if merged.kept.len() == 1 { "stays" } else { "stay" };
                     format!("{} that you have written {stay}", counted(merged.kept.len()))
                 }
-                Some(_) => "brought up to date".to_owned(),
                 None if is_new(path) => "new".to_owned(),
-                None => "brought up to date".to_owned(),
+                _ => "brought up to date".to_owned(),
             };
             let added = self.merged.get(path).map(|merged| merged.added.join("`, `")).unwrap_or_default();
             let added = if added.is_empty() { added } else { format!("; new: `{added}`") };
