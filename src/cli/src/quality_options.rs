@@ -109,9 +109,7 @@ impl QualityOptions {
         changes.extend(given.parsed("--spp", |text| change("samples_per_pixel", text))?);
         changes.extend(given.parsed("--accelerator", |text| change("accelerator", text))?);
         for (key, quality) in changes {
-            if options.keys.contains(&key) {
-                return Err(given.misuse(format!("`{key}` is given twice")));
-            }
+            given.refuse(options.keys.contains(&key), format!("`{key}` is given twice"))?;
             options.wanted.take(key, &quality);
             options.keys.push(key);
         }

@@ -12,7 +12,7 @@ use crate::report::{Thousands, job, make_folder_of, name_of, render};
 use anyhow::{Context, Error, Result};
 use raykata::film::Film;
 use raykata::kit::kit_error;
-use raykata::scene::Sampler;
+use raykata::scene::{Quality, Sampler, Scene};
 use raykata::world::camera_for;
 use std::fmt::Display;
 use std::path::Path;
@@ -58,33 +58,24 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let (quality, tone, kit) =
         (QualityOptions::read(given)?, ToneOptions::read(given)?, Choice::read(given)?);
     let scene_file = Path::new(given.required(0)?);
-    let shown = shown(given)?;
+    let chosen = Chosen::read(given)?;
     let mut scene = quality.load(scene_file)?;
     tone.apply(&mut scene);
     let default = || Ok::<_, Error>(Path::new("out").join(format!("{}-strip.png", name_of(scene_file)?)));
     let out = given.path("--out").map_or_else(default, Ok)?;
     make_folder_of(&out)?;
     let kit = kit.start()?;
+    let pictures = chosen.pictures(&scene);
     let (width, height, tone) = (scene.film.width, scene.film.height, scene.film.tone);
-    let n = shown.len() as u32;
+    let n = pictures.len() as u32;
     let mut strip = Film::new(n * width + (n - 1) * GAP, height + caption::HEIGHT);
     const COLUMNS: Columns = Columns("  ", &[15, 14, 14, 14, 9]);
     let heads: [&dyn Display; 5] =
         [&"picture", &"reflected rays", &"refracted rays", &"indirect rays", &"seconds"];
     println!("{}", COLUMNS.row(&heads));
-    for (column, shown) in shown.into_iter().enumerate() {
-        let mut job = job(scene.clone());
-        let (what, level) = match shown {
-            Shown::Depth(depth) => {
-                job.scene.quality.max_depth = depth;
-                (format!("depth {depth}"), None)
-            }
-            Shown::Sampler(sampler) => {
-                job.scene.quality.sampler = sampler;
-                (sampler.name().replace('_', "-"), None)
-            }
-            Shown::Level(level) => (format!("level {level}"), Some(level)),
-        };
+    for (column, Picture { what, scene, level }) in pictures.into_iter().enumerate() {
+        let camera = camera_for(&scene);
+        let job = job(scene);
         let rendering = render(&*kit, &job)?;
         let (counts, seconds) = (rendering.counts, format!("{:.3}", rendering.render_seconds));
         let [reflected, refracted, indirect] =
@@ -94,8 +85,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
         // Draw the boxes of the level over the picture.
         let mut film = rendering.film.toned(tone);
         if let Some(level) = level {
-            film =
-                with_edges(&film, &camera_for(&job.scene), &kit_error::catch(|| kit.outlines(&job, level))?);
+            film = with_edges(&film, &camera, &kit_error::catch(|| kit.outlines(&job, level))?);
         }
         paste(&film, &mut strip, left);
         caption::write(&mut strip, &what, [left, height], width);
@@ -106,27 +96,56 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What a picture of the strip shows.
-enum Shown {
-    Depth(u32),
-    Sampler(Sampler),
-    /// A level of the acceleration structure, which is drawn over the picture.
-    Level(u32),
+/// A picture of the strip.
+struct Picture {
+    /// Its caption.
+    what: String,
+    scene: Scene,
+    /// The level of the acceleration structure that is drawn over it.
+    level: Option<u32>,
 }
 
-/// The pictures that the command line asks for: of depths, of samplers or of levels.
-fn shown(given: &Given) -> Result<Vec<Shown>, Misuse> {
-    given.exclude("--samplers", "--depths")?;
-    given.exclude("--levels", "--depths")?;
-    given.exclude("--levels", "--samplers")?;
-    let numbers = |option| given.list(option, |text| whole_number(text, &(0..=1000)));
-    let (depths, levels) = (numbers("--depths")?, numbers("--levels")?);
-    let samplers = given.choices("--samplers", &Sampler::NAMES)?;
-    let is_default = depths.is_empty() && levels.is_empty() && samplers.is_empty();
-    let depths = if is_default { vec![1, 2, 5, 10] } else { depths };
-    let depths = depths.into_iter().map(Shown::Depth);
-    let samplers = samplers.into_iter().map(Shown::Sampler);
-    Ok(depths.chain(samplers).chain(levels.into_iter().map(Shown::Level)).collect())
+/// What the pictures of a strip differ in.
+enum Chosen {
+    Depths(Vec<u32>),
+    Samplers(Vec<Sampler>),
+    Levels(Vec<u32>),
+}
+
+impl Chosen {
+    fn read(given: &Given) -> Result<Chosen, Misuse> {
+        given.exclude("--samplers", "--depths")?;
+        given.exclude("--levels", "--depths")?;
+        given.exclude("--levels", "--samplers")?;
+        let numbers = |option| given.list(option, |text| whole_number(text, &(0..=1000)));
+        let (depths, levels) = (numbers("--depths")?, numbers("--levels")?);
+        let samplers = given.choices("--samplers", &Sampler::NAMES)?;
+        Ok(match (levels.is_empty(), samplers.is_empty()) {
+            (false, _) => Chosen::Levels(levels),
+            (_, false) => Chosen::Samplers(samplers),
+            _ if depths.is_empty() => Chosen::Depths(vec![1, 2, 5, 10]),
+            _ => Chosen::Depths(depths),
+        })
+    }
+
+    /// The scene once for each depth, sampler or level.
+    fn pictures(&self, scene: &Scene) -> Vec<Picture> {
+        let picture = |what: String, quality: Quality, level: Option<u32>| Picture {
+            what,
+            scene: Scene { quality, ..scene.clone() },
+            level,
+        };
+        let own = scene.quality;
+        let of_depth = |max_depth| picture(format!("depth {max_depth}"), Quality { max_depth, ..own }, None);
+        let of_level = |level| picture(format!("level {level}"), own, Some(level));
+        let of_sampler =
+            |sampler: Sampler| picture(sampler.name().replace('_', "-"), Quality { sampler, ..own }, None);
+        match self {
+            Chosen::Depths(depths) => depths.iter().copied().map(of_depth).collect(),
+            Chosen::Samplers(samplers) => samplers.iter().copied().map(of_sampler).collect(),
+            Chosen::Levels(levels) => levels.iter().copied().map(of_level).collect(),
+        }
+    }
 }
 
 fn paste(picture: &Film, strip: &mut Film, x: u32) {

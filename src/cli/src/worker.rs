@@ -224,10 +224,8 @@ impl Process {
         launcher: Option<Arc<dyn Launcher>>,
         output: Option<Output>,
     ) -> io::Result<Process> {
-        let mut command = match &launcher {
-            Some(launcher) => launcher.command(program),
-            None => worker::child(program),
-        };
+        let own = || worker::child(program);
+        let mut command = launcher.as_ref().map_or_else(own, |launcher| launcher.command(program));
         let (errors, stderr) = io::pipe()?;
         let stdout = if output.is_some() { Stdio::from(stderr.try_clone()?) } else { Stdio::null() };
         command.stdout(stdout).stderr(stderr);

@@ -331,9 +331,6 @@ impl App {
                 }
             }
             KeyCode::Esc if is_typing => (word, is_typing) = (String::new(), false),
-            KeyCode::Esc => return self.back(),
-            KeyCode::Up => at = at.saturating_sub(1),
-            KeyCode::Down => at = (at + 1).min(listed.len().saturating_sub(1)),
             KeyCode::Char(sign) if is_typing => {
                 word.push(sign);
                 at = 0;
@@ -342,10 +339,10 @@ impl App {
                 word.pop();
                 at = 0;
             }
+            KeyCode::Up | KeyCode::Char('p') => at = at.saturating_sub(1),
+            KeyCode::Down | KeyCode::Char('n') => at = (at + 1).min(listed.len().saturating_sub(1)),
             KeyCode::Char('/') => is_typing = true,
-            KeyCode::Char('p') => at = at.saturating_sub(1),
-            KeyCode::Char('n') => at = (at + 1).min(listed.len().saturating_sub(1)),
-            KeyCode::Char('l') => return self.back(),
+            KeyCode::Esc | KeyCode::Char('l') => return self.back(),
             KeyCode::Char('q') => return Action::Quit,
             _ => {}
         }

@@ -18,18 +18,13 @@ pub struct Process {
 }
 
 /// Ends a process and those that it has started.
-#[cfg(unix)]
 fn end(child: &mut Child) {
-    use nix::sys::signal::{Signal, killpg};
-    use nix::unistd::Pid;
+    #[cfg(unix)]
     if let Ok(id) = i32::try_from(child.id()) {
-        let _ = killpg(Pid::from_raw(id), Signal::SIGKILL);
+        use nix::sys::signal::{Signal, killpg};
+        let _ = killpg(nix::unistd::Pid::from_raw(id), Signal::SIGKILL);
     }
-    let _ = child.wait();
-}
-
-#[cfg(not(unix))]
-fn end(child: &mut Child) {
+    #[cfg(not(unix))]
     let _ = child.kill();
     let _ = child.wait();
 }

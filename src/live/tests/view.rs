@@ -270,16 +270,15 @@ fn the_page_works_in_a_browser() {
     browser.wait_for("document.querySelectorAll('#rays button').length === 2").unwrap();
 
     // Difference, node visits, zoom, and the boxes of a level.
-    browser.evaluate("document.querySelector('[data-mode=difference]').click()").unwrap();
-    browser
-        .wait_for("document.getElementById('summary').textContent.includes('640 of 640 pixels differ')")
-        .unwrap();
-    browser.evaluate("document.querySelector('[data-mode=heat]').click()").unwrap();
-    browser
-        .wait_for("document.getElementById('summary').textContent.includes('primitive tests per pixel')")
-        .unwrap();
-    browser.evaluate("document.getElementById('level').click()").unwrap();
-    browser.wait_for("document.getElementById('summary').textContent.includes('1 line segment.')").unwrap();
+    for (button, summary) in [
+        ("[data-mode=difference]", "640 of 640 pixels differ"),
+        ("[data-mode=heat]", "primitive tests per pixel"),
+        ("#level", "1 line segment."),
+    ] {
+        browser.evaluate(&format!("document.querySelector('{button}').click()")).unwrap();
+        let shown = format!("document.getElementById('summary').textContent.includes('{summary}')");
+        browser.wait_for(&shown).unwrap();
+    }
     browser.evaluate("document.getElementById('in').click()").unwrap();
 
     // A picture without new tiles asks about an infinite loop. The timer does not wait here.

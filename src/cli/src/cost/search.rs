@@ -377,17 +377,14 @@ fn best_sampler(measured: &Measured) -> Option<&Point> {
 
 fn names_of_chosen(measured: &Measured, setting: &Setting) -> Vec<(Parameter, String)> {
     let of_series = |series: &Series| {
-        let is_same = |index: &usize| {
+        let is_same = |(_, index): &&(String, usize)| {
             let value = &measured.points[*index].setting;
             setting.turned(series.parameter, value) == *setting
         };
-        let name = match series.parameter {
-            Parameter::Sampler => {
-                series.levels.first().filter(|(_, index)| is_same(index)).map(|_| series.name.clone())
-            }
-            _ => series.levels.iter().find(|(_, index)| is_same(index)).map(|(name, _)| name.clone()),
-        };
-        Some((series.parameter, name?))
+        let (level, _) = series.levels.iter().find(is_same)?;
+        // Each sampler has a ladder, whose levels are numbers of samples.
+        let name = if series.parameter == Parameter::Sampler { &series.name } else { level };
+        Some((series.parameter, name.clone()))
     };
     measured.series.iter().filter(|series| is_chosen_once(series.parameter)).filter_map(of_series).collect()
 }

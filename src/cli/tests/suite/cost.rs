@@ -1,5 +1,6 @@
 //! Runs `raykata cost` on tiny pictures.
 
+use super::program_runs::{has_lines, kill_when};
 use raykata_cli::lock::Lock;
 use serde_json::Value;
 use std::fs;
@@ -72,15 +73,10 @@ fn two_runs_have_the_same_errors_and_counts() {
     let (_, other) = run("other", &format!("{parameters} --threads 1"));
     assert_eq!(one, other);
     assert_eq!(one.1, ["cost.csv", "cost.json", "cost.svg", "index.html", "samplers.svg"]);
-    assert!(
-        text.contains("glossy samples: not offered, because no rough surface reflects or transmits\n  light"),
-        "{text}"
-    );
-    assert!(text.contains("* the scene's own value"), "{text}");
-    assert!(
-        text.contains("2 rounds: no interval, so no value is ranked") && !text.contains(" ±\n"),
-        "{text}"
-    );
+    let not_offered = "glossy samples: not offered, because no rough surface reflects or transmits\n  light";
+    let no_interval = "2 rounds: no interval, so no value is ranked";
+    has_lines(&text, &[not_offered, "* the scene's own value", no_interval]);
+    assert!(!text.contains(" ±\n"), "{text}");
     let mut lines = text.lines().take_while(|line| !line.starts_with("the report: "));
     assert!(lines.all(|line| line.chars().count() <= 80), "{text}");
 
@@ -107,18 +103,6 @@ fn two_runs_have_the_same_errors_and_counts() {
     drop(lock);
 }
 
-/// Waits until a file has some lines, and kills the process then.
-fn kill_when(run: &mut std::process::Child, file: &Path, n_lines: usize) {
-    let late = std::time::Instant::now() + std::time::Duration::from_secs(300);
-    while fs::read_to_string(file).map_or(0, |text| text.lines().count()) < n_lines {
-        assert!(run.try_wait().unwrap().is_none(), "it ended before it was killed");
-        assert!(std::time::Instant::now() < late, "{} has not {n_lines} lines", file.display());
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
-    run.kill().unwrap();
-    run.wait().unwrap();
-}
-
 #[test]
 fn a_measurement_that_is_killed_continues_and_gives_the_same_report() {
     let folder = tempfile::tempdir().unwrap();
@@ -130,8 +114,9 @@ fn a_measurement_that_is_killed_continues_and_gives_the_same_report() {
     let mut run = command(folder.path(), &arguments("killed"));
     run.stdout(Stdio::null()).stderr(Stdio::null());
     let unfinished = folder.path().join("killed/unfinished.jsonl");
-    kill_when(&mut run.spawn().unwrap(), &unfinished, 5);
-    let kept = fs::read_to_string(&unfinished).unwrap().lines().count() - 1;
+    let n_lines = || fs::read_to_string(&unfinished).map_or(0, |text| text.lines().count());
+    kill_when(&mut run.spawn().unwrap(), || n_lines() >= 5);
+    let kept = n_lines() - 1;
     let said = report(folder.path(), &arguments("killed"));
     // The last line may be incomplete.
     let words = |n: usize| format!("continues a run that was stopped: {n} measured pictures");
@@ -285,13 +270,9 @@ fn a_student_sees_the_reference_beside_their_code() {
         "scenes/stage5.toml --kit exercises --parameter samples_per_pixel,accelerator --reference 128 {QUICK}"
     );
     let text = report(folder.path(), &line.replace("samples_per_pixel,accelerator", "samples_per_pixel"));
-    assert!(text.contains("Each value is measured with your code and with the reference"), "{text}");
-    assert!(text.contains("    the reference ") && text.contains("note: spheres are left out"), "{text}");
+    let beside = "Each value is measured with your code and with the reference";
+    has_lines(&text, &[beside, "    the reference ", "note: spheres are left out"]);
     // Without a search there is no structure to compare.
-    let output = cost(folder.path(), &line);
-    assert!(
-        said(&output).contains("accelerator changes nothing here: no search for hits is written yet"),
-        "{}",
-        said(&output)
-    );
+    let said = said(&cost(folder.path(), &line));
+    has_lines(&said, &["accelerator changes nothing here: no search for hits is written yet"]);
 }

@@ -163,13 +163,8 @@ impl Studio {
         });
     }
 
-    /// Removes the errors of earlier runs, because the code compiles.
-    pub fn compiled(&self, run: u64) {
-        self.problems(run, Vec::new(), "");
-    }
-
     /// Replaces the errors of the compiler, and the other reason why there is no picture.
-    fn problems(&self, run: u64, errors: Vec<CompilerError>, failure: &str) {
+    pub fn problems(&self, run: u64, errors: Vec<CompilerError>, failure: &str) {
         self.change(run, |state| {
             (state.errors, state.failure) = (errors, failure.to_owned());
             ("errors", errors_of(state))
