@@ -214,10 +214,9 @@ fn browser() -> Finding {
     // These systems always have one.
     let found =
         found.or_else(|| (cfg!(windows) || cfg!(target_os = "macos")).then(|| "that of the system".into()));
-    match found {
-        Some(browser) => good(browser),
-        None => optional("there is none for `raykata view`, reports and slides", "sudo apt install firefox"),
-    }
+    let none =
+        || optional("there is none for `raykata view`, reports and slides", "sudo apt install firefox");
+    found.map_or_else(none, good)
 }
 
 fn node() -> Finding {

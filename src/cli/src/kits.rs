@@ -214,10 +214,19 @@ pub fn run_program(program: &Path, words: impl IntoIterator<Item = impl AsRef<Os
     Ok(ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)))
 }
 
-/// The command that builds programs of the workspace at `root` in the target folder and the profile of this program.
-pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<Command> {
+/// The command that builds the workspace at `root` in the profile of this program.
+pub fn cargo_in(root: &Path) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(root).arg("build");
+    if let Some(profile) = profile() {
+        cargo.arg(format!("--profile={profile}"));
+    }
+    cargo
+}
+
+/// The command that builds programs of the workspace at `root` in the target folder and the profile of this program.
+pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<Command> {
+    let mut cargo = cargo_in(root);
     for program in programs {
         if program.package == Which::Solutions.package() && !has_solutions(root) {
             bail!("there are no solutions in {}: omit `--kit solutions`", root.display());
@@ -228,9 +237,6 @@ pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<Command> {
             // tests, and cargo would read `solutions/frames` as a feature of that dependency.
             cargo.args(["--features", feature]);
         }
-    }
-    if let Some(profile) = profile() {
-        cargo.arg(format!("--profile={profile}"));
     }
     if let Some(folder) = target_folder() {
         cargo.arg("--target-dir").arg(folder);

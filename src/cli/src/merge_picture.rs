@@ -34,7 +34,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let (settings, rendering) = merge(pieces)?;
     make_folder_of(&out)?;
     // Gamma 2 is an exercise, so the kit that rendered the pieces encodes the picture.
-    let kit = if format.is_8_bit() && settings.film.encoding == Encoding::Gamma2 {
+    let kit = if format == Format::Png && settings.film.encoding == Encoding::Gamma2 {
         let which = settings.which().with_context(|| format!("there is no kit `{}`", settings.kit))?;
         Some(Source::prepare(&root()?, which, Need::Frames)?.fresh())
     } else {

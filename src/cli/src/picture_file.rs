@@ -43,11 +43,6 @@ impl Format {
         ensure!(is_piece, "{}: with --rows the file must end in .{}", file.display(), piece::ENDING);
         Ok(Format::Piece)
     }
-
-    /// Whether the components of the file are bytes.
-    pub(crate) fn is_8_bit(self) -> bool {
-        self == Format::Png
-    }
 }
 
 /// Writes a whole picture. A PNG file with gamma 2 needs the kit.

@@ -85,10 +85,10 @@ pub fn load_scene(file: &Path, limits: Limits) -> Result<Scene> {
                 "{name}: this is no scene\nhelp: scenes are TOML files, such as scenes/showcase.toml"
             );
         }
-        anyhow!(draw(&error))
+        anyhow!(draw(Level::ERROR, &error))
     })?;
     for warning in warnings.iter().take(MOST) {
-        eprintln!("warning: {}", draw_as(Level::WARNING, warning));
+        eprintln!("warning: {}", draw(Level::WARNING, warning));
     }
     if warnings.len() > MOST {
         eprintln!("warning: {} more warnings are not shown", warnings.len() - MOST);
@@ -98,7 +98,7 @@ pub fn load_scene(file: &Path, limits: Limits) -> Result<Scene> {
 
 /// The same without warnings.
 pub fn read_scene(file: &Path) -> Result<Scene> {
-    load::load(file).map_err(|error| anyhow!(draw(&error)))
+    load::load(file).map_err(|error| anyhow!(draw(Level::ERROR, &error)))
 }
 
 /// A scene of the kit, for tests.
@@ -119,13 +119,8 @@ pub fn with_at_most(pixels: f64, scene: &Scene) -> Scene {
     scene
 }
 
-/// The error with the line that is wrong, in the style of the compiler.
-pub fn draw(error: &LoadError) -> String {
-    draw_as(Level::ERROR, error)
-}
-
-/// The same with another level in place of `error`.
-fn draw_as(level: Level<'_>, error: &LoadError) -> String {
+/// The error or warning with the line that is wrong, in the style of the compiler.
+fn draw(level: Level<'_>, error: &LoadError) -> String {
     let text = std::fs::read_to_string(&error.file).unwrap_or_default();
     if error.place.is_none() || error.span.end > text.len() || error.span.is_empty() {
         return error.to_string();

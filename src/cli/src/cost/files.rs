@@ -176,10 +176,9 @@ fn numerics(all: &[Summary]) -> String {
         x_axis: "nanoseconds per test",
         y_axis: "wrong hits per million hard inputs",
         lines,
-        guides: Vec::new(),
-        pareto_front: Vec::new(),
         // Zero cannot be drawn on a logarithmic axis, so it is drawn as one.
         floor: 1.0,
+        ..Plot::default()
     })
 }
 

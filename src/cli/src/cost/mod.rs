@@ -137,11 +137,10 @@ impl Report<'_> {
 
     /// What the times are.
     fn about_times(&self) -> &'static str {
-        match self.measured.processor_time {
-            true => "processor time of one thread",
-            false => {
-                "ELAPSED time of one thread, because this system gives no processor time of another process"
-            }
+        if self.measured.processor_time {
+            "processor time of one thread"
+        } else {
+            "ELAPSED time of one thread, because this system gives no processor time of another process"
         }
     }
 }
@@ -209,7 +208,7 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
     let as_written = full.quality;
     options.quality.apply(&mut full)?;
     let pixels = options.pixels();
-    let mut small = if options.quality.names_a_size() { full.clone() } else { with_at_most(pixels, &full) };
+    let mut small = if options.quality.size.is_some() { full.clone() } else { with_at_most(pixels, &full) };
     let has_goal = options.budget.is_some() || options.error.is_some();
     if !(options.full || has_goal || options.quality.names_samples()) {
         let samples = &mut small.quality.samples_per_pixel;
@@ -277,7 +276,7 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
         _ => None,
     };
     let advice = advice.map(|advice| {
-        let size = options.quality.names_a_size().then_some((full.film.width, full.film.height));
+        let size = options.quality.size.is_some().then_some((full.film.width, full.film.height));
         Advice { command: command_for(file, &as_written, &full.quality, &advice, size), ..advice }
     });
     // Measure the ray/triangle tests, if that is possible here.

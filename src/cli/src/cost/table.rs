@@ -74,12 +74,9 @@ pub fn print(report: &Report<'_>) {
     if let Some(hits) = about_hits(report) {
         println!("{}", wrapped(&format!("wrong and leaks: {hits}"), 2));
     }
-    for left_out in &report.measured.left_out {
-        println!("{}", wrapped(&format!("left out: {left_out}"), 2));
-    }
-    for lacking in &report.measured.lacking {
-        println!("{}", wrapped(&format!("note: {lacking}"), 2));
-    }
+    let left_out = report.measured.left_out.iter().map(|words| format!("left out: {words}"));
+    let lacking = report.measured.lacking.iter().map(|words| format!("note: {words}"));
+    left_out.chain(lacking).for_each(|line| println!("{}", wrapped(&line, 2)));
     numerics(report);
     if let Some(advice) = &report.advice {
         print_advice(report, advice);
@@ -288,13 +285,12 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
         }
         _ => {}
     }
-    let spent: Vec<&str> =
-        advice.steps.iter().map(|step| step.parameter.name()).fold(Vec::new(), |mut names, name| {
-            if !names.contains(&name) {
-                names.push(name);
-            }
-            names
-        });
+    let mut spent = Vec::new();
+    for name in advice.steps.iter().map(|step| step.parameter.name()) {
+        if !spent.contains(&name) {
+            spent.push(name);
+        }
+    }
     if !spent.is_empty() {
         lines.push(format!("time is spent on {}", spent.join(", ")));
     }

@@ -4,11 +4,10 @@
 //! does not use the workers of other commands. It writes a small workspace into the target folder, with one package per
 //! kit, which compiles the files of its folder.
 
-use crate::kits::{Which, profile, run_build, target_folder};
+use crate::kits::{Which, cargo_in, run_build, target_folder};
 use anyhow::{Context, Result, bail};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// A kit of a race.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,11 +76,8 @@ pub fn build(root: &Path, racers: &[Racer]) -> Result<Vec<PathBuf>> {
     if !lock.is_file() && root.join("Cargo.lock").is_file() {
         std::fs::copy(root.join("Cargo.lock"), &lock).context("cannot copy Cargo.lock")?;
     }
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(&workspace).args(["build", "--workspace", "--bins", "--target-dir"]).arg(target);
-    if let Some(profile) = profile() {
-        cargo.arg(format!("--profile={profile}"));
-    }
+    let mut cargo = cargo_in(&workspace);
+    cargo.args(["--workspace", "--bins", "--target-dir"]).arg(target);
     let built = run_build(cargo, "the kits of the race")?;
     (0..racers.len()).map(|i| built.path(&package_name(i))).collect()
 }

@@ -47,8 +47,7 @@ impl Version {
 impl Kit {
     /// Reads the new kit that an instructor has handed out.
     pub fn handed_out(root: &Path) -> Result<Kit> {
-        let list = read_list(root)?;
-        let Some((version, files)) = list else {
+        let Some((version, files)) = read_list(root)? else {
             bail!(
                 "{} is no hand-out of this kit, because it has no {LIST}: unpack the new hand-out, and name its folder",
                 root.display()

@@ -39,7 +39,7 @@ impl Plan {
                 }
                 (present, Ok(text)) if is_exercise(path) => {
                     let present = present.transpose().with_context(|| format!("{path} is not UTF-8"))?;
-                    plan.exercise(path, present, text, yours, new)?
+                    plan.exercise(path, present, text, [yours, new])?
                 }
                 _ => wanted,
             };
@@ -56,24 +56,17 @@ impl Plan {
         Ok(plan)
     }
 
-    /// The new text of an exercise file.
-    fn exercise(
-        &mut self,
-        path: &str,
-        yours: Option<&str>,
-        text: &str,
-        old: &Kit,
-        new: &Kit,
-    ) -> Result<Vec<u8>> {
+    /// The new text of an exercise file, from the student's text and the new kit's. `kits` are both kits, the old one first.
+    fn exercise(&mut self, path: &str, yours: Option<&str>, new: &str, kits: [&Kit; 2]) -> Result<Vec<u8>> {
         let stem = Path::new(path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let none = StubsOfFile::new();
-        let [old_stubs, new_stubs] = [old, new].map(|kit| kit.stubs.get(&stem).unwrap_or(&none));
-        if beside_unwritten(text, new_stubs).is_none() {
-            bail!("{} is no fresh hand-out: functions of {path} are written in it", new.root.display());
+        let [old_stubs, new_stubs] = kits.map(|kit| kit.stubs.get(&stem).unwrap_or(&none));
+        if beside_unwritten(new, new_stubs).is_none() {
+            bail!("{} is no fresh hand-out: functions of {path} are written in it", kits[1].root.display());
         }
-        let Some(yours) = yours else { return Ok(text.to_owned().into_bytes()) };
+        let Some(yours) = yours else { return Ok(new.to_owned().into_bytes()) };
         let merged =
-            merge(yours, old_stubs, text, new_stubs).with_context(|| format!("{path} cannot be read"))?;
+            merge(yours, old_stubs, new, new_stubs).with_context(|| format!("{path} cannot be read"))?;
         let bytes = merged.text.clone().into_bytes();
         self.merged.insert(path.to_owned(), merged);
         Ok(bytes)

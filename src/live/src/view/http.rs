@@ -50,9 +50,8 @@ impl Request {
         // Refuse other hosts and other tokens.
         let [method, target, version] = first.split(' ').collect::<Vec<_>>()[..] else { return Err(BAD) };
         let own = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];
-        match &hosts[..] {
-            [host] if own.contains(host) => {}
-            _ => return Err(FORBIDDEN),
+        if !matches!(&hosts[..], [host] if own.contains(host)) {
+            return Err(FORBIDDEN);
         }
         let (path, query) = target.split_once('?').unwrap_or((target, ""));
         let rest = path.strip_prefix('/').ok_or(BAD)?;

@@ -242,6 +242,13 @@ impl Events {
         found.unwrap_or_else(|| panic!("no `{name}`")).1
     }
 
+    /// Waits for a part of the finished picture whose first pixels have these colours, in base64.
+    pub fn wait_for_colors(&mut self, rgb: &str) {
+        self.wait_for("tile", |tile| {
+            tile["pass"] == "all samples" && tile["rgb"].as_str().unwrap().starts_with(rgb)
+        });
+    }
+
     pub fn wait_for_phase(&mut self, phase: &str) {
         self.wait_for("status", |status| status["phase"] == phase);
     }
