@@ -198,8 +198,8 @@ fn terminal() -> Finding {
 }
 
 fn editor() -> Finding {
-    let chosen = ["VISUAL", "EDITOR"].iter().filter_map(|name| std::env::var(name).ok());
-    match chosen.into_iter().find(|editor| !editor.is_empty()) {
+    let mut chosen = ["VISUAL", "EDITOR"].iter().filter_map(|name| std::env::var(name).ok());
+    match chosen.find(|editor| !editor.is_empty()) {
         Some(editor) => good(editor),
         None => optional(
             "none is chosen for the key `o` of `raykata watch`",

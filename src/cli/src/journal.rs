@@ -194,12 +194,4 @@ mod tests {
             assert!(notes == "{" || fs::read_to_string(&file).unwrap() == notes);
         }
     }
-
-    #[test]
-    fn a_finished_journal_is_gone() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("journal.jsonl");
-        Journal::<u32>::create(&file, "work").unwrap().finish().unwrap();
-        assert!(!file.exists());
-    }
 }

@@ -4,7 +4,7 @@
 //! The file has a line that says what it is, a line of JSON, and the components of all pixels as little-endian numbers of four
 //! bytes, row by row from the top. So the numbers of a picture stay the same to the last bit, NaN included.
 
-use crate::fingerprint::{of_files, of_scene};
+use crate::fingerprint;
 use crate::kits::Which;
 use anyhow::{Context, Result, bail, ensure};
 use glam::Vec3;
@@ -51,7 +51,7 @@ impl Settings {
         let scene = &job.scene;
         let film = FilmSettings { rows: None, ..scene.film };
         Ok(Settings {
-            scene: of_scene(scene),
+            scene: fingerprint::of_scene(scene),
             code: code(root, which)?,
             kit: which.package().to_owned(),
             view: job.view,
@@ -87,7 +87,7 @@ fn code(root: &Path, which: Which) -> Result<String> {
         }
     }
     files.sort();
-    of_files(files)
+    fingerprint::of_files(files)
 }
 
 /// Some rows of a picture. The second line of the file is a piece whose film has no pixels; they follow.

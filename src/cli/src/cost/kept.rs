@@ -1,7 +1,7 @@
 //! The measured pictures of a run that was stopped. They lie beside the report until it is written, so that the next run with the
 //! same code measures only the others. Times of both runs count: measure on an idle machine in both.
 
-use crate::fingerprint::{fingerprint, of_scene};
+use crate::fingerprint::{self, fingerprint};
 use crate::journal::Journal;
 use crate::queue::lock;
 use anyhow::{Context, Result};
@@ -35,12 +35,9 @@ impl KeptPictures {
         let file = out.join("unfinished.jsonl");
         let about = format!("pictures by the program {code}");
         let journal: Journal<Picture> = Journal::open(&file, &about)?;
-        let n_kept = journal.kept().count();
+        let (n_kept, place) = (journal.kept().count(), file.display());
         if n_kept > 0 {
-            println!(
-                "continues a run that was stopped: {n_kept} measured pictures are in {}",
-                file.display()
-            );
+            println!("continues a run that was stopped: {n_kept} measured pictures are in {place}");
         }
         Ok(KeptPictures { journal: Mutex::new(journal), scene: Mutex::default() })
     }
@@ -62,7 +59,7 @@ impl KeptPictures {
         if let Some((_, name)) = last.as_ref().filter(is_same) {
             return name.clone();
         }
-        let name = of_scene(scene);
+        let name = fingerprint::of_scene(scene);
         *last = Some((scene.clone(), name.clone()));
         name
     }

@@ -28,7 +28,7 @@ mod slope;
 mod table;
 
 use crate::args::{Given, wrapped};
-use crate::fingerprint::of_files;
+use crate::fingerprint;
 use crate::kits::{Need, Source, Which, has_solutions, root};
 use crate::lock::Lock;
 use crate::quality_options::arguments;
@@ -201,7 +201,13 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
         let out = options.out.clone().unwrap_or_else(|| Path::new("out").join("headline"));
         let hierarchy = options.quality.accelerator().unwrap_or(Accelerator::Auto);
         let _lock = Lock::on(&out)?;
-        return headline::run(&bench, hierarchy, options.most, &out, &of_files([&source.program])?);
+        return headline::run(
+            &bench,
+            hierarchy,
+            options.most,
+            &out,
+            &fingerprint::of_files([&source.program])?,
+        );
     };
     // Read the scene, in its own size and in that of the measured pictures.
     let mut full = load_scene(file, options.quality.limits)?;
@@ -222,7 +228,7 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
     let _lock = Lock::on(&out)?;
 
     // Continue a run that was stopped. Each code that renders has its own pictures and its own reference.
-    let code = of_files(beside.iter().chain([&source]).map(|source| &source.program))?;
+    let code = fingerprint::of_files(beside.iter().chain([&source]).map(|source| &source.program))?;
     let kept = KeptPictures::open(&out, &code)?;
     let bench = Bench { kept: Some(&kept), ..bench };
 

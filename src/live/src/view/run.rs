@@ -146,6 +146,7 @@ impl Work {
         let begin = Instant::now();
         let Some(program) = self.compile(true)? else { return Ok(()) };
         let compiled = begin.elapsed();
+        // The errors of earlier runs are gone, because the code compiles.
         self.studio.problems(self.number, Vec::new(), "");
         // Compile them with optimisation, after the coarse picture or a moment.
         let (coarse_is_there, wait) = channel();
