@@ -132,10 +132,8 @@ fn compiler(said: Option<&str>, oldest: (u32, u32)) -> Finding {
 }
 
 fn formatter() -> Finding {
-    match said("cargo", &["fmt", "--version"]) {
-        Some(said) => good(said),
-        None => optional("there is no rustfmt", "run `rustup component add rustfmt`"),
-    }
+    let said = said("cargo", &["fmt", "--version"]);
+    said.map_or_else(|| optional("there is no rustfmt", "run `rustup component add rustfmt`"), good)
 }
 
 fn linker() -> Finding {
@@ -200,10 +198,8 @@ fn terminal() -> Finding {
 }
 
 fn editor() -> Finding {
-    match ["VISUAL", "EDITOR"]
-        .iter()
-        .find_map(|name| std::env::var(name).ok().filter(|editor| !editor.is_empty()))
-    {
+    let mut chosen = ["VISUAL", "EDITOR"].iter().filter_map(|name| std::env::var(name).ok());
+    match chosen.find(|editor| !editor.is_empty()) {
         Some(editor) => good(editor),
         None => optional(
             "none is chosen for the key `o` of `raykata watch`",
@@ -218,10 +214,9 @@ fn browser() -> Finding {
     // These systems always have one.
     let found =
         found.or_else(|| (cfg!(windows) || cfg!(target_os = "macos")).then(|| "that of the system".into()));
-    match found {
-        Some(browser) => good(browser),
-        None => optional("there is none for `raykata view`, reports and slides", "sudo apt install firefox"),
-    }
+    let none =
+        || optional("there is none for `raykata view`, reports and slides", "sudo apt install firefox");
+    found.map_or_else(none, good)
 }
 
 fn node() -> Finding {

@@ -1,20 +1,11 @@
 //! Small pieces of HTML, and data as text.
 
+use crate::svg::escaped;
 use std::fmt::{Display, Write};
 
 /// The text, escaped for HTML.
 pub fn escape(text: impl Display) -> String {
-    let mut escaped = String::new();
-    for letter in text.to_string().chars() {
-        match letter {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
-            letter => escaped.push(letter),
-        }
-    }
-    escaped
+    escaped(&text.to_string()).replace('"', "&quot;")
 }
 
 /// An element around text, which is escaped.

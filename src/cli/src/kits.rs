@@ -21,15 +21,12 @@ pub enum Which {
 }
 
 impl Which {
-    /// The names of both.
+    /// The names of both, which are those of their packages.
     pub const NAMES: [(&str, Which); 2] = [("exercises", Which::Exercises), ("solutions", Which::Solutions)];
 
     /// The name of the kit's package.
     pub fn package(self) -> &'static str {
-        match self {
-            Which::Exercises => "exercises",
-            Which::Solutions => "solutions",
-        }
+        Which::NAMES[self as usize].0
     }
 }
 
@@ -106,7 +103,12 @@ pub struct Source {
 impl Source {
     /// Builds the worker if it is not up to date.
     pub fn prepare(root: &Path, which: Which, need: Need) -> Result<Source> {
-        Ok(Source { which, program: build_worker(root, which, need)? })
+        let what = match which {
+            Which::Exercises => "your exercises",
+            Which::Solutions => "the solutions",
+        };
+        let [program] = build(root, what, [Program::worker(which, need)])?;
+        Ok(Source { which, program })
     }
 
     /// A new kit, with a process of its own.
@@ -156,16 +158,6 @@ impl Program {
 
     /// The program that renders and measures.
     pub const RAYKATA: Program = Program { package: "raykata-cli", name: "raykata", feature: None };
-}
-
-/// Builds the worker of a kit in the profile of this program, and returns its path.
-pub fn build_worker(root: &Path, which: Which, need: Need) -> Result<PathBuf> {
-    let what = match which {
-        Which::Exercises => "your exercises",
-        Which::Solutions => "the solutions",
-    };
-    let [program] = build(root, what, [Program::worker(which, need)])?;
-    Ok(program)
 }
 
 /// Builds programs of the workspace at `root` in the profile of this program, and returns their paths. If
@@ -224,10 +216,19 @@ pub fn run_program(program: &Path, words: impl IntoIterator<Item = impl AsRef<Os
     Ok(ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(1)))
 }
 
-/// The command that builds programs of the workspace at `root` in the target folder and the profile of this program.
-pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<Command> {
+/// The command that builds the workspace at `root` in the profile of this program.
+pub fn cargo_in(root: &Path) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(root).arg("build");
+    if let Some(profile) = profile() {
+        cargo.arg(format!("--profile={profile}"));
+    }
+    cargo
+}
+
+/// The command that builds programs of the workspace at `root` in the target folder and the profile of this program.
+pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<Command> {
+    let mut cargo = cargo_in(root);
     for program in programs {
         if program.package == Which::Solutions.package() && !has_solutions(root) {
             bail!("there are no solutions in {}: omit `--kit solutions`", root.display());
@@ -238,9 +239,6 @@ pub fn cargo_build(root: &Path, programs: &[Program]) -> Result<Command> {
             // tests, and cargo would read `solutions/frames` as a feature of that dependency.
             cargo.args(["--features", feature]);
         }
-    }
-    if let Some(profile) = profile() {
-        cargo.arg(format!("--profile={profile}"));
     }
     if let Some(folder) = target_folder() {
         cargo.arg("--target-dir").arg(folder);

@@ -14,10 +14,7 @@ pub struct Lock {
 
 impl Lock {
     /// Locks the results at `place`, a file or a folder that need not exist, by a file beside it.
-    ///
-    /// # Errors
-    ///
-    /// If another process, or another part of this one, has locked them, or if the file beside them cannot be written.
+    /// An error if another process, or another part of this one, has locked them.
     pub fn on(place: &Path) -> Result<Lock> {
         make_folder_of(place)?;
         let mut name = OsString::from(".");
@@ -32,10 +29,6 @@ impl Lock {
     }
 
     /// Locks this file, and creates it if it does not exist. `taken` is the message if the lock is taken.
-    ///
-    /// # Errors
-    ///
-    /// As for [`Lock::on`].
     pub fn file(path: &Path, taken: impl FnOnce() -> String) -> Result<Lock> {
         let file = OpenOptions::new().create(true).append(true).open(path);
         let file = file.with_context(|| format!("cannot write {}", path.display()))?;

@@ -6,7 +6,7 @@ use crate::kits::{Need, Source, root};
 use crate::picture_file::{Format, Summary, write_picture};
 use crate::piece::{Piece, Settings};
 use crate::report::make_folder_of;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Error, Result, bail};
 use raykata::kit::Rendering;
 use raykata::rows::Rows;
 use raykata::scene::Encoding;
@@ -34,7 +34,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let (settings, rendering) = merge(pieces)?;
     make_folder_of(&out)?;
     // Gamma 2 is an exercise, so the kit that rendered the pieces encodes the picture.
-    let kit = if format.is_8_bit() && settings.film.encoding == Encoding::Gamma2 {
+    let kit = if format == Format::Png && settings.film.encoding == Encoding::Gamma2 {
         let which = settings.which().with_context(|| format!("there is no kit `{}`", settings.kit))?;
         Some(Source::prepare(&root()?, which, Need::Frames)?.fresh())
     } else {
@@ -49,10 +49,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
 }
 
 /// The whole picture of these pieces, each with the name of its file, and its settings.
-///
-/// # Errors
-///
-/// If the pieces are not of one picture, if one overlaps another, or if rows are missing. The message names all of them.
+/// An error if they are not of one picture, if one overlaps another, or if rows are missing: it names all of them.
 pub fn merge(mut pieces: Vec<(String, Piece)>) -> Result<(Settings, Rendering)> {
     let Some((first_name, first)) = pieces.first() else { bail!("there are no pieces") };
     let settings = first.settings.clone();
@@ -118,47 +115,33 @@ fn joined(mut whole: Rendering, others: impl Iterator<Item = Rendering>) -> Rend
 fn differences(first: &Piece, piece: &Piece) -> Result<Vec<String>> {
     let [ours, theirs] = [first, piece].map(|piece| {
         let Rendering { primitives, accelerator, structure, bytes_of_parts, notes, .. } = &piece.rendering;
-        let settings = serde_json::to_value(&piece.settings)?;
-        let mut found = Vec::new();
-        leaves("", &settings, &mut found);
-        leaves(
-            "structure",
-            &serde_json::to_value((primitives, accelerator, structure, bytes_of_parts))?,
-            &mut found,
-        );
+        let structure = serde_json::to_value((primitives, accelerator, structure, bytes_of_parts))?;
         // A half-written kit leaves out a function that only some of the rows reach.
-        leaves("notes", &serde_json::to_value(notes.join("; "))?, &mut found);
-        Ok::<_, serde_json::Error>(found)
+        Ok::<_, Error>([serde_json::to_value(&piece.settings)?, structure, notes.join("; ").into()])
     });
-    let (ours, theirs) = (ours?, theirs?);
-    let different = theirs.iter().filter(|entry| !ours.contains(entry));
-    let mut words: Vec<String> = different
-        .map(|(name, value)| match name.as_str() {
-            "scene" => "another scene".to_owned(),
-            "code" => "other source code".to_owned(),
-            name if name.starts_with("structure") => "another structure".to_owned(),
-            name => {
-                let here = ours.iter().find(|(known, _)| known == name).map(|(_, value)| value.to_string());
-                format!("{name} {value} instead of {}", here.unwrap_or_default())
-            }
-        })
-        .collect();
-    words.dedup();
-    Ok(words)
+    let mut found = Vec::new();
+    for (name, (ours, theirs)) in ["", "structure", "notes"].into_iter().zip(ours?.iter().zip(&theirs?)) {
+        compare(name, ours, theirs, &mut found);
+    }
+    Ok(found)
 }
 
-/// All numbers and words of a JSON value, each with the names that lead to it.
-fn leaves(name: &str, value: &Value, found: &mut Vec<(String, Value)>) {
-    let below = |key: &str| if name.is_empty() { key.to_owned() } else { format!("{name}.{key}") };
-    match value {
-        Value::Object(fields) => fields.iter().for_each(|(key, value)| leaves(&below(key), value, found)),
-        Value::Array(items) => {
-            items
-                .iter()
-                .enumerate()
-                .for_each(|(index, value)| leaves(&below(&index.to_string()), value, found));
+/// Describes each number and word of `theirs` that differs from the one at the same place in `ours`. `name` leads to both.
+fn compare(name: &str, ours: &Value, theirs: &Value, found: &mut Vec<String>) {
+    match theirs {
+        Value::Object(fields) => {
+            for (key, value) in fields {
+                let name = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
+                compare(&name, &ours[key], value, found);
+            }
         }
-        value => found.push((name.to_owned(), value.clone())),
+        _ if ours == theirs => {}
+        _ => found.push(match name {
+            "scene" => "another scene".to_owned(),
+            "code" => "other source code".to_owned(),
+            "structure" => "another structure".to_owned(),
+            _ => format!("{name} {theirs} instead of {ours}"),
+        }),
     }
 }
 

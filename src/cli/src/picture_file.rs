@@ -43,11 +43,6 @@ impl Format {
         ensure!(is_piece, "{}: with --rows the file must end in .{}", file.display(), piece::ENDING);
         Ok(Format::Piece)
     }
-
-    /// Whether the components of the file are bytes.
-    pub(crate) fn is_8_bit(self) -> bool {
-        self == Format::Png
-    }
 }
 
 /// Writes a whole picture. A PNG file with gamma 2 needs the kit.
@@ -142,26 +137,26 @@ impl Summary<'_> {
         println!("  build            {:.3} s", rendering.build_seconds);
         println!("  render           {:.3} s", rendering.render_seconds);
         if *count {
-            let indirect = [("indirect rays", counts.indirect), ("absorbed paths", counts.absorbed)];
+            // Each number with the condition under which it says something.
+            let has_offset = quality.ray_offset > 0.0;
             let numbers = [
-                ("primary rays", counts.primary),
-                ("shadow rays", counts.shadow),
-                ("reflected rays", counts.reflection),
-                ("refracted rays", counts.transmission),
+                ("primary rays", counts.primary, true),
+                ("shadow rays", counts.shadow, true),
+                ("reflected rays", counts.reflection, true),
+                ("refracted rays", counts.transmission, true),
+                ("indirect rays", counts.indirect, *indirect_light),
+                ("absorbed paths", counts.absorbed, *indirect_light),
+                ("hits", counts.hits, true),
+                ("random numbers", counts.random_numbers, true),
+                ("image reads", counts.texture_reads, true),
+                ("node visits", counts.node_visits, true),
+                ("box tests", counts.box_tests, true),
+                ("primitive tests", counts.primitive_tests, true),
+                ("shadow acne", counts.shadow_acne, has_offset),
+                ("light leaks", counts.light_leaks, has_offset),
             ];
-            let others = [
-                ("hits", counts.hits),
-                ("random numbers", counts.random_numbers),
-                ("image reads", counts.texture_reads),
-                ("node visits", counts.node_visits),
-                ("box tests", counts.box_tests),
-                ("primitive tests", counts.primitive_tests),
-            ];
-            let indirect = if *indirect_light { &indirect[..] } else { &[] };
-            let offset = [("shadow acne", counts.shadow_acne), ("light leaks", counts.light_leaks)];
-            let offset = if quality.ray_offset > 0.0 { &offset[..] } else { &[] };
-            for (name, number) in numbers.iter().chain(indirect).chain(&others).chain(offset) {
-                println!("  {name:<15}  {}", Thousands(*number));
+            for (name, number, _) in numbers.into_iter().filter(|(.., is_shown)| *is_shown) {
+                println!("  {name:<15}  {}", Thousands(number));
             }
             let rays = counts.rays().max(1) as f64;
             println!(
@@ -179,16 +174,13 @@ impl Summary<'_> {
         for note in &rendering.notes {
             println!("  {:<15}  {}", "note", wrapped(note, 19));
         }
-        match film.not_a_number() {
-            0 => {}
-            n => println!("  warning          {} pixels are NaN; they are magenta", Thousands(n as u64)),
-        }
-        match film.infinite() {
-            0 => {}
-            n => println!(
-                "  warning          {} pixels are infinite; they are as bright as the file format allows",
-                Thousands(n as u64)
-            ),
+        for (n, words) in [
+            (film.not_a_number(), "NaN; they are magenta"),
+            (film.infinite(), "infinite; they are as bright as the file format allows"),
+        ] {
+            if n > 0 {
+                println!("  warning          {} pixels are {words}", Thousands(n as u64));
+            }
         }
     }
 }

@@ -4,15 +4,14 @@
 //! The file has a line that says what it is, a line of JSON, and the components of all pixels as little-endian numbers of four
 //! bytes, row by row from the top. So the numbers of a picture stay the same to the last bit, NaN included.
 
-use crate::fingerprint::fingerprint;
+use crate::fingerprint;
 use crate::kits::Which;
 use anyhow::{Context, Result, bail, ensure};
 use glam::Vec3;
 use raykata::film::write_atomically;
 use raykata::kit::{RenderJob, Rendering, View};
-use raykata::message::to_bytes;
 use raykata::rows::Rows;
-use raykata::scene::{FilmSettings, Quality, Scene};
+use raykata::scene::{FilmSettings, Quality};
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -51,9 +50,8 @@ impl Settings {
     pub fn new(job: &RenderJob, which: Which, root: &Path) -> Result<Settings> {
         let scene = &job.scene;
         let film = FilmSettings { rows: None, ..scene.film };
-        let rest = Scene { film: FilmSettings::default(), quality: Quality::default(), ..scene.clone() };
         Ok(Settings {
-            scene: fingerprint([&to_bytes(&rest)[..]]),
+            scene: fingerprint::of_scene(scene),
             code: code(root, which)?,
             kit: which.package().to_owned(),
             view: job.view,
@@ -89,11 +87,7 @@ fn code(root: &Path, which: Which) -> Result<String> {
         }
     }
     files.sort();
-    let texts: Vec<Vec<u8>> = files
-        .iter()
-        .map(|file| std::fs::read(file).with_context(|| format!("cannot read {}", file.display())))
-        .collect::<Result<_>>()?;
-    Ok(fingerprint(texts.iter().map(Vec::as_slice)))
+    fingerprint::of_files(files)
 }
 
 /// Some rows of a picture. The second line of the file is a piece whose film has no pixels; they follow.

@@ -1,9 +1,10 @@
 //! A progress bar on standard error. It is drawn on a terminal only, not into a file or a pipe.
 
+use crate::queue::lock;
 use std::fmt::Write as _;
 use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 /// The time between two drawings.
@@ -45,7 +46,7 @@ impl ProgressBar {
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
-        self.0.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.0.state)
     }
 
     fn change(&self, change: impl FnOnce(&mut State)) {

@@ -65,7 +65,8 @@ impl ToneOptions {
 /// The size of the picture and the settings of `[quality]`. Those that are not given keep the value of the scene.
 #[derive(Default)]
 pub struct QualityOptions {
-    size: Option<(u32, u32)>,
+    /// The width and height of the picture, if they are given.
+    pub size: Option<(u32, u32)>,
     /// The settings that are given, and their keys.
     wanted: Quality,
     keys: Vec<&'static str>,
@@ -109,9 +110,7 @@ impl QualityOptions {
         changes.extend(given.parsed("--spp", |text| change("samples_per_pixel", text))?);
         changes.extend(given.parsed("--accelerator", |text| change("accelerator", text))?);
         for (key, quality) in changes {
-            if options.keys.contains(&key) {
-                return Err(given.misuse(format!("`{key}` is given twice")));
-            }
+            given.refuse(options.keys.contains(&key), format!("`{key}` is given twice"))?;
             options.wanted.take(key, &quality);
             options.keys.push(key);
         }
@@ -121,11 +120,6 @@ impl QualityOptions {
     /// The accelerator, if one is given.
     pub fn accelerator(&self) -> Option<Accelerator> {
         self.keys.contains(&"accelerator").then_some(self.wanted.accelerator)
-    }
-
-    /// Whether a size was given.
-    pub fn names_a_size(&self) -> bool {
-        self.size.is_some()
     }
 
     /// Whether a number of samples per pixel was given.

@@ -1,7 +1,8 @@
-//! Distributes work among threads: a free thread takes the next item.
+//! Work on several threads: a free thread takes the next item, and locks outlive a panic.
 
 use anyhow::{Result, bail};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Workers without state, one per core.
 pub fn one_a_core() -> Vec<()> {
@@ -11,6 +12,11 @@ pub fn one_a_core() -> Vec<()> {
 /// The number of threads that run at the same time.
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Locks a mutex, also if a thread has panicked while it held the lock.
+pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The results of `work` for all items, in the order of the items; each worker has a thread. After an error

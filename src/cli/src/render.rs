@@ -7,7 +7,7 @@ use crate::merge_picture;
 use crate::picture_file::{Format, Summary, write_picture};
 use crate::piece::{self, Piece, Settings};
 use crate::quality_options::{QualityOptions, THREADS, ToneOptions, threads};
-use crate::report::{FrameBar, make_folder, make_folder_of, name_of};
+use crate::report::{FrameBar, counted, make_folder, make_folder_of, name_of};
 use anyhow::{Context, Result, anyhow};
 use raykata::kit::{Kit, RenderJob, Rendering, View, kit_error};
 use raykata::rows::Rows;
@@ -87,15 +87,12 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     };
 
     // Write the file, and print what the picture cost.
-    let samples = match job.scene.quality.samples_per_pixel {
-        1 => "1 sample per pixel".to_owned(),
-        n => format!("{n} samples per pixel"),
-    };
+    let samples = counted(job.scene.quality.samples_per_pixel, "sample");
     let (quality, indirect_light) = (&job.scene.quality, job.scene.indirect_light);
     let (width, height) = (rendering.film.width, job.scene.film.height);
     let size = match rows {
-        Some(rows) => format!("rows {rows} of {width} × {height} pixels, {samples}"),
-        None => format!("{width} × {height} pixels, {samples}"),
+        Some(rows) => format!("rows {rows} of {width} × {height} pixels, {samples} per pixel"),
+        None => format!("{width} × {height} pixels, {samples} per pixel"),
     };
     let rendering = if let Some(rows) = rows {
         let piece = Piece { settings: Settings::new(&job, source.which, &root)?, rows, rendering };

@@ -1,6 +1,7 @@
 //! Output for people: readable numbers, errors with the line of the file, and the progress of a frame.
 
 use crate::progress::ProgressBar;
+use crate::queue::lock;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use anyhow::{Context, Result, anyhow};
 use raykata::film::write_atomically;
@@ -12,7 +13,7 @@ use raykata::scene::load::{self, Limits, Loaded};
 use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, OnceLock};
 
 /// Why words that were to be printed are lost, if any are.
 static LOST: OnceLock<std::io::Error> = OnceLock::new();
@@ -49,6 +50,12 @@ impl fmt::Display for Thousands {
     }
 }
 
+/// A number of things, with their name in the singular or in the plural.
+pub fn counted(n: impl Into<u64>, name: &str) -> String {
+    let n = n.into();
+    format!("{n} {name}{}", if n == 1 { "" } else { "s" })
+}
+
 /// A size in bytes, shown in a readable unit.
 pub struct Bytes(pub u64);
 
@@ -78,10 +85,10 @@ pub fn load_scene(file: &Path, limits: Limits) -> Result<Scene> {
                 "{name}: this is no scene\nhelp: scenes are TOML files, such as scenes/showcase.toml"
             );
         }
-        anyhow!(draw(&error))
+        anyhow!(draw(Level::ERROR, &error))
     })?;
     for warning in warnings.iter().take(MOST) {
-        eprintln!("warning: {}", draw_as(Level::WARNING, warning));
+        eprintln!("warning: {}", draw(Level::WARNING, warning));
     }
     if warnings.len() > MOST {
         eprintln!("warning: {} more warnings are not shown", warnings.len() - MOST);
@@ -91,7 +98,7 @@ pub fn load_scene(file: &Path, limits: Limits) -> Result<Scene> {
 
 /// The same without warnings.
 pub fn read_scene(file: &Path) -> Result<Scene> {
-    load::load(file).map_err(|error| anyhow!(draw(&error)))
+    load::load(file).map_err(|error| anyhow!(draw(Level::ERROR, &error)))
 }
 
 /// A scene of the kit, for tests.
@@ -112,13 +119,8 @@ pub fn with_at_most(pixels: f64, scene: &Scene) -> Scene {
     scene
 }
 
-/// The error with the line that is wrong, in the style of the compiler.
-pub fn draw(error: &LoadError) -> String {
-    draw_as(Level::ERROR, error)
-}
-
-/// The same with another level in place of `error`.
-fn draw_as(level: Level<'_>, error: &LoadError) -> String {
+/// The error or warning with the line that is wrong, in the style of the compiler.
+fn draw(level: Level<'_>, error: &LoadError) -> String {
     let text = std::fs::read_to_string(&error.file).unwrap_or_default();
     if error.place.is_none() || error.span.end > text.len() || error.span.is_empty() {
         return error.to_string();
@@ -199,7 +201,7 @@ impl FrameBar {
     /// Starts the progress of something else.
     pub fn begin(&self, what: String) {
         self.bar.begin(what.as_str(), 0);
-        *self.now.lock().unwrap_or_else(PoisonError::into_inner) = Some(what);
+        *lock(&self.now) = Some(what);
     }
 
     /// Removes the bar.
@@ -215,7 +217,7 @@ impl Watch for FrameBar {
 
     fn progress(&self, done: u64, total: u64) {
         // Start the bar again with the first pixels, because the time before them says nothing about that of the others.
-        if let Some(what) = self.now.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        if let Some(what) = lock(&self.now).take() {
             self.bar.begin(what, total);
         }
         self.bar.set(done, total);

@@ -6,11 +6,14 @@ use crate::quality_options::{MEMORY, limits};
 use crate::report::{job, load_scene, say};
 use anyhow::{Result, bail};
 use raykata::kit::{RayKind, RenderJob, TracedRay, kit_error};
-use std::fmt::Write;
+use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-const FORMATS: [(&str, Format); 3] = [("text", Format::Text), ("json", Format::Json), ("dot", Format::Dot)];
+/// Writes a tree in a format.
+type Write = fn(&[TracedRay]) -> Result<String>;
+
+const FORMATS: [(&str, Write); 3] = [("text", as_text), ("json", as_json), ("dot", as_dot)];
 
 /// `raykata tree`.
 pub static SPEC: Spec = Spec {
@@ -33,17 +36,6 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// The format of a tree.
-#[derive(Clone, Copy)]
-enum Format {
-    /// Indented lines.
-    Text,
-    /// A list of rays, each with the index of its parent.
-    Json,
-    /// For Graphviz: `raykata tree … --format dot | dot -Tsvg`.
-    Dot,
-}
-
 fn parse_pixel(text: &str) -> Result<(u32, u32), String> {
     let parsed =
         text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
@@ -56,7 +48,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let scene_file = Path::new(given.required(0)?);
     let (x, y) = pixel.ok_or_else(|| given.misuse("`--pixel X,Y` is missing"))?;
     let kit = Choice::read(given)?;
-    let format = given.choice("--format", &FORMATS)?.unwrap_or(Format::Text);
+    let format = given.choice("--format", &FORMATS)?.unwrap_or(as_text);
     let scene = load_scene(scene_file, limits(given)?)?;
     let film = scene.film;
     if x >= film.width || y >= film.height {
@@ -69,21 +61,22 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let kit = kit.start()?;
     let job = RenderJob { threads: 1, count: false, reuse: false, ..job(scene) };
     let rays = kit_error::catch(|| kit.trace(&job, x, y))?;
-    let tree = match format {
-        Format::Text => as_text(&rays),
-        Format::Json => serde_json::to_string_pretty(&rays)? + "\n",
-        Format::Dot => as_dot(&rays),
-    };
-    say(format_args!("{tree}"));
+    say(format_args!("{}", format(&rays)?));
     Ok(ExitCode::SUCCESS)
 }
 
-fn as_text(rays: &[TracedRay]) -> String {
+/// Indented lines.
+fn as_text(rays: &[TracedRay]) -> Result<String> {
     let mut text = String::new();
     for (root, _) in rays.iter().enumerate().filter(|(_, ray)| ray.parent.is_none()) {
         write_below(rays, root, 0, &mut text);
     }
-    text
+    Ok(text)
+}
+
+/// A list of rays, each with the index of its parent.
+fn as_json(rays: &[TracedRay]) -> Result<String> {
+    Ok(serde_json::to_string_pretty(rays)? + "\n")
 }
 
 fn write_below(rays: &[TracedRay], index: usize, level: usize, text: &mut String) {
@@ -113,7 +106,8 @@ pub fn label(ray: &TracedRay) -> String {
     format!("{kind}, depth {}, weight {weight}, {hit}", ray.depth)
 }
 
-fn as_dot(rays: &[TracedRay]) -> String {
+/// For Graphviz: `raykata tree … --format dot | dot -Tsvg`.
+fn as_dot(rays: &[TracedRay]) -> Result<String> {
     let mut dot = String::from("digraph rays {\n  node [shape=box, fontname=\"sans-serif\"];\n");
     for (index, ray) in rays.iter().enumerate() {
         let text = label(ray).replace('\\', "\\\\").replace('"', "\\\"").replace(", ", "\\n");
@@ -123,5 +117,5 @@ fn as_dot(rays: &[TracedRay]) -> String {
             let _ = writeln!(dot, "  r{parent} -> r{index};");
         }
     }
-    dot + "}\n"
+    Ok(dot + "}\n")
 }

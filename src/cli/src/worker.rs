@@ -9,18 +9,19 @@ mod waiting;
 mod watchdog;
 mod withheld;
 
+use crate::queue::lock;
 pub use autopsy::last_words;
 use autopsy::{cause_of_death, keep_start, shortened, wait_briefly};
-use launcher::lock;
 pub use launcher::{Death, Launcher};
 use raykata::frame::{Unwatched, Watch};
-use raykata::kit::{Answer, KitError, Request, Transport, kit_error};
+use raykata::kit::{Answer, KitError, RenderJob, Request, Transport, kit_error};
 use raykata::worker::{self, LONGEST_MESSAGE, Reply};
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
 use std::time::Duration;
 use watchdog::Watchdog;
 use withheld::Withheld;
@@ -38,17 +39,10 @@ const LONGEST_UNTRUSTED: usize = 4 << 20;
 
 /// The longest reply of an untrusted worker to `request`, in bytes.
 fn longest_reply(request: &Request) -> usize {
-    match request.frame() {
-        // A pixel has 12 bytes.
-        Some(job) => {
-            let pixels = u64::from(job.scene.film.width) * u64::from(job.scene.film.height);
-            usize::try_from(12 * pixels)
-                .unwrap_or(LONGEST_MESSAGE)
-                .saturating_add(LONGEST_UNTRUSTED)
-                .min(LONGEST_MESSAGE)
-        }
-        None => LONGEST_UNTRUSTED,
-    }
+    let size = |job: &RenderJob| u64::from(job.scene.film.width) * u64::from(job.scene.film.height);
+    // A pixel has 12 bytes.
+    let bytes = usize::try_from(12 * request.frame().map_or(0, size)).unwrap_or(LONGEST_MESSAGE);
+    bytes.saturating_add(LONGEST_UNTRUSTED).min(LONGEST_MESSAGE)
 }
 
 /// A kit in a separate process.
@@ -213,7 +207,8 @@ struct Process {
     to_worker: Box<dyn Write + Send>,
     from_worker: Box<dyn Read + Send>,
     watchdog: Arc<Watchdog>,
-    stderr: std::thread::JoinHandle<String>,
+    /// Reads what the process writes to standard error, until its end.
+    stderr: Option<JoinHandle<String>>,
     output: Option<Output>,
     launcher: Option<Arc<dyn Launcher>>,
 }
@@ -224,10 +219,8 @@ impl Process {
         launcher: Option<Arc<dyn Launcher>>,
         output: Option<Output>,
     ) -> io::Result<Process> {
-        let mut command = match &launcher {
-            Some(launcher) => launcher.command(program),
-            None => worker::child(program),
-        };
+        let own = || worker::child(program);
+        let mut command = launcher.as_ref().map_or_else(own, |launcher| launcher.command(program));
         let (errors, stderr) = io::pipe()?;
         let stdout = if output.is_some() { Stdio::from(stderr.try_clone()?) } else { Stdio::null() };
         command.stdout(stdout).stderr(stderr);
@@ -244,7 +237,7 @@ impl Process {
             child,
             to_worker,
             from_worker,
-            stderr: std::thread::spawn(keep),
+            stderr: Some(std::thread::spawn(keep)),
             output,
             launcher,
         })
@@ -321,8 +314,7 @@ impl Process {
         let status = status.or_else(|| lock(&self.child).wait().ok());
         self.to_worker = Box::new(io::sink());
         self.from_worker = Box::new(io::empty());
-        let stderr =
-            std::mem::replace(&mut self.stderr, std::thread::spawn(String::new)).join().unwrap_or_default();
+        let stderr = self.stderr.take().and_then(|words| words.join().ok()).unwrap_or_default();
         if let Some(late) = late {
             return late;
         }
@@ -342,7 +334,7 @@ impl Drop for Process {
         drop(child);
         self.watchdog.retire();
         if self.output.is_some() {
-            let _ = std::mem::replace(&mut self.stderr, std::thread::spawn(String::new)).join();
+            let _ = self.stderr.take().map(JoinHandle::join);
         }
     }
 }

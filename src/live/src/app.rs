@@ -33,13 +33,8 @@ pub enum Phase {
     Compiling,
     /// The checks run, or the picture is rendered.
     Working,
-    /// The run has ended.
-    Ended {
-        /// The time of the compiler.
-        compiled: Duration,
-        /// The time of the checks.
-        checked: Duration,
-    },
+    /// The run has ended, after these times of the compiler and of the checks.
+    Ended { compiled: Duration, checked: Duration },
     /// The exercises do not compile.
     Errors(Vec<CompilerError>),
     /// The run could not go on, for this reason.
@@ -50,37 +45,16 @@ pub enum Phase {
 #[derive(Debug, PartialEq)]
 pub enum Page {
     /// A check, with this many of its hints, and with its long lines in full or not.
-    Check {
-        /// The number of hints.
-        hints: usize,
-        /// Whether long lines are shown in full.
-        unfolded: bool,
-    },
-    /// All checks whose name or title contains a word.
-    List {
-        /// The word.
-        word: String,
-        /// Whether keys change the word.
-        is_typing: bool,
-        /// The chosen one of these checks.
-        at: usize,
-    },
-    /// The picture of the stage.
-    Picture {
-        /// The picture, when it is rendered.
-        picture: Option<Picture>,
-        /// Whether it is shown because the last check of the stage passes now. The next save then leads back to the checks.
-        is_finish: bool,
-    },
+    Check { hints: usize, unfolded: bool },
+    /// All checks whose name or title contains a word, of which one is chosen. Keys may change the word.
+    List { word: String, is_typing: bool, at: usize },
+    /// The picture of the stage, when it is rendered. It is shown at the finish if the last check of the stage passes now. The next
+    /// save then leads back to the checks.
+    Picture { picture: Option<Picture>, is_finish: bool },
     /// The call of the check alone, when it has answered.
     Tried(String),
-    /// A question: shall this function, in this file, be reset?
-    Reset {
-        /// The file, from the root of the kit.
-        file: String,
-        /// The function.
-        name: String,
-    },
+    /// A question: shall this function, in this file from the root of the kit, be reset?
+    Reset { file: String, name: String },
 }
 
 impl Page {
@@ -357,9 +331,6 @@ impl App {
                 }
             }
             KeyCode::Esc if is_typing => (word, is_typing) = (String::new(), false),
-            KeyCode::Esc => return self.back(),
-            KeyCode::Up => at = at.saturating_sub(1),
-            KeyCode::Down => at = (at + 1).min(listed.len().saturating_sub(1)),
             KeyCode::Char(sign) if is_typing => {
                 word.push(sign);
                 at = 0;
@@ -368,10 +339,10 @@ impl App {
                 word.pop();
                 at = 0;
             }
+            KeyCode::Up | KeyCode::Char('p') => at = at.saturating_sub(1),
+            KeyCode::Down | KeyCode::Char('n') => at = (at + 1).min(listed.len().saturating_sub(1)),
             KeyCode::Char('/') => is_typing = true,
-            KeyCode::Char('p') => at = at.saturating_sub(1),
-            KeyCode::Char('n') => at = (at + 1).min(listed.len().saturating_sub(1)),
-            KeyCode::Char('l') => return self.back(),
+            KeyCode::Esc | KeyCode::Char('l') => return self.back(),
             KeyCode::Char('q') => return Action::Quit,
             _ => {}
         }
@@ -580,18 +551,10 @@ mod tests {
     #[test]
     fn hints_come_one_at_a_time() {
         let (mut app, _) = App::new(Some(1), (80, 24));
-        let hints = |app: &App| match app.page {
-            Page::Check { hints, .. } => hints,
-            _ => 9,
-        };
-        let levels: Vec<usize> = "hhhh"
-            .chars()
-            .map(|key| {
-                app.key(KeyCode::Char(key));
-                hints(&app)
-            })
-            .collect();
-        assert_eq!(levels, [1, 2, 3, 1]);
+        for hints in [1, 2, 3, 1] {
+            app.key(KeyCode::Char('h'));
+            assert_eq!(app.page, Page::Check { hints, unfolded: false });
+        }
     }
 
     #[test]

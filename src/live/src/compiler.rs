@@ -31,10 +31,6 @@ pub enum Compiled {
 }
 
 /// Runs a build of `program` by cargo; returns `None` if the run is over.
-///
-/// # Errors
-///
-/// If cargo cannot be started, or fails for another reason.
 pub fn compile(process: &Process, mut cargo: Command, program: Program) -> Result<Option<Compiled>> {
     cargo.arg("--message-format=json");
     let (mut errors, mut built) = (Vec::new(), BuiltPrograms::default());

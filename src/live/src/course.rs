@@ -93,10 +93,6 @@ pub fn keep(stages: &mut [Stage], of_check: CheckVerdict) {
 }
 
 /// Lets the judge run the checks of a stage, with the worker of the kit at `root`, and reports each verdict. `false` if the run is over.
-///
-/// # Errors
-///
-/// The judge fails, or is not understood.
 pub fn judge(
     process: &Process,
     judge: &Path,

@@ -65,10 +65,6 @@ pub fn names_in(folder: &Path) -> Vec<String> {
 }
 
 /// Makes a new folder in `out`, in which old texts are kept: `NAME-1`, or a larger number.
-///
-/// # Errors
-///
-/// The folder cannot be made.
 pub fn new_folder(root: &Path, name: &str) -> Result<PathBuf> {
     let out = root.join("out");
     fs::create_dir_all(&out).with_context(|| format!("{} cannot be made", out.display()))?;

@@ -10,11 +10,7 @@ use std::path::Path;
 /// The functions of the exercises before they are written, by file (without its extension) and name.
 pub type Stubs = BTreeMap<String, BTreeMap<String, String>>;
 
-/// Reads the functions that `root` hands out.
-///
-/// # Errors
-///
-/// The file `tests/stubs.toml` is missing or malformed.
+/// Reads the functions that `root` hands out, from `tests/stubs.toml`.
 pub fn stubs(root: &Path) -> Result<Stubs> {
     let file = root.join("tests/stubs.toml");
     let text = fs::read_to_string(&file).with_context(|| format!("{} cannot be read", file.display()))?;
@@ -30,10 +26,7 @@ pub fn name_in(line: &str) -> Option<&str> {
 }
 
 /// The lines of the function `name`, without its doc comment.
-///
-/// # Errors
-///
-/// There is no such function, or its end is not sure.
+/// An error if there is no such function, or if its end is not sure.
 pub fn span(lines: &[&str], name: &str) -> Result<Range<usize>> {
     let begin = lines.iter().position(|line| name_in(line) == Some(name));
     let begin = begin.ok_or_else(|| anyhow!("there is no `pub fn {name}` at the beginning of a line"))?;
@@ -50,10 +43,6 @@ pub fn span(lines: &[&str], name: &str) -> Result<Range<usize>> {
 }
 
 /// The lines of the function `name` with the doc comment and the attributes above it.
-///
-/// # Errors
-///
-/// The same as those of [`span`].
 pub fn documented_span(lines: &[&str], name: &str) -> Result<Range<usize>> {
     let function = span(lines, name)?;
     let is_above = |line: &&&str| line.starts_with("///") || line.starts_with("#[");

@@ -2,16 +2,12 @@
 //! program is interrupted.
 
 use crate::app::{Action, App, Page};
-use crate::run::{Event, Paths, Run};
+use crate::run::{Event, PAUSE, Paths, Run};
 use crate::screen::{Row, body};
 use anyhow::Result;
 use live::files::Files;
 use raykata_cli::half_blocks::Look;
 use raykata_cli::report::say;
-use std::time::Duration;
-
-/// The time between two looks at the files.
-const PAUSE: Duration = Duration::from_millis(150);
 
 /// Follows the files until the program is interrupted.
 pub fn watch(paths: &Paths, stage: Option<u8>) -> Result<()> {

@@ -2,11 +2,12 @@
 
 use anyhow::{Context, Result};
 use raykata::kit::Door;
+use raykata_cli::queue::lock;
 use raykata_cli::worker::Worker;
 use std::io::{BufReader, Read};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// The process that a run has started at the moment, if any, and its kit. A run starts one process after the other.
 #[derive(Default)]
@@ -16,23 +17,14 @@ pub struct Process {
     kit: Mutex<Option<Arc<Door<Worker>>>>,
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// Ends a process and those that it has started.
-#[cfg(unix)]
 fn end(child: &mut Child) {
-    use nix::sys::signal::{Signal, killpg};
-    use nix::unistd::Pid;
+    #[cfg(unix)]
     if let Ok(id) = i32::try_from(child.id()) {
-        let _ = killpg(Pid::from_raw(id), Signal::SIGKILL);
+        use nix::sys::signal::{Signal, killpg};
+        let _ = killpg(nix::unistd::Pid::from_raw(id), Signal::SIGKILL);
     }
-    let _ = child.wait();
-}
-
-#[cfg(not(unix))]
-fn end(child: &mut Child) {
+    #[cfg(not(unix))]
     let _ = child.kill();
     let _ = child.wait();
 }
@@ -67,10 +59,6 @@ impl Process {
 
     /// Starts a process, reads what it writes, and returns whether it succeeded and what it wrote to standard error.
     /// `Ok(None)` if the run is over.
-    ///
-    /// # Errors
-    ///
-    /// If the process cannot be started, or if `read` fails.
     pub fn follow(
         &self,
         mut command: Command,
@@ -82,7 +70,7 @@ impl Process {
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         // Start it under the lock, so that a cancel before this sees no child and prevents it, and one after this ends it.
         let mut slot = lock(&self.child);
-        if self.is_over.load(Ordering::Relaxed) {
+        if self.is_over() {
             return Ok(None);
         }
         let name = command.get_program().to_string_lossy().into_owned();
@@ -98,10 +86,7 @@ impl Process {
         });
         let result = read(&mut BufReader::new(stdout));
         let words = words.join().unwrap_or_default();
-        let Some(mut child) = lock(&self.child).take().filter(|_| !self.is_over.load(Ordering::Relaxed))
-        else {
-            return Ok(None);
-        };
+        let Some(mut child) = lock(&self.child).take().filter(|_| !self.is_over()) else { return Ok(None) };
         let succeeded = child.wait()?.success();
         result?;
         Ok(Some((succeeded, words)))

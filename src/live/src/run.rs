@@ -18,6 +18,9 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
+/// The time between two looks at the files.
+pub const PAUSE: Duration = Duration::from_millis(150);
+
 /// What a run reports.
 #[derive(Debug)]
 pub enum Event {

@@ -5,7 +5,7 @@ use live::compiler::CompilerError;
 use live::course::Check;
 use raykata_cli::finish::{Picture, next_step};
 use raykata_cli::half_blocks::{Look, Rgb, cells};
-use raykata_cli::report::wrapped;
+use raykata_cli::report::{counted, wrapped};
 use raykata_cli::verdicts::Verdict;
 
 /// The colour of a row.
@@ -212,7 +212,7 @@ fn question(file: &str, name: &str) -> Vec<Row> {
 
 /// The errors of the compiler.
 fn compiler(errors: &[CompilerError]) -> Vec<Row> {
-    let count = if errors.len() == 1 { "1 error".into() } else { format!("{} errors", errors.len()) };
+    let count = counted(errors.len() as u64, "error");
     let mut rows = vec![Row::Words(Tone::Bad, format!("does not compile: {count}"))];
     for error in errors {
         rows.push(Row::Words(Tone::Plain, String::new()));

@@ -2,7 +2,7 @@
 
 use crate::app::{Action, App};
 use crate::editor;
-use crate::run::{Paths, Run};
+use crate::run::{PAUSE, Paths, Run};
 use crate::screen::{Row, Tone, rows};
 use anyhow::Result;
 use crossterm::cursor::{Hide, MoveTo, Show};
@@ -13,10 +13,6 @@ use crossterm::{execute, queue};
 use live::files::Files;
 use raykata_cli::half_blocks::Look;
 use std::io::{Write, stdout};
-use std::time::Duration;
-
-/// The time between two looks at the files.
-const PAUSE: Duration = Duration::from_millis(150);
 
 /// The screen of the program, in place of what the terminal showed before. That comes back when this is dropped, also after
 /// an error.

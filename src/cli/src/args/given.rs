@@ -141,18 +141,17 @@ impl Given {
 
     /// An error for options that exclude each other.
     pub fn exclude(&self, one: &str, other: &str) -> Result<(), Misuse> {
-        match self.has(one) && self.has(other) {
-            true => Err(self.misuse(format!("`{one}` cannot be used with `{other}`"))),
-            false => Ok(()),
-        }
+        self.refuse(self.has(one) && self.has(other), format!("`{one}` cannot be used with `{other}`"))
     }
 
     /// An error for an option that was given without another one that it needs.
     pub fn require(&self, one: &str, other: &str) -> Result<(), Misuse> {
-        match self.has(one) && !self.has(other) {
-            true => Err(self.misuse(format!("`{one}` needs `{other}`"))),
-            false => Ok(()),
-        }
+        self.refuse(self.has(one) && !self.has(other), format!("`{one}` needs `{other}`"))
+    }
+
+    /// An error with this message if the command line is wrong.
+    pub fn refuse(&self, is_wrong: bool, message: impl Into<String>) -> Result<(), Misuse> {
+        if is_wrong { Err(self.misuse(message)) } else { Ok(()) }
     }
 
     /// An error about this command.

@@ -88,7 +88,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let kit = &*kit.start()?;
 
     // Measure smaller pictures, unless a size is given.
-    if !given.has("--full") && !quality.names_a_size() {
+    if !given.has("--full") && quality.size.is_none() {
         let small = with_at_most(MEASURED_PIXELS, &scene);
         if small.film != scene.film {
             println!("smaller pictures are measured; `--full` measures those of the scene's own size");

@@ -45,66 +45,49 @@ pub struct Row {
 
 /// The lines. `only` names accelerators, or is empty.
 pub fn rows(of: Comparison, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
-    let with = |name: &str, change: &dyn Fn(&mut Quality)| {
-        let mut quality = scene.quality;
-        change(&mut quality);
-        Row { name: name.replace('_', " "), quality }
-    };
+    let own = scene.quality;
+    let row = |name: &str, quality| Row { name: name.replace('_', " "), quality };
+    let by = |name: &str, accelerator| row(name, Quality { accelerator, ..own });
     match of {
         Comparison::Structures => {
             let all: &[Accelerator] = if only.is_empty() { &Accelerator::ALL } else { only };
+            let bvh = |(name, split): (&str, Split)| {
+                row(&format!("bvh, {name}"), Quality { accelerator: Accelerator::Bvh, split, ..own })
+            };
             let rows = |&accelerator: &Accelerator| match accelerator {
-                Accelerator::Bvh => Split::ALL
-                    .map(|split| {
-                        let name = match split {
-                            Split::ObjectMedian => "bvh, object median",
-                            Split::SpatialMedian => "bvh, spatial median",
-                            Split::SurfaceArea => "bvh, surface area",
-                        };
-                        with(name, &|quality| {
-                            (quality.accelerator, quality.split) = (Accelerator::Bvh, split);
-                        })
-                    })
-                    .to_vec(),
-                other => vec![with(other.name(), &|quality| quality.accelerator = other)],
+                Accelerator::Bvh => Split::NAMES.map(bvh).to_vec(),
+                other => vec![by(other.name(), other)],
             };
             all.iter().flat_map(rows).collect()
         }
         Comparison::Savings => {
-            let graph = |name: &str, accelerator, savings| {
-                with(name, &|quality| (quality.accelerator, quality.savings) = (accelerator, savings))
-            };
+            let graph = |name: &str, accelerator, savings| row(name, Quality { accelerator, savings, ..own });
             let none = GraphOptimisations { volumes: false, skip: false, sort: false };
             let boxes = Accelerator::BoundingBoxes;
             let spheres = Accelerator::BoundingSpheres;
             let cached = Accelerator::CachedBoundingBoxes;
-            let unsorted = GraphOptimisations { sort: false, ..GraphOptimisations::default() };
+            let all = GraphOptimisations::default();
+            let unsorted = GraphOptimisations { sort: false, ..all };
             vec![
                 graph("graph, nothing saved", boxes, none),
                 graph("graph, boxes first", boxes, GraphOptimisations { volumes: true, ..none }),
                 graph("graph, boxes, skip", boxes, unsorted),
                 graph("graph, boxes, skip, cached child", cached, unsorted),
-                graph(
-                    "graph, boxes, sort",
-                    boxes,
-                    GraphOptimisations { skip: false, ..GraphOptimisations::default() },
-                ),
-                graph("graph, boxes, skip and sort", boxes, GraphOptimisations::default()),
-                graph("graph, boxes, skip, sort, cached child", cached, GraphOptimisations::default()),
-                graph("graph, spheres, skip and sort", spheres, GraphOptimisations::default()),
-                with("bvh, both children", &|quality| quality.accelerator = Accelerator::BvhBothChildren),
-                with("bvh", &|quality| quality.accelerator = Accelerator::Bvh),
-                with("bvh, last hit first", &|quality| quality.accelerator = Accelerator::CachedBvh),
-                with("bvh, packets of 8", &|quality| quality.accelerator = Accelerator::PacketBvh),
-                with("bvh, 8 children per node", &|quality| quality.accelerator = Accelerator::WideBvh),
+                graph("graph, boxes, sort", boxes, GraphOptimisations { skip: false, ..all }),
+                graph("graph, boxes, skip and sort", boxes, all),
+                graph("graph, boxes, skip, sort, cached child", cached, all),
+                graph("graph, spheres, skip and sort", spheres, all),
+                by("bvh, both children", Accelerator::BvhBothChildren),
+                by("bvh", Accelerator::Bvh),
+                by("bvh, last hit first", Accelerator::CachedBvh),
+                by("bvh, packets of 8", Accelerator::PacketBvh),
+                by("bvh, 8 children per node", Accelerator::WideBvh),
             ]
         }
         Comparison::Heuristics => {
             let (all, easy) = (KdHeuristics::default(), KdHeuristics::NONE);
-            let tree = |name: &str, heuristics: KdHeuristics| {
-                with(name, &|quality| {
-                    (quality.accelerator, quality.kd_heuristics) = (Accelerator::KdTree, heuristics);
-                })
+            let tree = |name: &str, kd_heuristics| {
+                row(name, Quality { accelerator: Accelerator::KdTree, kd_heuristics, ..own })
             };
             vec![
                 tree("kd-tree, all five", all),
@@ -122,33 +105,27 @@ pub fn rows(of: Comparison, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
             ]
         }
         Comparison::Grids => {
-            let grid = |name: &str, n: u32| {
-                with(name, &|quality| {
-                    (quality.accelerator, quality.grid_resolution) = (Accelerator::Grid, n);
-                })
+            let grid = |name: &str, grid_resolution| {
+                row(name, Quality { accelerator: Accelerator::Grid, grid_resolution, ..own })
             };
             let ladder = [1, 4, 8, 16, 32, 64, 128, 256].map(|n| grid(&format!("grid, {n} along"), n));
             [ladder.to_vec(), vec![grid("grid, by the formula", 0)]].concat()
         }
         Comparison::Methods => {
-            let single = |name: String, change: &dyn Fn(&mut Quality)| {
-                with(&name, &|quality| {
-                    quality.precision = Precision::Single;
-                    change(quality);
-                })
-            };
-            let triangles = TriangleMethod::NAMES.map(|(name, method)| {
-                single(format!("triangles, {name}"), &|quality| quality.triangle_method = method)
+            let single = Quality { precision: Precision::Single, ..own };
+            let triangles = TriangleMethod::NAMES.map(|(name, triangle_method)| {
+                row(&format!("triangles, {name}"), Quality { triangle_method, ..single })
             });
-            let spheres = SphereMethod::NAMES.map(|(name, method)| {
-                single(format!("spheres, {name}"), &|quality| quality.sphere_method = method)
+            let spheres = SphereMethod::NAMES.map(|(name, sphere_method)| {
+                row(&format!("spheres, {name}"), Quality { sphere_method, ..single })
             });
-            let double = with("both, double precision", &|quality| quality.precision = Precision::Double);
+            let double = Quality { precision: Precision::Double, ..own };
+            let double = row("both, double precision", double);
             [triangles.to_vec(), spheres.to_vec(), vec![double]].concat()
         }
         Comparison::Instances => vec![
-            with("one mesh, many places", &|quality| quality.copies = false),
-            with("copies", &|quality| quality.copies = true),
+            row("one mesh, many places", Quality { copies: false, ..own }),
+            row("copies", Quality { copies: true, ..own }),
         ],
     }
 }

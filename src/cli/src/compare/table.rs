@@ -4,6 +4,7 @@ use super::measure::Measured;
 use crate::args::wrapped;
 use crate::columns::Columns;
 use crate::report::{Bytes, Thousands};
+use std::collections::BTreeSet;
 
 /// A column of numbers: its head, its numbers, their format, and whether the smallest one is marked.
 type Numbers = (&'static str, fn(&Measured) -> Option<f64>, fn(f64) -> String, bool);
@@ -73,10 +74,7 @@ pub fn print(title: &str, rows: &[Measured]) {
         format!("pixels that differ from those of the hierarchy by surface area: {off}")
     };
     println!("{}", wrapped(&off, 2));
-    let mut notes: Vec<&String> = rows.iter().flat_map(|row| &row.notes).collect();
-    notes.sort();
-    notes.dedup();
-    for note in notes {
+    for note in rows.iter().flat_map(|row| &row.notes).collect::<BTreeSet<_>>() {
         println!("{}", wrapped(&format!("note: {note}"), 2));
     }
 }

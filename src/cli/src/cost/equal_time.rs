@@ -202,9 +202,8 @@ fn plot(rows: &[Row], sizes: &[f32]) -> String {
         },
         y_axis: "root mean square error in linear light",
         lines,
-        guides: Vec::new(),
-        pareto_front: Vec::new(),
         floor: 1e-9,
+        ..Plot::default()
     })
 }
 

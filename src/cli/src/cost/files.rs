@@ -91,11 +91,9 @@ fn cells(
 /// The names and contents of the plots: all parameters, and the samplers if they were compared.
 pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
     let series = &report.measured.series;
-    let parameters: Vec<&Series> = series
-        .iter()
-        .filter(|one| one.parameter != Parameter::Sampler && !one.parameter.is_geometric())
-        .collect();
-    let samplers: Vec<&Series> = series.iter().filter(|one| one.parameter == Parameter::Sampler).collect();
+    let with_errors = series.iter().filter(|one| !one.parameter.is_geometric());
+    let (samplers, parameters): (Vec<&Series>, Vec<&Series>) =
+        with_errors.partition(|one| one.parameter == Parameter::Sampler);
     let mut plots = Vec::new();
     if !parameters.is_empty() {
         let title = format!("{}: error over time, one parameter at a time", report.scene);
@@ -178,10 +176,9 @@ fn numerics(all: &[Summary]) -> String {
         x_axis: "nanoseconds per test",
         y_axis: "wrong hits per million hard inputs",
         lines,
-        guides: Vec::new(),
-        pareto_front: Vec::new(),
         // Zero cannot be drawn on a logarithmic axis, so it is drawn as one.
         floor: 1.0,
+        ..Plot::default()
     })
 }
 

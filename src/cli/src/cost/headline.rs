@@ -10,14 +10,17 @@ use crate::columns::Columns;
 use crate::journal::Journal;
 use crate::report::{FrameBar, Thousands, make_folder, write_file};
 use anyhow::Result;
-use raykata::kit::{RenderJob, Rendering, View};
-use raykata::scene::{Accelerator, Scene};
+use raykata::kit::{RenderJob, View};
+use raykata::scene::Accelerator;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 use std::path::Path;
 
 /// The screen of the lecture notes.
 const SCREEN: (u32, u32) = (3840, 2160);
+
+/// One ray per pixel of the screen.
+const RAYS: u64 = SCREEN.0 as u64 * SCREEN.1 as u64;
 
 /// The number of tests on which brute force is timed; they take a second or two.
 const TESTS_OF_SLICE: u64 = 200_000_000;
@@ -45,14 +48,6 @@ struct Row {
 }
 
 impl Row {
-    fn rays() -> f64 {
-        f64::from(SCREEN.0) * f64::from(SCREEN.1)
-    }
-
-    fn nanoseconds_a_ray(&self) -> f64 {
-        1e9 * self.frame_seconds / Row::rays()
-    }
-
     fn nanoseconds_a_test(&self) -> f64 {
         1e9 * self.slice_seconds / (self.slice_rays as f64 * self.triangles as f64)
     }
@@ -65,7 +60,7 @@ impl Row {
 
     /// Seconds of brute force for the whole screen.
     fn brute_seconds(&self) -> f64 {
-        self.slice_seconds / self.slice_rays as f64 * Row::rays()
+        self.slice_seconds / self.slice_rays as f64 * RAYS as f64
     }
 }
 
@@ -103,7 +98,7 @@ pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, cod
             &duration(row.build_seconds),
             &format!("{:.1}", row.box_tests),
             &format!("{:.2}", row.triangle_tests),
-            &format!("{:.0}", row.nanoseconds_a_ray()),
+            &format!("{:.0}", 1e9 * row.frame_seconds / RAYS as f64),
             &duration(row.frame_seconds),
             &duration(row.brute_seconds()),
             &Thousands((row.brute_seconds() / row.frame_seconds) as u64),
@@ -128,13 +123,12 @@ pub fn run(bench: &Bench<'_>, hierarchy: Accelerator, most: u64, out: &Path, cod
 
 /// Prints how the numbers of the table follow from each other, and how those of the lecture do.
 fn arithmetic(row: &Row) {
-    let rays = u64::from(SCREEN.0) * u64::from(SCREEN.1);
     println!("\nbrute force");
     println!(
         "  {} triangles × {} rays = {} tests",
         Thousands(row.triangles),
-        Thousands(rays),
-        Thousands(row.triangles * rays)
+        Thousands(RAYS),
+        Thousands(row.triangles * RAYS)
     );
     println!(
         "  × {:.2} ns per test ({} rays of a slice took {:.2} s) = {}",
@@ -169,8 +163,8 @@ const SECONDS_ON_A_GPU: f64 = 120.0;
 /// The lecture's estimate for this number of triangles, step by step, and what it leaves out.
 fn of_the_lecture(row: &Row) -> Vec<String> {
     let n = row.triangles as f64;
-    let flops = FLOPS_PER_TEST * n * Row::rays();
-    let of_the_example = FLOPS_PER_TEST * 12e6 * Row::rays();
+    let flops = FLOPS_PER_TEST * n * RAYS as f64;
+    let of_the_example = FLOPS_PER_TEST * 12e6 * RAYS as f64;
     let rate = of_the_example / SECONDS_ON_A_GPU;
     let claimed = flops / rate * n.log2() / n;
     // Three factors lead from the lecture's time to the measured one. The rate of this machine is that of brute force, where
@@ -222,14 +216,16 @@ fn measure(
     let scene = scene(SCREEN, sides)?;
     // No progress can be shown before the first leaf, so estimate the build time from the smaller landscape.
     let expected = smaller.map_or(0.0, |row| row.build_seconds_of(exact));
-    let frame = |what: &str, accelerator: Accelerator, size: (u32, u32), count: bool| {
-        match accelerator {
-            one if one == hierarchy && expected >= 1.0 => {
-                say(&format!("{what}, about {expected:.0} s to build"))
-            }
-            _ => say(what),
+    let frame = |what: &str, accelerator: Accelerator, (width, height): (u32, u32), count: bool| {
+        if accelerator == hierarchy && expected >= 1.0 {
+            say(&format!("{what}, about {expected:.0} s to build"));
+        } else {
+            say(what);
         }
-        frame(bench, &bar, &scene, accelerator, size, count)
+        let mut job = RenderJob { view: View::Normals, ..bench.job(&scene, bench.seed, count) };
+        (job.scene.film.width, job.scene.film.height) = (width, height);
+        job.scene.quality.accelerator = accelerator;
+        bench.render(&job, None, &bar)
     };
 
     // The hierarchy is built for each picture, because a kit keeps nothing between two pictures.
@@ -258,21 +254,6 @@ fn measure(
         slice_seconds: brute.render_seconds,
         different_pixels: different,
     }))
-}
-
-/// `None` if the program is being stopped.
-fn frame(
-    bench: &Bench<'_>,
-    bar: &FrameBar,
-    scene: &Scene,
-    accelerator: Accelerator,
-    (width, height): (u32, u32),
-    count: bool,
-) -> Result<Option<Rendering>> {
-    let mut job = RenderJob { view: View::Normals, ..bench.job(scene, bench.seed, count) };
-    (job.scene.film.width, job.scene.film.height) = (width, height);
-    job.scene.quality.accelerator = accelerator;
-    bench.render(&job, None, Some(bar))
 }
 
 /// The time in a readable unit.

@@ -9,16 +9,15 @@ use anyhow::{Context, Result};
 use raykata::kit::{KitError, kit_error};
 use raykata::ray::Ray;
 use raykata::scene::Scene;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Judges all settings of parameters that decide only how hits are found. A scene that is too large or empty
 /// is not judged.
 pub fn judge(root: &Path, bench: &Bench<'_>, scene: &Scene, measured: &mut Measured) -> Result<()> {
     let geometric = measured.series.iter().filter(|series| series.parameter.is_geometric());
-    let mut places: Vec<usize> =
+    let places: BTreeSet<usize> =
         geometric.flat_map(|series| &series.levels).map(|(_, index)| *index).collect();
-    places.sort_unstable();
-    places.dedup();
     if places.is_empty() || bench.stopped() {
         return Ok(());
     }

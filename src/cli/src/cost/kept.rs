@@ -1,17 +1,17 @@
 //! The measured pictures of a run that was stopped. They lie beside the report until it is written, so that the next run with the
 //! same code measures only the others. Times of both runs count: measure on an idle machine in both.
 
-use crate::fingerprint::fingerprint;
+use crate::fingerprint::{self, fingerprint};
 use crate::journal::Journal;
+use crate::queue::lock;
 use anyhow::{Context, Result};
 use glam::Vec3;
 use raykata::film::Film;
 use raykata::kit::{RenderJob, Rendering};
-use raykata::message::to_bytes;
 use raykata::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
 
 /// A picture as it is kept. JSON has no NaN, so the numbers of the pixels are written as bits.
 #[derive(Serialize, Deserialize)]
@@ -35,11 +35,9 @@ impl KeptPictures {
         let file = out.join("unfinished.jsonl");
         let about = format!("pictures by the program {code}");
         let journal: Journal<Picture> = Journal::open(&file, &about)?;
-        match journal.kept().count() {
-            0 => {}
-            n => {
-                println!("continues a run that was stopped: {n} measured pictures are in {}", file.display())
-            }
+        let (n_kept, place) = (journal.kept().count(), file.display());
+        if n_kept > 0 {
+            println!("continues a run that was stopped: {n_kept} measured pictures are in {place}");
         }
         Ok(KeptPictures { journal: Mutex::new(journal), scene: Mutex::default() })
     }
@@ -49,23 +47,21 @@ impl KeptPictures {
         let RenderJob { scene, view, seed, threads, count, reuse } = job;
         let settings = (scene.film, &scene.quality, view, seed, threads, count, reuse, is_reference);
         let settings = serde_json::to_vec(&settings).context("the settings cannot be serialised")?;
-        Ok(fingerprint([self.fingerprint_of(scene)?.as_bytes(), &settings]))
+        Ok(fingerprint([self.fingerprint_of(scene).as_bytes(), &settings]))
     }
 
     /// The fingerprint of a scene without its film and quality.
-    fn fingerprint_of(&self, scene: &Scene) -> Result<String> {
+    fn fingerprint_of(&self, scene: &Scene) -> String {
         let mut last = lock(&self.scene);
-        if let Some((known, name)) = &*last {
-            let without_settings = Scene { film: known.film, quality: known.quality, ..scene.clone() };
-            if without_settings == *known {
-                return Ok(name.clone());
-            }
+        let is_same = |(known, _): &&(Scene, String)| {
+            Scene { film: known.film, quality: known.quality, ..scene.clone() } == *known
+        };
+        if let Some((_, name)) = last.as_ref().filter(is_same) {
+            return name.clone();
         }
-        let without_settings =
-            Scene { film: Default::default(), quality: Default::default(), ..scene.clone() };
-        let name = fingerprint([&to_bytes(&without_settings)[..]]);
-        *last = Some((without_settings, name.clone()));
-        Ok(name)
+        let name = fingerprint::of_scene(scene);
+        *last = Some((scene.clone(), name.clone()));
+        name
     }
 
     /// Takes a picture of the stopped run. Each is taken once: a job that is measured twice has two.
@@ -88,10 +84,6 @@ impl KeptPictures {
     pub fn finish(&self) -> Result<()> {
         lock(&self.journal).finish()
     }
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use raykata::scene::{
     Accelerator, Field, NextEvent, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter,
     TriangleMethod,
 };
+use std::collections::BTreeSet;
 
 /// A series of values of a parameter, from cheap to expensive.
 pub struct Ladder {
@@ -74,6 +75,10 @@ impl Parameter {
             Ok::<_, String>(vec![ladder(values.iter().map(level).collect::<Result<_, String>>()?)])
         };
         let numbers = |values: Vec<u32>| levels(&values.iter().map(u32::to_string).collect::<Vec<_>>());
+        let named = |levels: Vec<(&str, Quality)>| {
+            let levels = levels.into_iter().map(|(name, quality)| (name.to_owned(), quality));
+            Ok(vec![ladder(levels.collect())])
+        };
         // A level per change of the scene; the scene itself is one of them.
         let changed = |changes: Vec<(String, Option<Change>)>| {
             let level = |(name, change): (String, Option<Change>)| {
@@ -111,35 +116,24 @@ impl Parameter {
             }
             Parameter::Depth => {
                 needs(mirrors || indirect, "no surface reflects or transmits light")?;
-                let mut depths = if indirect { vec![1, 2, 4, 8, 16] } else { vec![0, 1, 2, 3, 5] };
-                depths.extend([least_depth(scene), quality.max_depth]);
-                depths.sort_unstable();
-                depths.dedup();
-                numbers(depths)
+                let depths = if indirect { [1, 2, 4, 8, 16] } else { [0, 1, 2, 3, 5] };
+                numbers(ascending(depths.into_iter().chain([least_depth(scene), quality.max_depth])))
             }
             Parameter::NextEvent => {
                 needs(indirect, "the scene has no indirect light")?;
-                let all = [
-                    ("off: by chance", NextEvent::Off),
-                    ("only: by samples", NextEvent::Only),
-                    ("on: both, weighted", NextEvent::On),
-                ];
-                let with =
-                    |(name, next_event): (&str, _)| (name.to_owned(), Quality { next_event, ..quality });
-                Ok(vec![ladder(all.into_iter().map(with).collect())])
+                named(vec![
+                    ("off: by chance", Quality { next_event: NextEvent::Off, ..quality }),
+                    ("only: by samples", Quality { next_event: NextEvent::Only, ..quality }),
+                    ("on: both, weighted", Quality { next_event: NextEvent::On, ..quality }),
+                ])
             }
             Parameter::Clamp => {
                 needs(indirect, "the scene has no indirect light")?;
-                let mut limits = vec![1.0, 10.0, 100.0, quality.clamp];
-                // No limit, which is 0, comes last.
-                limits.sort_by(|a: &f32, b| (*a == 0.0).cmp(&(*b == 0.0)).then(a.total_cmp(b)));
-                limits.push(0.0);
-                limits.dedup();
-                let with = |clamp: f32| {
-                    let name = if clamp == 0.0 { "none".to_owned() } else { clamp.to_string() };
-                    (name, Quality { clamp, ..quality })
-                };
-                Ok(vec![ladder(limits.into_iter().map(with).collect())])
+                let own = Some(quality.clamp).filter(|own| *own > 0.0);
+                let limits = falling([1.0, 10.0, 100.0].into_iter().chain(own));
+                let with = |clamp: f32| (clamp.to_string(), Quality { clamp, ..quality });
+                let none = ("none".to_owned(), Quality { clamp: 0.0, ..quality });
+                Ok(vec![ladder(limits.into_iter().rev().map(with).chain([none]).collect())])
             }
             Parameter::IndirectLight => {
                 needs(indirect, "the scene has no indirect light")?;
@@ -167,10 +161,7 @@ impl Parameter {
             Parameter::MinContribution => {
                 needs(!indirect, "Russian roulette ends the paths of indirect light")?;
                 needs(mirrors, "no surface reflects or transmits light")?;
-                let mut least = vec![0.1, 0.03, 0.01, 0.003, 0.001, 0.0003];
-                least.push(quality.min_contribution);
-                least.sort_by(|a: &f32, b| b.total_cmp(a));
-                least.dedup();
+                let least = falling([0.1, 0.03, 0.01, 0.003, 0.001, 0.0003, quality.min_contribution]);
                 levels(&least.iter().map(f32::to_string).collect::<Vec<_>>())
             }
             Parameter::TextureFilter => {
@@ -192,10 +183,8 @@ impl Parameter {
             }
             Parameter::RayOffset => {
                 needs(mirrors || indirect || effects.calls_for(Effect::Shadows), "no ray leaves a surface")?;
-                let mut offsets: Vec<f32> = (2..=7).map(|power| 10f32.powi(-power)).collect();
-                offsets.extend(Some(quality.ray_offset).filter(|own| *own > 0.0));
-                offsets.sort_by(|a, b| b.total_cmp(a));
-                offsets.dedup();
+                let own = Some(quality.ray_offset).filter(|own| *own > 0.0);
+                let offsets = falling((2..=7).map(|power| 10f32.powi(-power)).chain(own));
                 let with = |ray_offset| (format!("{ray_offset:e}"), Quality { ray_offset, ..quality });
                 let bound = ("error bound".to_owned(), Quality { ray_offset: 0.0, ..quality });
                 Ok(vec![ladder(offsets.into_iter().map(with).chain([bound]).collect())])
@@ -248,9 +237,7 @@ impl Parameter {
                     quality.accelerator == Accelerator::Grid,
                     "the accelerator is not a grid (`--accelerator grid` selects one)",
                 )?;
-                let mut cells = vec![0, 8, 16, 32, 64, 128, quality.grid_resolution];
-                cells.sort_unstable();
-                cells.dedup();
+                let cells = ascending([0, 8, 16, 32, 64, 128, quality.grid_resolution]);
                 let name = |n: u32| if n == 0 { "formula".to_owned() } else { n.to_string() };
                 let with = |grid_resolution| (name(grid_resolution), Quality { grid_resolution, ..quality });
                 Ok(vec![ladder(cells.into_iter().map(with).collect())])
@@ -271,8 +258,10 @@ impl Parameter {
             }
             Parameter::Copies => {
                 needs(*shares_meshes, "no mesh has several instances")?;
-                let with = |(name, copies): (&str, bool)| (name.to_owned(), Quality { copies, ..quality });
-                Ok(vec![ladder([("instances", false), ("copies", true)].map(with).to_vec())])
+                named(vec![
+                    ("instances", Quality { copies: false, ..quality }),
+                    ("copies", Quality { copies: true, ..quality }),
+                ])
             }
         }
     }
@@ -299,9 +288,19 @@ fn switched(own: &Quality, key: &str) -> Vec<(String, Quality)> {
 /// The numbers 1, 2, 4 … up to `most`, or up to the scene's own value if that is larger, with the scene's own value.
 fn doubling(own: u32, most: u32) -> Vec<u32> {
     let last = most.max(own.next_power_of_two());
-    let mut values: Vec<u32> = (0..32).map(|power| 1 << power).take_while(|value| *value <= last).collect();
-    values.push(own.max(1));
-    values.sort_unstable();
+    let powers = (0..32).map(|power| 1 << power).take_while(|value| *value <= last);
+    ascending(powers.chain([own.max(1)]))
+}
+
+/// The values from the smallest on, each once.
+fn ascending(values: impl IntoIterator<Item = u32>) -> Vec<u32> {
+    BTreeSet::from_iter(values).into_iter().collect()
+}
+
+/// The values from the largest on, each once.
+fn falling(values: impl IntoIterator<Item = f32>) -> Vec<f32> {
+    let mut values = Vec::from_iter(values);
+    values.sort_by(|a, b| b.total_cmp(a));
     values.dedup();
     values
 }
@@ -381,7 +380,7 @@ mod tests {
         }
         let source = Source::prepare(&root, Which::Solutions, Need::Frames).expect("the solutions");
         let mut plans = Plans { kit: source.fresh(), known: HashMap::new() };
-        let mut seen = std::collections::BTreeSet::new();
+        let mut seen = BTreeSet::new();
         for file in std::fs::read_dir(root.join("scenes")).expect("scenes").flatten() {
             let path = file.path();
             if path.extension().is_none_or(|extension| extension != "toml") {

@@ -6,9 +6,9 @@ use super::ladder::Ladder;
 use super::measured::{Measured, Point, Reference, Series};
 use super::setting::Setting;
 use crate::race::statistics::Median;
-use crate::report::{FrameBar, bar_of_steps, job};
+use crate::report::{bar_of_steps, job};
 use anyhow::Result;
-use raykata::frame::Watch;
+use raykata::frame::{Unwatched, Watch};
 use raykata::kit::{Kit, RenderJob, Rendering, kit_error};
 use raykata::scene::Scene;
 use std::cmp::Ordering;
@@ -40,20 +40,16 @@ pub struct Bench<'a> {
 struct Patience<'a> {
     stop: &'a AtomicBool,
     until: Option<Instant>,
-    bar: Option<&'a FrameBar>,
+    bar: &'a dyn Watch,
 }
 
 impl Watch for Patience<'_> {
     fn progress(&self, done: u64, total: u64) {
-        if let Some(bar) = self.bar {
-            bar.progress(done, total);
-        }
+        self.bar.progress(done, total);
     }
 
     fn building(&self, placed: u64, total: u64) {
-        if let Some(bar) = self.bar {
-            bar.building(placed, total);
-        }
+        self.bar.building(placed, total);
     }
 
     fn cancelled(&self) -> bool {
@@ -75,28 +71,23 @@ impl Bench<'_> {
     /// operating system does not say that. `None` if the program is being stopped.
     pub fn timed(&self, scene: &Scene, seed: u64) -> Result<Option<(Rendering, f64)>> {
         let job = RenderJob { threads: 1, ..self.job(scene, seed, false) };
-        let frame = self.render(&job, None, None)?;
+        let frame = self.render(&job, None, &Unwatched)?;
         Ok(frame.map(|frame| {
             let seconds = frame.processor_seconds.unwrap_or(frame.render_seconds);
             (frame, seconds)
         }))
     }
 
-    /// Renders a picture without a time limit; `None` if the program is being stopped.
-    pub fn frame(&self, scene: &Scene, seed: u64, count: bool) -> Result<Option<Rendering>> {
-        self.render(&self.job(scene, seed, count), None, None)
-    }
-
     pub fn job(&self, scene: &Scene, seed: u64, count: bool) -> RenderJob {
         RenderJob { seed, threads: self.threads, count, ..job(scene.clone()) }
     }
 
-    /// The same with a deadline, and with a progress bar.
+    /// Renders a picture, with a deadline and a progress bar; `None` if it takes too long or the program is being stopped.
     pub fn render(
         &self,
         job: &RenderJob,
         until: Option<Instant>,
-        bar: Option<&FrameBar>,
+        bar: &dyn Watch,
     ) -> Result<Option<Rendering>> {
         let name = match self.kept {
             Some(kept) => {
@@ -127,9 +118,7 @@ impl Bench<'_> {
     ) -> Result<Option<Point>> {
         let until = Some(Instant::now() + PATIENCE);
         let job = self.job(&setting.apply(scene), self.seed, count);
-        let Some(frame) = self.render(&job, until, None)? else {
-            return Ok(None);
-        };
+        let Some(frame) = self.render(&job, until, &Unwatched)? else { return Ok(None) };
         let errors = errors(&frame.film, &right.film)?;
         let reference = match self.reference {
             Some(reference) if count => {
@@ -174,28 +163,24 @@ impl Bench<'_> {
             bar.set_message(format!("{}: counting", ladder.name));
             let mut levels = Vec::new();
             for (name, setting) in ladder.levels {
-                let known = measured.points.iter().position(|point| point.setting == setting);
-                let point = match known {
-                    Some(_) => None,
-                    None => self.point(scene, &setting, right, true)?,
-                };
-                match (known, point) {
-                    (Some(known), _) => levels.push((name, known)),
-                    (None, Some(point)) => match missing(&point, own_notes) {
-                        Some(why) => measured.left_out.push(format!("{} {name}: {why}", ladder.name)),
-                        None => {
-                            levels.push((name, measured.points.len()));
-                            measured.points.push(point);
-                        }
-                    },
-                    (None, None) if self.stopped() => {}
-                    (None, None) => measured.left_out.push(format!(
-                        "{} {name}: a small picture takes longer than {} s",
-                        ladder.name,
-                        PATIENCE.as_secs()
-                    )),
-                }
                 bar.inc(1);
+                if let Some(known) = measured.points.iter().position(|point| point.setting == setting) {
+                    levels.push((name, known));
+                    continue;
+                }
+                let point = self.point(scene, &setting, right, true)?;
+                let why = match &point {
+                    Some(point) => missing(point, own_notes),
+                    None => Some(format!("a small picture takes longer than {} s", PATIENCE.as_secs())),
+                };
+                match (point, why) {
+                    (None, _) if self.stopped() => {}
+                    (_, Some(why)) => measured.left_out.push(format!("{} {name}: {why}", ladder.name)),
+                    (point, None) => {
+                        levels.push((name, measured.points.len()));
+                        measured.points.extend(point);
+                    }
+                }
             }
             measured.left_out.extend(ladder.left_out);
             let own = Setting::of(scene);

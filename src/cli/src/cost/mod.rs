@@ -28,6 +28,7 @@ mod slope;
 mod table;
 
 use crate::args::{Given, wrapped};
+use crate::fingerprint;
 use crate::kits::{Need, Source, Which, has_solutions, root};
 use crate::lock::Lock;
 use crate::quality_options::arguments;
@@ -136,11 +137,10 @@ impl Report<'_> {
 
     /// What the times are.
     fn about_times(&self) -> &'static str {
-        match self.measured.processor_time {
-            true => "processor time of one thread",
-            false => {
-                "ELAPSED time of one thread, because this system gives no processor time of another process"
-            }
+        if self.measured.processor_time {
+            "processor time of one thread"
+        } else {
+            "ELAPSED time of one thread, because this system gives no processor time of another process"
         }
     }
 }
@@ -201,14 +201,20 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
         let out = options.out.clone().unwrap_or_else(|| Path::new("out").join("headline"));
         let hierarchy = options.quality.accelerator().unwrap_or(Accelerator::Auto);
         let _lock = Lock::on(&out)?;
-        return headline::run(&bench, hierarchy, options.most, &out, &fingerprint([&source])?);
+        return headline::run(
+            &bench,
+            hierarchy,
+            options.most,
+            &out,
+            &fingerprint::of_files([&source.program])?,
+        );
     };
     // Read the scene, in its own size and in that of the measured pictures.
     let mut full = load_scene(file, options.quality.limits)?;
     let as_written = full.quality;
     options.quality.apply(&mut full)?;
     let pixels = options.pixels();
-    let mut small = if options.quality.names_a_size() { full.clone() } else { with_at_most(pixels, &full) };
+    let mut small = if options.quality.size.is_some() { full.clone() } else { with_at_most(pixels, &full) };
     let has_goal = options.budget.is_some() || options.error.is_some();
     if !(options.full || has_goal || options.quality.names_samples()) {
         let samples = &mut small.quality.samples_per_pixel;
@@ -221,8 +227,8 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
     let _lock = Lock::on(&out)?;
 
-    // Continue a run that was stopped.
-    let code = fingerprint(beside.iter().chain([&source]))?;
+    // Continue a run that was stopped. Each code that renders has its own pictures and its own reference.
+    let code = fingerprint::of_files(beside.iter().chain([&source]).map(|source| &source.program))?;
     let kept = KeptPictures::open(&out, &code)?;
     let bench = Bench { kept: Some(&kept), ..bench };
 
@@ -276,7 +282,7 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
         _ => None,
     };
     let advice = advice.map(|advice| {
-        let size = options.quality.names_a_size().then_some((full.film.width, full.film.height));
+        let size = options.quality.size.is_some().then_some((full.film.width, full.film.height));
         Advice { command: command_for(file, &as_written, &full.quality, &advice, size), ..advice }
     });
     // Measure the ray/triangle tests, if that is possible here.
@@ -341,7 +347,7 @@ fn look(bench: &Bench<'_>, scene: &Scene) -> Result<Option<Rendering>> {
     let mut pixel = scene.clone();
     (pixel.film.width, pixel.film.height, pixel.quality.samples_per_pixel) = (1, 1, 1);
     let bar = FrameBar::new("looking at the scene");
-    let frame = bench.render(&bench.job(&pixel, 0, true), None, Some(&bar));
+    let frame = bench.render(&bench.job(&pixel, 0, true), None, &bar);
     bar.finish();
     frame
 }
@@ -428,16 +434,6 @@ fn slopes(measured: &Measured) -> Vec<(String, Slope)> {
     let of_samples =
         |series: &&measured::Series| matches!(series.parameter, Parameter::Samples | Parameter::Sampler);
     measured.series.iter().filter(of_samples).filter_map(of_series).collect()
-}
-
-/// A name for the code that renders, because each code has its own reference.
-fn fingerprint<'a>(sources: impl IntoIterator<Item = &'a Source>) -> Result<String> {
-    let read = |source: &Source| {
-        let program = &source.program;
-        std::fs::read(program).with_context(|| format!("cannot read {}", program.display()))
-    };
-    let programs: Vec<Vec<u8>> = sources.into_iter().map(read).collect::<Result<_>>()?;
-    Ok(crate::fingerprint::fingerprint(programs.iter().map(Vec::as_slice)))
 }
 
 /// The command line with which this program was started: by cargo, which says so in a variable, or directly.

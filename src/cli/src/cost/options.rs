@@ -107,28 +107,20 @@ impl CostOptions {
     /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<CostOptions, Misuse> {
         let (scene, headline) = (given.argument(0).map(PathBuf::from), given.has("--headline"));
-        match (&scene, headline) {
-            (Some(_), true) => return Err(given.misuse("`--headline` takes no SCENE")),
-            (None, false) => return Err(given.misuse("SCENE is missing")),
-            _ => {}
-        }
-        if given.has("--most") && !headline {
-            return Err(given.misuse("`--most` goes with `--headline`"));
-        }
+        given.refuse(headline && scene.is_some(), "`--headline` takes no SCENE")?;
+        given.refuse(!headline && scene.is_none(), "SCENE is missing")?;
+        given.refuse(!headline && given.has("--most"), "`--most` goes with `--headline`")?;
         given.exclude("--budget", "--error")?;
         given.exclude("--equal-time", "--budget")?;
         given.exclude("--equal-time", "--error")?;
         given.exclude("--equal-time", "--headline")?;
         let quality = QualityOptions::read(given)?;
         let is_tree = |one: Accelerator| one.is_hierarchy() || one.is_wide();
-        if headline && !quality.accelerator().is_none_or(is_tree) {
-            return Err(given.misuse("`--headline` needs a hierarchy, such as `--accelerator bvh`"));
-        }
+        let is_other = headline && !quality.accelerator().is_none_or(is_tree);
+        given.refuse(is_other, "`--headline` needs a hierarchy, such as `--accelerator bvh`")?;
         let mut light_sizes = given.list("--light-sizes", parse_size)?;
         let equal_time = given.has("--equal-time");
-        if !(light_sizes.is_empty() || equal_time) {
-            return Err(given.misuse("`--light-sizes` goes with `--equal-time`"));
-        }
+        given.refuse(!(light_sizes.is_empty() || equal_time), "`--light-sizes` goes with `--equal-time`")?;
         if light_sizes.is_empty() {
             light_sizes = vec![1.0];
         }

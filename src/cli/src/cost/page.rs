@@ -8,7 +8,7 @@ use super::parameter::Parameter;
 use super::search::Advice;
 use super::table::{about_hits, cells, goal, heading, heads as special_heads, named, ratio, verdict, waste};
 use crate::html::{around, base64, element, escape};
-use crate::report::write_file;
+use crate::report::{counted, write_file};
 use anyhow::{Context, Result};
 use image::RgbImage;
 use std::path::Path;
@@ -21,10 +21,8 @@ pub fn write(file: &Path, report: &Report<'_>) -> Result<()> {
 fn page(report: &Report<'_>) -> Result<String> {
     let title = format!("What accuracy costs: {}", report.scene);
     let mut body = element("h1", &title);
-    let rounds = match report.measured.rounds {
-        1 => "1 round".to_owned(),
-        n => format!("{n} rounds with other random numbers each"),
-    };
+    let others = if report.measured.rounds == 1 { "" } else { " with other random numbers each" };
+    let rounds = counted(report.measured.rounds, "round") + others;
     let about = format!(
         "{} × {} pixels by {}, {rounds}, all pictures in turn. Errors are \
          root mean squares in linear light against a picture of {} samples per pixel, whose own error is \
@@ -63,22 +61,14 @@ fn page(report: &Report<'_>) -> Result<String> {
     }
     body += &numerics(report);
     body += &element("h2", "Not measured");
-    let mut left_out = String::new();
-    for (parameter, why) in &report.not_offered {
-        left_out += &element("li", format!("{}: {why}", parameter.name()));
-    }
-    for words in &report.measured.left_out {
-        left_out += &element("li", words);
-    }
-    for lacking in &report.measured.lacking {
-        left_out += &element("li", format!("Note: {lacking}"));
-    }
-    left_out += &element(
-        "li",
-        "Lens and time have no samples of their own: each sample of a pixel has its own point on the lens \
-         and its own time.",
-    );
-    body += &around("ul", "", &left_out);
+    let not_offered =
+        report.not_offered.iter().map(|(parameter, why)| format!("{}: {why}", parameter.name()));
+    let lacking = report.measured.lacking.iter().map(|lacking| format!("Note: {lacking}"));
+    let left_out = not_offered.chain(report.measured.left_out.iter().cloned()).chain(lacking);
+    let always = "Lens and time have no samples of their own: each sample of a pixel has its own point on the lens \
+                  and its own time.";
+    let items: String = left_out.chain([always.into()]).map(|words| element("li", words)).collect();
+    body += &around("ul", "", &items);
     Ok(format!(
         "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\">\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">{}<style>{}</style></head>\
@@ -145,15 +135,10 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     let mut levels = Vec::new();
     for (value, index) in &series.levels {
         let point = &report.measured.points[*index];
-        let is_front = report.pareto_front.contains(index);
+        let points = [point, &report.measured.points[series.base]];
         let name = format!("{} {}", named(report, value, *index), report.mark(*index));
-        levels.push(level(
-            report,
-            series,
-            [point, &report.measured.points[series.base]],
-            name.trim_end(),
-            is_front,
-        ));
+        let is_front = report.pareto_front.contains(index);
+        levels.push(level(report, series, points, name.trim_end(), is_front));
         if let Some(reference) = &point.reference {
             levels.push(level(report, series, [reference, point], "the reference", false));
         }

@@ -3,6 +3,7 @@
 use crate::svg::{self, Axis, Drawing, End, Ink, Middle, Pen, Point, SMALL, Start, TEXT};
 
 /// The contents of a plot.
+#[derive(Default)]
 pub struct Plot<'a> {
     /// The heading.
     pub title: &'a str,

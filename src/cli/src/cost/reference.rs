@@ -12,10 +12,11 @@ use crate::report::bar_of_steps;
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};
 use raykata::film::{Film, write_atomically};
+use raykata::frame::Unwatched;
 use raykata::message::to_bytes;
 use raykata::scene::{Accelerator, NextEvent, Quality, Sampler, Scene, Split, TextureFilter};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Samples per pixel and batch.
 const BATCH: u32 = 64;
@@ -67,7 +68,8 @@ pub fn reference(
     // The sums are kept in a file of their own.
     let bench = &Bench { kept: None, ..bench.of_reference() };
     let scene = converged(scene);
-    let file = file_of(&scene, cache, code)?;
+    let name = fingerprint([code.as_bytes(), &to_bytes(&scene)]);
+    let file = cache.join(format!("{name}.sums"));
     let pixels = scene.film.width as usize * scene.film.height as usize;
     let mut sums = read(&file, pixels).unwrap_or_else(|| Sums {
         batches: 0,
@@ -79,7 +81,8 @@ pub fn reference(
     bar.set_message("reference");
     // A kept reference may have more batches than requested.
     while sums.batches < wanted {
-        let Some(frame) = bench.frame(&scene, FIRST_SEED + u64::from(sums.batches), false)? else {
+        let job = bench.job(&scene, FIRST_SEED + u64::from(sums.batches), false);
+        let Some(frame) = bench.render(&job, None, &Unwatched)? else {
             bar.finish_and_clear();
             return Ok(None);
         };
@@ -108,12 +111,6 @@ impl Sums {
             own_error: (square / (3 * evens.len()).max(1) as f64).sqrt(),
         }
     }
-}
-
-/// The file of a reference, named after the scene and the code that renders it.
-fn file_of(scene: &Scene, cache: &Path, code: &str) -> Result<PathBuf> {
-    let name = fingerprint([code.as_bytes(), &to_bytes(scene)]);
-    Ok(cache.join(format!("{name}.sums")))
 }
 
 /// The kept sums; `None` if there is no file or it cannot be used, so that the reference starts again.

@@ -129,7 +129,7 @@ pub fn advise(
     let verified = others.point(small, &now.setting, right, false)?;
     let bar = FrameBar::new("the proposal, in full size");
     let job = others.job(&now.setting.apply(full), others.seed, false);
-    let frame = others.render(&job, None, Some(&bar))?;
+    let frame = others.render(&job, None, &bar)?;
     bar.finish();
     Ok(Some(Advice {
         goal,
@@ -377,17 +377,14 @@ fn best_sampler(measured: &Measured) -> Option<&Point> {
 
 fn names_of_chosen(measured: &Measured, setting: &Setting) -> Vec<(Parameter, String)> {
     let of_series = |series: &Series| {
-        let is_same = |index: &usize| {
+        let is_same = |(_, index): &&(String, usize)| {
             let value = &measured.points[*index].setting;
             setting.turned(series.parameter, value) == *setting
         };
-        let name = match series.parameter {
-            Parameter::Sampler => {
-                series.levels.first().filter(|(_, index)| is_same(index)).map(|_| series.name.clone())
-            }
-            _ => series.levels.iter().find(|(_, index)| is_same(index)).map(|(name, _)| name.clone()),
-        };
-        Some((series.parameter, name?))
+        let (level, _) = series.levels.iter().find(is_same)?;
+        // Each sampler has a ladder, whose levels are numbers of samples.
+        let name = if series.parameter == Parameter::Sampler { &series.name } else { level };
+        Some((series.parameter, name.clone()))
     };
     measured.series.iter().filter(|series| is_chosen_once(series.parameter)).filter_map(of_series).collect()
 }
@@ -398,6 +395,13 @@ mod tests {
     use crate::report::scene_of_kit;
     use raykata::scene::Quality;
     use raykata::scene::TriangleMethod::{Cramer, Gram, Watertight};
+
+    /// The measurements of a parameter whose values have these names and points.
+    fn measured(parameter: Parameter, values: [&str; 3], points: Vec<Point>) -> Measured {
+        let levels = values.map(str::to_owned).into_iter().zip(0..).collect();
+        let series = vec![Series { parameter, name: parameter.name().into(), levels, base: 0 }];
+        Measured { points, series, ..Measured::default() }
+    }
 
     #[test]
     fn what_leaks_is_not_proposed_however_fast_it_is() {
@@ -410,14 +414,7 @@ mod tests {
             Point::made_up(by(Cramer), 0.02, 3.0, 106),
             Point::made_up(by(Watertight), 0.02, 2.0, 0),
         ];
-        let levels = ["gram", "cramer", "watertight"].map(str::to_owned).into_iter().zip(0..).collect();
-        let series = vec![Series {
-            parameter: Parameter::Intersection,
-            name: "triangle test".into(),
-            levels,
-            base: 0,
-        }];
-        let measured = Measured { points, series, ..Measured::default() };
+        let measured = measured(Parameter::Intersection, ["gram", "cramer", "watertight"], points);
         let (best, passed_over) = with_what_is_best(&measured, &by(Gram));
         assert_eq!(best.quality.triangle_method, Watertight);
         assert_eq!(passed_over, ["triangle test gram is faster, but 239 of 1000 rays leak"]);
@@ -436,10 +433,8 @@ mod tests {
             ];
             // One round in six is slower than the scene's own value.
             points[0].times[5] = slowest;
-            let levels = ["2", "4", "8"].map(str::to_owned).into_iter().zip(0..).collect();
-            let series =
-                vec![Series { parameter: Parameter::LeafSize, name: "leaf size".into(), levels, base: 1 }];
-            with_what_is_best(&Measured { points, series, ..Measured::default() }, &own).0.quality.leaf_size
+            let measured = measured(Parameter::LeafSize, ["2", "4", "8"], points);
+            with_what_is_best(&measured, &own).0.quality.leaf_size
         };
         assert_eq!((own.quality.leaf_size, chosen(0.7, 1.1), chosen(0.7, 0.9)), (4, 4, 2));
     }

@@ -8,7 +8,7 @@ use super::search::{Advice, Goal, KEPT};
 use crate::args::wrapped;
 use crate::columns::Columns;
 use crate::race::statistics::Median;
-use crate::report::Thousands;
+use crate::report::{Thousands, counted};
 
 /// The columns of a ladder: name and marks, error, two that depend on the parameter, time with its ratio, and one more.
 const COLUMNS: Columns = Columns("", &[-24, -2, 8, 8, 7, 8, 17, 6]);
@@ -18,14 +18,13 @@ const BIASED: Columns = Columns("", &[-24, -2, 8, 15, 0, 8, 17, 6]);
 
 /// Prints the report.
 pub fn print(report: &Report<'_>) {
-    let rounds = if report.measured.rounds == 1 { "round" } else { "rounds" };
     let about = format!(
-        "{}: {} × {} pixels, {} {rounds}; ms: {}, the median; ratio: to the line marked =, the median of the rounds and its 95 % \
+        "{}: {} × {} pixels, {}; ms: {}, the median; ratio: to the line marked =, the median of the rounds and its 95 % \
          interval; rays are per pixel, tests per ray",
         report.scene,
         report.width,
         report.height,
-        report.measured.rounds,
+        counted(report.measured.rounds, "round"),
         report.about_times()
     );
     println!("{}", wrapped(&about, 0));
@@ -75,12 +74,9 @@ pub fn print(report: &Report<'_>) {
     if let Some(hits) = about_hits(report) {
         println!("{}", wrapped(&format!("wrong and leaks: {hits}"), 2));
     }
-    for left_out in &report.measured.left_out {
-        println!("{}", wrapped(&format!("left out: {left_out}"), 2));
-    }
-    for lacking in &report.measured.lacking {
-        println!("{}", wrapped(&format!("note: {lacking}"), 2));
-    }
+    let left_out = report.measured.left_out.iter().map(|words| format!("left out: {words}"));
+    let lacking = report.measured.lacking.iter().map(|words| format!("note: {words}"));
+    left_out.chain(lacking).for_each(|line| println!("{}", wrapped(&line, 2)));
     numerics(report);
     if let Some(advice) = &report.advice {
         print_advice(report, advice);
@@ -289,13 +285,12 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
         }
         _ => {}
     }
-    let spent: Vec<&str> =
-        advice.steps.iter().map(|step| step.parameter.name()).fold(Vec::new(), |mut names, name| {
-            if !names.contains(&name) {
-                names.push(name);
-            }
-            names
-        });
+    let mut spent = Vec::new();
+    for name in advice.steps.iter().map(|step| step.parameter.name()) {
+        if !spent.contains(&name) {
+            spent.push(name);
+        }
+    }
     if !spent.is_empty() {
         lines.push(format!("time is spent on {}", spent.join(", ")));
     }

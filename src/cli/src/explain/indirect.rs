@@ -1,13 +1,14 @@
 //! What indirect light needs: which materials send diffuse rays on, which lights are sampled, how many rays that takes at
 //! most, and how much light is missing beyond the largest depth.
 
+use super::needs::written;
 use super::why::{list, material};
 use super::{Explained, REASON_COLUMN, STEP, about_hits, bounds_table};
 use crate::args::wrapped;
 use crate::report::{Thousands, job, render};
 use anyhow::Result;
 use glam::Vec3;
-use raykata::kit::{KitError, kit_error};
+use raykata::kit::kit_error;
 use raykata::scene::{Background, NextEvent};
 
 /// Prints which surfaces send diffuse rays on and which lights are sampled, and what is not computed for that reason.
@@ -92,14 +93,8 @@ pub fn depth(explained: &Explained<'_>) -> Result<()> {
         let missing = kit.cut_off(&[(albedo.min(1.0), depth)]).remove(0);
         (missing, kit.bounces_for_error(&[(albedo.min(1.0), STEP)]).remove(0))
     });
-    let (missing, needed) = match answers {
-        Ok(answers) => answers,
-        Err(KitError::NotWritten { task, place, .. }) => {
-            println!("\nleft out, because a function is not written yet: {place}: {task}");
-            return Ok(());
-        }
-        Err(error) => return Err(error.into()),
-    };
+    println!();
+    let Some((missing, needed)) = written(answers)? else { return Ok(()) };
     let needed = match needed {
         u32::MAX => "no number of bounces is enough for".to_owned(),
         n => format!("{n} bounces leave out less than"),
@@ -109,6 +104,6 @@ pub fn depth(explained: &Explained<'_>) -> Result<()> {
          most {depth} bounces leave out {:.1} % of the light, and {needed} {STEP:.4} of it (1/255, a step of brightness).",
         100.0 * missing
     );
-    println!("\ndepth             {}", wrapped(&text, REASON_COLUMN));
+    println!("depth             {}", wrapped(&text, REASON_COLUMN));
     Ok(())
 }

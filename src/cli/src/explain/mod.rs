@@ -10,7 +10,7 @@ use crate::args::{Argument, Given, Opt, Spec, wrapped};
 use crate::columns::Columns;
 use crate::kits::Choice;
 use crate::quality_options::QualityOptions;
-use crate::report::{Thousands, bar_of_steps, job, quartiles, render, with_at_most};
+use crate::report::{Thousands, bar_of_steps, counted, job, quartiles, render, with_at_most};
 use anyhow::{Result, bail};
 use raykata::count::Counts;
 use raykata::effects::{Effect, Effects};
@@ -119,10 +119,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
 
 /// The size of a picture, in words.
 fn size(scene: &Scene) -> String {
-    let samples = match scene.quality.samples_per_pixel {
-        1 => "1 sample".to_owned(),
-        n => format!("{n} samples"),
-    };
+    let samples = counted(scene.quality.samples_per_pixel, "sample");
     format!("{} × {} pixels, {samples} each", scene.film.width, scene.film.height)
 }
 

@@ -22,7 +22,10 @@ pub fn rays_per_hit(explained: &Explained<'_>) -> Result<()> {
         quality: scene.quality,
     };
     let queries: Vec<HitsQuery> = materials.iter().map(query).collect();
-    let Some(rays) = written(kit_error::catch(|| kit.rays_of_hits(&queries)))? else { return Ok(()) };
+    let Some(rays) = written(kit_error::catch(|| kit.rays_of_hits(&queries)))? else {
+        println!();
+        return Ok(());
+    };
     const COLUMNS: Columns = Columns("  ", &[-24, 18, 11, 11]);
     println!("{}", COLUMNS.row(&[&"rays per hit", &"to lights, at most", &"reflected", &"refracted"]));
     let mut is_path = false;
@@ -59,6 +62,7 @@ pub fn samples(explained: &Explained<'_>) -> Result<()> {
     let n = scene.quality.samples_per_pixel;
     let deviation = (variance * f64::from(n)).sqrt() as f32;
     let Some(needed) = written(kit_error::catch(|| kit.samples_for_error(&[(deviation, STEP)])))? else {
+        println!();
         return Ok(());
     };
     let text = match needed[0] {
@@ -74,11 +78,11 @@ pub fn samples(explained: &Explained<'_>) -> Result<()> {
 }
 
 /// The answer, or `None` if the function is not written yet. Then prints its name and its place.
-fn written<T>(answer: Result<T, KitError>) -> Result<Option<T>> {
+pub fn written<T>(answer: Result<T, KitError>) -> Result<Option<T>> {
     match answer {
         Ok(answer) => Ok(Some(answer)),
         Err(KitError::NotWritten { task, place, .. }) => {
-            println!("left out, because a function is not written yet: {place}: {task}\n");
+            println!("left out, because a function is not written yet: {place}: {task}");
             Ok(None)
         }
         Err(error) => Err(error.into()),

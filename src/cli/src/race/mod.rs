@@ -15,7 +15,7 @@ use crate::args::{Argument, Given, Opt, Spec};
 use crate::kits::{Choice, Which, root};
 use crate::program::exit_code;
 use crate::quality_options::QualityOptions;
-use crate::report::{bar_of_steps, job, render, with_at_most};
+use crate::report::{bar_of_steps, counted, job, render, with_at_most};
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result};
 use pictures::different_pixels;
@@ -60,7 +60,7 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let against = given.repeated("--against", |text| Ok::<_, String>(PathBuf::from(text)))?;
     let rounds = given.number("--rounds", statistics::FEWEST..=10_000)?.unwrap_or(15);
     let mut scene = quality.load(file)?;
-    if !given.has("--full") && !quality.names_a_size() {
+    if !given.has("--full") && quality.size.is_none() {
         scene = with_at_most(RACED_PIXELS, &scene);
     }
     // Find the kits before anything is built. The first opponent is the baseline, and comes first.
@@ -72,13 +72,15 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     racers.push(racers::of_kit(&root, kit.or_exercises())?);
     let programs = racers::build(&root, &racers)?;
 
-    let samples = match scene.quality.samples_per_pixel {
-        1 => "1 sample".to_owned(),
-        n => format!("{n} samples"),
-    };
+    let samples = counted(scene.quality.samples_per_pixel, "sample");
     let (width, height) = (scene.film.width, scene.film.height);
     let title = format!("{}, {width} × {height} pixels, {samples} each", file.display());
-    let race = measure(&scene, title, &racers, &programs, rounds)?;
+    let contestant = |(racer, program): (Racer, PathBuf)| Contestant {
+        name: racer.name,
+        kit: Door(Worker::new(program, CALL_PATIENCE)),
+    };
+    let contestants: Vec<Contestant> = racers.into_iter().zip(programs).map(contestant).collect();
+    let race = measure(&scene, title, &contestants, rounds)?;
     println!("{}", race.report().trim_end());
     Ok(exit_code(race.is_valid()))
 }
@@ -103,30 +105,20 @@ impl Contestant {
 }
 
 /// Lets all kits render the scene in turn.
-fn measure(
-    scene: &Scene,
-    title: String,
-    racers: &[Racer],
-    programs: &[PathBuf],
-    rounds: usize,
-) -> Result<Race> {
+fn measure(scene: &Scene, title: String, contestants: &[Contestant], rounds: usize) -> Result<Race> {
     let processor_time = processor_time(std::process::id()).is_some();
-    let contestant = |(racer, program): (&Racer, &PathBuf)| Contestant {
-        name: racer.name.clone(),
-        kit: Door(Worker::new(Path::new(program).to_owned(), CALL_PATIENCE)),
-    };
-    let contestants: Vec<Contestant> = racers.iter().zip(programs).map(contestant).collect();
+    let lane = |contestant: &Contestant| Lane { name: contestant.name.clone(), ..Lane::default() };
     let mut race = Race {
         title,
         pixels: scene.film.width as usize * scene.film.height as usize,
         processor_time,
-        lanes: racers.iter().map(|racer| Lane { name: racer.name.clone(), ..Lane::default() }).collect(),
+        lanes: contestants.iter().map(lane).collect(),
     };
     let bar = bar_of_steps((rounds + 1) * contestants.len());
     // Render a round that does not count: it starts the processes and reads their programs from the disk.
     for round in 0..=rounds {
         let mut expected = None;
-        for (lane, contestant) in race.lanes.iter_mut().zip(&contestants) {
+        for (lane, contestant) in race.lanes.iter_mut().zip(contestants) {
             // Another seed per round gives other random numbers, so that no frame is that of an earlier round.
             let (rendering, time) = contestant.frame(scene, round as u64, processor_time)?;
             if round == 0 {

@@ -4,11 +4,10 @@
 //! does not use the workers of other commands. It writes a small workspace into the target folder, with one package per
 //! kit, which compiles the files of its folder.
 
-use crate::kits::{Which, profile, run_build, target_folder};
+use crate::kits::{Which, cargo_in, run_build, target_folder};
 use anyhow::{Context, Result, bail};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// A kit of a race.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,11 +76,8 @@ pub fn build(root: &Path, racers: &[Racer]) -> Result<Vec<PathBuf>> {
     if !lock.is_file() && root.join("Cargo.lock").is_file() {
         std::fs::copy(root.join("Cargo.lock"), &lock).context("cannot copy Cargo.lock")?;
     }
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(&workspace).args(["build", "--workspace", "--bins", "--target-dir"]).arg(target);
-    if let Some(profile) = profile() {
-        cargo.arg(format!("--profile={profile}"));
-    }
+    let mut cargo = cargo_in(&workspace);
+    cargo.args(["--workspace", "--bins", "--target-dir"]).arg(target);
     let built = run_build(cargo, "the kits of the race")?;
     (0..racers.len()).map(|i| built.path(&package_name(i))).collect()
 }
@@ -175,12 +171,6 @@ mod tests {
     }
 
     #[test]
-    fn a_race_without_a_reference_asks_for_an_opponent() {
-        let error = of_kit(Path::new("a_hand_out"), Which::Solutions).expect_err("no reference").to_string();
-        assert!(error.starts_with("there are no solutions in a_hand_out: name an opponent"), "{error}");
-    }
-
-    #[test]
     fn all_racers_have_the_options_of_the_solutions() {
         if !repository().join("solutions").is_dir() {
             return println!("a hand-out has no solutions, whose options racers get");
@@ -217,12 +207,10 @@ mod tests {
     fn folders_without_exercises_are_refused() {
         let folder = tempfile::tempdir().expect("a folder");
         let why = |at: &Path| in_folder(folder.path(), at).map(|_| ()).unwrap_err().to_string();
-        assert!(why(&folder.path().join("missing")).starts_with("there is no folder "));
-        assert!(
-            why(folder.path()).contains(" holds no exercises: `--against` needs a folder with src/lib.rs")
-        );
         // A hand-out has no solutions.
-        assert!(why(Path::new("solutions")).starts_with("there are no solutions in "));
+        let missing = why(Path::new("solutions"));
+        assert!(missing.starts_with("there are no solutions in "), "{missing}");
+        assert!(missing.contains(": name an opponent, which is another folder of exercises"), "{missing}");
         let exercises = folder.path().join("exercises/src");
         std::fs::create_dir_all(&exercises).expect("a folder");
         std::fs::write(exercises.join("lib.rs"), "").expect("a file");

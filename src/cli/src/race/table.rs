@@ -3,7 +3,7 @@
 use super::pictures::is_tolerable;
 use super::statistics::{Median, paired_ratio};
 use crate::args::wrapped;
-use crate::report::Thousands;
+use crate::report::{Thousands, counted};
 use std::fmt::Write;
 
 /// What was measured of one kit.
@@ -64,10 +64,9 @@ impl Race {
     /// The report.
     pub fn report(&self) -> String {
         let Some(baseline) = self.lanes.first() else { return String::new() };
-        let rounds = baseline.seconds.len();
+        let rounds = counted(baseline.seconds.len() as u64, "round");
         let mut text = format!("{}\n", wrapped(&self.title, 0));
         let what = if self.processor_time { "processor time" } else { "ELAPSED time" };
-        let rounds = if rounds == 1 { "1 round".into() } else { format!("{rounds} rounds") };
         let _ = writeln!(text, "{what} of whole frames on one thread, {rounds}, all kits in turn\n");
         let _ = writeln!(
             text,

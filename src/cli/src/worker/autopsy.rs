@@ -1,6 +1,7 @@
 //! Finds out why a worker does not answer any more.
 
-use super::launcher::{Death, Launcher, lock};
+use super::launcher::{Death, Launcher};
+use crate::queue::lock;
 use raykata::kit::KitError;
 use std::io::{self, Read};
 use std::process::{Child, ExitStatus};

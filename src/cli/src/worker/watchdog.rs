@@ -1,7 +1,8 @@
 //! Ends a process that does not answer in time.
 
-use super::launcher::{Launcher, lock};
+use super::launcher::Launcher;
 use super::waiting;
+use crate::queue::lock;
 use raykata::kit::KitError;
 use raykata::worker::Thread;
 use std::process::Child;

@@ -1,13 +1,14 @@
 //! Runs `raykata cost` on tiny pictures.
 
+use super::program_runs::{has_lines, kill_when};
 use raykata_cli::lock::Lock;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-/// Runs `cost` with this command line in a folder.
-fn cost(folder: &Path, line: &str) -> Output {
+/// `cost` with this command line in a folder.
+fn command(folder: &Path, line: &str) -> Command {
     let root = raykata_cli::kits::root().unwrap();
     // References lie below the current folder; `root` is only where the scenes are.
     let scenes = folder.join("scenes");
@@ -15,24 +16,37 @@ fn cost(folder: &Path, line: &str) -> Output {
         std::os::unix::fs::symlink(root.join("scenes"), &scenes).unwrap();
     }
     let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
+    command.current_dir(folder).stdin(Stdio::null()).arg("cost").args(line.split_whitespace());
     command
-        .current_dir(folder)
-        .stdin(Stdio::null())
-        .arg("cost")
-        .args(line.split_whitespace())
-        .output()
-        .unwrap()
+}
+
+fn cost(folder: &Path, line: &str) -> Output {
+    command(folder, line).output().unwrap()
 }
 
 fn said(output: &Output) -> String {
     String::from_utf8_lossy(&[&output.stdout[..], &output.stderr[..]].concat()).into_owned()
 }
 
+/// What `cost` prints with this command line; it must succeed.
+#[track_caller]
+fn report(folder: &Path, line: &str) -> String {
+    let output = cost(folder, line);
+    let said = said(&output);
+    assert!(output.status.success(), "{said}");
+    said
+}
+
+/// The numbers of a report.
+fn numbers(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("cost.json")).unwrap()).unwrap()
+}
+
 const QUICK: &str = "--full --size 16x12 --rounds 2";
 
 /// The report without measured times.
 fn without_times(folder: &Path) -> (Value, Vec<String>) {
-    let mut json: Value = serde_json::from_slice(&fs::read(folder.join("cost.json")).unwrap()).unwrap();
+    let mut json = numbers(folder);
     for name in ["command", "took", "pareto_front", "unclear", "numerics"] {
         json.as_object_mut().unwrap().remove(name);
     }
@@ -51,26 +65,20 @@ fn without_times(folder: &Path) -> (Value, Vec<String>) {
 fn two_runs_have_the_same_errors_and_counts() {
     let folder = tempfile::tempdir().unwrap();
     let run = |out: &str, more: &str| {
-        let output = cost(folder.path(), &format!("scenes/soft_shadows.toml --out {out} {QUICK} {more}"));
-        assert!(output.status.success(), "{}", said(&output));
-        (said(&output), without_times(&folder.path().join(out)))
+        let text = report(folder.path(), &format!("scenes/soft_shadows.toml --out {out} {QUICK} {more}"));
+        (text, without_times(&folder.path().join(out)))
     };
     let parameters = "--parameter samples_per_pixel,sampler,light_samples --reference 128";
     let (text, one) = run("one", parameters);
     let (_, other) = run("other", &format!("{parameters} --threads 1"));
     assert_eq!(one, other);
     assert_eq!(one.1, ["cost.csv", "cost.json", "cost.svg", "index.html", "samplers.svg"]);
-    assert!(
-        text.contains("glossy samples: not offered, because no rough surface reflects or transmits\n  light"),
-        "{text}"
-    );
-    assert!(text.contains("* the scene's own value"), "{text}");
-    assert!(
-        text.contains("2 rounds: no interval, so no value is ranked") && !text.contains(" ±\n"),
-        "{text}"
-    );
-    let report = text.lines().take_while(|line| !line.starts_with("the report: "));
-    assert!(report.into_iter().all(|line| line.chars().count() <= 80), "{text}");
+    let not_offered = "glossy samples: not offered, because no rough surface reflects or transmits\n  light";
+    let no_interval = "2 rounds: no interval, so no value is ranked";
+    has_lines(&text, &[not_offered, "* the scene's own value", no_interval]);
+    assert!(!text.contains(" ±\n"), "{text}");
+    let mut lines = text.lines().take_while(|line| !line.starts_with("the report: "));
+    assert!(lines.all(|line| line.chars().count() <= 80), "{text}");
 
     let points = one.0["points"].as_array().unwrap();
     let errors: Vec<f64> = points.iter().map(|point| point["rmse"][0].as_f64().unwrap()).collect();
@@ -95,18 +103,6 @@ fn two_runs_have_the_same_errors_and_counts() {
     drop(lock);
 }
 
-/// Waits until a file has some lines, and kills the process then.
-fn kill_when(run: &mut std::process::Child, file: &Path, n_lines: usize) {
-    let late = std::time::Instant::now() + std::time::Duration::from_secs(300);
-    while fs::read_to_string(file).map_or(0, |text| text.lines().count()) < n_lines {
-        assert!(run.try_wait().unwrap().is_none(), "it ended before it was killed");
-        assert!(std::time::Instant::now() < late, "{} has not {n_lines} lines", file.display());
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
-    run.kill().unwrap();
-    run.wait().unwrap();
-}
-
 #[test]
 fn a_measurement_that_is_killed_continues_and_gives_the_same_report() {
     let folder = tempfile::tempdir().unwrap();
@@ -114,22 +110,17 @@ fn a_measurement_that_is_killed_continues_and_gives_the_same_report() {
         let parameters = "--parameter samples_per_pixel,max_depth --reference 128";
         format!("scenes/stage5.toml {parameters} --out {out} {QUICK}")
     };
-    let output = cost(folder.path(), &arguments("whole"));
-    assert!(output.status.success(), "{}", said(&output));
-    let mut run = Command::new(env!("CARGO_BIN_EXE_raykata"));
-    run.current_dir(folder.path()).arg("cost").args(arguments("killed").split(' ')).stdout(Stdio::null());
+    report(folder.path(), &arguments("whole"));
+    let mut run = command(folder.path(), &arguments("killed"));
+    run.stdout(Stdio::null()).stderr(Stdio::null());
     let unfinished = folder.path().join("killed/unfinished.jsonl");
-    kill_when(&mut run.stderr(Stdio::null()).spawn().unwrap(), &unfinished, 5);
-    let kept = fs::read_to_string(&unfinished).unwrap().lines().count() - 1;
-    let output = cost(folder.path(), &arguments("killed"));
-    assert!(output.status.success(), "{}", said(&output));
+    let n_lines = || fs::read_to_string(&unfinished).map_or(0, |text| text.lines().count());
+    kill_when(&mut run.spawn().unwrap(), || n_lines() >= 5);
+    let kept = n_lines() - 1;
+    let said = report(folder.path(), &arguments("killed"));
     // The last line may be incomplete.
     let words = |n: usize| format!("continues a run that was stopped: {n} measured pictures");
-    assert!(
-        said(&output).contains(&words(kept)) || said(&output).contains(&words(kept - 1)),
-        "{}",
-        said(&output)
-    );
+    assert!(said.contains(&words(kept)) || said.contains(&words(kept - 1)), "{said}");
     assert_eq!(without_times(&folder.path().join("killed")), without_times(&folder.path().join("whole")));
 }
 
@@ -137,17 +128,14 @@ fn a_measurement_that_is_killed_continues_and_gives_the_same_report() {
 fn a_proposal_is_tried_out() {
     let folder = tempfile::tempdir().unwrap();
     let parameters = "--parameter samples_per_pixel,max_depth --error 0.03 --reference 128";
-    let output = cost(folder.path(), &format!("scenes/stage5.toml {parameters} {QUICK}"));
-    assert!(output.status.success(), "{}", said(&output));
-    let json: Value =
-        serde_json::from_slice(&fs::read(folder.path().join("out/stage5-cost/cost.json")).unwrap()).unwrap();
-    let advice = &json["advice"];
+    let said = report(folder.path(), &format!("scenes/stage5.toml {parameters} {QUICK}"));
+    let advice = &numbers(&folder.path().join("out/stage5-cost"))["advice"];
     assert!(advice["expected_error"].as_f64().unwrap() <= 0.03, "{advice}");
     // Other random numbers give another error. In 16 × 12 pixels it comes from about a dozen pixels on edges,
     // so the root mean square varies by a fifth; twice that is not reached by chance with a fixed pair of
     // seeds.
     assert!(advice["verified_error"].as_f64().unwrap() <= 0.03 * 1.5, "{advice}");
-    assert!(said(&output).contains("rendered, with other random numbers"), "{}", said(&output));
+    assert!(said.contains("rendered, with other random numbers"), "{said}");
 }
 
 #[test]
@@ -156,11 +144,8 @@ fn hits_are_judged_exactly() {
     let judged = |method: &str| {
         let method_and_out = format!("--set triangle_method={method} --out {method}");
         let line = format!("scenes/stage2.toml --parameter split --reference 128 {method_and_out} {QUICK}");
-        let output = cost(folder.path(), &line);
-        assert!(output.status.success(), "{}", said(&output));
-        let json = fs::read(folder.path().join(method).join("cost.json")).unwrap();
-        let json: Value = serde_json::from_slice(&json).unwrap();
-        let points = json["points"].as_array().unwrap().clone();
+        report(folder.path(), &line);
+        let points = numbers(&folder.path().join(method))["points"].as_array().unwrap().clone();
         assert!(
             points.len() == 3 && points.iter().all(|point| point["hits"] == points[0]["hits"]),
             "{points:?}"
@@ -181,23 +166,16 @@ fn a_fixed_ray_offset_leaks_or_makes_acne_and_the_error_bound_does_neither() {
     let folder = tempfile::tempdir().unwrap();
     let line =
         "scenes/plain.toml --parameter ray_offset --reference 128 --rounds 1 --size 63x39 --out offsets";
-    let output = cost(folder.path(), line);
-    assert!(output.status.success(), "{}", said(&output));
-    let json = fs::read(folder.path().join("offsets/cost.json")).unwrap();
-    let json: Value = serde_json::from_slice(&json).unwrap();
+    let said = report(folder.path(), line);
+    let points = numbers(&folder.path().join("offsets"))["points"].as_array().unwrap().clone();
     let counts = |name: &str| -> Vec<u64> {
-        json["points"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|point| point["counts"][name].as_u64().unwrap())
-            .collect()
+        points.iter().map(|point| point["counts"][name].as_u64().unwrap()).collect()
     };
     let (acne, leaks) = (counts("shadow_acne"), counts("light_leaks"));
     // From 1e-2 down to 1e-7, and the bound.
     assert!(leaks[0] > 50 && leaks[4..] == [0, 0, 0], "{leaks:?}");
     assert!(acne[3..5] == [0, 0] && acne[5] > 0 && acne[6] == 0, "{acne:?}");
-    assert!(said(&output).contains("one round: no interval"), "{}", said(&output));
+    assert!(said.contains("one round: no interval"), "{said}");
 }
 
 #[test]
@@ -225,12 +203,9 @@ fn what_buys_nothing_is_said() {
 fn what_is_stopped_leaves_a_report() {
     use std::io::{BufRead, BufReader};
     let folder = tempfile::tempdir().unwrap();
-    let scenes = raykata_cli::kits::root().unwrap().join("scenes");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
-    command.current_dir(folder.path()).arg("cost").arg(scenes.join("stage1.toml"));
-    let line = "--size 16x12 --rounds 1000 --reference 128 --parameter samples_per_pixel,sampler";
-    command.args(line.split(' '));
-    let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
+    let line =
+        "scenes/stage1.toml --size 16x12 --rounds 1000 --reference 128 --parameter samples_per_pixel,sampler";
+    let mut child = command(folder.path(), line).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
     lines.find(|line| line.starts_with("its own error")).expect("it has begun");
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
@@ -238,8 +213,7 @@ fn what_is_stopped_leaves_a_report() {
     let text: Vec<String> = lines.collect();
     assert_eq!(child.wait().unwrap().code(), Some(1));
     assert!(text.iter().any(|line| line.starts_with("stopped before the end")), "{text:?}");
-    let json = fs::read(folder.path().join("out/stage1-cost/cost.json")).unwrap();
-    let json: Value = serde_json::from_slice(&json).unwrap();
+    let json = numbers(&folder.path().join("out/stage1-cost"));
     assert_eq!(json["partial"], true);
     assert!(json["rounds"].as_u64().unwrap() < 1000);
 }
@@ -264,8 +238,7 @@ fn plots_can_be_read_from_the_last_row() {
     for (scene, parameters) in cases {
         let line =
             format!("scenes/{scene}.toml --out {scene} --reference 128 {QUICK} --parameter {parameters}");
-        let output = cost(folder.path(), &line);
-        assert!(output.status.success(), "{}", said(&output));
+        report(folder.path(), &line);
         for (width, height) in [(1280, 720), (1920, 1080)] {
             browser.window(width, height, false).unwrap();
             for file in fs::read_dir(folder.path().join(scene)).unwrap().map(|file| file.unwrap().path()) {
@@ -296,16 +269,10 @@ fn a_student_sees_the_reference_beside_their_code() {
     let line = format!(
         "scenes/stage5.toml --kit exercises --parameter samples_per_pixel,accelerator --reference 128 {QUICK}"
     );
-    let output = cost(folder.path(), &line.replace("samples_per_pixel,accelerator", "samples_per_pixel"));
-    let text = said(&output);
-    assert!(output.status.success(), "{text}");
-    assert!(text.contains("Each value is measured with your code and with the reference"), "{text}");
-    assert!(text.contains("    the reference ") && text.contains("note: spheres are left out"), "{text}");
+    let text = report(folder.path(), &line.replace("samples_per_pixel,accelerator", "samples_per_pixel"));
+    let beside = "Each value is measured with your code and with the reference";
+    has_lines(&text, &[beside, "    the reference ", "note: spheres are left out"]);
     // Without a search there is no structure to compare.
-    let output = cost(folder.path(), &line);
-    assert!(
-        said(&output).contains("accelerator changes nothing here: no search for hits is written yet"),
-        "{}",
-        said(&output)
-    );
+    let said = said(&cost(folder.path(), &line));
+    has_lines(&said, &["accelerator changes nothing here: no search for hits is written yet"]);
 }

@@ -1,11 +1,10 @@
 //! Pieces of a picture, as users render and merge them.
 
-use super::program_runs::{complaint, root, said};
+use super::program_runs::{complaint, kill_when, root, said};
 use raykata_cli::lock::Lock;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 /// Renders a scene with these options, and returns what was printed.
 #[track_caller]
@@ -100,14 +99,7 @@ fn a_render_in_pieces_that_is_killed_continues_and_gives_the_same_picture() {
     // Kill the run as soon as the first piece is there.
     let mut run = Command::new(env!("CARGO_BIN_EXE_raykata"));
     run.current_dir(root()).args(line.split(' ')).stdout(Stdio::null()).stderr(Stdio::null());
-    let mut run = run.spawn().expect("the program starts");
-    let late = Instant::now() + Duration::from_secs(300);
-    while finished(&pieces).is_empty() && run.try_wait().expect("its state").is_none() {
-        assert!(Instant::now() < late, "no piece is finished");
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    run.kill().expect("killed");
-    run.wait().expect("ended");
+    kill_when(&mut run.spawn().expect("the program starts"), || !finished(&pieces).is_empty());
     assert!(!killed.exists(), "the run ended before it was killed");
     // A piece that was cut off is rendered again.
     let kept = finished(&pieces);

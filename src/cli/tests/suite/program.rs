@@ -1,20 +1,16 @@
 //! Runs the program as its users do.
 
-use super::program_runs::{complaint, printed, raykata, root, said};
+use super::program_runs::{complaint, has_lines, printed, raykata, root, said};
 use raykata::scene::load;
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-fn scene_files() -> Vec<PathBuf> {
-    let folder = std::fs::read_dir(root().join("scenes")).expect("the folder scenes/");
-    let files = folder.filter_map(|entry| entry.ok().map(|entry| entry.path()));
-    files.filter(|file| file.extension().is_some_and(|extension| extension == "toml")).collect()
-}
-
 #[test]
 fn every_scene_of_the_kit_renders() {
-    let files = scene_files();
+    let folder = std::fs::read_dir(root().join("scenes")).expect("the folder scenes/");
+    let mut files: Vec<PathBuf> = folder.map(|entry| entry.expect("an entry").path()).collect();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "toml"));
     assert!(files.len() >= 10);
     let out = tempfile::tempdir().expect("a folder");
     for file in files {
@@ -54,9 +50,7 @@ fn a_mistake_in_a_scene_is_drawn_and_nothing_is_written() {
         .expect("written");
     let picture = out.path().join("a.png");
     let drawn = complaint(&format!("render {} --out {}", file.display(), picture.display()), 1);
-    for part in ["unknown key `fil`", "did you mean `film`?", "typo.toml:5:2", "5 | [fil]"] {
-        assert!(drawn.contains(part), "no `{part}` in\n{drawn}");
-    }
+    has_lines(&drawn, &["unknown key `fil`", "did you mean `film`?", "typo.toml:5:2", "5 | [fil]"]);
     assert!(!picture.exists());
     let missing = complaint("render scenes/showcas.toml", 1);
     assert!(missing.contains("showcase.toml"), "{missing}");
@@ -77,11 +71,8 @@ fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_reported() {
     let (_, finish) = one.split_once("\nStage 1 is done.\n").expect("the finish of the stage");
     let words = finish.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.starts_with("10 primitives, ") && words.contains(" primary rays and "), "{words}");
-    for part in
-        ["kept in out/album/stage1.png.", "Next: stage 2 · triangles. Read slides/stage02.md, then write"]
-    {
-        assert!(words.contains(part), "{words}");
-    }
+    let next = "Next: stage 2 · triangles. Read slides/stage02.md, then write";
+    has_lines(&words, &["kept in out/album/stage1.png.", next]);
     assert!(!finish.contains('\u{1b}'), "a file gets no half blocks: {finish}");
     let picture = std::fs::read(root().join("out/album/stage1.png")).expect("a picture");
     assert!(picture.starts_with(b"\x89PNG"));
@@ -265,13 +256,6 @@ fn light_that_is_seen_and_filtered_images_are_explained() {
     let said = explain("scenes/tiles.toml");
     has_lines(&said, &["  texture filter  mip levels, 1 to 32 image reads per hit; costs no ray"]);
     assert!(!said.contains("  emission"), "{said}");
-}
-
-#[track_caller]
-fn has_lines(said: &str, lines: &[&str]) {
-    for line in lines {
-        assert!(said.contains(line), "no `{line}` in\n{said}");
-    }
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Runs the program.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output};
+use std::time::{Duration, Instant};
 
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -16,6 +17,37 @@ pub fn raykata(line: &str) -> Output {
 /// What a command printed to standard output and to standard error.
 pub fn printed(output: &Output) -> (String, String) {
     (String::from_utf8_lossy(&output.stdout).into(), String::from_utf8_lossy(&output.stderr).into())
+}
+
+/// Waits until `is_time`, and kills the process then.
+pub fn kill_when(run: &mut Child, is_time: impl Fn() -> bool) {
+    let late = Instant::now() + Duration::from_secs(300);
+    while !is_time() {
+        assert!(run.try_wait().expect("its state").is_none(), "it ended before it was killed");
+        assert!(Instant::now() < late, "it is not time to kill it");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    run.kill().expect("killed");
+    run.wait().expect("ended");
+}
+
+/// Checks that `said` contains each of these texts.
+#[track_caller]
+pub fn has_lines(said: &str, lines: &[&str]) {
+    for line in lines {
+        assert!(said.contains(line), "no `{line}` in\n{said}");
+    }
+}
+
+/// Checks that a command line is understood, and that its scenes exist. `place` is where it stands.
+#[track_caller]
+pub fn is_understood(place: &str, line: &str) {
+    // `--help` prints the help in place of the work, after all words before it were understood.
+    let output = raykata(&format!("{line} --help"));
+    assert!(output.status.success(), "{place}: {line}: {}", printed(&output).1);
+    for scene in line.split_whitespace().filter(|word| word.starts_with("scenes/")) {
+        assert!(root().join(scene).is_file(), "{place}: there is no {scene}");
+    }
 }
 
 /// What a command printed to standard output; it must succeed.

@@ -1,8 +1,7 @@
 //! Every measured table on a slide names the command that makes it, every command exists, and no slide is too long.
 
-use super::program_runs::root;
+use super::program_runs::{is_understood, root};
 use raykata_cli::slides::{Deck, decks};
-use std::process::Command;
 
 /// All slides: the deck and number of each, and its text.
 fn slides() -> Vec<(String, String)> {
@@ -67,14 +66,7 @@ fn commands_are_understood() {
                 | ["cargo", "run", "-p", "grader", "--", ..] => continue,
                 _ => panic!("{place}: {command}"),
             };
-            let mut asked = Command::new(env!("CARGO_BIN_EXE_raykata"));
-            // `--help` prints the help in place of the work, after all words before it were understood.
-            let output = asked.args(words).arg("--help").current_dir(root()).output().unwrap();
-            let said = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success(), "{place}: {command}: {said}");
-            for scene in words.iter().filter(|word| word.starts_with("scenes/")) {
-                assert!(root().join(scene).is_file(), "{place}: there is no {scene}");
-            }
+            is_understood(&place, &words.join(" "));
         }
     }
 }

@@ -22,10 +22,6 @@ pub struct Merged {
 
 /// Brings the file `new`, in which no function is written, into `yours`. The functions of the two kits before they were written are
 /// `old_stubs` and `new_stubs`.
-///
-/// # Errors
-///
-/// A function of `new` is not found in it.
 pub fn merge(yours: &str, old_stubs: &StubsOfFile, new: &str, new_stubs: &StubsOfFile) -> Result<Merged> {
     // Take the new file as a whole if nothing of the student's is in it.
     let given = beside_unwritten(new, new_stubs).unwrap_or_default();
@@ -117,16 +113,13 @@ fn imports(text: &str) -> Vec<Range<usize>> {
     begins.filter_map(|(at, _)| text[at..].find(";\n").map(|end| at..at + end + 2)).collect()
 }
 
-/// The paths that a file imports.
+/// The paths that a file imports, one by one.
 fn imported(text: &str) -> Vec<String> {
-    imports(text).into_iter().flat_map(|statement| paths(&text[statement])).collect()
-}
-
-/// The paths that a `use` statement brings in, one by one.
-fn paths(statement: &str) -> Vec<String> {
-    let tree: String = statement.trim_start_matches("use ").trim_end().trim_end_matches(';').into();
     let mut found = Vec::new();
-    expand("", tree.trim(), &mut found);
+    for statement in imports(text) {
+        let tree = text[statement].trim_start_matches("use ").trim_end().trim_end_matches(';');
+        expand("", tree.trim(), &mut found);
+    }
     found
 }
 

@@ -46,13 +46,8 @@ impl Version {
 
 impl Kit {
     /// Reads the new kit that an instructor has handed out.
-    ///
-    /// # Errors
-    ///
-    /// The folder is no hand-out.
     pub fn handed_out(root: &Path) -> Result<Kit> {
-        let list = read_list(root)?;
-        let Some((version, files)) = list else {
+        let Some((version, files)) = read_list(root)? else {
             bail!(
                 "{} is no hand-out of this kit, because it has no {LIST}: unpack the new hand-out, and name its folder",
                 root.display()
@@ -62,10 +57,7 @@ impl Kit {
     }
 
     /// Reads the kit of a student.
-    ///
-    /// # Errors
-    ///
-    /// The folder is no kit, or it is the complete kit of an author.
+    /// An error if it is the complete kit of an author.
     pub fn of_student(root: &Path) -> Result<Kit> {
         if root.join("solutions").is_dir() {
             bail!("{} is the complete kit, which is updated by its version control", root.display());

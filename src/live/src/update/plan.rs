@@ -26,10 +26,7 @@ pub struct Plan {
 
 impl Plan {
     /// Compares the kits.
-    ///
-    /// # Errors
-    ///
-    /// A file cannot be read, or exercises of the new kit are written already.
+    /// An error if exercises of the new kit are written already.
     pub fn new(yours: &Kit, new: &Kit) -> Result<Plan> {
         let mut plan = Plan { files: BTreeMap::new(), merged: BTreeMap::new() };
         for path in &new.files {
@@ -42,7 +39,7 @@ impl Plan {
                 }
                 (present, Ok(text)) if is_exercise(path) => {
                     let present = present.transpose().with_context(|| format!("{path} is not UTF-8"))?;
-                    plan.exercise(path, present, text, yours, new)?
+                    plan.exercise(path, present, text, [yours, new])?
                 }
                 _ => wanted,
             };
@@ -59,24 +56,17 @@ impl Plan {
         Ok(plan)
     }
 
-    /// The new text of an exercise file.
-    fn exercise(
-        &mut self,
-        path: &str,
-        yours: Option<&str>,
-        text: &str,
-        old: &Kit,
-        new: &Kit,
-    ) -> Result<Vec<u8>> {
+    /// The new text of an exercise file, from the student's text and the new kit's. `kits` are both kits, the old one first.
+    fn exercise(&mut self, path: &str, yours: Option<&str>, new: &str, kits: [&Kit; 2]) -> Result<Vec<u8>> {
         let stem = Path::new(path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let none = StubsOfFile::new();
-        let [old_stubs, new_stubs] = [old, new].map(|kit| kit.stubs.get(&stem).unwrap_or(&none));
-        if beside_unwritten(text, new_stubs).is_none() {
-            bail!("{} is no fresh hand-out: functions of {path} are written in it", new.root.display());
+        let [old_stubs, new_stubs] = kits.map(|kit| kit.stubs.get(&stem).unwrap_or(&none));
+        if beside_unwritten(new, new_stubs).is_none() {
+            bail!("{} is no fresh hand-out: functions of {path} are written in it", kits[1].root.display());
         }
-        let Some(yours) = yours else { return Ok(text.to_owned().into_bytes()) };
+        let Some(yours) = yours else { return Ok(new.to_owned().into_bytes()) };
         let merged =
-            merge(yours, old_stubs, text, new_stubs).with_context(|| format!("{path} cannot be read"))?;
+            merge(yours, old_stubs, new, new_stubs).with_context(|| format!("{path} cannot be read"))?;
         let bytes = merged.text.clone().into_bytes();
         self.merged.insert(path.to_owned(), merged);
         Ok(bytes)
@@ -108,9 +98,8 @@ impl Plan {
                     let stay = if merged.kept.len() == 1 { "stays" } else { "stay" };
                     format!("{} that you have written {stay}", counted(merged.kept.len()))
                 }
-                Some(_) => "brought up to date".to_owned(),
                 None if is_new(path) => "new".to_owned(),
-                None => "brought up to date".to_owned(),
+                _ => "brought up to date".to_owned(),
             };
             let added = self.merged.get(path).map(|merged| merged.added.join("`, `")).unwrap_or_default();
             let added = if added.is_empty() { added } else { format!("; new: `{added}`") };
@@ -126,10 +115,6 @@ impl Plan {
 
     /// Makes the changes. Returns the folder in which the old files are kept, if there were any. A second call after an error goes
     /// on where this one stopped.
-    ///
-    /// # Errors
-    ///
-    /// A file cannot be read or written.
     pub fn make(&self, root: &Path) -> Result<Option<PathBuf>> {
         // Keep all old files before the first one changes.
         let mut kept = None;

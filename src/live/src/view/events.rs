@@ -1,9 +1,10 @@
 //! Messages to all open pages, as server-sent events.
 
+use raykata_cli::queue::lock;
 use serde_json::Value;
 use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// The most messages that wait for a page. A page that is slower is cut off; it connects again and gets the whole picture.
 const MOST_WAITING: usize = 4096;
@@ -22,7 +23,7 @@ impl Pages {
     /// A new page, which receives all later messages until `close` is called.
     pub fn open(&self, close: Close) -> Receiver<Arc<str>> {
         let (sender, receiver) = sync_channel(MOST_WAITING);
-        let mut pages = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut pages = lock(&self.0);
         if pages.len() == MOST_PAGES
             && let Some((_, close)) = pages.pop_front()
         {
@@ -35,10 +36,7 @@ impl Pages {
     /// Sends a message to all pages, and forgets those that are closed or too slow.
     pub fn publish(&self, event: &str, data: &Value) {
         let message: Arc<str> = message(event, data).into();
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .retain(|(page, _)| page.try_send(message.clone()).is_ok());
+        lock(&self.0).retain(|(page, _)| page.try_send(message.clone()).is_ok());
     }
 }
 

@@ -24,10 +24,7 @@ const BAD: Refusal = "400 Bad Request";
 
 impl Request {
     /// Reads the head of a request.
-    ///
-    /// # Errors
-    ///
-    /// The status of the answer, if the request must be refused.
+    /// The error is the status of the answer to a request that must be refused.
     pub fn read(from: &mut impl BufRead, port: u16, token: &str) -> Result<Request, Refusal> {
         // Read the head, up to the empty line.
         let mut head = from.take(LONGEST_HEAD);
@@ -53,9 +50,8 @@ impl Request {
         // Refuse other hosts and other tokens.
         let [method, target, version] = first.split(' ').collect::<Vec<_>>()[..] else { return Err(BAD) };
         let own = [format!("127.0.0.1:{port}"), format!("localhost:{port}")];
-        match &hosts[..] {
-            [host] if own.contains(host) => {}
-            _ => return Err(FORBIDDEN),
+        if !matches!(&hosts[..], [host] if own.contains(host)) {
+            return Err(FORBIDDEN);
         }
         let (path, query) = target.split_once('?').unwrap_or((target, ""));
         let rest = path.strip_prefix('/').ok_or(BAD)?;

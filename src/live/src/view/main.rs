@@ -75,8 +75,7 @@ fn first_scene(root: &Path) -> PathBuf {
     let open =
         |name: &String| std::fs::read_to_string(folder.join(name)).is_ok_and(|text| text.contains("todo!("));
     let stage = |name: String| name.strip_prefix("stage")?.split('_').next()?.parse().ok();
-    let mut stages: Vec<u8> = names_in(&folder).into_iter().filter(open).filter_map(stage).collect();
-    stages.retain(|stage| asked.iter().any(|(number, _)| number == stage));
-    stages.sort_unstable();
-    raykata_cli::finish::scene_of(root, stages.first().copied().unwrap_or(u8::MAX))
+    let stages = names_in(&folder).into_iter().filter(open).filter_map(stage);
+    let first = stages.filter(|stage| asked.iter().any(|(number, _)| number == stage)).min();
+    raykata_cli::finish::scene_of(root, first.unwrap_or(u8::MAX))
 }

@@ -33,7 +33,7 @@ pub fn list(root: &Path, scene: &Path) -> Value {
 
 /// A file of a report by its path in `out/`, and its kind. `None` if it is no such file, or outside that folder.
 pub fn file(root: &Path, path: &str) -> Option<(PathBuf, &'static str)> {
-    let kind = kind(Path::new(path))?;
+    let (_, kind) = KINDS.iter().find(|(ending, _)| Path::new(path).extension() == Some(ending.as_ref()))?;
     let [folder, name] = path.split('/').collect::<Vec<_>>()[..] else { return None };
     if !(folder.ends_with("-cost") || folder.ends_with("-compare")) || name.starts_with('.') {
         return None;
@@ -42,11 +42,6 @@ pub fn file(root: &Path, path: &str) -> Option<(PathBuf, &'static str)> {
     let out = root.join("out").canonicalize().ok()?;
     let file = out.join(folder).join(name).canonicalize().ok()?;
     (file.starts_with(&out) && file.is_file()).then_some((file, kind))
-}
-
-fn kind(file: &Path) -> Option<&'static str> {
-    let ending = file.extension()?.to_str()?;
-    KINDS.iter().find(|(known, _)| *known == ending).map(|(_, kind)| *kind)
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ use raykata::kit::{Door, Frames, RenderJob, Rendering, View, kit_error};
 use raykata::scene::Scene;
 use raykata_cli::finish::{self, encoded};
 use raykata_cli::kits::{Need, Program, Which, cargo_build, profile};
+use raykata_cli::queue::lock;
 use raykata_cli::report::{Thousands, read_scene, words_of_building};
 use raykata_cli::verdicts::{CheckVerdict, Verdict};
 use raykata_cli::worker::Worker;
@@ -25,7 +26,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// The longest time that the coarse picture has all processors for itself.
@@ -101,10 +102,6 @@ impl Drop for Run {
 }
 
 impl Work {
-    fn kits(&self) -> std::sync::MutexGuard<'_, Vec<Kits>> {
-        self.kits.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     fn is_over(&self) -> bool {
         self.is_over.load(Ordering::Relaxed)
     }
@@ -112,7 +109,7 @@ impl Work {
     fn end(&self) {
         self.is_over.store(true, Ordering::Relaxed);
         self.builds.iter().for_each(Process::end);
-        self.kits().drain(..).for_each(|kits| kits.end());
+        lock(&self.kits).drain(..).for_each(|kits| kits.end());
     }
 
     /// Shows why there is no picture, and ends the run. A run that was cancelled fails silently.
@@ -128,7 +125,7 @@ impl Work {
         let kit = || Arc::new(Door(Worker::new(program.to_owned(), PATIENCE)));
         let new = Kits { renderer: kit(), helper: kit() };
         // Ask under the lock: whoever ends the run sets the flag first, and ends the kits of the list afterwards.
-        let mut kits = self.kits();
+        let mut kits = lock(&self.kits);
         if is_over() {
             new.end();
         } else {
@@ -149,7 +146,8 @@ impl Work {
         let begin = Instant::now();
         let Some(program) = self.compile(true)? else { return Ok(()) };
         let compiled = begin.elapsed();
-        self.studio.compiled(self.number);
+        // The errors of earlier runs are gone, because the code compiles.
+        self.studio.problems(self.number, Vec::new(), "");
         // Compile them with optimisation, after the coarse picture or a moment.
         let (coarse_is_there, wait) = channel();
         let other = self.clone();
@@ -203,7 +201,7 @@ impl Work {
         }
         // Let the optimised code take over.
         self.is_quick_over.store(true, Ordering::Relaxed);
-        let earlier: Vec<Kits> = self.kits().drain(..).collect();
+        let earlier: Vec<Kits> = lock(&self.kits).drain(..).collect();
         let kits = self.start_kits(&program, &|| self.is_over());
         self.studio.answered_by(self.number, &kits.helper);
         // End the others now, because a question that one of them answers at the moment goes to the new one.

@@ -43,13 +43,8 @@ fn respond(mut stream: &TcpStream, port: u16, token: &str, studio: &Studio, slot
     let request = match Request::read(&mut BufReader::new(stream), port, token) {
         Ok(request) => request,
         Err(status) => {
-            let help = "The address of the page is in the terminal in which `raykata view` runs.\n";
-            return answer(
-                &mut stream,
-                status,
-                "text/plain; charset=utf-8",
-                format!("{status}\n{help}").as_bytes(),
-            );
+            let help = "The address of the page is in the terminal in which `raykata view` runs.";
+            return plain(stream, status, &format!("{status}\n{help}\n"));
         }
     };
     if request.path == "events" {
@@ -63,11 +58,11 @@ fn respond(mut stream: &TcpStream, port: u16, token: &str, studio: &Studio, slot
     if let Some(path) = request.path.strip_prefix("out/") {
         return match reports::file(&studio.root, path) {
             Some((file, kind)) => answer(&mut stream, "200 OK", kind, &std::fs::read(file)?),
-            None => not_found(stream),
+            None => plain(stream, NOT_FOUND, NO_PAGE),
         };
     }
     match data(&request, studio) {
-        None => not_found(stream),
+        None => plain(stream, NOT_FOUND, NO_PAGE),
         Some(result) => {
             // The page shows the error in place of the data.
             let data = result.unwrap_or_else(|error| json!({ "error": format!("{error:#}") }));
@@ -76,8 +71,11 @@ fn respond(mut stream: &TcpStream, port: u16, token: &str, studio: &Studio, slot
     }
 }
 
-fn not_found(mut stream: &TcpStream) -> io::Result<()> {
-    answer(&mut stream, "404 Not Found", "text/plain; charset=utf-8", b"there is no such page\n")
+const NOT_FOUND: &str = "404 Not Found";
+const NO_PAGE: &str = "there is no such page\n";
+
+fn plain(mut stream: &TcpStream, status: &str, words: &str) -> io::Result<()> {
+    answer(&mut stream, status, "text/plain; charset=utf-8", words.as_bytes())
 }
 
 /// The data that a request asks for; `None` if there is no such data.

@@ -15,12 +15,13 @@ use raykata::kit::{Door, Frames, RenderJob, View, kit_error};
 use raykata::scene::Scene;
 use raykata_cli::finish::encoded;
 use raykata_cli::html::base64;
+use raykata_cli::queue::lock;
 use raykata_cli::report::render;
 use raykata_cli::worker::Worker;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::Receiver;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, SystemTime};
 
 /// The time between two looks at the files.
@@ -90,7 +91,7 @@ impl Studio {
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 
     /// Starts a run now and at each change of the exercises or of the scene.
@@ -117,7 +118,7 @@ impl Studio {
 
     /// Cancels the run and starts another one.
     fn start(self: &Arc<Self>) {
-        let mut run = self.run.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut run = lock(&self.run);
         drop(run.take());
         let (number, file) = {
             let mut state = self.state();
@@ -130,12 +131,12 @@ impl Studio {
 
     /// Ends all processes.
     pub fn stop(&self) {
-        drop(self.run.lock().unwrap_or_else(PoisonError::into_inner).take());
+        drop(lock(&self.run).take());
     }
 
     /// Shows another scene of the kit; `false` if there is none of this name.
     pub fn open(&self, name: &str) -> bool {
-        let known = scenes(&self.root).into_iter().any(|scene| scene == name);
+        let known = scenes(&self.root).iter().any(|scene| scene == name);
         if known {
             let mut state = self.state();
             // Another scene begins with an empty picture and its own reference, also if it is a copy.
@@ -162,13 +163,8 @@ impl Studio {
         });
     }
 
-    /// Removes the errors of earlier runs, because the code compiles.
-    pub fn compiled(&self, run: u64) {
-        self.problems(run, Vec::new(), "");
-    }
-
     /// Replaces the errors of the compiler, and the other reason why there is no picture.
-    fn problems(&self, run: u64, errors: Vec<CompilerError>, failure: &str) {
+    pub fn problems(&self, run: u64, errors: Vec<CompilerError>, failure: &str) {
         self.change(run, |state| {
             (state.errors, state.failure) = (errors, failure.to_owned());
             ("errors", errors_of(state))
@@ -308,21 +304,18 @@ impl Studio {
     /// The answer of the kit that is shown. If another one has replaced it meanwhile, which ends it, that one is asked again.
     fn ask(&self, question: impl Fn(&Arc<Scene>, &Kit, &Path) -> Result<Value>) -> Result<Value> {
         loop {
-            let (scene, kit, file) = self.asked()?;
+            let (scene, kit, file) = {
+                let state = self.state();
+                let scene = state.scene.clone().context("there is no picture yet")?;
+                let kit = state.kit.clone().context("your code has not rendered this picture yet")?;
+                (scene, kit, state.file.clone())
+            };
             let answer = question(&scene, &kit, &file);
             let is_same = self.state().kit.as_ref().is_none_or(|now| Arc::ptr_eq(now, &kit));
             if answer.is_ok() || is_same {
                 return answer;
             }
         }
-    }
-
-    /// The scene that is shown and the kit that answers questions about it.
-    fn asked(&self) -> Result<(Arc<Scene>, Kit, PathBuf)> {
-        let state = self.state();
-        let scene = state.scene.clone().context("there is no picture yet")?;
-        let kit = state.kit.clone().context("your code has not rendered this picture yet")?;
-        Ok((scene, kit, state.file.clone()))
     }
 
     /// The rays behind a pixel, and the boxes that are tested for them.
@@ -363,9 +356,8 @@ fn heat(scene: &Scene, kit: &Kit) -> Result<Value> {
     job.scene.quality.samples_per_pixel = 1;
     let work = render(&**kit, &job)?;
     let has_visits = work.film.pixels.iter().any(|pixel| pixel.x > 0.0);
-    let what = if has_visits { "node visits" } else { "primitive tests" };
-    let counts: Vec<f32> =
-        work.film.pixels.iter().map(|pixel| if has_visits { pixel.x } else { pixel.z }).collect();
+    let (what, channel) = if has_visits { ("node visits", 0) } else { ("primitive tests", 2) };
+    let counts: Vec<f32> = work.film.pixels.iter().map(|pixel| pixel[channel]).collect();
     let most = counts.iter().copied().fold(1.0, f32::max);
     let color = |count: &f32| raykata_cli::compare::heat_color(*count, most).to_array().map(encode_srgb);
     let rgb: Vec<u8> = counts.iter().flat_map(color).collect();

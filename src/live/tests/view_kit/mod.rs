@@ -8,8 +8,7 @@ use raykata::frame::{CameraSample, FrameSettings, Watch};
 use raykata::kit::{
     Answer, RayKind, RayVisits, RenderJob, Rendering, Request, TestedBox, TracedRay, WeightedColor,
 };
-use raykata::worker::{send, serve_with};
-use raykata_cli::verdicts::{CheckVerdict, Verdict};
+use raykata::worker::serve_with;
 use serde_json::Value;
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -117,12 +116,7 @@ pub fn new_kit() -> KitFolder {
     kit.write("scenes/a.toml", SCENE);
     kit.write("scenes/b.toml", SCENE);
     kit.write("scenes/stage1.toml", SCENE);
-    // All checks of stage 1 pass.
-    let mut verdicts = Vec::new();
-    for (check, _) in raykata::rubric::stages()[0].1.in_order() {
-        send(&mut verdicts, &CheckVerdict { check: check.into(), verdict: Verdict::Passed }).unwrap();
-    }
-    fs::write(kit.path("verdicts"), verdicts).unwrap();
+    kit.verdicts("verdicts", None);
     kit.script("target/debug/judge", "#!/bin/sh\ncat \"$2/verdicts\"\n");
     kit.write("out/a-cost/cost.html", "<title>cost</title>");
     kit.write("secret.png", "not for the page");
@@ -246,6 +240,13 @@ impl Events {
             event == name && is_wanted(data)
         });
         found.unwrap_or_else(|| panic!("no `{name}`")).1
+    }
+
+    /// Waits for a part of the finished picture whose first pixels have these colours, in base64.
+    pub fn wait_for_colors(&mut self, rgb: &str) {
+        self.wait_for("tile", |tile| {
+            tile["pass"] == "all samples" && tile["rgb"].as_str().unwrap().starts_with(rgb)
+        });
     }
 
     pub fn wait_for_phase(&mut self, phase: &str) {
