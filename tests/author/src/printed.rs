@@ -8,9 +8,9 @@
 //! `<!-- from: COMMAND -->` quotes lines of the file with this command.
 
 use anyhow::{Context, Result, bail, ensure};
-use grader::exercises::write;
 use grader::files_below::files_below;
 use grader::grade::Shard;
+use grader::report::write_file;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -94,7 +94,8 @@ pub fn run_all(root: &Path, keep: bool, shard: Option<Shard>) -> Result<Vec<Stri
             line(Box::new(expected)),
         ));
         if !keep {
-            write(&root.join(FOLDER).join(format!("{name}.txt")), &format!("{command}\n{now}"))?;
+            let file = root.join(FOLDER).join(format!("{name}.txt"));
+            write_file(&file, format!("{command}\n{now}").as_bytes())?;
         }
     }
     Ok(different)

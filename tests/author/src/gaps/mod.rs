@@ -19,7 +19,7 @@ use grader::queue;
 use grader::report::bar_of_steps;
 use grader::worker::{CALL_PATIENCE, Worker};
 use raykata::kit::Door;
-use raykata_cli::args::{Given, Misuse, Opt, Spec};
+use raykata_cli::args::{Given, Opt, Spec};
 use std::path::{Path, PathBuf};
 use switch::Switchable;
 
@@ -33,20 +33,6 @@ pub static SPEC: Spec = Spec {
         Opt::flag("--bless", "Write tests/corpus/gaps.txt."),
     ]],
 };
-
-/// The options of `author gaps`.
-pub struct GapsOptions {
-    check: bool,
-    bless: bool,
-}
-
-impl GapsOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<GapsOptions, Misuse> {
-        given.exclude("--bless", "--check")?;
-        Ok(GapsOptions { check: given.has("--check"), bless: given.has("--bless") })
-    }
-}
 
 /// The file with the expected results.
 const RECORD: &str = "tests/corpus/gaps.txt";
@@ -110,7 +96,8 @@ impl Gap {
 
 /// Prints what pictures lack. Returns whether that equals the stored results, and whether each picture of a kit that is
 /// written up to some stage says what it lacks.
-pub fn run(options: &GapsOptions) -> Result<bool> {
+pub fn run(given: &Given) -> Result<bool> {
+    given.exclude("--bless", "--check")?;
     let root = root()?;
     let gaps = all(&root)?;
     let reference = Source::prepare(&root, Which::Solutions, Need::Frames)?.fresh();
@@ -123,11 +110,11 @@ pub fn run(options: &GapsOptions) -> Result<bool> {
     let text: String =
         gaps.iter().zip(text).map(|(gap, text)| format!("{}\n{text}\n", gap.title())).collect();
     let file = root.join(RECORD);
-    if options.bless {
+    if given.has("--bless") {
         std::fs::write(&file, &text).with_context(|| RECORD.to_owned())?;
     }
     let kept = std::fs::read_to_string(&file).unwrap_or_default();
-    if !options.check || kept == text {
+    if !given.has("--check") || kept == text {
         println!("{text}{} functions, each removed in turn", gaps.len());
         return Ok(says_what_it_lacks);
     }

@@ -51,7 +51,7 @@ pub static CANVAS: Spec = Spec {
 };
 
 /// The options of both commands.
-pub struct PlatformOptions {
+struct PlatformOptions {
     table: PathBuf,
     grades: PathBuf,
     out: PathBuf,
@@ -62,7 +62,7 @@ pub struct PlatformOptions {
 
 impl PlatformOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<PlatformOptions, Misuse> {
+    fn read(given: &Given) -> Result<PlatformOptions, Misuse> {
         Ok(PlatformOptions {
             table: given.required(0)?.into(),
             grades: given.required(1)?.into(),
@@ -84,10 +84,11 @@ struct Entry {
 }
 
 /// Fills a table and writes it with the feedback files.
-pub fn platform(options: &PlatformOptions, is_canvas: bool) -> Result<()> {
+pub fn platform(given: &Given, is_canvas: bool) -> Result<bool> {
+    let options = PlatformOptions::read(given)?;
     let mut table = PlatformTable::read(&options.table)?;
-    let (entries, of) = entries(options)?;
-    let (points, most) = columns(&table, options, is_canvas)?;
+    let (entries, of) = entries(&options)?;
+    let (points, most) = columns(&table, &options, is_canvas)?;
 
     // Canvas has rows that are no students: the most points, and a test student.
     let [name, identifier] = [Column::Name, Column::Identifier].map(|kind| table.column(kind));
@@ -157,7 +158,7 @@ pub fn platform(options: &PlatformOptions, is_canvas: bool) -> Result<()> {
         );
     }
     println!("{}: {} of {} submissions filled in", filled.display(), found.rows.len(), entries.len());
-    Ok(())
+    Ok(true)
 }
 
 /// What the class has earned in the chosen stages, and the possible points.
