@@ -130,12 +130,13 @@ fn known(name: &str) -> Result<Arc<Known>> {
 }
 
 fn learned(name: &str) -> Result<Known> {
-    let recorded = Arc::new(RecordedAnswers { name: name.to_owned(), known: Mutex::default() });
+    let known = Arc::<Mutex<Known>>::default();
     // Ask cargo once for all functions.
     static REFERENCE: LazyLock<Once<(), Arc<Source>>> = LazyLock::new(Once::default);
     let prepared = || Ok(Arc::new(Source::prepare(&root()?, Which::Solutions, Need::Checks)?));
     let reference = REFERENCE.get((), prepared)?.fresh();
-    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Listener { reference, recorded: recorded.clone() }));
+    let listener = Listener { reference, name: name.to_owned(), known: known.clone() };
+    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(listener));
     let of_function = if name == "block_cost" { 12 } else { 1 };
     for check in STAGES.iter().filter(|(stage, _)| *stage == of_function).flat_map(|(_, checks)| *checks) {
         match checks::examine(check, &kit, 0, checks::Inputs::default()) {
@@ -143,25 +144,20 @@ fn learned(name: &str) -> Result<Known> {
             other => bail!("the reference fails {}: {other:?}", check.name),
         }
     }
-    let known = std::mem::take(&mut *recorded.known.lock().unwrap_or_else(PoisonError::into_inner));
-    Ok(known)
+    Ok(std::mem::take(&mut *known.lock().unwrap_or_else(PoisonError::into_inner)))
 }
 
-struct RecordedAnswers {
-    name: String,
-    known: Mutex<Known>,
-}
-
-/// The reference, with a record of its answers.
+/// The reference, with a record of its answers to one function.
 struct Listener {
     reference: Arc<dyn Kit + Send + Sync>,
-    recorded: Arc<RecordedAnswers>,
+    name: String,
+    known: Arc<Mutex<Known>>,
 }
 
 impl Transport for Listener {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let answer = request.answer(&*self.reference, watch);
-        let recorded = match (self.recorded.name.as_str(), &request, &answer) {
+        let recorded = match (self.name.as_str(), &request, &answer) {
             ("nearest_root", Request::NearestRoot(asked), Answer::NearestRoot(given)) => {
                 pairs(asked, given, |q| vec![q.roots.to_vec(), ray(&q.ray)], |found| option(*found))
             }
@@ -195,7 +191,7 @@ impl Transport for Listener {
             }
             _ => Vec::new(),
         };
-        self.recorded.known.lock().unwrap_or_else(PoisonError::into_inner).extend(recorded);
+        self.known.lock().unwrap_or_else(PoisonError::into_inner).extend(recorded);
         answer
     }
 }

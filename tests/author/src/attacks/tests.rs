@@ -3,6 +3,7 @@ use all_checks::STAGES;
 use grader::grade::result::{CheckResult, Graded, Outcome, Remark};
 use grader::queue;
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 use std::sync::Mutex;
 
 fn root() -> PathBuf {

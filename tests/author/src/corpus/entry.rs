@@ -21,6 +21,7 @@
 
 use super::source::Source;
 use anyhow::{Context, Result, anyhow, bail, ensure};
+use grader::files_below::{files_below, last_part};
 use raykata::film::write_atomically;
 use std::fmt::{self, Write};
 use std::ops::Range;
@@ -489,20 +490,13 @@ impl Draft {
 
 /// Reads all files of the corpus of the kit at `root`, by their names without `.corpus`.
 pub fn read_files(root: &Path) -> Result<Vec<(String, CorpusFile)>> {
-    let folder = root.join(FOLDER);
-    let mut names = Vec::new();
-    for file in std::fs::read_dir(&folder).with_context(|| folder.display().to_string())? {
-        let name = file?.file_name().to_string_lossy().into_owned();
-        names.extend(name.strip_suffix(".corpus").map(str::to_owned));
-    }
-    names.sort();
-    let read = |name: String| {
-        let file = folder.join(format!("{name}.corpus"));
-        let text = std::fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+    let read = |file: String| {
+        let text = std::fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
+        let name = last_part(&file).trim_end_matches(".corpus").to_owned();
         let corpus = CorpusFile::parse(&name, &text)?;
         Ok((name, corpus))
     };
-    names.into_iter().map(read).collect()
+    files_below(root, FOLDER, &|path| path.ends_with(".corpus"))?.into_iter().map(read).collect()
 }
 
 /// Writes a file of the corpus of the kit at `root`, sorted.

@@ -168,7 +168,8 @@ pub fn classroom(given: &Given) -> Result<bool> {
     Ok(true)
 }
 
-fn write(file: &Path, bytes: &[u8]) -> Result<()> {
+/// Writes a whole file and makes its folder.
+pub(crate) fn write(file: &Path, bytes: &[u8]) -> Result<()> {
     crate::report::make_folder_of(file)?;
     write_atomically(file, |out| out.write_all(bytes))
         .with_context(|| format!("{} cannot be written", file.display()))

@@ -4,13 +4,11 @@
 use super::options::GradingOptions;
 use super::report;
 use super::result::{Graded, Session, in_words};
+use crate::export::write;
 use crate::kits::root;
-use anyhow::{Context, Result, anyhow};
-use raykata::film::write_atomically;
+use anyhow::{Result, anyhow};
 use raykata_cli::args::{Argument, Given, Opt, Spec};
-use serde_json::Value;
 use std::any::Any;
-use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -53,10 +51,10 @@ pub fn run(given: &Given) -> Result<bool> {
             }
         };
     if let Some(file) = gradescope {
-        write(&file, &report::gradescope(&graded, &session))?;
+        write(&file, &serde_json::to_vec_pretty(&report::gradescope(&graded, &session))?)?;
     }
     if let Some(file) = classroom {
-        write(&file, &report::classroom(&graded))?;
+        write(&file, &serde_json::to_vec_pretty(&report::classroom(&graded))?)?;
     }
     println!("{}", in_words(graded.score()));
     Ok(graded.trouble.is_empty())
@@ -86,11 +84,4 @@ fn broken(options: &GradingOptions, trouble: &str) -> (Graded, Session) {
 fn said(panic: &(dyn Any + Send)) -> &str {
     let owned = panic.downcast_ref::<String>().map(String::as_str);
     owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a message")
-}
-
-fn write(file: &Path, results: &Value) -> Result<()> {
-    crate::report::make_folder_of(file)?;
-    let text = serde_json::to_vec_pretty(results)?;
-    write_atomically(file, |out| out.write_all(&text))
-        .with_context(|| format!("{} cannot be written", file.display()))
 }

@@ -104,7 +104,7 @@ impl GradingOptions {
     /// Tests the sandbox. Returns how strict it is, and a line about it for the reports.
     fn confinement(&self) -> Result<(Confinement, String)> {
         match sandbox::self_test() {
-            Ok(level) => Ok((Confinement::Full, level.to_string())),
+            Ok(level) => Ok((Confinement::Full, level)),
             Err(error) if self.insecure => {
                 eprintln!("warning: submissions run without a sandbox: {error:#}");
                 let isolation = "resource limits only, by choice of the instructor (--insecure)";

@@ -170,10 +170,15 @@ pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
         };
         *bytes = lines.map(own).collect::<String>().into_bytes();
     }
-    for (path, bytes) in
-        named(root, "tests", "stage")?.into_iter().chain(named(root, "tests/golden", "stage")?)
-    {
-        files.insert(path, bytes);
+    // The tests of the stages, and their golden texts and pictures.
+    for folder in ["tests", "tests/golden"] {
+        let of_stage = |path: &str| path.starts_with(&format!("{folder}/stage"));
+        let endings = [".rs", ".snap", ".png"];
+        for path in files_below(root, folder, &of_stage)? {
+            if endings.iter().any(|ending| path.ends_with(ending)) {
+                files.insert(path.clone(), read(root, &path)?);
+            }
+        }
     }
     for (name, text) in crate::exercises::pristine(root)? {
         files.insert(format!("exercises/src/{name}"), text.into_bytes());
@@ -229,21 +234,6 @@ fn name_course(files: &mut BTreeMap<String, Vec<u8>>, course: &CourseFiles) -> R
     }
     .into_bytes();
     Ok(())
-}
-
-/// Returns the texts and pictures directly in a folder whose names begin with `start`.
-fn named(root: &Path, folder: &str, start: &str) -> Result<Vec<(String, Vec<u8>)>> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(root.join(folder)).with_context(|| format!("there is no folder {folder}"))? {
-        let entry = entry?;
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let is_wanted = ["rs", "snap", "png"].iter().any(|ending| name.ends_with(&format!(".{ending}")));
-        if name.starts_with(start) && is_wanted && entry.file_type()?.is_file() {
-            let path = format!("{folder}/{name}");
-            found.push((path.clone(), read(root, &path)?));
-        }
-    }
-    Ok(found)
 }
 
 /// Returns the student's README: the greeting and the chapter for students of the kit's README, and the student's own text.
