@@ -2,7 +2,7 @@
 
 use super::grade::{hand_in, right};
 use super::program_runs::{leaves_out_what_takes_long, printed, root, small_disk};
-use super::{grader, grader_succeeds, said_by};
+use super::{grader_succeeds, said_by};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -46,17 +46,8 @@ fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
     assert!(complained.contains("full") || complained.contains("No space left"), "{text}");
     // The grades are those of a run with room.
     let whole = folder.path().join("whole");
-    let grade = [
-        "grade",
-        &class.to_string_lossy(),
-        "--stages",
-        "1",
-        "--seed",
-        "5",
-        "--out",
-        &whole.to_string_lossy(),
-    ];
-    assert!(grader(&grade).status.success());
+    let grade = format!("grade {} --stages 1 --seed 5 --out {}", class.display(), whole.display());
+    grader_succeeds(grade.split(' '));
     let table = |file: &Path| fs::read_to_string(file).unwrap();
     assert_eq!(table(&folder.path().join("resumed.csv")), table(&whole.join("grades.csv")));
 }
@@ -141,20 +132,14 @@ fn parts_of_a_class(around: &Path) -> [String; 2] {
     let class = class.to_string_lossy();
     ["1/2", "2/2"].map(|part| {
         let out = around.join(&part[..1]).to_string_lossy().into_owned();
-        grader_succeeds(&["grade", &class, "--stages", "1", "--seed", "5", "--shard", part, "--out", &out]);
+        grader_succeeds(["grade", &class, "--stages", "1", "--seed", "5", "--shard", part, "--out", &out]);
         out
     })
 }
 
 fn case(program: &Path, command: &str, size: &'static str, result: &'static str) -> FullDiskRun {
-    FullDiskRun {
-        program: program.to_owned(),
-        command: command.to_owned(),
-        resume: "",
-        size,
-        keeps: None,
-        result,
-    }
+    let (program, command) = (program.to_owned(), command.to_owned());
+    FullDiskRun { program, command, resume: "", size, keeps: None, result }
 }
 
 #[test]
@@ -202,23 +187,11 @@ fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
         shadows.display()
     );
     let program = |name: &str| Path::new(env!("CARGO_BIN_EXE_grader")).with_file_name(name);
+    let rehearse = "rehearse --honest --students 4 --jobs 1 --out DISK/grades";
+    let rehearsal = case(&program("author"), rehearse, "200k", "grades/grades.csv");
     try_all(&[
-        FullDiskRun {
-            program: program("raykata"),
-            command: cost,
-            resume: "",
-            size: "16k",
-            keeps: Some("cost/unfinished.jsonl"),
-            // All files contain measured times.
-            result: "",
-        },
-        FullDiskRun {
-            program: program("author"),
-            command: "rehearse --honest --students 4 --jobs 1 --out DISK/grades".into(),
-            resume: "--resume",
-            size: "200k",
-            keeps: Some("grades/grades.sqlite"),
-            result: "grades/grades.csv",
-        },
+        // All files contain measured times.
+        FullDiskRun { keeps: Some("cost/unfinished.jsonl"), ..case(&program("raykata"), &cost, "16k", "") },
+        FullDiskRun { resume: "--resume", keeps: Some("grades/grades.sqlite"), ..rehearsal },
     ]);
 }

@@ -12,7 +12,7 @@ use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
 fn export(arguments: &[&str]) -> String {
-    let output = grader(&[&["export"], arguments].concat());
+    let output = grader([&["export"], arguments].concat());
     let (said, complaint) = printed(&output);
     assert!(output.status.success(), "{complaint}");
     said
@@ -64,10 +64,10 @@ fn scripts_of_a_class_grade_its_parts_and_the_merge_names_a_hole() {
     let merge = task(&jobs.join("merge.sbatch"), 0);
     assert!(merge.status.success(), "{}", printed(&merge).1);
     let whole = folder.path().join("whole");
-    grader_succeeds(&["grade", &class, "--stages", "1", "--seed", "11", "--out", &whole.to_string_lossy()]);
+    grader_succeeds(["grade", &class, "--stages", "1", "--seed", "11", "--out", &whole.to_string_lossy()]);
     same_bytes(&whole, &jobs.join("grades"), &["grades.csv", "checks.csv", "results.json", "junit.xml"]);
     // Nothing is written over.
-    let again = grader(&["export", "slurm", &class, "--out", &out]);
+    let again = grader(["export", "slurm", &class, "--out", &out]);
     assert!(printed(&again).1.contains("is not empty"), "{}", printed(&again).1);
 }
 
@@ -133,7 +133,7 @@ fn a_lost_node_changes_no_byte_of_the_grades() {
     let [class, out] = [&class, &jobs].map(|path| path.to_string_lossy().into_owned());
     let options = ["--stages", "1", "--seed", "11"];
     let begun = Instant::now();
-    grader(&[&["grade", &class, "--out", &whole.to_string_lossy()], &options[..]].concat());
+    grader([&["grade", &class, "--out", &whole.to_string_lossy()], &options[..]].concat());
     println!("without Slurm: 24 submissions graded in {:.0} s", begun.elapsed().as_secs_f64());
     print!("{}", export(&[&["slurm", &class, "--chunk", "4", "--out", &out], &options[..]].concat()));
 
