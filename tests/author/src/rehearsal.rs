@@ -91,13 +91,9 @@ fn grade_options(class: &Path, out: &Path, jobs: Option<u16>) -> Result<Given> {
 /// Returns the kind of each submission. The kinds alternate, so that a class of any size contains all of them.
 fn roles(root: &Path, n_students: usize, all_honest: bool) -> Result<Vec<Role>> {
     // The class has not written later stages, so leave out solutions that call them.
-    let calls_later = |entry: &Entry| {
-        ["stage5_", "stage6_", "stage7_", "stage8_", "stage9_", "stage10_", "stage11_", "stage12_"]
-            .iter()
-            .any(|later| {
-                entry.changes.iter().flat_map(|change| &change.lines).any(|(_, line)| line.contains(later))
-            })
-    };
+    let is_later = |line: &str| (5..=12).any(|stage| line.contains(&format!("stage{stage}_")));
+    let calls_later =
+        |entry: &Entry| entry.changes.iter().flat_map(|change| &change.lines).any(|(_, line)| is_later(line));
     let of_class = |entry: &Entry| STAGES_OF_CLASS.contains(&entry.stage) && !calls_later(entry);
     let (right, wrong): (Vec<Entry>, Vec<Entry>) =
         entry::read_all(root)?.into_iter().filter(of_class).partition(|entry| entry.claim == Claim::Right);

@@ -19,10 +19,10 @@
 //! the function: `-` goes, `+` comes, and a line with a space stays and only marks the place. `@` begins another place of the
 //! same function, `@ NAME` a place in another function, and `@ *` a place anywhere in the file.
 
+use super::records::write;
 use super::source::Source;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use grader::files_below::{files_below, last_part};
-use raykata::film::write_atomically;
 use std::fmt::{self, Write};
 use std::ops::Range;
 use std::path::Path;
@@ -502,9 +502,7 @@ pub fn read_files(root: &Path) -> Result<Vec<(String, CorpusFile)>> {
 /// Writes a file of the corpus of the kit at `root`, sorted.
 pub fn write_file(root: &Path, name: &str, corpus: &mut CorpusFile) -> Result<()> {
     corpus.sort(&Original::read(root, &format!("solutions/src/{name}.rs"))?);
-    let file = root.join(FOLDER).join(format!("{name}.corpus"));
-    let written = write_atomically(&file, |out| std::io::Write::write_all(out, corpus.text().as_bytes()));
-    written.with_context(|| format!("{} cannot be written", file.display()))
+    write(&root.join(FOLDER).join(format!("{name}.corpus")), &corpus.text())
 }
 
 /// Reads all entries of the kit at `root`, sorted by stage, then wrong before right, then by name.

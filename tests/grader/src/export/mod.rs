@@ -9,9 +9,10 @@ pub use platforms::{CANVAS, MOODLE, platform};
 pub use slurm::{PICTURE, SLURM, picture, slurm};
 
 use crate::course::{self, CourseFiles};
-use crate::grade::{draw_seed, stages};
+use crate::grade::draw_seed;
 use crate::kits::root;
 use anyhow::{Context, Result, ensure};
+use raykata::course::stages_of;
 use raykata::film::write_atomically;
 use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use std::io::Write;
@@ -59,7 +60,7 @@ struct Grading {
 }
 
 fn known_stages(text: &str) -> Result<String, String> {
-    stages(text)?;
+    stages_of(text)?;
     Ok(text.replace(' ', ""))
 }
 
@@ -83,13 +84,9 @@ impl Grading {
         let files = self.course.as_deref().map(CourseFiles::read).transpose()?;
         if let (Some(files), Some(list)) = (&files, &self.stages) {
             let course = files.parse()?;
-            let left_out = stages(list)
-                .map_err(anyhow::Error::msg)?
-                .0
-                .into_iter()
-                .find(|&stage| course.leaves_out(stage));
+            let mut stages = stages_of(list).map_err(anyhow::Error::msg)?.into_iter();
             ensure!(
-                left_out.is_none(),
+                !stages.any(|stage| course.leaves_out(stage)),
                 "--stages names a stage that the course file leaves out: change one of the two"
             );
         }

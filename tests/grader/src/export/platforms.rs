@@ -2,11 +2,12 @@
 //! reports as a zip of feedback files.
 
 use crate::course::CourseFiles;
+use crate::grade::Store;
 use crate::grade::report::{FileNames, clean_line, messages};
 use crate::grade::result::{Graded, score};
-use crate::grade::{Store, stages};
 use crate::platform::{Column, PlatformTable, number_of, numbered};
 use anyhow::{Context, Result, bail, ensure};
+use raykata::course::stages_of;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use std::fs;
 use std::io::{Cursor, Write};
@@ -68,7 +69,7 @@ impl PlatformOptions {
             grades: given.required(1)?.into(),
             out: given.required_path("--out")?,
             column: given.parsed("--column", |name| Ok::<_, String>(name.to_owned()))?,
-            stages: given.parsed("--stages", |text| stages(text).map(|stages| stages.0))?,
+            stages: given.parsed("--stages", stages_of)?,
             scale: given.has("--scale"),
         })
     }

@@ -2,7 +2,7 @@
 //! and starts again; the parts that it runs can be stopped at any time, and the merge refuses a result with holes.
 
 use super::{COURSE, Grading, write};
-use crate::grade::submissions_in;
+use crate::grade::find_submissions;
 use anyhow::{Context, Result, ensure};
 use raykata::rows::Rows;
 use raykata_cli::args::{Argument, Given, Opt, Spec};
@@ -59,7 +59,7 @@ pub fn slurm(given: &Given) -> Result<bool> {
     let (out, grading) = (given.required_path("--out")?, Grading::read(given)?);
     let root = root()?;
     let submissions = absolute(class)?;
-    let n_submissions = submissions_in(&submissions)?;
+    let n_submissions = find_submissions(&submissions)?.0.len();
     ensure!(n_submissions > 0, "there is no submission in {}", submissions.display());
     let parts = n_submissions.div_ceil(chunk);
     let grader = std::env::current_exe().context("the path of this program is unknown")?;

@@ -24,9 +24,10 @@ pub use judge::{CALL_PATIENCE, Judge};
 pub use merge::{SPEC as MERGE, run as merge};
 pub use once::Once;
 pub use one::{SPEC as ONE, run as one};
-pub(crate) use options::{draw_seed, stages};
+pub(crate) use options::draw_seed;
 pub use shard::{Shard, shard};
 pub use store::{FILE as STORE, Store};
+pub(crate) use submission::find as find_submissions;
 pub use worker_builder::{COMPILER_PATIENCE, WorkerBuilder};
 
 use crate::course::CourseFiles;
@@ -93,13 +94,6 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// Returns the number of submissions in a folder.
-pub(crate) fn submissions_in(folder: &Path) -> Result<usize> {
-    let found =
-        submission::find(folder).with_context(|| format!("cannot read the folder {}", folder.display()))?;
-    Ok(found.0.len())
-}
-
 /// Grades the class. Returns `Ok(true)` if every submission could be graded, with any grade.
 pub fn run(given: &Given) -> Result<bool> {
     let (class, out) = (Path::new(given.required(0)?), given.required_path("--out")?);
@@ -113,8 +107,7 @@ pub fn run(given: &Given) -> Result<bool> {
     let root = root()?;
     let course = options.course()?;
     // Find the submissions of this part of the class.
-    let (submissions, others) =
-        submission::find(class).with_context(|| format!("cannot read the folder {}", class.display()))?;
+    let (submissions, others) = submission::find(class)?;
     for other in others {
         eprintln!("not a submission: {}", other.display());
     }

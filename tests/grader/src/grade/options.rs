@@ -8,6 +8,7 @@ use crate::course::{self, CourseFiles, HandedIn};
 use crate::sandbox::{self, Confinement};
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
+use raykata::course::stages_of;
 use raykata::rubric;
 use raykata_cli::args::{Given, Misuse, Opt};
 use sha2::{Digest, Sha256};
@@ -19,7 +20,8 @@ use std::sync::Arc;
 /// The options that `grader grade` and `grader grade-one` share.
 #[derive(Default)]
 pub struct GradingOptions {
-    pub(super) stages: Option<Stages>,
+    /// The numbers of the stages, in ascending order.
+    pub(super) stages: Option<Vec<u8>>,
     pub(super) seed: Option<u64>,
     pub(super) allow: Vec<String>,
     pub(super) insecure: bool,
@@ -49,7 +51,7 @@ impl GradingOptions {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<GradingOptions, Misuse> {
         Ok(GradingOptions {
-            stages: given.parsed("--stages", stages)?,
+            stages: given.parsed("--stages", stages_of)?,
             seed: given.number("--seed", 0..=u64::MAX)?,
             allow: given.list("--allow", |rule| Ok::<_, String>(rule.to_owned()))?,
             insecure: given.has("--insecure"),
@@ -68,8 +70,7 @@ impl GradingOptions {
         let (confinement, isolation) = self.confinement()?;
         let builder = WorkerBuilder::prepare(root, confinement)?;
         let course = rubric::course();
-        let stages = self.stages.as_ref().map(|Stages(stages)| stages.clone());
-        if let Some(stage) = stages.iter().flatten().find(|stage| course.leaves_out(**stage)) {
+        if let Some(stage) = self.stages.iter().flatten().find(|stage| course.leaves_out(**stage)) {
             bail!("--stages names stage {stage}, which the course file leaves out: change one of the two");
         }
         // Another course file decides which of the graded stages count.
@@ -79,7 +80,7 @@ impl GradingOptions {
         });
         let session = Session {
             kit: kit(root, &self.allow, &builder)?,
-            stages: stages.or(begun_stages).unwrap_or_else(stages_of_course),
+            stages: self.stages.clone().or(begun_stages).unwrap_or_else(stages_of_course),
             seed: self.seed.or(begun.map(|session| session.seed)).unwrap_or_else(draw_seed),
             isolation,
             dropped: Vec::new(),
@@ -116,15 +117,6 @@ impl GradingOptions {
             )),
         }
     }
-}
-
-/// Numbers of stages, in ascending order.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Stages(pub(crate) Vec<u8>);
-
-/// Reads a list of stages such as `1-4,10`.
-pub(crate) fn stages(text: &str) -> Result<Stages, String> {
-    raykata::course::stages_of(text).map(Stages)
 }
 
 /// All stages that the course does not leave out.
@@ -166,10 +158,10 @@ mod tests {
 
     #[test]
     fn stages_are_read_as_people_write_them() {
-        assert_eq!(stages("1-4,10").unwrap(), Stages(vec![1, 2, 3, 4, 10]));
-        assert_eq!(stages("3").unwrap(), Stages(vec![3]));
+        assert_eq!(stages_of("1-4,10").unwrap(), [1, 2, 3, 4, 10]);
+        assert_eq!(stages_of("3").unwrap(), [3]);
         for wrong in ["", "x", "0", "4-2", "1-99"] {
-            assert!(stages(wrong).is_err(), "{wrong}");
+            assert!(stages_of(wrong).is_err(), "{wrong}");
         }
     }
 }
