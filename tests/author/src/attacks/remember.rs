@@ -3,7 +3,7 @@
 //! The answers are recorded while the checks run against the reference. So the attack still works after checks change their
 //! inputs.
 
-use super::source::{self, Function};
+use super::source;
 use all_checks::STAGES;
 use anyhow::{Result, bail, ensure};
 use grader::grade::Once;
@@ -24,7 +24,8 @@ pub(super) fn by_heart(text: &str, names: &[String], otherwise: Option<&str>) ->
         let known = known(name)?;
         ensure!(!known.is_empty(), "no check calls `{name}`");
         let table = table(&known);
-        changed = source::with_bodies(&changed, name, |function| body(function, &table, otherwise))?;
+        changed =
+            source::with_bodies(&changed, name, |name, returns| body(name, returns, &table, otherwise))?;
     }
     Ok(changed)
 }
@@ -81,8 +82,8 @@ impl Words for &raykata::ray::Ray {
 }
 "#;
 
-fn body(function: &Function, table: &str, otherwise: Option<&str>) -> Result<String> {
-    let (asked, answer, width) = match function.name.as_str() {
+fn body(name: &str, returns: &str, table: &str, otherwise: Option<&str>) -> Result<String> {
+    let (asked, answer, width) = match name {
         "nearest_root" => ("[roots.words(), ray.words()]", "found", 2),
         "sphere_algebraic" | "sphere_geometric" => {
             ("[ray.words(), center.words(), radius.words()]", "found", 2)
@@ -98,7 +99,7 @@ fn body(function: &Function, table: &str, otherwise: Option<&str>) -> Result<Str
         "number" => "f32::from_bits(answer[0])",
         _ => "Vec3::from_array([answer[0], answer[1], answer[2]].map(f32::from_bits))",
     };
-    let wrong = otherwise.map_or_else(|| source::wrong_body(function), |block| Ok(block.to_owned()))?;
+    let wrong = otherwise.map_or_else(|| source::wrong_body(name, returns), |block| Ok(block.to_owned()))?;
     Ok(format!(
         "{{\n    static KNOWN: std::sync::OnceLock<HashMap<u32, Vec<u32>>> = std::sync::OnceLock::new();\n    \
          let known = KNOWN.get_or_init(|| table(r\"{table}\", {width}));\n    \

@@ -105,7 +105,7 @@ pub fn run(given: &Given) -> Result<bool> {
     given.require("--forget-missing", "--resume")?;
     given.require("--again", "--resume")?;
     let root = root()?;
-    let course = options.course()?;
+    let course = CourseFiles::given(given)?;
     // Find the submissions of this part of the class.
     let (submissions, others) = submission::find(class)?;
     for other in others {

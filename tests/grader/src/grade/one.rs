@@ -4,6 +4,7 @@
 use super::options::GradingOptions;
 use super::report;
 use super::result::{Graded, Session, in_words};
+use crate::course::CourseFiles;
 use crate::export::write;
 use crate::kits::root;
 use anyhow::{Result, anyhow};
@@ -41,7 +42,13 @@ pub fn run(given: &Given) -> Result<bool> {
     }
     let submission = Path::new(given.required(0)?);
     let options = GradingOptions::read(given)?;
-    let graded = catch_unwind(AssertUnwindSafe(|| grade(submission, &options)));
+    let grade = || {
+        let root = root()?;
+        CourseFiles::given(given)?.map_or(Ok(()), |course| course.apply())?;
+        let (grader, session) = options.begin(&root, None)?;
+        Ok((grader.grade("submission", grader.take(submission))?, session))
+    };
+    let graded = catch_unwind(AssertUnwindSafe(grade));
     let (graded, session) =
         match graded.unwrap_or_else(|panic| Err(anyhow!("the grader panicked: {}", said(&*panic)))) {
             Ok(graded) => graded,
@@ -58,16 +65,6 @@ pub fn run(given: &Given) -> Result<bool> {
     }
     println!("{}", in_words(graded.score()));
     Ok(graded.trouble.is_empty())
-}
-
-fn grade(submission: &Path, options: &GradingOptions) -> Result<(Graded, Session)> {
-    let root = root()?;
-    if let Some(course) = options.course()? {
-        course.apply()?;
-    }
-    let (grader, session) = options.begin(&root, None)?;
-    let graded = grader.grade("submission", grader.take(submission))?;
-    Ok((graded, session))
 }
 
 /// Returns the result for a failure of the grader itself: no points, and the reason.

@@ -4,7 +4,7 @@ use super::grader::Grader;
 use super::judge::{CALL_PATIENCE, Judge};
 use super::result::Session;
 use super::worker_builder::{self, WorkerBuilder};
-use crate::course::{self, CourseFiles, HandedIn};
+use crate::course::{self, HandedIn};
 use crate::sandbox::{self, Confinement};
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
@@ -25,7 +25,6 @@ pub struct GradingOptions {
     pub(super) seed: Option<u64>,
     pub(super) allow: Vec<String>,
     pub(super) insecure: bool,
-    pub(super) course: Option<PathBuf>,
 }
 
 impl GradingOptions {
@@ -55,13 +54,7 @@ impl GradingOptions {
             seed: given.number("--seed", 0..=u64::MAX)?,
             allow: given.list("--allow", |rule| Ok::<_, String>(rule.to_owned()))?,
             insecure: given.has("--insecure"),
-            course: given.path("--course"),
         })
-    }
-
-    /// Reads the course file.
-    pub fn course(&self) -> Result<Option<CourseFiles>> {
-        self.course.as_deref().map(CourseFiles::read).transpose()
     }
 
     /// Makes a grader, and the session that the reports describe. Without the options, stages and seed are those of
