@@ -1,13 +1,12 @@
 //! `author bars`: measures what the reference needs, and writes it into the rubric.
 
 use anyhow::{Context, Result, bail};
-use grader::exercises;
-use grader::kits::{Need, Source, Which};
+use grader::kits::{Need, Source, Which, root};
+use grader::report::write_file;
 use raykata::rubric::RUBRIC;
-use raykata_cli::args::{Given, Misuse, Opt, Spec};
+use raykata_cli::args::{Given, Opt, Spec};
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
 
 /// `author bars`.
 pub static SPEC: Spec = Spec {
@@ -17,24 +16,13 @@ pub static SPEC: Spec = Spec {
     options: &[&[Opt::flag("--check", "Only report differences, and write nothing.")]],
 };
 
-/// The options of `author bars`.
-pub struct BarsOptions {
-    check: bool,
-}
-
-impl BarsOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<BarsOptions, Misuse> {
-        Ok(BarsOptions { check: given.has("--check") })
-    }
-}
-
 const FILE: &str = "tests/checks/stage12/rubric.toml";
 const TABLE: &str = "[stage12.bars]\n";
 
 /// Measures the bars and writes them.
-pub fn run(root: &Path, options: &BarsOptions) -> Result<()> {
-    let reference = Source::prepare(root, Which::Solutions, Need::Checks)?.fresh();
+pub fn run(given: &Given) -> Result<bool> {
+    let root = root()?;
+    let reference = Source::prepare(&root, Which::Solutions, Need::Checks)?.fresh();
     let measured = stage12_checks::bars::measured(&*reference);
     // Name what changed.
     let known = RUBRIC.get("stage12").map(|stage| stage.bars.clone()).unwrap_or_default();
@@ -50,17 +38,17 @@ pub fn run(root: &Path, options: &BarsOptions) -> Result<()> {
     let path = root.join(FILE);
     let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let new = with_bars(&text, &lines)?;
-    match (new == text, options.check) {
+    match (new == text, given.has("--check")) {
         (true, _) => println!("the bars in {FILE} are those of the reference"),
         (false, true) => {
             bail!("the bars in {FILE} are not those of the reference; `author bars` writes them")
         }
         (false, false) => {
-            exercises::write(&path, &new)?;
+            write_file(&path, new.as_bytes())?;
             println!("wrote {FILE}");
         }
     }
-    Ok(())
+    Ok(true)
 }
 
 /// The text of the rubric with other lines in its table of bars.

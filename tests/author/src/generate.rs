@@ -7,11 +7,10 @@ mod tree;
 
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
-use grader::report::make_folder;
+use grader::report::{make_folder, write_file};
 use raykata_cli::args::{Argument, Given, Spec};
 use std::f32::consts::TAU;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// `author generate`.
 pub static SPEC: Spec = Spec {
@@ -21,35 +20,24 @@ pub static SPEC: Spec = Spec {
     options: &[],
 };
 
-/// Returns the folder of the command line.
-pub fn folder(given: &Given) -> PathBuf {
-    given.argument(0).map_or_else(|| "scenes".into(), PathBuf::from)
-}
-
 /// The number of points along the knot and around its tube.
 const ALONG: usize = 960;
 const AROUND: usize = 30;
 
 /// Writes the knot as a binary PLY file with normals, and the images, into folders of `scenes`.
-pub fn write(scenes: &Path) -> Result<()> {
+pub fn run(given: &Given) -> Result<bool> {
+    let scenes = Path::new(given.argument(0).unwrap_or("scenes".as_ref()));
     make_folder(&scenes.join("meshes"))?;
     make_folder(&scenes.join("images"))?;
     let knot = scenes.join("meshes/knot.ply");
-    let bytes = ply();
-    raykata::film::write_atomically(&knot, |file| file.write_all(&bytes))
-        .with_context(|| format!("cannot write {}", knot.display()))?;
+    write_file(&knot, &ply())?;
     println!("wrote {}: {} triangles", knot.display(), 2 * ALONG * AROUND);
     let (tree, text) = (scenes.join("meshes/tree.obj"), tree::obj());
-    raykata::film::write_atomically(&tree, |file| file.write_all(text.as_bytes()))
-        .with_context(|| format!("cannot write {}", tree.display()))?;
-    println!(
-        "wrote {}: {} triangles",
-        tree.display(),
-        text.lines().filter(|line| line.starts_with('f')).count()
-    );
+    write_file(&tree, text.as_bytes())?;
+    let n_triangles = text.lines().filter(|line| line.starts_with('f')).count();
+    println!("wrote {}: {n_triangles} triangles", tree.display());
     let field = scenes.join("spheres.toml");
-    raykata::film::write_atomically(&field, |file| file.write_all(spheres::toml().as_bytes()))
-        .with_context(|| format!("cannot write {}", field.display()))?;
+    write_file(&field, spheres::toml().as_bytes())?;
     println!("wrote {}", field.display());
     for (name, picture) in images::all() {
         let out = scenes.join("images").join(name);
@@ -61,7 +49,7 @@ pub fn write(scenes: &Path) -> Result<()> {
         written.with_context(|| format!("cannot write {}", out.display()))?;
         println!("wrote {}: {} × {} pixels", out.display(), picture.width, picture.height);
     }
-    Ok(())
+    Ok(true)
 }
 
 /// Returns a point of the centre line of a (2, 3) torus knot.

@@ -3,8 +3,7 @@
 use author::{bars, corpus, gaps, gauntlet, generate, sync, weaken};
 #[cfg(target_os = "linux")]
 use author::{rehearsal, run_attacks};
-use grader::kits::root;
-use grader::program::{Command, Program, done, exit_code, in_kit};
+use grader::program::{Command, Program, exit_code};
 use std::process::ExitCode;
 
 const PROGRAM: Program<bool> = Program {
@@ -23,18 +22,18 @@ or files differ; 2 the command line is wrong.",
 };
 
 const COMMANDS: &[Command] = &[
-    (&sync::SPEC, |given| done(in_kit(sync::SyncOptions::read(given), sync::run))),
-    (&corpus::SPEC, |given| in_kit(corpus::CorpusOptions::read(given), corpus::run)),
-    (&gaps::SPEC, |given| gaps::run(&gaps::GapsOptions::read(given)?)),
-    (&weaken::SPEC, |given| in_kit(weaken::WeakenOptions::read(given), weaken::run)),
+    (&sync::SPEC, sync::run),
+    (&corpus::SPEC, corpus::run),
+    (&gaps::SPEC, gaps::run),
+    (&weaken::SPEC, weaken::run),
     #[cfg(target_os = "linux")]
-    (&run_attacks::SPEC, |given| run_attacks::run(&root()?, &run_attacks::AttacksOptions::read(given)?)),
+    (&run_attacks::SPEC, run_attacks::run),
     #[cfg(target_os = "linux")]
-    (&rehearsal::SPEC, |given| in_kit(rehearsal::RehearsalOptions::read(given), rehearsal::run)),
-    (&gauntlet::SPEC, |given| done(in_kit(gauntlet::GauntletOptions::read(given), gauntlet::run))),
+    (&rehearsal::SPEC, rehearsal::run),
+    (&gauntlet::SPEC, gauntlet::run),
     (&gauntlet::COST, gauntlet::cost),
-    (&bars::SPEC, |given| done(in_kit(bars::BarsOptions::read(given), bars::run))),
-    (&generate::SPEC, |given| done(generate::write(&generate::folder(given)))),
+    (&bars::SPEC, bars::run),
+    (&generate::SPEC, generate::run),
 ];
 
 fn main() -> ExitCode {

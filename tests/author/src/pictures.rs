@@ -1,6 +1,7 @@
 //! Renders all scenes of the kit as small pictures and records their cost, so that every change of the renderer is noticed.
 
 use anyhow::{Context, Result, anyhow};
+use grader::files_below::{files_below, last_part};
 use raykata::camera::Lens;
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
@@ -50,15 +51,10 @@ pub struct Shown {
 impl Scenes {
     /// Reads the scenes of the kit at `root`, sorted by the number of primitives that `reference` makes of them.
     pub fn read(root: &Path, reference: &dyn Kit) -> Result<Scenes> {
-        let mut files: Vec<_> = std::fs::read_dir(root.join("scenes"))?
-            .filter_map(|entry| Some(entry.ok()?.path()))
-            .filter(|file| file.extension().is_some_and(|extension| extension == "toml"))
-            .collect();
-        files.sort();
         let mut scenes = Vec::new();
-        for file in files {
-            let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let mut scene = load::load(&file).map_err(|error| anyhow!("{error}"))?;
+        for file in files_below(root, "scenes", &|path| path.ends_with(".toml"))? {
+            let name = last_part(&file).trim_end_matches(".toml").to_owned();
+            let mut scene = load::load(&root.join(&file)).map_err(|error| anyhow!("{error}"))?;
             (scene.film.width, scene.film.height) = SIZE;
             scene.quality.samples_per_pixel = scene.quality.samples_per_pixel.min(4);
             let primitives = primitives_of(&scene, reference)? as usize;

@@ -7,10 +7,11 @@
 //! `9,721<!--=cells_stage9: octree / nodes-->` stands in the row `octree` of the column `nodes`. A block of text below
 //! `<!-- from: COMMAND -->` quotes lines of the file with this command.
 
+use crate::corpus::verdict::one_line;
 use anyhow::{Context, Result, bail, ensure};
-use grader::exercises::write;
 use grader::files_below::files_below;
 use grader::grade::Shard;
+use grader::report::write_file;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -80,10 +81,10 @@ pub fn run_all(root: &Path, keep: bool, shard: Option<Shard>) -> Result<Vec<Stri
         let now = String::from_utf8_lossy(&output.stdout);
         let now = without_times(&now.lines().take(most_lines).collect::<Vec<_>>().join("\n"));
         // Widths of columns depend on times as well.
-        if squeezed(&now) == squeezed(&text) {
+        if one_line(&now) == one_line(&text) {
             continue;
         }
-        let (yours, expected) = (text.lines().map(squeezed), now.lines().map(squeezed));
+        let (yours, expected) = (text.lines().map(one_line), now.lines().map(one_line));
         let same =
             yours.clone().zip(expected.clone()).take_while(|(yours, expected)| yours == expected).count();
         let line = |mut lines: Box<dyn Iterator<Item = String> + '_>| lines.nth(same).unwrap_or_default();
@@ -94,7 +95,8 @@ pub fn run_all(root: &Path, keep: bool, shard: Option<Shard>) -> Result<Vec<Stri
             line(Box::new(expected)),
         ));
         if !keep {
-            write(&root.join(FOLDER).join(format!("{name}.txt")), &format!("{command}\n{now}"))?;
+            let file = root.join(FOLDER).join(format!("{name}.txt"));
+            write_file(&file, format!("{command}\n{now}").as_bytes())?;
         }
     }
     Ok(different)
@@ -112,7 +114,7 @@ pub fn number(all: &[Printed], file: &str, words: &str) -> Result<String> {
     };
     let found = match place.split_once(" / ") {
         Some((row, column)) => cell(&printed.text, row, column),
-        None => line(&printed.text, place).map(|line| line.replacen(&squeezed(place), "", 1)),
+        None => line(&printed.text, place).map(|line| line.replacen(&one_line(place), "", 1)),
     };
     let found = found
         .with_context(|| format!("{FOLDER}/{file}.txt has no `{place}`; `{}` makes it", printed.command))?;
@@ -161,7 +163,7 @@ pub fn quote(path: &str, text: &str, all: &[Printed]) -> Result<String> {
             };
             *from += skipped + 1;
             // A line that was shortened stays, if it is right.
-            if has_shape(line, found) && squeezed(found) != squeezed(line) {
+            if has_shape(line, found) && one_line(found) != one_line(line) {
                 line = found;
             }
         }
@@ -188,7 +190,7 @@ fn has_shape(quoted: &str, printed: &str) -> bool {
 
 /// Whether a quoted line is `printed` with `…` in place of some of its text.
 fn is_shortened(quoted: &str, printed: &str) -> bool {
-    let (quoted, printed) = (squeezed(quoted), squeezed(printed));
+    let (quoted, printed) = (one_line(quoted), one_line(printed));
     let mut parts = quoted.split('…');
     let mut rest = parts.next().and_then(|first| printed.strip_prefix(first.trim_end()));
     for part in parts {
@@ -199,8 +201,8 @@ fn is_shortened(quoted: &str, printed: &str) -> bool {
 
 /// The first line that begins with `words`, or else the first that contains them, with single spaces.
 fn line(text: &str, words: &str) -> Option<String> {
-    let words = squeezed(words);
-    let lines = || text.lines().map(squeezed);
+    let words = one_line(words);
+    let lines = || text.lines().map(one_line);
     lines().find(|line| line.starts_with(&words)).or_else(|| lines().find(|line| line.contains(&words)))
 }
 
@@ -327,11 +329,6 @@ fn ends(line: &str, words: &str) -> Vec<usize> {
     whole.map(|(before, _)| before.chars().count() + words.chars().count()).collect()
 }
 
-/// A text with single spaces between its words.
-fn squeezed(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -377,7 +374,7 @@ costs                  its rays    share of time
         }
         let slower =
             TABLE.replace("0.002* ", "0.013  ").replace("354,234*", "  9,234 ").replace("38 %", " 5 %");
-        assert_eq!(squeezed(&without_times(&slower)), squeezed(&printed()[0].text));
+        assert_eq!(one_line(&without_times(&slower)), one_line(&printed()[0].text));
     }
 
     #[test]

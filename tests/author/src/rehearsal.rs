@@ -7,12 +7,13 @@ use crate::corpus::records::Matrix;
 use anyhow::{Context, Result, bail, ensure};
 use grader::exercises::{answer, stage_of};
 use grader::grade::result::{CheckResult, Class, Graded, Outcome};
-use grader::grade::{self, GradeOptions, Store};
-use raykata_cli::args::{Given, Misuse, Opt, Read, Spec};
+use grader::grade::{self, Store};
+use grader::kits::root;
+use raykata_cli::args::{Given, Opt, Read, Spec};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 /// `author rehearse`.
@@ -27,26 +28,6 @@ pub static SPEC: Spec = Spec {
         Opt::flag("--honest", "Leave out the attacks."),
     ]],
 };
-
-/// The options of `author rehearse`.
-pub struct RehearsalOptions {
-    students: usize,
-    out: Option<PathBuf>,
-    jobs: Option<u16>,
-    honest: bool,
-}
-
-impl RehearsalOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<RehearsalOptions, Misuse> {
-        Ok(RehearsalOptions {
-            students: given.number("--students", 0..=usize::MAX)?.unwrap_or(200),
-            out: given.path("--out"),
-            jobs: given.number("--jobs", 1..=u16::MAX)?,
-            honest: given.has("--honest"),
-        })
-    }
-}
 
 /// The stages of the class: the first part of the course.
 const STAGES_OF_CLASS: [u8; 4] = [1, 2, 3, 4];
@@ -66,12 +47,15 @@ enum Role {
 }
 
 /// Grades the class. Returns `Ok(true)` if every grade is right.
-pub fn run(root: &Path, options: &RehearsalOptions) -> Result<bool> {
+pub fn run(given: &Given) -> Result<bool> {
+    let n_students = given.number("--students", 0..=usize::MAX)?.unwrap_or(200);
+    let jobs = given.number("--jobs", 1..=u16::MAX)?;
+    let root = &root()?;
     let place = tempfile::tempdir()?;
     let class = place.path().join("class");
     fs::create_dir(&class)?;
     // Generate the submissions.
-    let roles = roles(root, options)?;
+    let roles = roles(root, n_students, given.has("--honest"))?;
     let mut students: BTreeMap<String, Role> = BTreeMap::new();
     for (number, role) in roles.into_iter().enumerate() {
         let student = hand_in(root, &class, number, &role)?;
@@ -79,12 +63,12 @@ pub fn run(root: &Path, options: &RehearsalOptions) -> Result<bool> {
     }
     // Grade the class and measure the time.
     let temporary = tempfile::tempdir()?;
-    let out = options.out.as_deref().unwrap_or(temporary.path());
+    let out = given.path("--out").unwrap_or_else(|| temporary.path().to_owned());
     let started = Instant::now();
-    grade::run(root, &grade_options(&class, out, options)?)?;
+    grade::run(&grade_options(&class, &out, jobs)?)?;
     let seconds = started.elapsed().as_secs_f64();
     // Compare the grades with the known ones.
-    let graded = Store::open(out)?.class()?;
+    let graded = Store::open(&out)?.class()?;
     let complaints = compare(root, &students, &graded);
     complaints.iter().for_each(|complaint| println!("{complaint}"));
     let n = students.len();
@@ -94,26 +78,22 @@ pub fn run(root: &Path, options: &RehearsalOptions) -> Result<bool> {
 }
 
 /// The options of `grader grade` for this class.
-fn grade_options(class: &Path, out: &Path, options: &RehearsalOptions) -> Result<GradeOptions> {
+fn grade_options(class: &Path, out: &Path, jobs: Option<u16>) -> Result<Given> {
     let mut words: Vec<OsString> = vec![class.into(), "--out".into(), out.into()];
     words.extend(["--stages".into(), STAGES_OF_CLASS.map(|stage| stage.to_string()).join(",").into()]);
-    words.extend(options.jobs.iter().flat_map(|jobs| ["--jobs".into(), jobs.to_string().into()]));
+    words.extend(jobs.iter().flat_map(|jobs| ["--jobs".into(), jobs.to_string().into()]));
     match grade::SPEC.read(words)? {
-        Read::Given(given) => Ok(GradeOptions::read(&given)?),
+        Read::Given(given) => Ok(given),
         Read::Help(help) => bail!("{help}"),
     }
 }
 
 /// Returns the kind of each submission. The kinds alternate, so that a class of any size contains all of them.
-fn roles(root: &Path, options: &RehearsalOptions) -> Result<Vec<Role>> {
+fn roles(root: &Path, n_students: usize, all_honest: bool) -> Result<Vec<Role>> {
     // The class has not written later stages, so leave out solutions that call them.
-    let calls_later = |entry: &Entry| {
-        ["stage5_", "stage6_", "stage7_", "stage8_", "stage9_", "stage10_", "stage11_", "stage12_"]
-            .iter()
-            .any(|later| {
-                entry.changes.iter().flat_map(|change| &change.lines).any(|(_, line)| line.contains(later))
-            })
-    };
+    let is_later = |line: &str| (5..=12).any(|stage| line.contains(&format!("stage{stage}_")));
+    let calls_later =
+        |entry: &Entry| entry.changes.iter().flat_map(|change| &change.lines).any(|(_, line)| is_later(line));
     let of_class = |entry: &Entry| STAGES_OF_CLASS.contains(&entry.stage) && !calls_later(entry);
     let (right, wrong): (Vec<Entry>, Vec<Entry>) =
         entry::read_all(root)?.into_iter().filter(of_class).partition(|entry| entry.claim == Claim::Right);
@@ -127,11 +107,11 @@ fn roles(root: &Path, options: &RehearsalOptions) -> Result<Vec<Role>> {
         wrong.into_iter().map(Role::Entry).collect(),
         (0..=4).map(Role::Begun).collect(),
     ];
-    if !options.honest {
+    if !all_honest {
         lists.push(attacks.into_iter().map(|attack| Role::Attack(Box::new(attack))).collect());
     }
     let kinds = lists.len();
-    let of_kind = options.students.div_ceil(kinds);
+    let of_kind = n_students.div_ceil(kinds);
     let role = |student: usize| {
         let (list, turn) = (&lists[student % kinds], student / kinds);
         ensure!(!list.is_empty(), "the corpus is empty");
@@ -139,7 +119,7 @@ fn roles(root: &Path, options: &RehearsalOptions) -> Result<Vec<Role>> {
         let index = if list.len() > of_kind { turn * list.len() / of_kind } else { turn % list.len() };
         Ok(list[index].clone())
     };
-    (0..options.students).map(role).collect()
+    (0..n_students).map(role).collect()
 }
 
 /// Writes a submission into the folder of the class and returns its name.

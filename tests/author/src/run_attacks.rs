@@ -4,11 +4,12 @@ use crate::attacks::{self, Attack, Hasty};
 use anyhow::Result;
 use grader::course::HandedIn;
 use grader::grade::{
-    CALL_PATIENCE, COMPILER_PATIENCE, Grader, Judge, Once, Shard, SharedResults, WorkerBuilder, shard,
+    CALL_PATIENCE, COMPILER_PATIENCE, Grader, Judge, Once, SharedResults, WorkerBuilder, shard,
 };
+use grader::kits::root;
 use grader::report::bar_of_steps;
 use grader::sandbox::{self, Confinement};
-use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use raykata_cli::args::{Argument, Given, Opt, Spec};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -20,20 +21,6 @@ pub static SPEC: Spec = Spec {
     options: &[&[Opt::value("--shard", "I/N", "Try only part I of N, such as 2/5.")]],
 };
 
-/// The options of `author attacks`.
-pub struct AttacksOptions {
-    names: Vec<String>,
-    shard: Option<Shard>,
-}
-
-impl AttacksOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<AttacksOptions, Misuse> {
-        let names = given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned());
-        Ok(AttacksOptions { names: names.collect(), shard: given.parsed("--shard", shard)? })
-    }
-}
-
 /// The seed of the hidden inputs. Any fixed number makes the verdicts reproducible.
 const SEED: u64 = 20_26;
 
@@ -44,7 +31,9 @@ const HASTE: u32 = 4;
 const SLOWEST: usize = 5;
 
 /// Grades the attacks. Returns `Ok(true)` if every attack got the expected result.
-pub fn run(root: &Path, options: &AttacksOptions) -> Result<bool> {
+pub fn run(given: &Given) -> Result<bool> {
+    let shard = given.parsed("--shard", shard)?;
+    let root = &root()?;
     let level = sandbox::self_test()?;
     println!("sandbox: {level}");
     // Many attacks have the same files: their archives are malformed, or the syntax check refuses what is their own. These
@@ -75,8 +64,8 @@ pub fn run(root: &Path, options: &AttacksOptions) -> Result<bool> {
         let student = submission.file_name().unwrap_or_default().to_string_lossy().into_owned();
         grader.grade(&student, grader.take(submission))
     };
-    let mut chosen = attacks::choose(attacks::load(root)?, &options.names)?;
-    if let Some(shard) = options.shard {
+    let mut chosen = attacks::choose(attacks::load(root)?, &given.texts(0))?;
+    if let Some(shard) = shard {
         chosen = attacks::part(chosen, shard);
     }
     let bar = bar_of_steps(chosen.len());

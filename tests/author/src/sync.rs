@@ -4,9 +4,11 @@
 
 use crate::{numbers, printed};
 use anyhow::{Result, bail};
-use grader::exercises::{Exercise, RECORD, exercises, fingerprint, stage_of, write};
-use grader::grade::{Shard, shard};
-use raykata_cli::args::{Given, Misuse, Opt, Spec};
+use grader::exercises::{Exercise, RECORD, exercises, fingerprint, stage_of};
+use grader::grade::shard;
+use grader::kits::root;
+use grader::report::write_file;
+use raykata_cli::args::{Given, Opt, Spec};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -24,35 +26,17 @@ pub static SPEC: Spec = Spec {
     ]],
 };
 
-/// The options of `author sync`.
-pub struct SyncOptions {
-    check: bool,
-    force: bool,
-    printed: bool,
-    shard: Option<Shard>,
-}
-
-impl SyncOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<SyncOptions, Misuse> {
-        given.exclude("--force", "--check")?;
-        Ok(SyncOptions {
-            check: given.has("--check"),
-            force: given.has("--force"),
-            printed: given.has("--printed"),
-            shard: given.parsed("--shard", shard)?,
-        })
-    }
-}
-
 /// The file with the untouched functions, from which `raykata watch` resets one. Students have it too.
 const STUBS: &str = "tests/stubs.toml";
 
 /// Runs `author sync`.
-pub fn run(root: &Path, options: &SyncOptions) -> Result<()> {
-    if options.printed {
-        let different = printed::run_all(root, options.check, options.shard)?;
-        match options.check && !different.is_empty() {
+pub fn run(given: &Given) -> Result<bool> {
+    given.exclude("--force", "--check")?;
+    let (is_check, shard) = (given.has("--check"), given.parsed("--shard", shard)?);
+    let root = root()?;
+    if given.has("--printed") {
+        let different = printed::run_all(&root, is_check, shard)?;
+        match is_check && !different.is_empty() {
             true => bail!(
                 "commands print something else; `author sync --printed` writes it:\n{}",
                 different.join("\n")
@@ -60,7 +44,12 @@ pub fn run(root: &Path, options: &SyncOptions) -> Result<()> {
             false => different.iter().for_each(|line| println!("{}", line.trim_start())),
         }
     }
-    if options.check { check(root) } else { sync(root, options.force) }
+    if is_check {
+        check(&root)?
+    } else {
+        sync(&root, given.has("--force"))?
+    }
+    Ok(true)
 }
 
 /// Compares the exercises and the documents with the files that `sync` would write. Returns an error that lists the differences.
@@ -90,7 +79,7 @@ pub fn sync(root: &Path, force: bool) -> Result<()> {
     for exercise in &exercises {
         if exercise.untouched || force {
             if exercise.present.as_ref() != Some(&exercise.stub) {
-                write(&root.join(&exercise.path), &exercise.stub)?;
+                write_file(&root.join(&exercise.path), exercise.stub.as_bytes())?;
                 println!("wrote {}", exercise.path.display());
             }
             record.insert(exercise.path.clone(), fingerprint(&exercise.stub));
@@ -100,10 +89,10 @@ pub fn sync(root: &Path, force: bool) -> Result<()> {
     }
     let lines: Vec<String> =
         record.iter().map(|(path, print)| format!("{print} {}\n", path.display())).collect();
-    write(&root.join(RECORD), &lines.concat())?;
-    write(&root.join(STUBS), &stubs(&exercises))?;
+    write_file(&root.join(RECORD), lines.concat().as_bytes())?;
+    write_file(&root.join(STUBS), stubs(&exercises).as_bytes())?;
     for document in numbers::documents(root)?.iter().filter(|document| document.present != document.synced) {
-        write(&root.join(&document.path), &document.synced)?;
+        write_file(&root.join(&document.path), document.synced.as_bytes())?;
         println!("wrote {}", document.path.display());
     }
     for path in &kept {

@@ -4,14 +4,14 @@ use crate::platform::{self, Column, PlatformTable};
 use anyhow::{Context, Result, bail, ensure};
 use raykata::course::{self, Course, Moment};
 use raykata::rubric;
-use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use raykata_cli::args::{Argument, Given, Opt, Spec};
 use raykata_cli::report::say;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// `grader course`.
 pub static SPEC: Spec = Spec {
@@ -41,6 +41,11 @@ pub struct CourseFiles {
 }
 
 impl CourseFiles {
+    /// Reads the course file of the command line, if it names one.
+    pub fn given(given: &Given) -> Result<Option<CourseFiles>> {
+        given.path("--course").map(|file| CourseFiles::read(&file)).transpose()
+    }
+
     /// Reads a course file and the language file that it names. Returns an error with file, line and column if one of them is
     /// wrong.
     pub fn read(file: &Path) -> Result<CourseFiles> {
@@ -155,9 +160,8 @@ pub fn handed_in(file: &Path, course: &Course, students: &[&str]) -> Result<(Han
 }
 
 /// Prints what a course file means.
-pub fn show(file: &Path) -> Result<()> {
-    let files = CourseFiles::read(file)?;
-    files.apply()?;
+pub fn show(given: &Given) -> Result<bool> {
+    CourseFiles::read(given.required(0)?.as_ref())?.apply()?;
     let course = rubric::course();
     let name = name(course);
     say(format_args!("{}\n\n", if name.is_empty() { "This course file changes nothing." } else { &name }));
@@ -177,12 +181,7 @@ pub fn show(file: &Path) -> Result<()> {
     for stage in course.due.keys().filter(|stage| course.leaves_out(**stage)) {
         say(format_args!("note: stage {stage} has a date, but `stages` leaves it out\n"));
     }
-    Ok(())
-}
-
-/// Reads the argument of `grader course`.
-pub fn file(given: &Given) -> Result<PathBuf, Misuse> {
-    Ok(given.required(0)?.into())
+    Ok(true)
 }
 
 #[cfg(test)]

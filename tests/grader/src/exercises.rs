@@ -3,6 +3,7 @@
 //! An answer stands between `// <solution>` and `// </solution>`. In the exercise, the lines marked `// <stub>` inside
 //! replace it, without that mark. The marks are removed as well. All other lines are the same in both.
 
+use crate::files_below::{files_below, last_part};
 use anyhow::{Context, Result, bail};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -31,26 +32,19 @@ pub struct Exercise {
 /// Returns all exercise files of the workspace at `root`.
 pub fn exercises(root: &Path) -> Result<Vec<Exercise>> {
     let record = read_record(root);
-    let mut files: Vec<PathBuf> = fs::read_dir(root.join("solutions/src"))
-        .context("there is no folder solutions/src: is this a hand-out instead of the whole kit?")?
-        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
-        .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
-        .collect();
-    files.sort();
-    files
-        .iter()
-        .map(|solution| {
-            let name = solution.file_name().context("a file without a name")?;
-            let path = Path::new("exercises/src").join(name);
-            let shown = Path::new("solutions/src").join(name);
-            let stub = stub(&read(solution)?, &shown)?;
-            let present = fs::read_to_string(root.join(&path)).ok();
-            let untouched = present
-                .as_ref()
-                .is_none_or(|text| *text == stub || record.get(&path) == Some(&fingerprint(text)));
-            Ok(Exercise { path, stub, present, untouched })
-        })
-        .collect()
+    let solutions = files_below(root, "solutions/src", &|path| path.ends_with(".rs"))
+        .context("there is no folder solutions/src: is this a hand-out instead of the whole kit?")?;
+    let exercise = |solution: &String| {
+        let path = Path::new("exercises/src").join(last_part(solution));
+        let file = root.join(solution);
+        let text = fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+        let stub = stub(&text, Path::new(solution))?;
+        let present = fs::read_to_string(root.join(&path)).ok();
+        let is_generated = |text: &String| *text == stub || record.get(&path) == Some(&fingerprint(text));
+        let untouched = present.as_ref().is_none_or(is_generated);
+        Ok(Exercise { path, stub, present, untouched })
+    };
+    solutions.iter().map(exercise).collect()
 }
 
 /// Returns the untouched files of `exercises/src`, by name.
@@ -152,16 +146,6 @@ fn read_record(root: &Path) -> BTreeMap<PathBuf, String> {
 pub fn fingerprint(text: &str) -> String {
     let digest = Sha256::digest(text.replace("\r\n", "\n").as_bytes());
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-fn read(file: &Path) -> Result<String> {
-    fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))
-}
-
-/// Writes a file, whole or not at all.
-pub fn write(file: &Path, text: &str) -> Result<()> {
-    raykata::film::write_atomically(file, |out| std::io::Write::write_all(out, text.as_bytes()))
-        .with_context(|| format!("cannot write {}", file.display()))
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! `grader`: grades submissions and makes hand-outs. It is the program of instructors.
 
-use grader::kits::root;
-use grader::program::{Command, Program, done, exit_code, in_kit};
+use grader::program::{Command, Program, exit_code};
 use grader::{course, handout, release};
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
@@ -29,28 +28,26 @@ or files differ; 2 the command line is wrong.",
 
 const COMMANDS: &[Command] = &[
     #[cfg(target_os = "linux")]
-    (&grade::SPEC, |given| in_kit(grade::GradeOptions::read(given), grade::run)),
+    (&grade::SPEC, grade::run),
     #[cfg(target_os = "linux")]
-    (&grade::ONE, |given| grade::one(root, &grade::GradeOneOptions::read(given)?)),
+    (&grade::ONE, grade::one),
     #[cfg(target_os = "linux")]
-    (&grade::MERGE, |given| grade::merge(&grade::MergeOptions::read(given)?)),
-    (&course::SPEC, |given| done(course::show(&course::file(given)?))),
-    (&handout::SPEC, |given| done(in_kit(handout::HandoutOptions::read(given), handout::run))),
-    (&release::SPEC, |given| done(in_kit(release::ReleaseOptions::read(given), release::run))),
+    (&grade::MERGE, grade::merge),
+    (&course::SPEC, course::show),
+    (&handout::SPEC, handout::run),
+    (&release::SPEC, release::run),
     #[cfg(target_os = "linux")]
-    (&export::GRADESCOPE, |given| {
-        done(in_kit(export::ExportOptions::of_gradescope(given), export::gradescope))
-    }),
+    (&export::GRADESCOPE, export::gradescope),
     #[cfg(target_os = "linux")]
-    (&export::SLURM, |given| done(in_kit(export::SlurmOptions::read(given), export::slurm))),
+    (&export::SLURM, export::slurm),
     #[cfg(target_os = "linux")]
-    (&export::PICTURE, |given| done(in_kit(export::PictureOptions::read(given), export::picture))),
+    (&export::PICTURE, export::picture),
     #[cfg(target_os = "linux")]
-    (&export::MOODLE, |given| done(export::platform(&export::PlatformOptions::read(given)?, false))),
+    (&export::MOODLE, |given| export::platform(given, false)),
     #[cfg(target_os = "linux")]
-    (&export::CANVAS, |given| done(export::platform(&export::PlatformOptions::read(given)?, true))),
+    (&export::CANVAS, |given| export::platform(given, true)),
     #[cfg(target_os = "linux")]
-    (&export::CLASSROOM, |given| done(export::classroom(&export::ExportOptions::of_classroom(given)?))),
+    (&export::CLASSROOM, export::classroom),
 ];
 
 fn main() -> ExitCode {

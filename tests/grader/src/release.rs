@@ -7,13 +7,13 @@ use anyhow::{Context, Result, bail, ensure};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use raykata::film::write_atomically;
-use raykata_cli::args::{Given, Misuse, Opt, Spec};
+use raykata_cli::args::{Given, Opt, Spec};
+use raykata_cli::kits::root;
 use raykata_cli::lock::Lock;
-use raykata_cli::report::Bytes;
+use raykata_cli::report::{Bytes, make_folder, write_file};
 use sha2::{Digest as _, Sha256};
 use std::fs::{self, File};
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// `grader release`.
@@ -34,26 +34,6 @@ pub static SPEC: Spec = Spec {
         ),
     ]],
 };
-
-/// The options of `grader release`.
-pub struct ReleaseOptions {
-    out: PathBuf,
-    course: Option<PathBuf>,
-    vendor: bool,
-    draft: bool,
-}
-
-impl ReleaseOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<ReleaseOptions, Misuse> {
-        Ok(ReleaseOptions {
-            out: given.required_path("--out")?,
-            course: given.path("--course"),
-            vendor: given.has("--vendor"),
-            draft: given.has("--draft"),
-        })
-    }
-}
 
 /// What the archive for instructors contains.
 const KIT: [&str; 19] = [
@@ -92,7 +72,9 @@ directory = \"vendor\"
 ";
 
 /// Writes both archives and their checksums.
-pub fn run(root: &Path, options: &ReleaseOptions) -> Result<()> {
+pub fn run(given: &Given) -> Result<bool> {
+    let (out, is_draft) = (given.required_path("--out")?, given.has("--draft"));
+    let root = root()?;
     let version = env!("CARGO_PKG_VERSION");
     let changelog = fs::read_to_string(root.join("CHANGELOG.md")).context("cannot read CHANGELOG.md")?;
     let has_chapter = changelog.lines().any(|line| {
@@ -101,13 +83,13 @@ pub fn run(root: &Path, options: &ReleaseOptions) -> Result<()> {
             .is_some_and(|title| title == version)
     });
     ensure!(
-        has_chapter || options.draft,
+        has_chapter || is_draft,
         "CHANGELOG.md has no chapter `## {version}`: rename `## Unreleased`, or write a draft by --draft"
     );
-    let version = if options.draft { format!("{version}-draft") } else { version.to_owned() };
-    let course = options.course.as_deref().map(CourseFiles::read).transpose()?;
-    let _lock = Lock::on(&options.out)?;
-    crate::report::make_folder(&options.out)?;
+    let version = if is_draft { format!("{version}-draft") } else { version.to_owned() };
+    let course = CourseFiles::given(given)?;
+    let _lock = Lock::on(&out)?;
+    make_folder(&out)?;
 
     // Gather the files of both archives in folders, so that cargo can add the packages that they need.
     let place = tempfile::tempdir()?;
@@ -117,31 +99,30 @@ pub fn run(root: &Path, options: &ReleaseOptions) -> Result<()> {
         let folder = place.path().join(&name);
         fs::create_dir(&folder)?;
         if contents == "course" {
-            handout::write(root, &folder, course.as_ref())?;
-            let found = handout::leaks(root, &folder)?;
+            handout::write(&root, &folder, course.as_ref())?;
+            let found = handout::leaks(&root, &folder)?;
             ensure!(found.is_empty(), "the hand-out would contain answers:\n  {}", found.join("\n  "));
         } else {
             for part in KIT {
-                copy(root, part, &folder)?;
+                copy(&root, part, &folder)?;
             }
             if let Some(course) = &course {
                 course.write_to(&folder.join("course"))?;
             }
         }
-        if options.vendor {
+        if given.has("--vendor") {
             vendor(&folder)?;
         }
-        let file = options.out.join(format!("{name}.tar.gz"));
+        let file = out.join(format!("{name}.tar.gz"));
         let sum = archive(place.path(), &name, &file)?;
         let size = fs::metadata(&file).map_or(0, |about| about.len());
         println!("{}  {}", file.display(), Bytes(size));
         sums += &format!("{sum}  {name}.tar.gz\n");
     }
-    let file = options.out.join("SHA256SUMS");
-    write_atomically(&file, |out| out.write_all(sums.as_bytes()))
-        .with_context(|| format!("cannot write {}", file.display()))?;
+    let file = out.join("SHA256SUMS");
+    write_file(&file, sums.as_bytes())?;
     println!("{}", file.display());
-    Ok(())
+    Ok(true)
 }
 
 /// Copies a part of the kit.

@@ -19,9 +19,10 @@ mod scenes;
 use cpu_time::ThreadTime;
 use crates::{Bvh, Contestant, Obvhs2, ObvhsWide, Parry};
 use embree::Embree;
+use oracle::splitmix::Random;
 use raykata::ray::Ray;
 use reference::Wide;
-use scenes::{Random, Scene};
+use scenes::Scene;
 use std::time::Duration;
 
 const SIDE: u32 = 256;
@@ -132,7 +133,7 @@ fn rays(scene: &Scene, wide: &Wide) -> [Vec<Ray>; 3] {
     }
     let mut found = vec![0.0; primary.len()];
     wide.trace(&primary, false, &mut found);
-    let mut random = Random(3);
+    let mut random = Random::new(3, 0);
     let (mut diffuse, mut shadow) = (Vec::new(), Vec::new());
     for (ray, &t) in primary.iter().zip(&found).filter(|(_, t)| t.is_finite()) {
         // Directions on the side of the camera stand for those around the normal.

@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use oracle::gauntlet::meshes::icosahedron;
+use oracle::splitmix::Random;
 use raykata::shape::Triangle;
 
 /// Triangles, and where the camera and the light are.
@@ -71,35 +72,6 @@ pub fn terrain(name: &'static str, n: usize) -> Scene {
     }
 }
 
-/// Random numbers that are the same in every run (SplitMix64).
-pub struct Random(pub u64);
-
-impl Random {
-    /// A number in `0..1`.
-    pub fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 40) as f32 / (1u64 << 24) as f32
-    }
-
-    /// A point of the cube from -1 to 1.
-    pub fn in_cube(&mut self) -> Vec3 {
-        2.0 * Vec3::new(self.next(), self.next(), self.next()) - 1.0
-    }
-
-    /// A direction, uniformly distributed.
-    pub fn direction(&mut self) -> Vec3 {
-        loop {
-            let p = self.in_cube();
-            if (1e-4..=1.0).contains(&p.length_squared()) {
-                return p.normalize();
-            }
-        }
-    }
-}
-
 /// A sphere with bumps: an icosahedron whose faces are divided into `n²` triangles each.
 fn icosphere(n: usize, center: Vec3, radius: f32) -> Vec<Triangle> {
     let (corners, faces) = icosahedron();
@@ -149,7 +121,7 @@ fn grid(n: usize, m: usize, at: impl Fn(usize, usize) -> Vec3) -> Vec<Triangle> 
 
 /// Long thin triangles in random directions in a cube.
 fn hair(n: usize) -> Vec<Triangle> {
-    let mut random = Random(1);
+    let mut random = Random::new(1, 0);
     let mut sliver = || {
         let (root, along) = (random.in_cube(), random.direction());
         let across = along.any_orthonormal_vector();
@@ -160,7 +132,7 @@ fn hair(n: usize) -> Vec<Triangle> {
 
 /// Small triangles everywhere in a cube.
 fn soup(n: usize) -> Vec<Triangle> {
-    let mut random = Random(2);
+    let mut random = Random::new(2, 0);
     let mut triangle = || {
         let center = random.in_cube();
         let [a, b, c] = [0; 3].map(|_| center + 0.02 * random.in_cube());

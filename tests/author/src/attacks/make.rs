@@ -162,13 +162,13 @@ impl Maker<'_> {
         let body = String::from_utf8(self.content(step)?)?;
         let solution = self.solution(path.rsplit('/').next().unwrap_or(&path))?;
         self.change(&path, |text| {
-            source::with_bodies(&text, &name, |function| {
+            source::with_bodies(&text, &name, |function, returns| {
                 let mut body = format!("{{\n    {}\n}}", body.trim());
                 if body.contains("@right@") {
-                    body = body.replace("@right@", source::body_of(&solution, &function.name)?);
+                    body = body.replace("@right@", source::body_of(&solution, function)?);
                 }
                 if body.contains("@wrong@") {
-                    body = body.replace("@wrong@", &source::wrong_body(function)?);
+                    body = body.replace("@wrong@", &source::wrong_body(function, returns)?);
                 }
                 Ok(body)
             })

@@ -20,12 +20,13 @@ pub use run::run_all;
 pub use verdict::{Earned, Expectation, complaints};
 
 use anyhow::{Context, Result, bail, ensure};
+use grader::files_below::files_below;
 use grader::grade::Shard;
 use serde::Deserialize;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// The folder of the attacks, below the root of the kit.
@@ -159,18 +160,12 @@ struct FamilyFile {
 
 /// Loads all attacks of the kit at `root`, sorted by name.
 pub fn load(root: &Path) -> Result<Vec<Attack>> {
-    let folder = root.join(FOLDER);
-    let entries = fs::read_dir(&folder).with_context(|| folder.display().to_string())?;
-    let mut files: Vec<PathBuf> = entries.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
-    files.sort();
     let (mut attacks, mut fragments) = (Vec::new(), BTreeMap::new());
-    for file in &files {
-        let of_family = read(file).with_context(|| file.display().to_string())?;
+    for file in files_below(root, FOLDER, &|path| path.ends_with(".toml"))? {
+        let of_family = read(&root.join(&file)).with_context(|| file.clone())?;
         attacks.extend(of_family.attack);
         for (name, text) in of_family.fragments {
-            let twice =
-                format!("{}: another file has a fragment `{name}`: choose another name", file.display());
+            let twice = format!("{file}: another file has a fragment `{name}`: choose another name");
             ensure!(fragments.insert(name, text).is_none(), twice);
         }
     }

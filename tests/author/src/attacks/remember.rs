@@ -3,7 +3,7 @@
 //! The answers are recorded while the checks run against the reference. So the attack still works after checks change their
 //! inputs.
 
-use super::source::{self, Function};
+use super::source;
 use all_checks::STAGES;
 use anyhow::{Result, bail, ensure};
 use grader::grade::Once;
@@ -24,7 +24,8 @@ pub(super) fn by_heart(text: &str, names: &[String], otherwise: Option<&str>) ->
         let known = known(name)?;
         ensure!(!known.is_empty(), "no check calls `{name}`");
         let table = table(&known);
-        changed = source::with_bodies(&changed, name, |function| body(function, &table, otherwise))?;
+        changed =
+            source::with_bodies(&changed, name, |name, returns| body(name, returns, &table, otherwise))?;
     }
     Ok(changed)
 }
@@ -81,8 +82,8 @@ impl Words for &raykata::ray::Ray {
 }
 "#;
 
-fn body(function: &Function, table: &str, otherwise: Option<&str>) -> Result<String> {
-    let (asked, answer, width) = match function.name.as_str() {
+fn body(name: &str, returns: &str, table: &str, otherwise: Option<&str>) -> Result<String> {
+    let (asked, answer, width) = match name {
         "nearest_root" => ("[roots.words(), ray.words()]", "found", 2),
         "sphere_algebraic" | "sphere_geometric" => {
             ("[ray.words(), center.words(), radius.words()]", "found", 2)
@@ -98,7 +99,7 @@ fn body(function: &Function, table: &str, otherwise: Option<&str>) -> Result<Str
         "number" => "f32::from_bits(answer[0])",
         _ => "Vec3::from_array([answer[0], answer[1], answer[2]].map(f32::from_bits))",
     };
-    let wrong = otherwise.map_or_else(|| source::wrong_body(function), |block| Ok(block.to_owned()))?;
+    let wrong = otherwise.map_or_else(|| source::wrong_body(name, returns), |block| Ok(block.to_owned()))?;
     Ok(format!(
         "{{\n    static KNOWN: std::sync::OnceLock<HashMap<u32, Vec<u32>>> = std::sync::OnceLock::new();\n    \
          let known = KNOWN.get_or_init(|| table(r\"{table}\", {width}));\n    \
@@ -130,12 +131,13 @@ fn known(name: &str) -> Result<Arc<Known>> {
 }
 
 fn learned(name: &str) -> Result<Known> {
-    let recorded = Arc::new(RecordedAnswers { name: name.to_owned(), known: Mutex::default() });
+    let known = Arc::<Mutex<Known>>::default();
     // Ask cargo once for all functions.
     static REFERENCE: LazyLock<Once<(), Arc<Source>>> = LazyLock::new(Once::default);
     let prepared = || Ok(Arc::new(Source::prepare(&root()?, Which::Solutions, Need::Checks)?));
     let reference = REFERENCE.get((), prepared)?.fresh();
-    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Listener { reference, recorded: recorded.clone() }));
+    let listener = Listener { reference, name: name.to_owned(), known: known.clone() };
+    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(listener));
     let of_function = if name == "block_cost" { 12 } else { 1 };
     for check in STAGES.iter().filter(|(stage, _)| *stage == of_function).flat_map(|(_, checks)| *checks) {
         match checks::examine(check, &kit, 0, checks::Inputs::default()) {
@@ -143,25 +145,20 @@ fn learned(name: &str) -> Result<Known> {
             other => bail!("the reference fails {}: {other:?}", check.name),
         }
     }
-    let known = std::mem::take(&mut *recorded.known.lock().unwrap_or_else(PoisonError::into_inner));
-    Ok(known)
+    Ok(std::mem::take(&mut *known.lock().unwrap_or_else(PoisonError::into_inner)))
 }
 
-struct RecordedAnswers {
-    name: String,
-    known: Mutex<Known>,
-}
-
-/// The reference, with a record of its answers.
+/// The reference, with a record of its answers to one function.
 struct Listener {
     reference: Arc<dyn Kit + Send + Sync>,
-    recorded: Arc<RecordedAnswers>,
+    name: String,
+    known: Arc<Mutex<Known>>,
 }
 
 impl Transport for Listener {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let answer = request.answer(&*self.reference, watch);
-        let recorded = match (self.recorded.name.as_str(), &request, &answer) {
+        let recorded = match (self.name.as_str(), &request, &answer) {
             ("nearest_root", Request::NearestRoot(asked), Answer::NearestRoot(given)) => {
                 pairs(asked, given, |q| vec![q.roots.to_vec(), ray(&q.ray)], |found| option(*found))
             }
@@ -195,7 +192,7 @@ impl Transport for Listener {
             }
             _ => Vec::new(),
         };
-        self.recorded.known.lock().unwrap_or_else(PoisonError::into_inner).extend(recorded);
+        self.known.lock().unwrap_or_else(PoisonError::into_inner).extend(recorded);
         answer
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Attack;
 use super::make::CANARY;
+use crate::corpus::verdict::one_line;
 use all_checks::STAGES;
 use checks::rubric;
 use grader::grade::result::{Graded, Outcome};
@@ -125,7 +126,6 @@ fn words(expected: &Expectation, graded: &Graded, complaints: &mut Vec<String>) 
     let remarks = graded.remarks.iter().flat_map(|remark| [remark.file.as_str(), remark.what.as_str()]);
     let text: Vec<&str> =
         messages.chain(remarks).chain([graded.compiler.as_str(), graded.trouble.as_str()]).collect();
-    let one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     for words in &expected.says {
         if !text.iter().any(|text| one_line(text).contains(&one_line(words))) {
             complaints.push(format!("no message says `{words}`"));

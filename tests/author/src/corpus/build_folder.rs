@@ -7,6 +7,7 @@
 
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
+use grader::files_below::files_below;
 use grader::kits::Need;
 use grader::room::has_room;
 use raykata::rubric;
@@ -260,16 +261,12 @@ fn copy_folder(from: &Path, to: &Path, path: &str, changes: &BTreeMap<&str, &str
 
 /// Copies a folder with the modification times of its files, from which cargo sees which files are up to date.
 fn copy_with_times(from: &Path, to: &Path) -> Result<()> {
-    fs::create_dir_all(to)?;
-    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
-        let (entry, target) = entry.map(|entry| (entry.path(), to.join(entry.file_name())))?;
-        if entry.is_dir() {
-            copy_with_times(&entry, &target)?;
-        } else {
-            fs::copy(&entry, &target)?;
-            let modified = fs::metadata(&entry)?.modified()?;
-            fs::File::options().write(true).open(&target)?.set_modified(modified)?;
-        }
+    for path in files_below(from, "", &|_| true)? {
+        let (source, target) = (from.join(&path), to.join(&path));
+        fs::create_dir_all(target.parent().unwrap_or(to))?;
+        fs::copy(&source, &target)?;
+        let modified = fs::metadata(&source)?.modified()?;
+        fs::File::options().write(true).open(&target)?.set_modified(modified)?;
     }
     Ok(())
 }

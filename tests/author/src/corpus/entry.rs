@@ -19,9 +19,10 @@
 //! the function: `-` goes, `+` comes, and a line with a space stays and only marks the place. `@` begins another place of the
 //! same function, `@ NAME` a place in another function, and `@ *` a place anywhere in the file.
 
+use super::records::write;
 use super::source::Source;
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use raykata::film::write_atomically;
+use grader::files_below::{files_below, last_part};
 use std::fmt::{self, Write};
 use std::ops::Range;
 use std::path::Path;
@@ -489,28 +490,19 @@ impl Draft {
 
 /// Reads all files of the corpus of the kit at `root`, by their names without `.corpus`.
 pub fn read_files(root: &Path) -> Result<Vec<(String, CorpusFile)>> {
-    let folder = root.join(FOLDER);
-    let mut names = Vec::new();
-    for file in std::fs::read_dir(&folder).with_context(|| folder.display().to_string())? {
-        let name = file?.file_name().to_string_lossy().into_owned();
-        names.extend(name.strip_suffix(".corpus").map(str::to_owned));
-    }
-    names.sort();
-    let read = |name: String| {
-        let file = folder.join(format!("{name}.corpus"));
-        let text = std::fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+    let read = |file: String| {
+        let text = std::fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
+        let name = last_part(&file).trim_end_matches(".corpus").to_owned();
         let corpus = CorpusFile::parse(&name, &text)?;
         Ok((name, corpus))
     };
-    names.into_iter().map(read).collect()
+    files_below(root, FOLDER, &|path| path.ends_with(".corpus"))?.into_iter().map(read).collect()
 }
 
 /// Writes a file of the corpus of the kit at `root`, sorted.
 pub fn write_file(root: &Path, name: &str, corpus: &mut CorpusFile) -> Result<()> {
     corpus.sort(&Original::read(root, &format!("solutions/src/{name}.rs"))?);
-    let file = root.join(FOLDER).join(format!("{name}.corpus"));
-    let written = write_atomically(&file, |out| std::io::Write::write_all(out, corpus.text().as_bytes()));
-    written.with_context(|| format!("{} cannot be written", file.display()))
+    write(&root.join(FOLDER).join(format!("{name}.corpus")), &corpus.text())
 }
 
 /// Reads all entries of the kit at `root`, sorted by stage, then wrong before right, then by name.

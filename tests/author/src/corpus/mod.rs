@@ -17,7 +17,7 @@ pub mod verdict;
 use anyhow::{Result, bail};
 use checks::Inputs;
 use entry::{Claim, Entry};
-use grader::kits::{Need, Source, Which};
+use grader::kits::{Need, Source, Which, root};
 use grader::queue;
 use grader::report::bar_of_steps;
 use plan::{Plan, Trial};
@@ -72,7 +72,7 @@ pub static SPEC: Spec = Spec {
 };
 
 /// The options of `author corpus`.
-pub struct CorpusOptions {
+struct CorpusOptions {
     names: Vec<String>,
     stage: Option<u8>,
     right: bool,
@@ -87,8 +87,7 @@ pub struct CorpusOptions {
 }
 
 impl CorpusOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<CorpusOptions, Misuse> {
+    fn read(given: &Given) -> Result<CorpusOptions, Misuse> {
         given.exclude("--bless", "--reword")?;
         given.exclude("--seed", "--bless")?;
         given.exclude("--seed", "--reword")?;
@@ -96,7 +95,7 @@ impl CorpusOptions {
         let (function, check, saying) = (text("--function"), text("--check"), text("--saying"));
         let asks = function.is_some() || check.is_some() || saying.is_some();
         Ok(CorpusOptions {
-            names: given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned()).collect(),
+            names: given.texts(0),
             stage: given.number("--stage", 0..=u8::MAX)?,
             right: given.has("--right"),
             function,
@@ -112,12 +111,15 @@ impl CorpusOptions {
 }
 
 /// Lists or tests entries and prints a report. Returns whether all results are as required.
-pub fn run(root: &Path, options: &CorpusOptions) -> Result<bool> {
+pub fn run(given: &Given) -> Result<bool> {
+    let options = &CorpusOptions::read(given)?;
+    let root = &root()?;
     let all = entry::read_all(root)?;
     let (matrix, messages) = (Matrix::read(root), Messages::read(root));
     let chosen = choose(&all, options, &matrix, &messages)?;
     if options.lists {
-        return Ok(list(&chosen, options, &matrix));
+        list(&chosen, options, &matrix);
+        return Ok(true);
     }
     let complete = chosen.len() == all.len();
     let _lock = Lock::on(&root.join(FOLDER))?;
@@ -174,7 +176,7 @@ fn is_named(entry: &Entry, name: &str) -> bool {
 }
 
 /// Prints the entries, each with its sentence.
-fn list(chosen: &[Entry], options: &CorpusOptions, matrix: &Matrix) -> bool {
+fn list(chosen: &[Entry], options: &CorpusOptions, matrix: &Matrix) {
     let mut file = "";
     for entry in chosen {
         if entry.file != file {
@@ -190,7 +192,6 @@ fn list(chosen: &[Entry], options: &CorpusOptions, matrix: &Matrix) -> bool {
         }
     }
     println!("\n{} entries", chosen.len());
-    true
 }
 
 /// Tests entries: with the planned checks, or with `--bless` with all checks of their stages.

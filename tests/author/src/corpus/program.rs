@@ -6,6 +6,7 @@ use super::entry::{Entry, Original, corpus_file};
 use super::schemata::{self, Form, Schema};
 use anyhow::{Context, Result, bail};
 use checks::Check;
+use grader::files_below::files_below;
 use grader::kits::{Need, Source as Kits, Which};
 use grader::queue;
 use std::collections::{BTreeMap, BTreeSet};
@@ -69,7 +70,7 @@ impl Program {
         let mut alone = Vec::new();
         let mut modules = String::new();
         let mut complaints = Vec::new();
-        for file in files(root)? {
+        for file in stage_files(root)? {
             let original = Original::read(root, &file)?;
             // Apply the entries of this file.
             let mut changed: Vec<(&Entry, String)> = Vec::new();
@@ -205,16 +206,8 @@ impl Program {
 /// The functions with a switch that each check reaches, by the name of the check.
 pub struct Reached(BTreeMap<&'static str, BTreeSet<String>>);
 
-/// The stage files of the solutions.
-fn files(root: &Path) -> Result<Vec<String>> {
-    let folder = root.join("solutions/src");
-    let mut files = Vec::new();
-    for file in fs::read_dir(&folder).with_context(|| folder.display().to_string())? {
-        let name = file?.file_name().to_string_lossy().into_owned();
-        if name.starts_with("stage") && name.ends_with(".rs") {
-            files.push(format!("solutions/src/{name}"));
-        }
-    }
-    files.sort();
-    Ok(files)
+/// The stage files of the solutions, from the root of the kit.
+pub fn stage_files(root: &Path) -> Result<Vec<String>> {
+    let is_stage = |path: &str| path.starts_with("solutions/src/stage") && path.ends_with(".rs");
+    files_below(root, "solutions/src", &is_stage)
 }

@@ -165,7 +165,8 @@ pub fn bless(root: &Path, tried: &[TriedEntry], matrix: bool, all: bool) -> Resu
     Ok(())
 }
 
-fn write(file: &Path, text: &str) -> Result<()> {
+/// Writes a file, whole or not at all, and makes its folder.
+pub(super) fn write(file: &Path, text: &str) -> Result<()> {
     if let Some(folder) = file.parent() {
         fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     }

@@ -102,11 +102,6 @@ impl Source {
         Ok(function)
     }
 
-    /// Returns the function that contains this byte, if there is one.
-    pub fn around(&self, byte: usize) -> Option<&Function> {
-        self.functions.iter().find(|function| function.whole.contains(&byte))
-    }
-
     fn add(&mut self, text: &str, item: &syn::Item) {
         let is_public = |vis: &syn::Visibility| matches!(vis, syn::Visibility::Public(_));
         let (name, visibility, kind) = match item {
@@ -184,9 +179,10 @@ fn of_function(text: &str, of: Option<&str>, owner: Owner, (attrs, vis, sig, blo
         Some(of) => format!("{of}::{}", sig.ident),
         None => sig.ident.to_string(),
     };
+    let line_start = text[..start].rfind('\n').map_or(0, |end| end + 1);
     Function {
         name,
-        whole: line_start(text, start)..body.end,
+        whole: line_start..body.end,
         head,
         ident,
         arguments,
@@ -198,10 +194,6 @@ fn of_function(text: &str, of: Option<&str>, owner: Owner, (attrs, vis, sig, blo
         is_const: sig.constness.is_some(),
         owner,
     }
-}
-
-fn line_start(text: &str, byte: usize) -> usize {
-    text[..byte].rfind('\n').map_or(0, |end| end + 1)
 }
 
 fn bytes(span: Span) -> Range<usize> {

@@ -10,6 +10,7 @@ mod begun;
 mod switch;
 
 use crate::corpus::build_folder::{BuildFolder, Product};
+use crate::corpus::program::stage_files;
 use crate::corpus::verdict::without_lines;
 use crate::pictures::{Scenes, Shown};
 use anyhow::{Context, Result};
@@ -19,7 +20,7 @@ use grader::queue;
 use grader::report::bar_of_steps;
 use grader::worker::{CALL_PATIENCE, Worker};
 use raykata::kit::Door;
-use raykata_cli::args::{Given, Misuse, Opt, Spec};
+use raykata_cli::args::{Given, Opt, Spec};
 use std::path::{Path, PathBuf};
 use switch::Switchable;
 
@@ -33,20 +34,6 @@ pub static SPEC: Spec = Spec {
         Opt::flag("--bless", "Write tests/corpus/gaps.txt."),
     ]],
 };
-
-/// The options of `author gaps`.
-pub struct GapsOptions {
-    check: bool,
-    bless: bool,
-}
-
-impl GapsOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<GapsOptions, Misuse> {
-        given.exclude("--bless", "--check")?;
-        Ok(GapsOptions { check: given.has("--check"), bless: given.has("--bless") })
-    }
-}
 
 /// The file with the expected results.
 const RECORD: &str = "tests/corpus/gaps.txt";
@@ -92,14 +79,12 @@ fn stage_of(gap: &Gap) -> u8 {
     exercises::stage_of(&name).unwrap_or_default()
 }
 
-/// A function that is not written, and its file without it.
+/// A function that is not written.
 pub struct Gap {
     /// The file, from the root of the kit.
     pub file: String,
     /// The name of the function.
     pub function: String,
-    /// The whole text of the file.
-    pub text: String,
 }
 
 impl Gap {
@@ -110,7 +95,8 @@ impl Gap {
 
 /// Prints what pictures lack. Returns whether that equals the stored results, and whether each picture of a kit that is
 /// written up to some stage says what it lacks.
-pub fn run(options: &GapsOptions) -> Result<bool> {
+pub fn run(given: &Given) -> Result<bool> {
+    given.exclude("--bless", "--check")?;
     let root = root()?;
     let gaps = all(&root)?;
     let reference = Source::prepare(&root, Which::Solutions, Need::Frames)?.fresh();
@@ -123,11 +109,11 @@ pub fn run(options: &GapsOptions) -> Result<bool> {
     let text: String =
         gaps.iter().zip(text).map(|(gap, text)| format!("{}\n{text}\n", gap.title())).collect();
     let file = root.join(RECORD);
-    if options.bless {
+    if given.has("--bless") {
         std::fs::write(&file, &text).with_context(|| RECORD.to_owned())?;
     }
     let kept = std::fs::read_to_string(&file).unwrap_or_default();
-    if !options.check || kept == text {
+    if !given.has("--check") || kept == text {
         println!("{text}{} functions, each removed in turn", gaps.len());
         return Ok(says_what_it_lacks);
     }
@@ -184,14 +170,8 @@ fn differences(worker: PathBuf, scenes: &Scenes, whole: &[Shown]) -> String {
 
 /// Returns every function of the exercises as a gap.
 pub fn all(root: &Path) -> Result<Vec<Gap>> {
-    let mut files: Vec<_> = std::fs::read_dir(root.join("solutions/src"))?
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter(|name| name.starts_with("stage"))
-        .collect();
-    files.sort();
     let mut gaps = Vec::new();
-    for name in files {
-        let file = format!("solutions/src/{name}");
+    for file in stage_files(root)? {
         let text = std::fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
         gaps.extend(in_file(&file, &text)?);
     }
@@ -199,10 +179,9 @@ pub fn all(root: &Path) -> Result<Vec<Gap>> {
 }
 
 fn in_file(file: &str, text: &str) -> Result<Vec<Gap>> {
-    let blocks = exercises::blocks(text, Path::new(file))?;
     let mut gaps = Vec::new();
     let mut function = "";
-    for (number, block) in blocks.iter().enumerate() {
+    for block in exercises::blocks(text, Path::new(file))? {
         match block {
             Block::Same(lines) => {
                 if let Some(head) = lines.iter().rev().find_map(|line| line.strip_prefix("pub fn ")) {
@@ -210,14 +189,8 @@ fn in_file(file: &str, text: &str) -> Result<Vec<Gap>> {
                 }
             }
             // A helper or an import belongs to no exercise.
-            Block::Answer(_, stub) if !is_function(stub) => {}
-            Block::Answer(..) => {
-                gaps.push(Gap {
-                    file: file.into(),
-                    function: function.into(),
-                    text: without(&blocks, number),
-                });
-            }
+            Block::Answer(_, stub) if !is_function(&stub) => {}
+            Block::Answer(..) => gaps.push(Gap { file: file.into(), function: function.into() }),
         }
     }
     Ok(gaps)
@@ -228,35 +201,15 @@ fn is_function(stub: &[String]) -> bool {
     stub.iter().any(|line| line.trim_start().starts_with("todo!("))
 }
 
-/// Returns the whole text with the answer in block `gap` replaced by its stub.
-fn without(blocks: &[Block<'_>], gap: usize) -> String {
-    let mut text = String::new();
-    for (number, block) in blocks.iter().enumerate() {
-        let lines = match block {
-            Block::Answer(_, stub) if number == gap => stub.join("\n"),
-            Block::Same(lines) | Block::Answer(lines, _) => lines.join("\n"),
-        };
-        text += &lines;
-        text.push('\n');
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::in_file;
 
     #[test]
-    fn each_function_is_left_out_by_itself() {
-        let text = "pub fn one(x: f32) -> f32 {\n    // <solution>\n    x\n    // <stub> todo!(\"x\")\n    // <stub> // and\n    // </solution>\n}\n\
+    fn functions_are_gaps_and_helpers_are_none() {
+        let text = "pub fn one(x: f32) -> f32 {\n    // <solution>\n    x\n    // <stub> todo!(\"x\")\n    // </solution>\n}\n\
                     // <solution>\nfn help() {}\n// </solution>\n";
         let gaps = in_file("f", text).unwrap();
-        assert_eq!(gaps.len(), 1);
-        assert_eq!(gaps[0].function, "one");
-        assert!(
-            gaps[0]
-                .text
-                .starts_with("pub fn one(x: f32) -> f32 {\n    todo!(\"x\")\n    // and\n}\n// <solution>")
-        );
+        assert_eq!(gaps.iter().map(|gap| gap.function.as_str()).collect::<Vec<_>>(), ["one"]);
     }
 }

@@ -1,9 +1,9 @@
 //! Tables as CSV and as a page.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use judge::table::Table;
 use raykata_cli::html::{around, csv_line, element, escape};
-use raykata_cli::report::make_folder;
+use raykata_cli::report::{make_folder, write_file};
 use std::path::Path;
 
 /// The style of the page. Tables scroll in narrow windows.
@@ -39,9 +39,7 @@ pub fn write(out: &Path, name: &str, tables: &[Table]) -> Result<()> {
         }
     }
     for (file, text) in [("index.html".to_owned(), page), (format!("{name}.csv"), csv)] {
-        let file = out.join(file);
-        raykata::film::write_atomically(&file, |out| std::io::Write::write_all(out, text.as_bytes()))
-            .with_context(|| format!("cannot write {}", file.display()))?;
+        write_file(&out.join(file), text.as_bytes())?;
     }
     Ok(())
 }

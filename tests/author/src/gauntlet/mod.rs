@@ -8,14 +8,13 @@ mod methods;
 mod printed;
 
 use anyhow::Result;
-use grader::kits::{Need, Source, Which};
+use grader::kits::{Need, Source, Which, root};
 use judge::boxes_and_offsets;
 use judge::gauntlet::{Input, Row, rows_of_kit, tables};
 use methods::METHODS;
 use raykata::kit::Kit;
-use raykata_cli::args::{Given, Misuse, Opt, Spec, names};
+use raykata_cli::args::{Given, Opt, Spec, names};
 use raykata_cli::cost::{self, Summary};
-use std::path::{Path, PathBuf};
 
 /// `author gauntlet`.
 pub static SPEC: Spec = Spec {
@@ -48,45 +47,27 @@ pub static COST: Spec = Spec {
     options: cost::SPEC.options,
 };
 
-/// The options of `author gauntlet`.
-pub struct GauntletOptions {
-    kit: Which,
-    inputs: u64,
-    seed: u64,
-    out: Option<PathBuf>,
-}
-
-impl GauntletOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<GauntletOptions, Misuse> {
-        Ok(GauntletOptions {
-            kit: given.choice("--kit", &Which::NAMES)?.unwrap_or(Which::Solutions),
-            inputs: given.number("--inputs", 100..=u64::MAX)?.unwrap_or(20_000),
-            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(1),
-            out: given.path("--out"),
-        })
-    }
-}
-
 /// Measures the same as `raykata cost`, and the intersection methods. Returns whether it succeeded.
 pub fn cost(given: &Given) -> Result<bool> {
     cost::run(given, Some("author"), Some(&summary))
 }
 
 /// Runs the gauntlet.
-pub fn run(root: &Path, options: &GauntletOptions) -> Result<()> {
-    let source = Source::prepare(root, options.kit, Need::Checks)?;
-    let kit = source.fresh();
-    let mut tables = tables(rows(&*kit), options.inputs, options.seed)?;
-    tables.extend(boxes_and_offsets::tables(&*kit, options.inputs, options.seed));
+pub fn run(given: &Given) -> Result<bool> {
+    let which = given.choice("--kit", &Which::NAMES)?.unwrap_or(Which::Solutions);
+    let inputs = given.number("--inputs", 100..=u64::MAX)?.unwrap_or(20_000);
+    let seed = given.number("--seed", 0..=u64::MAX)?.unwrap_or(1);
+    let kit = Source::prepare(&root()?, which, Need::Checks)?.fresh();
+    let mut tables = tables(rows(&*kit), inputs, seed)?;
+    tables.extend(boxes_and_offsets::tables(&*kit, inputs, seed));
     for table in &tables {
         println!("{}", table.text());
     }
-    if let Some(out) = &options.out {
-        files::write(out, "gauntlet", &tables)?;
+    if let Some(out) = given.path("--out") {
+        files::write(&out, "gauntlet", &tables)?;
         println!("the tables: {}", out.join("index.html").display());
     }
-    Ok(())
+    Ok(true)
 }
 
 /// Returns the rows of all methods and of the kit's functions.

@@ -20,11 +20,12 @@ use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
 use checks::Check;
 use grader::files_below::{files_below, last_part};
+use grader::kits::root;
 use grader::queue;
 use grader::report::bar_of_steps;
 use judges::Judge;
 use numbers::numbers;
-use raykata_cli::args::{Given, Misuse, Opt, Spec};
+use raykata_cli::args::{Given, Opt, Spec};
 use raykata_cli::fingerprint::fingerprint;
 use raykata_cli::journal::Journal;
 use raykata_cli::lock::Lock;
@@ -48,26 +49,6 @@ pub static SPEC: Spec = Spec {
         Opt::flag("--resume", "Continue the last run: skip the numbers that it has weakened."),
     ]],
 };
-
-/// The options of `author weaken`.
-pub struct WeakenOptions {
-    sample: usize,
-    seed: u64,
-    file: Option<String>,
-    resume: bool,
-}
-
-impl WeakenOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<WeakenOptions, Misuse> {
-        Ok(WeakenOptions {
-            sample: given.number("--sample", 1..=usize::MAX)?.unwrap_or(40),
-            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(1),
-            file: given.path("--file").map(|file| file.to_string_lossy().into_owned()),
-            resume: given.has("--resume"),
-        })
-    }
-}
 
 /// How many trials a judge gets before it is started again.
 const TRIALS_OF_A_JUDGE: usize = 30;
@@ -111,24 +92,27 @@ enum WeakenVerdict {
 }
 
 /// Weakens numbers and prints a report. Returns whether each survivor was reviewed and no reviewed one was caught.
-pub fn run(root: &Path, options: &WeakenOptions) -> Result<bool> {
+pub fn run(given: &Given) -> Result<bool> {
+    let sample = given.number("--sample", 1..=usize::MAX)?.unwrap_or(40);
+    let seed = given.number("--seed", 0..=u64::MAX)?.unwrap_or(1);
+    let file = given.path("--file").unwrap_or_default();
+    let root = &root()?;
     let reviewed = Reviewed::read(root, REVIEWED)?;
     let _lock = Lock::on(&root.join(FOLDER))?;
-    let drawn = drawn(root, options)?;
+    let drawn = drawn(root, seed, &file.to_string_lossy())?;
     let journal_file = root.join(FOLDER).join("weaken.jsonl");
-    let about = format!("numbers of checks, seed {}", options.seed);
-    let mut journal: Journal<WeakenVerdict> = match options.resume {
+    let about = format!("numbers of checks, seed {seed}");
+    let mut journal: Journal<WeakenVerdict> = match given.has("--resume") {
         true => Journal::resume(&journal_file, &about)?,
         false => Journal::create(&journal_file, &about)?,
     };
     let guard = Guard::open(root)?;
-    let bar = bar_of_steps(options.sample);
+    let bar = bar_of_steps(sample);
     // Take the numbers of the stages in turn, until there are enough that compile.
     let mut tried: Vec<(&Change, WeakenVerdict)> = Vec::new();
     for change in &drawn {
-        if tried.iter().filter(|(_, verdict)| *verdict != WeakenVerdict::DoesNotCompile).count()
-            == options.sample
-        {
+        let compiled = tried.iter().filter(|(_, verdict)| *verdict != WeakenVerdict::DoesNotCompile);
+        if compiled.count() == sample {
             break;
         }
         bar.set_message(format!("{}:{}", change.file, change.line));
@@ -206,22 +190,17 @@ fn report(tried: &[(&Change, WeakenVerdict)], reviewed: &Reviewed) -> bool {
 }
 
 /// All numbers in the order in which they are drawn: one of each stage in turn. Every fourth turns its comparison, if it stands
-/// in one; the others are multiplied by 10.
-fn drawn(root: &Path, options: &WeakenOptions) -> Result<Vec<Change>> {
+/// in one; the others are multiplied by 10. Only the paths of files that contain `name` count.
+fn drawn(root: &Path, seed: u64, name: &str) -> Result<Vec<Change>> {
     let mut stages: BTreeMap<u8, Vec<(String, Change)>> = BTreeMap::new();
-    for (stage, file) in files(root)? {
-        if options.file.as_ref().is_some_and(|name| !file.contains(name.as_str())) {
-            continue;
-        }
+    for (stage, file) in files(root)?.into_iter().filter(|(_, file)| file.contains(name)) {
         let text = fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
         for number in numbers(&text).with_context(|| file.clone())? {
-            let draw = |words: &str| {
-                fingerprint([&options.seed.to_le_bytes()[..], file.as_bytes(), words.as_bytes()])
-            };
             // Draw by the text of the line, so that changes elsewhere in the file draw no other numbers.
             let start = text[..number.place.start].rfind('\n').map_or(0, |end| end + 1);
             let line = text[start..].lines().next().unwrap_or_default();
-            let order = draw(&format!("{} {line}", number.place.start - start));
+            let words = format!("{} {line}", number.place.start - start);
+            let order = fingerprint([&seed.to_le_bytes()[..], file.as_bytes(), words.as_bytes()]);
             let turns = order.as_bytes().last().is_some_and(|digit| digit % 4 == 0);
             let turned = number.turned(&text).filter(|_| turns);
             let changed = turned.unwrap_or_else(|| number.times_ten(&text));

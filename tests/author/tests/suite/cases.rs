@@ -1,8 +1,8 @@
 //! Tests the catalogue of hard cases: there are 118, each with an existing check or test, or with a reason why it has none.
 
+use super::program_runs::root;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::process::Command;
 
 #[derive(Deserialize)]
@@ -21,7 +21,7 @@ struct HardCase {
 
 #[test]
 fn every_case_is_seen_to() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let root = root();
     let text = std::fs::read_to_string(root.join("tests/cases.toml")).expect("a text");
     let catalogue: BTreeMap<String, Vec<HardCase>> = toml::from_str(&text).expect("the catalogue");
     let cases = &catalogue["case"];

@@ -3,29 +3,16 @@ use super::program_runs::{does_not_understand, explains};
 use std::process::Command;
 
 /// The commands with their arguments and options.
-const COMMANDS: [(&str, &[&str]); 9] = [
-    ("gauntlet", &["--kit", "--inputs", "--seed", "--out", "20000"]),
-    ("cost", &["[SCENE]", "--headline", "--rounds", "--set"]),
-    ("attacks", &["[NAME]...", "--shard"]),
-    ("rehearse", &["--students", "--out", "--jobs", "--honest", "200"]),
-    ("sync", &["--check", "--force"]),
-    (
-        "corpus",
-        &[
-            "[NAME]...",
-            "--stage",
-            "--function",
-            "--check",
-            "--saying",
-            "--run",
-            "--bless",
-            "--reword",
-            "--seed",
-        ],
-    ),
-    ("weaken", &["--sample", "--seed", "--file", "--resume"]),
-    ("gaps", &["--check", "--bless"]),
-    ("generate", &["[SCENES]"]),
+const COMMANDS: [(&str, &str); 9] = [
+    ("gauntlet", "--kit --inputs --seed --out 20000"),
+    ("cost", "[SCENE] --headline --rounds --set"),
+    ("attacks", "[NAME]... --shard"),
+    ("rehearse", "--students --out --jobs --honest 200"),
+    ("sync", "--check --force"),
+    ("corpus", "[NAME]... --stage --function --check --saying --run --bless --reword --seed"),
+    ("weaken", "--sample --seed --file --resume"),
+    ("gaps", "--check --bless"),
+    ("generate", "[SCENES]"),
 ];
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_author");

@@ -1,15 +1,11 @@
 //! Tests the files of the corpus: every entry fits, every named check exists, and the stored results are of exactly these
 //! entries. `cargo run -p author -- corpus` builds and tests the entries, which takes minutes.
 
-use author::corpus::entry::{Claim, Entry, Original, read_all, read_files};
-use author::corpus::records::{Matrix, Messages};
+use super::author;
+use super::program_runs::{printed, root};
+use ::author::corpus::entry::{Claim, Entry, Original, read_all, read_files};
+use ::author::corpus::records::{Matrix, Messages};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
-use std::process::Command;
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 fn entries() -> Vec<Entry> {
     read_all(&root()).unwrap_or_else(|error| panic!("{error:#}"))
@@ -148,35 +144,26 @@ fn nine_of_ten_messages_say_what_the_mistake_looks_like() {
 
 #[test]
 fn an_entry_that_does_not_exist_is_reported() {
-    let output = Command::new(env!("CARGO_BIN_EXE_author"))
-        .current_dir(root())
-        .args(["corpus", "no_such_entry"])
-        .output()
-        .expect("the program starts");
+    let output = author(&["corpus", "no_such_entry"]);
     assert_eq!(output.status.code(), Some(1));
-    let complaint = String::from_utf8_lossy(&output.stderr);
+    let (_, complaint) = printed(&output);
     assert!(complaint.contains("has no entry `no_such_entry`"), "{complaint}");
 }
 
 #[test]
 fn questions_about_the_corpus_are_answered_without_a_build() {
-    let answer = |question: &[&str]| {
-        let output = Command::new(env!("CARGO_BIN_EXE_author"))
-            .current_dir(root())
-            .arg("corpus")
-            .args(question)
-            .output()
-            .expect("the program starts");
+    let answer = |option: &str, value: &str| {
+        let output = author(&["corpus", option, value]);
         assert!(output.status.success(), "{output:?}");
-        String::from_utf8_lossy(&output.stdout).into_owned()
+        printed(&output).0
     };
-    let says = answer(&["--saying", "you take a box for a hit"]);
+    let says = answer("--saying", "you take a box for a hit");
     assert!(says.contains("wrong any_box_is_enough: ") && !says.contains("right "), "{says}");
-    let changes = answer(&["--function", "slab"]);
+    let changes = answer("--function", "slab");
     assert!(
         changes.starts_with("tests/corpus/stage3_boxes.corpus\n") && changes.contains("  right "),
         "{changes}"
     );
-    let caught = answer(&["--check", "any_hit_stops_at_the_first"]);
+    let caught = answer("--check", "any_hit_stops_at_the_first");
     assert!(caught.contains(" =wrong any_does_not_stop: "), "{caught}");
 }

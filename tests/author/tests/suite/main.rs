@@ -8,7 +8,6 @@ mod corpus;
 #[cfg(target_os = "linux")]
 mod full_disk;
 #[cfg(target_os = "linux")]
-#[cfg(target_os = "linux")]
 mod one_build;
 mod paste;
 mod pictures;

@@ -4,8 +4,8 @@
 //! more dependency of the grader can make cargo build serde, and every package that depends on it, twice. If this test
 //! fails, name the feature in the workspace's manifest, as for `serde_core`.
 
+use super::program_runs::root;
 use std::collections::BTreeSet;
-use std::path::Path;
 use std::process::Command;
 
 /// The kit and the exercises, which are built with and without frames on purpose.
@@ -14,9 +14,8 @@ const TWO_BUILDS: [&str; 2] = ["exercises ", "solutions "];
 /// Returns all packages that this selection builds, each with its version and its features.
 fn packages(selection: &[&str]) -> BTreeSet<String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let output = Command::new(cargo)
-        .current_dir(root)
+        .current_dir(root())
         .args(["tree", "--offline", "--locked", "--prefix", "none", "--format", "{p} [{f}]", "--edges"])
         .args(selection)
         .output()

@@ -1,13 +1,13 @@
 //! Compares small pictures of the kit's scenes bit by bit, with their cost. If your change is meant to alter a picture,
 //! look at the picture and accept it with `INSTA_UPDATE=always cargo test -p author --test suite pictures`.
 
+use super::program_runs::root;
 use author::pictures::Scenes;
 use grader::kits::{Need, Source, Which};
-use std::path::Path;
 
 #[test]
 fn every_scene_looks_and_costs_as_before() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let root = root();
     let reference = Source::prepare(&root, Which::Solutions, Need::Frames).expect("it builds").fresh();
     let scenes = Scenes::read(&root, &*reference).unwrap_or_else(|error| panic!("{error:#}"));
     let shown = scenes.shown_by(&*reference);

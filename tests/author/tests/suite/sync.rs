@@ -1,10 +1,6 @@
 //! Exercises are made from solutions and contain no line of an answer.
 
-use std::path::{Path, PathBuf};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
+use super::program_runs::root;
 
 /// Whether `line` is `name: Type,` and no more: a parameter or a field.
 fn is_parameter(line: &str) -> bool {

@@ -5,12 +5,14 @@ mod bundle;
 mod platforms;
 mod slurm;
 
-pub use platforms::{CANVAS, MOODLE, PlatformOptions, platform};
-pub use slurm::{PICTURE, PictureOptions, SLURM, SlurmOptions, picture, slurm};
+pub use platforms::{CANVAS, MOODLE, platform};
+pub use slurm::{PICTURE, SLURM, picture, slurm};
 
 use crate::course::{self, CourseFiles};
-use crate::grade::{draw_seed, stages};
+use crate::grade::draw_seed;
+use crate::kits::root;
 use anyhow::{Context, Result, ensure};
+use raykata::course::stages_of;
 use raykata::film::write_atomically;
 use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use std::io::Write;
@@ -46,28 +48,6 @@ pub static CLASSROOM: Spec = Spec {
     ],
 };
 
-/// The options of both commands.
-pub struct ExportOptions {
-    out: PathBuf,
-    /// The number of jobs that grade a class on GitHub.
-    parts: u16,
-    grading: Grading,
-}
-
-impl ExportOptions {
-    /// Reads the options of [`GRADESCOPE`].
-    pub fn of_gradescope(given: &Given) -> Result<ExportOptions, Misuse> {
-        let out = given.path("--out").unwrap_or_else(|| "autograder.zip".into());
-        Ok(ExportOptions { out, parts: 1, grading: Grading::read(given)? })
-    }
-
-    /// Reads the options of [`CLASSROOM`].
-    pub fn of_classroom(given: &Given) -> Result<ExportOptions, Misuse> {
-        let parts = given.number("--parts", 1..=MOST_JOBS)?.unwrap_or(4);
-        Ok(ExportOptions { out: given.required_path("--out")?, parts, grading: Grading::read(given)? })
-    }
-}
-
 /// Most jobs of a matrix on GitHub.
 const MOST_JOBS: u16 = 256;
 
@@ -80,7 +60,7 @@ struct Grading {
 }
 
 fn known_stages(text: &str) -> Result<String, String> {
-    stages(text)?;
+    stages_of(text)?;
     Ok(text.replace(' ', ""))
 }
 
@@ -104,13 +84,9 @@ impl Grading {
         let files = self.course.as_deref().map(CourseFiles::read).transpose()?;
         if let (Some(files), Some(list)) = (&files, &self.stages) {
             let course = files.parse()?;
-            let left_out = stages(list)
-                .map_err(anyhow::Error::msg)?
-                .0
-                .into_iter()
-                .find(|&stage| course.leaves_out(stage));
+            let mut stages = stages_of(list).map_err(anyhow::Error::msg)?.into_iter();
             ensure!(
-                left_out.is_none(),
+                !stages.any(|stage| course.leaves_out(stage)),
                 "--stages names a stage that the course file leaves out: change one of the two"
             );
         }
@@ -145,30 +121,35 @@ const PARTS: &str = "{parts}";
 const NUMBERS: &str = "{numbers}";
 
 /// Writes the zip for Gradescope.
-pub fn gradescope(root: &Path, options: &ExportOptions) -> Result<()> {
-    let course = options.grading.course()?;
+pub fn gradescope(given: &Given) -> Result<bool> {
+    let out = given.path("--out").unwrap_or_else(|| "autograder.zip".into());
+    let grading = Grading::read(given)?;
+    let root = root()?;
+    let course = grading.course()?;
     let file = course.as_ref().map(in_folder).transpose()?;
     let scripts = [
         ("setup.sh", SETUP.to_owned()),
-        ("run_autograder", RUN.replace(OPTIONS, &options.grading.options(file.as_deref()))),
+        ("run_autograder", RUN.replace(OPTIONS, &grading.options(file.as_deref()))),
     ];
-    let zip = bundle::zip(root, &scripts, course.as_ref())?;
-    write(&options.out, &zip)?;
-    println!("{}: upload it as the autograder of a programming assignment", options.out.display());
-    Ok(())
+    let zip = bundle::zip(&root, &scripts, course.as_ref())?;
+    write(&out, &zip)?;
+    println!("{}: upload it as the autograder of a programming assignment", out.display());
+    Ok(true)
 }
 
 /// Writes the workflows for GitHub.
-pub fn classroom(options: &ExportOptions) -> Result<()> {
-    let folder = options.out.join(".github/workflows");
-    let course = options.grading.course()?;
+pub fn classroom(given: &Given) -> Result<bool> {
+    let parts = given.number("--parts", 1..=MOST_JOBS)?.unwrap_or(4);
+    let (out, grading) = (given.required_path("--out")?, Grading::read(given)?);
+    let folder = out.join(".github/workflows");
+    let course = grading.course()?;
     let file = course.as_ref().map(in_folder).transpose()?;
-    let numbers: Vec<String> = (1..=options.parts).map(|part| part.to_string()).collect();
-    let (parts, numbers) = (options.parts.to_string(), numbers.join(", "));
+    let numbers: Vec<String> = (1..=parts).map(|part| part.to_string()).collect();
+    let (parts, numbers) = (parts.to_string(), numbers.join(", "));
     // Students can read the seed of their own workflow, so the final grades have another.
-    let of_students = Grading { seed: None, ..options.grading.clone() };
+    let of_students = Grading { seed: None, ..grading.clone() };
     for (name, template, grading) in
-        [("classroom.yml", EACH_PUSH, &of_students), ("class.yml", WHOLE_CLASS, &options.grading)]
+        [("classroom.yml", EACH_PUSH, &of_students), ("class.yml", WHOLE_CLASS, &grading)]
     {
         let graded = grading.options(file.as_deref());
         let file = folder.join(name);
@@ -177,14 +158,15 @@ pub fn classroom(options: &ExportOptions) -> Result<()> {
         write(&file, text.as_bytes())?;
     }
     if let Some(course) = course {
-        course.write_to(&options.out.join(COURSE))?;
-        println!("{}: copy this folder into the repository of the kit", options.out.join(COURSE).display());
+        course.write_to(&out.join(COURSE))?;
+        println!("{}: copy this folder into the repository of the kit", out.join(COURSE).display());
     }
     println!("{}: read the comment at the top of each file before you use it", folder.display());
-    Ok(())
+    Ok(true)
 }
 
-fn write(file: &Path, bytes: &[u8]) -> Result<()> {
+/// Writes a whole file and makes its folder.
+pub(crate) fn write(file: &Path, bytes: &[u8]) -> Result<()> {
     crate::report::make_folder_of(file)?;
     write_atomically(file, |out| out.write_all(bytes))
         .with_context(|| format!("{} cannot be written", file.display()))

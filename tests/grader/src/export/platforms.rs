@@ -2,11 +2,12 @@
 //! reports as a zip of feedback files.
 
 use crate::course::CourseFiles;
+use crate::grade::Store;
 use crate::grade::report::{FileNames, clean_line, messages};
 use crate::grade::result::{Graded, score};
-use crate::grade::{Store, stages};
 use crate::platform::{Column, PlatformTable, number_of, numbered};
 use anyhow::{Context, Result, bail, ensure};
+use raykata::course::stages_of;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use std::fs;
 use std::io::{Cursor, Write};
@@ -51,7 +52,7 @@ pub static CANVAS: Spec = Spec {
 };
 
 /// The options of both commands.
-pub struct PlatformOptions {
+struct PlatformOptions {
     table: PathBuf,
     grades: PathBuf,
     out: PathBuf,
@@ -62,13 +63,13 @@ pub struct PlatformOptions {
 
 impl PlatformOptions {
     /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<PlatformOptions, Misuse> {
+    fn read(given: &Given) -> Result<PlatformOptions, Misuse> {
         Ok(PlatformOptions {
             table: given.required(0)?.into(),
             grades: given.required(1)?.into(),
             out: given.required_path("--out")?,
             column: given.parsed("--column", |name| Ok::<_, String>(name.to_owned()))?,
-            stages: given.parsed("--stages", |text| stages(text).map(|stages| stages.0))?,
+            stages: given.parsed("--stages", stages_of)?,
             scale: given.has("--scale"),
         })
     }
@@ -84,10 +85,11 @@ struct Entry {
 }
 
 /// Fills a table and writes it with the feedback files.
-pub fn platform(options: &PlatformOptions, is_canvas: bool) -> Result<()> {
+pub fn platform(given: &Given, is_canvas: bool) -> Result<bool> {
+    let options = PlatformOptions::read(given)?;
     let mut table = PlatformTable::read(&options.table)?;
-    let (entries, of) = entries(options)?;
-    let (points, most) = columns(&table, options, is_canvas)?;
+    let (entries, of) = entries(&options)?;
+    let (points, most) = columns(&table, &options, is_canvas)?;
 
     // Canvas has rows that are no students: the most points, and a test student.
     let [name, identifier] = [Column::Name, Column::Identifier].map(|kind| table.column(kind));
@@ -157,7 +159,7 @@ pub fn platform(options: &PlatformOptions, is_canvas: bool) -> Result<()> {
         );
     }
     println!("{}: {} of {} submissions filled in", filled.display(), found.rows.len(), entries.len());
-    Ok(())
+    Ok(true)
 }
 
 /// What the class has earned in the chosen stages, and the possible points.

@@ -2,13 +2,13 @@
 //! and starts again; the parts that it runs can be stopped at any time, and the merge refuses a result with holes.
 
 use super::{COURSE, Grading, write};
-use crate::grade::submissions_in;
+use crate::grade::find_submissions;
 use anyhow::{Context, Result, ensure};
 use raykata::rows::Rows;
-use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
-use raykata_cli::kits::{Program, build};
+use raykata_cli::args::{Argument, Given, Opt, Spec};
+use raykata_cli::kits::{Program, build, root};
 use raykata_cli::quality_options::{QualityOptions, ToneOptions};
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsStr;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
@@ -49,64 +49,22 @@ pub static PICTURE: Spec = Spec {
     ],
 };
 
-/// The options of [`SLURM`].
-pub struct SlurmOptions {
-    submissions: PathBuf,
-    chunk: usize,
-    out: PathBuf,
-    grading: Grading,
-}
-
-impl SlurmOptions {
-    /// Reads the options.
-    pub fn read(given: &Given) -> Result<SlurmOptions, Misuse> {
-        Ok(SlurmOptions {
-            submissions: given.required(0)?.into(),
-            chunk: given.number("--chunk", 1..=usize::MAX)?.unwrap_or(200),
-            out: given.required_path("--out")?,
-            grading: Grading::read(given)?,
-        })
-    }
-}
-
-/// The options of [`PICTURE`].
-pub struct PictureOptions {
-    scene: PathBuf,
-    pieces: u32,
-    out: PathBuf,
-    quality: QualityOptions,
-    /// The options of `raykata render`, as they were given.
-    words: Vec<OsString>,
-}
-
-impl PictureOptions {
-    /// Reads the options.
-    pub fn read(given: &Given) -> Result<PictureOptions, Misuse> {
-        // These are passed on to each task, so they must be right now.
-        given.number("--seed", 0..=u64::MAX)?;
-        ToneOptions::read(given)?;
-        Ok(PictureOptions {
-            scene: given.required(0)?.into(),
-            pieces: given.number("--pieces", 1..=u32::MAX)?.unwrap_or(64),
-            out: given.required_path("--out")?,
-            quality: QualityOptions::read(given)?,
-            words: given.words_without(&["--pieces", "--out"]),
-        })
-    }
-}
-
 /// Most tasks of an array in a Slurm with its default settings (`MaxArraySize`).
 const MOST_TASKS: usize = 1000;
 
 /// Writes the scripts that grade a class.
-pub fn slurm(root: &Path, options: &SlurmOptions) -> Result<()> {
-    let submissions = absolute(&options.submissions)?;
-    let n_submissions = submissions_in(&submissions)?;
+pub fn slurm(given: &Given) -> Result<bool> {
+    let class = Path::new(given.required(0)?);
+    let chunk = given.number("--chunk", 1..=usize::MAX)?.unwrap_or(200);
+    let (out, grading) = (given.required_path("--out")?, Grading::read(given)?);
+    let root = root()?;
+    let submissions = absolute(class)?;
+    let n_submissions = find_submissions(&submissions)?.0.len();
     ensure!(n_submissions > 0, "there is no submission in {}", submissions.display());
-    let parts = n_submissions.div_ceil(options.chunk);
+    let parts = n_submissions.div_ceil(chunk);
     let grader = std::env::current_exe().context("the path of this program is unknown")?;
-    let course = options.grading.course()?;
-    let folder = Folder::make(&options.out, "parts")?;
+    let course = grading.course()?;
+    let folder = Folder::make(&out, "parts")?;
     let file = course.map(|course| -> Result<String> {
         course.write_to(&folder.path.join(COURSE))?;
         quoted(folder.path.join(COURSE).join(&course.course.0).as_os_str())
@@ -125,8 +83,8 @@ pub fn slurm(root: &Path, options: &SlurmOptions) -> Result<()> {
             ("submissions_count", n_submissions.to_string()),
             ("submissions", quoted(submissions.as_os_str())?),
             ("parts", parts.to_string()),
-            ("chunk", options.chunk.to_string()),
-            ("options", options.grading.options(file.as_deref())),
+            ("chunk", chunk.to_string()),
+            ("options", grading.options(file.as_deref())),
             ("results", "parts".into()),
             ("first", "grade.sbatch".into()),
             ("second", "merge.sbatch".into()),
@@ -142,19 +100,26 @@ pub fn slurm(root: &Path, options: &SlurmOptions) -> Result<()> {
             n_submissions.div_ceil(MOST_TASKS)
         );
     }
-    Ok(())
+    Ok(true)
 }
 
 /// Writes the scripts that render a picture.
-pub fn picture(root: &Path, options: &PictureOptions) -> Result<()> {
-    let file = absolute(&options.scene)?;
-    let scene = options.quality.load(&file)?;
-    let rows = Rows::divide(scene.film.height, options.pieces);
-    let [raykata] = build(root, "the program that renders", [Program::RAYKATA])?;
-    let folder = Folder::make(&options.out, "pieces")?;
+pub fn picture(given: &Given) -> Result<bool> {
+    // These are passed on to each task, so they must be right now.
+    given.number("--seed", 0..=u64::MAX)?;
+    ToneOptions::read(given)?;
+    let file = Path::new(given.required(0)?);
+    let pieces = given.number("--pieces", 1..=u32::MAX)?.unwrap_or(64);
+    let (out, quality) = (given.required_path("--out")?, QualityOptions::read(given)?);
+    let root = root()?;
+    let file = absolute(file)?;
+    let rows = Rows::divide(quality.load(&file)?.film.height, pieces);
+    let [raykata] = build(&root, "the program that renders", [Program::RAYKATA])?;
+    let folder = Folder::make(&out, "pieces")?;
     let name = file.file_stem().context("the scene has no name")?;
     let picture = folder.path.join(name).with_extension("png");
-    let words: Vec<String> = options.words.iter().map(|word| quoted(word)).collect::<Result<_>>()?;
+    let words = given.words_without(&["--pieces", "--out"]);
+    let words: Vec<String> = words.iter().map(|word| quoted(word)).collect::<Result<_>>()?;
     let list: String = rows.iter().map(|rows| format!("{rows}\n")).collect();
     write(&folder.path.join("rows.txt"), list.as_bytes())?;
     folder.fill(
@@ -183,7 +148,7 @@ pub fn picture(root: &Path, options: &PictureOptions) -> Result<()> {
          this program was built so",
         raykata.display()
     );
-    Ok(())
+    Ok(true)
 }
 
 /// The folder of the scripts.

@@ -16,7 +16,7 @@ use crate::sandbox::{self, Confinement, How, Purpose, Sandbox};
 use anyhow::{Context, Result};
 use judge::lint::{self, Finding, Reading};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -254,7 +254,8 @@ impl Grader {
 
     /// Runs the syntax check on one file. Returns `None` if the check crashed.
     fn reading(&self, text: &str) -> Result<Option<Reading>> {
-        let mut command = Sandbox::with(self.confinement, Purpose::Reader).command(&own_program()?);
+        let program = std::env::current_exe().context("the path of this program is unknown")?;
+        let mut command = Sandbox::with(self.confinement, Purpose::Reader).command(&program);
         command.arg(LINT_WORD);
         let ended = sandbox::run(command, text.as_bytes(), LINT_PATIENCE, 4 << 20)
             .context("the syntax check cannot be started")?;
@@ -299,8 +300,4 @@ pub fn lint_if_asked() {
         }
         std::process::exit(0);
     }
-}
-
-fn own_program() -> Result<PathBuf> {
-    std::env::current_exe().context("the path of this program is unknown")
 }

@@ -5,7 +5,7 @@ use super::shard;
 use super::store::{self, Store};
 use crate::course::CourseFiles;
 use anyhow::{Result, bail, ensure};
-use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use raykata_cli::args::{Argument, Given, Opt, Spec};
 use std::path::{Path, PathBuf};
 
 /// `grader merge`.
@@ -17,27 +17,15 @@ pub static SPEC: Spec = Spec {
     options: &[&[Opt::value("--out", "FOLDER", "The folder for the grades of the whole class.").required()]],
 };
 
-/// The options of `grader merge`.
-pub struct MergeOptions {
-    pub(super) parts: Vec<PathBuf>,
-    pub(super) out: PathBuf,
-}
-
-impl MergeOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<MergeOptions, Misuse> {
-        given.required(0)?;
-        let parts = given.arguments(0).iter().map(PathBuf::from).collect();
-        Ok(MergeOptions { parts, out: given.required_path("--out")? })
-    }
-}
-
 /// Combines the parts of a class. Returns whether every submission could be graded.
-pub fn run(MergeOptions { parts, out }: &MergeOptions) -> Result<bool> {
+pub fn run(given: &Given) -> Result<bool> {
+    given.required(0)?;
+    let parts: Vec<PathBuf> = given.arguments(0).iter().map(PathBuf::from).collect();
+    let out = given.required_path("--out")?;
     // A folder that cannot be used is named together with the parts that are missing.
     let mut faults = Vec::new();
     let mut known = Vec::new();
-    for folder in parts {
+    for folder in &parts {
         match part_of(folder) {
             Ok(part) => known.extend(part.map(|part| (folder.display().to_string(), part))),
             Err(error) => faults.push(format!("{error:#}")),
@@ -52,8 +40,8 @@ pub fn run(MergeOptions { parts, out }: &MergeOptions) -> Result<bool> {
         );
     }
     // Copy the grades.
-    crate::report::make_folder(out)?;
-    let store = Store::claim(out)?;
+    crate::report::make_folder(&out)?;
+    let store = Store::claim(&out)?;
     ensure!(store.session()?.is_none(), "{} already contains grades; choose another folder", out.display());
     // The titles and texts of the reports are those of the course.
     let course = match parts.first() {
@@ -61,9 +49,9 @@ pub fn run(MergeOptions { parts, out }: &MergeOptions) -> Result<bool> {
         None => None,
     };
     course.as_ref().map_or(Ok(()), CourseFiles::apply)?;
-    store.take_over(parts)?;
+    store.take_over(&parts)?;
     store.keep_course(course.as_ref())?;
-    finish(&store, out)
+    finish(&store, &out)
 }
 
 /// Returns which part of a class is in a folder; `None` if it was graded without `--shard`.

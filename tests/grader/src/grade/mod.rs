@@ -21,23 +21,25 @@ mod worker_builder;
 
 pub use grader::{Grader, SharedResults, lint_if_asked};
 pub use judge::{CALL_PATIENCE, Judge};
-pub use merge::{MergeOptions, SPEC as MERGE, run as merge};
+pub use merge::{SPEC as MERGE, run as merge};
 pub use once::Once;
-pub use one::{GradeOneOptions, SPEC as ONE, run as one};
-pub(crate) use options::{draw_seed, stages};
+pub use one::{SPEC as ONE, run as one};
+pub(crate) use options::draw_seed;
 pub use shard::{Shard, shard};
 pub use store::{FILE as STORE, Store};
+pub(crate) use submission::find as find_submissions;
 pub use worker_builder::{COMPILER_PATIENCE, WorkerBuilder};
 
 use crate::course::CourseFiles;
+use crate::kits::root;
 use crate::queue;
 use anyhow::{Context, Result, ensure};
 use options::GradingOptions;
 use raykata::rubric;
-use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use raykata_cli::args::{Argument, Given, Opt, Spec};
 use report::clean::clean_line;
 use shard::Part;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use submission::Submission;
 
 /// `grader grade`.
@@ -92,53 +94,20 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// The options of `grader grade`.
-pub struct GradeOptions {
-    submissions: PathBuf,
-    out: PathBuf,
-    jobs: Option<u16>,
-    shard: Option<Shard>,
-    resume: bool,
-    forget_missing: bool,
-    handed_in: Option<PathBuf>,
-    again: Vec<String>,
-    grading: GradingOptions,
-}
-
-impl GradeOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<GradeOptions, Misuse> {
-        let options = GradeOptions {
-            submissions: given.required(0)?.into(),
-            out: given.required_path("--out")?,
-            jobs: given.number("--jobs", 1..=u16::MAX)?,
-            shard: given.parsed("--shard", shard)?,
-            resume: given.has("--resume"),
-            forget_missing: given.has("--forget-missing"),
-            handed_in: given.path("--handed-in"),
-            again: given.list("--again", |student| Ok::<_, String>(student.to_owned()))?,
-            grading: GradingOptions::read(given)?,
-        };
-        given.require("--shard", "--seed")?;
-        given.require("--forget-missing", "--resume")?;
-        given.require("--again", "--resume")?;
-        Ok(options)
-    }
-}
-
-/// Returns the number of submissions in a folder.
-pub(crate) fn submissions_in(folder: &Path) -> Result<usize> {
-    let found =
-        submission::find(folder).with_context(|| format!("cannot read the folder {}", folder.display()))?;
-    Ok(found.0.len())
-}
-
 /// Grades the class. Returns `Ok(true)` if every submission could be graded, with any grade.
-pub fn run(root: &Path, options: &GradeOptions) -> Result<bool> {
-    let course = options.grading.course()?;
+pub fn run(given: &Given) -> Result<bool> {
+    let (class, out) = (Path::new(given.required(0)?), given.required_path("--out")?);
+    let jobs = given.number("--jobs", 1..=u16::MAX)?;
+    let shard = given.parsed("--shard", shard)?;
+    let again = given.list("--again", |student| Ok::<_, String>(student.to_owned()))?;
+    let options = GradingOptions::read(given)?;
+    given.require("--shard", "--seed")?;
+    given.require("--forget-missing", "--resume")?;
+    given.require("--again", "--resume")?;
+    let root = root()?;
+    let course = CourseFiles::given(given)?;
     // Find the submissions of this part of the class.
-    let (submissions, others) = submission::find(&options.submissions)
-        .with_context(|| format!("cannot read the folder {}", options.submissions.display()))?;
+    let (submissions, others) = submission::find(class)?;
     for other in others {
         eprintln!("not a submission: {}", other.display());
     }
@@ -151,65 +120,66 @@ pub fn run(root: &Path, options: &GradeOptions) -> Result<bool> {
             "note: {path} has the name of another submission, so they are two students: remove one if they are not"
         );
     }
-    ensure!(!submissions.is_empty(), "there is no submission in {}", options.submissions.display());
-    let part = options.shard.map(|shard| Part::of(shard, &submissions));
+    ensure!(!submissions.is_empty(), "there is no submission in {}", class.display());
+    let part = shard.map(|shard| Part::of(shard, &submissions));
     // A part of a small class may be empty.
-    let mine = |one: &Submission| options.shard.is_none_or(|shard| shard.holds(&one.student));
+    let mine = |one: &Submission| shard.is_none_or(|shard| shard.holds(&one.student));
     let submissions: Vec<Submission> = submissions.into_iter().filter(mine).collect();
     // Open the database and begin or continue the session.
     scratch::clean();
-    crate::report::make_folder(&options.out)?;
-    let store = Store::claim(&options.out)?;
+    crate::report::make_folder(&out)?;
+    let store = Store::claim(&out)?;
     let begun = store.session()?;
     ensure!(
-        begun.is_none() || options.resume,
+        begun.is_none() || given.has("--resume"),
         "{} already contains grades: continue them by --resume, or choose another folder",
-        options.out.display()
+        out.display()
     );
     let course = course.or(store.course()?);
     course.as_ref().map_or(Ok(()), CourseFiles::apply)?;
-    let (mut grader, session) = options.grading.begin(root, begun.as_ref())?;
+    let (mut grader, session) = options.begin(&root, begun.as_ref())?;
     // Keep the grades of submissions that are not there, unless the instructor says otherwise.
     let names: Vec<&str> = submissions.iter().map(|one| one.student.as_str()).collect();
-    if let Some(file) = &options.handed_in {
-        let (times, unmatched) = crate::course::handed_in(file, rubric::course(), &names)?;
+    if let Some(file) = given.path("--handed-in") {
+        let (times, unmatched) = crate::course::handed_in(&file, rubric::course(), &names)?;
         grader.handed_in = times;
         // The rows of other parts have no submission here.
-        let unmatched = unmatched.iter().filter(|_| options.shard.is_none());
+        let unmatched = unmatched.iter().filter(|_| shard.is_none());
         unmatched.for_each(|line| eprintln!("note: --handed-in: {}", clean_line(line, 200)));
     }
     store.begin(session)?;
-    for student in &options.again {
+    for student in &again {
         ensure!(
             names.contains(&student.as_str()),
             "--again: there is no submission of {student} in {}",
-            options.submissions.display()
+            class.display()
         );
         store.forget(student)?;
     }
     store.keep_course(course.as_ref())?;
     store.begin_part(part.as_ref())?;
     let others = store.others(&names)?;
-    if options.forget_missing {
+    let forgets = given.has("--forget-missing");
+    if forgets {
         others.iter().try_for_each(|student| store.forget(student))?;
     }
     if let [first, ..] = &others[..] {
-        let fate = if options.forget_missing { "deleted" } else { "kept; --forget-missing deletes them" };
+        let fate = if forgets { "deleted" } else { "kept; --forget-missing deletes them" };
         eprintln!(
             "{} of the grades in {} are of submissions that are not in {}, such as {}: {fate}",
             others.len(),
-            options.out.display(),
-            options.submissions.display(),
+            out.display(),
+            class.display(),
             clean_line(first, 80)
         );
     }
     // Grade all submissions and write the reports.
     let bar = crate::report::bar_of_steps(submissions.len());
-    let jobs = options.jobs.map_or_else(queue::cores, usize::from);
+    let jobs = jobs.map_or_else(queue::cores, usize::from);
     grader.grade_all(&submissions, &store, jobs, |_| bar.inc(1))?;
     bar.finish_and_clear();
     store.finish_part()?;
-    finish(&store, &options.out)
+    finish(&store, &out)
 }
 
 /// Most submissions that could not be graded and that are listed at the end. The reports list all.

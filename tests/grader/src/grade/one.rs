@@ -4,14 +4,14 @@
 use super::options::GradingOptions;
 use super::report;
 use super::result::{Graded, Session, in_words};
-use anyhow::{Context, Result, anyhow};
-use raykata::film::write_atomically;
-use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
-use serde_json::Value;
+use crate::course::CourseFiles;
+use crate::export::write;
+use crate::kits::root;
+use anyhow::{Result, anyhow};
+use raykata_cli::args::{Argument, Given, Opt, Spec};
 use std::any::Any;
-use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// `grader grade-one`.
 pub static SPEC: Spec = Spec {
@@ -32,66 +32,47 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// The options of `grader grade-one`.
-pub struct GradeOneOptions {
-    submission: PathBuf,
-    gradescope: Option<PathBuf>,
-    classroom: Option<PathBuf>,
-    grading: GradingOptions,
-}
-
-impl GradeOneOptions {
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<GradeOneOptions, Misuse> {
-        if !given.has("--gradescope") && !given.has("--classroom") {
-            return Err(given.misuse("at least one of `--gradescope FILE` and `--classroom FILE` is needed"));
-        }
-        Ok(GradeOneOptions {
-            submission: given.required(0)?.into(),
-            gradescope: given.path("--gradescope"),
-            classroom: given.path("--classroom"),
-            grading: GradingOptions::read(given)?,
-        })
-    }
-}
-
 /// Grades a submission and writes the result files, even when grading fails. Returns `Ok(true)` if the submission could be
 /// graded.
-pub fn run(root: impl FnOnce() -> Result<PathBuf>, options: &GradeOneOptions) -> Result<bool> {
-    let graded = catch_unwind(AssertUnwindSafe(|| grade(&root()?, options)));
+pub fn run(given: &Given) -> Result<bool> {
+    let (gradescope, classroom) = (given.path("--gradescope"), given.path("--classroom"));
+    if gradescope.is_none() && classroom.is_none() {
+        let message = "at least one of `--gradescope FILE` and `--classroom FILE` is needed";
+        return Err(given.misuse(message).into());
+    }
+    let submission = Path::new(given.required(0)?);
+    let options = GradingOptions::read(given)?;
+    let grade = || {
+        let root = root()?;
+        CourseFiles::given(given)?.map_or(Ok(()), |course| course.apply())?;
+        let (grader, session) = options.begin(&root, None)?;
+        Ok((grader.grade("submission", grader.take(submission))?, session))
+    };
+    let graded = catch_unwind(AssertUnwindSafe(grade));
     let (graded, session) =
         match graded.unwrap_or_else(|panic| Err(anyhow!("the grader panicked: {}", said(&*panic)))) {
             Ok(graded) => graded,
             Err(error) => {
                 eprintln!("error: {error:#}");
-                broken(options, &format!("the grader failed, tell your instructor: {error:#}"))
+                broken(&options, &format!("the grader failed, tell your instructor: {error:#}"))
             }
         };
-    if let Some(file) = &options.gradescope {
-        write(file, &report::gradescope(&graded, &session))?;
+    if let Some(file) = gradescope {
+        write(&file, &serde_json::to_vec_pretty(&report::gradescope(&graded, &session))?)?;
     }
-    if let Some(file) = &options.classroom {
-        write(file, &report::classroom(&graded))?;
+    if let Some(file) = classroom {
+        write(&file, &serde_json::to_vec_pretty(&report::classroom(&graded))?)?;
     }
     println!("{}", in_words(graded.score()));
     Ok(graded.trouble.is_empty())
 }
 
-fn grade(root: &Path, options: &GradeOneOptions) -> Result<(Graded, Session)> {
-    if let Some(course) = options.grading.course()? {
-        course.apply()?;
-    }
-    let (grader, session) = options.grading.begin(root, None)?;
-    let graded = grader.grade("submission", grader.take(&options.submission))?;
-    Ok((graded, session))
-}
-
 /// Returns the result for a failure of the grader itself: no points, and the reason.
-fn broken(options: &GradeOneOptions, trouble: &str) -> (Graded, Session) {
+fn broken(options: &GradingOptions, trouble: &str) -> (Graded, Session) {
     let graded = Graded { student: "submission".into(), trouble: trouble.into(), ..Graded::default() };
     let session = Session {
         kit: env!("CARGO_PKG_VERSION").into(),
-        seed: options.grading.seed.unwrap_or_default(),
+        seed: options.seed.unwrap_or_default(),
         ..Session::default()
     };
     (graded, session)
@@ -100,11 +81,4 @@ fn broken(options: &GradeOneOptions, trouble: &str) -> (Graded, Session) {
 fn said(panic: &(dyn Any + Send)) -> &str {
     let owned = panic.downcast_ref::<String>().map(String::as_str);
     owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a message")
-}
-
-fn write(file: &Path, results: &Value) -> Result<()> {
-    crate::report::make_folder_of(file)?;
-    let text = serde_json::to_vec_pretty(results)?;
-    write_atomically(file, |out| out.write_all(&text))
-        .with_context(|| format!("{} cannot be written", file.display()))
 }

@@ -4,10 +4,11 @@ use super::grader::Grader;
 use super::judge::{CALL_PATIENCE, Judge};
 use super::result::Session;
 use super::worker_builder::{self, WorkerBuilder};
-use crate::course::{self, CourseFiles, HandedIn};
+use crate::course::{self, HandedIn};
 use crate::sandbox::{self, Confinement};
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
+use raykata::course::stages_of;
 use raykata::rubric;
 use raykata_cli::args::{Given, Misuse, Opt};
 use sha2::{Digest, Sha256};
@@ -19,11 +20,11 @@ use std::sync::Arc;
 /// The options that `grader grade` and `grader grade-one` share.
 #[derive(Default)]
 pub struct GradingOptions {
-    pub(super) stages: Option<Stages>,
+    /// The numbers of the stages, in ascending order.
+    pub(super) stages: Option<Vec<u8>>,
     pub(super) seed: Option<u64>,
     pub(super) allow: Vec<String>,
     pub(super) insecure: bool,
-    pub(super) course: Option<PathBuf>,
 }
 
 impl GradingOptions {
@@ -49,17 +50,11 @@ impl GradingOptions {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<GradingOptions, Misuse> {
         Ok(GradingOptions {
-            stages: given.parsed("--stages", stages)?,
+            stages: given.parsed("--stages", stages_of)?,
             seed: given.number("--seed", 0..=u64::MAX)?,
             allow: given.list("--allow", |rule| Ok::<_, String>(rule.to_owned()))?,
             insecure: given.has("--insecure"),
-            course: given.path("--course"),
         })
-    }
-
-    /// Reads the course file.
-    pub fn course(&self) -> Result<Option<CourseFiles>> {
-        self.course.as_deref().map(CourseFiles::read).transpose()
     }
 
     /// Makes a grader, and the session that the reports describe. Without the options, stages and seed are those of
@@ -68,8 +63,7 @@ impl GradingOptions {
         let (confinement, isolation) = self.confinement()?;
         let builder = WorkerBuilder::prepare(root, confinement)?;
         let course = rubric::course();
-        let stages = self.stages.as_ref().map(|Stages(stages)| stages.clone());
-        if let Some(stage) = stages.iter().flatten().find(|stage| course.leaves_out(**stage)) {
+        if let Some(stage) = self.stages.iter().flatten().find(|stage| course.leaves_out(**stage)) {
             bail!("--stages names stage {stage}, which the course file leaves out: change one of the two");
         }
         // Another course file decides which of the graded stages count.
@@ -79,7 +73,7 @@ impl GradingOptions {
         });
         let session = Session {
             kit: kit(root, &self.allow, &builder)?,
-            stages: stages.or(begun_stages).unwrap_or_else(stages_of_course),
+            stages: self.stages.clone().or(begun_stages).unwrap_or_else(stages_of_course),
             seed: self.seed.or(begun.map(|session| session.seed)).unwrap_or_else(draw_seed),
             isolation,
             dropped: Vec::new(),
@@ -104,7 +98,7 @@ impl GradingOptions {
     /// Tests the sandbox. Returns how strict it is, and a line about it for the reports.
     fn confinement(&self) -> Result<(Confinement, String)> {
         match sandbox::self_test() {
-            Ok(level) => Ok((Confinement::Full, level.to_string())),
+            Ok(level) => Ok((Confinement::Full, level)),
             Err(error) if self.insecure => {
                 eprintln!("warning: submissions run without a sandbox: {error:#}");
                 let isolation = "resource limits only, by choice of the instructor (--insecure)";
@@ -116,15 +110,6 @@ impl GradingOptions {
             )),
         }
     }
-}
-
-/// Numbers of stages, in ascending order.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Stages(pub(crate) Vec<u8>);
-
-/// Reads a list of stages such as `1-4,10`.
-pub(crate) fn stages(text: &str) -> Result<Stages, String> {
-    raykata::course::stages_of(text).map(Stages)
 }
 
 /// All stages that the course does not leave out.
@@ -166,10 +151,10 @@ mod tests {
 
     #[test]
     fn stages_are_read_as_people_write_them() {
-        assert_eq!(stages("1-4,10").unwrap(), Stages(vec![1, 2, 3, 4, 10]));
-        assert_eq!(stages("3").unwrap(), Stages(vec![3]));
+        assert_eq!(stages_of("1-4,10").unwrap(), [1, 2, 3, 4, 10]);
+        assert_eq!(stages_of("3").unwrap(), [3]);
         for wrong in ["", "x", "0", "4-2", "1-99"] {
-            assert!(stages(wrong).is_err(), "{wrong}");
+            assert!(stages_of(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -2,6 +2,7 @@
 //! renamed and ignored files that a student may wonder about.
 
 use super::result::Remark;
+use anyhow::Context;
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, HashMap};
 use std::fs::{self, OpenOptions};
@@ -64,10 +65,11 @@ impl SubmittedFiles {
 }
 
 /// Returns the submissions in a folder, sorted by name, and the other entries of the folder.
-pub fn find(folder: &Path) -> io::Result<(Vec<Submission>, Vec<PathBuf>)> {
+pub fn find(folder: &Path) -> Result<(Vec<Submission>, Vec<PathBuf>), anyhow::Error> {
+    let cannot = || format!("cannot read the folder {}", folder.display());
     let (mut found, mut others) = (Vec::new(), Vec::new());
-    for entry in fs::read_dir(folder)? {
-        let entry = entry?;
+    for entry in fs::read_dir(folder).with_context(cannot)? {
+        let entry = entry.with_context(cannot)?;
         let path = entry.path();
         let name = path.file_name().unwrap_or_default();
         // Most file systems know this from the list of the folder, without a look at each entry. A link is neither.

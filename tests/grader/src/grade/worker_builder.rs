@@ -182,10 +182,7 @@ impl WorkerBuilder {
             );
             // A linker error does not name a file, so replace all files of the student.
             let why = format!("the files compile but cannot be linked: {}\n", died(&ended));
-            let all: BTreeMap<_, _> = suspects
-                .into_iter()
-                .map(|name| (name.clone(), (Outcome::DoesNotCompile, why.clone())))
-                .collect();
+            let all = suspects.into_iter().map(|name| (name.clone(), (Outcome::DoesNotCompile, why.clone())));
             let mut empty = self.build_alone(scratch, &BTreeMap::new())?;
             empty.replaced.extend(all);
             empty.cpu += cpu;

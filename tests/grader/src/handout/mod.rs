@@ -10,10 +10,11 @@ use crate::course::{self, CourseFiles};
 use crate::files_below::{files_below, last_part};
 use anyhow::{Context, Result, bail, ensure};
 use raykata::course::{Course, stages_of};
-use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use raykata_cli::args::{Argument, Given, Opt, Spec};
+use raykata_cli::kits::root;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// `grader handout`.
@@ -31,39 +32,6 @@ pub static SPEC: Spec = Spec {
         ),
     ]],
 };
-
-/// The options of `grader handout`.
-pub struct HandoutOptions {
-    folder: PathBuf,
-    /// The course file.
-    file: Option<PathBuf>,
-    title: Option<String>,
-    stages: Option<String>,
-}
-
-impl HandoutOptions {
-    /// Reads the course file, or makes one of the title and the stages; `None` if there is none of these.
-    fn course(&self) -> Result<Option<CourseFiles>> {
-        match (&self.file, &self.title, &self.stages) {
-            (Some(file), ..) => CourseFiles::read(file).map(Some),
-            (None, None, None) => Ok(None),
-            (None, title, stages) => CourseFiles::of(title.as_deref(), stages.as_deref()).map(Some),
-        }
-    }
-
-    /// Reads the options from the command line.
-    pub fn read(given: &Given) -> Result<HandoutOptions, Misuse> {
-        given.exclude("--course", "--title")?;
-        given.exclude("--course", "--stages")?;
-        let stages = |text: &str| stages_of(text).map(|_| text.to_owned());
-        Ok(HandoutOptions {
-            folder: given.required(0)?.into(),
-            file: given.path("--course"),
-            title: given.parsed("--title", title)?,
-            stages: given.parsed("--stages", stages)?,
-        })
-    }
-}
 
 /// Reads a title, which is one line.
 fn title(text: &str) -> Result<String> {
@@ -122,18 +90,29 @@ const LIST: &str = "tests/kit.toml";
 const README: &str = include_str!("README.md");
 
 /// Writes the student's repository, completely or not at all.
-pub fn run(root: &Path, options: &HandoutOptions) -> Result<()> {
-    let folder = std::path::absolute(&options.folder)?;
+pub fn run(given: &Given) -> Result<bool> {
+    given.exclude("--course", "--title")?;
+    given.exclude("--course", "--stages")?;
+    let stages = |text: &str| stages_of(text).map(|_| text.to_owned());
+    let asked = Path::new(given.required(0)?);
+    let (title, stages) = (given.parsed("--title", title)?, given.parsed("--stages", stages)?);
+    let root = root()?;
+    let folder = std::path::absolute(asked)?;
     if fs::read_dir(&folder).is_ok_and(|mut inside| inside.next().is_some()) || folder.is_file() {
-        bail!("{} is not empty: a hand-out needs a new or empty folder", options.folder.display());
+        bail!("{} is not empty: a hand-out needs a new or empty folder", asked.display());
     }
     let parent = folder.parent().context("a hand-out needs a new or empty folder")?;
     crate::report::make_folder(parent)?;
     // Write all files into a draft folder.
     let draft = tempfile::tempdir_in(parent)?;
-    let n_files = write(root, draft.path(), options.course()?.as_ref())?;
+    // The title and the stages alone need no file.
+    let course = match (&title, &stages) {
+        (None, None) => CourseFiles::given(given)?,
+        _ => Some(CourseFiles::of(title.as_deref(), stages.as_deref())?),
+    };
+    let n_files = write(&root, draft.path(), course.as_ref())?;
     // Stop if the draft contains an answer.
-    let found = leaks(root, draft.path())?;
+    let found = leaks(&root, draft.path())?;
     ensure!(
         found.is_empty(),
         "the hand-out would contain answers, so it was not written:\n  {}",
@@ -144,10 +123,10 @@ pub fn run(root: &Path, options: &HandoutOptions) -> Result<()> {
     let draft = draft.keep();
     if let Err(error) = fs::rename(&draft, &folder) {
         let _ = fs::remove_dir_all(&draft);
-        return Err(error).with_context(|| format!("cannot make {}", options.folder.display()));
+        return Err(error).with_context(|| format!("cannot make {}", asked.display()));
     }
-    println!("{}: {} files; run `cargo run` in it to see the first task", options.folder.display(), n_files);
-    Ok(())
+    println!("{}: {n_files} files; run `cargo run` in it to see the first task", asked.display());
+    Ok(true)
 }
 
 /// Writes the files of a hand-out into a folder, with Cargo.lock if cargo can make it. Returns the number of the others.
@@ -191,10 +170,15 @@ pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
         };
         *bytes = lines.map(own).collect::<String>().into_bytes();
     }
-    for (path, bytes) in
-        named(root, "tests", "stage")?.into_iter().chain(named(root, "tests/golden", "stage")?)
-    {
-        files.insert(path, bytes);
+    // The tests of the stages, and their golden texts and pictures.
+    for folder in ["tests", "tests/golden"] {
+        let of_stage = |path: &str| path.starts_with(&format!("{folder}/stage"));
+        let endings = [".rs", ".snap", ".png"];
+        for path in files_below(root, folder, &of_stage)? {
+            if endings.iter().any(|ending| path.ends_with(ending)) {
+                files.insert(path.clone(), read(root, &path)?);
+            }
+        }
     }
     for (name, text) in crate::exercises::pristine(root)? {
         files.insert(format!("exercises/src/{name}"), text.into_bytes());
@@ -250,21 +234,6 @@ fn name_course(files: &mut BTreeMap<String, Vec<u8>>, course: &CourseFiles) -> R
     }
     .into_bytes();
     Ok(())
-}
-
-/// Returns the texts and pictures directly in a folder whose names begin with `start`.
-fn named(root: &Path, folder: &str, start: &str) -> Result<Vec<(String, Vec<u8>)>> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(root.join(folder)).with_context(|| format!("there is no folder {folder}"))? {
-        let entry = entry?;
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let is_wanted = ["rs", "snap", "png"].iter().any(|ending| name.ends_with(&format!(".{ending}")));
-        if name.starts_with(start) && is_wanted && entry.file_type()?.is_file() {
-            let path = format!("{folder}/{name}");
-            found.push((path.clone(), read(root, &path)?));
-        }
-    }
-    Ok(found)
 }
 
 /// Returns the student's README: the greeting and the chapter for students of the kit's README, and the student's own text.

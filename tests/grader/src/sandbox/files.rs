@@ -114,14 +114,13 @@ fn allow_if_there(rules: RulesetCreated, path: &Path, access: BitFlags<AccessFs>
 
 fn allow(rules: RulesetCreated, path: &Path, access: BitFlags<AccessFs>) -> Result<RulesetCreated> {
     let about = || format!("{} cannot be made accessible", path.display());
-    let access = if path.metadata().with_context(about)?.is_dir() { access } else { access & of_files() };
+    let access = if path.metadata().with_context(about)?.is_dir() {
+        access
+    } else {
+        access & AccessFs::from_file(NEWEST)
+    };
     let opened = PathFd::new(path).with_context(about)?;
     rules.add_rule(PathBeneath::new(opened, access)).with_context(about)
-}
-
-/// Returns the rights that apply to files other than folders.
-fn of_files() -> BitFlags<AccessFs> {
-    AccessFs::from_file(NEWEST)
 }
 
 /// Returns the Landlock version in words. This restricts the calling process.

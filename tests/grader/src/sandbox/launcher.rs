@@ -21,8 +21,8 @@ const STACK_ROOM: u64 = 8 << 20;
 /// kills the process like a lack of memory does, so it must come later.
 const CPU_GRACE_SECONDS: u64 = 2;
 
-pub(super) fn launch(arguments: Vec<OsString>) -> Result<Infallible> {
-    let mut arguments = arguments.into_iter();
+/// Becomes the program. It returns only if there is an error.
+pub(super) fn launch(mut arguments: impl Iterator<Item = OsString>) -> Result<Infallible> {
     let asked = LaunchRequest::from(&mut arguments)?;
     close_inherited()?;
     // Make the kernel end this process together with the judge.

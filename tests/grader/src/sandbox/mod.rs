@@ -15,11 +15,10 @@ mod run;
 
 use ended::how_it_died;
 pub use ended::{Ended, How};
-pub use probes::{Level, got_through, self_test};
+pub use probes::{got_through, self_test};
 pub use run::{run, spawn_guarded};
 
 use crate::worker::{Death, Launcher, last_words};
-use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus};
@@ -255,20 +254,13 @@ pub fn launch_if_asked() {
         std::process::exit(0);
     }
     if word == LAUNCH {
-        eprintln!("{NOT_LAUNCHED_BECAUSE}{}", launch(arguments.collect()));
+        let Err(error) = launcher::launch(arguments);
+        eprintln!("{NOT_LAUNCHED_BECAUSE}{error}");
         std::process::exit(NOT_LAUNCHED);
     }
     // Use the kernel's link to this program. It stays the same program even if cargo builds a new one.
     let myself = Path::new("/proc/self/exe");
     if let Some(launcher) = if myself.exists() { Some(myself.into()) } else { std::env::current_exe().ok() } {
         let _ = LAUNCHER.set(launcher);
-    }
-}
-
-/// Runs the launcher. It returns only if there is an error.
-fn launch(arguments: Vec<OsString>) -> anyhow::Error {
-    match launcher::launch(arguments) {
-        Err(error) => error,
-        Ok(never) => match never {},
     }
 }

@@ -3,7 +3,11 @@
 
 use super::{Ended, How, PROBE, Purpose, Sandbox, run, this_program};
 use anyhow::{Context, Result, bail};
-use std::fmt;
+use nix::sched::{CloneFlags, unshare};
+use nix::sys::memfd::{MFdFlags, memfd_create};
+use nix::sys::resource::{Resource, setrlimit};
+use nix::sys::signal::kill;
+use nix::unistd::{Pid, getppid, setsid};
 use std::io::{self, Write};
 use std::path::Path;
 use std::time::Duration;
@@ -15,18 +19,9 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// Most output of the tests, in bytes. They print far less.
 const CAP: usize = 64 << 10;
 
-/// The restrictions that hold on this machine, in words.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Level(String);
-
-impl fmt::Display for Level {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-/// Tries to break out of a worker's sandbox. Returns an error if an action succeeds or if there is no sandbox.
-pub fn self_test() -> Result<Level> {
+/// Tries to break out of a worker's sandbox. Returns the restrictions that hold on this machine, in words, or an error if an action
+/// succeeds or if there is no sandbox.
+pub fn self_test() -> Result<String> {
     let sandbox = Sandbox::new(Purpose::Worker);
     let brief =
         Sandbox { limits: super::ResourceLimits { cpu_seconds: 1, ..sandbox.limits }, ..sandbox.clone() };
@@ -51,7 +46,7 @@ pub fn self_test() -> Result<Level> {
     if !through.is_empty() {
         bail!("the sandbox does not hold on this machine: a sandboxed program could {}", through.join(", "));
     }
-    Ok(Level(format!("{}, seccomp, resource limits, no new privileges", landlock_level()?)))
+    Ok(format!("{}, seccomp, resource limits, no new privileges", landlock_level()?))
 }
 
 fn landlock_level() -> Result<String> {
@@ -158,16 +153,17 @@ const PROBES: &[Probe] = &[
     ("open a datagram socket", || std::net::UdpSocket::bind(("127.0.0.1", 0)).map(drop)),
     ("make a pair of sockets", || std::os::unix::net::UnixStream::pair().map(drop)),
     ("start a process", || std::process::Command::new("/bin/sh").args(["-c", ":"]).status().map(drop)),
-    ("start a thread", || std::thread::Builder::new().spawn(|| {})?.join().map_err(|_| other())),
+    ("start a thread", || std::thread::Builder::new().spawn(|| {}).map(drop)),
     ("allocate 100 GB", || {
         Vec::<u8>::new().try_reserve_exact(100 << 30).map_err(|_| io::ErrorKind::OutOfMemory.into())
     }),
-    ("signal its judge", kernel::signal_judge),
-    ("signal all processes", kernel::signal_all),
-    ("leave its group", kernel::leave_group),
-    ("enter a new namespace", kernel::name_space),
-    ("raise its own limits", kernel::raise_limits),
-    ("make a file in memory", kernel::file_in_memory),
+    // Signal 0 only tests the permission.
+    ("signal its judge", || Ok(kill(getppid(), None)?)),
+    ("signal all processes", || Ok(kill(Pid::from_raw(-1), None)?)),
+    ("leave its group", || Ok(setsid().map(drop)?)),
+    ("enter a new namespace", || Ok(unshare(CloneFlags::CLONE_NEWUSER)?)),
+    ("raise its own limits", || Ok(setrlimit(Resource::RLIMIT_CPU, 1 << 20, 1 << 20)?)),
+    ("make a file in memory", || Ok(memfd_create("probe", MFdFlags::empty()).map(drop)?)),
 ];
 
 fn of_judge(file: &str) -> String {
@@ -176,44 +172,4 @@ fn of_judge(file: &str) -> String {
 
 fn elsewhere(what: &str) -> std::path::PathBuf {
     Path::new(ELSEWHERE).join(format!("raykata-probe-{}-{what}", std::process::id()))
-}
-
-fn other() -> io::Error {
-    io::Error::other("not as expected")
-}
-
-mod kernel {
-    use nix::sched::{CloneFlags, unshare};
-    use nix::sys::memfd::{MFdFlags, memfd_create};
-    use nix::sys::resource::{Resource, setrlimit};
-    use nix::sys::signal::kill;
-    use nix::unistd::{Pid, getppid, setsid};
-    use std::io;
-
-    /// Sends signal 0, which only tests the permission.
-    pub fn signal_judge() -> io::Result<()> {
-        Ok(kill(getppid(), None)?)
-    }
-
-    pub fn signal_all() -> io::Result<()> {
-        Ok(kill(Pid::from_raw(-1), None)?)
-    }
-
-    pub fn leave_group() -> io::Result<()> {
-        setsid()?;
-        Ok(())
-    }
-
-    pub fn name_space() -> io::Result<()> {
-        Ok(unshare(CloneFlags::CLONE_NEWUSER)?)
-    }
-
-    pub fn raise_limits() -> io::Result<()> {
-        Ok(setrlimit(Resource::RLIMIT_CPU, 1 << 20, 1 << 20)?)
-    }
-
-    pub fn file_in_memory() -> io::Result<()> {
-        memfd_create("probe", MFdFlags::empty())?;
-        Ok(())
-    }
 }

@@ -2,33 +2,17 @@
 use super::program_runs::{does_not_understand, explains, said};
 
 /// The commands with their arguments and options.
-const COMMANDS: [(&str, &[&str]); 10] = [
-    (
-        "grade",
-        &[
-            "SUBMISSIONS",
-            "--out",
-            "--jobs",
-            "--shard",
-            "--resume",
-            "--stages",
-            "--seed",
-            "--allow",
-            "--insecure",
-        ],
-    ),
-    (
-        "grade-one",
-        &["SUBMISSION", "--gradescope", "--classroom", "--stages", "--seed", "--allow", "--insecure"],
-    ),
-    ("merge", &["PART...", "--out"]),
-    ("handout", &["FOLDER", "--title", "--stages"]),
-    ("export gradescope", &["--out", "--stages", "--seed", "autograder.zip"]),
-    ("export slurm", &["SUBMISSIONS", "--out", "--chunk", "--stages", "--seed"]),
-    ("export slurm-picture", &["SCENE", "--out", "--pieces", "--seed", "--size", "--tone"]),
-    ("export moodle", &["TABLE", "GRADES", "--out", "--column", "--stages", "--scale"]),
-    ("export canvas", &["TABLE", "GRADES", "--out", "--column", "--stages", "--scale"]),
-    ("export classroom", &["--out", "--stages", "--seed", "--parts"]),
+const COMMANDS: [(&str, &str); 10] = [
+    ("grade", "SUBMISSIONS --out --jobs --shard --resume --stages --seed --allow --insecure"),
+    ("grade-one", "SUBMISSION --gradescope --classroom --stages --seed --allow --insecure"),
+    ("merge", "PART... --out"),
+    ("handout", "FOLDER --title --stages"),
+    ("export gradescope", "--out --stages --seed autograder.zip"),
+    ("export slurm", "SUBMISSIONS --out --chunk --stages --seed"),
+    ("export slurm-picture", "SCENE --out --pieces --seed --size --tone"),
+    ("export moodle", "TABLE GRADES --out --column --stages --scale"),
+    ("export canvas", "TABLE GRADES --out --column --stages --scale"),
+    ("export classroom", "--out --stages --seed --parts"),
 ];
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_grader");

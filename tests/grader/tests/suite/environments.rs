@@ -37,7 +37,7 @@ fn programs_are_found_wherever_cargo_puts_them() {
     let config = around.join(".cargo/config.toml");
     fs::write(&config, "").expect("written");
     let kit = around.join("kit");
-    grader_succeeds(&["handout", &kit.to_string_lossy()]);
+    grader_succeeds(["handout", &kit.to_string_lossy()]);
     let cargo = |environment: &[(&str, &str)], from: &Path, words: &[&str]| -> Output {
         let mut cargo = Command::new(env!("CARGO"));
         cargo.current_dir(from).env_remove("CARGO_TARGET_DIR").env_remove("RUSTFLAGS");

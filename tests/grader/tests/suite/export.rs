@@ -1,5 +1,6 @@
 //! Tests the files for Gradescope and GitHub Classroom, and that grading one submission always writes a result.
 
+use super::grade::{hand_in, right};
 use super::program_runs::{printed, root};
 use super::{grader, grader_succeeds};
 use serde_json::Value;
@@ -12,7 +13,7 @@ fn written(arguments: &[&str]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
     let out = out.to_string_lossy();
-    grader_succeeds(&[arguments, &["--out", &out, "--stages", "1-4", "--seed", "77"]].concat());
+    grader_succeeds([arguments, &["--out", &out, "--stages", "1-4", "--seed", "77"]].concat());
     folder
 }
 
@@ -81,7 +82,7 @@ fn classroom_gets_workflows_whose_steps_are_scripts() {
     }
     // Each part of the class is graded by one job, and the merge takes the parts of all jobs.
     let most = folder.path().join("most");
-    grader_succeeds(&["export", "classroom", "--out", &most.to_string_lossy(), "--parts", "256"]);
+    grader_succeeds(["export", "classroom", "--out", &most.to_string_lossy(), "--parts", "256"]);
     let text = fs::read_to_string(most.join(".github/workflows/class.yml")).expect("a workflow");
     let list = text.split_once("part: [").and_then(|(_, rest)| rest.split_once(']')).expect("a matrix").0;
     let parts: Vec<u16> = list.split(", ").map(|part| part.parse().expect("a number")).collect();
@@ -89,7 +90,7 @@ fn classroom_gets_workflows_whose_steps_are_scripts() {
     assert!(text.contains("--shard ${{ matrix.part }}/256 ") && !text.contains("{parts}"), "{text}");
     // The files exist, and the instructor may have edited them.
     let out = folder.path().join("out");
-    let again = grader(&["export", "classroom", "--out", &out.to_string_lossy()]);
+    let again = grader(["export", "classroom", "--out", &out.to_string_lossy()]);
     assert!(printed(&again).1.contains("already exists"), "{}", printed(&again).1);
 }
 
@@ -144,25 +145,10 @@ fn what_breaks_in_the_grader_is_an_answer_too() {
 fn one_submission_is_graded_for_both() {
     let folder = tempfile::tempdir().expect("a folder");
     let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
-    fs::create_dir_all(folder.path().join("right/exercises/src")).expect("made");
-    let solution = root().join("solutions/src/stage1_shapes.rs");
-    let text = fs::read_to_string(&solution).expect("an answer");
-    let file = folder.path().join("right/exercises/src/stage1_shapes.rs");
-    fs::write(file, grader::exercises::answer(&text, &solution).expect("marks that match")).expect("written");
-    let exercises = root().join("exercises").to_string_lossy().into_owned();
-    for (submission, share) in [(at("right"), 1.0), (exercises, 0.0)] {
-        grader_succeeds(&[
-            "grade-one",
-            &submission,
-            "--stages",
-            "1",
-            "--seed",
-            "5",
-            "--gradescope",
-            &at("g.json"),
-            "--classroom",
-            &at("c.json"),
-        ]);
+    hand_in(folder.path(), "right", &right());
+    for (submission, share) in [(at("right"), 1.0), ("exercises".to_owned(), 0.0)] {
+        let results = format!("--gradescope {} --classroom {}", at("g.json"), at("c.json"));
+        grader_succeeds(format!("grade-one {submission} --stages 1 --seed 5 {results}").split(' '));
         let (results, result) = (json(Path::new(&at("g.json"))), json(Path::new(&at("c.json"))));
         let sum = |tests: &Value, of: &str| -> f64 {
             tests.as_array().into_iter().flatten().filter_map(|test| test[of].as_f64()).sum()

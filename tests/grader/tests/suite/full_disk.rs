@@ -2,64 +2,9 @@
 
 use super::grade::{hand_in, right};
 use super::program_runs::{leaves_out_what_takes_long, printed, root, small_disk};
-use super::{grader, grader_succeeds, said_by};
+use super::{grader_succeeds, said_by};
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Grading takes a quarter of a minute, so this runs only with `CI_LONG=1`.
-#[test]
-fn a_full_disk_is_an_error_that_names_the_file_and_the_next_run_continues() {
-    if leaves_out_what_takes_long() {
-        return;
-    }
-    let folder = tempfile::tempdir().unwrap();
-    let class = folder.path().join("class");
-    for number in 0..4 {
-        hand_in(&class, &format!("student-{number}"), &right().replace("0.5", &format!("0.5{number}")));
-    }
-    let disk = folder.path().join("disk");
-    fs::create_dir(&disk).unwrap();
-    // Only the results are on the small disk. It is filled, and later made larger, as someone who makes room does.
-    let script = format!(
-        "mount -t tmpfs -o size=200k tmpfs {disk}\n\
-         run() {{ {grader} \"$@\" && echo 'ended well' || echo 'ended badly'; }}\n\
-         run grade {class} --stages 1 --seed 5 --jobs 1 --out {disk}/grades\n\
-         echo '--- room'\n\
-         mount -o remount,size=64m {disk}\n\
-         run grade {class} --stages 1 --seed 5 --jobs 1 --out {disk}/grades --resume\n\
-         cp {disk}/grades/grades.csv {around}/resumed.csv\n",
-        disk = disk.display(),
-        grader = env!("CARGO_BIN_EXE_grader"),
-        class = class.display(),
-        around = folder.path().display(),
-    );
-    let Some(mut shell) = small_disk(&script) else {
-        return println!("SKIPPED: this user may not mount a small disk, so a full disk is not tried");
-    };
-    let output = shell.output().unwrap();
-    let text = said_by(&output);
-    let (said, complained) = printed(&output);
-    assert!(output.status.success(), "{text}");
-    let parts: Vec<&str> = said.split("---").collect();
-    assert!(parts[0].contains("ended badly") && parts[1].contains("ended well"), "{text}");
-    assert!(complained.contains(&format!("{}/grades/", disk.display())), "{text}");
-    assert!(complained.contains("full") || complained.contains("No space left"), "{text}");
-    // The grades are those of a run with room.
-    let whole = folder.path().join("whole");
-    let grade = [
-        "grade",
-        &class.to_string_lossy(),
-        "--stages",
-        "1",
-        "--seed",
-        "5",
-        "--out",
-        &whole.to_string_lossy(),
-    ];
-    assert!(grader(&grade).status.success());
-    let table = |file: &Path| fs::read_to_string(file).unwrap();
-    assert_eq!(table(&folder.path().join("resumed.csv")), table(&whole.join("grades.csv")));
-}
 
 /// A command whose result is on a small disk.
 struct FullDiskRun {
@@ -132,29 +77,24 @@ fn try_all(cases: &[FullDiskRun]) {
     }
 }
 
-/// Grades two submissions in two parts.
-fn parts_of_a_class(around: &Path) -> [String; 2] {
+/// Grades a class of four in two parts. Returns the folders of the class and of the parts.
+fn parts_of_a_class(around: &Path) -> [String; 3] {
     let class = around.join("class");
-    for number in 0..2 {
+    for number in 0..4 {
         hand_in(&class, &format!("student-{number}"), &right().replace("0.5", &format!("0.5{number}")));
     }
-    let class = class.to_string_lossy();
-    ["1/2", "2/2"].map(|part| {
+    let class = class.to_string_lossy().into_owned();
+    let [one, other] = ["1/2", "2/2"].map(|part| {
         let out = around.join(&part[..1]).to_string_lossy().into_owned();
-        grader_succeeds(&["grade", &class, "--stages", "1", "--seed", "5", "--shard", part, "--out", &out]);
+        grader_succeeds(["grade", &class, "--stages", "1", "--seed", "5", "--shard", part, "--out", &out]);
         out
-    })
+    });
+    [class, one, other]
 }
 
 fn case(program: &Path, command: &str, size: &'static str, result: &'static str) -> FullDiskRun {
-    FullDiskRun {
-        program: program.to_owned(),
-        command: command.to_owned(),
-        resume: "",
-        size,
-        keeps: None,
-        result,
-    }
+    let (program, command) = (program.to_owned(), command.to_owned());
+    FullDiskRun { program, command, resume: "", size, keeps: None, result }
 }
 
 #[test]
@@ -173,16 +113,19 @@ fn a_picture_that_does_not_fit_on_the_disk_is_rendered_when_there_is_room() {
     ]);
 }
 
-/// These take a third of a minute, so they run only with `CI_LONG=1`.
+/// These take a minute, so they run only with `CI_LONG=1`.
 #[test]
 fn every_command_names_the_file_on_a_full_disk_and_continues_with_room() {
     if leaves_out_what_takes_long() {
         return;
     }
     let around = tempfile::tempdir().unwrap();
-    let [one, other] = parts_of_a_class(around.path());
+    let [class, one, other] = parts_of_a_class(around.path());
     let grader = PathBuf::from(env!("CARGO_BIN_EXE_grader"));
+    let grade = format!("grade {class} --stages 1 --seed 5 --jobs 1 --out DISK/grades");
+    let grading = case(&grader, &grade, "200k", "grades/grades.csv");
     try_all(&[
+        FullDiskRun { resume: "--resume", keeps: Some("grades/grades.sqlite"), ..grading },
         case(&grader, &format!("merge {one} {other} --out DISK/merged"), "40k", "merged/grades.csv"),
         case(&grader, "export gradescope --out DISK/autograder.zip", "100k", ""),
         case(&grader, "handout DISK/course", "500k", "course/exercises/src/lib.rs"),
@@ -202,23 +145,11 @@ fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
         shadows.display()
     );
     let program = |name: &str| Path::new(env!("CARGO_BIN_EXE_grader")).with_file_name(name);
+    let rehearse = "rehearse --honest --students 4 --jobs 1 --out DISK/grades";
+    let rehearsal = case(&program("author"), rehearse, "200k", "grades/grades.csv");
     try_all(&[
-        FullDiskRun {
-            program: program("raykata"),
-            command: cost,
-            resume: "",
-            size: "16k",
-            keeps: Some("cost/unfinished.jsonl"),
-            // All files contain measured times.
-            result: "",
-        },
-        FullDiskRun {
-            program: program("author"),
-            command: "rehearse --honest --students 4 --jobs 1 --out DISK/grades".into(),
-            resume: "--resume",
-            size: "200k",
-            keeps: Some("grades/grades.sqlite"),
-            result: "grades/grades.csv",
-        },
+        // All files contain measured times.
+        FullDiskRun { keeps: Some("cost/unfinished.jsonl"), ..case(&program("raykata"), &cost, "16k", "") },
+        FullDiskRun { resume: "--resume", keeps: Some("grades/grades.sqlite"), ..rehearsal },
     ]);
 }

@@ -22,21 +22,24 @@ mod sandboxed_workers;
 #[cfg(target_os = "linux")]
 mod slurm;
 
+use std::ffi::OsStr;
+use std::process::Output;
+
 /// Runs the program `grader`.
-fn grader(arguments: &[&str]) -> std::process::Output {
+fn grader(arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Output {
     program_runs::run(env!("CARGO_BIN_EXE_grader"), arguments)
 }
 
 /// Runs the grader, which must succeed. Returns what it prints.
-fn grader_succeeds(arguments: &[&str]) -> String {
+fn grader_succeeds(arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> String {
     let output = grader(arguments);
     let said = said_by(&output);
-    assert!(output.status.success(), "{arguments:?}: {said}");
+    assert!(output.status.success(), "{said}");
     said
 }
 
 /// What a program printed to both of its outputs.
-fn said_by(output: &std::process::Output) -> String {
+fn said_by(output: &Output) -> String {
     let (said, complained) = program_runs::printed(output);
     format!("{said}{complained}")
 }

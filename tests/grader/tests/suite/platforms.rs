@@ -35,18 +35,9 @@ fn a_class_goes_from_the_platforms_and_back() {
     hand_in(&class_folder, "Ann A. Lee_41_assignsubmission_file_", &right());
     hand_in(&class_folder, "bollbo_LATE_42_9_kit", &right());
     hand_in(&class_folder, "eve", "");
-    let graded = grader(&[
-        "grade",
-        &class,
-        "--out",
-        &grades,
-        "--course",
-        &course,
-        "--seed",
-        "5",
-        "--handed-in",
-        &path("moodle.csv"),
-    ]);
+    let times = path("moodle.csv");
+    let grade = format!("grade {class} --out {grades} --course {course} --seed 5 --handed-in {times}");
+    let graded = grader(grade.split(' '));
     let said = said_by(&graded);
     assert!(graded.status.success() && said.contains("--handed-in: eve: no row has this name"), "{said}");
     assert!(text(&folder.path().join("grades/gradescope/bollbo_LATE_42_9_kit.json")).contains("1 day late"));
@@ -54,14 +45,14 @@ fn a_class_goes_from_the_platforms_and_back() {
     // The instructor's notes survive each run, and one submission is graded again.
     fs::write(path("grades/notes.csv"), "student;points;note\nbollbo_late_42_9_kit;-5;late\nzed;1;\n")
         .unwrap();
-    let said = said_by(&grader(&["grade", &class, "--out", &grades, "--resume", "--again", "eve"]));
+    let said = said_by(&grader(["grade", &class, "--out", &grades, "--resume", "--again", "eve"]));
     assert!(said.contains("notes.csv:3: zed: no submission"), "{said}");
     let page = text(&folder.path().join("grades/students/bollbo_LATE_42_9_kit.html"));
     assert!(page.contains("-5 points from your instructor: late"));
 
     // The points of the platform and of the stages differ, which is said.
     let export = |platform: &str, table: &str, more: &[&str]| {
-        grader(&[&["export", platform, table, &grades, "--out", &out], more].concat())
+        grader([&["export", platform, table, &grades, "--out", &out], more].concat())
     };
     let refused = said_by(&export("moodle", &path("moodle.csv"), &[]));
     assert!(
@@ -121,7 +112,7 @@ fn a_class_goes_from_the_platforms_and_back() {
 
     // New points count after grading, without grading again.
     fs::write(&course, COURSE.replace("100", "60")).unwrap();
-    grader_succeeds(&["grade", &class, "--out", &grades, "--course", &course, "--resume"]);
+    grader_succeeds(["grade", &class, "--out", &grades, "--course", &course, "--resume"]);
     assert!(
         text(&folder.path().join("grades/grades.csv"))
             .contains("\"Ann A. Lee_41_assignsubmission_file_\",60,60,100")

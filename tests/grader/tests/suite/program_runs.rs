@@ -1,5 +1,6 @@
 //! Runs a program, for the tests of `grader` and of `author`.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -7,7 +8,7 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-pub fn run(program: &str, arguments: &[&str]) -> Output {
+pub fn run(program: &str, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Output {
     Command::new(program).current_dir(root()).args(arguments).output().expect("the program starts")
 }
 
@@ -38,13 +39,14 @@ pub fn small_disk(script: &str) -> Option<Command> {
 
 /// Runs the program with the words of a line. Returns its exit code and what it prints.
 pub fn said(program: &str, line: &str) -> (Option<i32>, String, String) {
-    let output = run(program, &line.split_whitespace().collect::<Vec<_>>());
+    let output = run(program, line.split_whitespace());
     let (out, err) = printed(&output);
     (output.status.code(), out, err)
 }
 
-/// Demands that the help of the program lists each command, and that the command's own help has these words.
-pub fn explains(program: &str, name: &str, commands: &[(&str, &[&str])]) {
+/// Demands that the help of the program lists each command, and that the command's own help has these words, which are separated by
+/// spaces.
+pub fn explains(program: &str, name: &str, commands: &[(&str, &str)]) {
     let (code, all, _) = said(program, "--help");
     assert_eq!(code, Some(0));
     for (command, parts) in commands {
@@ -53,7 +55,7 @@ pub fn explains(program: &str, name: &str, commands: &[(&str, &[&str])]) {
         assert!(code == Some(0) && complaint.is_empty(), "{command}: {complaint}");
         assert!(help.contains(&format!("\nUsage: {name} {command}")), "{help}");
         assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
-        for part in *parts {
+        for part in parts.split(' ') {
             assert!(help.contains(part), "no {part} in\n{help}");
         }
         assert_eq!(said(program, &format!("help {command}")).1, help);

@@ -11,13 +11,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-fn export(arguments: &[&str]) -> String {
-    let output = grader(&[&["export"], arguments].concat());
-    let (said, complaint) = printed(&output);
-    assert!(output.status.success(), "{complaint}");
-    said
-}
-
 /// Runs a script as a task of an array.
 fn task(script: &Path, index: usize) -> Output {
     Command::new(script).env("SLURM_ARRAY_TASK_ID", index.to_string()).output().expect("sh")
@@ -39,7 +32,9 @@ fn scripts_of_a_class_grade_its_parts_and_the_merge_names_a_hole() {
         hand_in(&class, &format!("s{number}"), &right().replace("0.5", &format!("0.{number}5")));
     }
     let [class, out] = [&class, &jobs].map(|path| path.to_string_lossy().into_owned());
-    let said = export(&["slurm", &class, "--chunk", "2", "--stages", "1", "--seed", "11", "--out", &out]);
+    let said = grader_succeeds([
+        "export", "slurm", &class, "--chunk", "2", "--stages", "1", "--seed", "11", "--out", &out,
+    ]);
     assert!(said.contains("3 submissions in 2 parts"), "{said}");
     for script in ["grade.sbatch", "merge.sbatch", "submit.sh"] {
         let text = fs::read_to_string(jobs.join(script)).expect("a script");
@@ -64,10 +59,10 @@ fn scripts_of_a_class_grade_its_parts_and_the_merge_names_a_hole() {
     let merge = task(&jobs.join("merge.sbatch"), 0);
     assert!(merge.status.success(), "{}", printed(&merge).1);
     let whole = folder.path().join("whole");
-    grader_succeeds(&["grade", &class, "--stages", "1", "--seed", "11", "--out", &whole.to_string_lossy()]);
+    grader_succeeds(["grade", &class, "--stages", "1", "--seed", "11", "--out", &whole.to_string_lossy()]);
     same_bytes(&whole, &jobs.join("grades"), &["grades.csv", "checks.csv", "results.json", "junit.xml"]);
     // Nothing is written over.
-    let again = grader(&["export", "slurm", &class, "--out", &out]);
+    let again = grader(["export", "slurm", &class, "--out", &out]);
     assert!(printed(&again).1.contains("is not empty"), "{}", printed(&again).1);
 }
 
@@ -82,9 +77,9 @@ fn scripts_of_a_picture_render_its_pieces() {
     let (jobs, whole) = (folder.path().join("jobs"), folder.path().join("whole.png"));
     let scene = root().join("scenes/gamma.toml").to_string_lossy().into_owned();
     let size = ["--size", "60x50", "--seed", "3", "--exposure", "1"];
-    export(
-        &[&["slurm-picture", &scene, "--pieces", "3", "--out", &jobs.to_string_lossy()], &size[..]].concat(),
-    );
+    let out = jobs.to_string_lossy();
+    let export = ["export", "slurm-picture", &scene, "--pieces", "3", "--out", &out];
+    grader_succeeds([&export[..], &size].concat());
     assert_eq!(fs::read_to_string(jobs.join("rows.txt")).expect("rows"), "0..16\n16..32\n32..50\n");
     for index in [3, 1, 2, 2] {
         let output = task(&jobs.join("render.sbatch"), index);
@@ -133,9 +128,10 @@ fn a_lost_node_changes_no_byte_of_the_grades() {
     let [class, out] = [&class, &jobs].map(|path| path.to_string_lossy().into_owned());
     let options = ["--stages", "1", "--seed", "11"];
     let begun = Instant::now();
-    grader(&[&["grade", &class, "--out", &whole.to_string_lossy()], &options[..]].concat());
+    grader([&["grade", &class, "--out", &whole.to_string_lossy()], &options[..]].concat());
     println!("without Slurm: 24 submissions graded in {:.0} s", begun.elapsed().as_secs_f64());
-    print!("{}", export(&[&["slurm", &class, "--chunk", "4", "--out", &out], &options[..]].concat()));
+    let export = ["export", "slurm", &class, "--chunk", "4", "--out", &out];
+    print!("{}", grader_succeeds([&export[..], &options].concat()));
 
     // Submit both jobs, and wait until a task on the second node has stored some of its grades, but not all.
     let begun = Instant::now();

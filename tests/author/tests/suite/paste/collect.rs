@@ -1,9 +1,10 @@
 //! Finds the functions that fit an exercise: their parameter and return types are the same except for order, references,
 //! precision and the kind of list.
 
+use grader::files_below::files_below;
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use syn::{FnArg, GenericParam, Generics, ImplItem, Item, ReturnType, Signature, Type, TypeParamBound};
 
 /// A function, with its place and its types.
@@ -37,13 +38,10 @@ type Bundle = (&'static str, Vec<(String, Type)>);
 
 /// Returns the query types of the kit's interface, and the shapes that some exercises take whole and others as fields.
 pub fn bundles(root: &Path) -> Bundles {
-    let mut files = Vec::new();
-    rust_files(&root.join("src/kit"), &mut files);
-    files.push(root.join("src/geometry/shape.rs"));
     let mut bundles = Bundles::new();
-    for file in files {
-        let text = fs::read_to_string(&file).expect("a readable file");
-        for item in parse(&file.display().to_string(), &text).items {
+    for file in rust_files(root, "src/kit").into_iter().chain(["src/geometry/shape.rs".to_owned()]) {
+        let text = fs::read_to_string(root.join(&file)).expect("a readable file");
+        for item in parse(&file, &text).items {
             let Item::Struct(one) = item else { continue };
             let name = one.ident.to_string();
             let place = match name.as_str() {
@@ -95,13 +93,10 @@ pub type Key = (Vec<String>, String);
 
 /// Returns all functions of a crate with the sources in `folder` and the name `name`.
 pub fn functions(root: &Path, folder: &str, name: &str, bundles: &Bundles) -> Vec<Function> {
-    let mut files = Vec::new();
-    rust_files(&root.join(folder), &mut files);
     let mut parsed = Vec::new();
-    for path in files {
-        let text = fs::read_to_string(&path).expect("a readable file");
-        let inside = path.strip_prefix(root.join(folder)).expect("a file of the folder");
-        let file = format!("{folder}/{}", inside.display());
+    for file in rust_files(root, folder) {
+        let text = fs::read_to_string(root.join(&file)).expect("a readable file");
+        let inside = Path::new(&file).strip_prefix(folder).expect("a file of the folder");
         parsed.push((file.clone(), module(name, inside), parse(&file, &text)));
     }
     let mut aliases = BTreeMap::new();
@@ -154,20 +149,12 @@ fn parse(file: &str, text: &str) -> syn::File {
     syn::parse_file(text).unwrap_or_else(|error| panic!("{file}: {error}"))
 }
 
-fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
-    let mut entries: Vec<PathBuf> = fs::read_dir(folder)
-        .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
-        .map(|entry| entry.expect("an entry").path())
-        .collect();
-    entries.sort();
-    for path in entries {
-        // A folder with a manifest is a separate crate.
-        if path.is_dir() && !path.join("Cargo.toml").exists() {
-            rust_files(&path, files);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            files.push(path);
-        }
-    }
+/// Returns the Rust files below a folder, by their paths from the root. A folder with a manifest is a separate crate.
+fn rust_files(root: &Path, folder: &str) -> Vec<String> {
+    let is_kept = |path: &str| !root.join(path).join("Cargo.toml").exists();
+    let mut files = files_below(root, folder, &is_kept).unwrap_or_else(|error| panic!("{error:#}"));
+    files.retain(|path| path.ends_with(".rs"));
+    files
 }
 
 /// Returns the module path of a file: `checks::tree::search` for `tree/search.rs`.

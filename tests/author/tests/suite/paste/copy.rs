@@ -1,6 +1,7 @@
 //! Makes a copy of the kit in which all items are public, so that any function can answer an exercise.
 
 use author::corpus::build_folder::{cut_manifest, write_if_new};
+use grader::files_below::files_below;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -88,25 +89,19 @@ pub fn append(file: &Path, code: &str) {
 }
 
 fn copy_folder(root: &Path, to: &Path, folder: &str, open: &[String]) {
-    for entry in fs::read_dir(root.join(folder)).expect("a folder") {
-        let entry = entry.expect("an entry");
-        let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
-        let skipped = ["tests/checks/all/tests", "tests/oracle/examples"].contains(&path.as_str());
-        if skipped {
-            continue;
-        }
-        if entry.path().is_dir() {
-            copy_folder(root, to, &path, open);
-        } else if path.ends_with(".rs") {
-            let text = read(&entry.path());
+    let is_kept = |path: &str| !["tests/checks/all/tests", "tests/oracle/examples"].contains(&path);
+    for path in files_below(root, folder, &is_kept).unwrap_or_else(|error| panic!("{error:#}")) {
+        let source = root.join(&path);
+        if path.ends_with(".rs") {
+            let text = read(&source);
             let is_open = open.iter().any(|folder| path.starts_with(&format!("{folder}/")));
             write(&to.join(&path), &if is_open { public(&text) } else { text });
         } else if path.ends_with("Cargo.toml") {
-            write(&to.join(&path), &cut_manifest(&read(&entry.path()), &LEFT_OUT, &[]));
+            write(&to.join(&path), &cut_manifest(&read(&source), &LEFT_OUT, &[]));
         } else {
             let target = to.join(&path);
             fs::create_dir_all(target.parent().expect("a folder")).expect("a folder");
-            fs::copy(entry.path(), target).expect("a copy");
+            fs::copy(source, target).expect("a copy");
         }
     }
 }

@@ -21,41 +21,24 @@ pub(super) fn histogram(points: &[u32], of: u32) -> Markup {
     let most = counts.iter().copied().max().unwrap_or(0).max(1);
     let slot = WIDTH / n_bins;
     let bottom = HEIGHT - BELOW;
-    let bins = counts.into_iter().zip(0..).map(|(n, i)| {
-        let height = (bottom - ABOVE) * n / most;
-        Bin {
-            n,
-            from: i * step,
-            to: (i * step + step - 1).min(of),
-            left: i * slot,
-            top: bottom - height,
-            height,
-        }
-    });
     html! {
         svg.histogram viewBox=(format!("0 0 {} {HEIGHT}", slot * n_bins)) role="img" aria-label="Number of submissions per range of points" {
-            @for bin in bins {
+            @for (n, i) in counts.into_iter().zip(0..) {
+                @let (from, to) = (i * step, (i * step + step - 1).min(of));
+                @let height = (bottom - ABOVE) * n / most;
+                @let (left, top) = (i * slot, bottom - height);
                 g {
-                    title { (bin.from) "–" (bin.to) " points: " (bin.n) }
-                    rect x=(bin.left + 2) y=(bin.top) width=(slot.saturating_sub(4)) height=(bin.height) rx="2" {}
-                    @if bin.n > 0 {
-                        text.count x=(bin.left + slot / 2) y=(bin.top - 5) { (bin.n) }
+                    title { (from) "–" (to) " points: " (n) }
+                    rect x=(left + 2) y=(top) width=(slot.saturating_sub(4)) height=(height) rx="2" {}
+                    @if n > 0 {
+                        text.count x=(left + slot / 2) y=(top - 5) { (n) }
                     }
-                    text x=(bin.left + slot / 2) y=(HEIGHT - 8) { (bin.from) }
+                    text x=(left + slot / 2) y=(HEIGHT - 8) { (from) }
                 }
             }
             line x1="0" x2=(slot * n_bins) y1=(bottom) y2=(bottom) {}
         }
     }
-}
-
-struct Bin {
-    n: u32,
-    from: u32,
-    to: u32,
-    left: u32,
-    top: u32,
-    height: u32,
 }
 
 /// Chooses a round column width, in points, that gives about twelve columns.

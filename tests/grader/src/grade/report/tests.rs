@@ -1,4 +1,5 @@
 use super::*;
+use crate::files_below::files_below;
 use crate::grade::result::{Class, Outcome};
 use anyhow::Context;
 use base64::Engine;
@@ -84,20 +85,15 @@ fn write_all(class: &Class, folder: &Path) -> Result<()> {
 fn files_of(class: &Class) -> Result<Files> {
     let folder = tempfile::tempdir()?;
     write_all(class, folder.path())?;
-    let mut files = Files::new();
-    let mut folders = vec![folder.path().to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next)? {
-            let path = entry?.path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path.strip_prefix(folder.path())?.to_string_lossy().into_owned();
-                files.insert(name, fs::read_to_string(&path)?);
-            }
-        }
-    }
-    Ok(files)
+    let names = files_below(folder.path(), "", &|_| true)?;
+    names.into_iter().map(|name| Ok((name.clone(), fs::read_to_string(folder.path().join(name))?))).collect()
+}
+
+/// The sum of a number over the tests of a file in JSON.
+fn sum(files: &Files, file: &str, key: &str) -> Result<u64> {
+    let value: Value = serde_json::from_str(&files[file])?;
+    let tests = value["tests"].as_array().into_iter().flatten();
+    Ok(tests.filter_map(|test| test[key].as_u64()).sum())
 }
 
 fn matches_snapshot(name: &str, text: &str) {
@@ -201,15 +197,10 @@ fn points_are_the_same_in_every_format() -> Result<()> {
         let in_checks: u32 = of_student.map(|cells| cells[5].parse::<u32>().unwrap_or(u32::MAX)).sum();
         assert_eq!(in_checks, earned);
 
-        let sum = |file: &str, score: &str| -> Result<u64> {
-            let value: Value = serde_json::from_str(&files[file])?;
-            let tests = value["tests"].as_array().cloned().unwrap_or_default();
-            Ok(tests.iter().filter_map(|test| test[score].as_u64()).sum())
-        };
         let gradescope = format!("gradescope/{page}.json");
-        assert_eq!(sum(&gradescope, "score")?, u64::from(earned));
-        assert_eq!(sum(&gradescope, "max_score")?, u64::from(of));
-        assert_eq!(sum(&format!("classroom/{page}.json"), "score")?, u64::from(earned));
+        assert_eq!(sum(&files, &gradescope, "score")?, u64::from(earned));
+        assert_eq!(sum(&files, &gradescope, "max_score")?, u64::from(of));
+        assert_eq!(sum(&files, &format!("classroom/{page}.json"), "score")?, u64::from(earned));
 
         let html = &files[&format!("students/{page}.html")];
         let percent = if of == 0 { 0.0 } else { (100.0 * f64::from(earned) / f64::from(of)).round() };
@@ -233,14 +224,9 @@ fn bonus_points_stand_apart() -> Result<()> {
     let html = &files["students/Anna.html"];
     assert!(html.contains("<b>17</b> of 17 points (100 %): 9 of 9 core · 8 deeper · 2 bonus"), "{html}");
     // Gradescope adds up scores beyond the maximum; Classroom has no extra credit.
-    let sums = |file: &str, key: &str| -> Result<u64> {
-        let value: Value = serde_json::from_str(&files[file])?;
-        let tests = value["tests"].as_array().cloned().unwrap_or_default();
-        Ok(tests.iter().filter_map(|test| test[key].as_u64()).sum())
-    };
-    assert_eq!(sums("gradescope/Anna.json", "score")?, 19);
-    assert_eq!(sums("gradescope/Anna.json", "max_score")?, 17);
-    assert_eq!(sums("classroom/Anna.json", "score")?, 17);
+    assert_eq!(sum(&files, "gradescope/Anna.json", "score")?, 19);
+    assert_eq!(sum(&files, "gradescope/Anna.json", "max_score")?, 17);
+    assert_eq!(sum(&files, "classroom/Anna.json", "score")?, 17);
     assert!(files["classroom/Anna.json"].contains("(bonus: 2 of 2)"));
     Ok(())
 }
