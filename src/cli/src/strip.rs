@@ -57,7 +57,12 @@ pub static SPEC: Spec = Spec {
                 "Instead of depths: the scene with the functions of stage 1, of stages 1 and 2, up to all twelve, in three \
                  rows. Below each: primitive tests per ray. Writes each picture and an animated PNG file, too.",
             ),
-            Opt::value("--out", "FILE", "The PNG file [default: out/NAME-strip.png].").short("-o"),
+            Opt::value(
+                "--out",
+                "FILE",
+                "The PNG file [default: out/NAME-strip.png, with --stages out/NAME-stages/strip.png].",
+            )
+            .short("-o"),
         ],
         Choice::OPTIONS,
         QualityOptions::OPTIONS,
@@ -73,7 +78,8 @@ pub fn run(given: &Given) -> Result<ExitCode> {
     let mut scene = quality.load(scene_file)?;
     tone.apply(&mut scene);
     let pictures = pictures(given, &scene)?;
-    let default = || Ok::<_, Error>(Path::new("out").join(format!("{}-strip.png", name_of(scene_file)?)));
+    let file = if given.has("--stages") { "stages/strip.png" } else { "strip.png" };
+    let default = || Ok::<_, Error>(Path::new("out").join(format!("{}-{file}", name_of(scene_file)?)));
     let out = given.path("--out").map_or_else(default, Ok)?;
     make_folder_of(&out)?;
     let kit = kit.start()?;

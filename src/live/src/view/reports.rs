@@ -1,4 +1,4 @@
-//! The reports of `raykata cost` and `raykata compare`, which they write to `out/`.
+//! The reports of `raykata cost`, `raykata compare` and `raykata strip --stages`, which they write to `out/`.
 
 use live::files::names_in;
 use serde_json::{Value, json};
@@ -18,16 +18,17 @@ const KINDS: [(&str, &str); 6] = [
 pub fn list(root: &Path, scene: &Path) -> Value {
     let name = scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let shown = scene.strip_prefix(root).unwrap_or(scene).display().to_string();
-    let report = |command: &str, what: &str| {
-        let folder = format!("{name}-{command}");
+    let report = |kind: &str, command: &str, what: &str| {
+        let folder = format!("{name}-{kind}");
         let mut files = names_in(&root.join("out").join(&folder));
         files.retain(|name| file(root, &format!("{folder}/{name}")).is_some());
         files.sort_by_key(|name| (!name.ends_with(".html"), name.clone()));
-        json!({ "what": what, "command": format!("cargo run -- {command} {shown}"), "folder": folder, "files": files })
+        json!({ "what": what, "command": format!("cargo run -- {command}"), "folder": folder, "files": files })
     };
     json!([
-        report("cost", "error and time of each quality setting"),
-        report("compare", "all acceleration structures on this scene"),
+        report("cost", &format!("cost {shown}"), "error and time of each quality setting"),
+        report("compare", &format!("compare {shown}"), "all acceleration structures on this scene"),
+        report("stages", &format!("strip {shown} --stages"), "this scene with the functions of each stage"),
     ])
 }
 
@@ -35,7 +36,8 @@ pub fn list(root: &Path, scene: &Path) -> Value {
 pub fn file(root: &Path, path: &str) -> Option<(PathBuf, &'static str)> {
     let (_, kind) = KINDS.iter().find(|(ending, _)| Path::new(path).extension() == Some(ending.as_ref()))?;
     let [folder, name] = path.split('/').collect::<Vec<_>>()[..] else { return None };
-    if !(folder.ends_with("-cost") || folder.ends_with("-compare")) || name.starts_with('.') {
+    let is_report = ["-cost", "-compare", "-stages"].iter().any(|kind| folder.ends_with(kind));
+    if !is_report || name.starts_with('.') {
         return None;
     }
     // Resolve links and `..`, and refuse what is not in the folder.
@@ -78,5 +80,6 @@ mod tests {
         assert_eq!(listed[0]["files"], json!(["page.html"]));
         assert_eq!(listed[0]["command"], "cargo run -- cost scenes/a.toml");
         assert_eq!(listed[1]["files"], json!([]));
+        assert_eq!(listed[2]["command"], "cargo run -- strip scenes/a.toml --stages");
     }
 }

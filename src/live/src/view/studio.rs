@@ -344,7 +344,7 @@ impl Studio {
         self.ask(|scene, kit, _| heat(scene, kit))
     }
 
-    /// The reports of `cost` and `compare`.
+    /// The reports of `cost`, `compare` and `strip --stages`.
     pub fn reports(&self) -> Value {
         reports::list(&self.root, &self.state().file.clone())
     }
