@@ -6,10 +6,13 @@
 use super::source;
 use all_checks::STAGES;
 use anyhow::{Result, bail, ensure};
+use glam::Vec3;
 use grader::grade::Once;
 use grader::kits::{Need, Source, Which, root};
 use raykata::frame::Watch;
-use raykata::kit::{Answer, Door, Kit, Request, Transport};
+use raykata::kit::{Answer, Door, Kit, PlaneQuery, Request, SphereQuery, Transport};
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
@@ -164,27 +167,20 @@ impl Transport for Listener {
             }
             ("sphere_algebraic", Request::SphereAlgebraic(asked), Answer::SphereAlgebraic(given))
             | ("sphere_geometric", Request::SphereGeometric(asked), Answer::SphereGeometric(given)) => {
-                let words = |q: &raykata::kit::SphereQuery| {
-                    vec![ray(&q.ray), q.sphere.center.to_array().to_vec(), vec![q.sphere.radius]]
-                };
+                let words =
+                    |q: &SphereQuery| vec![ray(&q.ray), vector(q.sphere.center), vec![q.sphere.radius]];
                 pairs(asked, given, words, |found| option(*found))
             }
             ("plane", Request::Plane(asked), Answer::Plane(given)) => {
-                let words = |q: &raykata::kit::PlaneQuery| {
-                    vec![ray(&q.ray), q.plane.point.to_array().to_vec(), q.plane.normal.to_array().to_vec()]
-                };
+                let words = |q: &PlaneQuery| vec![ray(&q.ray), vector(q.plane.point), vector(q.plane.normal)];
                 pairs(asked, given, words, |found| option(*found))
             }
             ("sphere_normal", Request::SphereNormal(asked), Answer::SphereNormal(given)) => {
-                let words = |(sphere, point): &(raykata::shape::Sphere, glam::Vec3)| {
-                    vec![sphere.center.to_array().to_vec(), point.to_array().to_vec()]
-                };
+                let words = |(sphere, point): &(Sphere, Vec3)| vec![vector(sphere.center), vector(*point)];
                 pairs(asked, given, words, |normal| normal.to_array().map(f32::to_bits).to_vec())
             }
             ("face_forward", Request::FaceForward(asked), Answer::FaceForward(given)) => {
-                let words = |(normal, direction): &(glam::Vec3, glam::Vec3)| {
-                    vec![normal.to_array().to_vec(), direction.to_array().to_vec()]
-                };
+                let words = |(normal, direction): &(Vec3, Vec3)| vec![vector(*normal), vector(*direction)];
                 pairs(asked, given, words, |normal| normal.to_array().map(f32::to_bits).to_vec())
             }
             ("block_cost", Request::BlockCost(asked), Answer::BlockCost(given)) => {
@@ -207,8 +203,12 @@ fn pairs<Q, A>(
     asked.iter().zip(given).map(|(asked, given)| (bits(question(asked)), answer(given))).collect()
 }
 
-fn ray(ray: &raykata::ray::Ray) -> Vec<f32> {
+fn ray(ray: &Ray) -> Vec<f32> {
     [&ray.origin.to_array()[..], &ray.direction.to_array(), &[ray.t_min, ray.t_max]].concat()
+}
+
+fn vector(vector: Vec3) -> Vec<f32> {
+    vector.to_array().to_vec()
 }
 
 /// Encodes whether there is an answer, and which.

@@ -96,17 +96,16 @@ impl fmt::Display for TriedEntry {
         let TriedEntry { entry, verdict, failures } = self;
         let checks = || failures.keys().copied().collect::<Vec<_>>().join(", ");
         let named = entry.caught_by().unwrap_or_default();
+        let message = self.message().unwrap_or_default();
         write!(f, "{entry}: {}\n  ", entry.title)?;
         match verdict {
             EntryVerdict::Killed => write!(f, "killed by {named}"),
             EntryVerdict::Accepted => write!(f, "accepted"),
             EntryVerdict::Unnamed(words) => {
-                write!(f, "killed by {named}, whose message does not say {}", quoted(words))?;
-                write!(f, ":\n{}", failures.get(named).map_or("", String::as_str))
+                write!(f, "killed by {named}, whose message does not say {}:\n{message}", quoted(words))
             }
             EntryVerdict::Misnamed => {
-                write!(f, "killed by {named}, whose message must name no mistake")?;
-                write!(f, ":\n{}", failures.get(named).map_or("", String::as_str))
+                write!(f, "killed by {named}, whose message must name no mistake:\n{message}")
             }
             EntryVerdict::Missed(checks) => {
                 write!(
