@@ -320,6 +320,7 @@ pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckRe
     hidden.background = Background::Color(Vec3::ONE);
     hidden.materials.push(glowing(Vec3::ONE));
     hidden.material_names.push("unused".into());
+    let dark = Scene { background: Background::Color(Vec3::ZERO), ..hidden.clone() };
     let moving = |shutter: Option<Shutter>| {
         let mut scene = scene(&[wall(), emitter()]);
         scene.nodes[1].transform_end = Some(Affine3A::from_translation(Vec3::X));
@@ -355,6 +356,12 @@ pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckRe
                 hidden,
                 WALL,
                 &[(BOTH, SHOWN), ((&[1], &[2, 3], false), SHOWN), ((&[1], &[3], false), SHOWN)],
+            ),
+            case(
+                "a diffuse sphere and an emitter that no root reaches, in the dark",
+                dark,
+                NOTHING,
+                &[(WALL, "the emission of a material that no shown shape has is no light"), (BOTH, SHOWN)],
             ),
             not_sampled(
                 "a diffuse sphere and an emitter that moves",
