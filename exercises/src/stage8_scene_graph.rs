@@ -43,7 +43,7 @@ pub fn normal_to_world(normal: Vec3, to_object: &Affine3A) -> Vec3 {
 ///
 /// 1. `to_object` is `Mₙ⁻¹ … M₂⁻¹ M₁⁻¹`.
 /// 2. An empty path gives the identity for both.
-/// 3. `None` if some determinant is exactly 0 or some inverse is not finite. A small or negative
+/// 3. `None` if some determinant is 0 or some inverse is not finite. A small or negative
 ///    determinant is valid.
 pub fn placement(path: &[Affine3A]) -> Option<Placement> {
     todo!("multiply the transforms from the root to the node, and the inverses in reverse order")

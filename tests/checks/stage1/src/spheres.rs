@@ -98,6 +98,8 @@ pub(super) fn sphere_in_range(trial: &Trial<'_>, method: SphereFunction) -> Chec
         trial,
         &[
             (behind, None),
+            // A range may begin at a negative t.
+            (SphereQuery { ray: behind.ray.with_range(-8.0, infinite), ..behind }, Some(-6.0)),
             (ranged(0.0, infinite), Some(4.0)),
             (ranged(4.5, infinite), Some(6.0)),
             (ranged(0.0, 3.5), None),

@@ -239,8 +239,11 @@ pub(super) fn inside_by_areas_gives_barycentric_coordinates(trial: &Trial<'_>) -
     let p = vec3(0.25, 0.5, 0.0);
     // Both other coordinates are at least 0 and their sum is rounded to 1, but 1 - β - γ is -2⁻²⁵.
     let beyond = vec3(0.75, 0.25f32.next_up(), 0.0);
+    // The coordinates of this point, (1/2 + 2⁻¹⁷, 1/2, -2⁻¹⁷), are exact.
+    let outside = query(vec3(0.5, -(2f32.powi(-17)), 0.0), Vec3::ZERO, Vec3::X, Vec3::Y);
     let cases = [
         (query(p, Vec3::ZERO, Vec3::X, Vec3::Y), true),
+        (outside, false),
         (query(p, p, p, p), false),
         (query(p, Vec3::ZERO, p, 2.0 * p), false),
         (query(beyond, Vec3::ZERO, Vec3::X, Vec3::Y), true),
@@ -258,8 +261,10 @@ pub(super) fn inside_by_areas_gives_barycentric_coordinates(trial: &Trial<'_>) -
         }
         let input = call("inside_by_areas", &[&query.point, &query.triangle]);
         let expected = if *has_area { "coordinates of at least 0" } else { "None" };
+        let is_outside = query.point == outside.point;
         Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
-            (!has_area && yours.is_some(), "a triangle without area gives None: 0 / 0 is NaN, so compare so that NaN fails"),
+            (is_outside && yours.is_some(), "you accept points just outside of an edge: test the signs, without a tolerance"),
+            (!has_area && !is_outside && yours.is_some(), "a triangle without area gives None: 0 / 0 is NaN, so compare so that NaN fails"),
             (
                 *has_area && yours.is_some_and(|yours| yours.min_element() < 0.0 && yours.min_element() > -1e-6),
                 "1 - β - γ may be slightly negative, although β + γ is rounded to 1: test it or clamp it to 0",

@@ -4,7 +4,7 @@ use super::boxes::ROUNDINGS;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
-use checks::generate::{direction, point, sphere};
+use checks::generate::{direction, point, rough_point, sphere};
 use checks::judge::{Judged, compare, compare_formulas, unless};
 use checks::nasty;
 use checks::paste::{call, list};
@@ -40,8 +40,11 @@ pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> CheckResult {
 
 /// Spheres without the tolerance of other checks, and rays that enter spheres.
 pub(super) fn are_rounded_outwards(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(500, clouds(), |queries| judge_covers(trial, queries, 0.0))?;
-    trial.forall(2000, entries(true), |queries| judge_entries(trial, queries, true))
+    // Distances of points with all digits have the most rounding errors.
+    let rough = prop::collection::vec(rough_point(8.0), 2..5);
+    let any = prop_oneof![1 => clouds(), 2 => rough];
+    trial.forall(1500, any, |queries| judge_covers(trial, queries, 0.0))?;
+    trial.forall(2000, entries(true, true), |queries| judge_entries(trial, queries, true))
 }
 
 /// Judges whether spheres hold their points, up to an error relative to the largest coordinate.
@@ -309,14 +312,15 @@ fn observations(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(b
     ]
 }
 
-fn entries(aimed: bool) -> impl Strategy<Value = Entry> + Clone {
+/// With `behind`, some ranges begin behind the origin.
+fn entries(aimed: bool, behind: bool) -> impl Strategy<Value = Entry> + Clone {
     let directions = prop_oneof![3 => direction(), 1 => nasty::unit()];
     // The fourth power of a size, times the square of a speed, is a normal number in single precision.
     let scales = prop_oneof![
         2 => (Just(1.0f32), Just(1.0f32)),
         1 => (nasty::scale(-20..=20), nasty::scale(-12..=12)),
     ];
-    (point(8), directions, sphere(), 0..4u32, scales).prop_map(
+    (point(8), directions, sphere(), 0..4 + u32::from(behind), scales).prop_map(
         move |(origin, direction, sphere, range, (size, speed))| {
             let to_center = sphere.center - origin;
             let direction = if aimed && to_center != Vec3::ZERO {
@@ -324,8 +328,12 @@ fn entries(aimed: bool) -> impl Strategy<Value = Entry> + Clone {
             } else {
                 direction
             };
+            // The last range begins behind the origin, and the sphere lies there.
+            let direction = if range == 4 { -direction } else { direction };
+            let infinite = f32::INFINITY;
             let (t_min, t_max) =
-                [(0.0, f32::INFINITY), (0.5, f32::INFINITY), (0.0, 0.75), (0.0, 16.0)][range as usize];
+                [(0.0, infinite), (0.5, infinite), (0.0, 0.75), (0.0, 16.0), (-16.0, infinite)]
+                    [range as usize];
             let ray = Ray::new(origin, direction).with_range(t_min, t_max);
             Entry { plain: BoundingSphereQuery { ray, sphere }, size, speed }
         },
@@ -342,7 +350,9 @@ fn along_x(from: f32) -> Entry {
 pub(super) fn enter_bounding_sphere_finds_what_is_met(trial: &Trial<'_>) -> CheckResult {
     // The ray starts inside, and the centre lies behind it.
     let facing_away = along_x(0.5);
-    trial.forall_and(&[facing_away], 3000, entries(true), |queries| judge_entries(trial, queries, false))?;
+    trial.forall_and(&[facing_away], 3000, entries(true, false), |queries| {
+        judge_entries(trial, queries, false)
+    })?;
     ranges_that_begin_at_the_exit(trial)
 }
 
@@ -368,5 +378,5 @@ fn ranges_that_begin_at_the_exit(trial: &Trial<'_>) -> CheckResult {
 
 pub(super) fn enter_bounding_sphere_passes_what_is_missed(trial: &Trial<'_>) -> CheckResult {
     let behind = along_x(5.0);
-    trial.forall_and(&[behind], 3000, entries(false), |queries| judge_entries(trial, queries, false))
+    trial.forall_and(&[behind], 3000, entries(false, false), |queries| judge_entries(trial, queries, false))
 }

@@ -29,8 +29,7 @@ pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> CheckResul
     )
 }
 
-const IN_A_LINE: &str =
-    "you lose polygons whose first three corners lie on a line: sum the normal over all edges";
+const IN_A_LINE: &str = "you lose polygons with three corners on a line: sum the normal over all edges";
 
 /// Rays at edges and corners, and at an edge that two polygons share.
 pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> CheckResult {
@@ -41,6 +40,8 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> CheckResult {
     let in_a_line = Polygon {
         corners: vec![vec3(0.0, 0.0, 0.0), vec3(1.0, 0.0, 0.0), vec3(2.0, 0.0, 0.0), vec3(1.0, 2.0, 0.0)],
     };
+    let mut straight_first = in_a_line.clone();
+    straight_first.corners.rotate_left(1);
     let down = |polygon: &Polygon, x: f32, y: f32| of(polygon)(vec3(x, y, 3.0), Vec3::NEG_Z);
     let closed = "you lose rays exactly at edges or corners, which belong to the polygon: compare with <= instead of <";
     let diagonal = "you lose a ray on a diagonal of the fan: diagonals lie inside the polygon";
@@ -80,6 +81,7 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> CheckResult {
             (down(&in_a_line, 1.0, 0.5), Some(3.0), IN_A_LINE),
             (down(&in_a_line, 0.75, 0.75), Some(3.0), IN_A_LINE),
             (down(&in_a_line, 1.75, 1.0), None, ""),
+            (down(&straight_first, 0.75, 0.75), Some(3.0), IN_A_LINE),
             (of(&square)(vec3(-1.0, 1.0, 0.0), Vec3::X), None, in_plane),
             (of(&square)(vec3(1.0, 1.0, 0.0), vec3(1.0, 2.0, -0.0)), None, in_plane),
         ],

@@ -306,6 +306,15 @@ impl Row {
     }
 }
 
+/// The same query with one more primitive in the root, whose hit lies before all others.
+pub(super) fn with_own_hit(mut query: GraphQuery) -> GraphQuery {
+    let near = 0.5 * query.table.boxes[0].0;
+    query.graph.nodes[0].primitives.push(query.table.primitives.len() as u32);
+    query.table.primitives.push(near);
+    query.table.boxes[0].0 = near;
+    query
+}
+
 /// A query, the primitives to test in order, and the orders that mistakes give.
 type Case<'a> = (GraphQuery, &'a [u32], &'a [(&'a [u32], &'static str)]);
 
@@ -333,10 +342,16 @@ pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> Check
         you are about to visit it";
     let sorted = "you sort the children although `sort` is off: visit them as listed";
     let always = "you skip a volume although `skip` is off";
+    let own_last = "you visit the children before a node's own primitives: their hits may save the children";
     Row::all(trial).iter().try_for_each(|row| {
         judge_orders(
             trial,
             &[
+                (
+                    with_own_hit(row.query(&[1, 0], SKIP)),
+                    &[2],
+                    &[(&[1, 0, 2], own_last), (&[2, 1, 0], never)],
+                ),
                 (row.query(&[0, 1, 2, 3], SKIP), &[0], &[(&[0, 1, 2, 3], never)]),
                 (row.query(&[3, 2, 1, 0], SKIP), &[3, 2, 1, 0], &[(&[0], sorted), (&[0, 1, 2, 3], never)]),
                 (row.query(&[1, 3, 0, 2], SKIP), &[1, 0], &[(&[1, 3, 0, 2], never), (&[0], sorted)]),

@@ -174,6 +174,7 @@ pub(super) fn cuboid_seen_along_its_faces(trial: &Trial<'_>) -> CheckResult {
         0 · ∞ or 0/0, which are NaN";
     let minus_zero = "your answer depends on the sign of a 0 in the direction: -0.0 is 0";
     let from_inside = "you are wrong for rays along an axis from inside: the exit is the hit";
+    let slow = "you take a short direction for 0: it may have any length, and only 0 is parallel to a face";
     let flat = Cuboid { min: vec3(0.0, 2.0, 0.0), max: vec3(1.0, 2.0, 1.0) };
     let far = Cuboid { min: vec3(1e5, 1e5, 0.0), max: vec3(1e5 + 1.0, 1e5, 1.0) };
     let flat_lost =
@@ -197,6 +198,7 @@ pub(super) fn cuboid_seen_along_its_faces(trial: &Trial<'_>) -> CheckResult {
             (ask(vec3(0.5, 0.5, -2.0), vec3(-0.0, -0.0, 1.0)), Some(2.0), minus_zero),
             (ask(vec3(1.5, 0.5, -2.0), vec3(-0.0, -0.0, 1.0)), None, minus_zero),
             (ask(vec3(0.5, 0.5, 0.5), Vec3::X), Some(0.5), from_inside),
+            (ask(vec3(-1.0, -0.25, 0.5), 2f32.powi(-40) * vec3(2.0, 1.0, 0.0)), Some(2f32.powi(39)), slow),
             (ask(vec3(1.0, 0.5, 0.5), Vec3::X), None, STARTS_ON_FACE),
             (ask(vec3(0.0, 0.5, 0.5), Vec3::X), Some(1.0), STARTS_ON_FACE),
             (of(&flat)(vec3(0.5, 5.0, 0.5), Vec3::NEG_Y), Some(3.0), flat_lost),
@@ -317,6 +319,7 @@ pub(super) fn cone_seen_along_its_side(trial: &Trial<'_>) -> CheckResult {
             (ask(vec3(-1.0, 1.5, 0.0), vec3(1.0, -1.0, 0.0)), Some(0.75), linear),
             (ask(vec3(0.0, 1.5, -1.0), vec3(0.0, -0.5, 0.5)), Some(1.5), linear),
             (ask(vec3(-0.5, 0.25, 0.0), vec3(1.0, 1.0, 0.0)), Some(0.625), linear),
+            (ask(vec3(-0.75, -0.5, 0.0), vec3(1.0, 1.0, 0.0)), Some(0.5), linear),
             (ask(vec3(0.5, 3.0, 0.0), Vec3::NEG_Y), Some(2.5), steep),
             (ask(vec3(0.5, -1.0, 0.0), Vec3::Y), Some(1.0), steep),
             (ask(vec3(0.25, 0.25, 0.0), Vec3::Y), Some(0.5), steep),
