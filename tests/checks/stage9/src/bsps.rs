@@ -115,6 +115,11 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
     for (name, hulls, most) in hulls::infinite_polygons().into_iter().chain(boxes) {
         judge_build(trial, name, hulls, 12, most)?;
     }
+    // A plane that divides these has the eight long boxes, 67 %, on both sides.
+    let from_to = |low: f32, high: f32| corners(&Aabb::new(vec3(low, 0.0, 0.0), vec3(high, 1.0, 1.0)));
+    let ends = [(1.0, 2.0), (3.0, 4.0), (60.0, 61.0), (62.0, 63.0)].map(|(low, high)| from_to(low, high));
+    let around = std::iter::repeat_n(from_to(0.0, 64.0), 8).chain(ends).collect();
+    judge_build(trial, "eight long boxes around four short ones", around, 12, 1)?;
     judge_build(trial, "400 crossing needles", crossing_needles(400), 20, MOST_REFERENCES)
 }
 
@@ -148,6 +153,24 @@ fn judge_build(
     judge_references(&input, &yours.items, most * n, too_many)
 }
 
+/// A wall at x = 2 between 5 small boxes and 8 others, of which 4 lie across the plane through the median centre. The wall's own
+/// plane has fewer on its fuller side (10, not 11), and fewer on both (1, not 4).
+fn judge_straddlers(trial: &Trial<'_>) -> CheckResult {
+    let rows = |n: usize, low: f32, high: f32| {
+        (0..n).map(move |i| corners(&Aabb::new(vec3(low, i as f32, 0.0), vec3(high, i as f32 + 0.5, 0.5))))
+    };
+    let wall = [(0.0, 0.0), (5.0, 0.0), (5.0, 0.5), (0.0, 0.5)].map(|(y, z)| vec3(2.0, y, z)).to_vec();
+    let hulls =
+        rows(5, 0.0, 1.0).chain([wall]).chain(rows(5, 4.0, 20.0)).chain(rows(4, 19.0, 20.0)).collect();
+    let query = BspQuery { hulls, leaf_size: 2, max_depth: 1 };
+    let yours = trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
+    judge_tree(&query, &yours)?;
+    let many =
+        "you choose a plane with many on both sides, although another has fewer on its fuller side, too";
+    let input = "build of 14 boxes and a wall between them, leaf_size 2, max_depth 1";
+    judge_references(input, &yours.items, query.hulls.len() + 1, many)
+}
+
 /// Parallel sheets across a diagonal: planes across an axis do not divide them, but their own planes do.
 pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     let n = 31;
@@ -158,7 +181,7 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     // A cut along a sheet lists the sheet on both sides, which makes one more reference per cut.
     let (references, depth) = (yours.items.len(), yours.depth());
     if fullest <= 2 && references <= 2 * n && depth <= 8 {
-        return Ok(());
+        return judge_straddlers(trial);
     }
     let mistakes = [
         (yours.nodes.len() == 1, "you make no cut: the planes of the polygons are the candidates"),

@@ -183,6 +183,18 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> CheckResult {
     for (x, direction) in [(-9.0, Vec3::X), (300.0, Vec3::NEG_X)] {
         let (yours, singles) = ask(&row, &[Ray::new(vec3(x, 0.0, 0.0), direction); 8]);
         judge_opened("8 equal rays along a row of", &yours, &singles, opened_alone(&singles[0]))?;
+        // A ray that misses everything opens nothing more, and has no hit with which to compare an entry.
+        let mut rays = [Ray::new(vec3(x, 0.0, 0.0), direction); 8];
+        rays[7].direction = Vec3::Y;
+        let (yours, singles) = ask(&row, &rays);
+        judge_opened("7 equal rays and one that misses", &yours, &singles, opened_alone(&singles[0]))?;
+        let opened = ask(&row, &[rays[7]; 8]).0.opened;
+        if !opened.is_empty() {
+            let input = "8 rays that miss all of 64 spheres and the box around them";
+            let yours = format!("{} nodes opened", opened.len());
+            let says = "you open a node that no ray enters: ask about the root, too";
+            return Err(Broken::with_texts(input, yours, "none", "counted").explained_by([(true, says)]));
+        }
     }
     let spheres: Vec<Sphere> = (0..64)
         .map(|i| Sphere {

@@ -79,7 +79,10 @@ fn bare_grid(bounds: Aabb, resolution: UVec3) -> Grid {
 }
 
 pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(200, (rays(), scales()), |rays| {
+    // This ray crosses the edge x = 0, z = 0.5 between four cells.
+    let at_edge = Ray::new(vec3(-7.0, 1.0, -6.5), vec3(1.0, 0.01, 1.0));
+    let at_edge = (at_edge, Scales { size: 1.0, speed: 1.0 });
+    trial.forall_and(&[at_edge], 200, (rays(), scales()), |rays| {
         let query = |(ray, scales): &(Ray, Scales)| {
             let bounds = Aabb::new(scales.size * Vec3::splat(-5.0), scales.size * vec3(5.0, 4.0, 6.0));
             let cells = bare_grid(bounds, uvec3(6, 5, 4));
@@ -143,6 +146,11 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
     let sides = (query.cells.bounds.max - query.cells.bounds.min) / query.cells.resolution.as_vec3();
     let room = f64::from(sides.min_element() / query.ray.direction.length()) / 256.0;
     let backwards = nears.windows(2).any(|pair| pair[1] < pair[0] - room);
+    let at =
+        |visit: u32| parts::numbered(&query.cells).find(|(cell, ..)| *cell == visit).map(|(_, at, _)| at);
+    let is_apart = |p: UVec3, q: UVec3| (p.as_dvec3() - q.as_dvec3()).abs().element_sum() > 1.0;
+    let apart =
+        visits.windows(2).any(|pair| at(pair[0]).zip(at(pair[1])).is_some_and(|(p, q)| is_apart(p, q)));
     let (yours, expected) = match (left_out, missed, twice) {
         (Some((cell, near, far)), ..) => (
             format!("visits to {visits:?}"),
@@ -153,6 +161,7 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
         _ if backwards => {
             (format!("visits to {visits:?}"), "cells in the order in which the ray enters them".into())
         }
+        _ if apart => (format!("visits to {visits:?}"), "each cell shares a face with the next one".into()),
         _ => return Ok(()),
     };
     let input = format!("grid of {} cells without primitives\n{}", query.cells.resolution, query.ray.paste());
@@ -166,6 +175,7 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
         (missed.is_some(), "you visit a cell that the ray does not enter"),
         (twice.is_some(), "you visit a cell twice"),
         (backwards, "you do not visit the cells in the order of t"),
+        (apart, "you step across an edge: at a corner, step along one axis after the other"),
     ]))
 }
 

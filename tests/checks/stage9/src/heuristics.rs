@@ -81,6 +81,26 @@ pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> CheckResult 
             );
         }
     }
+    // A wall of 8 boxes along y stands at one end of a cell of 20 × 9, which is left of the first cut.
+    let wall = cubes((0..8).map(|i| vec3(0.0, 1.25 * i as f32, 0.0)).chain([vec3(40.0, 0.0, 0.0)]));
+    let alone = KdHeuristics { longest_axis: true, ..NONE };
+    let on = build(trial, "8 boxes along y and one at x = 40, longest_axis alone", &wall, alone);
+    let mut other = None;
+    on.tree.walk(64, |node, cell, _| {
+        let size = cell.max - cell.min;
+        // No two sides of these cells are as close as a hundredth.
+        if let KdNode::Inner { axis, .. } = on.tree.nodes[node as usize]
+            && size[usize::from(axis)] < 0.99 * size.max_element()
+        {
+            other = Some(format!("a cut across axis {axis} of a cell with the sides {size:.2}"));
+        }
+    });
+    if let Some(yours) = other {
+        let input = format!("build of {}, leaf_size 2", on.what);
+        let says = "you cut across an axis that is not the longest side of the cell";
+        let broken = Broken::with_texts(input, yours, "cuts across the longest side", "the heuristic");
+        return Err(broken.explained_by([(true, says)]));
+    }
     // Axes in turn: x at the root, y and z below it.
     let block = cubes((0..64).map(|i| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32)));
     let Built { what, tree, .. } = build(trial, "4 × 4 × 4 boxes, no heuristic", &block, NONE);
@@ -112,6 +132,15 @@ pub(super) fn kd_balances_counts(trial: &Trial<'_>) -> CheckResult {
                 (on.cut.is_some(), "your cut leaves counts that are not balanced"),
             );
         }
+    }
+    // A plane before the planks has 5 and 7 beside it. One through the centre of the planks has 5 and none.
+    let planks = (0..7).map(|i| Aabb::new(vec3(6.0, i as f32, 0.0), vec3(20.0, i as f32 + 0.5, 0.5)));
+    let long: Vec<Aabb> = cubes((0..5).map(|i| vec3(i as f32, 0.0, 0.0))).into_iter().chain(planks).collect();
+    let alone = KdHeuristics { balanced_counts: true, ..NONE };
+    let on = build(trial, "5 small boxes and 7 planks from x = 6 to 20, balanced_counts alone", &long, alone);
+    if on.cut.is_none_or(|(_, _, [left, right, _])| left.abs_diff(right) > 2) {
+        let says = "your cut leaves counts that are not balanced";
+        return on.refuse("a difference of at most 2", (on.cut.is_some(), says));
     }
     let off = build(trial, format!("{what}, no heuristic"), &crowd, NONE);
     if off.cut.is_none_or(|(_, at, _)| (at - 200.25).abs() > 1.0) {
@@ -194,6 +223,34 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> CheckResult {
             share == empty_share(&off, 4),
             "empty margins of a cell are not cut off: do it before any other cut",
         )]));
+    }
+    // The first cut is at x = 20. The boxes to its left leave margins of 9.0 and 9.5 % of their cell along y.
+    let left =
+        (0..4).map(|i| 1.8 + 4.1 * i as f32).map(|y| Aabb::new(vec3(0.0, y, 0.0), vec3(19.5, y + 4.0, 20.0)));
+    let right =
+        (0..4).map(|i| 5.0 * i as f32).map(|y| Aabb::new(vec3(20.5, y, 0.0), vec3(40.0, y + 5.0, 20.0)));
+    let narrow = build(
+        trial,
+        "two stacks of 4 boxes, cut_off_empty_space alone",
+        &left.chain(right).collect::<Vec<_>>(),
+        alone,
+    );
+    let mut below_the_first = None;
+    narrow.tree.walk(1, |node, cell, depth| {
+        if let KdNode::Inner { axis, at, .. } = narrow.tree.nodes[node as usize]
+            && depth == 1
+            && cell.max.x < 21.0
+        {
+            below_the_first = Some((axis, at));
+        }
+    });
+    if !below_the_first.is_some_and(|(axis, at)| axis == 1 && (2.0..18.0).contains(&at)) {
+        let input = format!("build of {}, leaf_size 2", narrow.what);
+        let yours = format!("a cut (axis, at) = {below_the_first:?} left of the first one");
+        let is_margin = below_the_first.is_some_and(|(axis, at)| axis == 1 && !(2.0..18.0).contains(&at));
+        let broken = Broken::with_texts(input, yours, "a cut across y in the middle", "the heuristic");
+        let says = "you cut off a margin that is no more than a tenth of the cell";
+        return Err(broken.explained_by([(is_margin, says)]));
     }
     // Cuts in the middle leave less of the volume in empty leaves at depth 2.
     let [early, off] = [on, off].map(|tree| empty_share(&tree, 2));

@@ -4,7 +4,7 @@ use checks::broken::{Broken, CheckResult};
 use checks::generate::{point, rough_point};
 use checks::nasty;
 use checks::paste::Paste;
-use glam::Vec3;
+use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::kit_error::{self, KitError};
@@ -21,6 +21,8 @@ pub(super) fn some_boxes() -> impl Strategy<Value = Vec<Aabb>> + Clone {
     ];
     let one = (corner_and_size, 0..20i32).prop_map(|((corner, size), kind)| match kind {
         0 => Aabb::EMPTY,
+        // A box is empty if it is inverted along one axis.
+        1 => Aabb::new(corner, corner + vec3(size.x.abs(), -1.0, size.z.abs())),
         _ => Aabb::new(corner, corner + size.abs()),
     });
     (prop::collection::vec(one, 1..24), nasty::scale(-30..=30)).prop_map(|(boxes, scale)| {

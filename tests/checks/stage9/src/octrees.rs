@@ -60,6 +60,17 @@ pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckR
 }
 
 pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResult {
+    // Two boxes in opposite corners are apart at depth 1.
+    let two = vec![Aabb::new(Vec3::ZERO, Vec3::ONE), Aabb::new(Vec3::splat(9.0), Vec3::splat(10.0))];
+    let of_depth = |max_depth| OctreeQuery { bounds: two.clone(), leaf_size: 1, max_depth };
+    let [two, one] = [2, 1].map(|depth| trial.kit.octree_build(&[of_depth(depth)]).remove(0).nodes.len());
+    if one == 1 {
+        let says = "your tree ends one level above max_depth: the root is at depth 0";
+        let input = "build of two boxes in opposite corners, leaf_size 1, max_depth 1";
+        return Err(
+            Broken::with_texts(input, "a leaf", "eight octants", "counted").explained_by([(two > 1, says)])
+        );
+    }
     // 64 small boxes, one per cell of the third level, and 8 more in one of these cells.
     let at = |i: usize| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32) * 2.0;
     let even = (0..64).map(|i| Aabb::new(at(i), at(i) + 0.5));
