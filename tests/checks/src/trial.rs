@@ -104,6 +104,11 @@ impl<'a> Trial<'a> {
         hidden.new_tree(&mut self.runner()).map_or(public, |tree| tree.current())
     }
 
+    /// A size of a build: `n` for the seed that students have, and up to a fifth less or more for any other seed.
+    pub fn about(&self, n: usize) -> usize {
+        self.varied(n, n - n / 5..n + n / 5)
+    }
+
     /// The kit whose answers are the expected ones: only for a hidden seed, and only if the judge has one.
     fn reference(&self) -> Option<&Arc<dyn Kit + Send + Sync>> {
         self.inputs.reference.as_ref().filter(|_| self.seed != PUBLIC_SEED)

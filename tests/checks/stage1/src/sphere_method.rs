@@ -67,7 +67,7 @@ impl SphereFunction {
         let broken = |query: &SphereQuery, yours, expected| {
             Broken::with_texts(query.call(self.name), format!("{yours:?}"), expected, source)
         };
-        let formulas = |query: &SphereQuery, yours, is_right| mistakes(query, yours, is_right, accepts);
+        let formulas = |query: &SphereQuery, yours, _| mistakes(query, yours, accepts);
         compare_tolerant(cases, (self.ask)(trial.kit, &queries), broken, observations, formulas)
     }
 }

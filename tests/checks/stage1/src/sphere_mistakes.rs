@@ -48,7 +48,6 @@ pub(super) const DROPS_NEAR_HITS: &str =
 pub(super) fn mistakes(
     query: &SphereQuery,
     yours: Option<f32>,
-    is_right: bool,
     accepts: Accepts,
 ) -> Vec<(bool, &'static str)> {
     let quadratic = match accepts {
@@ -60,19 +59,7 @@ pub(super) fn mistakes(
     if accepts == Accepts::FewRoundings {
         all.extend(of_cancellation(query, yours));
     }
-    // All of them test the radius, except for one more.
-    let tests_radius = query.sphere.radius > 0.0;
-    let range = Within(f64::from(query.ray.t_min), f64::from(query.ray.t_max));
-    let Quadratic { a, b, .. } = quadratic;
-    let roots = |root: f64| [(b - root) / a, (b + root) / a];
-    let untested = gives(yours, &quadratic, roots, |roots| range.first(roots));
-    let of_radius = |is_tested: bool| {
-        let text = "a sphere of radius 0 or less cannot be hit: require radius > 0";
-        (if is_tested { is_right } else { untested }, text)
-    };
-    let is_given = |(gives, text)| (if tests_radius { gives } else { is_right }, text);
-    let radius = [of_radius(tests_radius), of_radius(query.sphere.radius != 0.0)];
-    all.into_iter().map(is_given).chain(radius).collect()
+    all
 }
 
 const ALGEBRAIC: &str = "b² - a c cancels for a distant or small sphere: use r² - |f⊥|²";
@@ -126,7 +113,7 @@ fn of_cancellation(query: &SphereQuery, yours: Option<f32>) -> Vec<(bool, &'stat
 
 /// Mistakes that a wrong answer alone shows.
 pub(super) fn observations(query: &SphereQuery, yours: Option<f32>) -> [(bool, &'static str); 3] {
-    let touches = Quadratic::of(query).discriminant == 0.0 && query.sphere.radius > 0.0;
+    let touches = Quadratic::of(query).discriminant == 0.0;
     [
         (yours.is_some_and(f32::is_nan), "you return NaN: compare so that NaN fails"),
         (

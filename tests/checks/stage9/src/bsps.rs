@@ -111,7 +111,7 @@ pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResu
 }
 
 pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
-    let boxes = hulls::infinite_boxes(trial.varied(1000, 700..1300usize));
+    let boxes = hulls::infinite_boxes(trial.about(1000));
     for (name, hulls, most) in hulls::infinite_polygons().into_iter().chain(boxes) {
         judge_build(trial, name, hulls, 12, most)?;
     }

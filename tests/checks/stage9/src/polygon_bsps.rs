@@ -222,8 +222,7 @@ pub(super) fn polygon_bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
     // So deep a tree would split each triangle into more than `MOST_REFERENCES` parts.
     let name = "400 large triangles that cross each other";
     let crossing = [(name, crossing_triangles(400), MOST_REFERENCES, 32)];
-    let boxes = hulls::infinite_boxes(trial.varied(1000, 700..1300usize))
-        .map(|(name, hulls, most)| (name, hulls, most, 20));
+    let boxes = hulls::infinite_boxes(trial.about(1000)).map(|(name, hulls, most)| (name, hulls, most, 20));
     for (name, hulls, most, max_depth) in polygons.into_iter().chain(crossing).chain(boxes) {
         let n = hulls.len();
         let query = BspQuery { hulls, leaf_size: 1, max_depth };
