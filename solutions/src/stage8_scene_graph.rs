@@ -150,8 +150,8 @@ pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
 ///
 /// 1. `t` counts lengths of the direction, which may have any length but 0. The radius is above 0.
 /// 2. The result is in `t_min..=t_max`; from inside it is `t_min`.
-/// 3. It is never later than the exact entry as an `f32`, and earlier by at most 10⁻⁵ of the way to
-///    the centre and out of the sphere.
+/// 3. It is never later than the exact entry as an `f32`, and earlier by at most 10⁻⁵ of the distance
+///    to the centre plus the radius.
 /// 4. `None` if the sphere lies beside the ray, behind it or beyond `t_max`. The surface belongs to
 ///    the sphere.
 pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {

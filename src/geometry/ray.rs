@@ -22,7 +22,7 @@ pub struct Ray {
     pub origin: Vec3,
     /// The direction, of any length but zero.
     pub direction: Vec3,
-    /// The lower end of the range, open: a hit at or before this `t` does not count.
+    /// The lower end of the range, open: a hit at or before this `t` does not count. It may be negative.
     pub t_min: f32,
     /// The upper end of the range, open: a hit at or beyond this `t` does not count. A search lowers it to
     /// the closest hit.

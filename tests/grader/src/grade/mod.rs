@@ -117,7 +117,7 @@ pub fn run(given: &Given) -> Result<bool> {
     for twin in submissions.iter().filter(is_twin) {
         let path = twin.path.display();
         eprintln!(
-            "note: {path} has the name of another submission, so they are two students: remove one if they are not"
+            "note: {path} has the name of another submission, and both are graded: remove one if they are from the same student"
         );
     }
     ensure!(!submissions.is_empty(), "there is no submission in {}", class.display());

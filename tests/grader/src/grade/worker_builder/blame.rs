@@ -9,7 +9,7 @@ const SHOWN: usize = 4000;
 
 /// What to do if the kit cannot call a file as it calls the exercise.
 pub const OLDER: &str = "the kit cannot use this file: a name or a function is missing, or has other arguments or another \
-                         result than in the exercise. If your exercises are from an older kit, move your code into a new one\n";
+                         result than in the exercise. If your exercises are from an older kit, copy your code into the new one\n";
 
 /// Returns the suspects that an error points to.
 type Sign = fn(&Value, &[&String]) -> BTreeSet<String>;
