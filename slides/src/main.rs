@@ -62,7 +62,7 @@ const DIAGRAMS: &[(&str, Draw)] = drawings! {
     rays: ray_tree_bound;
     sampling: gaussian_weight, disk_samples, penumbra, motion_bounds;
     splits: sah_cuts, object_median_problem, spatial_median_corner;
-    searches: bvh_descent, wide_search;
+    searches: wide_search;
     curves: ray_to_object, normal_transform, de_casteljau, bspline_basis;
     surfaces: inside_tests, vertex_normals, texture_coordinates, bilinear;
     rounding: silhouette_normal, rounded_point, edge_gap, offset_bound;

@@ -39,7 +39,7 @@ pub fn octree_searches(kit: &dyn Kit) -> Result<String> {
     let query = OctreeQuery { bounds: boxes(), leaf_size: 1, max_depth: 4 };
     let octree = kit.octree_build(&[query]).remove(0);
     let query = [CellsQuery { cells: octree.clone(), ray, hits }];
-    let mut drawing = Drawing::new("Three searches of one octree", 1000.0, 470.0);
+    let mut drawing = Drawing::new("Three searches of one octree", 1000.0, 550.0);
     let nodes = flat_nodes(&octree);
     // Draw the cells and the tree level by level in the first panel.
     drawing.step();
@@ -47,7 +47,7 @@ pub fn octree_searches(kit: &dyn Kit) -> Result<String> {
     let at = cells_at(14.0);
     for depth in 0..octree.depth() {
         let shown = &nodes[..nodes.partition_point(|node| node.depth <= depth)];
-        drawing.remark([14.0, 428.0], &format!("levels {}; nodes: {}", depth + 1, shown.len()));
+        drawing.remark([14.0, 508.0], &format!("{} levels, {} nodes", depth + 1, shown.len()));
         for node in shown {
             drawing.frame(at(node.cell.min), at(node.cell.max), Ink::Faint.pen(1.5));
         }
@@ -68,9 +68,9 @@ pub fn octree_searches(kit: &dyn Kit) -> Result<String> {
         }
         draw_cells(&mut drawing, &octree, &nodes, &ray, &answer, left);
         draw_levels(&mut drawing, &nodes, &answer, left);
-        drawing.text([left, 428.0], Start, SMALL, Ink::Text, name);
+        drawing.text([left, 508.0], Start, SMALL, Ink::Text, name);
         let text = format!("{} visits", answer.visits.len());
-        drawing.text([left, 458.0], Start, SMALL, Ink::Color(1), &text);
+        drawing.text([left, 538.0], Start, SMALL, Ink::Color(1), &text);
     }
     Ok(drawing.svg())
 }
@@ -102,7 +102,7 @@ fn draw_cells(
 
 /// Where a point of the plane stands in the panel that begins at `left`.
 fn cells_at(left: f64) -> impl Fn(Vec3) -> Point + Copy {
-    plane([left - 8.0, 226.0], 39.0).1
+    plane([left - 8.0, 306.0], 39.0).1
 }
 
 fn draw_objects(drawing: &mut Drawing, left: f64) {
@@ -117,7 +117,7 @@ fn draw_levels(drawing: &mut Drawing, nodes: &[Node], answer: &CellsAnswer, left
     let row = |depth: usize| nodes.iter().filter(|node| node.depth == depth).count();
     let at = |node: &Node| -> Point {
         let share = (node.column as f64 + 0.5) / row(node.depth) as f64;
-        [left + 312.0 * share, 262.0 + 40.0 * node.depth as f64]
+        [left + 312.0 * share, 342.0 + 40.0 * node.depth as f64]
     };
     for node in nodes {
         match visits(answer, node.index) {

@@ -1,77 +1,12 @@
-//! Diagrams of searches: down a hierarchy with two children per node, and in a node with eight.
+//! The diagram of a search in a node with eight children.
 
-use anyhow::{Result, ensure};
+use anyhow::Result;
 use glam::vec3;
 use raykata::aabb::Aabb;
-use raykata::bvh::Contents;
-use raykata::kit::{BuildQuery, Kit, SearchQuery, SlabQuery, Table, WideBoxesQuery};
+use raykata::kit::{Kit, WideBoxesQuery};
 use raykata::ray::Ray;
-use raykata::scene::Split;
 use raykata::wide::{Child, WideNode};
-use touch::svg::{Drawing, Ink, Middle, SMALL, Start, TEXT, plane};
-use touch::walk::{CAPTION, at, boxes, draw_boxes, draw_hit, draw_tested, hits};
-
-/// A hierarchy over the boxes, level by level, and the search for the closest hit of a ray in it.
-pub fn bvh_descent(kit: &dyn Kit) -> Result<String> {
-    let ray = Ray::new(vec3(-0.6, 0.9, 0.5), vec3(1.0, 0.607, 0.0));
-    let bvh = kit.build(&[BuildQuery { bounds: boxes(), split: Split::SurfaceArea, leaf_size: 2 }]).remove(0);
-    let queries: Vec<_> = bvh.nodes.iter().map(|node| SlabQuery { ray, bounds: node.bounds }).collect();
-    let miss = (f32::INFINITY, f32::NEG_INFINITY);
-    let spans = kit.slab(&queries).into_iter().map(|span| span.unwrap_or(miss)).collect();
-    let table = Table { boxes: spans, primitives: hits(kit, ray) };
-    let mut drawing = Drawing::new("A hierarchy of boxes, and the search of a ray in it", 1000.0, 620.0);
-    draw_boxes(&mut drawing, &ray);
-    let children = |node: u32| match bvh.nodes[node as usize].contents {
-        Contents::Inner { left, right } => vec![left, right],
-        Contents::Leaf { .. } => Vec::new(),
-    };
-    let frame = |drawing: &mut Drawing, node: u32, ink: Ink, width: f64| {
-        let bounds = bvh.nodes[node as usize].bounds;
-        drawing.frame(at(bounds.min), at(bounds.max), ink.pen(width));
-    };
-    // Draw the boxes of each level.
-    let mut level = vec![0];
-    for depth in 0..bvh.depth() {
-        drawing.remark(CAPTION, &format!("level {depth}; nodes: {}", level.len()));
-        level.iter().for_each(|&node| frame(&mut drawing, node, Ink::Color(0), 2.0));
-        level = level.iter().flat_map(|&node| children(node)).collect();
-    }
-    // Search as stage 3 does: nearest child first, and no node that begins behind the closest hit.
-    let (mut open, mut visited, mut within) = (vec![0], 0, ray);
-    while let Some(node) = open.pop() {
-        let (what, ink) = match table.enter(node, &within) {
-            Some(_) => ("opened", Ink::Color(1)),
-            None => ("skipped", Ink::Faint),
-        };
-        let (enter, t_max) = (table.boxes[node as usize].0, within.t_max);
-        let text = format!("entered at t = {enter:.2}, {what}; t_max = {t_max:.2}");
-        drawing.step_with(CAPTION, &text, |drawing| frame(drawing, node, Ink::Color(3), 12.0));
-        frame(&mut drawing, node, ink, 5.0);
-        if what == "skipped" {
-            continue;
-        }
-        visited += 1;
-        if let Contents::Leaf { first, count } = bvh.nodes[node as usize].contents {
-            for &index in bvh.primitives(first, count) {
-                draw_tested(&mut drawing, index);
-                within.t_max = table.hit(index, &within).unwrap_or(within.t_max);
-            }
-        }
-        let enter = |child: &u32| table.boxes[*child as usize].0;
-        let mut below = children(node);
-        below.retain(|&child| table.enter(child, &ray).is_some());
-        below.sort_by(|p, q| enter(q).total_cmp(&enter(p)));
-        open.extend(below);
-    }
-    // The search of the kit must open as many nodes, and find the same hit.
-    let answer = kit.closest_hit(&[SearchQuery { bvh: bvh.clone(), ray, table }]).remove(0);
-    let found = (answer.counts.node_visits, answer.hit.map(|hit| hit.t));
-    ensure!(found == (visited, Some(within.t_max)), "`closest_hit` opens and finds {found:?}");
-    draw_hit(&mut drawing, &ray, Some(within.t_max));
-    let text = format!("{visited} of {} nodes opened, closest hit t = {:.2}", bvh.nodes.len(), within.t_max);
-    drawing.text(CAPTION, Start, TEXT, Ink::Text, &text);
-    Ok(drawing.svg())
-}
+use touch::svg::{Drawing, Ink, Middle, SMALL, Start, plane};
 
 /// The boxes of a node with eight children: for each two opposite corners, and the x of a triangle within, or 99, which is outside.
 const EIGHT: [f32; 40] = [

@@ -1,5 +1,6 @@
 // Finds slides of the page whose content does not fit: an element ends below the padding, or code or a table is too wide. A slide
-// is 1280 by 720 units. `overflow.rs` evaluates this file in a browser.
+// is 1280 by 720 units. Also finds slides whose figures and code do not follow the colours of the system. `overflow.rs` evaluates this
+// file in a browser.
 (() => {
   const found = []
   document.querySelectorAll('section').forEach((section, index) => {
@@ -12,6 +13,7 @@
     // Headers and footers have a place of their own.
     const parts = [...section.children].filter(part => !['HEADER', 'FOOTER'].includes(part.tagName))
     const bottom = Math.max(0, ...parts.map(part => scale * (part.getBoundingClientRect().bottom - frame.top)))
+    if (style.colorScheme !== 'light dark') problems.push(`has the colour scheme ${style.colorScheme}`)
     if (bottom > lowest + 1) problems.push(`ends at ${Math.round(bottom)} of ${lowest}`)
     for (const part of section.querySelectorAll('pre, table, mjx-container, img')) {
       const right = scale * (part.getBoundingClientRect().right - frame.left)

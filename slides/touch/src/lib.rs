@@ -44,6 +44,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { name: "snell", start: &snell::START, draw: snell::draw },
     Figure { name: "thin-lens", start: &[0.0, 1.2, 4.6, 1.3, 7.2, -0.45], draw: lens::draw },
     Figure { name: "mis-ring", start: &[-1.5, 1.3, 1.9, 1.1, 0.9, 2.2], draw: mis::draw },
+    Figure { name: "bvh-descent", start: &[-0.6, 0.9, 6.6, 5.2704, 2.0, 2.0], draw: walk::draw_hierarchy },
     Figure { name: "grid-steps", start: &[-0.6, 1.35, 8.6, 4.018, 8.0], draw: walk::draw_grid },
     Figure { name: "kd-traversal", start: &[-0.6, 1.35, 8.6, 4.018, 2.0], draw: walk::draw_kd_tree },
     Figure { name: "live-frame", start: &[6.0, 0.0, 0.0, 5.0, 4.0, 5.0], draw: frame::draw },

@@ -2,12 +2,14 @@
 
 use crate::Touch;
 use crate::svg::{Drawing, Ink, Middle, Point, SMALL, Start, TEXT, View};
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
-use raykata::kit::{CellsAnswer, CellsQuery, GridQuery, KdQuery, Kit, SlabQuery};
+use raykata::bvh::Contents;
+use raykata::kit::{BuildQuery, CellsQuery, GridQuery, KdQuery, Kit, SearchQuery, SlabQuery, Table};
 use raykata::partition::{KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
+use raykata::scene::Split;
 
 /// Boxes in the plane, in a square of 8 by 5 units.
 const BOXES: [[f32; 4]; 11] = [
@@ -29,12 +31,11 @@ pub fn boxes() -> Vec<Aabb> {
     BOXES.iter().map(|[x0, y0, x1, y1]| Aabb::new(vec3(*x0, *y0, 0.0), vec3(*x1, *y1, 1.0))).collect()
 }
 
-/// The ray of the diagrams, and the `t` at which it enters each box.
-fn ray_and_hits(kit: &dyn Kit, touch: &mut Touch) -> (Ray, Vec<f32>) {
+/// The ray of the diagrams, through two points, the second of which lies at `t`.
+fn ray(touch: &mut Touch, t: f32) -> Ray {
     let names = ["origin of the ray", "end of the ray"];
     let [from, to] = names.map(|name| touch.point(VIEW, name, [-0.9, -0.2], [8.6, 5.3]).with_z(0.5));
-    let ray = Ray::new(from, (to - from) / END);
-    (ray, hits(kit, ray))
+    Ray::new(from, (to - from) / t)
 }
 
 /// The `t` at which a ray enters each box; infinite if it misses the box.
@@ -54,7 +55,7 @@ pub fn at(point: Vec3) -> [f64; 2] {
 }
 
 /// Begins with boxes and ray, as far as the drawing reaches.
-pub fn draw_boxes(drawing: &mut Drawing, ray: &Ray) {
+fn draw_boxes(drawing: &mut Drawing, ray: &Ray) {
     drawing.step();
     for bounds in boxes() {
         drawing.rectangle(at(bounds.min), at(bounds.max), Ink::Faint, 0.35);
@@ -90,14 +91,14 @@ fn draw_visits(
 }
 
 /// Marks a box that was tested.
-pub fn draw_tested(drawing: &mut Drawing, index: u32) {
+fn draw_tested(drawing: &mut Drawing, index: u32) {
     let bounds = boxes()[index as usize];
     drawing.rectangle(at(bounds.min), at(bounds.max), Ink::Color(1), 0.4);
     drawing.frame(at(bounds.min), at(bounds.max), Ink::Color(1).pen(2.0));
 }
 
 /// Ends with the ray up to its hit, or up to its end.
-pub fn draw_hit(drawing: &mut Drawing, ray: &Ray, hit: Option<f32>) {
+fn draw_hit(drawing: &mut Drawing, ray: &Ray, hit: Option<f32>) {
     drawing.step();
     drawing.arrow(at(ray.origin), at(ray.at(hit.unwrap_or(END))), Ink::Text.pen(3.5));
     if let Some(t) = hit {
@@ -106,11 +107,80 @@ pub fn draw_hit(drawing: &mut Drawing, ray: &Ray, hit: Option<f32>) {
 }
 
 /// Where the caption stands.
-pub const CAPTION: Point = [100.0, 604.0];
+const CAPTION: Point = [100.0, 604.0];
+
+/// A hierarchy over the boxes, level by level, and the search for the closest hit of a ray in it.
+pub fn draw_hierarchy(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
+    let ray = ray(touch, 7.2);
+    let (split, leaf_size) = (Split::ALL[touch.whole(4, 0, 2) as usize], touch.whole(5, 1, 11) as usize);
+    let bvh = kit.build(&[BuildQuery { bounds: boxes(), split, leaf_size }]).remove(0);
+    let queries: Vec<_> = bvh.nodes.iter().map(|node| SlabQuery { ray, bounds: node.bounds }).collect();
+    let miss = (f32::INFINITY, f32::NEG_INFINITY);
+    let spans = kit.slab(&queries).into_iter().map(|span| span.unwrap_or(miss)).collect();
+    let table = Table { boxes: spans, primitives: hits(kit, ray) };
+    let mut drawing = Drawing::new("A hierarchy of boxes, and the search of a ray in it", 1000.0, 620.0);
+    draw_boxes(&mut drawing, &ray);
+    let children = |node: u32| match bvh.nodes[node as usize].contents {
+        Contents::Inner { left, right } => vec![left, right],
+        Contents::Leaf { .. } => Vec::new(),
+    };
+    let frame = |drawing: &mut Drawing, node: u32, ink: Ink, width: f64| {
+        let bounds = bvh.nodes[node as usize].bounds;
+        drawing.frame(at(bounds.min), at(bounds.max), ink.pen(width));
+    };
+    // Draw the boxes of each level.
+    let mut level = vec![0];
+    for depth in 0..bvh.depth() {
+        drawing.remark(CAPTION, &format!("level {depth}; nodes: {}", level.len()));
+        level.iter().for_each(|&node| frame(&mut drawing, node, Ink::Color(0), 2.0));
+        level = level.iter().flat_map(|&node| children(node)).collect();
+    }
+    // Search as stage 3 does: nearest child first, and no node that begins behind the closest hit.
+    let (mut open, mut visited, mut tested, mut within, mut hit) = (vec![0], 0, 0, ray, None);
+    open.retain(|&root| table.enter(root, &ray).is_some());
+    while let Some(node) = open.pop() {
+        let (what, ink) = match table.enter(node, &within) {
+            Some(_) => ("opened", Ink::Color(1)),
+            None => ("skipped", Ink::Faint),
+        };
+        let (enter, t_max) = (table.boxes[node as usize].0, within.t_max);
+        let text = format!("entered at t = {enter:.2}, {what}; t_max = {t_max:.2}");
+        drawing.step_with(CAPTION, &text, |drawing| frame(drawing, node, Ink::Color(3), 12.0));
+        frame(&mut drawing, node, ink, 5.0);
+        if what == "skipped" {
+            continue;
+        }
+        visited += 1;
+        if let Contents::Leaf { first, count } = bvh.nodes[node as usize].contents {
+            tested += count;
+            for &index in bvh.primitives(first, count) {
+                draw_tested(&mut drawing, index);
+                hit = table.hit(index, &within).or(hit);
+                within.t_max = hit.unwrap_or(within.t_max);
+            }
+        }
+        let enter = |child: &u32| table.boxes[*child as usize].0;
+        let mut below = children(node);
+        below.retain(|&child| table.enter(child, &ray).is_some());
+        below.sort_by(|p, q| enter(q).total_cmp(&enter(p)));
+        open.extend(below);
+    }
+    // The search of the kit must open as many nodes, and find the same hit.
+    let answer = kit.closest_hit(&[SearchQuery { bvh: bvh.clone(), ray, table }]).remove(0);
+    let found = (answer.counts.node_visits, answer.hit.map(|hit| hit.t));
+    ensure!(found == (visited, hit), "`closest_hit` opens and finds {found:?}");
+    draw_hit(&mut drawing, &ray, hit);
+    let closest = hit.map_or("none".to_owned(), |t| format!("t = {t:.2}"));
+    let text = format!("{visited} of {} nodes opened, closest hit {closest}", bvh.nodes.len());
+    drawing.text(CAPTION, Start, TEXT, Ink::Text, &text);
+    show(touch, ("nodes opened", visited as usize), tested as usize, hit);
+    Ok(drawing.svg())
+}
 
 /// A ray through a uniform grid: the cells that it visits, numbered, up to the first hit.
 pub fn draw_grid(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
-    let (ray, hits) = ray_and_hits(kit, touch);
+    let ray = ray(touch, END);
+    let hits = hits(kit, ray);
     let columns = touch.whole(4, 1, 16);
     let resolution = UVec3::new(columns, (5 * columns).div_ceil(8), 1);
     let query = GridQuery { bounds: boxes(), resolution };
@@ -135,20 +205,21 @@ pub fn draw_grid(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
     draw_visits(&mut drawing, kit, &ray, &cells, answer.hit.map(|hit| hit.t));
     let text = format!("{} cells visited, boxes tested: {}", answer.visits.len(), answer.tests.len());
     drawing.text(CAPTION, Start, TEXT, Ink::Text, &text);
-    show(touch, "cells visited", answer.visits.len(), &answer);
+    show(touch, ("cells visited", answer.visits.len()), answer.tests.len(), answer.hit.map(|hit| hit.t));
     Ok(drawing.svg())
 }
 
 /// Shows what a search cost, and its hit.
-fn show(touch: &mut Touch, what: &str, visits: usize, answer: &CellsAnswer) {
-    touch.value(what, visits);
-    touch.value("boxes tested", format!("{} of {}", answer.tests.len(), BOXES.len()));
-    touch.value("t of the hit", answer.hit.map_or("none".to_owned(), |hit| hit.t.to_string()));
+fn show(touch: &mut Touch, visits: (&str, usize), tests: usize, hit: Option<f32>) {
+    touch.value(visits.0, visits.1);
+    touch.value("boxes tested", format!("{tests} of {}", BOXES.len()));
+    touch.value("t of the hit", hit.map_or("none".to_owned(), |t| t.to_string()));
 }
 
 /// The planes of a kd-tree, level by level, and a ray through it: its leaves in the order of the visits, up to the first hit.
 pub fn draw_kd_tree(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
-    let (ray, hits) = ray_and_hits(kit, touch);
+    let ray = ray(touch, END);
+    let hits = hits(kit, ray);
     let leaf_size = touch.whole(4, 1, 11) as usize;
     let query = KdQuery { bounds: boxes(), heuristics: KdHeuristics::default(), leaf_size };
     let tree = kit.kd_build(&[query]).remove(0);
@@ -174,7 +245,7 @@ pub fn draw_kd_tree(kit: &dyn Kit, touch: &mut Touch) -> Result<String> {
     let (all, inner) = (cells.len(), answer.visits.len() - n);
     let text = format!("{n} of {all} leaves and {inner} inner nodes visited, {tests} boxes tested");
     drawing.text([500.0, CAPTION[1]], Middle, SMALL, Ink::Text, &text);
-    show(touch, "leaves visited", n, &answer);
+    show(touch, ("leaves visited", n), tests, answer.hit.map(|hit| hit.t));
     Ok(drawing.svg())
 }
 
