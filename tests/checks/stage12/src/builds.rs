@@ -2,7 +2,7 @@
 
 use super::bars::sweep_cost;
 use super::scenes::scenes;
-use super::trees::{boxes, broken_by, cost, depth, fault, from_leaves};
+use super::trees::{boxes, broken_by, cost, fault, from_leaves};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::{compare, unless};
@@ -106,6 +106,7 @@ fn choices(random: &mut Random) -> Vec<Choice> {
         (0..n).map(bar).collect()
     };
     let mut pair = |n: usize, m: usize, length: f32| [bars(n, length, false), bars(m, length, true)].concat();
+    let tie = |low: f32| Aabb::new(vec3(low, 0.0, 0.0), vec3(low + 14.0, 1.0, 0.0));
     let bar = |length: f32| Aabb::new(Vec3::ZERO, vec3(length, 1.0, 1.0));
     let apart = |x: f32| Aabb::new(Vec3::splat(9.0 * x), Vec3::splat(9.0 * x + 1.0));
     // Half the surface area of a bar is 1 + 2 · length, and that of all is 3.
@@ -126,6 +127,13 @@ fn choices(random: &mut Random) -> Vec<Choice> {
             // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.75. By primitives 12 · 3 and 0.25 · 3 + 12 · 2.75.
             "two groups of six that overlap by three quarters",
             pair(6, 6, 0.875),
+            vec![12],
+            [Sizes(&[6, 6]), Sizes(&[6, 6]), Sizes(&[6, 6]), More, More, Same],
+        ),
+        (
+            // As a leaf 2 · 16; split 0.25 · 16 + 2 · 14: equal, and all of these numbers are exact.
+            "two groups of six flat boxes that overlap by six sevenths",
+            [vec![tie(0.0); 6], vec![tie(2.0); 6]].concat(),
             vec![12],
             [Sizes(&[6, 6]), Sizes(&[6, 6]), Sizes(&[6, 6]), More, More, Same],
         ),
@@ -238,16 +246,29 @@ fn build_of(trial: &Trial<'_>, what: &str, boxes: Vec<Aabb>) -> CheckResult {
     let tree = build(trial, &boxes, input.clone())?;
     judge_tree(&boxes, &tree).map_err(|broken| Broken { input: input.clone(), ..broken })?;
     let small = tree.nodes.iter().filter(|node| node.is_leaf()).count();
-    // Each level below DEEPEST_SPLIT halves the primitives, down to a leaf of BLOCK.
-    let most = DEEPEST_SPLIT + boxes.len().next_power_of_two().ilog2() as usize + 1;
-    let levels = depth(&tree);
-    if levels > most || small * BLOCK < boxes.len() / 8 {
-        let yours = format!("{levels} levels, {small} leaves");
-        let broken = Broken::with_texts(input, yours, format!("at most {most} levels"), "counted");
-        return Err(broken.explained_by([(
-            levels > most,
-            "each level splits off few primitives: from depth DEEPEST_SPLIT on divide them in half",
-        )]));
+    if small * BLOCK < boxes.len() / 8 {
+        return Err(Broken::with_texts(
+            input,
+            format!("{small} leaves"),
+            "more leaves".to_owned(),
+            "counted",
+        ));
+    }
+    // From depth DEEPEST_SPLIT on, each inner node is halved. Parents stand before their children.
+    let sizes = from_leaves(&tree, |_, node| node.count, |_, left, right| left + right);
+    let mut depths = vec![0; tree.nodes.len()];
+    for (node, index) in tree.nodes.iter().zip(0..).filter(|(node, _)| !node.is_leaf()) {
+        let (left, depth): (usize, usize) = (node.first as usize, depths[index]);
+        (depths[left], depths[left + 1]) = (depth + 1, depth + 1);
+        if depth >= DEEPEST_SPLIT && sizes[left].abs_diff(sizes[left + 1]) > 1 {
+            let yours =
+                format!("{} and {} primitives below a node at depth {depth}", sizes[left], sizes[left + 1]);
+            let broken = Broken::with_texts(input, yours, "halves".to_owned(), "counted");
+            return Err(broken.explained_by([(
+                true,
+                "each level splits off few primitives: from depth DEEPEST_SPLIT on divide them in half",
+            )]));
+        }
     }
     Ok(())
 }

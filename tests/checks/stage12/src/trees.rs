@@ -178,11 +178,6 @@ pub(super) fn from_leaves<T: Copy>(
     values
 }
 
-/// The number of levels of a tree without faults.
-pub(super) fn depth(tree: &FlatTree) -> usize {
-    from_leaves(tree, |_, _| 1, |_, left, right| 1 + left.max(right)).first().copied().unwrap_or(0)
-}
-
 /// The cost of a tree without faults by the surface area heuristic of this stage, for a ray that enters its root.
 pub fn cost(tree: &FlatTree) -> f64 {
     let cost = |node: &FlatNode| {

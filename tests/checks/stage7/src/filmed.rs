@@ -36,7 +36,7 @@ enum Moving {
     Elsewhere,
 }
 
-fn filmed() -> [Filmed; 11] {
+fn filmed() -> [Filmed; 12] {
     let (open, small) = (Some((0.0, 1.0)), Some(0.1));
     [
         ("a lens of aperture 0", Some(0.0), None, Moving::No, [false, false]),
@@ -48,6 +48,13 @@ fn filmed() -> [Filmed; 11] {
             "a moving sphere, and a shutter that closes at the time at which it opens",
             None,
             Some((0.5, 0.5)),
+            Moving::Yes,
+            [false, false],
+        ),
+        (
+            "a moving sphere, and a shutter that closes before it opens",
+            None,
+            Some((0.5, 0.25)),
             Moving::Yes,
             [false, false],
         ),
@@ -107,6 +114,10 @@ impl Filmed {
             (
                 is(lens, has_shutter && moves),
                 "you ignore when the shutter closes: all rays have the same time if it closes as it opens",
+            ),
+            (
+                is(lens, self.shutter.is_some_and(|(open, close)| close != open) && moves),
+                "a shutter that closes before it opens takes no time: compare both times by >",
             ),
             (is(lens, opens), "you ignore the shapes: no shape moves in some of the scenes"),
             (is(lens, moves), "without a shutter all rays have time 0: you test only whether a shape moves"),

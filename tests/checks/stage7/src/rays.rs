@@ -379,10 +379,19 @@ pub(super) fn bound_stays_at_the_largest_number(trial: &Trial<'_>) -> CheckResul
     };
     let most = u64::MAX;
     // All sums of powers of two end at 2⁶⁴ - 1, and three times that is 2⁶⁴ - 3, without the part above 2⁶⁴.
-    let wrapped = (
-        counts(1, most - 2, most, most),
-        "your numbers wrap around, because 2¹⁰⁰⁰ does not fit u64: use saturating_mul and saturating_add everywhere",
-    );
+    const WRAPS: &str = "your numbers wrap around, because they do not fit u64: use saturating_mul and saturating_add everywhere";
+    let wrapped = (counts(1, most - 2, most, most), WRAPS);
     let small = case(10, counts(1, 3 * 2047, 1023, 1023), Vec::new());
-    judge_pixel(trial, [small, case(1000, counts(1, most, most, most), vec![wrapped])])
+    // Twelve rays per hit: 12¹⁸ hits of the last bounce do not fit, and modulo 2⁶⁴ the sum of all would.
+    let glossy = Material { roughness: 0.5, ..both.clone() };
+    let quality = Quality { max_depth: 18, min_contribution: 0.0, glossy_samples: 6, ..Quality::default() };
+    let twelve = BoundedScene {
+        what: "one pixel under one light, a glossy material that reflects and transmits all light, glossy_samples 6, \
+               max_depth 18"
+            .into(),
+        query: query(glossy, 1, quality),
+        expected: counts(1, most, 14_521_818_153_210_133_038, 14_521_818_153_210_133_038),
+        wrong: vec![(counts(1, 10_596_892_232_710_714_461, 14_521_818_153_210_133_038, 14_521_818_153_210_133_038), WRAPS)],
+    };
+    judge_pixel(trial, [small, case(1000, counts(1, most, most, most), vec![wrapped]), twelve])
 }

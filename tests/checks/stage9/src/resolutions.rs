@@ -67,19 +67,18 @@ fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
         // or a flat box within this distance, both answers are accepted.
         let room = |t: f64| (-18f64).exp2() * (1.0 + t.abs());
         let close = |p: f64, q: f64| p == q || (p - q).abs() <= room(q);
-        // Range and faces have room for rounding, 2⁻²⁰ of `t`. Demand half of it at both ends, because the product may be
+        // Range and faces have room for rounding, 2⁻²⁰ of `t`. Demand half of it at each end, because the product may be
         // rounded.
-        let rounding = match expected {
-            (t, t_end) if t.is_finite() && t_end.is_finite() => (-21f64).exp2() * (t.abs() + t_end.abs()),
-            _ => 0.0,
-        };
+        let half = |t: f64| if t.is_finite() { (-21f64).exp2() * t.abs() } else { 0.0 };
+        let wider = (expected.0 - half(expected.0), expected.1 + half(expected.1));
+        let is_close = |(t, t_end): (f64, f64)| close(t, expected.0) && close(t_end, expected.1);
         let fits = match yours {
-            Some((t, t_end)) => {
+            Some(span) => {
                 expected.0 <= expected.1 + room(expected.1)
-                    && close(t, expected.0)
-                    && close(t_end, expected.1)
+                    && is_close(span)
+                    && (span.0 <= wider.0 && span.1 >= wider.1)
             }
-            None => !(expected.0 <= expected.1 + rounding),
+            None => !(wider.0 <= wider.1),
         };
         if fits {
             return Ok(());
@@ -129,15 +128,14 @@ fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
                 "your answer is wrong for a ray along a face: its direction is 0 there, so compare its origin with both planes",
             ),
             (
-                is_none && expected.0 > expected.1,
+                yours.map_or(expected.0 > expected.1, is_close),
                 "you leave out the room for rounding: the range of the ray and the faces have ROUNDING as room",
             ),
             (is_none && near == far, "you return None for a ray that touches the cell: the cell is closed"),
         ];
         let expected = match expected {
-            (t, t_end) if t <= t_end => Some(expected),
-            (t, t_end) if t <= t_end + rounding => Some((t - rounding, t_end + rounding)),
-            _ => None,
+            (t, t_end) if t <= t_end && !yours.is_some_and(is_close) => Some(expected),
+            _ => (wider.0 <= wider.1).then_some(wider),
         };
         let at_scale = |span: Option<(f64, f64)>| span.map(|(t, t_end)| (t_scale * t, t_scale * t_end));
         let input = spanned.asked().call("span");
