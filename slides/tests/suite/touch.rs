@@ -60,7 +60,10 @@ fn touched_figures_are_what_the_kit_computes() {
         fs::copy(figure.path(), folder.path().join("figures").join(figure.file_name())).unwrap();
     }
     assert_eq!(names, touch::FIGURES.iter().map(|figure| figure.name).collect::<Vec<_>>());
-    let page = format!("file://{}", folder.path().join("touch.html").display());
+    let page = folder.path().join("touch.html");
+    let size = fs::metadata(&page).unwrap().len();
+    assert!(size < 2_300_000, "{size} bytes: slides/README.md states the size");
+    let page = format!("file://{}", page.display());
     browser.window(1000, 900, false).unwrap();
     browser.open(&page).unwrap();
     browser.wait_for("!!document.documentElement.dataset.state").unwrap();

@@ -7,7 +7,7 @@ use raykata::camera::{Camera, Shutter};
 use raykata::light_path::PathEffects;
 use raykata::material::{AreaShape, Emitter, Falloff, Light, Material};
 use raykata::scene::{Background, EnvironmentMap, Gradient, Node, Scene, VisibleLight};
-use raykata::shape::{Plane, Shape, Sphere};
+use raykata::shape::{Plane, PlaneEquation, Shape, Sphere};
 
 const RED: Vec3 = Vec3::X;
 const GREEN: Vec3 = Vec3::Y;
@@ -310,6 +310,8 @@ pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckRe
     let wall = || (sphere(), diffuse(Vec3::ONE));
     let emitter = || (sphere(), glowing(Vec3::ONE));
     let plain = scene(&[wall(), (plane(), glowing(Vec3::ONE))]);
+    let equation = Shape::PlaneEquation(PlaneEquation { normal: Vec3::Y, d: 1.0 });
+    let equation = scene(&[wall(), (equation, glowing(Vec3::ONE))]);
     // The same material on a plane and on a sphere.
     let mut both = plain.clone();
     both.nodes.push(Node { shape: Some(sphere()), material: Some(2), ..Node::default() });
@@ -345,6 +347,11 @@ pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckRe
                 "a diffuse sphere and a plane that emits light",
                 plain,
                 "an infinite plane is not sampled",
+            ),
+            not_sampled(
+                "a diffuse sphere and a plane, given by its equation, that emits light",
+                equation,
+                "an infinite plane is not sampled, also one that is given by its equation",
             ),
             sampled(
                 "a diffuse sphere, and a plane and a sphere of the same glowing material",

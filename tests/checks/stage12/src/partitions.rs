@@ -123,29 +123,35 @@ pub(super) fn judge_all(
 pub(super) fn partition_bins_agrees_with_the_bins(trial: &Trial<'_>) -> CheckResult {
     // Centroids on the bounds between bins, where a formula that rounds in another way puts them into another bin. An axis
     // with the scale 0 has one bin.
-    let edges =
-        (prop::collection::vec((1..=15i32, 0..=2i32), 1..12), n_bins(), 1..=40i32, 0..3u32, any::<u8>())
-            .prop_map(|(places, n_bins, extent, axis, bin)| {
-                // Boxes at about the places k/n_bins of an extent: their bounds are rounded.
-                let extent = extent as f32 / 7.0;
-                let at = |(k, ulps): (i32, i32)| {
-                    let mut at = extent * k as f32 / n_bins as f32;
-                    for _ in 0..ulps {
-                        at = at.next_up();
-                    }
-                    Aabb::new(Vec3::splat(at), Vec3::splat(at))
-                };
-                let mut boxes: Vec<Aabb> = places.into_iter().map(at).collect();
-                boxes.extend([
-                    Aabb::new(Vec3::ZERO, Vec3::ZERO),
-                    Aabb::new(Vec3::splat(extent), Vec3::splat(extent)),
-                ]);
-                let mut query = query(&boxes, 0, n_bins, axis, u32::from(bin));
-                // The grid has twice the centroids: bounds between its bins are at twice those places.
-                let scale = Vec3::splat(n_bins as f32 / (2.0 * extent));
-                query.grid = BinGrid { low: Vec3::ZERO.into(), scale: scale.into(), n_bins };
-                query
-            });
+    let edges = (
+        prop::collection::vec((1..=15i32, 0..=2i32), 1..12),
+        n_bins(),
+        1..=40i32,
+        0..3u32,
+        any::<u8>(),
+        0..3i32,
+    )
+        .prop_map(|(places, n_bins, extent, axis, bin, low)| {
+            // Boxes at about the places k/n_bins of an extent: their bounds are rounded.
+            let (extent, low) = (extent as f32 / 7.0, low as f32 / 3.0);
+            let at = |(k, ulps): (i32, i32)| {
+                let mut at = low + extent * k as f32 / n_bins as f32;
+                for _ in 0..ulps {
+                    at = at.next_up();
+                }
+                Aabb::new(Vec3::splat(at), Vec3::splat(at))
+            };
+            let mut boxes: Vec<Aabb> = places.into_iter().map(at).collect();
+            boxes.extend([
+                Aabb::new(Vec3::splat(low), Vec3::splat(low)),
+                Aabb::new(Vec3::splat(low + extent), Vec3::splat(low + extent)),
+            ]);
+            let mut query = query(&boxes, 0, n_bins, axis, u32::from(bin));
+            // The grid has twice the centroids: bounds between its bins are at twice those places.
+            let scale = Vec3::splat(n_bins as f32 / (2.0 * extent));
+            query.grid = BinGrid { low: Vec3::splat(2.0 * low).into(), scale: scale.into(), n_bins };
+            query
+        });
     judge_all(trial, &[], prop_oneof![3 => edges, 1 => queries(false, 1..=5)])
 }
 

@@ -142,12 +142,44 @@ pub(super) fn kd_balances_counts(trial: &Trial<'_>) -> CheckResult {
         let says = "your cut leaves counts that are not balanced";
         return on.refuse("a difference of at most 2", (on.cut.is_some(), says));
     }
-    let off = build(trial, format!("{what}, no heuristic"), &crowd, NONE);
+    // A plane through the 4 planks has 10 and 9 beside it. One before them has 6 and 9, so its fuller side is less full.
+    let few = (0..4).map(|i| Aabb::new(vec3(7.0, i as f32, 0.0), vec3(14.0, i as f32 + 0.5, 0.5)));
+    let ends = cubes((0..6).chain(15..20).map(|i| vec3(i as f32, 0.0, 0.0)));
+    let what = "6 small boxes, 4 planks from x = 7 to 14 and 5 more small boxes";
+    let on =
+        build(trial, format!("{what}, balanced_counts alone"), &few.chain(ends).collect::<Vec<_>>(), alone);
+    if on.cut.is_none_or(|(_, _, [left, right, _])| left.abs_diff(right) > 1) {
+        let fuller = on.cut.is_some_and(|(_, _, [left, right, _])| left.max(right) == 9);
+        let says = "you minimise the number on the fuller side: minimise the difference of both counts";
+        return on.refuse("a difference of at most 1", (fuller, says));
+    }
+    let off = build(trial, "40 boxes side by side from x = 0 and one at 400, no heuristic", &crowd, NONE);
     if off.cut.is_none_or(|(_, at, _)| (at - 200.25).abs() > 1.0) {
         return off.refuse(
             "a cut in the middle, at 200.25",
             (off.cut.is_some(), "your cut is not in the middle of the cell although no heuristic is on"),
         );
+    }
+    // Below the root, too, where the boxes fill a part of their cell.
+    let what = "40 boxes side by side from x = 0 and one at 400, longest_axis alone";
+    let off = build(trial, what, &crowd, KdHeuristics { longest_axis: true, ..NONE });
+    let mut other = None;
+    off.tree.walk(64, |node, cell, _| {
+        if let KdNode::Inner { axis, at, .. } = off.tree.nodes[node as usize] {
+            let (low, high) = (cell.min[usize::from(axis)], cell.max[usize::from(axis)]);
+            let is_middle = (f64::from(at) - 0.5 * (low + high)).abs() < 0.01 * (high - low);
+            if !is_middle {
+                other = Some(format!("a cut of {low:.2}..{high:.2} at {at:.2}"));
+            }
+        }
+    });
+    if let Some(yours) = other {
+        let input = format!("build of {}, leaf_size 2", off.what);
+        let broken = Broken::with_texts(input, yours, "a cut in the middle of the cell", "the heuristic");
+        return Err(broken.explained_by([(
+            true,
+            "your cut is in the middle of the boxes, or elsewhere: cut the cell in the middle",
+        )]));
     }
     Ok(())
 }
@@ -287,6 +319,18 @@ pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> CheckResult {
                 "you divide although 60 % of those on one side are on both: compare with the count of each side",
             ),
         );
+    }
+    // On the left are 3 planks and 2 small boxes: exactly 60 % of them are also on the right.
+    let two = cubes((0..2).map(|i| vec3(1.0 + i as f32, 0.0, 0.0)));
+    let exactly = build(
+        trial,
+        "3 planks from x = 0 to 64, 2 small boxes at x = 1 and 12 right of x = 40, stop_at_overlap alone",
+        &[planks(3, 12), two].concat(),
+        stop,
+    );
+    if exactly.tree.nodes.len() != 1 {
+        let says = "you divide where exactly 60 % of one side are on both: at least 60 % make a leaf";
+        return exactly.refuse("a leaf: 3 of 5 on the left are also on the right", (true, says));
     }
     let off = build(trial, format!("{what}, no heuristic"), &planks(8, 12), NONE);
     if off.tree.nodes.len() == 1 {

@@ -28,12 +28,16 @@ pub(super) fn spans_of_cells_agree_with_double_precision(trial: &Trial<'_>) -> C
 }
 
 /// The ray with a range that begins or ends where the ray enters the box (six ranges) or leaves it (six more), or one float
-/// beside it. For other numbers, and if the ray never does, the range is that of the ray.
+/// beside it; or, for six numbers, one that begins within the box, also behind the origin. For other numbers, and if the ray never does, the range is
+/// that of the ray.
 fn at_border(ray: Ray, bounds: &Aabb, range: usize) -> Ray {
     let (near, far) = slabs_interval(&ray, bounds);
     let t = if range < 6 { near } else { far } as f32;
     match nasty::ranges(t).get(range % 6) {
         Some(((t_min, t_max), _)) if range < 12 && t > 0.0 && t.is_finite() => ray.with_range(*t_min, *t_max),
+        _ if (12..18).contains(&range) && near.is_finite() => {
+            ray.with_range((0.5 * (near + far)) as f32, f32::INFINITY)
+        }
         _ => ray,
     }
 }
