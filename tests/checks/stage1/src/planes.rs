@@ -2,18 +2,10 @@
 
 use crate::roots::T_ABOVE_0;
 use crate::sphere_mistakes::{DROPS_NEAR_HITS, EPSILONS};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::{self, Expected, LIMITS, U, compare_tolerant};
 use checks::generate::{direction, point, rough_point};
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::{Arguments, Paste};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::PlaneQuery;
-use raykata::ray::Ray;
-use raykata::shape::Plane;
 
 type Case = (PlaneQuery, Expected);
 

@@ -1,14 +1,7 @@
 //! `nearest_root`: which of two roots is the hit.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::Vec3;
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::RootQuery;
-use raykata::ray::Ray;
 
 const OPEN_AT_BOTH_ENDS: &str = "you return an end of the range, but the range is open at both ends";
 

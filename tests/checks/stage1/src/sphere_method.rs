@@ -1,10 +1,8 @@
 //! The two methods of intersecting a sphere, and how the checks judge their answers.
 
 use crate::sphere_mistakes::{mistakes, observations};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::{self, Expected, U, compare_tolerant};
-use checks::paste::Arguments;
+use checks::prelude::*;
 use raykata::kit::{Kit, SphereQuery};
 
 /// One of the two methods of intersecting a sphere.

@@ -1,17 +1,9 @@
 //! Ray-sphere intersection: each check for both methods.
 
 use crate::sphere_method::{Accepts, SphereFunction};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::{direction, magnitude, point, ray, rough_point, sphere, unit};
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::{Arguments, call};
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::SphereQuery;
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 fn query(origin: (f32, f32, f32), direction: Vec3, radius: f32) -> SphereQuery {
     let ray = Ray::new(vec3(origin.0, origin.1, origin.2), direction);

@@ -1,20 +1,13 @@
 //! The laws of `triangle_in_double`, and special numbers as input of both functions in double precision.
 
 use super::triangles::{aim_again, draw};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
-use checks::judge::{compare, compare_formulas, unless};
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::Vec3;
+use checks::prelude::*;
 use oracle::STABLE;
 use oracle::exact::{Body, meet, t_error_in_ulps, t_in_double, triangle, verdict};
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
 use oracle::splitmix::Random;
 use raykata::kit::{TriangleHit, TriangleQuery};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 
 /// The largest margin, in roundings of single precision, at which a verdict in double precision may be wrong. A
 /// rounding in double precision is 2^-29 of one in single precision. Of 192,000 inputs, the method of plane and Gram

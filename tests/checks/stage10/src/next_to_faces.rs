@@ -1,16 +1,10 @@
 //! Rays that start so near to a face of a closed mesh that rounding errors decide on which side of the face they start.
 
 use super::triangles::judge_hit_point;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::paste::Arguments;
-use glam::Vec3;
+use checks::prelude::*;
 use oracle::exact::{Body, verdict};
 use oracle::splitmix::Random;
 use raykata::kit::{Request, TriangleQuery};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 
 /// Vectors of whole numbers, which are exact.
 type Whole = [i128; 3];

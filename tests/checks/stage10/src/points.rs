@@ -1,16 +1,9 @@
 //! The laws of `offset_origin` and `safe_normalize`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
-use checks::judge::{compare, unless};
-use checks::nasty;
 use checks::offset::Start;
-use checks::paste::call;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::{OffsetQuery, Surface};
-use raykata::ray::Ray;
 
 fn describe(query: &OffsetQuery) -> String {
     call("offset_origin", &[&query.point, &query.error, &query.normal, &query.direction])

@@ -1,13 +1,9 @@
 //! The laws of `stable_roots`.
 
 use super::Odd;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
 use checks::generate::magnitude;
-use checks::judge::{compare, unless};
-use checks::paste::call;
-use proptest::prelude::*;
+use checks::prelude::*;
 
 type Coefficients = [f32; 3];
 

@@ -5,11 +5,7 @@ use super::doubles::{judge_ends, judge_weights};
 use super::next_to_faces::{
     hits_a_corner_seen_edge_on, passes_beside_a_triangle_seen_edge_on, starts_next_to_a_face,
 };
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::paste::{Arguments, Paste};
-use glam::{Vec3, vec3};
+use checks::prelude::*;
 use oracle::STABLE;
 use oracle::exact::{Body, meet, t_in_double, triangle, verdict};
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
@@ -18,8 +14,6 @@ use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::gauntlet::meshes::{Closed, closed};
 use oracle::splitmix::Random;
 use raykata::kit::{Kit, Request, TriangleHit, TriangleQuery};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 
 /// Inputs of a distribution of the gauntlet.
 pub(super) fn draw(trial: &Trial<'_>, name: &str, count: usize) -> Vec<TriangleQuery> {

@@ -1,10 +1,7 @@
 //! The light that paths of limited length miss.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
 use checks::generate::magnitude;
-use checks::judge::{Judged, compare, unless};
-use proptest::prelude::*;
+use checks::prelude::*;
 
 pub(super) fn cut_off_is_the_light_beyond_the_last_bounce(trial: &Trial<'_>) -> CheckResult {
     let albedo = prop_oneof![4 => checks::generate::fractions(0..=16, 16.0), 1 => 0.9..1.0f32];

@@ -1,13 +1,12 @@
 //! What the paths of a scene need: `paths_called_for`, by scenes whose answer follows from how they were made.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use glam::{Affine3A, Vec3, vec3};
+use checks::prelude::*;
+use glam::Affine3A;
 use raykata::camera::{Camera, Shutter};
 use raykata::light_path::PathEffects;
 use raykata::material::{AreaShape, Emitter, Falloff, Light, Material};
 use raykata::scene::{Background, EnvironmentMap, Gradient, Node, Scene, VisibleLight};
-use raykata::shape::{Plane, Shape, Sphere};
+use raykata::shape::Shape;
 
 const RED: Vec3 = Vec3::X;
 const GREEN: Vec3 = Vec3::Y;

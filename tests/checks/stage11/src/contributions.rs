@@ -1,14 +1,8 @@
 //! Light that counts: `sample_light_contribution` and `emitted_contribution`.
 
 use crate::weights::both_ways;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
 use checks::generate::magnitude;
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::emitter::EmitterSample;
 use raykata::kit::{EmissionQuery, LightContributionQuery};
 use std::f64::consts::PI;

@@ -1,13 +1,7 @@
 //! Cosine-weighted directions and their density.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::call;
+use checks::prelude::*;
 use checks::statistics::{SAMPLES, columns, covers_each_part, is_other_power, pairs};
-use glam::{Vec2, Vec3, vec2};
-use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The largest random number, just below 1.

@@ -1,10 +1,7 @@
 //! Emitters as inputs, and their geometry in double precision.
 
-use checks::nasty;
-use glam::{DVec3, Vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::emitter::{AreaEmitter, EmitterShape};
-use raykata::shape::{Sphere, Triangle};
 use std::f64::consts::{PI, TAU};
 
 /// An emitter, and the point that it illuminates.

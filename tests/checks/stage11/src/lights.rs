@@ -2,13 +2,8 @@
 
 use crate::directions::{LARGEST, numbers};
 use crate::emitters::{Lit, layouts};
-use checks::broken::{Broken, CheckResult};
-use checks::judge::compare;
-use checks::paste::Arguments;
+use checks::prelude::*;
 use checks::statistics::{SAMPLES, pairs};
-use checks::{Trial, nasty};
-use glam::{DVec3, Vec2, Vec3, vec2};
-use proptest::prelude::*;
 use raykata::emitter::{EmitterSample, EmitterShape};
 use raykata::kit::{EmitterPdfQuery, EmitterQuery};
 

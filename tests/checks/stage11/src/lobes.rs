@@ -1,14 +1,8 @@
 //! The choice of a lobe: `sample_bsdf` and `bsdf_pdf`.
 
 use crate::directions::{AXES, number, place};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::{Paste, call};
+use checks::prelude::*;
 use checks::statistics::{SAMPLES, covers_each_part, has_mean, measures, pairs, unused_number};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
 use raykata::kit::{Bounce, BsdfPdfQuery, BsdfQuery, SecondaryRay};
 use raykata::light_path::{BsdfSample, Lobe, Scattering};
 use std::f64::consts::PI;

@@ -5,13 +5,10 @@
 
 use crate::emitters::lambert;
 use crate::rooms::{Form, Found, Paint, Room, Roulette, Wall, follow};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::nasty;
+use checks::prelude::*;
 use checks::radiosity::EmptyBox;
 use checks::statistics::{Mistakes, SAMPLES, has_mean, has_mean_within};
-use glam::{DVec3, Vec3, dvec3, vec3};
-use proptest::prelude::*;
+use glam::dvec3;
 use std::f64::consts::PI;
 
 /// A depth that no path reaches: Russian roulette ends it before.

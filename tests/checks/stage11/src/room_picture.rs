@@ -6,11 +6,10 @@
 //! of the 384 samples of a block is close to normally distributed.
 
 use super::rooms::{Form, Paint, Room, Roulette, Wall, follow};
-use checks::broken::CheckResult;
 use checks::picture::{Sampled, Size};
-use checks::{Trial, picture, statistics};
-use glam::{DVec3, Vec3, dvec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
+use checks::{picture, statistics};
+use glam::dvec3;
 use raykata::camera::Camera;
 use raykata::kit::Kit;
 

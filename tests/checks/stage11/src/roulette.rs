@@ -1,12 +1,7 @@
 //! Russian roulette.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, proven, unless};
-use checks::paste::Paste;
+use checks::prelude::*;
 use checks::statistics::measures;
-use glam::Vec3;
-use proptest::prelude::*;
 use raykata::kit::RouletteQuery;
 
 fn paste(query: &RouletteQuery) -> String {

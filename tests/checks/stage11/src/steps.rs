@@ -5,13 +5,8 @@
 
 use crate::emitters::layouts;
 use crate::lobes::{missing, surfaces};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
 use checks::generate::magnitude;
-use checks::judge::{compare, unless};
-use checks::nasty;
-use glam::{DVec3, Vec2, Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::{BsdfQuery, EmitterPdfQuery, RouletteQuery, StepQuery, Surface};
 use raykata::light_path::{
     BsdfSample, ChosenEmitter, Lobe, NextRay, PathState, PathStep, PathVertex, Scattering, StepNumbers,

@@ -1,9 +1,7 @@
 //! The table of stage 11: the light that paths find in closed rooms.
 
-use checks::Trial;
-use checks::broken::CheckResult;
 use checks::golden::{Table, digits};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::Kit;
 
 /// The numbers of bounces of the columns.

@@ -1,11 +1,7 @@
 //! Multiple importance sampling.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::magnitude;
-use checks::judge::{Judged, compare, unless};
-use checks::paste::call;
-use proptest::prelude::*;
+use checks::prelude::*;
 use std::f64::consts::TAU;
 
 type Pair = (f32, f32);

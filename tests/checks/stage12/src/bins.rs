@@ -1,12 +1,7 @@
 //! `fill_bins`, and the bin of a primitive.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, compare_formulas};
-use checks::nasty;
-use glam::{Vec3, Vec3A};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
+use glam::Vec3A;
 use raykata::kit::BinsQuery;
 use raykata::wide::{BinGrid, Bins, BoxA, MAX_BINS, PrimitiveBox};
 

@@ -3,14 +3,9 @@
 use super::bars::sweep_cost;
 use super::scenes::scenes;
 use super::trees::{boxes, broken_by, cost, depth, fault, from_leaves};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, unless};
+use checks::prelude::*;
 use checks::tree::around;
-use glam::{Vec3, vec3};
 use oracle::splitmix::Random;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
 use raykata::bvh::DEEPEST_SPLIT;
 use raykata::kit::{KitError, kit_error};
 use raykata::wide::{BLOCK, FlatNode, FlatTree};

@@ -3,10 +3,8 @@
 use super::builds::{crowds, judge_tree};
 use super::scenes::scenes;
 use super::trees::{broken_by, fault, from_leaves};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
+use checks::prelude::*;
 use oracle::splitmix::Random;
-use raykata::aabb::Aabb;
 use raykata::bvh::DEEPEST_SPLIT;
 use raykata::wide::{FlatTree, Fork, ForkKind, ForkedTree};
 use std::collections::{HashMap, HashSet};

@@ -1,13 +1,7 @@
 //! `partition_bins`.
 
 use super::bins::{ROUNDINGS, Rounding, bin_of, grid_over, grids, n_bins, primitives};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::compare_formulas;
-use checks::nasty;
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
 use raykata::kit::{PartitionQuery, SplitAnswer};
 use raykata::wide::{BinGrid, BinSplit, PrimitiveBox};
 

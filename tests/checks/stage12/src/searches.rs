@@ -1,10 +1,7 @@
 //! `wide_closest_hit` and `wide_any_hit`: what they find, and which boxes they enter.
 
 use super::wide_tables::{Flaw, closest, describe, flawed_search, overlapped, query, searches, two_leaves};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, compare_formulas};
-use proptest::strategy::Strategy;
+use checks::prelude::*;
 use raykata::kit::{WideAnswer, WideQuery};
 
 const TIES: [(Flaw, &str); 2] = [

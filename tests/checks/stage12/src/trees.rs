@@ -1,10 +1,7 @@
 //! Flat trees: trees whose shape is drawn, and the faults and the cost of a tree.
 
-use checks::broken::Broken;
+use checks::prelude::*;
 use checks::tree::{around, half_area};
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
 use raykata::wide::{BLOCK, BLOCK_COST, FlatNode, FlatTree, MAX_LEAF, NODE_COST};
 
 /// A node that is not filled in yet.

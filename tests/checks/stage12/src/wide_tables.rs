@@ -1,12 +1,10 @@
 //! Wide trees whose boxes and primitives are tables of answers, and searches of them.
 
 use super::trees::shuffled;
+use checks::prelude::*;
 use checks::tree::move_apart;
-use glam::Vec3;
-use proptest::prelude::*;
 use raykata::bvh::PrimitiveHit;
 use raykata::kit::{WideAnswer, WideQuery};
-use raykata::ray::Ray;
 use raykata::wide::{BLOCK, Child, ChildContents, MAX_LEAF, NO_PRIMITIVE, WideTree};
 use std::ops::Range;
 

@@ -1,14 +1,9 @@
 //! `collapse`.
 
 use super::trees::{Fault, broken_by, drawn_tree, drawn_trees, from_leaves};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, compare_formulas};
+use checks::prelude::*;
 use checks::tree::half_area;
-use glam::Vec3;
 use oracle::splitmix::Random;
-use proptest::strategy::Strategy;
-use raykata::aabb::Aabb;
 use raykata::wide::{BLOCK, Child, ChildContents, FlatNode, FlatTree, MAX_LEAF, NO_PRIMITIVE, WideTree};
 use std::collections::HashMap;
 

@@ -1,16 +1,9 @@
 //! Attributes of a triangle: interpolation and the face normal.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
 use checks::double::U;
 use checks::generate::{point, triangle};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::{Paste, call};
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::InterpolateQuery;
-use raykata::shape::Triangle;
 
 pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> CheckResult {
     let inputs = (0..=8i32, 0..=8i32, point(4), point(4), point(4), nasty::any_scale()).prop_map(

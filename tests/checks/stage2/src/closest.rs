@@ -1,13 +1,8 @@
 //! Brute force: the closest hit of many primitives.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
+use checks::prelude::*;
 use checks::tree::move_apart;
-use glam::Vec3;
-use proptest::prelude::*;
 use raykata::kit::{SearchAnswer, SearchQuery, Table};
-use raykata::ray::Ray;
 
 type Hit = Option<(u32, f32)>;
 

@@ -1,16 +1,9 @@
 //! The four scalars of the Gram method.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
 use checks::double::U;
 use checks::generate::{direction, point, triangle};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::GramScalars;
-use raykata::shape::Triangle;
 
 /// The scalars and their largest rounding errors.
 struct Exact {

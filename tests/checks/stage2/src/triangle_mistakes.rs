@@ -1,7 +1,7 @@
 //! Known mistakes in the intersection of a ray and a triangle, each with the answer that it gives.
 
 use checks::double::{LIMITS, U};
-use glam::{DVec3, Vec3};
+use checks::prelude::*;
 use raykata::kit::{TriangleHit, TriangleQuery};
 
 /// The intersection of the line along a ray with the plane of a triangle, in double precision.

@@ -1,12 +1,8 @@
 //! Normals of the vertices of a mesh.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
+use checks::all_parts;
 use checks::generate::point;
-use checks::judge::{Judged, all_parts, compare, unless};
-use checks::paste::Paste;
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::mesh::Mesh;
 
 pub(super) fn octahedron() -> Mesh {

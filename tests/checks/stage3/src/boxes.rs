@@ -1,16 +1,8 @@
 //! Boxes: bounds of triangles and spheres, union, centroid, surface area.
 
-use checks::broken::{Broken, CheckResult};
-use checks::double;
 use checks::generate::{magnitude, point, rough_point, sphere, triangle};
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use checks::{Trial, tree};
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::shape::{Sphere, Triangle};
+use checks::prelude::*;
+use checks::{double, tree};
 
 const CORNERS: &str = "min and max are corners of the triangle in your box: take the smallest and the largest coordinate on each axis";
 

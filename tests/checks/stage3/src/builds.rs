@@ -2,13 +2,9 @@
 
 use super::divided::boxes;
 use super::slabs::UNIT_BOX;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::golden::Table;
-use checks::paste::Arguments;
-use checks::{Trial, tree};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
+use checks::tree;
 use raykata::bvh::{Bvh, Contents, DEEPEST_SPLIT, Node};
 use raykata::kit::{BuildQuery, Kit, KitError, kit_error};
 use raykata::scene::Split;

@@ -1,10 +1,8 @@
 //! The cheapest cut of the surface area heuristic, and the mistakes that give a more expensive one.
 
 use super::divided::{Fault, boxes, divided, judge_splits};
-use checks::broken::{Broken, CheckResult};
-use checks::{Trial, tree};
-use glam::{Vec3, vec3};
-use raykata::aabb::Aabb;
+use checks::prelude::*;
+use checks::tree;
 use raykata::bvh::{INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
 use raykata::scene::Split;
 

@@ -1,18 +1,12 @@
 //! The three searches, compared with brute force. A table holds the answers of the probe.
 
 use super::search_mistakes::{any_mistakes, every_node, mistakes, observations};
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::{fractions, point, unit};
-use checks::judge::{compare, compare_formulas};
+use checks::prelude::*;
+use checks::tree;
 use checks::tree::{closest_in_table, tied};
-use checks::{Trial, tree};
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
 use raykata::bvh::Bvh;
 use raykata::kit::{Kit, SearchAnswer, SearchQuery, Table};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 /// Searches: a ray, up to 60 spheres (0 to 29, in some scenes each of them twice), a tree and a table of answers.
 pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {

@@ -1,16 +1,12 @@
 //! A teapot in a stadium: the counted costs of trees and searches.
 
 use super::search_mistakes::order_mistakes;
-use checks::broken::{Broken, CheckResult};
-use checks::{Trial, tree};
-use glam::{Vec3, vec3};
-use raykata::aabb::Aabb;
+use checks::prelude::*;
+use checks::tree;
 use raykata::bvh::Bvh;
 use raykata::count::Counts;
 use raykata::kit::{BuildQuery, SearchAnswer, SearchQuery};
-use raykata::ray::Ray;
 use raykata::scene::Split;
-use raykata::shape::Sphere;
 
 /// A small, dense object in a huge, sparse surrounding, where the surface area heuristic saves the most work.
 pub(super) fn stadium() -> Vec<Sphere> {

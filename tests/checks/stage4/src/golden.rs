@@ -1,11 +1,9 @@
 //! A table and a picture that are compared with stored references.
 
-use checks::broken::CheckResult;
 use checks::golden::Table;
+use checks::picture;
 use checks::picture::{Composed, LARGE};
-use checks::{Trial, picture};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::{Kit, LightSample, ShadeAnswer, ShadeQuery, Surface};
 use raykata::material::Material;
 
@@ -68,7 +66,7 @@ pub(super) fn shading_table(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> CheckResult {
-    let rays = picture::rays(trial, vec3(0.0, 1.0, 3.2), Vec3::ZERO);
+    let rays = picture::rays(trial, LARGE, vec3(0.0, 1.0, 3.2), Vec3::ZERO);
     let points: Vec<Option<Vec3>> = rays
         .iter()
         .map(|ray| {

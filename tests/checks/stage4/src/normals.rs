@@ -1,12 +1,6 @@
 //! The shading normal.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::Vec3;
-use proptest::prelude::*;
+use checks::prelude::*;
 
 type Query = (Vec3, Option<Vec3>, Vec3);
 

@@ -2,14 +2,8 @@
 
 use super::shadows::lowest;
 use super::terms::{cos_phi, specular};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
 use checks::generate::point;
-use checks::judge::{Judged, proven, unless};
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::{DVec3, Vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::{LightSample, ShadeAnswer, ShadeQuery, ShadowQuery, Surface, TermQuery};
 use raykata::material::Material;
 

@@ -1,15 +1,8 @@
 //! Shadow rays.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
 use checks::offset::Start;
-use checks::paste::Arguments;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::{LightSample, ShadowQuery, Surface};
-use raykata::ray::Ray;
 
 /// Angles closer to 90° than this have a cosine whose sign rounding may change; they are not asked.
 const CLEAR: f32 = 1e-4;

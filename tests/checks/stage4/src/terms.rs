@@ -1,12 +1,6 @@
 //! The diffuse and the specular term.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::TermQuery;
 
 /// Normals, lights and viewers in all directions. Half of the viewers are near the reflected light, so that there are

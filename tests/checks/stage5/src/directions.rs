@@ -1,12 +1,6 @@
 //! The directions of reflected and refracted rays.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, compare_formulas, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::RefractQuery;
 
 /// A direction, and a normal on the side that it comes from.

@@ -1,10 +1,6 @@
 //! The Fresnel reflectance.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, unless};
-use checks::paste::call;
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::FresnelQuery;
 
 /// Cosines from 0 to 1, some close to 1, and indices from 1/2 to 3, some equal.

@@ -2,12 +2,8 @@
 
 use super::directions::{arrival, snell};
 use super::fresnel::{exact, schlick};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
 use checks::generate::point;
-use checks::judge::{Judged, compare, proven, unless};
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::{Bounce, FresnelQuery, Limits, RefractQuery, ScatterQuery, SecondaryRay};
 use raykata::material::{Fresnel, Material};
 

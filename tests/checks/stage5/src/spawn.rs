@@ -1,15 +1,8 @@
 //! The origins of secondary rays.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
 use checks::offset::Start;
-use checks::paste::call;
-use glam::Vec3;
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::{Bounce, SecondaryRay, Surface};
-use raykata::ray::Ray;
 
 /// A surface and a secondary ray that leaves it.
 type Leaving = (Surface, SecondaryRay);

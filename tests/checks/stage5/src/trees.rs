@@ -2,11 +2,8 @@
 
 use super::picture::glass;
 use super::scatter::{FAR, paste};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::golden::Table;
-use checks::judge::compare_formulas;
-use glam::{Vec3, vec3};
+use checks::prelude::*;
 use raykata::kit::{Bounce, Kit, Limits, ScatterQuery};
 use raykata::material::Material;
 

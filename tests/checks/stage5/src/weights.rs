@@ -1,11 +1,7 @@
 //! The weight that decides whether a secondary ray is traced.
 
 use super::scatter::{FAR, drawn, find, paste, queries};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::compare_formulas;
-use glam::Vec3;
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::{Bounce, Limits, ScatterQuery, SecondaryRay};
 use raykata::material::{Fresnel, Material};
 

@@ -1,15 +1,10 @@
 //! Points of area lights.
 
 use super::lens::{is_polar, polar, uneven_disk};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{Judged, proven, unless};
-use checks::nasty;
-use checks::paste::{Arguments, Paste, call};
+use checks::prelude::*;
 use checks::statistics::{SAMPLES, columns, covers_each_part, has_mean, pairs};
-use glam::{DVec3, Vec2, Vec3, vec3};
 use raykata::kit::{RectangleQuery, SphereSampleQuery};
-use raykata::shape::{Disk, Sphere};
+use raykata::shape::Disk;
 
 /// The largest random number, just below 1.
 const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;

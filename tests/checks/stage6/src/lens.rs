@@ -1,17 +1,10 @@
 //! Rays through a thin lens.
 
 use super::pixels::unit_number;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::{Paste, call};
+use checks::prelude::*;
 use checks::statistics::{Mistakes, SAMPLES, columns, covers_each_part, is_other_power, pairs};
-use glam::{DVec3, Vec2, Vec3, vec2, vec3};
-use proptest::prelude::*;
 use raykata::camera::{Camera, Lens};
 use raykata::kit::LensQuery;
-use raykata::ray::Ray;
 
 /// The squared distance of a point of the unit disk from the centre, and its angle as a fraction of a full turn.
 pub(super) fn polar(place: Vec2) -> (f64, f64) {

@@ -1,16 +1,9 @@
 //! Times within the shutter interval, and positions of moving objects.
 
 use super::pixels::unit_number;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::{magnitude, point, rough_point};
-use checks::judge::{Judged, compare, proven, unless};
-use checks::nasty;
-use checks::paste::{Paste, call};
+use checks::prelude::*;
 use checks::statistics::{columns, covers_each_part};
-use glam::{DVec3, Vec2, Vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
 use raykata::camera::Shutter;
 use raykata::kit::{KitError, TimeQuery, kit_error};
 

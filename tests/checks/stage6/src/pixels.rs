@@ -1,13 +1,9 @@
 //! The positions of a pixel's samples, their weights, and the colour of the pixel.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::rough_point;
-use checks::judge::{Judged, compare, proven, unless};
-use checks::paste::{Paste, call, list};
+use checks::prelude::*;
 use checks::statistics::{SAMPLES, covers_each_part, pairs};
-use glam::{DVec2, DVec3, Vec2, Vec2Swizzles, Vec3, uvec2, vec2, vec3};
-use proptest::prelude::*;
+use glam::{DVec2, Vec2Swizzles, uvec2};
 use raykata::kit::{FILTER_RADIUS, WeightedColor};
 use raykata::random::Stratum;
 use raykata::scene::Sampler;

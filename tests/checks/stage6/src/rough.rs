@@ -3,14 +3,8 @@
 use super::area_lights::n_thousandths;
 use super::pixels::unit_number;
 use crate::unit_arrival;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::nasty;
-use checks::paste::Arguments;
+use checks::prelude::*;
 use checks::statistics::{Mistakes, SAMPLES, columns, covers_each_part, has_mean, is_other_power, pairs};
-use glam::{Vec2, Vec3, vec2};
-use proptest::prelude::*;
 use raykata::kit::PhongLobeQuery;
 
 pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {

@@ -1,9 +1,6 @@
 //! Checks of `rays_of_hits` and `samples_for_error`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::kit::{HitsQuery, MaterialHits, RayCounts};
 use raykata::scene::Quality;

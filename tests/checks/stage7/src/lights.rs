@@ -1,16 +1,11 @@
 //! Checks of `light_effects`.
 
 use super::scenes::{ONE_SAMPLE, light, sphere_light};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, unless};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::effects::LightEffects;
 use raykata::kit::LightQuery;
 use raykata::material::{AreaShape, Emitter, Falloff, Light};
 use raykata::scene::Quality;
-use raykata::shape::Sphere;
 
 /// A light, and what it needs.
 #[derive(Clone)]

@@ -1,9 +1,6 @@
 //! Checks of `texel`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::TexelQuery;
 use raykata::material::Wrap;
 

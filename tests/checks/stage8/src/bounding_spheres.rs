@@ -1,19 +1,11 @@
 //! Checks of `bounding_sphere` and `enter_bounding_sphere`.
 
 use super::boxes::ROUNDINGS;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
 use checks::generate::{direction, point, rough_point, sphere};
-use checks::judge::{Judged, compare, compare_formulas, unless};
-use checks::nasty;
-use checks::paste::{call, list};
-use glam::{DVec3, Vec3};
+use checks::prelude::*;
 use oracle::exact::{Body, meet};
-use proptest::prelude::*;
 use raykata::kit::BoundingSphereQuery;
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 /// Points on a grid or of any kind, at any size, often in a plane, on a line or all equal; and points far from the origin.
 fn clouds() -> impl Strategy<Value = Vec<Vec3>> + Clone {
@@ -29,8 +21,8 @@ fn clouds() -> impl Strategy<Value = Vec<Vec3>> + Clone {
 }
 
 /// The largest coordinate, whose rounding errors a sphere may add to its radius.
-fn reach(points: &[Vec3]) -> f64 {
-    points.iter().map(|point| f64::from(point.abs().max_element())).fold(0.0, f64::max)
+pub(super) fn reach<'a>(points: impl IntoIterator<Item = &'a Vec3>) -> f64 {
+    points.into_iter().map(|point| f64::from(point.abs().max_element())).fold(0.0, f64::max)
 }
 
 pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> CheckResult {

@@ -1,14 +1,10 @@
 //! Checks of `bounds_to_world`.
 
 use super::bounding_spheres;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
-use checks::judge::{compare, unless};
-use checks::paste::Arguments;
-use glam::{Affine3A, DVec3, Mat3, Vec3};
+use checks::prelude::*;
+use glam::{Affine3A, Mat3};
 use oracle::splitmix::Random;
-use raykata::aabb::Aabb;
 use raykata::kit::BoundsQuery;
 
 /// Transforms of all kinds and boxes of all sizes.

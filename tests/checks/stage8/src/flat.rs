@@ -2,13 +2,9 @@
 
 use super::hard::{judge_cases, of};
 use super::solids::{agrees_flat, input};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use glam::{Vec3, vec3};
+use checks::prelude::*;
 use oracle::splitmix::Random;
 use raykata::kit::SolidQuery;
-use raykata::ray::Ray;
 use raykata::shape::{Disk, Polygon};
 
 pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> CheckResult {

@@ -1,17 +1,11 @@
 //! Checks of `closest_hit_in_graph` with tables that hold the answers of `enter` and `hit`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::paste::Paste;
+use checks::prelude::*;
 use checks::tree::{closest_of, move_apart, tie};
-use glam::Vec3;
 use oracle::splitmix::Random;
-use proptest::prelude::*;
 use raykata::bvh::PrimitiveHit;
 use raykata::graph::{Graph, GraphNode, GraphOptimisations};
 use raykata::kit::{GraphAnswer, GraphQuery, Table};
-use raykata::ray::Ray;
 
 pub(super) const NOTHING: GraphOptimisations =
     GraphOptimisations { volumes: false, skip: false, sort: false };
@@ -72,12 +66,8 @@ pub(super) fn describe(query: &GraphQuery) -> String {
 
 pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 1);
-    let mut queries: Vec<GraphQuery> = Vec::new();
-    for _ in 0..300 {
-        for savings in [NOTHING, VOLUMES, SKIP, SORT, ALL] {
-            queries.push(random_query(&mut random, savings));
-        }
-    }
+    let savings = (0..300).flat_map(|_| [NOTHING, VOLUMES, SKIP, SORT, ALL]);
+    let mut queries: Vec<GraphQuery> = savings.map(|savings| random_query(&mut random, savings)).collect();
     queries.push(GraphQuery {
         graph: Graph::default(),
         ray: Ray::new(Vec3::ZERO, Vec3::X),
@@ -102,18 +92,31 @@ pub(super) fn graph_prefers_the_smaller_number(trial: &Trial<'_>) -> CheckResult
     judge_hits(trial, queries)
 }
 
+pub(super) fn closest(query: &GraphQuery) -> Option<PrimitiveHit> {
+    closest_of(&query.table.primitives, &query.ray).map(|(primitive, t)| PrimitiveHit { t, primitive })
+}
+
+pub(super) fn named(hit: Option<PrimitiveHit>) -> String {
+    hit.map_or("None".into(), |hit| format!("#{} at {}", hit.primitive, hit.t))
+}
+
+/// The nodes from the root to the one that holds a primitive.
+pub(super) fn path_to(graph: &Graph, primitive: u32) -> Vec<u32> {
+    let holder = graph.nodes.iter().position(|node| node.primitives.contains(&primitive)).unwrap_or(0) as u32;
+    let parent = |node: &u32| graph.nodes.iter().position(|other| other.children.contains(node));
+    let mut path: Vec<u32> =
+        std::iter::successors(Some(holder), |node| parent(node).map(|above| above as u32)).collect();
+    path.reverse();
+    path
+}
+
 fn judge_hits(trial: &Trial<'_>, mut queries: Vec<GraphQuery>) -> CheckResult {
     plainest_first(&mut queries);
     let judge = |query: &GraphQuery, yours: GraphAnswer| {
-        let expected = closest_of(&query.table.primitives, &query.ray)
-            .map(|(primitive, t)| PrimitiveHit { t, primitive });
-        let found = yours.search.hit;
+        let (found, expected) = (yours.search.hit, closest(query));
         if found == expected {
             return Ok(());
         }
-        let named = |hit: Option<PrimitiveHit>| {
-            hit.map_or("None".into(), |hit| format!("#{} at {}", hit.primitive, hit.t))
-        };
         Err(Broken::with_texts(describe(query), named(found), named(expected), "brute force")
             .explained_by(lost_hits(query, found, expected, &yours.asked)))
     };
@@ -128,11 +131,11 @@ fn lost_hits(
     expected: Option<PrimitiveHit>,
     asked: &[u32],
 ) -> Vec<(bool, &'static str)> {
-    let nodes = &query.graph.nodes;
     let Some(right) = expected else { return Vec::new() };
-    let holder = nodes.iter().position(|node| node.primitives.contains(&right.primitive)).unwrap_or(0);
-    let parent = |node: usize| nodes.iter().position(|other| other.children.contains(&(node as u32)));
-    let above: Vec<usize> = std::iter::successors(parent(holder), |node| parent(*node)).collect();
+    let path = path_to(&query.graph, right.primitive);
+    let mut nodes = path.iter().rev().map(|number| &query.graph.nodes[*number as usize]);
+    let Some(holder) = nodes.next() else { return Vec::new() };
+    let above: Vec<&GraphNode> = nodes.collect();
     let is_tested = asked.contains(&right.primitive);
     vec![
         (
@@ -153,7 +156,7 @@ fn lost_hits(
         ),
         (is_tested && found.is_none(), "you test the nearest primitive, but you do not return its hit"),
         (
-            !is_tested && !nodes[holder].children.is_empty(),
+            !is_tested && !holder.children.is_empty(),
             "you do not test the own primitives of a node that has children: a node can have both",
         ),
         (
@@ -161,7 +164,7 @@ fn lost_hits(
             "you do not test primitives more than one level below the root: visit the children of children, too",
         ),
         (
-            !is_tested && above.iter().any(|node| !nodes[*node].primitives.is_empty()),
+            !is_tested && above.iter().any(|node| !node.primitives.is_empty()),
             "you do not visit the children of a node that has primitives of its own: a node can have both",
         ),
         (
@@ -185,14 +188,11 @@ pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Ch
         let is_twice = asked.windows(2).any(|pair| pair[0] == pair[1]);
         let left_out = all.iter().any(|primitive| !asked.contains(primitive));
         let below_a_hit = all.iter().filter(|primitive| !asked.contains(primitive)).all(|primitive| {
-            // The nodes above the one that holds this primitive.
-            let nodes = &query.graph.nodes;
-            let holder = nodes.iter().position(|node| node.primitives.contains(primitive)).unwrap_or(0);
-            let parent = |node: usize| nodes.iter().position(|other| other.children.contains(&(node as u32)));
-            let hits = |node: usize| {
-                nodes[node].primitives.iter().any(|&p| query.ray.contains(query.table.primitives[p as usize]))
+            let hits = |node: &u32| {
+                let own = &query.graph.nodes[*node as usize].primitives;
+                own.iter().any(|&p| query.ray.contains(query.table.primitives[p as usize]))
             };
-            std::iter::successors(parent(holder), |node| parent(*node)).any(hits)
+            path_to(&query.graph, *primitive).iter().rev().skip(1).any(hits)
         });
         Err(Broken::with_texts(
             describe(query),

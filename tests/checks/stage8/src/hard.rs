@@ -2,13 +2,9 @@
 
 use super::solid::{Solid, turned};
 use super::solids::input;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, compare_formulas};
-use glam::{Vec3, vec3};
+use checks::prelude::*;
 use oracle::splitmix::Random;
 use raykata::kit::{SolidHit, SolidQuery};
-use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder};
 
 /// A ray, the expected `t`, and what students do who answer only rays of this kind wrongly. The text of an ordinary ray is

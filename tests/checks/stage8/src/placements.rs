@@ -1,12 +1,8 @@
 //! Checks of `placement`.
 
 use crate::spaces::{determinant, transform};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use checks::paste::list;
-use glam::{Affine3A, DAffine3, DMat3, Mat3, Vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
+use glam::{Affine3A, DAffine3, DMat3, Mat3};
 use raykata::graph::Placement;
 
 pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> CheckResult {

@@ -1,15 +1,9 @@
 //! Checks of `ray_to_object` and `normal_to_world`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
 use checks::generate::{direction, point, rough_point};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::{Affine3A, DMat3, DVec3, Mat3, Vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
+use glam::{Affine3A, DMat3, Mat3};
 use raykata::kit::{NormalQuery, ObjectRayQuery};
-use raykata::ray::Ray;
 
 /// Rotations, shears, scales and reflections with small whole numbers and a determinant of at least 1 in size, all multiplied
 /// by one power of two.
@@ -64,11 +58,7 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResul
             exact.transform_point3(ray.origin.as_dvec3()),
             exact.transform_vector3(ray.direction.as_dvec3()),
         );
-        let sizes = |v: Vec3, and: DVec3| {
-            let columns = [exact.matrix3.x_axis, exact.matrix3.y_axis, exact.matrix3.z_axis].map(DVec3::abs);
-            let v = v.as_dvec3().abs();
-            columns[0] * v.x + columns[1] * v.y + columns[2] * v.z + and.abs()
-        };
+        let sizes = |v: Vec3, and: DVec3| terms(&exact.matrix3, v.as_dvec3()) + and.abs();
         // Allow six rounding errors of the terms, for three products and three sums in single precision.
         let close = |yours: Vec3, right: DVec3, size: DVec3| {
             ((yours.as_dvec3() - right).abs()).cmple(6.0 * checks::double::U * size).all()
@@ -134,6 +124,11 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResul
     })
 }
 
+/// The sums of the sizes of the terms of a product.
+fn terms(matrix: &DMat3, v: DVec3) -> DVec3 {
+    matrix.x_axis.abs() * v.x.abs() + matrix.y_axis.abs() * v.y.abs() + matrix.z_axis.abs() * v.z.abs()
+}
+
 /// Whether a direction is that of a mistake, whose rounding errors are not known.
 fn is_roughly_along(yours: Vec3, wrong: DVec3) -> bool {
     (yours.as_dvec3().normalize_or_zero() - wrong.normalize_or_zero()).length() <= 1e-3
@@ -173,12 +168,8 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
     let exact = to_object.as_daffine3().transform_vector3(world).length();
     let length = yours.direction.as_dvec3().length();
     // Allow eight rounding errors of the terms, whose sum may be shorter.
-    let matrix = to_object.as_daffine3().matrix3;
-    let terms = matrix.x_axis.abs() * world.x.abs()
-        + matrix.y_axis.abs() * world.y.abs()
-        + matrix.z_axis.abs() * world.z.abs();
-    let near =
-        |right: f64| (length - right).abs() <= 8.0 * checks::double::U * (terms.length() / exact) * right;
+    let terms = terms(&to_object.as_daffine3().matrix3, world).length();
+    let near = |right: f64| (length - right).abs() <= 8.0 * checks::double::U * (terms / exact) * right;
     let same_length = near(exact);
     let same_range = (yours.t_min, yours.t_max) == (ray.t_min, ray.t_max);
     let same_time = yours.time == ray.time;

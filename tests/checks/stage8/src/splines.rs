@@ -1,14 +1,9 @@
 //! Checks of `bspline_basis` and `nurbs_point`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use super::bounding_spheres::reach;
 use checks::double::U;
 use checks::generate::point;
-use checks::judge::{compare, proven, unless};
-use checks::nasty;
-use checks::paste::{Paste, list};
-use glam::{DVec3, Vec3, vec2};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::{BasisQuery, NurbsQuery};
 use raykata::shape::NurbsPatch;
 
@@ -298,11 +293,9 @@ impl Mean {
 /// product with weight and point, and of both sums, relative to the largest coordinate of the net, because a mean with
 /// positive factors is no larger.
 fn point_room(patch: &NurbsPatch) -> f64 {
-    let largest =
-        patch.rows.iter().flatten().fold(0.0, |size: f32, point| size.max(point.abs().max_element()));
     let of_basis: usize = patch.degrees.iter().map(|degree| 8 * degree + 4).sum();
     let n_points = patch.rows.len() * patch.rows[0].len();
-    2.0 * (of_basis + n_points + 4) as f64 * U * f64::from(largest)
+    2.0 * (of_basis + n_points + 4) as f64 * U * reach(patch.rows.iter().flatten())
 }
 
 pub(super) fn nurbs_point_is_the_weighted_mean_of_its_net(trial: &Trial<'_>) -> CheckResult {
@@ -352,28 +345,21 @@ fn arc() -> impl Strategy<Value = Arc> + Clone {
             let bent = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
             let straight = vec![0.0, 0.0, 1.0, 1.0];
             let u = f32::from(at) / 16.0;
-            let query = if along_v {
-                NurbsQuery {
-                    patch: NurbsPatch {
-                        degrees: [1, 2],
-                        knots: [straight, bent],
-                        rows: (0..3).map(|i| rows.iter().map(|row| row[i]).collect()).collect(),
-                        weights: weights.map(|weight| vec![weight; 2]).to_vec(),
-                    },
-                    uv: vec2(0.5, u),
-                }
-            } else {
-                NurbsQuery {
-                    patch: NurbsPatch {
-                        degrees: [2, 1],
-                        knots: [bent, straight],
-                        rows: rows.map(|row| row.to_vec()).to_vec(),
-                        weights: vec![weights.to_vec(); 2],
-                    },
-                    uv: vec2(u, 0.5),
-                }
+            let mut patch = NurbsPatch {
+                degrees: [2, 1],
+                knots: [bent, straight],
+                rows: rows.map(|row| row.to_vec()).to_vec(),
+                weights: vec![weights.to_vec(); 2],
             };
-            Arc { query, axis, radius }
+            let mut uv = vec2(u, 0.5);
+            if along_v {
+                uv = vec2(0.5, u);
+                patch.degrees.reverse();
+                patch.knots.reverse();
+                patch.rows = (0..3).map(|i| rows.iter().map(|row| row[i]).collect()).collect();
+                patch.weights = weights.map(|weight| vec![weight; 2]).to_vec();
+            }
+            Arc { query: NurbsQuery { patch, uv }, axis, radius }
         },
     )
 }

@@ -1,13 +1,8 @@
 //! Checks of `bezier_point`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
+use super::bounding_spheres::reach;
 use checks::generate::point;
-use checks::judge::{compare, proven, unless};
-use checks::nasty;
-use checks::paste::Paste;
-use glam::{DVec3, Vec3, vec2};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::kit::PatchQuery;
 use raykata::shape::BezierPatch;
 
@@ -96,15 +91,8 @@ fn judge_points(trial: &Trial<'_>, queries: &[PatchQuery]) -> Vec<CheckResult> {
         let right = at([u, v], bernstein);
         // Allow two rounding errors for each of six nested interpolations of these numbers, and some more for Bernstein
         // polynomials.
-        let size = query
-            .patch
-            .rows
-            .iter()
-            .flatten()
-            .fold(0.0, |size: f32, point| size.max(point.abs().max_element()));
-        let near = |right: DVec3| {
-            (yours.as_dvec3() - right).abs().max_element() <= 16.0 * checks::double::U * f64::from(size)
-        };
+        let room = 16.0 * checks::double::U * reach(query.patch.rows.iter().flatten());
+        let near = |right: DVec3| (yours.as_dvec3() - right).abs().max_element() <= room;
         let once = |t: f64| [(1.0 - t) * (1.0 - t), t * (1.0 - t), t * (1.0 - t), t * t];
         unless(near(right), || {
             Broken::new(describe(query), yours, right.as_vec3(), "Bernstein polynomials in double")

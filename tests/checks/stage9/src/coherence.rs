@@ -1,19 +1,12 @@
 //! The laws of the last hit and of packets of rays: the same answers with fewer tests and fewer opened nodes.
 
 use super::scenes::{Scene, rays, scenes, sphere};
-use checks::broken::{Broken, CheckResult};
 use checks::generate::{fractions, point, unit};
-use checks::judge::compare;
-use checks::paste::Paste;
+use checks::prelude::*;
+use checks::tree;
 use checks::tree::{closest_in_table, closest_of, search_query, sphere_box};
-use checks::{Trial, tree};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
 use raykata::kit::{CachedQuery, PacketAnswer, PacketQuery, SearchQuery};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 fn cached(scene: &Scene, ray: &Ray, last: Option<u32>) -> CachedQuery {
     let hits = scene.hits(ray);

@@ -1,10 +1,7 @@
 //! The laws of the five heuristics of the kd-tree: each is tested alone, switched on and switched off.
 
 use super::lists::below;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use glam::{Vec3, vec3};
-use raykata::aabb::Aabb;
+use checks::prelude::*;
 use raykata::kit::KdQuery;
 use raykata::partition::{KdHeuristics, KdNode, KdTree};
 

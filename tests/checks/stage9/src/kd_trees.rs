@@ -6,16 +6,10 @@ use super::lists::{
 use super::scenes::{Scene, Thing, along, wall};
 use super::searches::{Described, GRID, KD_TREE, OCTREE, queries, spheres_and_rays};
 use super::structures::{filled, kd_tree};
-use checks::Trial;
-use checks::broken::CheckResult;
-use checks::judge::compare;
-use glam::{UVec3, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
+use glam::UVec3;
 use raykata::kit::{CellsQuery, KdQuery};
 use raykata::partition::{KdHeuristics, KdNode, KdTree, MOST_REFERENCES, Octree};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 fn describe(query: &KdQuery) -> String {
     format!("build over {} boxes, leaf_size {}, {:?}", query.bounds.len(), query.leaf_size, query.heuristics)

@@ -1,12 +1,7 @@
 //! The laws that all builders share: which primitives a cell lists.
 
-use checks::broken::{Broken, CheckResult};
 use checks::generate::{point, rough_point};
-use checks::nasty;
-use checks::paste::Paste;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
 use raykata::kit::kit_error::{self, KitError};
 use raykata::partition::{Cell, CellTree, Tree, TreeNode};
 use std::collections::BTreeSet;

@@ -10,17 +10,9 @@ use super::searches::{
     Described, OCTREE, OCTREE_BY_CELLS, OCTREE_BY_NEIGHBOURS, Search, Searched, queries, spheres_and_rays,
 };
 use super::structures::octree;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::nasty;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
 use raykata::kit::{CellsAnswer, CellsQuery, OctreeQuery, kit_error};
 use raykata::partition::{MOST_REFERENCES, Octree, OctreeNode, TreeNode};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 fn describe(query: &OctreeQuery) -> String {
     let OctreeQuery { bounds, leaf_size, max_depth } = query;

@@ -2,14 +2,8 @@
 
 use super::hulls::{self, usable};
 use super::lists::{Fault, ended, fact, judge_references};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
 use checks::generate::{point, rough_point};
-use checks::judge::compare;
-use checks::nasty;
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
 use raykata::kit::BspQuery;
 use raykata::partition::{CutPlane, MOST_REFERENCES, PlaneNode, PolygonBsp, PolygonBspNode, corners};
 

@@ -1,18 +1,11 @@
 //! The laws of the resolution of a grid and of the interval of a ray in a cell.
 
 use super::scenes::{Scales, rays, scales};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::slabs_interval;
 use checks::generate::rough_point;
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::{Arguments, Paste};
-use glam::{UVec3, Vec3, uvec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
+use glam::{UVec3, uvec3};
 use raykata::kit::{ResolutionQuery, SlabQuery};
-use raykata::ray::Ray;
 
 pub(super) fn spans_of_cells_agree_with_double_precision(trial: &Trial<'_>) -> CheckResult {
     let on_lattice = (nasty::lattice(4), nasty::lattice(3));

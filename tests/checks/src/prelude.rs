@@ -1,0 +1,11 @@
+//! The words of nearly all checks: `use checks::prelude::*`.
+
+pub use crate::broken::{Broken, CheckResult, all_hold};
+pub use crate::judge::{Judged, compare, compare_formulas, proven, unless};
+pub use crate::paste::{Arguments, Paste, call, list};
+pub use crate::{Trial, nasty};
+pub use glam::{DVec3, Vec2, Vec3, vec2, vec3};
+pub use proptest::prelude::*;
+pub use raykata::aabb::Aabb;
+pub use raykata::ray::Ray;
+pub use raykata::shape::{Plane, Sphere, Triangle};
