@@ -3,7 +3,6 @@
 use checks::picture;
 use checks::picture::{Composed, LARGE};
 use checks::prelude::*;
-use raykata::kit::{Kit, PlaneQuery, SphereQuery};
 
 fn colors(kit: &dyn Kit, rays: &[Ray], sphere: Sphere) -> Vec<Vec3> {
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };

@@ -4,7 +4,6 @@ use crate::planes::{along_planes, at_far_planes, at_planes, observations, of_tes
 use checks::double::{self, Expected, Sum, U, compare_tolerant};
 use checks::generate::{direction, point};
 use checks::prelude::*;
-use raykata::kit::{PlaneEquationQuery, PlaneQuery};
 use raykata::shape::PlaneEquation;
 
 type Case = (PlaneEquationQuery, Expected);

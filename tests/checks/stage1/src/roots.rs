@@ -1,7 +1,6 @@
 //! `nearest_root`: which of two roots is the hit.
 
 use checks::prelude::*;
-use raykata::kit::RootQuery;
 
 const OPEN_AT_BOTH_ENDS: &str = "you return an end of the range, but the range is open at both ends";
 

@@ -3,7 +3,6 @@
 use crate::sphere_mistakes::{mistakes, observations};
 use checks::double::{self, Expected, U, compare_tolerant};
 use checks::prelude::*;
-use raykata::kit::{Kit, SphereQuery};
 
 /// One of the two methods of intersecting a sphere.
 #[derive(Clone, Copy)]

@@ -3,7 +3,6 @@
 use crate::sphere_method::{Accepts, SphereFunction};
 use checks::generate::{direction, magnitude, point, ray, rough_point, sphere, unit};
 use checks::prelude::*;
-use raykata::kit::SphereQuery;
 
 fn query(origin: (f32, f32, f32), direction: Vec3, radius: f32) -> SphereQuery {
     let ray = Ray::new(vec3(origin.0, origin.1, origin.2), direction);
@@ -228,8 +227,12 @@ pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> CheckResult {
     );
     let at_the_origin = (Sphere { center: Vec3::ZERO, radius: 2.0 }, vec3(0.0, 2.0, 0.0));
     let beside = (Sphere { center: vec3(1.0, 2.0, 3.0), radius: 2.0 }, vec3(1.0, 2.0, 1.0));
-    trial.forall_and(&[beside, at_the_origin], 1500, inputs, |queries| {
-        compare(queries, trial.kit.sphere_normal(queries), |(sphere, point), yours| {
+    trial.each_and(
+        &[beside, at_the_origin],
+        1500,
+        inputs,
+        <dyn Kit>::sphere_normal,
+        |(sphere, point), yours| {
             let outwards = point.as_dvec3() - sphere.center.as_dvec3();
             let near = |exact: DVec3| {
                 // The difference of both points is rounded, and so are its length and the quotient.
@@ -249,6 +252,6 @@ pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> CheckResult {
                 near(point.as_dvec3().normalize_or_zero()),
                 "you return the direction from the world's origin: subtract the centre first",
             )])
-        })
-    })
+        },
+    )
 }

@@ -2,7 +2,6 @@
 
 use checks::golden::{Table, digits};
 use checks::prelude::*;
-use raykata::kit::{Kit, PlaneEquationQuery, PlaneQuery, SphereQuery};
 use raykata::shape::PlaneEquation;
 
 /// The sphere, a point of the floor below it, a normal of the floor, and the origin of the rays.

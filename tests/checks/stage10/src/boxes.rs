@@ -7,7 +7,6 @@ use oracle::exact::aabb::overlap;
 use oracle::exact::{Body, meet};
 use oracle::gauntlet::boxes::{at_a_corner, of_any_size};
 use oracle::splitmix::Random;
-use raykata::kit::SlabQuery;
 use raykata::rounding::{UNIT_ROUNDOFF, gamma};
 
 /// A slab test in single precision with one mistake.

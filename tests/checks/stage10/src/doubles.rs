@@ -7,7 +7,6 @@ use oracle::STABLE;
 use oracle::exact::{Body, meet, t_error_in_ulps, t_in_double, triangle, verdict};
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
 use oracle::splitmix::Random;
-use raykata::kit::{TriangleHit, TriangleQuery};
 
 /// The largest margin, in roundings of single precision, at which a verdict in double precision may be wrong. A
 /// rounding in double precision is 2^-29 of one in single precision. Of 192,000 inputs, the method of plane and Gram

@@ -18,7 +18,6 @@ mod triangles;
 
 use checks::prelude::*;
 use oracle::splitmix::Random;
-use raykata::kit::TriangleQuery;
 
 /// Numbers for which formulas often fail.
 const SPECIAL: [f32; 10] =

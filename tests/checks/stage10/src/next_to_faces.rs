@@ -4,7 +4,6 @@ use super::triangles::judge_hit_point;
 use checks::prelude::*;
 use oracle::exact::{Body, verdict};
 use oracle::splitmix::Random;
-use raykata::kit::{Request, TriangleQuery};
 
 /// Vectors of whole numbers, which are exact.
 type Whole = [i128; 3];

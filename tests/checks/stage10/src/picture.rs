@@ -4,7 +4,6 @@ use checks::picture;
 use checks::picture::{Composed, SMALL};
 use checks::prelude::*;
 use glam::Quat;
-use raykata::kit::{Kit, OffsetQuery, SlabQuery, SphereQuery, TriangleQuery};
 
 /// The scene in its plain size.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,6 @@
 use checks::double::U;
 use checks::offset::Start;
 use checks::prelude::*;
-use raykata::kit::{OffsetQuery, Surface};
 
 fn describe(query: &OffsetQuery) -> String {
     call("offset_origin", &[&query.point, &query.error, &query.normal, &query.direction])

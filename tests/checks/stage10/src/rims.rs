@@ -6,7 +6,6 @@ use checks::prelude::*;
 use oracle::STABLE;
 use oracle::exact::{Body, Meeting, meet, sphere, t_in_double};
 use oracle::splitmix::Random;
-use raykata::kit::SphereQuery;
 
 /// A verdict may be wrong if r² and |f⊥|² differ by less than this fraction of |f|², where f goes from the centre to
 /// the origin. The simplest method, b² - a c in double precision, has an error of at most 16 times 2^-53 there, because

@@ -2,7 +2,6 @@
 
 use checks::golden::{Table, digits};
 use checks::prelude::*;
-use raykata::kit::{Kit, SlabQuery, SphereQuery, TriangleQuery};
 
 /// The exponents of the scales.
 const EXPONENTS: [i32; 7] = [-60, -40, -20, 0, 20, 40, 60];

@@ -13,7 +13,6 @@ use oracle::gauntlet::families::families;
 use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::gauntlet::meshes::{Closed, closed};
 use oracle::splitmix::Random;
-use raykata::kit::{Kit, Request, TriangleHit, TriangleQuery};
 
 /// Inputs of a distribution of the gauntlet.
 pub(super) fn draw(trial: &Trial<'_>, name: &str, count: usize) -> Vec<TriangleQuery> {

@@ -84,9 +84,7 @@ pub(super) fn bounces_for_error_is_the_smallest_number(trial: &Trial<'_>) -> Che
     // Errors that are exactly a power of the albedo: one bounce more or less is wrong.
     let exact = (prop::sample::select(vec![0.5f32, 0.25, 0.125]), 1..9i32)
         .prop_map(|(albedo, power)| (albedo, albedo.powi(power)));
-    trial.forall(400, prop_oneof![3 => drawn, 1 => exact], |queries| {
-        compare(queries, trial.kit.bounces_for_error(queries), judge)
-    })
+    trial.each(400, prop_oneof![3 => drawn, 1 => exact], <dyn Kit>::bounces_for_error, judge)
 }
 
 pub(super) fn bounces_for_error_at_the_limits(trial: &Trial<'_>) -> CheckResult {
@@ -99,24 +97,22 @@ pub(super) fn bounces_for_error_at_the_limits(trial: &Trial<'_>) -> CheckResult 
         3 => (share, 1.0),
         _ => (0.5, 0.5f32.powi(3)),
     });
-    trial.forall(300, cases, |queries| {
-        compare(queries, trial.kit.bounces_for_error(queries), |query, yours| {
-            let (albedo, error) = *query;
-            let expected = match () {
-                () if albedo <= error => 0,
-                () if error == 0.0 || albedo == 1.0 => u32::MAX,
-                // 0.5^(2 + 1)
-                () => 2,
-            };
-            if yours == expected {
-                return Ok(());
-            }
-            Err(Broken::new(paste(query), yours, expected, "the definition").explained_by([
-                (albedo == 1.0, "at an albedo of 1 all light is missing, however many bounces there are"),
-                (albedo == 0.0, "at an albedo of 0 nothing is reflected: 0 bounces are enough"),
-                (error == 0.0, "with an error of 0 no number is enough"),
-                (error == 1.0, "an error of 1 allows 0 bounces"),
-            ]))
-        })
+    trial.each(300, cases, <dyn Kit>::bounces_for_error, |query, yours| {
+        let (albedo, error) = *query;
+        let expected = match () {
+            () if albedo <= error => 0,
+            () if error == 0.0 || albedo == 1.0 => u32::MAX,
+            // 0.5^(2 + 1)
+            () => 2,
+        };
+        if yours == expected {
+            return Ok(());
+        }
+        Err(Broken::new(paste(query), yours, expected, "the definition").explained_by([
+            (albedo == 1.0, "at an albedo of 1 all light is missing, however many bounces there are"),
+            (albedo == 0.0, "at an albedo of 0 nothing is reflected: 0 bounces are enough"),
+            (error == 0.0, "with an error of 0 no number is enough"),
+            (error == 1.0, "an error of 1 allows 0 bounces"),
+        ]))
     })
 }

@@ -4,7 +4,6 @@ use crate::weights::both_ways;
 use checks::generate::magnitude;
 use checks::prelude::*;
 use raykata::emitter::EmitterSample;
-use raykata::kit::{EmissionQuery, LightContributionQuery};
 use std::f64::consts::PI;
 
 fn color() -> impl Strategy<Value = Vec3> + Clone {
@@ -124,37 +123,33 @@ pub(super) fn light_from_below_adds_nothing(trial: &Trial<'_>) -> CheckResult {
     });
     let queries =
         queries(angle).prop_map(|query| LightContributionQuery { diffuse: query.diffuse + 0.25, ..query });
-    trial.forall(300, queries, |queries| {
-        compare(queries, trial.kit.sample_light_contribution(queries), |query, yours| {
-            let above = query.normal.dot(query.sample.direction) > 0.0;
-            let can_add = above && query.sample.radiance != Vec3::ZERO;
-            // The balance and the power heuristic give a weight of at least 1e-16 for these densities, in f32 not 0.
-            let adds = yours.max_element() > 0.0;
-            if yours.min_element() >= 0.0
-                && (!adds || can_add)
-                && (adds || !above || !can_add || query.bsdf_pdf > 0.0)
-            {
-                return Ok(());
-            }
-            let expected = if can_add { "light above 0" } else { "0 in all channels" };
-            Err(Broken::with_texts(paste(query), format!("{yours:?}"), expected, "the definition")
-                .explained_by([
-                    (yours.is_nan(), "you return NaN"),
-                    (
-                        !above && yours.min_element() < 0.0,
-                        "light from below the surface is negative: it must be 0",
-                    ),
-                    (
-                        !above && adds,
-                        "light from below the surface counts: take no absolute value of the cosine",
-                    ),
-                    (above && !adds, "light from above the surface counts"),
-                    (
-                        if above { !adds } else { yours.min_element() < 0.0 },
-                        "your test is reversed: light from above the surface counts, not light from below",
-                    ),
-                ]))
-        })
+    trial.each(300, queries, <dyn Kit>::sample_light_contribution, |query, yours| {
+        let above = query.normal.dot(query.sample.direction) > 0.0;
+        let can_add = above && query.sample.radiance != Vec3::ZERO;
+        // The balance and the power heuristic give a weight of at least 1e-16 for these densities, in f32 not 0.
+        let adds = yours.max_element() > 0.0;
+        if yours.min_element() >= 0.0
+            && (!adds || can_add)
+            && (adds || !above || !can_add || query.bsdf_pdf > 0.0)
+        {
+            return Ok(());
+        }
+        let expected = if can_add { "light above 0" } else { "0 in all channels" };
+        Err(Broken::with_texts(paste(query), format!("{yours:?}"), expected, "the definition").explained_by(
+            [
+                (yours.is_nan(), "you return NaN"),
+                (
+                    !above && yours.min_element() < 0.0,
+                    "light from below the surface is negative: it must be 0",
+                ),
+                (!above && adds, "light from below the surface counts: take no absolute value of the cosine"),
+                (above && !adds, "light from above the surface counts"),
+                (
+                    if above { !adds } else { yours.min_element() < 0.0 },
+                    "your test is reversed: light from above the surface counts, not light from below",
+                ),
+            ],
+        ))
     })
 }
 

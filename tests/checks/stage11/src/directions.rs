@@ -156,25 +156,23 @@ pub(super) fn cosine_pdf_below_the_surface_is_zero(trial: &Trial<'_>) -> CheckRe
         let direction = nasty::tilted(normal, f64::from(angle) / 8.5, f64::from(turn) / 16.0 + 0.01);
         (normal, if which == 3 { direction } else { -direction })
     });
-    trial.forall(300, queries, |queries| {
-        compare(queries, trial.kit.cosine_pdf(queries), |query, yours| {
-            let cosine = query.0.as_dvec3().dot(query.1.as_dvec3());
-            if if cosine > 0.0 { yours > 0.0 } else { yours == 0.0 } {
-                return Ok(());
-            }
-            let expected = if cosine > 0.0 { "above 0" } else { "0.0" };
-            let input = call("cosine_pdf", &[&query.0, &query.1]);
-            Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
-                (cosine < 0.0 && yours < 0.0, "your density is negative: return 0 below the surface"),
-                (
-                    cosine < 0.0 && (f64::from(yours) + cosine / PI).abs() < 1e-5,
-                    "you take the absolute value of the cosine: return 0 below the surface",
-                ),
-                (
-                    (f64::from(yours) - (-cosine / PI).max(0.0)).abs() < 1e-5,
-                    "your density is that of the other side: the cosine has the wrong sign",
-                ),
-            ]))
-        })
+    trial.each(300, queries, <dyn Kit>::cosine_pdf, |query, yours| {
+        let cosine = query.0.as_dvec3().dot(query.1.as_dvec3());
+        if if cosine > 0.0 { yours > 0.0 } else { yours == 0.0 } {
+            return Ok(());
+        }
+        let expected = if cosine > 0.0 { "above 0" } else { "0.0" };
+        let input = call("cosine_pdf", &[&query.0, &query.1]);
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
+            (cosine < 0.0 && yours < 0.0, "your density is negative: return 0 below the surface"),
+            (
+                cosine < 0.0 && (f64::from(yours) + cosine / PI).abs() < 1e-5,
+                "you take the absolute value of the cosine: return 0 below the surface",
+            ),
+            (
+                (f64::from(yours) - (-cosine / PI).max(0.0)).abs() < 1e-5,
+                "your density is that of the other side: the cosine has the wrong sign",
+            ),
+        ]))
     })
 }

@@ -8,7 +8,6 @@
 use crate::rooms::are_endless;
 use checks::prelude::*;
 use checks::statistics::{SAMPLES, has_mean, pairs};
-use raykata::kit::RouletteQuery;
 
 /// A part of the sphere: all points with `p · axis` above `height`, for the unit sphere.
 struct Cap {

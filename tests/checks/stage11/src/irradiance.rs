@@ -5,7 +5,6 @@ use crate::light_densities::seen_well;
 use crate::lights::with_corners;
 use checks::prelude::*;
 use checks::statistics::has_mean;
-use raykata::kit::EmitterQuery;
 
 /// A normal for which the whole emitter is above the horizon: not far from the direction to its middle.
 fn normal(lit: &Lit, lean: f64) -> DVec3 {

@@ -5,7 +5,6 @@ use crate::lights::{bright, judge_sample, missing, of};
 use checks::prelude::*;
 use checks::statistics::{CELLS, bins, covers_each_part, is_other_power};
 use raykata::emitter::{EmitterSample, EmitterShape};
-use raykata::kit::{EmitterPdfQuery, EmitterQuery};
 use std::f64::consts::{PI, TAU};
 
 /// An emitter of each kind, for statistical tests. The nearest and the farthest point of the emitter are at similar distances,

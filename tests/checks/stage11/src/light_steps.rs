@@ -6,7 +6,6 @@ use crate::emitters::layouts;
 use crate::steps::{color, describe, numbers, path, path_weight, per_some, probability, vertex};
 use checks::prelude::*;
 use raykata::emitter::EmitterSample;
-use raykata::kit::{BsdfPdfQuery, EmitterQuery, Kit, StepQuery, Surface};
 use raykata::light_path::{ChosenEmitter, LightCandidate, PathVertex};
 use std::f64::consts::{FRAC_1_PI, PI};
 

@@ -6,7 +6,6 @@ use checks::prelude::*;
 use checks::{picture, statistics};
 use raykata::camera::Camera;
 use raykata::emitter::{AreaEmitter, EmitterShape};
-use raykata::kit::{EmitterPdfQuery, EmitterQuery, Kit};
 
 /// The size of the picture. It is small, because each pixel has many samples.
 const SIZE: Size = Size { width: 36, height: 24 };

@@ -11,7 +11,6 @@ use checks::prelude::*;
 use checks::{picture, statistics};
 use glam::dvec3;
 use raykata::camera::Camera;
-use raykata::kit::Kit;
 
 /// The size of the picture. It is small, because each pixel has many samples.
 const SIZE: Size = Size { width: 36, height: 24 };

@@ -4,7 +4,6 @@ use super::steps::CERTAIN;
 use checks::prelude::*;
 use checks::statistics::pairs;
 use raykata::emitter::{AreaEmitter, EmitterShape};
-use raykata::kit::{Bounce, Kit, RouletteQuery, SecondaryRay, StepQuery, Surface};
 use raykata::light_path::{
     ChosenEmitter, LightCandidate, PathState, PathStep, PathVertex, Scattering, StepNumbers,
 };

@@ -2,7 +2,6 @@
 
 use checks::prelude::*;
 use checks::statistics::measures;
-use raykata::kit::RouletteQuery;
 
 fn paste(query: &RouletteQuery) -> String {
     format!("survives({}, {}, {})", query.weight.paste(), query.bounce, query.u.paste())
@@ -158,20 +157,18 @@ pub(super) fn roulette_ends_paths_without_weight(trial: &Trial<'_>) -> CheckResu
             if which < 3 { (Vec3::AXES[which as usize], bounce % 3) } else { (Vec3::ZERO, bounce) };
         RouletteQuery { weight, bounce, u: if which == 5 { 0.0 } else { u } }
     });
-    trial.forall(300, cases, |queries| {
-        compare(queries, trial.kit.survives(queries), |query, yours| {
-            let lives = query.weight != Vec3::ZERO;
-            if yours == f32::from(u8::from(lives)) {
-                return Ok(());
-            }
-            let expected = f32::from(u8::from(lives));
-            Err(Broken::new(paste(query), yours, expected, "the definition").explained_by([
-                (yours.is_nan(), "you return NaN: 0 / 0"),
-                (!lives && yours.is_infinite(), "you divide by 0"),
-                (!lives && query.bounce < 3, "a path without weight ends at once, also before bounce 3"),
-                (!lives, "a path without weight goes on"),
-                (lives && yours == 0.0, "you end a path that has weight in one channel"),
-            ]))
-        })
+    trial.each(300, cases, <dyn Kit>::survives, |query, yours| {
+        let lives = query.weight != Vec3::ZERO;
+        if yours == f32::from(u8::from(lives)) {
+            return Ok(());
+        }
+        let expected = f32::from(u8::from(lives));
+        Err(Broken::new(paste(query), yours, expected, "the definition").explained_by([
+            (yours.is_nan(), "you return NaN: 0 / 0"),
+            (!lives && yours.is_infinite(), "you divide by 0"),
+            (!lives && query.bounce < 3, "a path without weight ends at once, also before bounce 3"),
+            (!lives, "a path without weight goes on"),
+            (lives && yours == 0.0, "you end a path that has weight in one channel"),
+        ]))
     })
 }

@@ -7,7 +7,6 @@ use crate::emitters::layouts;
 use crate::lobes::{missing, surfaces};
 use checks::generate::magnitude;
 use checks::prelude::*;
-use raykata::kit::{BsdfQuery, EmitterPdfQuery, RouletteQuery, StepQuery, Surface};
 use raykata::light_path::{
     BsdfSample, ChosenEmitter, Lobe, NextRay, PathState, PathStep, PathVertex, Scattering, StepNumbers,
 };
@@ -194,30 +193,24 @@ pub(super) fn steps_end_at_the_greatest_depth(trial: &Trial<'_>) -> CheckResult 
             let numbers = StepNumbers { roulette: 0.5, ..numbers };
             StepQuery { path: path(Vec3::ONE, bounces, CERTAIN, &vertex), vertex, max_depth, numbers }
         });
-    trial.forall(300, strategy, |queries| {
-        compare(queries, trial.kit.step(queries), |query, step| {
-            let (bounces, max_depth) = (query.path.bounces, query.max_depth);
-            let goes_on = bounces < max_depth;
-            if step.next.is_some() == goes_on {
-                return Ok(());
-            }
-            let says = |goes_on: bool| if goes_on { "the path continues" } else { "the path ends" };
-            let broken = Broken::with_texts(
-                describe(query),
-                says(!goes_on),
-                says(goes_on),
-                "at most max_depth bounces",
-            );
-            Err(broken.explained_by([
-                (bounces == max_depth, "one bounce too many: a path with max_depth bounces ends"),
-                (!goes_on, "paths do not end at max_depth"),
-                (
-                    bounces + 1 == max_depth,
-                    "one bounce too few: a path with fewer than max_depth bounces continues",
-                ),
-                (goes_on, "a path whose weight is 1 continues"),
-            ]))
-        })
+    trial.each(300, strategy, <dyn Kit>::step, |query, step| {
+        let (bounces, max_depth) = (query.path.bounces, query.max_depth);
+        let goes_on = bounces < max_depth;
+        if step.next.is_some() == goes_on {
+            return Ok(());
+        }
+        let says = |goes_on: bool| if goes_on { "the path continues" } else { "the path ends" };
+        let broken =
+            Broken::with_texts(describe(query), says(!goes_on), says(goes_on), "at most max_depth bounces");
+        Err(broken.explained_by([
+            (bounces == max_depth, "one bounce too many: a path with max_depth bounces ends"),
+            (!goes_on, "paths do not end at max_depth"),
+            (
+                bounces + 1 == max_depth,
+                "one bounce too few: a path with fewer than max_depth bounces continues",
+            ),
+            (goes_on, "a path whose weight is 1 continues"),
+        ]))
     })
 }
 

@@ -2,7 +2,6 @@
 
 use checks::golden::{Table, digits};
 use checks::prelude::*;
-use raykata::kit::Kit;
 
 /// The numbers of bounces of the columns.
 const BOUNCES: [u32; 6] = [0, 1, 2, 4, 8, 16];

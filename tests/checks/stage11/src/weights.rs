@@ -85,21 +85,19 @@ pub(super) fn mis_weight_of_a_lone_density_is_one(trial: &Trial<'_>) -> CheckRes
         let special = if certain { f32::INFINITY } else { 0.0 };
         if own { (special, density) } else { (density, special) }
     });
-    trial.forall(200, cases, |pairs| {
-        compare(pairs, trial.kit.mis_weight(pairs), |pair, yours| {
-            let expected = if pair.0 == f32::INFINITY || pair.1 == 0.0 { 1.0 } else { 0.0 };
-            if yours == expected {
-                return Ok(());
-            }
-            Err(Broken::new(paste(pair), yours, expected, "the definition").explained_by([
-                (yours.is_nan(), "you return NaN: ∞ / ∞"),
-                (
-                    pair.0.is_infinite() || pair.1.is_infinite(),
-                    "a technique with infinite density always takes this sample: it gets the whole weight",
-                ),
-                (pair.1 == 0.0, "the other technique never takes this sample: its weight is 1"),
-            ]))
-        })
+    trial.each(200, cases, <dyn Kit>::mis_weight, |pair, yours| {
+        let expected = if pair.0 == f32::INFINITY || pair.1 == 0.0 { 1.0 } else { 0.0 };
+        if yours == expected {
+            return Ok(());
+        }
+        Err(Broken::new(paste(pair), yours, expected, "the definition").explained_by([
+            (yours.is_nan(), "you return NaN: ∞ / ∞"),
+            (
+                pair.0.is_infinite() || pair.1.is_infinite(),
+                "a technique with infinite density always takes this sample: it gets the whole weight",
+            ),
+            (pair.1 == 0.0, "the other technique never takes this sample: its weight is 1"),
+        ]))
     })?;
     // Where neither technique takes the sample, or both always do, any weight from 0 to 1 passes.
     let undecided = [(0.0, 0.0), (f32::INFINITY, f32::INFINITY)];

@@ -7,7 +7,6 @@ use super::visits::rays_through_a_cloud;
 use super::wide_tables::n_calls;
 use checks::prelude::*;
 use checks::tree::{around, half_area};
-use raykata::kit::Kit;
 use raykata::rubric;
 use raykata::wide::{BLOCK, BLOCK_COST, MAX_LEAF, NODE_COST};
 

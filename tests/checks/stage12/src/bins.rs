@@ -2,7 +2,6 @@
 
 use checks::prelude::*;
 use glam::Vec3A;
-use raykata::kit::BinsQuery;
 use raykata::wide::{BinGrid, Bins, BoxA, MAX_BINS, PrimitiveBox};
 
 /// The ways in which the bin of a primitive is computed wrongly.

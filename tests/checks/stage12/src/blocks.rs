@@ -8,7 +8,6 @@ use oracle::gauntlet::families::families;
 use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::gauntlet::meshes::{Closed, closed};
 use oracle::splitmix::Random;
-use raykata::kit::BlockQuery;
 use raykata::wide::{BLOCK, Filtered, LARGEST, NO_PRIMITIVE, TriangleBlock};
 
 /// A block of triangles, and a ray.

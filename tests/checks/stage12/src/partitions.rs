@@ -2,7 +2,6 @@
 
 use super::bins::{ROUNDINGS, Rounding, bin_of, grid_over, grids, n_bins, primitives};
 use checks::prelude::*;
-use raykata::kit::{PartitionQuery, SplitAnswer};
 use raykata::wide::{BinGrid, BinSplit, PrimitiveBox};
 
 fn query(boxes: &[Aabb], kind: u8, n_bins: u32, axis: u32, bin: u32) -> PartitionQuery {

@@ -5,7 +5,6 @@ use checks::picture;
 use checks::picture::{Composed, SMALL};
 use checks::prelude::*;
 use oracle::exact::{Body, meet};
-use raykata::kit::{BlockQuery, Kit, WideBoxesQuery, WideQuery};
 use raykata::wide::{BLOCK, Filtered, FlatTree, NO_PRIMITIVE, TriangleBlock, WIDE_NODE_COST, WideTree};
 use std::f32::consts::TAU;
 

@@ -3,7 +3,6 @@
 use checks::prelude::*;
 use oracle::gauntlet::boxes::{at_a_corner, of_any_size};
 use oracle::splitmix::Random;
-use raykata::kit::WideBoxesQuery;
 use raykata::wide::{Child, Entered, WideNode, WideRay};
 
 /// The mistakes of a slab test.

@@ -4,7 +4,6 @@ use super::bins::{n_bins, union};
 use checks::prelude::*;
 use checks::tree::half_area;
 use glam::Vec3A;
-use raykata::kit::BinSplitQuery;
 use raykata::wide::{BLOCK, BLOCK_COST, Bin, BinSplit, Bins, BoxA};
 
 /// The number of blocks, computed in a wrong way.

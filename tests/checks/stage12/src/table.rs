@@ -5,7 +5,6 @@ use super::trees::drawn_tree;
 use checks::golden::{Table, digits};
 use checks::prelude::*;
 use raykata::bvh::Bvh;
-use raykata::kit::{BinSplitQuery, BinsQuery, Kit, PartitionQuery};
 use raykata::wide::{ChildContents, FlatTree, WideTree};
 use std::fmt::Write;
 

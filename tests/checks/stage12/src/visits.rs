@@ -6,7 +6,6 @@ use checks::double;
 use checks::prelude::*;
 use checks::tree::{around, sphere_box};
 use oracle::splitmix::Random;
-use raykata::kit::{WideAnswer, WideQuery};
 use raykata::wide::{BLOCK, Child, ChildContents, WideNode, WideTree};
 use std::ops::Range;
 

@@ -4,7 +4,6 @@ use super::trees::shuffled;
 use checks::prelude::*;
 use checks::tree::move_apart;
 use raykata::bvh::PrimitiveHit;
-use raykata::kit::{WideAnswer, WideQuery};
 use raykata::wide::{BLOCK, Child, ChildContents, MAX_LEAF, NO_PRIMITIVE, WideTree};
 use std::ops::Range;
 

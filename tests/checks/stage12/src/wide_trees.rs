@@ -160,17 +160,15 @@ fn divided_trees(most: usize) -> impl Strategy<Value = Collapsed> + Clone {
 }
 
 pub(super) fn collapse_keeps_every_leaf(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(300, divided_trees(80), |trees| {
-        compare(trees, trial.kit.collapse(trees), |(tree, _), wide| judge_leaves(tree, &wide))
-    })
+    trial.each(300, divided_trees(80), <dyn Kit>::collapse, |(tree, _), wide| judge_leaves(tree, &wide))
 }
 
 pub(super) fn collapse_of_one_leaf_and_of_nothing(trial: &Trial<'_>) -> CheckResult {
     // Leaves of one primitive, of whole blocks, and of more.
     let leaf = |n: usize| drawn_tree(&vec![Aabb::new(Vec3::ZERO, Vec3::ONE); n], n, &[1]);
     let chosen: Vec<Collapsed> = [1, 8, 9, 16, 32, 0].into_iter().map(|n| (leaf(n), 2.0)).collect();
-    trial.forall_and(&chosen, 60, trees_only(3), |trees| {
-        compare(trees, trial.kit.collapse(trees), |(tree, _), wide| judge_leaves(tree, &wide))
+    trial.each_and(&chosen, 60, trees_only(3), <dyn Kit>::collapse, |(tree, _), wide| {
+        judge_leaves(tree, &wide)
     })
 }
 

@@ -3,7 +3,6 @@
 use checks::double::{LIMITS, U};
 use checks::generate::{direction, point, triangle};
 use checks::prelude::*;
-use raykata::kit::TriangleQuery;
 
 /// `n·d`, and the largest error of a method in single precision.
 fn slope(query: &TriangleQuery) -> (f64, f64) {

@@ -2,7 +2,6 @@
 
 use checks::prelude::*;
 use checks::tree::move_apart;
-use raykata::kit::{SearchAnswer, SearchQuery, Table};
 
 type Hit = Option<(u32, f32)>;
 
@@ -86,9 +85,7 @@ pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> CheckRe
             let query = query(primitives);
             SearchQuery { ray: query.ray.with_range(t_min as f32 / 2.0, t_max), ..query }
         });
-    trial.forall(2000, inputs, |queries| {
-        compare(queries, trial.kit.brute_force(queries), |query, yours| judge(query, &yours))
-    })
+    trial.each(2000, inputs, <dyn Kit>::brute_force, |query, yours| judge(query, &yours))
 }
 
 pub(super) fn brute_force_prefers_the_smaller_number(trial: &Trial<'_>) -> CheckResult {

@@ -7,7 +7,6 @@ use checks::picture;
 use checks::picture::{Composed, LARGE};
 use checks::prelude::*;
 use glam::Quat;
-use raykata::kit::{InterpolateQuery, Kit, TriangleHit, TriangleQuery};
 use raykata::mesh::Mesh;
 
 /// The hits of each method on a fan of 25 rays, to four digits, because the methods differ in later digits.

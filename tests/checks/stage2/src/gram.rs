@@ -3,7 +3,6 @@
 use checks::double::U;
 use checks::generate::{direction, point, triangle};
 use checks::prelude::*;
-use raykata::kit::GramScalars;
 
 /// The scalars and their largest rounding errors.
 struct Exact {
@@ -91,7 +90,5 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
     // D grows with the fourth power of the size, which must stay a normal number.
     let sized = (prop_oneof![triangle(), thin], nasty::scale(-12..=24))
         .prop_map(|(Triangle { a, b, c }, size)| Triangle { a: size * a, b: size * b, c: size * c });
-    trial.forall_and(&drawn, 2000, sized, |triangles| {
-        compare(triangles, trial.kit.gram_scalars(triangles), judge)
-    })
+    trial.each_and(&drawn, 2000, sized, <dyn Kit>::gram_scalars, judge)
 }

@@ -4,7 +4,6 @@ use super::method::aimed;
 use checks::double;
 use checks::generate::{point, triangle};
 use checks::prelude::*;
-use raykata::kit::{InsideQuery, Kit, TriangleQuery};
 
 /// A point in the plane of a triangle, with its barycentric coordinates `[α, β, γ]`, and whether they are exact.
 pub(super) type Case = (InsideQuery, [f64; 3], bool);

@@ -3,7 +3,6 @@
 use super::method::{TriangleFunction, aimed, describe};
 use checks::generate::{self, point, rough_point, triangle};
 use checks::prelude::*;
-use raykata::kit::{TriangleHit, TriangleQuery};
 
 const UNIT: Triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
 

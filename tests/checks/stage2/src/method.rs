@@ -4,7 +4,6 @@ use crate::triangle_mistakes::{mistakes, observations};
 use checks::double::{self, TriangleExpected, compare_tolerant};
 use checks::generate::fractions;
 use checks::prelude::*;
-use raykata::kit::{Kit, TriangleHit, TriangleQuery};
 
 /// One of the three methods of intersecting a triangle.
 #[derive(Clone, Copy)]

@@ -2,7 +2,6 @@
 
 use checks::double::{LIMITS, U};
 use checks::prelude::*;
-use raykata::kit::{TriangleHit, TriangleQuery};
 
 /// The intersection of the line along a ray with the plane of a triangle, in double precision.
 struct Line {

@@ -6,7 +6,6 @@ use checks::golden::Table;
 use checks::prelude::*;
 use checks::tree;
 use raykata::bvh::{Bvh, Contents, DEEPEST_SPLIT, Node};
-use raykata::kit::{BuildQuery, Kit, KitError, kit_error};
 use raykata::scene::Split;
 
 /// The tree of one query, or the message about a panic.

@@ -4,7 +4,6 @@ use checks::generate::{point, rough_point};
 use checks::prelude::*;
 use checks::tree;
 use raykata::bvh::PrimitiveRef;
-use raykata::kit::{SplitAnswer, SplitQuery};
 use raykata::scene::Split;
 
 /// Sets of two boxes or more. Two of six sets are on a coarse grid or along a line, so that many centroids coincide. One of

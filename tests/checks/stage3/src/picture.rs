@@ -3,7 +3,6 @@
 use checks::picture::{Composed, LARGE};
 use checks::prelude::*;
 use checks::{picture, tree};
-use raykata::kit::{Kit, SearchQuery};
 use std::f32::consts::TAU;
 
 const TARGET: Vec3 = vec3(1.0, 1.0, 0.3);

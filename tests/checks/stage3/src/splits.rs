@@ -5,7 +5,6 @@ use super::slabs::UNIT_BOX;
 use checks::prelude::*;
 use checks::tree;
 use raykata::bvh::PrimitiveRef;
-use raykata::kit::{KitError, kit_error};
 use raykata::scene::Split;
 
 /// `None` where a median split always returns a cut.

@@ -5,7 +5,6 @@ use checks::prelude::*;
 use checks::tree;
 use raykata::bvh::Bvh;
 use raykata::count::Counts;
-use raykata::kit::{BuildQuery, SearchAnswer, SearchQuery};
 use raykata::scene::Split;
 
 /// A small, dense object in a huge, sparse surrounding, where the surface area heuristic saves the most work.

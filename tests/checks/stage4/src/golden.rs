@@ -4,7 +4,6 @@ use checks::golden::Table;
 use checks::picture;
 use checks::picture::{Composed, LARGE};
 use checks::prelude::*;
-use raykata::kit::{Kit, LightSample, ShadeAnswer, ShadeQuery, Surface};
 use raykata::material::Material;
 
 pub(super) fn lights(at: Vec3) -> Vec<LightSample> {

@@ -19,7 +19,7 @@ fn queries() -> impl Strategy<Value = Query> + Clone {
 }
 
 pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(2000, queries(), |queries| compare(queries, trial.kit.shading_normal(queries), judge_normal))
+    trial.each(2000, queries(), <dyn Kit>::shading_normal, judge_normal)
 }
 
 fn judge_normal(query: &Query, yours: Vec3) -> Judged {
@@ -60,8 +60,12 @@ pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> CheckResul
     let inputs = (queries(), 0..3i32).prop_map(|((geometric, good, direction), which)| {
         (geometric, if which == 0 { Some(Vec3::ZERO) } else { good }, direction)
     });
-    trial.forall_and(&[(Vec3::Y, Some(Vec3::ZERO), Vec3::Y)], 500, inputs, |queries| {
-        compare(queries, trial.kit.shading_normal(queries), |query, yours| {
+    trial.each_and(
+        &[(Vec3::Y, Some(Vec3::ZERO), Vec3::Y)],
+        500,
+        inputs,
+        <dyn Kit>::shading_normal,
+        |query, yours| {
             let (geometric, interpolated, direction) = *query;
             // Another check judges good normals. Here the answer must be one of the two normals, with either sign.
             if let Some(normal) = interpolated.filter(|normal| normal.length_squared() > 0.0) {
@@ -88,6 +92,6 @@ pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> CheckResul
                 ),
                 (yours == -expected, "your geometric normal points away from the viewer: negate it"),
             ]))
-        })
-    })
+        },
+    )
 }

@@ -4,7 +4,6 @@ use super::shadows::lowest;
 use super::terms::{cos_phi, specular};
 use checks::generate::point;
 use checks::prelude::*;
-use raykata::kit::{LightSample, ShadeAnswer, ShadeQuery, ShadowQuery, Surface, TermQuery};
 use raykata::material::Material;
 
 pub(super) fn light() -> impl Strategy<Value = LightSample> + Clone {

@@ -2,7 +2,6 @@
 
 use checks::offset::Start;
 use checks::prelude::*;
-use raykata::kit::{LightSample, ShadowQuery, Surface};
 
 /// Angles closer to 90° than this have a cosine whose sign rounding may change; they are not asked.
 const CLEAR: f32 = 1e-4;
@@ -164,9 +163,7 @@ pub(super) fn shadow_ray_is_not_traced_without_effect(trial: &Trial<'_>) -> Chec
         (flat(Vec3::NEG_Z), Vec3::NEG_Y),
     ]
     .map(|(surface, direction)| ShadowQuery { surface, light: light(direction, 5.0) });
-    trial.forall_and(&ties, 1000, lights, |queries| {
-        compare(queries, trial.kit.shadow_ray(queries), judge_effect)
-    })
+    trial.each_and(&ties, 1000, lights, <dyn Kit>::shadow_ray, judge_effect)
 }
 
 fn judge_effect(query: &ShadowQuery, yours: Option<Ray>) -> CheckResult {

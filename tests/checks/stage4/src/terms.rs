@@ -1,7 +1,6 @@
 //! The diffuse and the specular term.
 
 use checks::prelude::*;
-use raykata::kit::TermQuery;
 
 /// Normals, lights and viewers in all directions. Half of the viewers are near the reflected light, so that there are
 /// highlights to judge.
@@ -82,9 +81,7 @@ pub(super) fn specular_term_is_the_mirrored_cosine(trial: &Trial<'_>) -> CheckRe
         let query = TermQuery { to_light: side(query.to_light, cos_theta(&query)), ..query };
         TermQuery { to_viewer: side(query.to_viewer, cos_phi(&query)), ..query }
     });
-    trial.forall_and(&[DRAWN], 2000, highlights, |queries| {
-        compare(queries, trial.kit.specular_term(queries), judge_highlight)
-    })
+    trial.each_and(&[DRAWN], 2000, highlights, <dyn Kit>::specular_term, judge_highlight)
 }
 
 /// Whether rounding decides on the sign of a cosine. Both answers pass there.
@@ -128,9 +125,7 @@ pub(super) fn light_from_behind_adds_nothing(trial: &Trial<'_>) -> CheckResult {
         TermQuery { to_light: below, to_viewer: vec3(-0.96, 0.28, 0.0), ..DRAWN },
         DRAWN,
     ];
-    trial.forall_and(&chosen, 2000, terms(), |queries| {
-        compare(queries, trial.kit.specular_term(queries), judge_sign)
-    })
+    trial.each_and(&chosen, 2000, terms(), <dyn Kit>::specular_term, judge_sign)
 }
 
 /// The result is 0 where a cosine is negative, and is not 0 at a clear highlight.

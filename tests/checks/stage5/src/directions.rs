@@ -1,7 +1,6 @@
 //! The directions of reflected and refracted rays.
 
 use checks::prelude::*;
-use raykata::kit::RefractQuery;
 
 /// A direction, and a normal on the side that it comes from.
 pub(super) fn arrival() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {
@@ -17,7 +16,7 @@ fn off_reflection(direction: Vec3, normal: Vec3, yours: Vec3) -> f64 {
 }
 
 pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(2000, arrival(), |queries| compare(queries, trial.kit.reflect(queries), judge_reflection))
+    trial.each(2000, arrival(), <dyn Kit>::reflect, judge_reflection)
 }
 
 const ADDED: &str = "you add 2 n (d·n): subtract it, d - 2 n (d·n)";
@@ -250,33 +249,31 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> CheckRes
         RefractQuery { n1: 1.5, ..slanted },
         slanted,
     ];
-    trial.forall_and(&chosen, 300, straight, |queries| {
-        compare(queries, trial.kit.refract(queries), |query, yours| {
-            if *query == slanted {
-                // Another check judges the angle. Here the ray must only be bent to the normal.
-                let bent = |yours: Vec3| yours.dot(query.normal) < query.direction.dot(query.normal) - 1e-3;
-                return match yours {
-                    Some(yours) if yours == query.direction => judge_refraction(query, Some(yours), SLIDE),
-                    Some(yours) if bent(yours) || yours.is_nan() => Ok(()),
-                    _ => judge_refraction(query, yours, SLIDE),
-                };
-            }
-            // The tolerance covers the error of the slide's formula, which the root of 1 - sin² θ2 enlarges along the surface.
-            let slack = SLIDE as f32 / query.direction.dot(query.normal).abs();
-            if yours.is_some_and(|yours| (yours - query.direction).length() < slack) {
-                return Ok(());
-            }
-            let broken = Broken::new(paste(query), yours, Some(query.direction), "unchanged");
-            let along = query.direction == -query.normal;
-            let broken = broken.explained_by([
-                (along, "a ray along the normal keeps its direction, and sin θ1 is 0 there"),
-                (
-                    query.n1 == query.n2 && !along && yours.is_none(),
-                    "with equal indices every ray goes straight on",
-                ),
-            ]);
-            Err(broken.explained_by(mistakes_near_normal(query, yours)))
-        })
+    trial.each_and(&chosen, 300, straight, <dyn Kit>::refract, |query, yours| {
+        if *query == slanted {
+            // Another check judges the angle. Here the ray must only be bent to the normal.
+            let bent = |yours: Vec3| yours.dot(query.normal) < query.direction.dot(query.normal) - 1e-3;
+            return match yours {
+                Some(yours) if yours == query.direction => judge_refraction(query, Some(yours), SLIDE),
+                Some(yours) if bent(yours) || yours.is_nan() => Ok(()),
+                _ => judge_refraction(query, yours, SLIDE),
+            };
+        }
+        // The tolerance covers the error of the slide's formula, which the root of 1 - sin² θ2 enlarges along the surface.
+        let slack = SLIDE as f32 / query.direction.dot(query.normal).abs();
+        if yours.is_some_and(|yours| (yours - query.direction).length() < slack) {
+            return Ok(());
+        }
+        let broken = Broken::new(paste(query), yours, Some(query.direction), "unchanged");
+        let along = query.direction == -query.normal;
+        let broken = broken.explained_by([
+            (along, "a ray along the normal keeps its direction, and sin θ1 is 0 there"),
+            (
+                query.n1 == query.n2 && !along && yours.is_none(),
+                "with equal indices every ray goes straight on",
+            ),
+        ]);
+        Err(broken.explained_by(mistakes_near_normal(query, yours)))
     })
 }
 

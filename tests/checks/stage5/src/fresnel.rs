@@ -1,7 +1,6 @@
 //! The Fresnel reflectance.
 
 use checks::prelude::*;
-use raykata::kit::FresnelQuery;
 
 /// Cosines from 0 to 1, some close to 1, and indices from 1/2 to 3, some equal.
 fn queries() -> impl Strategy<Value = FresnelQuery> + Clone {

@@ -3,7 +3,6 @@
 use checks::picture;
 use checks::picture::{Composed, LARGE};
 use checks::prelude::*;
-use raykata::kit::{Kit, Limits, ScatterQuery, SecondaryRay, Surface};
 use raykata::material::{Fresnel, Material};
 
 /// A sphere and its material.

@@ -2,7 +2,6 @@
 
 use checks::offset::Start;
 use checks::prelude::*;
-use raykata::kit::{Bounce, SecondaryRay, Surface};
 
 /// A surface and a secondary ray that leaves it.
 type Leaving = (Surface, SecondaryRay);
@@ -35,7 +34,7 @@ fn describe((surface, child): &Leaving) -> String {
 
 /// The slide starts the ray at `hit.Point()`, which is rounded, so about half of the rays hit their own surface.
 pub(super) fn secondary_rays_leave_their_surface(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(1000, inputs(), |queries| compare(queries, trial.kit.spawn_ray(queries), judge))
+    trial.each(1000, inputs(), <dyn Kit>::spawn_ray, judge)
 }
 
 fn judge(query: &Leaving, ray: Ray) -> Judged {

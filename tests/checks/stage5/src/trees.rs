@@ -4,7 +4,6 @@ use super::picture::glass;
 use super::scatter::{FAR, paste};
 use checks::golden::Table;
 use checks::prelude::*;
-use raykata::kit::{Bounce, Kit, Limits, ScatterQuery};
 use raykata::material::Material;
 
 /// A tree with more rays than this is reported as infinite.

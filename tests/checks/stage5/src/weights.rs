@@ -2,7 +2,6 @@
 
 use super::scatter::{FAR, drawn, find, paste, queries};
 use checks::prelude::*;
-use raykata::kit::{Bounce, Limits, ScatterQuery, SecondaryRay};
 use raykata::material::{Fresnel, Material};
 
 /// A secondary ray's own weight decides, not that of the incoming ray and not that of the other secondary ray.

@@ -3,7 +3,6 @@
 use super::lens::{is_polar, polar, uneven_disk};
 use checks::prelude::*;
 use checks::statistics::{SAMPLES, columns, covers_each_part, has_mean, pairs};
-use raykata::kit::{RectangleQuery, SphereSampleQuery};
 use raykata::shape::Disk;
 
 /// The largest random number, just below 1.

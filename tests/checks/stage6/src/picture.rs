@@ -5,7 +5,6 @@ use checks::prelude::*;
 use checks::{picture, statistics};
 use glam::{UVec2, uvec2};
 use raykata::camera::{Camera, Lens, Shutter};
-use raykata::kit::{Kit, LensQuery, PhongLobeQuery, RectangleQuery, TimeQuery};
 use raykata::random::Stratum;
 use raykata::scene::Sampler;
 

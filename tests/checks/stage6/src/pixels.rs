@@ -4,7 +4,6 @@ use checks::generate::rough_point;
 use checks::prelude::*;
 use checks::statistics::{SAMPLES, covers_each_part, pairs};
 use glam::{DVec2, Vec2Swizzles, uvec2};
-use raykata::kit::{FILTER_RADIUS, WeightedColor};
 use raykata::random::Stratum;
 use raykata::scene::Sampler;
 use std::f64::consts::FRAC_2_PI;
@@ -31,36 +30,29 @@ fn stratum() -> impl Strategy<Value = Stratum> + Clone {
 const DRAWN: Stratum = Stratum { cell: uvec2(2, 1), grid: uvec2(4, 3), u: vec2(0.25, 0.625) };
 
 pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&[DRAWN], 2000, stratum(), |queries| {
-        compare(queries, trial.kit.jittered(queries), |query, yours| {
-            let [cell, grid, u] = [query.cell.as_dvec2(), query.grid.as_dvec2(), query.u.as_dvec2()];
-            let expected = (cell + u) / grid;
-            // The tolerance covers two roundings of a number below 1.
-            let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 2e-7;
-            let rounded =
-                "you return 1, which is in the next pixel (3 + 0.99999994 is rounded to 4): stay below 1";
-            let broken = || {
-                Broken::new(
-                    call("jittered", &[query]),
-                    yours,
-                    expected.as_vec2(),
-                    "(cell + u) / grid, below 1",
-                )
+    trial.each_and(&[DRAWN], 2000, stratum(), <dyn Kit>::jittered, |query, yours| {
+        let [cell, grid, u] = [query.cell.as_dvec2(), query.grid.as_dvec2(), query.u.as_dvec2()];
+        let expected = (cell + u) / grid;
+        // The tolerance covers two roundings of a number below 1.
+        let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 2e-7;
+        let rounded =
+            "you return 1, which is in the next pixel (3 + 0.99999994 is rounded to 4): stay below 1";
+        let broken = || {
+            Broken::new(call("jittered", &[query]), yours, expected.as_vec2(), "(cell + u) / grid, below 1")
                 .explained_by([(near(expected), rounded)])
-            };
-            unless(near(expected) && yours.max_element() < 1.0, broken).formulas([
-                (near(u), "you return u: add the cell and divide by the grid"),
-                (near(u / grid), "you leave out the cell: all samples are in the first cell"),
-                (near((cell + 0.5) / grid), "you do not use u: the sample is not jittered"),
-                (near(cell / grid), "you do not use u: the sample is not jittered"),
-                (near((cell + u) / grid.yx()), "divide x by the columns of the grid and y by its rows"),
-                (near((cell + u) / grid.x), "divide x by the columns of the grid and y by its rows"),
-                (near((cell + u) / grid.y), "divide x by the columns of the grid and y by its rows"),
-                (near((cell + u.xx()) / grid), "you use one random number for both axes: use u.x and u.y"),
-                (near((cell + u.yy()) / grid), "you use one random number for both axes: use u.x and u.y"),
-                (near(((cell.yx() + u) / grid).min(DVec2::ONE)), "you exchange column and row of the cell"),
-            ])
-        })
+        };
+        unless(near(expected) && yours.max_element() < 1.0, broken).formulas([
+            (near(u), "you return u: add the cell and divide by the grid"),
+            (near(u / grid), "you leave out the cell: all samples are in the first cell"),
+            (near((cell + 0.5) / grid), "you do not use u: the sample is not jittered"),
+            (near(cell / grid), "you do not use u: the sample is not jittered"),
+            (near((cell + u) / grid.yx()), "divide x by the columns of the grid and y by its rows"),
+            (near((cell + u) / grid.x), "divide x by the columns of the grid and y by its rows"),
+            (near((cell + u) / grid.y), "divide x by the columns of the grid and y by its rows"),
+            (near((cell + u.xx()) / grid), "you use one random number for both axes: use u.x and u.y"),
+            (near((cell + u.yy()) / grid), "you use one random number for both axes: use u.x and u.y"),
+            (near(((cell.yx() + u) / grid).min(DVec2::ONE)), "you exchange column and row of the cell"),
+        ])
     })
 }
 
@@ -161,9 +153,7 @@ pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> CheckRes
         ]),
     ];
     let offsets = (coordinate.clone(), coordinate).prop_map(|(x, y)| vec2(x, y));
-    trial.forall(1000, offsets, |queries| {
-        compare(queries, trial.kit.gaussian_weight(queries), |offset, yours| judge_weight(*offset, yours))
-    })
+    trial.each(1000, offsets, <dyn Kit>::gaussian_weight, |offset, yours| judge_weight(*offset, yours))
 }
 
 const STEP_AT_R: &str = "your weight ends in a step at R: subtract e^(-2R²) along each axis";
@@ -219,9 +209,7 @@ pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> CheckResul
     // Another check asks for weights that sum to 0.
     let samples =
         samples.prop_filter("a weight above 0", |samples| samples.iter().any(|one| one.weight > 0.0));
-    trial.forall(1000, samples, |queries| {
-        compare(queries, trial.kit.filter_pixel(queries), |samples, yours| judge_pixel(samples, yours))
-    })
+    trial.each(1000, samples, <dyn Kit>::filter_pixel, |samples, yours| judge_pixel(samples, yours))
 }
 
 fn judge_pixel(samples: &[WeightedColor], yours: Vec3) -> Judged {

@@ -5,7 +5,6 @@ use super::pixels::unit_number;
 use crate::unit_arrival;
 use checks::prelude::*;
 use checks::statistics::{Mistakes, SAMPLES, columns, covers_each_part, has_mean, is_other_power, pairs};
-use raykata::kit::PhongLobeQuery;
 
 pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
     // Every fourth surface is rough, and gives another direction than `ideal`.
@@ -16,27 +15,28 @@ pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
                 _ => PhongLobeQuery { ideal, normal, roughness: 0.0, u: vec2(u, v) },
             }
         });
-    trial.forall(500, queries, |queries| {
-        compare(queries, trial.kit.sample_phong_lobe(queries), |query, yours| {
-            let rough = query.roughness > 0.0;
-            if (yours == query.ideal) != rough {
-                return Ok(());
-            }
-            if rough {
-                let expected = "a direction at an angle to ideal";
-                return Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, "roughness above 0")
-                    .explained_by([(true, "you return ideal for a rough surface")]));
-            }
-            Err(Broken::new(query.call("sample_phong_lobe"), yours, query.ideal, "roughness 0").explained_by([
-                (yours.is_nan(), "you return NaN: 2 / 0² is infinite"),
-                (
-                    (yours - query.ideal).length() < 1e-5,
-                    "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself",
-                ),
-                (!yours.is_nan(), "you change the direction: with roughness 0 return ideal itself"),
-                (!rough, "your result is not ideal, and some results are NaN: with roughness 0 return ideal itself"),
-            ]))
-        })
+    trial.each(500, queries, <dyn Kit>::sample_phong_lobe, |query, yours| {
+        let rough = query.roughness > 0.0;
+        if (yours == query.ideal) != rough {
+            return Ok(());
+        }
+        if rough {
+            let expected = "a direction at an angle to ideal";
+            return Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, "roughness above 0")
+                .explained_by([(true, "you return ideal for a rough surface")]));
+        }
+        Err(Broken::new(query.call("sample_phong_lobe"), yours, query.ideal, "roughness 0").explained_by([
+            (yours.is_nan(), "you return NaN: 2 / 0² is infinite"),
+            (
+                (yours - query.ideal).length() < 1e-5,
+                "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself",
+            ),
+            (!yours.is_nan(), "you change the direction: with roughness 0 return ideal itself"),
+            (
+                !rough,
+                "your result is not ideal, and some results are NaN: with roughness 0 return ideal itself",
+            ),
+        ]))
     })
 }
 

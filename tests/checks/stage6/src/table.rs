@@ -5,7 +5,6 @@ use checks::prelude::*;
 use checks::statistics;
 use glam::uvec2;
 use raykata::camera::Shutter;
-use raykata::kit::{Kit, TimeQuery, WeightedColor};
 use raykata::random::Stratum;
 use raykata::scene::Sampler;
 

@@ -2,7 +2,6 @@
 
 use super::texels::{WRAPS, row};
 use checks::prelude::*;
-use raykata::kit::{Request, TextureQuery};
 use raykata::material::{Texture, Wrap};
 use std::sync::Arc;
 

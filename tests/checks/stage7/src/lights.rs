@@ -3,7 +3,6 @@
 use super::scenes::{ONE_SAMPLE, light, sphere_light};
 use checks::prelude::*;
 use raykata::effects::LightEffects;
-use raykata::kit::LightQuery;
 use raykata::material::{AreaShape, Emitter, Falloff, Light};
 use raykata::scene::Quality;
 

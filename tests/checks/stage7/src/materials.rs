@@ -3,7 +3,6 @@
 use super::scenes::light;
 use checks::prelude::*;
 use raykata::effects::MaterialEffects;
-use raykata::kit::MaterialQuery;
 use raykata::material::{Fresnel, Light, Material};
 use raykata::scene::Quality;
 

@@ -4,7 +4,6 @@ use super::texels::WRAPS;
 use checks::picture;
 use checks::picture::{Composed, LARGE};
 use checks::prelude::*;
-use raykata::kit::{Kit, TextureQuery};
 use raykata::material::{Texture, Wrap};
 use std::f32::consts::TAU;
 use std::sync::Arc;

@@ -3,7 +3,6 @@
 use super::scenes::{ONE_SAMPLE, add_material, light, one_sphere};
 use checks::prelude::*;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
-use raykata::kit::{BoundQuery, KitError, RayCounts, kit_error};
 use raykata::material::{Fresnel, Material};
 use raykata::scene::{FilmSettings, Quality, Scene};
 

@@ -4,7 +4,6 @@ use super::scenes::{BUILT, everything};
 use checks::golden::Table;
 use checks::prelude::*;
 use raykata::effects::Effect;
-use raykata::kit::{BoundQuery, Kit, RayCounts};
 use raykata::scene::Scene;
 
 fn hyphenated(effect: Effect) -> String {

@@ -5,7 +5,6 @@ use checks::double::U;
 use checks::generate::{direction, point, rough_point, sphere};
 use checks::prelude::*;
 use oracle::exact::{Body, meet};
-use raykata::kit::BoundingSphereQuery;
 
 /// Points on a grid or of any kind, at any size, often in a plane, on a line or all equal; and points far from the origin.
 fn clouds() -> impl Strategy<Value = Vec<Vec3>> + Clone {
@@ -94,7 +93,7 @@ fn judge_cover(points: &Vec<Vec3>, sphere: Sphere, allowed: f64) -> Judged {
 }
 
 pub(super) fn sphere_is_small(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(500, clouds(), |queries| compare(queries, trial.kit.bounding_sphere(queries), judge_size))
+    trial.each(500, clouds(), <dyn Kit>::bounding_sphere, judge_size)
 }
 
 fn judge_size(points: &Vec<Vec3>, sphere: Sphere) -> Judged {

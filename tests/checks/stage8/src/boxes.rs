@@ -5,7 +5,6 @@ use checks::double::U;
 use checks::prelude::*;
 use glam::{Affine3A, Mat3};
 use oracle::splitmix::Random;
-use raykata::kit::BoundsQuery;
 
 /// Transforms of all kinds and boxes of all sizes.
 fn moved(trial: &Trial<'_>) -> Vec<BoundsQuery> {

@@ -7,7 +7,6 @@ use checks::prelude::*;
 use checks::tree::tie;
 use oracle::splitmix::Random;
 use raykata::graph::{ChildCache, Graph};
-use raykata::kit::{CachedGraphAnswer, CachedGraphQuery};
 
 /// A cache in which each node with children has one of them or, in one of three cases, none.
 fn random_cache(random: &mut Random, graph: &Graph) -> ChildCache {

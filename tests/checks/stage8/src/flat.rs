@@ -4,7 +4,6 @@ use super::hard::{judge_cases, of};
 use super::solids::{agrees_flat, input};
 use checks::prelude::*;
 use oracle::splitmix::Random;
-use raykata::kit::SolidQuery;
 use raykata::shape::{Disk, Polygon};
 
 pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> CheckResult {

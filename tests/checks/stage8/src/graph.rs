@@ -5,7 +5,6 @@ use checks::tree::{closest_of, move_apart, tie};
 use oracle::splitmix::Random;
 use raykata::bvh::PrimitiveHit;
 use raykata::graph::{Graph, GraphNode, GraphOptimisations};
-use raykata::kit::{GraphAnswer, GraphQuery, Table};
 
 pub(super) const NOTHING: GraphOptimisations =
     GraphOptimisations { volumes: false, skip: false, sort: false };

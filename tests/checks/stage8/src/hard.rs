@@ -4,7 +4,6 @@ use super::solid::{Solid, turned};
 use super::solids::input;
 use checks::prelude::*;
 use oracle::splitmix::Random;
-use raykata::kit::{SolidHit, SolidQuery};
 use raykata::shape::{Cone, Cuboid, Cylinder};
 
 /// A ray, the expected `t`, and what students do who answer only rays of this kind wrongly. The text of an ordinary ray is

@@ -4,7 +4,6 @@
 
 use checks::double::{LIMITS, slab_interval};
 use checks::prelude::*;
-use raykata::kit::SolidQuery;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 
 /// Mistakes, each with whether it gives the student's answer.

@@ -4,7 +4,6 @@ use checks::picture;
 use checks::picture::{Composed, LARGE};
 use checks::prelude::*;
 use glam::{Affine3A, Quat};
-use raykata::kit::{Kit, NormalQuery, ObjectRayQuery, SolidHit, SolidQuery};
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 use std::f32::consts::TAU;
 

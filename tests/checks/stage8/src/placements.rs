@@ -7,9 +7,7 @@ use raykata::graph::Placement;
 
 pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> CheckResult {
     let paths = prop::collection::vec(transform(-8..=8), 1..5);
-    trial.forall_and(&[Vec::new()], 1000, paths, |paths| {
-        compare(paths, trial.kit.placement(paths), judge_placement)
-    })
+    trial.each_and(&[Vec::new()], 1000, paths, <dyn Kit>::placement, judge_placement)
 }
 
 /// Whether a matrix and a translation are those of `right`, each compared with its own largest entry. The tolerance is a

@@ -5,7 +5,6 @@ use super::mistakes::{self, Mistakes, WrongNormals};
 use checks::generate::{direction, fractions, point};
 use checks::prelude::*;
 use oracle::exact::{Body, Meeting, meet, polygon::meet_fan};
-use raykata::kit::{Kit, SolidHit, SolidQuery};
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 use std::fmt::Debug;
 

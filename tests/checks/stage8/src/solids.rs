@@ -4,7 +4,6 @@ use super::mistakes::{Mistakes, OUTSIDE, is_near};
 use super::solid::Solid;
 use checks::generate::{direction, point};
 use checks::prelude::*;
-use raykata::kit::{SolidHit, SolidQuery};
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 
 macro_rules! laws {

@@ -3,7 +3,6 @@
 use checks::generate::{direction, point, rough_point};
 use checks::prelude::*;
 use glam::{Affine3A, DMat3, Mat3};
-use raykata::kit::{NormalQuery, ObjectRayQuery};
 
 /// Rotations, shears, scales and reflections with small whole numbers and a determinant of at least 1 in size, all multiplied
 /// by one power of two.
@@ -157,9 +156,7 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> CheckResult
     );
     let timed = Ray { time: 0.25, ..grown.ray.with_range(0.5, 8.0) };
     let chosen = [grown, ObjectRayQuery { ray: timed, ..grown }];
-    trial.forall_and(&chosen, 500, inputs, |queries| {
-        compare(queries, trial.kit.ray_to_object(queries), judge_range)
-    })
+    trial.each_and(&chosen, 500, inputs, <dyn Kit>::ray_to_object, judge_range)
 }
 
 fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {

@@ -4,7 +4,6 @@ use super::bounding_spheres::reach;
 use checks::double::U;
 use checks::generate::point;
 use checks::prelude::*;
-use raykata::kit::{BasisQuery, NurbsQuery};
 use raykata::shape::NurbsPatch;
 
 /// A degree, knots and a parameter of their domain.

@@ -3,7 +3,6 @@
 use super::bounding_spheres::reach;
 use checks::generate::point;
 use checks::prelude::*;
-use raykata::kit::PatchQuery;
 use raykata::shape::BezierPatch;
 
 fn patch() -> impl Strategy<Value = BezierPatch> + Clone {

@@ -2,7 +2,6 @@
 
 use checks::golden::{Table, digits};
 use checks::prelude::*;
-use raykata::kit::{Kit, PatchQuery};
 use raykata::mesh::Mesh;
 use raykata::shape::BezierPatch;
 

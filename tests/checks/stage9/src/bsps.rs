@@ -4,7 +4,6 @@ use super::hulls::{self, usable};
 use super::lists::{Fault, ended, fact, judge_references};
 use checks::generate::{point, rough_point};
 use checks::prelude::*;
-use raykata::kit::BspQuery;
 use raykata::partition::{Bsp, CutPlane, MOST_REFERENCES, TreeNode, corners};
 
 /// A leaf: its number, the planes above it with the side on which it lies, and the primitives that it lists.
@@ -99,9 +98,7 @@ pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResu
         hulls.iter_mut().flatten().for_each(|corner| *corner *= scale);
         BspQuery { hulls, leaf_size, max_depth }
     });
-    trial.forall(140, inputs, |queries| {
-        compare(queries, trial.kit.bsp_build(queries), |query, yours| judge_tree(query, &yours))
-    })
+    trial.each(140, inputs, <dyn Kit>::bsp_build, |query, yours| judge_tree(query, &yours))
 }
 
 pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {

@@ -6,7 +6,6 @@ use checks::prelude::*;
 use checks::tree;
 use checks::tree::{closest_in_table, closest_of, search_query, sphere_box};
 use raykata::bvh::PrimitiveHit;
-use raykata::kit::{CachedQuery, PacketAnswer, PacketQuery, SearchQuery};
 
 fn cached(scene: &Scene, ray: &Ray, last: Option<u32>) -> CachedQuery {
     let hits = scene.hits(ray);

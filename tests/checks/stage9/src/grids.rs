@@ -7,7 +7,6 @@ use super::searches::{Described, GRID, grid_queries};
 use super::structures::{around_loosely, filled};
 use checks::prelude::*;
 use glam::{UVec3, uvec3};
-use raykata::kit::{CellsQuery, GridQuery};
 use raykata::partition::{Cell, Grid};
 
 pub(super) fn grid_lists_what_reaches_into_cells(trial: &Trial<'_>) -> CheckResult {

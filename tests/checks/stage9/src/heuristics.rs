@@ -2,7 +2,6 @@
 
 use super::lists::below;
 use checks::prelude::*;
-use raykata::kit::KdQuery;
 use raykata::partition::{KdHeuristics, KdNode, KdTree};
 
 const NONE: KdHeuristics = KdHeuristics::NONE;

@@ -2,7 +2,6 @@
 
 use super::lists::{self, Fault};
 use checks::prelude::*;
-use raykata::kit::BspQuery;
 use raykata::partition::{MOST_REFERENCES, corners};
 
 pub(super) fn describe(BspQuery { hulls, leaf_size, max_depth }: &BspQuery) -> String {

@@ -11,7 +11,6 @@ use super::searches::{
 };
 use super::structures::octree;
 use checks::prelude::*;
-use raykata::kit::{CellsAnswer, CellsQuery, OctreeQuery, kit_error};
 use raykata::partition::{MOST_REFERENCES, Octree, OctreeNode, TreeNode};
 
 fn describe(query: &OctreeQuery) -> String {
@@ -46,9 +45,7 @@ fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
 pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
     let inputs = (some_boxes(), 1..=4usize, 0..=4usize)
         .prop_map(|(bounds, leaf_size, max_depth)| OctreeQuery { bounds, leaf_size, max_depth });
-    trial.forall(140, inputs, |queries| {
-        compare(queries, trial.kit.octree_build(queries), |query, yours| judge_octree(query, &yours))
-    })
+    trial.each(140, inputs, <dyn Kit>::octree_build, |query, yours| judge_octree(query, &yours))
 }
 
 pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResult {

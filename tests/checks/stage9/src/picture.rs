@@ -5,7 +5,6 @@ use super::searches::queries;
 use checks::picture;
 use checks::picture::{Composed, SMALL};
 use checks::prelude::*;
-use raykata::kit::{BspQuery, CellsAnswer, GridQuery, KdQuery, Kit, OctreeQuery, ResolutionQuery};
 use raykata::partition::{KdHeuristics, Tree};
 use std::f32::consts::TAU;
 

@@ -5,7 +5,6 @@ use super::scenes::{Scene, Thing, room, sphere, wall};
 use super::searches::{Described, POLYGON_BSP, agrees, place, queries, spheres_and_rays};
 use super::structures::{diagonal, one_plane, polygon_bsp, tile};
 use checks::prelude::*;
-use raykata::kit::{CellsAnswer, CellsQuery};
 use raykata::partition::{PolygonBsp, TreeNode};
 
 pub(super) fn polygon_bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {

@@ -4,7 +4,6 @@ use super::hulls::{self, usable};
 use super::lists::{Fault, ended, fact, judge_references};
 use checks::generate::{point, rough_point};
 use checks::prelude::*;
-use raykata::kit::BspQuery;
 use raykata::partition::{CutPlane, MOST_REFERENCES, PlaneNode, PolygonBsp, PolygonBspNode, corners};
 
 const WHAT_MAKES_IT: &str = "the definition of a BSP tree with polygons in its nodes";
@@ -206,9 +205,7 @@ pub(super) fn polygon_bsp_puts_polygons_on_planes(trial: &Trial<'_>) -> CheckRes
         hulls.iter_mut().flatten().for_each(|corner| *corner *= scale);
         BspQuery { hulls, leaf_size, max_depth }
     });
-    trial.forall(140, inputs, |queries| {
-        compare(queries, trial.kit.polygon_bsp_build(queries), |query, yours| judge_tree(query, &yours))
-    })
+    trial.each(140, inputs, <dyn Kit>::polygon_bsp_build, |query, yours| judge_tree(query, &yours))
 }
 
 pub(super) fn polygon_bsp_build_ends(trial: &Trial<'_>) -> CheckResult {

@@ -9,7 +9,6 @@ use super::structures;
 use checks::prelude::*;
 use checks::tree::closest_of;
 use glam::UVec3;
-use raykata::kit::{CellsAnswer, CellsQuery, Kit};
 use raykata::partition::{Bsp, CutPlane, Grid, KdNode, KdTree, Octree, PlaneNode, PolygonBsp};
 
 /// A search of a student, in structures of the type `S`: cells with numbers, or trees with numbered nodes.

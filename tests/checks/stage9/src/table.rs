@@ -5,7 +5,6 @@ use super::searches::queries;
 use checks::golden::{Table, digits};
 use checks::prelude::*;
 use glam::uvec3;
-use raykata::kit::{GridQuery, Kit};
 
 const COLUMNS: u32 = 12;
 const ROWS: u32 = 7;

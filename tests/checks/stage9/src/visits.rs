@@ -3,7 +3,6 @@
 use super::searches::Search;
 use checks::prelude::*;
 use checks::tree::closest_of;
-use raykata::kit::{CellsAnswer, CellsQuery, Kit};
 
 impl<S> Search<S> {
     /// Judges the visits of the searches for these rays, each of which is aimed at a primitive.
