@@ -295,12 +295,8 @@ pub(super) fn judge_weights(
         let describe = |beta: f64, gamma: f64| format!("β = {beta}, γ = {gamma}");
         let alpha = 1.0 - beta - gamma;
         unless(is(beta, gamma), || {
-            Broken::with_texts(
-                query.call(function),
-                describe(yours.beta.into(), yours.gamma.into()),
-                describe(beta, gamma),
-                "exactly",
-            )
+            let (yours, expected) = (describe(yours.beta.into(), yours.gamma.into()), describe(beta, gamma));
+            Broken::with_texts(query.call(function), yours, expected, "exactly")
         })
         .formulas([
             (is(gamma, beta), "you exchange β and γ: β belongs to corner b, and γ to corner c"),

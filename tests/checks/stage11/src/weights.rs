@@ -193,12 +193,8 @@ pub(super) fn mis_weights_keep_the_variance_low(trial: &Trial<'_>) -> CheckResul
             );
             let yours =
                 format!("variance {variance:.4} of the squared mean, mean {:.4} of the light", 1.0 + bias);
-            let broken = Broken::with_texts(
-                input,
-                yours,
-                format!("at most {LARGEST_VARIANCE}, and all of the light"),
-                "integrals over the light",
-            );
+            let expected = format!("at most {LARGEST_VARIANCE}, and all of the light");
+            let broken = Broken::with_texts(input, yours, expected, "integrals over the light");
             let all = |is: &dyn Fn(&Pair, &Pair) -> bool| {
                 pairs.iter().zip(&weights).all(|(pair, weights)| is(pair, weights))
             };

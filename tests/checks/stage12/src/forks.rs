@@ -2,7 +2,7 @@
 
 use super::builds::{crowds, judge_tree};
 use super::scenes::scenes;
-use super::trees::{broken_by, fault, from_leaves};
+use super::trees::{broken_by, fault, from_leaves, ranges};
 use checks::prelude::*;
 use oracle::splitmix::Random;
 use raykata::bvh::DEEPEST_SPLIT;
@@ -59,11 +59,6 @@ fn depths(tree: &FlatTree) -> Vec<usize> {
         depths[node.first as usize..][..2].fill(depth);
     }
     depths
-}
-
-/// The first primitive and the number of primitives of each node of a tree without faults.
-fn ranges(tree: &FlatTree) -> Vec<(u32, u32)> {
-    from_leaves(tree, |_, leaf| (leaf.first, leaf.count), |_, left, right| (left.0, left.1 + right.1))
 }
 
 /// The work and the span of a build without faults that has logged these forks, in primitives.

@@ -175,6 +175,11 @@ pub(super) fn from_leaves<T: Copy>(
     values
 }
 
+/// For each node of a tree without faults the primitives below it: where they begin in the order, and their number.
+pub(super) fn ranges(tree: &FlatTree) -> Vec<(u32, u32)> {
+    from_leaves(tree, |_, leaf| (leaf.first, leaf.count), |_, left, right| (left.0, left.1 + right.1))
+}
+
 /// The number of levels of a tree without faults.
 pub(super) fn depth(tree: &FlatTree) -> usize {
     from_leaves(tree, |_, _| 1, |_, left, right| 1 + left.max(right)).first().copied().unwrap_or(0)

@@ -1,6 +1,6 @@
 //! `collapse`.
 
-use super::trees::{Fault, broken_by, drawn_tree, drawn_trees, from_leaves};
+use super::trees::{Fault, broken_by, drawn_tree, drawn_trees, from_leaves, ranges};
 use checks::prelude::*;
 use checks::tree::half_area;
 use oracle::splitmix::Random;
@@ -15,11 +15,6 @@ fn parents(tree: &FlatTree) -> Vec<usize> {
         parents[node.first as usize + 1] = index;
     }
     parents
-}
-
-/// For each node of a flat tree the primitives below it: where they begin in the order, and their number.
-fn ranges(tree: &FlatTree) -> Vec<(u32, u32)> {
-    from_leaves(tree, |_, leaf| (leaf.first, leaf.count), |_, left, right| (left.0, left.1 + right.1))
 }
 
 /// The nodes of the flat tree that a wide tree is made of: those that its inner nodes stand for, without the root, and its leaves.

@@ -50,12 +50,8 @@ fn judge(triangle: &Triangle, yours: GramScalars) -> Judged {
     let broken = || {
         let [uv, vv, uu, d] = [yours.uv, yours.vv, yours.uu, yours.d].map(f64::from);
         let expected = describe(exact.uv, exact.vv, exact.uu, exact.d);
-        Broken::with_texts(
-            call("gram_scalars", &[triangle]),
-            describe(uv, vv, uu, d),
-            expected,
-            "double precision",
-        )
+        let yours = describe(uv, vv, uu, d);
+        Broken::with_texts(call("gram_scalars", &[triangle]), yours, expected, "double precision")
     };
     // UV² and UU·VV are rounded before they are subtracted.
     let cancels = near(yours.d, exact.d, 16.0 * U * (exact.uv * exact.uv + exact.uu * exact.vv));

@@ -140,16 +140,12 @@ pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> CheckResult {
         let nodes = built(trial, &query)?.nodes.len();
         if nodes != 1 {
             let describe = |n: usize| format!("{n} nodes");
-            return Err(Broken::with_texts(
-                query.call("build"),
-                describe(nodes),
-                "1 node, a leaf",
-                "the definition",
-            )
-            .explained_by([(
-                nodes > 1,
-                "exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size",
-            )]));
+            let yours = describe(nodes);
+            return Err(Broken::with_texts(query.call("build"), yours, "1 node, a leaf", "the definition")
+                .explained_by([(
+                    nodes > 1,
+                    "exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size",
+                )]));
         }
     }
     Ok(())

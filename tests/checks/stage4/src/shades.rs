@@ -233,13 +233,12 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
             });
             if let Some((light, ray)) = astray {
                 let (yours, own) = (format!("visible({light}, &{ray:?})"), rays[*light]);
-                return Err(Broken::with_texts(
-                    query.call("shade"),
-                    yours,
-                    format!("the ray {own:?}"),
-                    "shadow_ray",
-                )
-                .explained_by([(true, "you ask about another ray: pass the ray of shadow_ray to visible")]));
+                let expected = format!("the ray {own:?}");
+                return Err(Broken::with_texts(query.call("shade"), yours, expected, "shadow_ray")
+                    .explained_by([(
+                        true,
+                        "you ask about another ray: pass the ray of shadow_ray to visible",
+                    )]));
             }
             let has_ray: Vec<bool> = rays.iter().map(Option::is_some).collect();
             judge_traced(query, &has_ray, &yours.traced)

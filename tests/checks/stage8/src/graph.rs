@@ -325,13 +325,9 @@ fn judge_orders(trial: &Trial<'_>, cases: &[Case<'_>]) -> CheckResult {
             if yours.asked == *expected {
                 return Ok(());
             }
-            Err(Broken::with_texts(
-                describe(query),
-                format!("tested the primitives {:?}", yours.asked),
-                format!("{expected:?}"),
-                "the definition",
-            )
-            .explained_by(mistakes.iter().map(|(wrong, text)| (yours.asked == *wrong, *text))))
+            let (got, right) = (format!("tested the primitives {:?}", yours.asked), format!("{expected:?}"));
+            Err(Broken::with_texts(describe(query), got, right, "the definition")
+                .explained_by(mistakes.iter().map(|(wrong, text)| (yours.asked == *wrong, *text))))
         });
     all_hold(outcomes)
 }

@@ -181,12 +181,8 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
         format!("length {length:.6e}, t in {:?}..{:?}, time {:?}", ray.t_min, ray.t_max, ray.time)
     };
     unless(same_length && same_range && same_time, || {
-            Broken::with_texts(
-                call("ray_to_object", &[ray, to_object]),
-                describe(length, &yours),
-                describe(exact, ray),
-                "the definition",
-            )
+            let (got, right) = (describe(length, &yours), describe(exact, ray));
+            Broken::with_texts(call("ray_to_object", &[ray, to_object]), got, right, "the definition")
             .explained_by([(
                 same_length && same_time && yours.t_max == ray.t_max && yours.t_min > ray.t_min,
                 "you raise t_min: the range stays, and an offset of the origin belongs to other rays",

@@ -191,11 +191,6 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     ];
     let yours = format!("up to {fullest} sheets per leaf, {references} references, {depth} levels");
     let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 32");
-    Err(Broken::with_texts(
-        input,
-        yours,
-        format!("2 per leaf, at most {} references, 8 levels", 2 * n),
-        "counted",
-    )
-    .explained_by(mistakes))
+    let expected = format!("2 per leaf, at most {} references, 8 levels", 2 * n);
+    Err(Broken::with_texts(input, yours, expected, "counted").explained_by(mistakes))
 }

@@ -252,12 +252,8 @@ fn judge_opened(what: &str, yours: &PacketAnswer, singles: &[SearchQuery], most:
         return Err(broken);
     }
     if let Some(pair) = again {
-        let broken = Broken::with_texts(
-            input,
-            format!("node {} is opened again", pair[0]),
-            "once per packet",
-            "counted",
-        );
+        let yours = format!("node {} is opened again", pair[0]);
+        let broken = Broken::with_texts(input, yours, "once per packet", "counted");
         // Of children that are entered at the same t, either may come first.
         let alone: u64 = singles.iter().map(opened_alone).sum();
         let one_by_one = (opened.len() as u64).abs_diff(alone) <= alone / 4;
@@ -267,12 +263,8 @@ fn judge_opened(what: &str, yours: &PacketAnswer, singles: &[SearchQuery], most:
         )]));
     }
     if yours.opened.len() as u64 > most {
-        let broken = Broken::with_texts(
-            input,
-            describe(yours.opened.len() as u64),
-            format!("at most {}", describe(most)),
-            "counted",
-        );
+        let (got, right) = (describe(yours.opened.len() as u64), format!("at most {}", describe(most)));
+        let broken = Broken::with_texts(input, got, right, "counted");
         return Err(broken.explained_by([(needless(yours, singles) > 0, NEEDLESS)]));
     }
     Ok(())
