@@ -1,8 +1,7 @@
 //! Ray-plane intersection with the plane as the equation A x + B y + C z + D = 0.
 
 use crate::planes::{along_planes, at_far_planes, at_planes, observations, of_tests};
-use checks::double::{self, Expected, Sum, U, compare_tolerant};
-use checks::generate::{direction, point};
+use checks::double::{self, Expected, Sum, compare_tolerant};
 use checks::prelude::*;
 use raykata::shape::PlaneEquation;
 

@@ -2,8 +2,7 @@
 
 use crate::roots::T_ABOVE_0;
 use crate::sphere_mistakes::{DROPS_NEAR_HITS, EPSILONS};
-use checks::double::{self, Expected, LIMITS, U, compare_tolerant};
-use checks::generate::{direction, point, rough_point};
+use checks::double::{self, Expected, LIMITS, compare_tolerant};
 use checks::prelude::*;
 
 type Case = (PlaneQuery, Expected);

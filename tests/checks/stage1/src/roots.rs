@@ -79,7 +79,7 @@ pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> 
         RootQuery { roots: [0.5, 3.0], ray: ray.with_range(1.0, 4.0) },
         RootQuery { roots: [3.0, 0.5], ray: ray.with_range(1.0, 4.0) },
     ];
-    let root = || checks::generate::fractions(-24..=24, 8.0);
+    let root = || fractions(-24..=24, 8.0);
     let coarse = (root(), root(), 0..=8i32, 0..=24i32).prop_map(|(first, second, start, length)| {
         let (t_min, length) = (start as f32 / 8.0, length as f32 / 8.0);
         RootQuery { roots: [first, second], ray: ray.with_range(t_min, t_min + length) }

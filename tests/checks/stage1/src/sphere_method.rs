@@ -1,7 +1,7 @@
 //! The two methods of intersecting a sphere, and how the checks judge their answers.
 
 use crate::sphere_mistakes::{mistakes, observations};
-use checks::double::{self, Expected, U, compare_tolerant};
+use checks::double::{self, Expected, compare_tolerant};
 use checks::prelude::*;
 
 /// One of the two methods of intersecting a sphere.

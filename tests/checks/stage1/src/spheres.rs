@@ -1,7 +1,7 @@
 //! Ray-sphere intersection: each check for both methods.
 
 use crate::sphere_method::{Accepts, SphereFunction};
-use checks::generate::{direction, magnitude, point, ray, rough_point, sphere, unit};
+use checks::generate::{ray, sphere, unit};
 use checks::prelude::*;
 
 fn query(origin: (f32, f32, f32), direction: Vec3, radius: f32) -> SphereQuery {

@@ -1,7 +1,6 @@
 //! The laws of `triangle_in_double`, and special numbers as input of both functions in double precision.
 
 use super::triangles::{aim_again, draw};
-use checks::double::U;
 use checks::prelude::*;
 use oracle::STABLE;
 use oracle::exact::{Body, meet, t_error_in_ulps, t_in_double, triangle, verdict};

@@ -1,6 +1,5 @@
 //! The laws of `offset_origin` and `safe_normalize`.
 
-use checks::double::U;
 use checks::offset::Start;
 use checks::prelude::*;
 

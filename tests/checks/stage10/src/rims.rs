@@ -1,7 +1,7 @@
 //! The laws of `sphere_in_double`.
 
 use super::doubles::{SINGLE, describe, err_both_ways};
-use checks::double::{U, sphere_roots};
+use checks::double::sphere_roots;
 use checks::prelude::*;
 use oracle::STABLE;
 use oracle::exact::{Body, Meeting, meet, sphere, t_in_double};

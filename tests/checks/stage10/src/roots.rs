@@ -1,8 +1,6 @@
 //! The laws of `stable_roots`.
 
 use super::Odd;
-use checks::double::U;
-use checks::generate::magnitude;
 use checks::prelude::*;
 
 type Coefficients = [f32; 3];

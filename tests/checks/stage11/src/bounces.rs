@@ -1,10 +1,9 @@
 //! The light that paths of limited length miss.
 
-use checks::generate::magnitude;
 use checks::prelude::*;
 
 pub(super) fn cut_off_is_the_light_beyond_the_last_bounce(trial: &Trial<'_>) -> CheckResult {
-    let albedo = prop_oneof![4 => checks::generate::fractions(0..=16, 16.0), 1 => 0.9..1.0f32];
+    let albedo = prop_oneof![4 => fractions(0..=16, 16.0), 1 => 0.9..1.0f32];
     let bounces = prop_oneof![6 => 0..12u32, 2 => 12..3000u32, 1 => Just(u32::MAX)];
     trial.forall(300, (albedo, bounces), |queries| {
         let power = |albedo: f32, exponent: f64| f64::from(albedo).powf(exponent);
@@ -79,7 +78,7 @@ fn judge(query: &(f32, f32), yours: u32) -> Judged {
 pub(super) fn bounces_for_error_is_the_smallest_number(trial: &Trial<'_>) -> CheckResult {
     // Next to 1 a bounce loses so little that logarithms in single precision are off by many bounces.
     let next_to_one = magnitude(-7.0, -2.0).prop_map(|loss| 1.0 - loss);
-    let albedo = || prop_oneof![4 => checks::generate::fractions(1..=15, 16.0), 2 => 0.02..0.999f32, 1 => next_to_one.clone()];
+    let albedo = || prop_oneof![4 => fractions(1..=15, 16.0), 2 => 0.02..0.999f32, 1 => next_to_one.clone()];
     let drawn = (albedo(), magnitude(-6.0, 0.0));
     // Errors that are exactly a power of the albedo: one bounce more or less is wrong.
     let exact = (prop::sample::select(vec![0.5f32, 0.25, 0.125]), 1..9i32)
@@ -88,7 +87,7 @@ pub(super) fn bounces_for_error_is_the_smallest_number(trial: &Trial<'_>) -> Che
 }
 
 pub(super) fn bounces_for_error_at_the_limits(trial: &Trial<'_>) -> CheckResult {
-    let share = || checks::generate::fractions(1..=64, 64.0);
+    let share = || fractions(1..=64, 64.0);
     // All light stays in the room (albedo 1), none is reflected (0), no error is allowed (0), and any error is (1).
     let cases = (0..5i32, share()).prop_map(|(which, share)| match which {
         0 => (1.0, (share - 1.0 / 64.0).min(0.98)),

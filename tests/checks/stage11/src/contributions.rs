@@ -1,18 +1,17 @@
 //! Light that counts: `sample_light_contribution` and `emitted_contribution`.
 
 use crate::weights::both_ways;
-use checks::generate::magnitude;
 use checks::prelude::*;
 use raykata::emitter::EmitterSample;
 use std::f64::consts::PI;
 
 fn color() -> impl Strategy<Value = Vec3> + Clone {
-    checks::generate::vector(checks::generate::fractions(0..=8, 4.0))
+    checks::generate::vector(fractions(0..=8, 4.0))
 }
 
 /// A density: 0 in one of five.
 fn density() -> impl Strategy<Value = f32> + Clone {
-    prop_oneof![1 => Just(0.0f32), 2 => checks::generate::fractions(1..=32, 8.0), 2 => magnitude(-3.0, 5.0)]
+    prop_oneof![1 => Just(0.0f32), 2 => fractions(1..=32, 8.0), 2 => magnitude(-3.0, 5.0)]
 }
 
 fn paste(query: &LightContributionQuery) -> String {
@@ -23,8 +22,8 @@ fn paste(query: &LightContributionQuery) -> String {
 fn queries(
     angle: impl Strategy<Value = (f64, f64)> + Clone,
 ) -> impl Strategy<Value = LightContributionQuery> + Clone {
-    let pdf = prop_oneof![1 => checks::generate::fractions(1..=32, 8.0), 1 => magnitude(-3.0, 5.0)];
-    let distance = prop_oneof![3 => checks::generate::fractions(1..=16, 4.0), 1 => Just(f32::INFINITY)];
+    let pdf = prop_oneof![1 => fractions(1..=32, 8.0), 1 => magnitude(-3.0, 5.0)];
+    let distance = prop_oneof![3 => fractions(1..=16, 4.0), 1 => Just(f32::INFINITY)];
     let sample = (nasty::unit(), angle, distance, color(), pdf).prop_map(
         |(normal, (angle, turn), distance, radiance, pdf)| {
             (normal, EmitterSample { direction: nasty::tilted(normal, angle, turn), distance, radiance, pdf })

@@ -24,7 +24,7 @@ fn surface(normal: Vec3, diffuse: Vec3, reflection: Option<Vec3>, transmission: 
 
 /// Reflectances in steps of 1/8, black in one of three.
 fn reflectance() -> impl Strategy<Value = Vec3> + Clone {
-    let channel = || checks::generate::fractions(0..=8, 8.0);
+    let channel = || fractions(0..=8, 8.0);
     prop_oneof![
         1 => Just(Vec3::ZERO),
         1 => (0..3usize, 1..=8i32).prop_map(|(axis, n)| n as f32 / 8.0 * Vec3::AXES[axis]),

@@ -21,8 +21,8 @@ fn weight(largest: impl Strategy<Value = f32> + Clone) -> impl Strategy<Value = 
 const LEAST_CAP: f64 = 0.95;
 
 pub(super) fn roulette_keeps_the_mean(trial: &Trial<'_>) -> CheckResult {
-    let dim = checks::generate::magnitude(-4.0, 0.0);
-    let largest = prop_oneof![4 => checks::generate::fractions(1..=63, 64.0), 4 => dim, 1 => 1.0..8.0f32];
+    let dim = magnitude(-4.0, 0.0);
+    let largest = prop_oneof![4 => fractions(1..=63, 64.0), 4 => dim, 1 => 1.0..8.0f32];
     // Roulette begins at bounce 3.
     let first = [
         (0.25, 0.5, 0.125),
@@ -115,8 +115,7 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[(f32, f64)], slack: f64) -> 
 
 pub(super) fn roulette_ends_no_young_path(trial: &Trial<'_>) -> CheckResult {
     let number = || (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0);
-    let largest =
-        prop_oneof![checks::generate::fractions(1..=64, 64.0), checks::generate::magnitude(-4.0, 0.0)];
+    let largest = prop_oneof![fractions(1..=64, 64.0), magnitude(-4.0, 0.0)];
     let young = (weight(largest), 0..3u32, number(), Just(true));
     // Every fifth path has the weight 1/64, and half of these must end, whichever random numbers end them.
     let dim = (weight(Just(1.0f32 / 64.0)), 3..50u32, number(), Just(false));

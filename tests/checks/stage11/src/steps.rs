@@ -5,7 +5,6 @@
 
 use crate::emitters::layouts;
 use crate::lobes::{missing, surfaces};
-use checks::generate::magnitude;
 use checks::prelude::*;
 use raykata::light_path::{
     BsdfSample, ChosenEmitter, Lobe, NextRay, PathState, PathStep, PathVertex, Scattering, StepNumbers,
@@ -16,7 +15,7 @@ pub(super) fn describe(query: &StepQuery) -> String {
 }
 
 pub(super) fn color() -> impl Strategy<Value = Vec3> + Clone {
-    checks::generate::vector(checks::generate::fractions(1..=8, 8.0))
+    checks::generate::vector(fractions(1..=8, 8.0))
 }
 
 /// The weight of a path: in half of the cases as small as 1e-4.
@@ -45,7 +44,7 @@ fn pdf() -> impl Strategy<Value = f32> + Clone {
 
 /// The probability with which an emitter is chosen. It is 1 in one of four.
 pub(super) fn probability() -> impl Strategy<Value = f32> + Clone {
-    checks::generate::fractions(1..=4, 4.0)
+    fractions(1..=4, 4.0)
 }
 
 /// A diffuse surface at a point, with both normals.

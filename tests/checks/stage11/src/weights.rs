@@ -1,6 +1,5 @@
 //! Multiple importance sampling.
 
-use checks::generate::magnitude;
 use checks::prelude::*;
 use std::f64::consts::TAU;
 
@@ -47,7 +46,7 @@ fn judge_sum(pair: &Pair, (own, other): Pair) -> Judged {
 }
 
 pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
-    let density = || prop_oneof![1 => checks::generate::fractions(1..=32, 8.0), 3 => magnitude(-4.0, 4.0)];
+    let density = || prop_oneof![1 => fractions(1..=32, 8.0), 3 => magnitude(-4.0, 4.0)];
     let pairs = (density(), density(), 0..6i32)
         .prop_map(|(own, other, which)| (own, if which == 0 { own } else { other }));
     trial.forall(500, pairs, |pairs| {

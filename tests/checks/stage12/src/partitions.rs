@@ -12,7 +12,7 @@ fn query(boxes: &[Aabb], kind: u8, n_bins: u32, axis: u32, bin: u32) -> Partitio
 
 fn cubes(rough: bool) -> impl Strategy<Value = Vec<Aabb>> + Clone {
     let cube = |(low, size): (Vec3, i32)| Aabb::new(low, low + size as f32 / 4.0);
-    let low = if rough { checks::generate::rough_point(6.0).boxed() } else { nasty::lattice(6).boxed() };
+    let low = if rough { rough_point(6.0).boxed() } else { nasty::lattice(6).boxed() };
     prop::collection::vec((low, 1..=4i32).prop_map(cube), 0..24)
 }
 

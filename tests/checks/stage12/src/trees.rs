@@ -9,7 +9,7 @@ const GAP: FlatNode = FlatNode { low: Vec3::ZERO, first: 0, high: Vec3::ZERO, co
 
 /// Boxes of whole eighths: some flat, some equal.
 pub(super) fn boxes(most: usize) -> impl Strategy<Value = Vec<Aabb>> + Clone {
-    let one = (checks::generate::point(6), 0..=6i32, 0..=3usize).prop_map(|(low, size, flat)| {
+    let one = (point(6), 0..=6i32, 0..=3usize).prop_map(|(low, size, flat)| {
         let mut size = Vec3::new(size as f32, size as f32 / 2.0, 1.0) / 4.0;
         if flat < 3 {
             size[flat] = 0.0;

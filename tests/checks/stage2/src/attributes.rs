@@ -1,7 +1,6 @@
 //! Attributes of a triangle: interpolation and the face normal.
 
-use checks::double::U;
-use checks::generate::{point, triangle};
+use checks::generate::triangle;
 use checks::prelude::*;
 
 pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> CheckResult {

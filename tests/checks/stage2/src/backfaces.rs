@@ -1,7 +1,7 @@
 //! The backfacing test: the side of a triangle from which a ray comes.
 
-use checks::double::{LIMITS, U};
-use checks::generate::{direction, point, triangle};
+use checks::double::LIMITS;
+use checks::generate::triangle;
 use checks::prelude::*;
 
 /// `n·d`, and the largest error of a method in single precision.

@@ -1,7 +1,6 @@
 //! The four scalars of the Gram method.
 
-use checks::double::U;
-use checks::generate::{direction, point, triangle};
+use checks::generate::triangle;
 use checks::prelude::*;
 
 /// The scalars and their largest rounding errors.

@@ -2,7 +2,7 @@
 
 use super::method::aimed;
 use checks::double;
-use checks::generate::{point, triangle};
+use checks::generate::triangle;
 use checks::prelude::*;
 
 /// A point in the plane of a triangle, with its barycentric coordinates `[α, β, γ]`, and whether they are exact.

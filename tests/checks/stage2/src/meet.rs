@@ -1,7 +1,7 @@
 //! Ray-triangle intersection: each check for all three methods.
 
 use super::method::{TriangleFunction, aimed, describe};
-use checks::generate::{self, point, rough_point, triangle};
+use checks::generate::{self, triangle};
 use checks::prelude::*;
 
 const UNIT: Triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };

@@ -2,7 +2,6 @@
 
 use crate::triangle_mistakes::{mistakes, observations};
 use checks::double::{self, TriangleExpected, compare_tolerant};
-use checks::generate::fractions;
 use checks::prelude::*;
 
 /// One of the three methods of intersecting a triangle.

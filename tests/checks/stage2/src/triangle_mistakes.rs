@@ -1,6 +1,6 @@
 //! Known mistakes in the intersection of a ray and a triangle, each with the answer that it gives.
 
-use checks::double::{LIMITS, U};
+use checks::double::LIMITS;
 use checks::prelude::*;
 
 /// The intersection of the line along a ray with the plane of a triangle, in double precision.

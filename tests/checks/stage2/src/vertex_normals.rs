@@ -1,7 +1,6 @@
 //! Normals of the vertices of a mesh.
 
 use checks::all_parts;
-use checks::generate::point;
 use checks::prelude::*;
 use raykata::mesh::Mesh;
 

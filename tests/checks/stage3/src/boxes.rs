@@ -1,6 +1,6 @@
 //! Boxes: bounds of triangles and spheres, union, centroid, surface area.
 
-use checks::generate::{magnitude, point, rough_point, sphere, triangle};
+use checks::generate::{sphere, triangle};
 use checks::prelude::*;
 use checks::{double, tree};
 

@@ -1,6 +1,5 @@
 //! How the checks judge a split: every primitive is kept, neither side is empty, and the rule of the strategy holds.
 
-use checks::generate::{point, rough_point};
 use checks::prelude::*;
 use checks::tree;
 use raykata::bvh::PrimitiveRef;

@@ -1,7 +1,7 @@
 //! The three searches, compared with brute force. A table holds the answers of the probe.
 
 use super::search_mistakes::{any_mistakes, every_node, mistakes, observations};
-use checks::generate::{fractions, point, unit};
+use checks::generate::unit;
 use checks::prelude::*;
 use checks::tree;
 use checks::tree::{closest_in_table, tied};

@@ -1,6 +1,5 @@
 //! Slab tests in single precision with one mistake each.
 
-use checks::double::U;
 use checks::prelude::*;
 use raykata::rounding::gamma;
 

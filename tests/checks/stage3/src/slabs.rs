@@ -3,7 +3,6 @@
 use super::boxes::aabb;
 use super::slab_mistakes::{mistakes, observations};
 use checks::double::{self, Tolerant, box_interval, compare_tolerant};
-use checks::generate::{direction, point, rough_point};
 use checks::prelude::*;
 
 pub(super) const UNIT_BOX: Aabb = Aabb::new(Vec3::ZERO, Vec3::ONE);

@@ -10,7 +10,7 @@ pub(super) fn paste_normal_query((geometric, interpolated, direction): &Query) -
 
 /// Pairs of normals at an angle below 1, seen from all directions. The interpolated normal has any length and either sign.
 fn queries() -> impl Strategy<Value = Query> + Clone {
-    let scale = prop_oneof![3 => checks::generate::fractions(1..=8, 4.0), 1 => nasty::scale(-59..=59)];
+    let scale = prop_oneof![3 => fractions(1..=8, 4.0), 1 => nasty::scale(-59..=59)];
     (nasty::normals(), nasty::unit(), any::<bool>(), nasty::sign(), scale).prop_map(
         |((geometric, shading), direction, smooth, sign, length)| {
             (geometric, smooth.then_some(sign * length * shading), direction)

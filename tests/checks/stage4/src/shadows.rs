@@ -24,12 +24,14 @@ pub(super) fn lowest(surface: &Surface, direction: Vec3) -> f32 {
 /// Lights in front of surfaces: in all directions down to 0.001 above the horizon, on surfaces with two normals and another
 /// error on each axis, at all scales.
 pub(super) fn lit() -> impl Strategy<Value = ShadowQuery> + Clone {
-    (nasty::surface(), nasty::tilt(), checks::generate::fractions(1..=64, 4.0), nasty::any_scale())
-        .prop_filter_map("a light in front", |(surface, (angle, turn), distance, scale)| {
+    (nasty::surface(), nasty::tilt(), fractions(1..=64, 4.0), nasty::any_scale()).prop_filter_map(
+        "a light in front",
+        |(surface, (angle, turn), distance, scale)| {
             let direction = nasty::tilted(surface.geometric_normal, angle, turn);
             let light = light(direction, scale * distance);
             (lowest(&surface, direction) > CLEAR).then_some(ShadowQuery { surface, light })
-        })
+        },
+    )
 }
 
 /// The error that a query gets the text `yours`, but another one is expected.

@@ -5,12 +5,13 @@ use checks::prelude::*;
 /// Normals, lights and viewers in all directions. Half of the viewers are near the reflected light, so that there are
 /// highlights to judge.
 pub(super) fn terms() -> impl Strategy<Value = TermQuery> + Clone {
-    (nasty::unit(), nasty::unit(), nasty::unit(), checks::generate::fractions(1..=64, 2.0), any::<bool>())
-        .prop_map(|(normal, to_light, to_viewer, exponent, aim)| {
+    (nasty::unit(), nasty::unit(), nasty::unit(), fractions(1..=64, 2.0), any::<bool>()).prop_map(
+        |(normal, to_light, to_viewer, exponent, aim)| {
             let mirrored = 2.0 * normal.dot(to_light) * normal - to_light;
             let to_viewer = if aim { (mirrored + 0.3 * to_viewer).normalize() } else { to_viewer };
             TermQuery { normal, to_light, to_viewer, exponent }
-        })
+        },
+    )
 }
 
 pub(super) fn paste_term(name: &str, query: &TermQuery) -> String {

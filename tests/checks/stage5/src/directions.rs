@@ -202,7 +202,7 @@ fn refractions(query: &RefractQuery, yours: &Option<Vec3>) -> Vec<(bool, &'stati
 
 /// Indices of refraction from 1/2 to 3, and pairs that are equal or almost equal.
 fn indices() -> impl Strategy<Value = (f32, f32)> + Clone {
-    let index = || checks::generate::fractions(4..=24, 8.0);
+    let index = || fractions(4..=24, 8.0);
     prop_oneof![
         6 => (index(), index()),
         1 => index().prop_map(|index| (index, index)),

@@ -2,7 +2,6 @@
 
 use super::directions::{arrival, snell};
 use super::fresnel::{exact, schlick};
-use checks::generate::point;
 use checks::prelude::*;
 use raykata::material::{Fresnel, Material};
 
@@ -82,34 +81,25 @@ fn own_functions(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Own> {
 
 pub(super) fn queries() -> impl Strategy<Value = ScatterQuery> + Clone {
     let fresnel = prop::sample::select(vec![Fresnel::None, Fresnel::Schlick, Fresnel::Exact]);
-    (
-        arrival(),
-        any::<bool>(),
-        point(1),
-        point(1),
-        checks::generate::fractions(4..=16, 8.0),
-        fresnel,
-        point(1),
+    (arrival(), any::<bool>(), point(1), point(1), fractions(4..=16, 8.0), fresnel, point(1)).prop_map(
+        |((direction, normal), entering, mirror, transmission, index_of_refraction, fresnel, weight)| {
+            ScatterQuery {
+                direction,
+                normal,
+                entering,
+                material: Material {
+                    mirror: mirror.abs(),
+                    transmission: transmission.abs(),
+                    index_of_refraction,
+                    fresnel,
+                    ..Material::default()
+                },
+                weight: weight.abs(),
+                depth: 0,
+                limits: FAR,
+            }
+        },
     )
-        .prop_map(
-            |((direction, normal), entering, mirror, transmission, index_of_refraction, fresnel, weight)| {
-                ScatterQuery {
-                    direction,
-                    normal,
-                    entering,
-                    material: Material {
-                        mirror: mirror.abs(),
-                        transmission: transmission.abs(),
-                        index_of_refraction,
-                        fresnel,
-                        ..Material::default()
-                    },
-                    weight: weight.abs(),
-                    depth: 0,
-                    limits: FAR,
-                }
-            },
-        )
 }
 
 pub(super) fn scatter_weighs_rays_by_the_material(trial: &Trial<'_>) -> CheckResult {

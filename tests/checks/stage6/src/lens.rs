@@ -123,7 +123,7 @@ fn camera(position: Vec3) -> impl Strategy<Value = Camera> + Clone {
 
 /// Lens rays for any point of the film of a camera at `position`.
 fn lens_query(position: Vec3) -> impl Strategy<Value = LensQuery> + Clone {
-    let place = || checks::generate::fractions(-8..=8, 8.0);
+    let place = || fractions(-8..=8, 8.0);
     let on_lens = (place(), place()).prop_map(|(x, y)| vec2(x, y).clamp_length_max(1.0));
     (camera(position), (0..=16i32, 0..=16i32), on_lens, (0..=8i32), (1..=40i32)).prop_map(
         |(camera, (x, y), on_lens, aperture, distance)| LensQuery {

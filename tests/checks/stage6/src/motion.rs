@@ -1,7 +1,6 @@
 //! Times within the shutter interval, and positions of moving objects.
 
 use super::pixels::unit_number;
-use checks::generate::{magnitude, point, rough_point};
 use checks::prelude::*;
 use checks::statistics::{columns, covers_each_part};
 use raykata::camera::Shutter;

@@ -1,6 +1,5 @@
 //! The positions of a pixel's samples, their weights, and the colour of the pixel.
 
-use checks::generate::rough_point;
 use checks::prelude::*;
 use checks::statistics::{SAMPLES, covers_each_part, pairs};
 use glam::{DVec2, Vec2Swizzles, uvec2};
@@ -13,7 +12,7 @@ pub(super) const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// A multiple of 1/64, which is short to print, or the largest random number.
 pub(super) fn unit_number() -> impl Strategy<Value = f32> + Clone {
-    prop_oneof![8 => checks::generate::fractions(0..=63, 64.0), 1 => Just(LARGEST)]
+    prop_oneof![8 => fractions(0..=63, 64.0), 1 => Just(LARGEST)]
 }
 
 fn stratum() -> impl Strategy<Value = Stratum> + Clone {
@@ -142,7 +141,7 @@ fn bell(x: f64) -> f64 {
 pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> CheckResult {
     // Offsets on a grid, on the border of the filter and one float to either side, and far away.
     let coordinate = prop_oneof![
-        6 => checks::generate::fractions(-16..=16, 8.0),
+        6 => fractions(-16..=16, 8.0),
         1 => prop::sample::select(vec![
             FILTER_RADIUS,
             FILTER_RADIUS.next_up(),
@@ -202,7 +201,7 @@ fn paste_samples(samples: &[WeightedColor]) -> String {
 }
 
 pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> CheckResult {
-    let share = || checks::generate::fractions(0..=16, 8.0);
+    let share = || fractions(0..=16, 8.0);
     let color = (share(), share(), share()).prop_map(|(r, g, b)| vec3(r, g, b));
     let sample = (color, share()).prop_map(|(color, weight)| WeightedColor { color, weight });
     let samples = prop::collection::vec(sample, 1..8);

@@ -186,10 +186,9 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
             "the definition",
         ));
     }
-    let queries =
-        (unit_arrival(), checks::generate::fractions(1..=16, 16.0), unit_number(), unit_number()).prop_map(
-            |((ideal, normal), roughness, u, v)| PhongLobeQuery { ideal, normal, roughness, u: vec2(u, v) },
-        );
+    let queries = (unit_arrival(), fractions(1..=16, 16.0), unit_number(), unit_number()).prop_map(
+        |((ideal, normal), roughness, u, v)| PhongLobeQuery { ideal, normal, roughness, u: vec2(u, v) },
+    );
     trial.forall_and(&chosen, 3000, queries, |queries| {
         // The same samples with the normal `ideal` give the directions before they are reflected back.
         let drawn = trial.kit.sample_phong_lobe(&free(queries));

@@ -1,8 +1,7 @@
 //! Checks of `bounding_sphere` and `enter_bounding_sphere`.
 
 use super::boxes::ROUNDINGS;
-use checks::double::U;
-use checks::generate::{direction, point, rough_point, sphere};
+use checks::generate::sphere;
 use checks::prelude::*;
 use oracle::exact::{Body, meet};
 

@@ -1,7 +1,6 @@
 //! Checks of `bounds_to_world`.
 
 use super::bounding_spheres;
-use checks::double::U;
 use checks::prelude::*;
 use glam::{Affine3A, Mat3};
 use oracle::splitmix::Random;

@@ -47,7 +47,7 @@ fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> Judged {
     // A few rounding errors, which an inverse of the product multiplies by its condition number.
     let size = |matrix: DMat3| matrix.to_cols_array().iter().map(|entry| entry * entry).sum::<f64>().sqrt();
     let condition: f64 = all().map(|one| size(one.matrix3) * size(one.matrix3.inverse())).product();
-    let tolerance = (32.0 * checks::double::U * condition).clamp(1e-4, 0.05);
+    let tolerance = (32.0 * U * condition).clamp(1e-4, 0.05);
     let near = |yours: &Affine3A, right: &DAffine3| is_transform(yours, right, tolerance);
     let (up, down) = (near(&yours.to_world, &exact), near(&yours.to_object, &exact.inverse()));
     let turned = product(&mut all().rev());

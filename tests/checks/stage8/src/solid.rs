@@ -2,7 +2,6 @@
 //! normal.
 
 use super::mistakes::{self, Mistakes, WrongNormals};
-use checks::generate::{direction, fractions, point};
 use checks::prelude::*;
 use oracle::exact::{Body, Meeting, meet, polygon::meet_fan};
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};

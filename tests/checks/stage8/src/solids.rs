@@ -2,7 +2,6 @@
 
 use super::mistakes::{Mistakes, OUTSIDE, is_near};
 use super::solid::Solid;
-use checks::generate::{direction, point};
 use checks::prelude::*;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 

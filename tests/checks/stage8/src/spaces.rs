@@ -1,6 +1,5 @@
 //! Checks of `ray_to_object` and `normal_to_world`.
 
-use checks::generate::{direction, point, rough_point};
 use checks::prelude::*;
 use glam::{Affine3A, DMat3, Mat3};
 
@@ -60,7 +59,7 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResul
         let sizes = |v: Vec3, and: DVec3| terms(&exact.matrix3, v.as_dvec3()) + and.abs();
         // Allow six rounding errors of the terms, for three products and three sums in single precision.
         let close = |yours: Vec3, right: DVec3, size: DVec3| {
-            ((yours.as_dvec3() - right).abs()).cmple(6.0 * checks::double::U * size).all()
+            ((yours.as_dvec3() - right).abs()).cmple(6.0 * U * size).all()
         };
         let right_origin = close(yours.origin, origin, sizes(ray.origin, exact.translation));
         let right_dir = close(yours.direction, direction, sizes(ray.direction, DVec3::ZERO))
@@ -136,7 +135,7 @@ fn is_roughly_along(yours: Vec3, wrong: DVec3) -> bool {
 fn is_along(yours: Vec3, right: DVec3) -> bool {
     // The error of a cross product of two rounded vectors is a few rounding errors of their lengths.
     let (yours, length) = (yours.as_dvec3(), yours.length() as f64 * right.length());
-    yours.dot(right) > 0.0 && yours.cross(right).length() <= 16.0 * checks::double::U * length
+    yours.dot(right) > 0.0 && yours.cross(right).length() <= 16.0 * U * length
 }
 
 pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> CheckResult {
@@ -166,7 +165,7 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
     let length = yours.direction.as_dvec3().length();
     // Allow eight rounding errors of the terms, whose sum may be shorter.
     let terms = terms(&to_object.as_daffine3().matrix3, world).length();
-    let near = |right: f64| (length - right).abs() <= 8.0 * checks::double::U * (terms / exact) * right;
+    let near = |right: f64| (length - right).abs() <= 8.0 * U * (terms / exact) * right;
     let same_length = near(exact);
     let same_range = (yours.t_min, yours.t_max) == (ray.t_min, ray.t_max);
     let same_time = yours.time == ray.time;
@@ -235,7 +234,7 @@ fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<CheckResult>
         // Allow sixteen rounding errors of the terms, whose sum may be shorter, and some of the usual terms.
         let terms = DVec3::from_array([0, 1, 2].map(|row| exact.col(row).abs().dot(own.abs())));
         let cancels = terms.length() / (exact.transpose() * own).length();
-        let near = 1e-5f64.max(16.0 * checks::double::U * cancels);
+        let near = 1e-5f64.max(16.0 * U * cancels);
         let unit = (yours.as_dvec3().length() - 1.0).abs() <= near;
         let like = |other: DVec3| (yours.as_dvec3().normalize_or_zero() - other.normalize()).length() <= near;
         let broken = || {

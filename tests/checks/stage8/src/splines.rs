@@ -1,8 +1,6 @@
 //! Checks of `bspline_basis` and `nurbs_point`.
 
 use super::bounding_spheres::reach;
-use checks::double::U;
-use checks::generate::point;
 use checks::prelude::*;
 use raykata::shape::NurbsPatch;
 

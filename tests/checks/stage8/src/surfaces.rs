@@ -1,7 +1,6 @@
 //! Checks of `bezier_point`.
 
 use super::bounding_spheres::reach;
-use checks::generate::point;
 use checks::prelude::*;
 use raykata::shape::BezierPatch;
 
@@ -90,7 +89,7 @@ fn judge_points(trial: &Trial<'_>, queries: &[PatchQuery]) -> Vec<CheckResult> {
         let right = at([u, v], bernstein);
         // Allow two rounding errors for each of six nested interpolations of these numbers, and some more for Bernstein
         // polynomials.
-        let room = 16.0 * checks::double::U * reach(query.patch.rows.iter().flatten());
+        let room = 16.0 * U * reach(query.patch.rows.iter().flatten());
         let near = |right: DVec3| (yours.as_dvec3() - right).abs().max_element() <= room;
         let once = |t: f64| [(1.0 - t) * (1.0 - t), t * (1.0 - t), t * (1.0 - t), t * t];
         unless(near(right), || {

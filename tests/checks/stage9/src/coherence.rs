@@ -1,7 +1,7 @@
 //! The laws of the last hit and of packets of rays: the same answers with fewer tests and fewer opened nodes.
 
 use super::scenes::{Scene, rays, scenes, sphere};
-use checks::generate::{fractions, point, unit};
+use checks::generate::unit;
 use checks::prelude::*;
 use checks::tree;
 use checks::tree::{closest_in_table, closest_of, search_query, sphere_box};

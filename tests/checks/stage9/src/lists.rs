@@ -1,6 +1,5 @@
 //! The laws that all builders share: which primitives a cell lists.
 
-use checks::generate::{point, rough_point};
 use checks::prelude::*;
 use raykata::kit::kit_error::{self, KitError};
 use raykata::partition::{Cell, CellTree, Tree, TreeNode};

@@ -2,7 +2,6 @@
 
 use super::hulls::{self, usable};
 use super::lists::{Fault, ended, fact, judge_references};
-use checks::generate::{point, rough_point};
 use checks::prelude::*;
 use raykata::partition::{CutPlane, MOST_REFERENCES, PlaneNode, PolygonBsp, PolygonBspNode, corners};
 

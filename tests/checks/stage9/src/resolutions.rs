@@ -2,7 +2,6 @@
 
 use super::scenes::{Scales, rays, scales};
 use checks::double::slabs_interval;
-use checks::generate::rough_point;
 use checks::prelude::*;
 use glam::{UVec3, uvec3};
 

@@ -2,7 +2,6 @@
 //! precision, then rounded as if each primitive had its own formula.
 
 use checks::double::sphere_roots;
-use checks::generate::{fractions, point};
 use checks::prelude::*;
 use checks::tree::{closest_of, move_apart};
 use raykata::partition::corners;
