@@ -3,10 +3,6 @@
 use checks::offset::Start;
 use checks::prelude::*;
 
-fn describe(query: &OffsetQuery) -> String {
-    call("offset_origin", &[&query.point, &query.error, &query.normal, &query.direction])
-}
-
 /// Points with another error on each axis, at all scales, and directions down to 0.001 above the surface on either side.
 fn surfaces() -> impl Strategy<Value = OffsetQuery> + Clone {
     (nasty::surface(), nasty::tilt(), any::<bool>()).prop_map(|(surface, (angle, turn), beyond)| {
@@ -76,7 +72,7 @@ fn judge_heights(
         let start = start(query, origin);
         let broken = || {
             let yours = format!("{:.3e} off the point", start.height());
-            Broken::with_texts(describe(query), yours, expected(&start), "closed form")
+            Broken::with_texts(query.call("offset_origin"), yours, expected(&start), "closed form")
                 .explained_by(observations(query, origin))
         };
         unless(is_right(query, origin), broken).formulas(start.mistakes())

@@ -41,10 +41,6 @@ pub(super) fn cut_off_is_the_light_beyond_the_last_bounce(trial: &Trial<'_>) -> 
     })
 }
 
-fn paste((albedo, error): &(f32, f32)) -> String {
-    format!("bounces_for_error({albedo:?}, {error:?})")
-}
-
 /// Judges a number of bounces by its definition.
 fn judge(query: &(f32, f32), yours: u32) -> Judged {
     let (albedo, error) = (f64::from(query.0), f64::from(query.1));
@@ -61,10 +57,11 @@ fn judge(query: &(f32, f32), yours: u32) -> Judged {
     let expected = format!("about {estimate}, the smallest n with albedo^(n + 1) <= error");
     let right = is_enough && is_smallest;
     let broken = || {
-        Broken::with_texts(paste(query), format!("{yours}"), expected, "the definition").explained_by([
-            (yours == u32::MAX, "there is a number that is enough"),
-            (yours == 0 && estimate > 0.0, "0 bounces are not enough here"),
-        ])
+        Broken::with_texts(query.call("bounces_for_error"), format!("{yours}"), expected, "the definition")
+            .explained_by([
+                (yours == u32::MAX, "there is a number that is enough"),
+                (yours == 0 && estimate > 0.0, "0 bounces are not enough here"),
+            ])
     };
     unless(right, broken).formulas([
         (
@@ -107,7 +104,7 @@ pub(super) fn bounces_for_error_at_the_limits(trial: &Trial<'_>) -> CheckResult 
         if yours == expected {
             return Ok(());
         }
-        Err(Broken::new(paste(query), yours, expected, "the definition").explained_by([
+        Err(Broken::new(query.call("bounces_for_error"), yours, expected, "the definition").explained_by([
             (albedo == 1.0, "at an albedo of 1 all light is missing, however many bounces there are"),
             (albedo == 0.0, "at an albedo of 0 nothing is reflected: 0 bounces are enough"),
             (error == 0.0, "with an error of 0 no number is enough"),

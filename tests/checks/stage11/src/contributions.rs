@@ -14,10 +14,6 @@ fn density() -> impl Strategy<Value = f32> + Clone {
     prop_oneof![1 => Just(0.0f32), 2 => fractions(1..=32, 8.0), 2 => magnitude(-3.0, 5.0)]
 }
 
-fn paste(query: &LightContributionQuery) -> String {
-    call("sample_light_contribution", &[&query.diffuse, &query.normal, &query.sample, &query.bsdf_pdf])
-}
-
 /// Queries with a direction at an angle to the normal.
 fn queries(
     angle: impl Strategy<Value = (f64, f64)> + Clone,
@@ -67,7 +63,8 @@ pub(super) fn light_contributions_have_their_closed_form(trial: &Trial<'_>) -> C
             let factor = if query.bsdf_pdf == 0.0 { 1.0 } else { weight };
             let expected = factor * whole;
             let source = "kd / π · L · cos θ / pdf · mis_weight";
-            let broken = || Broken::new(paste(query), yours, expected.as_vec3(), source);
+            let broken =
+                || Broken::new(query.call("sample_light_contribution"), yours, expected.as_vec3(), source);
             let cosine = query.normal.as_dvec3().dot(query.sample.direction.as_dvec3());
             let (pdf, other) = (f64::from(query.sample.pdf), f64::from(query.bsdf_pdf));
             let is = |expected: DVec3, factor: f64| near(query, yours, expected, factor);
@@ -134,21 +131,22 @@ pub(super) fn light_from_below_adds_nothing(trial: &Trial<'_>) -> CheckResult {
             return Ok(());
         }
         let expected = if can_add { "light above 0" } else { "0 in all channels" };
-        Err(Broken::with_texts(paste(query), format!("{yours:?}"), expected, "the definition").explained_by(
-            [
-                (yours.is_nan(), "you return NaN"),
-                (
-                    !above && yours.min_element() < 0.0,
-                    "light from below the surface is negative: it must be 0",
-                ),
-                (!above && adds, "light from below the surface counts: take no absolute value of the cosine"),
-                (above && !adds, "light from above the surface counts"),
-                (
-                    if above { !adds } else { yours.min_element() < 0.0 },
-                    "your test is reversed: light from above the surface counts, not light from below",
-                ),
-            ],
-        ))
+        Err(Broken::with_texts(
+            query.call("sample_light_contribution"),
+            format!("{yours:?}"),
+            expected,
+            "the definition",
+        )
+        .explained_by([
+            (yours.is_nan(), "you return NaN"),
+            (!above && yours.min_element() < 0.0, "light from below the surface is negative: it must be 0"),
+            (!above && adds, "light from below the surface counts: take no absolute value of the cosine"),
+            (above && !adds, "light from above the surface counts"),
+            (
+                if above { !adds } else { yours.min_element() < 0.0 },
+                "your test is reversed: light from above the surface counts, not light from below",
+            ),
+        ]))
     })
 }
 
@@ -181,7 +179,7 @@ pub(super) fn emission_counts_by_its_weight(trial: &Trial<'_>) -> CheckResult {
             // A wrong weight of a certain direction is judged by a check of mis_weight.
             let by_own = own * query.emission;
             let is_by_own = yours == by_own || yours.is_nan() && by_own.is_nan();
-            let input = || call("emitted_contribution", &[&query.emission, &query.pdf, &query.light_pdf]);
+            let input = || query.call("emitted_contribution");
             let broken = || {
                 Broken::new(input(), yours, expected.as_vec3(), "emission · mis_weight")
                     .explained_by([(yours.is_nan(), "you return NaN: ∞ / ∞, or 0 · ∞")])

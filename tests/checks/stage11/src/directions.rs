@@ -32,7 +32,7 @@ pub(super) fn cosine_directions_stay_above_the_surface(trial: &Trial<'_>) -> Che
                 return Ok(());
             }
             let broken = Broken::new(
-                call("cosine_direction", &[&query.0, &query.1]),
+                query.call("cosine_direction"),
                 yours,
                 "a unit direction above the surface",
                 "the definition",
@@ -60,7 +60,7 @@ pub(super) fn cosine_directions_have_their_density(trial: &Trial<'_>) -> CheckRe
             if (yours.as_dvec3().length() - 1.0).abs() < 1e-5 {
                 return Ok(());
             }
-            let input = call("cosine_direction", &[&query.0, &query.1]);
+            let input = query.call("cosine_direction");
             Err(Broken::new(input, yours, "a unit direction", "the definition"))
         };
         all_hold(queries.iter().zip(&answers).map(judge).collect())?;
@@ -134,7 +134,7 @@ pub(super) fn cosine_pdf_is_the_cosine_over_pi(trial: &Trial<'_>) -> CheckResult
         let near = |yours: f32, expected: f64| (f64::from(yours) - expected).abs() <= 1e-6 * (1.0 + expected);
         compare(queries, trial.kit.cosine_pdf(queries), |query, yours| {
             let cosine = exact(query);
-            let input = || call("cosine_pdf", &[&query.0, &query.1]);
+            let input = || query.call("cosine_pdf");
             let broken = || Broken::new(input(), yours, cosine / PI, "the definition");
             unless(near(yours, (cosine / PI).max(0.0)), broken).formulas([
                 (near(yours, cosine), "you return the cosine: divide it by π"),
@@ -162,7 +162,7 @@ pub(super) fn cosine_pdf_below_the_surface_is_zero(trial: &Trial<'_>) -> CheckRe
             return Ok(());
         }
         let expected = if cosine > 0.0 { "above 0" } else { "0.0" };
-        let input = call("cosine_pdf", &[&query.0, &query.1]);
+        let input = query.call("cosine_pdf");
         Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
             (cosine < 0.0 && yours < 0.0, "your density is negative: return 0 below the surface"),
             (

@@ -6,10 +6,6 @@ use checks::statistics::{SAMPLES, covers_each_part, has_mean, measures, pairs, u
 use raykata::light_path::{BsdfSample, Lobe, Scattering};
 use std::f64::consts::PI;
 
-fn paste(query: &BsdfQuery) -> String {
-    call("sample_bsdf", &[&query.scattering, &query.u])
-}
-
 /// A surface with this normal and the reflectances of the three lobes. A lobe of reflectance 0 has a secondary ray, too.
 fn surface(normal: Vec3, diffuse: Vec3, reflection: Option<Vec3>, transmission: Option<Vec3>) -> Scattering {
     let ray = |bounce, angle, turn, weight| SecondaryRay {
@@ -80,7 +76,7 @@ pub(super) fn missing(query: &BsdfQuery) -> CheckResult {
     if is_black(&query.scattering) {
         return Ok(());
     }
-    let broken = Broken::new(paste(query), None::<BsdfSample>, "a sample", "the definition");
+    let broken = Broken::new(query.call("sample_bsdf"), None::<BsdfSample>, "a sample", "the definition");
     Err(broken
         .explained_by([(true, "None only if all lobes are black: choose again, or scale the random number")]))
 }
@@ -92,7 +88,7 @@ pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> Check
         let scattering = &query.scattering;
         let Some(sample) = yours else { return missing(query) };
         if is_black(scattering) {
-            let broken = Broken::new(paste(query), yours, None::<()>, "the definition");
+            let broken = Broken::new(query.call("sample_bsdf"), yours, None::<()>, "the definition");
             return Err(broken.explained_by([
                 (true, "all lobes are black: there is nothing to choose"),
                 (true, CHOOSES_BLACK),
@@ -116,8 +112,8 @@ pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> Check
             return Ok(());
         }
         let expected = "a lobe that reflects light, and a direction of it";
-        Err(Broken::with_texts(paste(query), format!("{sample:?}"), expected, "the definition").explained_by(
-            [
+        Err(Broken::with_texts(query.call("sample_bsdf"), format!("{sample:?}"), expected, "the definition")
+            .explained_by([
                 (reflectance == Vec3::ZERO, CHOOSES_BLACK),
                 (sample.weight.is_nan() || sample.direction.is_nan(), "you return NaN"),
                 (
@@ -131,8 +127,7 @@ pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> Check
                 (!keeps && sample.lobe == Lobe::Diffuse, "your diffuse direction goes below the surface"),
                 (!keeps, "a reflected or refracted ray keeps its direction"),
                 (!is_unit, "your direction does not have unit length"),
-            ],
-        ))
+            ]))
     })
 }
 
@@ -169,7 +164,7 @@ pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> 
                 reflectance.as_vec3()
             );
             let (q, text) = (probability(scattering, &sample), "this lobe is chosen less often than s / 4");
-            Broken::with_texts(paste(query), yours, expected, "the definition")
+            Broken::with_texts(query.call("sample_bsdf"), yours, expected, "the definition")
                 .explained_by([(q < least && near(1.0 / q), text)])
         };
         unless(reflectance.max_element() == 0.0 || judge_weight(query, &sample), broken).formulas([
@@ -341,7 +336,7 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
             let sum = |lobe: Lobe| f64::from(reflectance_of(&query.scattering, lobe).element_sum());
             let by_mean = sum(Lobe::Diffuse) / LOBES.into_iter().map(sum).sum::<f64>() * cosine / PI;
             let broken = || {
-                let input = call("bsdf_pdf", &[&query.scattering, &query.direction]);
+                let input = query.call("bsdf_pdf");
                 let yours = format!("{yours:?}, and pdf {:?} of sample_bsdf", sample.pdf);
                 Broken::with_texts(input, yours, format!("{expected:?} for both"), "probability · cos θ / π")
             };
@@ -386,7 +381,7 @@ pub(super) fn bsdf_pdf_of_other_directions_is_zero(trial: &Trial<'_>) -> CheckRe
         if if reflects { yours > 0.0 && yours.is_finite() } else { yours == 0.0 } {
             return Ok(());
         }
-        let input = call("bsdf_pdf", &[scattering, &query.direction]);
+        let input = query.call("bsdf_pdf");
         let expected = if reflects { "a density above 0" } else { "0.0" };
         Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
             (yours.is_nan(), "you return NaN: a black surface has no probabilities"),

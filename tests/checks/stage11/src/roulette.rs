@@ -3,10 +3,6 @@
 use checks::prelude::*;
 use checks::statistics::measures;
 
-fn paste(query: &RouletteQuery) -> String {
-    format!("survives({}, {}, {})", query.weight.paste(), query.bounce, query.u.paste())
-}
-
 /// A weight whose largest channel is `largest`.
 fn weight(largest: impl Strategy<Value = f32> + Clone) -> impl Strategy<Value = Vec3> + Clone {
     (largest, 0..3usize, 0..=8i32, 0..=8i32).prop_map(|(largest, axis, first, second)| {
@@ -134,7 +130,8 @@ pub(super) fn roulette_ends_no_young_path(trial: &Trial<'_>) -> CheckResult {
                 return Ok(());
             }
             let expected = if lives { "1.0" } else { "0.0 for about half of the numbers u" };
-            let broken = Broken::with_texts(paste(query), format!("{yours:?}"), expected, "the definition");
+            let broken =
+                Broken::with_texts(query.call("survives"), format!("{yours:?}"), expected, "the definition");
             Err(broken.explained_by([
                 (
                     lives && query.weight.max_element() < 1.0 / 64.0,
@@ -162,7 +159,7 @@ pub(super) fn roulette_ends_paths_without_weight(trial: &Trial<'_>) -> CheckResu
             return Ok(());
         }
         let expected = f32::from(u8::from(lives));
-        Err(Broken::new(paste(query), yours, expected, "the definition").explained_by([
+        Err(Broken::new(query.call("survives"), yours, expected, "the definition").explained_by([
             (yours.is_nan(), "you return NaN: 0 / 0"),
             (!lives && yours.is_infinite(), "you divide by 0"),
             (!lives && query.bounce < 3, "a path without weight ends at once, also before bounce 3"),

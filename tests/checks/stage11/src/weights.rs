@@ -5,10 +5,6 @@ use std::f64::consts::TAU;
 
 type Pair = (f32, f32);
 
-fn paste((own, other): &Pair) -> String {
-    call("mis_weight", &[own, other])
-}
-
 /// The answers for each pair and for the same pair in the other order.
 pub(super) fn both_ways(trial: &Trial<'_>, pairs: &[Pair]) -> Vec<Pair> {
     let reversed: Vec<Pair> = pairs.iter().map(|(own, other)| (*other, *own)).collect();
@@ -25,7 +21,7 @@ fn judge_sum(pair: &Pair, (own, other): Pair) -> Judged {
         same(own, formula(pair.0, pair.1)) && same(other, formula(pair.1, pair.0))
     };
     let broken = || {
-        let input = format!("{} and {}", paste(pair), paste(&(pair.1, pair.0)));
+        let input = format!("{} and {}", pair.call("mis_weight"), (pair.1, pair.0).call("mis_weight"));
         let expected = "two weights in 0..=1 that sum to 1";
         Broken::with_texts(input, format!("{own:?} and {other:?}, sum {sum}"), expected, "the definition")
             .explained_by([
@@ -58,7 +54,7 @@ pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
                 return Ok(refuted);
             }
             let expected = "the larger density has the larger weight";
-            Err(Broken::new(paste(pair), answers.0, expected, "the definition").explained_by([(
+            Err(Broken::new(pair.call("mis_weight"), answers.0, expected, "the definition").explained_by([(
                 true,
                 "the smaller density gets the larger weight: own and other are exchanged",
             )]))
@@ -67,7 +63,7 @@ pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
         let all_half = pairs.len() > 1 && answers.iter().all(|(own, _)| *own == 0.5);
         if all_half {
             let broken = Broken::with_texts(
-                paste(&pairs[0]),
+                pairs[0].call("mis_weight"),
                 "0.5 for all densities",
                 "a weight that depends on the densities",
                 "the definition",
@@ -89,7 +85,7 @@ pub(super) fn mis_weight_of_a_lone_density_is_one(trial: &Trial<'_>) -> CheckRes
         if yours == expected {
             return Ok(());
         }
-        Err(Broken::new(paste(pair), yours, expected, "the definition").explained_by([
+        Err(Broken::new(pair.call("mis_weight"), yours, expected, "the definition").explained_by([
             (yours.is_nan(), "you return NaN: ∞ / ∞"),
             (
                 pair.0.is_infinite() || pair.1.is_infinite(),
@@ -104,8 +100,13 @@ pub(super) fn mis_weight_of_a_lone_density_is_one(trial: &Trial<'_>) -> CheckRes
         if (0.0..=1.0).contains(&yours) {
             return Ok(());
         }
-        Err(Broken::with_texts(paste(pair), format!("{yours:?}"), "any weight in 0..=1", "the definition")
-            .explained_by([(yours.is_nan(), "you return NaN: 0 / 0 or ∞ / ∞")]))
+        Err(Broken::with_texts(
+            pair.call("mis_weight"),
+            format!("{yours:?}"),
+            "any weight in 0..=1",
+            "the definition",
+        )
+        .explained_by([(yours.is_nan(), "you return NaN: 0 / 0 or ∞ / ∞")]))
     }))
 }
 

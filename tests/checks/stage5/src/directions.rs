@@ -28,7 +28,7 @@ fn judge_reflection(query: &(Vec3, Vec3), yours: Vec3) -> Judged {
     let near = |v: DVec3, limit: f64| (yours.as_dvec3() - v).length() < limit;
     let is = |v: DVec3| near(v, 1e-5);
     let (along, added) = (d - d.dot(n) * n, d + 2.0 * d.dot(n) * n);
-    let input = || call("reflect", &[&query.0, &query.1]);
+    let input = || query.call("reflect");
     let broken = || Broken::new(input(), yours, expected.as_vec3(), "closed form");
     // The tolerance covers a few roundings of numbers up to 2.
     unless(near(expected, 1e-6), broken).formulas([
@@ -92,10 +92,6 @@ fn turned(query: &RefractQuery, sine: impl Fn(f64, f64) -> f64) -> Option<DVec3>
         .then(|| sine_2 / sine_1 * along - (1.0 - sine_2 * sine_2).sqrt() * n)
 }
 
-fn paste(query: &RefractQuery) -> String {
-    call("refract", &[&query.direction, &query.normal, &query.n1, &query.n2])
-}
-
 /// The error of a refracted direction by a careful formula: a few roundings.
 const CAREFUL: f64 = 4e-6;
 
@@ -138,7 +134,7 @@ fn judge_refraction(query: &RefractQuery, yours: Option<Vec3>, error: f64) -> Ch
     }
     let expected = expected.map(|v| v.as_vec3());
     let is_nan = yours.is_some_and(Vec3::is_nan);
-    Err(Broken::new(paste(query), yours, expected, "Snell's law in double precision")
+    Err(Broken::new(query.call("refract"), yours, expected, "Snell's law in double precision")
         .explained_by([
             (is_nan && expected.is_none(), "you return NaN beyond the critical angle: return None"),
             (
@@ -264,7 +260,7 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> CheckRes
         if yours.is_some_and(|yours| (yours - query.direction).length() < slack) {
             return Ok(());
         }
-        let broken = Broken::new(paste(query), yours, Some(query.direction), "unchanged");
+        let broken = Broken::new(query.call("refract"), yours, Some(query.direction), "unchanged");
         let along = query.direction == -query.normal;
         let broken = broken.explained_by([
             (along, "a ray along the normal keeps its direction, and sin θ1 is 0 there"),

@@ -177,8 +177,7 @@ fn judge_entries(trial: &Trial<'_>, queries: &[Entry], never_late: bool) -> Vec<
         let (smaller, larger) = (0.999 * sphere.radius, 1.001 * sphere.radius);
         let describe = |t: Option<f32>| format!("{:?}", t.map(|t| entry.size / entry.speed * t));
         let broken = |right: Option<f32>, remark: &str| {
-            let asked = entry.asked();
-            let input = call("enter_bounding_sphere", &[&asked.ray, &asked.sphere]);
+            let input = entry.asked().call("enter_bounding_sphere");
             let expected = format!("{}{remark}", describe(right));
             let mut shown = observations(entry, yours, right);
             // Powers of two change no digit, so only a limit tells the sizes apart.
@@ -354,11 +353,11 @@ fn ranges_that_begin_at_the_exit(trial: &Trial<'_>) -> CheckResult {
     };
     let queries: Vec<BoundingSphereQuery> = [-7.0, -3.0, -2.0, -1.0, 0.0, 0.5].map(query).into();
     all_hold(compare(&queries, trial.kit.enter_bounding_sphere(&queries), |query, yours| {
-        let BoundingSphereQuery { ray, sphere } = query;
+        let ray = &query.ray;
         if yours == Some(ray.t_min) {
             return Ok(());
         }
-        let input = call("enter_bounding_sphere", &[ray, sphere]);
+        let input = query.call("enter_bounding_sphere");
         Err(Broken::new(input, yours, Some(ray.t_min), "closed form").explained_by([(
             yours.is_none(),
             "you return None for a ray whose range begins where it leaves the sphere: the surface belongs to the sphere",

@@ -34,11 +34,8 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
             let count = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
             if !usable(hull) {
                 if times > 0 {
-                    return Some(fact(
-                        count(times),
-                        count(0),
-                        "you list a hull without corners: leave it out",
-                    ));
+                    let mistake = "you list a hull without corners: leave it out";
+                    return Some(fact(count(times), count(0), mistake));
                 }
                 continue;
             }
@@ -72,11 +69,8 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
                 ));
             }
             if outside && times > 0 {
-                return Some(fact(
-                    count(times),
-                    count(0),
-                    "you list a primitive in a leaf that it does not overlap",
-                ));
+                let mistake = "you list a primitive in a leaf that it does not overlap";
+                return Some(fact(count(times), count(0), mistake));
             }
         }
     }

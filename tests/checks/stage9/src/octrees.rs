@@ -33,11 +33,8 @@ fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
     let sides = yours.bounds.max - yours.bounds.min;
     // Rounding changes a side by far less than a hundredth.
     if sides.min_element() < 0.99 * sides.max_element() {
-        return Some(fact(
-            format!("bounds with the sides {sides}"),
-            "a cube".into(),
-            "the root cell must be a cube",
-        ));
+        let yours = format!("bounds with the sides {sides}");
+        return Some(fact(yours, "a cube".into(), "the root cell must be a cube"));
     }
     listing_fault("leaf", &yours.bounds, &query.bounds, &leaves(yours))
 }

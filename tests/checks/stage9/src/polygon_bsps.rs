@@ -58,11 +58,9 @@ fn fault(query: &BspQuery, yours: &PolygonBsp) -> Option<Fault> {
             let inside = |p: &Vec3| above.iter().all(|(plane, side)| side * plane.distance(*p) >= -step);
             let is_solid = usable(hull) && kind(hull, size) == Kind::Solid;
             if is_solid && hull.iter().any(inside) && !listed.contains(&(id as u32)) {
-                faults.push(fact(
-                    format!("solid {id} is not listed in leaf {node}"),
-                    "once".into(),
-                    "a solid belongs to every leaf that it overlaps or touches",
-                ));
+                let yours = format!("solid {id} is not listed in leaf {node}");
+                let mistake = "a solid belongs to every leaf that it overlaps or touches";
+                faults.push(fact(yours, "once".into(), mistake));
             }
         }
     });
@@ -79,11 +77,8 @@ fn listing_fault(
 ) -> Option<Fault> {
     for (index, &id) in listed.iter().enumerate() {
         let Some(hull) = query.hulls.get(id as usize) else {
-            return Some(fact(
-                format!("primitive {id}"),
-                "a number of a hull".into(),
-                "there is no such primitive",
-            ));
+            let yours = format!("primitive {id}");
+            return Some(fact(yours, "a number of a hull".into(), "there is no such primitive"));
         };
         let says = |what: &str| format!("node {node} lists primitive {id}{what}");
         if !usable(hull) {
