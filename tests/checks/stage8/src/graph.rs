@@ -339,24 +339,14 @@ pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> Check
     let always = "you skip a volume although `skip` is off";
     let own_last = "you visit the children before a node's own primitives: their hits may save the children";
     Row::all(trial).iter().try_for_each(|row| {
-        judge_orders(
-            trial,
-            &[
-                (
-                    with_own_hit(row.query(&[1, 0], SKIP)),
-                    &[2],
-                    &[(&[1, 0, 2], own_last), (&[2, 1, 0], never)],
-                ),
-                (row.query(&[0, 1, 2, 3], SKIP), &[0], &[(&[0, 1, 2, 3], never)]),
-                (row.query(&[3, 2, 1, 0], SKIP), &[3, 2, 1, 0], &[(&[0], sorted), (&[0, 1, 2, 3], never)]),
-                (row.query(&[1, 3, 0, 2], SKIP), &[1, 0], &[(&[1, 3, 0, 2], never), (&[0], sorted)]),
-                (
-                    row.query(&[2, 0, 3, 1], VOLUMES),
-                    &[2, 0, 3, 1],
-                    &[(&[2, 0], always), (&[0, 1, 2, 3], sorted)],
-                ),
-            ],
-        )
+        let cases: [Case<'_>; 5] = [
+            (with_own_hit(row.query(&[1, 0], SKIP)), &[2], &[(&[1, 0, 2], own_last), (&[2, 1, 0], never)]),
+            (row.query(&[0, 1, 2, 3], SKIP), &[0], &[(&[0, 1, 2, 3], never)]),
+            (row.query(&[3, 2, 1, 0], SKIP), &[3, 2, 1, 0], &[(&[0], sorted), (&[0, 1, 2, 3], never)]),
+            (row.query(&[1, 3, 0, 2], SKIP), &[1, 0], &[(&[1, 3, 0, 2], never), (&[0], sorted)]),
+            (row.query(&[2, 0, 3, 1], VOLUMES), &[2, 0, 3, 1], &[(&[2, 0], always), (&[0, 1, 2, 3], sorted)]),
+        ];
+        judge_orders(trial, &cases)
     })
 }
 
@@ -371,47 +361,45 @@ pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> CheckResu
         children, the nearest first";
     let always = "you skip a volume although `skip` is off";
     Row::all(trial).iter().try_for_each(|row| {
-        judge_orders(
-            trial,
-            &[
-                (
-                    row.query(&[3, 2, 1, 0], ALL),
-                    &[0],
-                    &[
-                        (&[3, 2, 1, 0], listed),
-                        (&[3, 2, 1, 0], backwards),
-                        (&[2, 0], numbers),
-                        (&[1, 0], numbers),
-                        (&[0, 1, 2, 3], never),
-                    ],
-                ),
-                (
-                    row.query(&[1, 3, 0, 2], ALL),
-                    &[0],
-                    &[
-                        (&[1, 0], listed),
-                        (&[3, 2, 1, 0], backwards),
-                        (&[2, 0], numbers),
-                        (&[1, 0], numbers),
-                        (&[0, 1, 2, 3], never),
-                        (&[1, 3, 0, 2], "you neither sort nor skip"),
-                    ],
-                ),
-                (
-                    row.query(&[3, 1, 0, 2], SORT),
-                    &[0, 1, 2, 3],
-                    &[
-                        (&[3, 1, 0, 2], to_skip),
-                        (&[3, 1, 0, 2], listed),
-                        (&[3, 2, 1, 0], backwards),
-                        (&[2, 0, 3, 1], numbers),
-                        (&[1, 3, 0, 2], numbers),
-                        (&[0, 3, 1, 2], nearest_only),
-                        (&[0, 1, 3, 2], nearest_only),
-                        (&[0], always),
-                    ],
-                ),
-            ],
-        )
+        let cases: [Case<'_>; 3] = [
+            (
+                row.query(&[3, 2, 1, 0], ALL),
+                &[0],
+                &[
+                    (&[3, 2, 1, 0], listed),
+                    (&[3, 2, 1, 0], backwards),
+                    (&[2, 0], numbers),
+                    (&[1, 0], numbers),
+                    (&[0, 1, 2, 3], never),
+                ],
+            ),
+            (
+                row.query(&[1, 3, 0, 2], ALL),
+                &[0],
+                &[
+                    (&[1, 0], listed),
+                    (&[3, 2, 1, 0], backwards),
+                    (&[2, 0], numbers),
+                    (&[1, 0], numbers),
+                    (&[0, 1, 2, 3], never),
+                    (&[1, 3, 0, 2], "you neither sort nor skip"),
+                ],
+            ),
+            (
+                row.query(&[3, 1, 0, 2], SORT),
+                &[0, 1, 2, 3],
+                &[
+                    (&[3, 1, 0, 2], to_skip),
+                    (&[3, 1, 0, 2], listed),
+                    (&[3, 2, 1, 0], backwards),
+                    (&[2, 0, 3, 1], numbers),
+                    (&[1, 3, 0, 2], numbers),
+                    (&[0, 3, 1, 2], nearest_only),
+                    (&[0, 1, 3, 2], nearest_only),
+                    (&[0], always),
+                ],
+            ),
+        ];
+        judge_orders(trial, &cases)
     })
 }
