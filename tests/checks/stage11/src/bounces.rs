@@ -5,39 +5,34 @@ use checks::prelude::*;
 pub(super) fn cut_off_is_the_light_beyond_the_last_bounce(trial: &Trial<'_>) -> CheckResult {
     let albedo = prop_oneof![4 => fractions(0..=16, 16.0), 1 => 0.9..1.0f32];
     let bounces = prop_oneof![6 => 0..12u32, 2 => 12..3000u32, 1 => Just(u32::MAX)];
-    trial.forall(300, (albedo, bounces), |queries| {
-        let power = |albedo: f32, exponent: f64| f64::from(albedo).powf(exponent);
-        let near = |yours: f32, expected: f64| {
-            // The doc comment states these bounds.
-            (f64::from(yours) - expected).abs() <= (1e-4 * expected).max(1e-6)
+    let power = |albedo: f32, exponent: f64| f64::from(albedo).powf(exponent);
+    let near = |yours: f32, expected: f64| {
+        // The doc comment states these bounds.
+        (f64::from(yours) - expected).abs() <= (1e-4 * expected).max(1e-6)
+    };
+    trial.each(300, (albedo, bounces), <dyn Kit>::cut_off, |(albedo, bounces), yours| {
+        let n = f64::from(*bounces);
+        let whole = 1.0 / (1.0 - f64::from(*albedo));
+        let rest = power(*albedo, n + 1.0);
+        let input = || format!("cut_off({albedo:?}, {bounces})");
+        let overflow = *bounces == u32::MAX && yours == 1.0;
+        let broken = || {
+            Broken::new(input(), yours, rest, "albedo^(bounces + 1)")
+                .explained_by([(overflow, "bounces + 1 overflows: add in a larger type")])
         };
-        compare(queries, trial.kit.cut_off(queries), |(albedo, bounces), yours| {
-            let n = f64::from(*bounces);
-            let whole = 1.0 / (1.0 - f64::from(*albedo));
-            let rest = power(*albedo, n + 1.0);
-            let input = || format!("cut_off({albedo:?}, {bounces})");
-            let overflow = *bounces == u32::MAX && yours == 1.0;
-            let broken = || {
-                Broken::new(input(), yours, rest, "albedo^(bounces + 1)")
-                    .explained_by([(overflow, "bounces + 1 overflows: add in a larger type")])
-            };
-            unless(near(yours, rest), broken).formulas([
-                (
-                    near(yours, power(*albedo, n)),
-                    "the power is bounces: it is bounces + 1, because light is also seen directly",
-                ),
-                (near(yours, power(*albedo, n + 2.0)), "the power is bounces + 2: it is bounces + 1"),
-                (
-                    near(yours, 1.0 - rest),
-                    "you return the fraction that is found, not the one that is missing",
-                ),
-                (
-                    near(yours, rest * whole) || (*albedo == 1.0 && !yours.is_finite()),
-                    "you return the missing light, not its fraction of all light",
-                ),
-                (near(yours, f64::from(*albedo) * (n + 1.0)), "you multiply where a power is needed"),
-            ])
-        })
+        unless(near(yours, rest), broken).formulas([
+            (
+                near(yours, power(*albedo, n)),
+                "the power is bounces: it is bounces + 1, because light is also seen directly",
+            ),
+            (near(yours, power(*albedo, n + 2.0)), "the power is bounces + 2: it is bounces + 1"),
+            (near(yours, 1.0 - rest), "you return the fraction that is found, not the one that is missing"),
+            (
+                near(yours, rest * whole) || (*albedo == 1.0 && !yours.is_finite()),
+                "you return the missing light, not its fraction of all light",
+            ),
+            (near(yours, f64::from(*albedo) * (n + 1.0)), "you multiply where a power is needed"),
+        ])
     })
 }
 

@@ -128,24 +128,22 @@ pub(super) fn place(normal: Vec3, direction: Vec3) -> (f64, f64) {
 pub(super) fn cosine_pdf_is_the_cosine_over_pi(trial: &Trial<'_>) -> CheckResult {
     let queries = (nasty::unit(), nasty::tilt())
         .prop_map(|(normal, (angle, turn))| (normal, nasty::tilted(normal, angle, turn)));
-    trial.forall(500, queries, |queries| {
-        let exact = |(normal, direction): &(Vec3, Vec3)| normal.as_dvec3().dot(direction.as_dvec3());
-        // Roundings of the three products, each at most 1.
-        let near = |yours: f32, expected: f64| (f64::from(yours) - expected).abs() <= 1e-6 * (1.0 + expected);
-        compare(queries, trial.kit.cosine_pdf(queries), |query, yours| {
-            let cosine = exact(query);
-            let input = || query.call("cosine_pdf");
-            let broken = || Broken::new(input(), yours, cosine / PI, "the definition");
-            unless(near(yours, (cosine / PI).max(0.0)), broken).formulas([
-                (near(yours, cosine), "you return the cosine: divide it by π"),
-                (near(yours, 1.0 / TAU), "you return the density of the uniform hemisphere, 1 / 2π"),
-                (near(yours, 1.0 / PI), "you return 1 / π: multiply it by the cosine"),
-                (near(yours, cosine / TAU), "you divide by 2π: the integral of the cosine is π"),
-                (near(yours, 0.25 / PI), "you return the density of the whole sphere, 1 / 4π"),
-                (near(yours, cosine * cosine / PI), "you multiply by the cosine twice"),
-                (near(yours, 2.0 * cosine / PI), "twice too much: the integral of the cosine is π"),
-            ])
-        })
+    let exact = |(normal, direction): &(Vec3, Vec3)| normal.as_dvec3().dot(direction.as_dvec3());
+    // Roundings of the three products, each at most 1.
+    let near = |yours: f32, expected: f64| (f64::from(yours) - expected).abs() <= 1e-6 * (1.0 + expected);
+    trial.each(500, queries, <dyn Kit>::cosine_pdf, |query, yours| {
+        let cosine = exact(query);
+        let input = || query.call("cosine_pdf");
+        let broken = || Broken::new(input(), yours, cosine / PI, "the definition");
+        unless(near(yours, (cosine / PI).max(0.0)), broken).formulas([
+            (near(yours, cosine), "you return the cosine: divide it by π"),
+            (near(yours, 1.0 / TAU), "you return the density of the uniform hemisphere, 1 / 2π"),
+            (near(yours, 1.0 / PI), "you return 1 / π: multiply it by the cosine"),
+            (near(yours, cosine / TAU), "you divide by 2π: the integral of the cosine is π"),
+            (near(yours, 0.25 / PI), "you return the density of the whole sphere, 1 / 4π"),
+            (near(yours, cosine * cosine / PI), "you multiply by the cosine twice"),
+            (near(yours, 2.0 * cosine / PI), "twice too much: the integral of the cosine is π"),
+        ])
     })
 }
 

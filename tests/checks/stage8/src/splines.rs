@@ -143,23 +143,20 @@ pub(super) fn bspline_basis_follows_the_recursion(trial: &Trial<'_>) -> CheckRes
         u: spline.u,
         knots: spline.knots,
     });
-    trial.forall(1000, inputs, |queries| {
-        let value = |query: &BasisQuery, rule: Rule| {
-            rule.basis(&query.knots, query.degree, query.index, f64::from(query.u))
+    let value = |query: &BasisQuery, rule: Rule| {
+        rule.basis(&query.knots, query.degree, query.index, f64::from(query.u))
+    };
+    trial.each(1000, inputs, <dyn Kit>::bspline_basis, |query, yours| {
+        let gives = |rule: Rule| {
+            let value = value(query, rule);
+            same(f64::from(yours), value, room(query.degree, value))
         };
-        compare(queries, trial.kit.bspline_basis(queries), |query, yours| {
-            let gives = |rule: Rule| {
-                let value = value(query, rule);
-                same(f64::from(yours), value, room(query.degree, value))
-            };
-            let broken = || {
-                let (knots, degree, index, u) =
-                    (list(&query.knots), query.degree, query.index, query.u.paste());
-                let input = format!("bspline_basis(&{knots}, {degree}, {index}, {u})");
-                Broken::new(input, yours, value(query, Rule::Right) as f32, "the recursion in double")
-            };
-            unless(gives(Rule::Right), broken).formulas(WRONG.map(|(rule, text)| (gives(rule), text)))
-        })
+        let broken = || {
+            let (knots, degree, index, u) = (list(&query.knots), query.degree, query.index, query.u.paste());
+            let input = format!("bspline_basis(&{knots}, {degree}, {index}, {u})");
+            Broken::new(input, yours, value(query, Rule::Right) as f32, "the recursion in double")
+        };
+        unless(gives(Rule::Right), broken).formulas(WRONG.map(|(rule, text)| (gives(rule), text)))
     })
 }
 
@@ -296,20 +293,18 @@ fn point_room(patch: &NurbsPatch) -> f64 {
 }
 
 pub(super) fn nurbs_point_is_the_weighted_mean_of_its_net(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(400, surface(), |queries| {
-        let near = |query: &NurbsQuery, yours: Vec3, mean: Mean| {
-            let (yours, other) = (yours.as_dvec3(), mean.point(query));
-            let room = point_room(&query.patch);
-            (0..3).all(|axis| same(yours[axis], other[axis], room))
+    let near = |query: &NurbsQuery, yours: Vec3, mean: Mean| {
+        let (yours, other) = (yours.as_dvec3(), mean.point(query));
+        let room = point_room(&query.patch);
+        (0..3).all(|axis| same(yours[axis], other[axis], room))
+    };
+    trial.each(400, surface(), <dyn Kit>::nurbs_point, |query, yours| {
+        let broken = || {
+            let right = Mean::Right.point(query).as_vec3();
+            Broken::new(describe(query), yours, right, "the weighted mean in double")
         };
-        compare(queries, trial.kit.nurbs_point(queries), |query, yours| {
-            let broken = || {
-                let right = Mean::Right.point(query).as_vec3();
-                Broken::new(describe(query), yours, right, "the weighted mean in double")
-            };
-            unless(near(query, yours, Mean::Right), broken)
-                .formulas(WRONG_MEANS.map(|(mean, text)| (near(query, yours, mean), text)))
-        })
+        unless(near(query, yours, Mean::Right), broken)
+            .formulas(WRONG_MEANS.map(|(mean, text)| (near(query, yours, mean), text)))
     })
 }
 
