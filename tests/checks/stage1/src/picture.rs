@@ -1,7 +1,6 @@
 //! The picture of stage 1.
 
-use checks::picture;
-use checks::picture::{Composed, LARGE};
+use checks::picture::{self, Composed, LARGE};
 use checks::prelude::*;
 
 fn colors(kit: &dyn Kit, rays: &[Ray], sphere: Sphere) -> Vec<Vec3> {

@@ -1,7 +1,6 @@
 //! The picture of stage 10: a third of it is scaled down, and a third of it up, by powers of two. No seam may be visible.
 
-use checks::picture;
-use checks::picture::{Composed, SMALL};
+use checks::picture::{self, Composed, SMALL};
 use checks::prelude::*;
 use glam::Quat;
 

@@ -1,9 +1,9 @@
 //! The picture of stage 11: a sphere on a floor under two area lights that are seen, with next event estimation and
 //! multiple importance sampling.
 
-use checks::picture::{Sampled, Size};
+use checks::picture::{self, Sampled, Size};
 use checks::prelude::*;
-use checks::{picture, statistics};
+use checks::statistics;
 use raykata::camera::Camera;
 use raykata::emitter::{AreaEmitter, EmitterShape};
 

@@ -6,9 +6,9 @@
 //! of the 384 samples of a block is close to normally distributed.
 
 use super::rooms::{Form, Paint, Room, Roulette, Wall, follow};
-use checks::picture::{Sampled, Size};
+use checks::picture::{self, Sampled, Size};
 use checks::prelude::*;
-use checks::{picture, statistics};
+use checks::statistics;
 use glam::dvec3;
 use raykata::camera::Camera;
 

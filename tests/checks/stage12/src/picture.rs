@@ -1,8 +1,7 @@
 //! The picture of stage 12: a winding ramp of triangles, found by a wide tree.
 
 use super::trees::drawn_tree;
-use checks::picture;
-use checks::picture::{Composed, SMALL};
+use checks::picture::{self, Composed, SMALL};
 use checks::prelude::*;
 use oracle::exact::{Body, meet};
 use raykata::wide::{BLOCK, Filtered, FlatTree, NO_PRIMITIVE, TriangleBlock, WIDE_NODE_COST, WideTree};

@@ -3,8 +3,7 @@
 use super::method::{CHOICE, CRAMER, GRAM};
 use super::vertex_normals::octahedron;
 use checks::golden::Table;
-use checks::picture;
-use checks::picture::{Composed, LARGE};
+use checks::picture::{self, Composed, LARGE};
 use checks::prelude::*;
 use glam::Quat;
 use raykata::mesh::Mesh;

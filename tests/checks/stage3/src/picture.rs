@@ -1,8 +1,8 @@
 //! The picture of stage 3.
 
-use checks::picture::{Composed, LARGE};
+use checks::picture::{self, Composed, LARGE};
 use checks::prelude::*;
-use checks::{picture, tree};
+use checks::tree;
 use std::f32::consts::TAU;
 
 const TARGET: Vec3 = vec3(1.0, 1.0, 0.3);

@@ -3,8 +3,7 @@
 use super::search_mistakes::{any_mistakes, every_node, mistakes, observations};
 use checks::generate::unit;
 use checks::prelude::*;
-use checks::tree;
-use checks::tree::{closest_in_table, tied};
+use checks::tree::{self, closest_in_table, tied};
 use raykata::bvh::Bvh;
 
 /// Searches: a ray, up to 60 spheres (0 to 29, in some scenes each of them twice), a tree and a table of answers.

@@ -1,8 +1,7 @@
 //! A table and a picture that are compared with stored references.
 
 use checks::golden::Table;
-use checks::picture;
-use checks::picture::{Composed, LARGE};
+use checks::picture::{self, Composed, LARGE};
 use checks::prelude::*;
 use raykata::material::Material;
 

@@ -1,7 +1,6 @@
 //! The picture of stage 5.
 
-use checks::picture;
-use checks::picture::{Composed, LARGE};
+use checks::picture::{self, Composed, LARGE};
 use checks::prelude::*;
 use raykata::material::{Fresnel, Material};
 

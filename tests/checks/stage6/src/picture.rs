@@ -1,8 +1,8 @@
 //! The picture of stage 6: blurred by a lens, by motion, by a rough surface and by an area light.
 
-use checks::picture::{Sampled, Size};
+use checks::picture::{self, Sampled, Size};
 use checks::prelude::*;
-use checks::{picture, statistics};
+use checks::statistics;
 use glam::{UVec2, uvec2};
 use raykata::camera::{Camera, Lens, Shutter};
 use raykata::random::Stratum;

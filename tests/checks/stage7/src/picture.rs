@@ -1,8 +1,7 @@
 //! The picture of stage 7: an image on spheres, with each of the wrap modes, and on the floor below them.
 
 use super::texels::WRAPS;
-use checks::picture;
-use checks::picture::{Composed, LARGE};
+use checks::picture::{self, Composed, LARGE};
 use checks::prelude::*;
 use raykata::material::{Texture, Wrap};
 use std::f32::consts::TAU;

@@ -1,7 +1,6 @@
 //! The picture of stage 8: two instances of a tower, a house, a pond and a gate.
 
-use checks::picture;
-use checks::picture::{Composed, LARGE};
+use checks::picture::{self, Composed, LARGE};
 use checks::prelude::*;
 use glam::{Affine3A, Quat};
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};

@@ -3,8 +3,7 @@
 use super::scenes::{Scene, rays, scenes, sphere};
 use checks::generate::unit;
 use checks::prelude::*;
-use checks::tree;
-use checks::tree::{closest_in_table, closest_of, search_query, sphere_box};
+use checks::tree::{self, closest_in_table, closest_of, search_query, sphere_box};
 use raykata::bvh::PrimitiveHit;
 
 fn cached(scene: &Scene, ray: &Ray, last: Option<u32>) -> CachedQuery {

@@ -2,8 +2,7 @@
 
 use super::scenes::{Scene, Thing};
 use super::searches::queries;
-use checks::picture;
-use checks::picture::{Composed, SMALL};
+use checks::picture::{self, Composed, SMALL};
 use checks::prelude::*;
 use raykata::partition::{KdHeuristics, Tree};
 use std::f32::consts::TAU;
