@@ -131,13 +131,8 @@ pub(super) fn light_from_below_adds_nothing(trial: &Trial<'_>) -> CheckResult {
             return Ok(());
         }
         let expected = if can_add { "light above 0" } else { "0 in all channels" };
-        Err(Broken::with_texts(
-            query.call("sample_light_contribution"),
-            format!("{yours:?}"),
-            expected,
-            "the definition",
-        )
-        .explained_by([
+        let input = query.call("sample_light_contribution");
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
             (yours.is_nan(), "you return NaN"),
             (!above && yours.min_element() < 0.0, "light from below the surface is negative: it must be 0"),
             (!above && adds, "light from below the surface counts: take no absolute value of the cosine"),

@@ -31,13 +31,8 @@ pub(super) fn cosine_directions_stay_above_the_surface(trial: &Trial<'_>) -> Che
             if unit && above >= -1e-6 && !constant {
                 return Ok(());
             }
-            let broken = Broken::new(
-                query.call("cosine_direction"),
-                yours,
-                "a unit direction above the surface",
-                "the definition",
-            );
-            Err(broken.explained_by([
+            let (input, expected) = (query.call("cosine_direction"), "a unit direction above the surface");
+            Err(Broken::new(input, yours, expected, "the definition").explained_by([
                 (constant, "you return the normal for every u"),
                 (
                     yours.is_nan(),

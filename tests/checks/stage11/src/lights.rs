@@ -23,13 +23,9 @@ pub(super) fn of(query: &EmitterQuery) -> Lit {
 /// Every `u` gives a sample of an emitter that sends light, so a sample that is missing is a mistake.
 pub(super) fn missing(query: &EmitterQuery) -> Broken {
     let behind = query.emitter.two_sided && of(query).is_behind();
-    let broken = Broken::new(
-        query.call("sample_light"),
-        None::<EmitterSample>,
-        "a sample",
-        "the emitter sends light here",
-    );
-    broken.explained_by([(behind, "you leave out the back of emitters that are two-sided")])
+    let (yours, source) = (None::<EmitterSample>, "the emitter sends light here");
+    Broken::new(query.call("sample_light"), yours, "a sample", source)
+        .explained_by([(behind, "you leave out the back of emitters that are two-sided")])
 }
 
 /// Emitters whose front is seen, and two-sided ones that are seen from the back or from inside.

@@ -62,12 +62,8 @@ pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
         // Weights that are always 1/2 pass so far, although they ignore the densities.
         let all_half = pairs.len() > 1 && answers.iter().all(|(own, _)| *own == 0.5);
         if all_half {
-            let broken = Broken::with_texts(
-                pairs[0].call("mis_weight"),
-                "0.5 for all densities",
-                "a weight that depends on the densities",
-                "the definition",
-            );
+            let (yours, expected) = ("0.5 for all densities", "a weight that depends on the densities");
+            let broken = Broken::with_texts(pairs[0].call("mis_weight"), yours, expected, "the definition");
             return vec![Err(broken.explained_by([(true, "your weights are 1/2 for all densities")]))];
         }
         outcomes
@@ -100,13 +96,9 @@ pub(super) fn mis_weight_of_a_lone_density_is_one(trial: &Trial<'_>) -> CheckRes
         if (0.0..=1.0).contains(&yours) {
             return Ok(());
         }
-        Err(Broken::with_texts(
-            pair.call("mis_weight"),
-            format!("{yours:?}"),
-            "any weight in 0..=1",
-            "the definition",
-        )
-        .explained_by([(yours.is_nan(), "you return NaN: 0 / 0 or ∞ / ∞")]))
+        let (input, expected) = (pair.call("mis_weight"), "any weight in 0..=1");
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition")
+            .explained_by([(yours.is_nan(), "you return NaN: 0 / 0 or ∞ / ∞")]))
     }))
 }
 

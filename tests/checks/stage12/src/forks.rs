@@ -131,13 +131,9 @@ pub(super) fn build_parallel_logs_the_nodes_that_it_forks(trial: &Trial<'_>) -> 
     let mut seen = HashSet::new();
     let broken = |fork: Option<&Fork>, expected: &str, cause: &'static str| {
         let yours = fork.map_or("no fork".into(), |fork| format!("{fork:?}"));
-        Err(Broken::with_texts(
-            format!("build_parallel of {} boxes", tree.order.len()),
-            yours,
-            expected,
-            "the finished tree",
-        )
-        .explained_by([(!cause.is_empty(), cause)]))
+        let input = format!("build_parallel of {} boxes", tree.order.len());
+        Err(Broken::with_texts(input, yours, expected, "the finished tree")
+            .explained_by([(!cause.is_empty(), cause)]))
     };
     if forks.is_empty() {
         return broken(

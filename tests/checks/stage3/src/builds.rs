@@ -166,12 +166,8 @@ pub(super) fn object_median_is_balanced(trial: &Trial<'_>) -> CheckResult {
         return Ok(());
     }
     let describe = |depth: usize, nodes: usize| format!("depth {depth}, {nodes} nodes");
-    Err(Broken::with_texts(
-        "build of 512 boxes, ObjectMedian, leaf_size 1",
-        describe(depth, nodes),
-        describe(10, 1023),
-        "log₂ 512 + 1",
-    ))
+    let input = "build of 512 boxes, ObjectMedian, leaf_size 1";
+    Err(Broken::with_texts(input, describe(depth, nodes), describe(10, 1023), "log₂ 512 + 1"))
 }
 
 pub(super) fn trees_of_eight_boxes(trial: &Trial<'_>) -> CheckResult {

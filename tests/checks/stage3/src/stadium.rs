@@ -153,11 +153,6 @@ pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> CheckResu
     let describe = |visits: u64, tests: u64| format!("{visits} nodes opened, {tests} primitives tested");
     let (yours, most) =
         (describe(yours.node_visits, yours.primitive_tests), describe(most_visits, most_tests));
-    Err(Broken::with_texts(
-        format!("{} rays through a stadium", queries.len()),
-        yours,
-        format!("at most {most}"),
-        "the nearer child first",
-    )
-    .explained_by(mistakes))
+    let (input, expected) = (format!("{} rays through a stadium", queries.len()), format!("at most {most}"));
+    Err(Broken::with_texts(input, yours, expected, "the nearer child first").explained_by(mistakes))
 }

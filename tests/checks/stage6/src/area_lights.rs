@@ -244,13 +244,8 @@ fn judge_direction(
         seen.local.push(DVec3::new(cosine, toward.dot(x), toward.dot(y)));
         return Ok(());
     }
-    let broken = Broken::new(
-        query.call("sample_sphere"),
-        direction,
-        "a unit direction to the sphere",
-        "the definition",
-    );
-    Err(broken.explained_by([
+    let (input, expected) = (query.call("sample_sphere"), "a unit direction to the sphere");
+    Err(Broken::new(input, direction, expected, "the definition").explained_by([
         (inside && all_nan, "you return NaN: from inside the sphere 1 - sin² is negative"),
         (direction.is_nan(), "you return NaN"),
         (!unit, "your direction does not have unit length"),

@@ -153,12 +153,8 @@ pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> CheckResu
     // Of a thousand intervals of equal probability a few roundings leave none out.
     if n_angles < 500 {
         let yours = format!("angles in {n_angles} of 1,000 intervals of equal probability");
-        let broken = Broken::with_texts(
-            format!("{what} for {SAMPLES} pairs u"),
-            yours,
-            "in all of them",
-            "the definition",
-        );
+        let input = format!("{what} for {SAMPLES} pairs u");
+        let broken = Broken::with_texts(input, yours, "in all of them", "the definition");
         // The formula gives many angles for a rough surface, and few for a slightly rough one.
         let few = n_angles < 64 && lobe(trial, 0.5, &axes, &u).is_ok_and(|rough| rough.n_angles() > 500);
         let imprecise =
@@ -179,12 +175,8 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
     let through = trial.kit.sample_phong_lobe(&free(&chosen));
     if !through.iter().any(|direction| direction.y < -0.1) {
         let input = "sample_phong_lobe with roughness 1 and normal = ideal = Vec3::X, for 64 pairs u";
-        return Err(Broken::with_texts(
-            input,
-            "no direction with y < -0.1",
-            "about a half",
-            "the definition",
-        ));
+        let yours = "no direction with y < -0.1";
+        return Err(Broken::with_texts(input, yours, "about a half", "the definition"));
     }
     let queries = (unit_arrival(), fractions(1..=16, 16.0), unit_number(), unit_number()).prop_map(
         |((ideal, normal), roughness, u, v)| PhongLobeQuery { ideal, normal, roughness, u: vec2(u, v) },

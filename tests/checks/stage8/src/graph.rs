@@ -193,13 +193,9 @@ pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Ch
             };
             path_to(&query.graph, *primitive).iter().rev().skip(1).any(hits)
         });
-        Err(Broken::with_texts(
-            describe(query),
-            format!("{n_boxes} volumes and the primitives {asked:?}"),
-            format!("no volume and the primitives {all:?}"),
-            "the definition",
-        )
-        .explained_by([
+        let yours = format!("{n_boxes} volumes and the primitives {asked:?}");
+        let expected = format!("no volume and the primitives {all:?}");
+        Err(Broken::with_texts(describe(query), yours, expected, "the definition").explained_by([
             (n_boxes > 0, "you call enter although `volumes` is off"),
             (is_twice, "you test a primitive twice"),
             (
@@ -247,13 +243,9 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
         let is_root_a_leaf = graph.nodes.first().is_some_and(|root| root.children.is_empty());
         let extra = asked.iter().any(|primitive| !expected.contains(primitive));
         let is_all = n_boxes == graph.nodes.len() as u64 && asked.len() == table.primitives.len();
-        Err(Broken::with_texts(
-            describe(query),
-            format!("{n_boxes} volumes, primitives {asked:?}"),
-            format!("{boxes} volumes, primitives {expected:?}"),
-            "the definition",
-        )
-        .explained_by([
+        let of = |n: u64, primitives: &[u32]| format!("{n} volumes, primitives {primitives:?}");
+        let (yours, right) = (of(n_boxes, &asked), of(boxes, &expected));
+        Err(Broken::with_texts(describe(query), yours, right, "the definition").explained_by([
             (is_twice, "you test a primitive twice"),
             (n_boxes + 1 == boxes, "you do not test the volume of the root: the root has one, too"),
             // The root may be a leaf. Some test its volume nevertheless.

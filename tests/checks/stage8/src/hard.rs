@@ -116,13 +116,9 @@ fn judge_leaving<S: Solid>(
         if t.is_some_and(|t| range.contains(&t)) {
             return Ok(());
         }
-        Err(Broken::with_texts(
-            input(query),
-            format!("{t:?}"),
-            format!("Some t between {} and {}", range.start, range.end),
-            "the ray starts inside",
-        )
-        .explained_by([
+        let expected = format!("Some t between {} and {}", range.start, range.end);
+        let broken = Broken::with_texts(input(query), format!("{t:?}"), expected, "the ray starts inside");
+        Err(broken.explained_by([
             (!ordinary && t.is_none(), lost),
             (
                 t.is_none(),

@@ -64,14 +64,10 @@ fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> Judged {
     };
     let (got, right) = if up { (yours.to_object, exact.inverse()) } else { (yours.to_world, exact) };
     let which = if up { "to_object" } else { "to_world" };
-    let describe = |entries: Vec<f64>| format!("{which} {entries:.3?}");
+    let describe = |transform: DAffine3| format!("{which} {:.3?}", transform.to_cols_array());
     unless(up && down, || {
-        Broken::with_texts(
-            input(),
-            describe(got.as_daffine3().to_cols_array().to_vec()),
-            describe(right.to_cols_array().to_vec()),
-            "double precision",
-        )
+        let [yours, expected] = [got.as_daffine3(), right].map(describe);
+        Broken::with_texts(input(), yours, expected, "double precision")
     })
     .formulas([
         (up && near(&yours.to_object, &exact), "you return to_world as to_object, without the inverse"),

@@ -71,15 +71,11 @@ fn judge_points(query: &ObjectRayQuery, yours: Ray) -> Judged {
         (yours.origin.as_dvec3() - point).length() <= 1e-4 * size
     };
     let from = ray.origin.as_dvec3();
-    let input = || query.call("ray_to_object");
     let describe = |origin: Vec3, direction: Vec3| format!("origin {origin}, direction {direction}");
     unless(right_origin && right_dir, || {
-        Broken::with_texts(
-            input(),
-            describe(yours.origin, yours.direction),
-            describe(origin.as_vec3(), direction.as_vec3()),
-            "double precision",
-        )
+        let expected = describe(origin.as_vec3(), direction.as_vec3());
+        let yours = describe(yours.origin, yours.direction);
+        Broken::with_texts(query.call("ray_to_object"), yours, expected, "double precision")
     })
     .formulas([
         (

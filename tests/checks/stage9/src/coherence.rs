@@ -82,13 +82,8 @@ pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> CheckResult {
         (counts[0] > 32, "you test a primitive before the search although there is no known hit"),
         (counts[1] == 1, "you leave out the search: this ray may hit a nearer primitive"),
     ];
-    Err(Broken::with_texts(
-        "a ray along 32 spheres in a row, and the next ray, which hits the same one",
-        describe(counts),
-        describe([32, 2]),
-        "counted",
-    )
-    .explained_by(mistakes))
+    let input = "a ray along 32 spheres in a row, and the next ray, which hits the same one";
+    Err(Broken::with_texts(input, describe(counts), describe([32, 2]), "counted").explained_by(mistakes))
 }
 
 fn packet(spheres: &[Sphere], rays: &[Ray]) -> (PacketQuery, Vec<SearchQuery>) {
