@@ -311,19 +311,20 @@ pub fn box_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
 /// The largest `t` at which an infinite line enters a slab of a box, and the smallest at which it leaves one. If the
 /// entry is larger than the exit, the line misses the box, and their difference is a measure of the distance.
 pub fn slabs_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
-    let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
-    for axis in 0..3 {
-        let [low, high, origin, direction] =
-            [bounds.min[axis], bounds.max[axis], ray.origin[axis], ray.direction[axis]].map(f64::from);
-        let (enter, leave) = if direction != 0.0 {
-            let (first, last) = ((low - origin) / direction, (high - origin) / direction);
-            (first.min(last), first.max(last))
-        } else if low <= origin && origin <= high {
-            (f64::NEG_INFINITY, f64::INFINITY)
-        } else {
-            (f64::INFINITY, f64::NEG_INFINITY)
-        };
-        (near, far) = (near.max(enter), far.min(leave));
+    let slabs = [0, 1, 2].map(|axis| slab_interval(ray, bounds, axis));
+    slabs.into_iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(near, far), (enter, leave)| {
+        (near.max(enter), far.min(leave))
+    })
+}
+
+/// The `t` at which an infinite line enters and leaves one slab of a box; `(inf, -inf)` if it is parallel to it and outside.
+pub fn slab_interval(ray: &Ray, bounds: &Aabb, axis: usize) -> (f64, f64) {
+    let [low, high, origin, direction] =
+        [bounds.min[axis], bounds.max[axis], ray.origin[axis], ray.direction[axis]].map(f64::from);
+    let (first, last) = ((low - origin) / direction, (high - origin) / direction);
+    match direction == 0.0 {
+        true if low <= origin && origin <= high => (f64::NEG_INFINITY, f64::INFINITY),
+        true => (f64::INFINITY, f64::NEG_INFINITY),
+        false => (first.min(last), first.max(last)),
     }
-    (near, far)
 }

@@ -18,9 +18,9 @@ pub mod offset;
 pub mod paste;
 mod patience;
 pub mod picture;
+pub mod prelude;
 mod process;
 pub mod radiosity;
-pub mod rubric;
 pub mod statistics;
 mod structure;
 pub mod symmetry;
@@ -30,8 +30,11 @@ pub mod trial;
 use raykata::kit::{Kit, StudentKit};
 use std::sync::Arc;
 
-pub use broken::{Broken, CheckResult};
+pub use broken::{Broken, CheckResult, all_hold};
 pub use drawn::Drawn;
+pub use judge::{Judged, all_parts, compare, compare_formulas, proven, unless};
+/// The points, titles and hints of the checks.
+pub use raykata::rubric;
 pub use trial::{
     Check, Inputs, ONE_HIDDEN_IN, Trial, Verdict, examine, grade, passes, run, verdict, without_answer,
 };

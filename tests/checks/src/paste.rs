@@ -6,9 +6,10 @@ use raykata::camera::{Lens, Shutter};
 use raykata::emitter::{AreaEmitter, EmitterSample};
 use raykata::film::WeightedColor;
 use raykata::kit::{
-    BoundsQuery, BuildQuery, EmitterPdfQuery, EmitterQuery, InsideQuery, LightSample, PhongLobeQuery,
-    PlaneEquationQuery, PlaneQuery, RootQuery, SecondaryRay, ShadeQuery, ShadowQuery, SlabQuery, SphereQuery,
-    SphereSampleQuery, Surface, TriangleQuery,
+    BoundingSphereQuery, BoundsQuery, BsdfPdfQuery, BsdfQuery, BuildQuery, EmissionQuery, EmitterPdfQuery,
+    EmitterQuery, InsideQuery, LightContributionQuery, LightSample, NormalQuery, ObjectRayQuery, OffsetQuery,
+    PhongLobeQuery, PlaneEquationQuery, PlaneQuery, RefractQuery, RootQuery, RouletteQuery, SecondaryRay,
+    ShadeQuery, ShadowQuery, SlabQuery, SphereQuery, SphereSampleQuery, Surface, TriangleQuery,
 };
 use raykata::light_path::Scattering;
 use raykata::material::Material;
@@ -119,6 +120,23 @@ arguments! {
     SphereSampleQuery(sphere, from, u);
     PhongLobeQuery(ideal, normal, roughness, u);
     BoundsQuery(to_world, bounds);
+    RefractQuery(direction, normal, n1, n2);
+    OffsetQuery(point, error, normal, direction);
+    RouletteQuery(weight, bounce, u);
+    BsdfQuery(scattering, u);
+    BsdfPdfQuery(scattering, direction);
+    LightContributionQuery(diffuse, normal, sample, bsdf_pdf);
+    EmissionQuery(emission, pdf, light_pdf);
+    BoundingSphereQuery(ray, sphere);
+    ObjectRayQuery(ray, to_object);
+    NormalQuery(normal, to_object);
+}
+
+/// A tuple of all arguments.
+impl<A: Paste, B: Paste> Arguments for (A, B) {
+    fn call(&self, function: &str) -> String {
+        call(function, &[&self.0, &self.1])
+    }
 }
 
 impl Arguments for SlabQuery {

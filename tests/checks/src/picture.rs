@@ -40,17 +40,12 @@ pub const LARGE: Size = Size { width: 80, height: 60 };
 /// The size of pictures whose pixels need many answers.
 pub const SMALL: Size = Size { width: 48, height: 32 };
 
-/// One ray through the middle of each pixel of a small picture, row by row from the top. If the trial judges only a part of
+/// One ray through the middle of each pixel of a picture, row by row from the top. If the trial judges only a part of
 /// its inputs, rows are left out.
 ///
 /// Graded pictures are assembled here from the answers for many rays at once. So they show one stage only, and an error
 /// in another stage does not change them.
-pub fn rays(trial: &Trial<'_>, eye: Vec3, target: Vec3) -> Vec<Ray> {
-    rays_of(trial, LARGE, eye, target)
-}
-
-/// The same for a picture of this size.
-pub fn rays_of(trial: &Trial<'_>, size: Size, eye: Vec3, target: Vec3) -> Vec<Ray> {
+pub fn rays(trial: &Trial<'_>, size: Size, eye: Vec3, target: Vec3) -> Vec<Ray> {
     let camera = camera(size, eye, target);
     let (width, height) = (size.width as f32, size.height as f32);
     pixels_of(trial, size)
@@ -76,7 +71,7 @@ pub fn pixels_of(trial: &Trial<'_>, size: Size) -> impl Iterator<Item = (u32, u3
     pixels(size).filter(move |pixel| only.is_none_or(|only| only == *pixel))
 }
 
-/// The column of the ray `index` of [`rays_of`].
+/// The column of the ray `index` of [`rays`].
 pub fn column(trial: &Trial<'_>, size: Size, index: usize) -> usize {
     trial.pixel().map_or(index % size.width as usize, |replay| replay.x as usize)
 }
@@ -109,20 +104,14 @@ impl Composed<'_> {
             return replay.show(self.name, self.size, ray, || colors(trial.kit).first().copied());
         }
         let film = film_of_width(self.size.width, colors(trial.kit));
-        match trial.expected(&colors) {
-            None => compare(trial, self.name, &film, self.rays, self.may_differ),
-            Some(expected) => {
-                let expected = film_of_width(self.size.width, (*expected).clone());
-                let (name, n_pixels) = (self.name, self.size.width * self.size.height);
-                judge(
-                    trial,
-                    &Pair { name, film: &film, golden: &image_of(&expected) },
-                    self.rays,
-                    self.may_differ,
-                    n_pixels,
-                )
-            }
-        }
+        let golden = match trial.expected(&colors) {
+            Some(expected) => image_of(&film_of_width(self.size.width, (*expected).clone())),
+            None => match golden_picture(trial.row_step(), self.name, &film)? {
+                Some(golden) => golden,
+                None => return Ok(()),
+            },
+        };
+        judge(trial, self, &Pair { name: self.name, film: &film, golden: &golden })
     }
 }
 
@@ -131,49 +120,38 @@ pub fn normal_color(normal: Vec3) -> Vec3 {
     0.5 * normal + 0.5
 }
 
-/// Compares `film`, whose pixels belong to `rays`, with the golden picture `name`. A fraction `may_differ` of the
-/// pixels of the whole picture may differ. Rows that [`rays`] left out are not compared. `INSTA_UPDATE=always cargo test -p
-/// solutions` writes the golden picture again.
-fn compare(trial: &Trial<'_>, name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> CheckResult {
-    match golden_picture(trial.row_step(), name, film)? {
-        None => Ok(()),
-        Some((golden, n_pixels)) => {
-            judge(trial, &Pair { name, film, golden: &golden }, rays, may_differ, n_pixels)
-        }
-    }
-}
-
-/// The rows of the golden picture `name` that are compared, one in `row_step`, and the number of pixels of the whole picture. `None` if the
-/// golden picture was just written from `film`.
-fn golden_picture(row_step: usize, name: &str, film: &Film) -> Result<Option<(RgbImage, u32)>, Broken> {
-    let golden_file = golden_folder().join(format!("{name}.png"));
+/// The rows of the golden picture `name` that are compared, one in `row_step`: [`rays`] left out the others. `None` if the
+/// golden picture was just written from `film`: `INSTA_UPDATE=always cargo test -p solutions` writes it again.
+fn golden_picture(row_step: usize, name: &str, film: &Film) -> Result<Option<RgbImage>, Broken> {
     if !golden_texts::is_sealed() && std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
-        let written = film.write_png(&golden_file, gamma());
-        return match written {
-            Ok(()) => Ok(None),
-            Err(error) => {
-                Err(Broken::with_texts(name, "cannot be written", error.to_string(), "the file system"))
-            }
+        let written = film.write_png(&golden_file(name), gamma());
+        let broken = |error: io::Error| {
+            Broken::with_texts(name, "cannot be written", error.to_string(), "the file system")
         };
+        return written.map(|()| None).map_err(broken);
     }
-    let input = format!("the picture tests/golden/{name}.png");
-    let whole = match image::open(&golden_file) {
-        Ok(golden) => golden.to_rgb8(),
-        Err(error) => {
-            return Err(Broken::with_texts(input, "a picture", error.to_string(), "the golden picture"));
-        }
-    };
-    let golden = every_row(row_step, &whole);
+    let golden = every_row(row_step, &read_golden(name)?);
     if (golden.width(), golden.height()) != (film.width, film.height) {
         let size = |width: u32, height: u32| format!("{width} × {height} pixels");
         let (yours, theirs) = (size(film.width, film.height), size(golden.width(), golden.height()));
-        return Err(Broken::with_texts(input, yours, theirs, "the golden picture"));
+        return Err(Broken::with_texts(input(name), yours, theirs, "the golden picture"));
     }
-    Ok(Some((golden, whole.width() * whole.height())))
+    Ok(Some(golden))
 }
 
-fn golden_folder() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../golden"))
+fn golden_file(name: &str) -> PathBuf {
+    PathBuf::from(format!("{}/../golden/{name}.png", env!("CARGO_MANIFEST_DIR")))
+}
+
+fn read_golden(name: &str) -> Result<RgbImage, Broken> {
+    let golden = image::open(golden_file(name)).map_err(|error| {
+        Broken::with_texts(input(name), "a picture", error.to_string(), "the golden picture")
+    })?;
+    Ok(golden.to_rgb8())
+}
+
+fn input(name: &str) -> String {
+    format!("the picture tests/golden/{name}.png")
 }
 
 /// A picture and the one that is expected.
@@ -184,10 +162,6 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    fn input(&self) -> String {
-        format!("the picture tests/golden/{}.png", self.name)
-    }
-
     /// The message, with the pictures side by side: as a part of the message for the grader, else as a file that a line of
     /// the message names. `text` gets that line.
     fn broken(&self, yours: &[u8], text: impl FnOnce(String) -> Broken) -> Broken {
@@ -200,9 +174,10 @@ impl Pair<'_> {
     }
 }
 
-/// Compares two pictures pixel by pixel. A fraction `may_differ` of `n_pixels`, the pixels of the whole picture, may differ.
-fn judge(trial: &Trial<'_>, pair: &Pair<'_>, rays: &[Ray], may_differ: f64, n_pixels: u32) -> CheckResult {
+/// Compares two pictures pixel by pixel.
+fn judge(trial: &Trial<'_>, composed: &Composed<'_>, pair: &Pair<'_>) -> CheckResult {
     let Pair { film, golden, .. } = pair;
+    let Composed { size, rays, .. } = composed;
     let yours = film.to_bytes(gamma());
     let off: Vec<u8> = yours
         .rgb
@@ -212,7 +187,7 @@ fn judge(trial: &Trial<'_>, pair: &Pair<'_>, rays: &[Ray], may_differ: f64, n_pi
         .collect();
     let n_off = off.iter().filter(|&&off| off > CHANNEL_TOLERANCE).count();
     // The rows that are compared may contain all pixels that may differ.
-    let may_differ = may_differ * f64::from(n_pixels);
+    let may_differ = composed.may_differ * f64::from(size.width * size.height);
     if n_off as f64 <= may_differ && yours.not_a_number == 0 {
         return Ok(());
     }
@@ -229,7 +204,7 @@ fn judge(trial: &Trial<'_>, pair: &Pair<'_>, rays: &[Ray], may_differ: f64, n_pi
     };
     Err(pair.broken(&yours.rgb, |written| {
         Broken::with_texts(
-            format!("{}\n{written}{}", pair.input(), replay),
+            format!("{}\n{written}{replay}", input(pair.name)),
             format!(
                 "{n_off} of {} pixels differ, most at ({x}, {y}): {:?}{not_a_number}",
                 off.len(),

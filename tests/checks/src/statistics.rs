@@ -329,13 +329,9 @@ pub fn has_mean_within(
         return Ok(());
     }
     let input = format!("{what}: the mean over {} pairs u", values.len());
-    let broken = Broken::with_texts(
-        input,
-        format!("{mean:.5}"),
-        format!("{expected:.5}"),
-        "closed form; t-test, 1 false alarm in 10 million",
-    );
-    Err(broken.explained_by(mistakes(mean)))
+    let (yours, right) = (format!("{mean:.5}"), format!("{expected:.5}"));
+    let source = "closed form; t-test, 1 false alarm in 10 million";
+    Err(Broken::with_texts(input, yours, right, source).explained_by(mistakes(mean)))
 }
 
 /// The number of hits per column of the cells.

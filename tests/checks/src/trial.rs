@@ -3,6 +3,7 @@
 use crate::broken::{self, Broken, CheckResult};
 use crate::calls::{Calls, Recorder, breaking_call};
 use crate::drawn::{Drawn, Values};
+use crate::judge::{Refuted, compare};
 use crate::law::{self, Fails, judge_one};
 use crate::patience::{self, PATIENCE};
 use crate::picture::Replay;
@@ -186,6 +187,37 @@ impl<'a> Trial<'a> {
             tree.into_iter().for_each(|tree| law::shrink(tree, &judge, fails));
         };
         self.hold(chosen.len(), values.len(), &|range| judge(&values[range]), &size, &shrink)
+    }
+
+    /// Draws `cases` inputs, asks a function of the kit about all of them at once, and [judges](compare) each answer.
+    #[track_caller]
+    pub fn each<S: Strategy, A, R: Into<Refuted>>(
+        &self,
+        cases: usize,
+        inputs: S,
+        ask: impl Fn(&'a dyn Kit, &[S::Value]) -> Vec<A>,
+        judge: impl Fn(&S::Value, A) -> Result<R, Broken>,
+    ) -> CheckResult
+    where
+        S::Value: Clone + Send + Sync + 'static,
+    {
+        self.each_and(&[], cases, inputs, ask, judge)
+    }
+
+    /// The same as [`Trial::each`], with [chosen](Trial::forall_and) inputs before those that are drawn.
+    #[track_caller]
+    pub fn each_and<S: Strategy, A, R: Into<Refuted>>(
+        &self,
+        chosen: &[S::Value],
+        cases: usize,
+        inputs: S,
+        ask: impl Fn(&'a dyn Kit, &[S::Value]) -> Vec<A>,
+        judge: impl Fn(&S::Value, A) -> Result<R, Broken>,
+    ) -> CheckResult
+    where
+        S::Value: Clone + Send + Sync + 'static,
+    {
+        self.forall_and(chosen, cases, inputs, |queries| compare(queries, ask(self.kit, queries), &judge))
     }
 
     /// The part of [`Trial::forall`] that does not depend on the type of the inputs, so that it is compiled only once.

@@ -9,7 +9,7 @@
 //! vary more than their mean does if they are stratified, and second differences of neighbouring pixels also contain what the
 //! picture shows.
 
-use super::{Pair, Size, film_of_width, golden_picture, image_of, linear, replay};
+use super::{Pair, Size, film_of_width, golden_picture, image_of, input, linear, replay};
 use crate::broken::{Broken, CheckResult};
 use crate::trial::Trial;
 use glam::{DVec3, Vec3};
@@ -84,7 +84,7 @@ impl Sampled<'_> {
         let golden = match trial.expected(&samples) {
             Some(expected) => image_of(&film_of(&expected)),
             None => match golden_picture(1, self.name, &film)? {
-                Some((golden, _)) => golden,
+                Some(golden) => golden,
                 None => return Ok(()),
             },
         };
@@ -137,7 +137,7 @@ impl Sampled<'_> {
         let replay = if trial.is_public() { replay::command(trial.name, x, y) } else { String::new() };
         Err(pair.broken(&rgb, |written| {
             Broken::with_texts(
-                format!("{}\n{written}{replay}", pair.input()).trim_end(),
+                format!("{}\n{written}{replay}", input(pair.name)).trim_end(),
                 format!(
                     "the mean colours of {n_off} of {} blocks of {BLOCK} × {BLOCK} pixels differ, most from ({column}, \
                      {row}) on: {:.3}",

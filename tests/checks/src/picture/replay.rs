@@ -1,7 +1,7 @@
 //! One pixel of a picture, asked for again: `raykata check CHECK --pixel X,Y`.
 
-use super::{CHANNEL_TOLERANCE, Size, gamma, golden_folder, linear};
-use crate::broken::{Broken, CheckResult};
+use super::{CHANNEL_TOLERANCE, Size, gamma, linear, read_golden};
+use crate::broken::CheckResult;
 use glam::Vec3;
 use raykata::film::Film;
 use raykata::ray::Ray;
@@ -62,9 +62,7 @@ impl Replay {
         ray: Option<Ray>,
         color: impl FnOnce() -> Option<Vec3>,
     ) -> CheckResult {
-        let golden = image::open(golden_folder().join(format!("{name}.png")))
-            .map_err(|error| Broken::with_texts(name, "a picture", error.to_string(), "the golden picture"))?
-            .to_rgb8();
+        let golden = read_golden(name)?;
         let is_inside = self.x < golden.width() && self.y < golden.height();
         let expected = is_inside.then(|| linear(&golden, self.x, self.y));
         let keep = |yours| {

@@ -13,11 +13,6 @@ pub(super) trait Cells: Sized {
     fn turned(&self, symmetry: &Symmetry) -> (Self, Vec<u32>);
 }
 
-/// The numbers of structures whose nodes keep theirs.
-fn same(n: usize) -> Vec<u32> {
-    (0..n as u32).collect()
-}
-
 impl Cells for Grid {
     fn turned(&self, symmetry: &Symmetry) -> (Self, Vec<u32>) {
         let (bounds, resolution) = (symmetry.bounds(&self.bounds), symmetry.resolution(self.resolution));
@@ -54,15 +49,15 @@ impl Symmetry {
     }
 }
 
-/// A tree with turned nodes, in a turned cell.
-fn turned_tree<N>(tree: &CellTree<N>, nodes: Vec<N>, symmetry: &Symmetry) -> CellTree<N> {
-    let bounds = symmetry.bounds(&tree.bounds);
-    CellTree { bounds, tree: Tree { nodes, items: tree.items.clone() } }
+/// A tree whose nodes are turned and keep their numbers.
+fn turned_nodes<N>(tree: &Tree<N>, turn: impl Fn(&N) -> N) -> (Tree<N>, Vec<u32>) {
+    let nodes = tree.nodes.iter().map(turn).collect();
+    (Tree { nodes, items: tree.items.clone() }, (0..tree.nodes.len() as u32).collect())
 }
 
 impl Cells for Octree {
     fn turned(&self, symmetry: &Symmetry) -> (Self, Vec<u32>) {
-        let mut numbers = same(self.nodes.len());
+        let mut numbers: Vec<u32> = (0..self.nodes.len() as u32).collect();
         for node in &self.nodes {
             // A wrong tree may name octants that do not exist. The check judges it as it is.
             let OctreeNode::Inner { first } = *node else { continue };
@@ -72,7 +67,8 @@ impl Cells for Octree {
         let node = |before: &u32| self.nodes.get(*before as usize).copied();
         let empty = OctreeNode::Leaf { first: 0, count: 0 };
         let nodes = numbers.iter().map(|before| node(before).unwrap_or(empty)).collect();
-        (turned_tree(self, nodes, symmetry), numbers)
+        let tree = Tree { nodes, items: self.items.clone() };
+        (CellTree { bounds: symmetry.bounds(&self.bounds), tree }, numbers)
     }
 }
 
@@ -87,9 +83,8 @@ impl Cells for KdTree {
             }
             node => node,
         };
-        let nodes: Vec<KdNode> = self.nodes.iter().map(turn).collect();
-        let numbers = same(nodes.len());
-        (turned_tree(self, nodes, symmetry), numbers)
+        let (tree, numbers) = turned_nodes(self, turn);
+        (CellTree { bounds: symmetry.bounds(&self.bounds), tree }, numbers)
     }
 }
 
@@ -107,10 +102,8 @@ impl Cells for PolygonBsp {
             }
             node => node,
         };
-        let nodes: Vec<PolygonBspNode> = self.nodes.iter().map(turn).collect();
-        let numbers = same(nodes.len());
-        let room = f64::from(symmetry.scale) * self.room;
-        (PolygonBsp { tree: Tree { nodes, items: self.items.clone() }, room }, numbers)
+        let (tree, numbers) = turned_nodes(self, turn);
+        (PolygonBsp { tree, room: f64::from(symmetry.scale) * self.room }, numbers)
     }
 }
 
@@ -122,9 +115,7 @@ impl Cells for Bsp {
             }
             node => node,
         };
-        let nodes: Vec<BspNode> = self.nodes.iter().map(turn).collect();
-        let numbers = same(nodes.len());
-        (Bsp { nodes, items: self.items.clone() }, numbers)
+        turned_nodes(self, turn)
     }
 }
 

@@ -1,12 +1,7 @@
 //! The picture of stage 1.
 
-use checks::broken::CheckResult;
-use checks::picture::{Composed, LARGE};
-use checks::{Trial, picture};
-use glam::{Vec3, vec3};
-use raykata::kit::{Kit, PlaneQuery, SphereQuery};
-use raykata::ray::Ray;
-use raykata::shape::{Plane, Sphere};
+use checks::picture::{self, Composed, LARGE};
+use checks::prelude::*;
 
 fn colors(kit: &dyn Kit, rays: &[Ray], sphere: Sphere) -> Vec<Vec3> {
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
@@ -34,7 +29,7 @@ pub(super) fn picture_of_a_sphere_on_a_plane(trial: &Trial<'_>) -> CheckResult {
     let hidden = (-0.8..0.8f32, -0.8..0.8f32, 0.5..1.2f32);
     let (x, z, radius) = trial.composed((0.0, 0.0, 1.0), hidden);
     let sphere = Sphere { center: vec3(x, radius, z), radius };
-    let rays = picture::rays(trial, vec3(2.0, 2.5, 5.0), 0.8 * Vec3::Y);
+    let rays = picture::rays(trial, LARGE, vec3(2.0, 2.5, 5.0), 0.8 * Vec3::Y);
     // The outline of the sphere crosses about 60 of 4800 pixels. There rounding decides whether a ray hits or misses.
     let composed = Composed { name: "stage1_sphere_on_a_plane", size: LARGE, rays: &rays, may_differ: 0.001 };
     composed.check(trial, |kit| colors(kit, &rays, sphere))

@@ -1,16 +1,8 @@
 //! Ray-plane intersection with the plane as the equation A x + B y + C z + D = 0.
 
 use crate::planes::{along_planes, at_far_planes, at_planes, observations, of_tests};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::{self, Expected, Sum, U, compare_tolerant};
-use checks::generate::{direction, point};
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{PlaneEquationQuery, PlaneQuery};
-use raykata::ray::Ray;
+use checks::double::{self, Expected, Sum, compare_tolerant};
+use checks::prelude::*;
 use raykata::shape::PlaneEquation;
 
 type Case = (PlaneEquationQuery, Expected);

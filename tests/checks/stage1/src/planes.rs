@@ -2,18 +2,8 @@
 
 use crate::roots::T_ABOVE_0;
 use crate::sphere_mistakes::{DROPS_NEAR_HITS, EPSILONS};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::{self, Expected, LIMITS, U, compare_tolerant};
-use checks::generate::{direction, point, rough_point};
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::{Arguments, Paste};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::PlaneQuery;
-use raykata::ray::Ray;
-use raykata::shape::Plane;
+use checks::double::{self, Expected, LIMITS, compare_tolerant};
+use checks::prelude::*;
 
 type Case = (PlaneQuery, Expected);
 
@@ -219,8 +209,12 @@ pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Che
         (of_normal * normal, length * nasty::tilted(axis, angle, turn))
     });
     let drawn = [(2.0 * Vec3::Z, vec3(1.0, 0.0, 0.5)), (Vec3::Y, vec3(1.0, -3.0, 0.0))];
-    trial.forall_and(&drawn, 1500, prop_oneof![plain, sized], |queries| {
-        compare(queries, trial.kit.face_forward(queries), |(normal, direction), yours| {
+    trial.each_and(
+        &drawn,
+        1500,
+        prop_oneof![plain, sized],
+        <dyn Kit>::face_forward,
+        |(normal, direction), yours| {
             let [n, d] = [normal, direction].map(|v| v.as_dvec3());
             let expected = if n.dot(d) > 0.0 { -*normal } else { *normal };
             // Where the rounding of the dot product decides, and at a right angle, both sides are accepted.
@@ -238,6 +232,6 @@ pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Che
                 yours == *normal || (open && yours == -*normal),
                 "you return the normal as it is, also if it points away from the viewer",
             )])
-        })
-    })
+        },
+    )
 }

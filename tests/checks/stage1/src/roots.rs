@@ -1,14 +1,6 @@
 //! `nearest_root`: which of two roots is the hit.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::kit::RootQuery;
-use raykata::ray::Ray;
+use checks::prelude::*;
 
 const OPEN_AT_BOTH_ENDS: &str = "you return an end of the range, but the range is open at both ends";
 
@@ -87,7 +79,7 @@ pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> 
         RootQuery { roots: [0.5, 3.0], ray: ray.with_range(1.0, 4.0) },
         RootQuery { roots: [3.0, 0.5], ray: ray.with_range(1.0, 4.0) },
     ];
-    let root = || checks::generate::fractions(-24..=24, 8.0);
+    let root = || fractions(-24..=24, 8.0);
     let coarse = (root(), root(), 0..=8i32, 0..=24i32).prop_map(|(first, second, start, length)| {
         let (t_min, length) = (start as f32 / 8.0, length as f32 / 8.0);
         RootQuery { roots: [first, second], ray: ray.with_range(t_min, t_min + length) }

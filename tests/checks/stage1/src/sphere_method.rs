@@ -1,11 +1,8 @@
 //! The two methods of intersecting a sphere, and how the checks judge their answers.
 
 use crate::sphere_mistakes::{mistakes, observations};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::{self, Expected, U, compare_tolerant};
-use checks::paste::Arguments;
-use raykata::kit::{Kit, SphereQuery};
+use checks::double::{self, Expected, compare_tolerant};
+use checks::prelude::*;
 
 /// One of the two methods of intersecting a sphere.
 #[derive(Clone, Copy)]

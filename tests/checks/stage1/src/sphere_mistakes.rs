@@ -1,7 +1,7 @@
 //! Known mistakes in the intersection of a ray and a sphere, each with the answer that it gives.
 
 use crate::sphere_method::{Accepts, Quadratic};
-use raykata::kit::SphereQuery;
+use checks::prelude::*;
 
 /// A part of the line along the ray, without its ends.
 #[derive(Clone, Copy)]

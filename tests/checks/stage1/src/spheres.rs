@@ -1,17 +1,8 @@
 //! Ray-sphere intersection: each check for both methods.
 
 use crate::sphere_method::{Accepts, SphereFunction};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::generate::{direction, magnitude, point, ray, rough_point, sphere, unit};
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::{Arguments, call};
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::SphereQuery;
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
+use checks::generate::{ray, sphere, unit};
+use checks::prelude::*;
 
 fn query(origin: (f32, f32, f32), direction: Vec3, radius: f32) -> SphereQuery {
     let ray = Ray::new(vec3(origin.0, origin.1, origin.2), direction);
@@ -236,8 +227,12 @@ pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> CheckResult {
     );
     let at_the_origin = (Sphere { center: Vec3::ZERO, radius: 2.0 }, vec3(0.0, 2.0, 0.0));
     let beside = (Sphere { center: vec3(1.0, 2.0, 3.0), radius: 2.0 }, vec3(1.0, 2.0, 1.0));
-    trial.forall_and(&[beside, at_the_origin], 1500, inputs, |queries| {
-        compare(queries, trial.kit.sphere_normal(queries), |(sphere, point), yours| {
+    trial.each_and(
+        &[beside, at_the_origin],
+        1500,
+        inputs,
+        <dyn Kit>::sphere_normal,
+        |(sphere, point), yours| {
             let outwards = point.as_dvec3() - sphere.center.as_dvec3();
             let near = |exact: DVec3| {
                 // The difference of both points is rounded, and so are its length and the quotient.
@@ -257,6 +252,6 @@ pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> CheckResult {
                 near(point.as_dvec3().normalize_or_zero()),
                 "you return the direction from the world's origin: subtract the centre first",
             )])
-        })
-    })
+        },
+    )
 }

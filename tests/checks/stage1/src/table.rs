@@ -1,13 +1,8 @@
 //! The table of stage 1.
 
-use checks::broken::CheckResult;
 use checks::golden::{Table, digits};
-use checks::{Trial, nasty};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{Kit, PlaneEquationQuery, PlaneQuery, SphereQuery};
-use raykata::ray::Ray;
-use raykata::shape::{Plane, PlaneEquation, Sphere};
+use checks::prelude::*;
+use raykata::shape::PlaneEquation;
 
 /// The sphere, a point of the floor below it, a normal of the floor, and the origin of the rays.
 type Place = (Sphere, Vec3, Vec3, Vec3);

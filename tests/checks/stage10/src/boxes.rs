@@ -1,22 +1,13 @@
 //! The laws of `conservative_slab`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double;
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::Vec3;
+use checks::prelude::*;
 use oracle::STABLE;
 use oracle::exact::aabb::overlap;
 use oracle::exact::{Body, meet};
 use oracle::gauntlet::boxes::{at_a_corner, of_any_size};
 use oracle::splitmix::Random;
-use raykata::aabb::Aabb;
-use raykata::kit::SlabQuery;
-use raykata::ray::Ray;
 use raykata::rounding::{UNIT_ROUNDOFF, gamma};
-use raykata::shape::Triangle;
 
 /// A slab test in single precision with one mistake.
 #[derive(Clone, Copy, PartialEq)]

@@ -1,20 +1,11 @@
 //! The laws of `triangle_in_double`, and special numbers as input of both functions in double precision.
 
 use super::triangles::{aim_again, draw};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::U;
-use checks::judge::{compare, compare_formulas, unless};
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::Vec3;
+use checks::prelude::*;
 use oracle::STABLE;
 use oracle::exact::{Body, meet, t_error_in_ulps, t_in_double, triangle, verdict};
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
 use oracle::splitmix::Random;
-use raykata::kit::{TriangleHit, TriangleQuery};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 
 /// The largest margin, in roundings of single precision, at which a verdict in double precision may be wrong. A
 /// rounding in double precision is 2^-29 of one in single precision. Of 192,000 inputs, the method of plane and Gram
@@ -303,12 +294,8 @@ pub(super) fn judge_weights(
         let describe = |beta: f64, gamma: f64| format!("β = {beta}, γ = {gamma}");
         let alpha = 1.0 - beta - gamma;
         unless(is(beta, gamma), || {
-            Broken::with_texts(
-                query.call(function),
-                describe(yours.beta.into(), yours.gamma.into()),
-                describe(beta, gamma),
-                "exactly",
-            )
+            let (yours, expected) = (describe(yours.beta.into(), yours.gamma.into()), describe(beta, gamma));
+            Broken::with_texts(query.call(function), yours, expected, "exactly")
         })
         .formulas([
             (is(gamma, beta), "you exchange β and γ: β belongs to corner b, and γ to corner c"),

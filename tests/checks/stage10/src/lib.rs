@@ -16,12 +16,8 @@ mod roots;
 mod table;
 mod triangles;
 
-use checks::Trial;
-use glam::Vec3;
+use checks::prelude::*;
 use oracle::splitmix::Random;
-use raykata::kit::TriangleQuery;
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 
 /// Numbers for which formulas often fail.
 const SPECIAL: [f32; 10] =

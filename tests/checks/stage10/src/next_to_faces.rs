@@ -1,16 +1,9 @@
 //! Rays that start so near to a face of a closed mesh that rounding errors decide on which side of the face they start.
 
 use super::triangles::judge_hit_point;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::paste::Arguments;
-use glam::Vec3;
+use checks::prelude::*;
 use oracle::exact::{Body, verdict};
 use oracle::splitmix::Random;
-use raykata::kit::{Request, TriangleQuery};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 
 /// Vectors of whole numbers, which are exact.
 type Whole = [i128; 3];
@@ -146,15 +139,11 @@ pub(super) fn hits_a_corner_seen_edge_on(trial: &Trial<'_>) -> CheckResult {
             TriangleQuery { ray: Ray::new(Vec3::ZERO, b), triangle: Triangle { a, b, c } }
         })
         .collect();
+    let expected = "a hit of the second corner at t = 1";
     all_hold(compare(&queries, trial.kit.watertight(&queries), |query, yours| match yours {
         // Another check judges the digits of t.
         Some(hit) if (hit.t - 1.0).abs() < 1e-3 => Ok(()),
-        _ => Err(Broken::new(
-            query.call("watertight"),
-            yours,
-            "a hit of the second corner at t = 1",
-            "exactly",
-        )),
+        _ => Err(Broken::new(query.call("watertight"), yours, expected, "exactly")),
     }))
 }
 

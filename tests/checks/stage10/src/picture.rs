@@ -1,14 +1,8 @@
 //! The picture of stage 10: a third of it is scaled down, and a third of it up, by powers of two. No seam may be visible.
 
-use checks::broken::CheckResult;
-use checks::picture::{Composed, SMALL};
-use checks::{Trial, picture};
-use glam::{Quat, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::kit::{Kit, OffsetQuery, SlabQuery, SphereQuery, TriangleQuery};
-use raykata::ray::Ray;
-use raykata::shape::{Sphere, Triangle};
+use checks::picture::{self, Composed, SMALL};
+use checks::prelude::*;
+use glam::Quat;
 
 /// The scene in its plain size.
 #[derive(Clone, Copy, Debug)]
@@ -203,7 +197,7 @@ pub(super) fn picture_at_three_scales(trial: &Trial<'_>) -> CheckResult {
             sphere: Sphere { center: vec3(0.95, radius, 0.45), radius },
         });
     let place = trial.composed(public, hidden);
-    let rays = picture::rays_of(trial, SMALL, vec3(0.5, 2.7, 5.2), vec3(0.1, 0.7, 0.0));
+    let rays = picture::rays(trial, SMALL, vec3(0.5, 2.7, 5.2), vec3(0.1, 0.7, 0.0));
     let part = |index: usize| 3 * picture::column(trial, SMALL, index) / SMALL.width as usize;
     let colors = |kit: &dyn Kit| {
         let mut colors = vec![Vec3::ZERO; rays.len()];

@@ -1,20 +1,7 @@
 //! The laws of `offset_origin` and `safe_normalize`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::U;
-use checks::judge::{compare, unless};
-use checks::nasty;
 use checks::offset::Start;
-use checks::paste::call;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{OffsetQuery, Surface};
-use raykata::ray::Ray;
-
-fn describe(query: &OffsetQuery) -> String {
-    call("offset_origin", &[&query.point, &query.error, &query.normal, &query.direction])
-}
+use checks::prelude::*;
 
 /// Points with another error on each axis, at all scales, and directions down to 0.001 above the surface on either side.
 fn surfaces() -> impl Strategy<Value = OffsetQuery> + Clone {
@@ -85,7 +72,7 @@ fn judge_heights(
         let start = start(query, origin);
         let broken = || {
             let yours = format!("{:.3e} off the point", start.height());
-            Broken::with_texts(describe(query), yours, expected(&start), "closed form")
+            Broken::with_texts(query.call("offset_origin"), yours, expected(&start), "closed form")
                 .explained_by(observations(query, origin))
         };
         unless(is_right(query, origin), broken).formulas(start.mistakes())

@@ -1,19 +1,11 @@
 //! The laws of `sphere_in_double`.
 
 use super::doubles::{SINGLE, describe, err_both_ways};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::{U, sphere_roots};
-use checks::judge::{compare, compare_formulas};
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::{DVec3, Vec3};
+use checks::double::sphere_roots;
+use checks::prelude::*;
 use oracle::STABLE;
 use oracle::exact::{Body, Meeting, meet, sphere, t_in_double};
 use oracle::splitmix::Random;
-use raykata::kit::SphereQuery;
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 /// A verdict may be wrong if r² and |f⊥|² differ by less than this fraction of |f|², where f goes from the centre to
 /// the origin. The simplest method, b² - a c in double precision, has an error of at most 16 times 2^-53 there, because

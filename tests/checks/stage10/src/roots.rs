@@ -1,13 +1,7 @@
 //! The laws of `stable_roots`.
 
 use super::Odd;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::U;
-use checks::generate::magnitude;
-use checks::judge::{compare, unless};
-use checks::paste::call;
-use proptest::prelude::*;
+use checks::prelude::*;
 
 type Coefficients = [f32; 3];
 
@@ -134,39 +128,37 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> CheckResult {
             let (a, p, scale) = (a as f32, p as f32, 2f32.powi(exponent));
             [a, -2.0 * a * p, a * p * p + step as f32].map(|x| scale * x)
         });
-    trial.forall(2000, queries, |queries| {
-        compare(queries, trial.kit.stable_roots(queries), |query, yours| {
-            let (value, _) = discriminant(*query);
-            let exact = roots(*query);
-            let double = value == 0.0;
-            // The double root of the parabola with the same axis that touches.
-            let axis = -f64::from(query[1]) / (2.0 * f64::from(query[0]));
-            let touches = yours.is_some_and(|yours| are_near(yours, [axis, axis]));
-            let band = (!double && touches, "you treat a discriminant near 0 as 0: it is not 0");
-            let broken = |expected: String| {
-                Broken::with_texts(describe(query), format!("{yours:?}"), expected, "whole numbers, exactly")
-            };
-            match yours {
-                None if value < 0.0 => Ok(()),
-                Some(_) if value < 0.0 => Err(broken("None".into())
-                    .explained_by([band, (true, "you return roots although the discriminant is below 0")])),
-                None => Err(broken(format!("{exact:?}")).explained_by([
-                    (double, "a double root is a root: the parabola touches the axis"),
-                    (!double, "you return None although the discriminant is above 0"),
-                    (true, "you return None although the discriminant is not below 0"),
-                ])),
-                Some(yours) if are_near(yours, exact) => Ok(()),
-                Some(yours) => {
-                    let one = near(yours[0], exact[0]) != near(yours[1], exact[1]);
-                    let twice = (
-                        double && one && !yours.map(f32::is_nan).contains(&true),
-                        "return a double root twice: only one of yours is right",
-                    );
-                    let shown = mistakes(query, yours, exact).0.into_iter().filter(|_| !double);
-                    Err(broken(format!("{exact:?}")).explained_by([band, twice].into_iter().chain(shown)))
-                }
+    trial.each(2000, queries, <dyn Kit>::stable_roots, |query, yours| {
+        let (value, _) = discriminant(*query);
+        let exact = roots(*query);
+        let double = value == 0.0;
+        // The double root of the parabola with the same axis that touches.
+        let axis = -f64::from(query[1]) / (2.0 * f64::from(query[0]));
+        let touches = yours.is_some_and(|yours| are_near(yours, [axis, axis]));
+        let band = (!double && touches, "you treat a discriminant near 0 as 0: it is not 0");
+        let broken = |expected: String| {
+            Broken::with_texts(describe(query), format!("{yours:?}"), expected, "whole numbers, exactly")
+        };
+        match yours {
+            None if value < 0.0 => Ok(()),
+            Some(_) if value < 0.0 => Err(broken("None".into())
+                .explained_by([band, (true, "you return roots although the discriminant is below 0")])),
+            None => Err(broken(format!("{exact:?}")).explained_by([
+                (double, "a double root is a root: the parabola touches the axis"),
+                (!double, "you return None although the discriminant is above 0"),
+                (true, "you return None although the discriminant is not below 0"),
+            ])),
+            Some(yours) if are_near(yours, exact) => Ok(()),
+            Some(yours) => {
+                let one = near(yours[0], exact[0]) != near(yours[1], exact[1]);
+                let twice = (
+                    double && one && !yours.map(f32::is_nan).contains(&true),
+                    "return a double root twice: only one of yours is right",
+                );
+                let shown = mistakes(query, yours, exact).0.into_iter().filter(|_| !double);
+                Err(broken(format!("{exact:?}")).explained_by([band, twice].into_iter().chain(shown)))
             }
-        })
+        }
     })
 }
 

@@ -1,14 +1,7 @@
 //! The table of stage 10: the same questions at scales from 2^-60 to 2^60, whose answers are scaled back.
 
-use checks::Trial;
-use checks::broken::CheckResult;
 use checks::golden::{Table, digits};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::kit::{Kit, SlabQuery, SphereQuery, TriangleQuery};
-use raykata::ray::Ray;
-use raykata::shape::{Sphere, Triangle};
+use checks::prelude::*;
 
 /// The exponents of the scales.
 const EXPONENTS: [i32; 7] = [-60, -40, -20, 0, 20, 40, 60];

@@ -5,11 +5,7 @@ use super::doubles::{judge_ends, judge_weights};
 use super::next_to_faces::{
     hits_a_corner_seen_edge_on, passes_beside_a_triangle_seen_edge_on, starts_next_to_a_face,
 };
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::paste::{Arguments, Paste};
-use glam::{Vec3, vec3};
+use checks::prelude::*;
 use oracle::STABLE;
 use oracle::exact::{Body, meet, t_in_double, triangle, verdict};
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
@@ -17,9 +13,6 @@ use oracle::gauntlet::families::families;
 use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::gauntlet::meshes::{Closed, closed};
 use oracle::splitmix::Random;
-use raykata::kit::{Kit, Request, TriangleHit, TriangleQuery};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 
 /// Inputs of a distribution of the gauntlet.
 pub(super) fn draw(trial: &Trial<'_>, name: &str, count: usize) -> Vec<TriangleQuery> {
@@ -81,13 +74,9 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
             let Triangle { a, b, c } = query.triangle;
             let normal = (b - a).cross(c - a);
             let underflows = normal == Vec3::ZERO || !normal.is_finite();
-            Err(Broken::with_texts(
-                query.call("watertight"),
-                format!("{:?}", yours.map(|hit| hit.t)),
-                format!("{:?}, {margin:.0} roundings from the opposite answer", exact.t),
-                "exactly",
-            )
-            .explained_by([
+            let expected = format!("{:?}, {margin:.0} roundings from the opposite answer", exact.t);
+            let yours_t = format!("{:?}", yours.map(|hit| hit.t));
+            Err(Broken::with_texts(query.call("watertight"), yours_t, expected, "exactly").explained_by([
                 (
                     yours.is_some() && on_the_line,
                     "you return a hit behind the origin or beyond the range: t counts only within the range of the ray",
@@ -158,13 +147,9 @@ pub(super) fn judge_hit_point(query: &TriangleQuery, yours: Option<TriangleHit>)
     if yours.as_ref().is_none_or(is_inside) {
         return Ok(());
     }
-    Err(Broken::with_texts(
-        query.call("watertight"),
-        format!("{yours:?}"),
-        "None, or β >= 0, γ >= 0 and β + γ <= 1",
-        "the definition",
-    )
-    .explained_by([(true, "you return a hit outside of the triangle: β, γ or 1 - β - γ is negative")]))
+    let expected = "None, or β >= 0, γ >= 0 and β + γ <= 1";
+    Err(Broken::with_texts(query.call("watertight"), format!("{yours:?}"), expected, "the definition")
+        .explained_by([(true, "you return a hit outside of the triangle: β, γ or 1 - β - γ is negative")]))
 }
 
 fn mesh_does_not_leak(trial: &Trial<'_>, mesh: &Closed) -> CheckResult {

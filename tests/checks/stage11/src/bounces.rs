@@ -1,52 +1,39 @@
 //! The light that paths of limited length miss.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::generate::magnitude;
-use checks::judge::{Judged, compare, unless};
-use proptest::prelude::*;
+use checks::prelude::*;
 
 pub(super) fn cut_off_is_the_light_beyond_the_last_bounce(trial: &Trial<'_>) -> CheckResult {
-    let albedo = prop_oneof![4 => checks::generate::fractions(0..=16, 16.0), 1 => 0.9..1.0f32];
+    let albedo = prop_oneof![4 => fractions(0..=16, 16.0), 1 => 0.9..1.0f32];
     let bounces = prop_oneof![6 => 0..12u32, 2 => 12..3000u32, 1 => Just(u32::MAX)];
-    trial.forall(300, (albedo, bounces), |queries| {
-        let power = |albedo: f32, exponent: f64| f64::from(albedo).powf(exponent);
-        let near = |yours: f32, expected: f64| {
-            // The doc comment states these bounds.
-            (f64::from(yours) - expected).abs() <= (1e-4 * expected).max(1e-6)
+    let power = |albedo: f32, exponent: f64| f64::from(albedo).powf(exponent);
+    let near = |yours: f32, expected: f64| {
+        // The doc comment states these bounds.
+        (f64::from(yours) - expected).abs() <= (1e-4 * expected).max(1e-6)
+    };
+    trial.each(300, (albedo, bounces), <dyn Kit>::cut_off, |(albedo, bounces), yours| {
+        let n = f64::from(*bounces);
+        let whole = 1.0 / (1.0 - f64::from(*albedo));
+        let rest = power(*albedo, n + 1.0);
+        let input = || format!("cut_off({albedo:?}, {bounces})");
+        let overflow = *bounces == u32::MAX && yours == 1.0;
+        let broken = || {
+            Broken::new(input(), yours, rest, "albedo^(bounces + 1)")
+                .explained_by([(overflow, "bounces + 1 overflows: add in a larger type")])
         };
-        compare(queries, trial.kit.cut_off(queries), |(albedo, bounces), yours| {
-            let n = f64::from(*bounces);
-            let whole = 1.0 / (1.0 - f64::from(*albedo));
-            let rest = power(*albedo, n + 1.0);
-            let input = || format!("cut_off({albedo:?}, {bounces})");
-            let overflow = *bounces == u32::MAX && yours == 1.0;
-            let broken = || {
-                Broken::new(input(), yours, rest, "albedo^(bounces + 1)")
-                    .explained_by([(overflow, "bounces + 1 overflows: add in a larger type")])
-            };
-            unless(near(yours, rest), broken).formulas([
-                (
-                    near(yours, power(*albedo, n)),
-                    "the power is bounces: it is bounces + 1, because light is also seen directly",
-                ),
-                (near(yours, power(*albedo, n + 2.0)), "the power is bounces + 2: it is bounces + 1"),
-                (
-                    near(yours, 1.0 - rest),
-                    "you return the fraction that is found, not the one that is missing",
-                ),
-                (
-                    near(yours, rest * whole) || (*albedo == 1.0 && !yours.is_finite()),
-                    "you return the missing light, not its fraction of all light",
-                ),
-                (near(yours, f64::from(*albedo) * (n + 1.0)), "you multiply where a power is needed"),
-            ])
-        })
+        unless(near(yours, rest), broken).formulas([
+            (
+                near(yours, power(*albedo, n)),
+                "the power is bounces: it is bounces + 1, because light is also seen directly",
+            ),
+            (near(yours, power(*albedo, n + 2.0)), "the power is bounces + 2: it is bounces + 1"),
+            (near(yours, 1.0 - rest), "you return the fraction that is found, not the one that is missing"),
+            (
+                near(yours, rest * whole) || (*albedo == 1.0 && !yours.is_finite()),
+                "you return the missing light, not its fraction of all light",
+            ),
+            (near(yours, f64::from(*albedo) * (n + 1.0)), "you multiply where a power is needed"),
+        ])
     })
-}
-
-fn paste((albedo, error): &(f32, f32)) -> String {
-    format!("bounces_for_error({albedo:?}, {error:?})")
 }
 
 /// Judges a number of bounces by its definition.
@@ -65,10 +52,11 @@ fn judge(query: &(f32, f32), yours: u32) -> Judged {
     let expected = format!("about {estimate}, the smallest n with albedo^(n + 1) <= error");
     let right = is_enough && is_smallest;
     let broken = || {
-        Broken::with_texts(paste(query), format!("{yours}"), expected, "the definition").explained_by([
-            (yours == u32::MAX, "there is a number that is enough"),
-            (yours == 0 && estimate > 0.0, "0 bounces are not enough here"),
-        ])
+        Broken::with_texts(query.call("bounces_for_error"), format!("{yours}"), expected, "the definition")
+            .explained_by([
+                (yours == u32::MAX, "there is a number that is enough"),
+                (yours == 0 && estimate > 0.0, "0 bounces are not enough here"),
+            ])
     };
     unless(right, broken).formulas([
         (
@@ -82,18 +70,16 @@ fn judge(query: &(f32, f32), yours: u32) -> Judged {
 pub(super) fn bounces_for_error_is_the_smallest_number(trial: &Trial<'_>) -> CheckResult {
     // Next to 1 a bounce loses so little that logarithms in single precision are off by many bounces.
     let next_to_one = magnitude(-7.0, -2.0).prop_map(|loss| 1.0 - loss);
-    let albedo = || prop_oneof![4 => checks::generate::fractions(1..=15, 16.0), 2 => 0.02..0.999f32, 1 => next_to_one.clone()];
+    let albedo = || prop_oneof![4 => fractions(1..=15, 16.0), 2 => 0.02..0.999f32, 1 => next_to_one.clone()];
     let drawn = (albedo(), magnitude(-6.0, 0.0));
     // Errors that are exactly a power of the albedo: one bounce more or less is wrong.
     let exact = (prop::sample::select(vec![0.5f32, 0.25, 0.125]), 1..9i32)
         .prop_map(|(albedo, power)| (albedo, albedo.powi(power)));
-    trial.forall(400, prop_oneof![3 => drawn, 1 => exact], |queries| {
-        compare(queries, trial.kit.bounces_for_error(queries), judge)
-    })
+    trial.each(400, prop_oneof![3 => drawn, 1 => exact], <dyn Kit>::bounces_for_error, judge)
 }
 
 pub(super) fn bounces_for_error_at_the_limits(trial: &Trial<'_>) -> CheckResult {
-    let share = || checks::generate::fractions(1..=64, 64.0);
+    let share = || fractions(1..=64, 64.0);
     // All light stays in the room (albedo 1), none is reflected (0), no error is allowed (0), and any error is (1).
     let cases = (0..5i32, share()).prop_map(|(which, share)| match which {
         0 => (1.0, (share - 1.0 / 64.0).min(0.98)),
@@ -102,24 +88,22 @@ pub(super) fn bounces_for_error_at_the_limits(trial: &Trial<'_>) -> CheckResult 
         3 => (share, 1.0),
         _ => (0.5, 0.5f32.powi(3)),
     });
-    trial.forall(300, cases, |queries| {
-        compare(queries, trial.kit.bounces_for_error(queries), |query, yours| {
-            let (albedo, error) = *query;
-            let expected = match () {
-                () if albedo <= error => 0,
-                () if error == 0.0 || albedo == 1.0 => u32::MAX,
-                // 0.5^(2 + 1)
-                () => 2,
-            };
-            if yours == expected {
-                return Ok(());
-            }
-            Err(Broken::new(paste(query), yours, expected, "the definition").explained_by([
-                (albedo == 1.0, "at an albedo of 1 all light is missing, however many bounces there are"),
-                (albedo == 0.0, "at an albedo of 0 nothing is reflected: 0 bounces are enough"),
-                (error == 0.0, "with an error of 0 no number is enough"),
-                (error == 1.0, "an error of 1 allows 0 bounces"),
-            ]))
-        })
+    trial.each(300, cases, <dyn Kit>::bounces_for_error, |query, yours| {
+        let (albedo, error) = *query;
+        let expected = match () {
+            () if albedo <= error => 0,
+            () if error == 0.0 || albedo == 1.0 => u32::MAX,
+            // 0.5^(2 + 1)
+            () => 2,
+        };
+        if yours == expected {
+            return Ok(());
+        }
+        Err(Broken::new(query.call("bounces_for_error"), yours, expected, "the definition").explained_by([
+            (albedo == 1.0, "at an albedo of 1 all light is missing, however many bounces there are"),
+            (albedo == 0.0, "at an albedo of 0 nothing is reflected: 0 bounces are enough"),
+            (error == 0.0, "with an error of 0 no number is enough"),
+            (error == 1.0, "an error of 1 allows 0 bounces"),
+        ]))
     })
 }

@@ -1,13 +1,12 @@
 //! What the paths of a scene need: `paths_called_for`, by scenes whose answer follows from how they were made.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use glam::{Affine3A, Vec3, vec3};
+use checks::prelude::*;
+use glam::Affine3A;
 use raykata::camera::{Camera, Shutter};
 use raykata::light_path::PathEffects;
 use raykata::material::{AreaShape, Emitter, Falloff, Light, Material};
 use raykata::scene::{Background, EnvironmentMap, Gradient, Node, Scene, VisibleLight};
-use raykata::shape::{Plane, PlaneEquation, Shape, Sphere};
+use raykata::shape::{PlaneEquation, Shape};
 
 const RED: Vec3 = Vec3::X;
 const GREEN: Vec3 = Vec3::Y;
@@ -148,46 +147,44 @@ pub(super) fn no_paths_without_indirect_light(trial: &Trial<'_>) -> CheckResult 
     black_lights.lights.push(Light { intensity: 0.0, ..light(Vec3::ONE) });
     let mut ambient = scene(&[wall()]);
     ambient.ambient = Vec3::ONE;
-    judge_all(
-        trial,
-        vec![
-            case("a diffuse sphere and one that emits light, with indirect light", lit, BOTH, &[]),
-            case(
-                "the same without indirect light",
-                off,
-                NOTHING,
-                &[(BOTH, OFF), (WALL, OFF), ((&[], &[2], false), OFF)],
-            ),
-            case(
-                "the same with max_depth 0",
-                shallow,
-                NOTHING,
-                &[(BOTH, FLAT), (WALL, FLAT), ((&[], &[2], false), FLAT)],
-            ),
-            case("a diffuse sphere in the dark", scene(&[wall()]), NOTHING, &[(WALL, DARK)]),
-            case(
-                "a sphere that emits light and reflects none",
-                scene(&[emitter()]),
-                NOTHING,
-                &[
-                    ((&[], &[1], false), "a light is sampled only if a surface reflects its light"),
-                    (WALL, "a black surface reflects no light"),
-                ],
-            ),
-            case(
-                "a diffuse sphere under a black light and one of intensity 0",
-                black_lights,
-                NOTHING,
-                &[(WALL, "these lights emit nothing: use radiance()"), (WALL, DARK)],
-            ),
-            case(
-                "a diffuse sphere in ambient light",
-                ambient,
-                NOTHING,
-                &[(WALL, "ambient light stands for indirect light: it is not a source of it"), (WALL, DARK)],
-            ),
-        ],
-    )
+    let cases = vec![
+        case("a diffuse sphere and one that emits light, with indirect light", lit, BOTH, &[]),
+        case(
+            "the same without indirect light",
+            off,
+            NOTHING,
+            &[(BOTH, OFF), (WALL, OFF), ((&[], &[2], false), OFF)],
+        ),
+        case(
+            "the same with max_depth 0",
+            shallow,
+            NOTHING,
+            &[(BOTH, FLAT), (WALL, FLAT), ((&[], &[2], false), FLAT)],
+        ),
+        case("a diffuse sphere in the dark", scene(&[wall()]), NOTHING, &[(WALL, DARK)]),
+        case(
+            "a sphere that emits light and reflects none",
+            scene(&[emitter()]),
+            NOTHING,
+            &[
+                ((&[], &[1], false), "a light is sampled only if a surface reflects its light"),
+                (WALL, "a black surface reflects no light"),
+            ],
+        ),
+        case(
+            "a diffuse sphere under a black light and one of intensity 0",
+            black_lights,
+            NOTHING,
+            &[(WALL, "these lights emit nothing: use radiance()"), (WALL, DARK)],
+        ),
+        case(
+            "a diffuse sphere in ambient light",
+            ambient,
+            NOTHING,
+            &[(WALL, "ambient light stands for indirect light: it is not a source of it"), (WALL, DARK)],
+        ),
+    ];
+    judge_all(trial, cases)
 }
 
 pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckResult {
@@ -207,58 +204,56 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
     let mut glass =
         scene(&[(sphere(), Material { transmission: one, specular: one, ..diffuse(zero) }), wall()]);
     glass.lights.push(light(one));
-    judge_all(
-        trial,
-        vec![
-            case("a diffuse sphere under a red light", lit, WALL, &[(NOTHING, LIGHTS)]),
-            sky("a diffuse sphere under a grey sky", Background::Color(0.1 * one)),
-            sky("a diffuse sphere over a bright ground", gradient(zero, zero, one)),
-            sky("a diffuse sphere under a bright zenith", gradient(one, zero, zero)),
-            sky("a diffuse sphere before a bright horizon", gradient(zero, GREEN, zero)),
-            case(
-                "a diffuse sphere in a black gradient",
-                with(gradient(zero, zero, zero)),
-                NOTHING,
-                &[(WALL, "a black gradient is no light")],
-            ),
-            case(
-                "a diffuse sphere in an environment map",
-                with(map(1.0)),
-                WITH_MAP,
-                &[BACKGROUND, (WALL, "an environment map is sampled")],
-            ),
-            case(
-                "a diffuse sphere in an environment map of scale 0",
-                with(map(0.0)),
-                NOTHING,
-                &[
-                    (WALL, "a map of scale 0 is no light"),
-                    (WITH_MAP, "a map of scale 0 is no light"),
-                    ((&[], &[], true), "a map of scale 0 is no light"),
-                ],
-            ),
-            case(
-                "a diffuse sphere and a mirror under a light",
-                mirror,
-                WALL,
-                &[((&[1, 2], &[], false), "a mirror sends no diffuse rays"), (NOTHING, LIGHTS)],
-            ),
-            case(
-                "a glass sphere with a highlight, and a diffuse one",
-                glass,
-                (&[2], &[], false),
-                &[((&[1, 2], &[], false), "glass and highlights send no diffuse rays"), (NOTHING, LIGHTS)],
-            ),
-            sky(
-                "a diffuse sphere in a gradient whose zenith and horizon have the same colour",
-                gradient(one, one, zero),
-            ),
-            sky(
-                "a diffuse sphere in a gradient whose horizon and nadir have the same colour",
-                gradient(zero, one, one),
-            ),
-        ],
-    )
+    let cases = vec![
+        case("a diffuse sphere under a red light", lit, WALL, &[(NOTHING, LIGHTS)]),
+        sky("a diffuse sphere under a grey sky", Background::Color(0.1 * one)),
+        sky("a diffuse sphere over a bright ground", gradient(zero, zero, one)),
+        sky("a diffuse sphere under a bright zenith", gradient(one, zero, zero)),
+        sky("a diffuse sphere before a bright horizon", gradient(zero, GREEN, zero)),
+        case(
+            "a diffuse sphere in a black gradient",
+            with(gradient(zero, zero, zero)),
+            NOTHING,
+            &[(WALL, "a black gradient is no light")],
+        ),
+        case(
+            "a diffuse sphere in an environment map",
+            with(map(1.0)),
+            WITH_MAP,
+            &[BACKGROUND, (WALL, "an environment map is sampled")],
+        ),
+        case(
+            "a diffuse sphere in an environment map of scale 0",
+            with(map(0.0)),
+            NOTHING,
+            &[
+                (WALL, "a map of scale 0 is no light"),
+                (WITH_MAP, "a map of scale 0 is no light"),
+                ((&[], &[], true), "a map of scale 0 is no light"),
+            ],
+        ),
+        case(
+            "a diffuse sphere and a mirror under a light",
+            mirror,
+            WALL,
+            &[((&[1, 2], &[], false), "a mirror sends no diffuse rays"), (NOTHING, LIGHTS)],
+        ),
+        case(
+            "a glass sphere with a highlight, and a diffuse one",
+            glass,
+            (&[2], &[], false),
+            &[((&[1, 2], &[], false), "glass and highlights send no diffuse rays"), (NOTHING, LIGHTS)],
+        ),
+        sky(
+            "a diffuse sphere in a gradient whose zenith and horizon have the same colour",
+            gradient(one, one, zero),
+        ),
+        sky(
+            "a diffuse sphere in a gradient whose horizon and nadir have the same colour",
+            gradient(zero, one, one),
+        ),
+    ];
+    judge_all(trial, cases)
 }
 
 pub(super) fn paths_are_called_for_channel_by_channel(trial: &Trial<'_>) -> CheckResult {
@@ -273,37 +268,35 @@ pub(super) fn paths_are_called_for_channel_by_channel(trial: &Trial<'_>) -> Chec
     let mixed = scene(&[wall(GREEN), emitter(RED + GREEN)]);
     let sky = Scene { background: Background::Color(GREEN), ..scene(&[wall(GREEN), emitter(RED)]) };
     const UNREFLECTED: &str = "nothing reflects the light of the map";
-    judge_all(
-        trial,
-        vec![
-            case(
-                "a green and a red sphere under a red light",
-                red_light,
-                (&[2], &[], false),
-                &[((&[1, 2], &[], false), CHANNELS)],
-            ),
-            case(
-                "a green sphere and a red emitter",
-                scene(&[wall(GREEN), emitter(RED)]),
-                NOTHING,
-                &[(BOTH, CHANNELS), ((&[], &[2], false), CHANNELS), (WALL, CHANNELS)],
-            ),
-            case(
-                "a red sphere, a green emitter and a red emitter",
-                two,
-                (&[1], &[3], false),
-                &[((&[1], &[2, 3], false), CHANNELS)],
-            ),
-            case("a green sphere and a yellow emitter", mixed, BOTH, &[]),
-            case("a green sphere and a red emitter under a green sky", sky, WALL, &[(BOTH, CHANNELS)]),
-            case(
-                "a black sphere in an environment map",
-                black,
-                NOTHING,
-                &[((&[], &[], true), UNREFLECTED), ((&[1], &[], true), UNREFLECTED)],
-            ),
-        ],
-    )
+    let cases = vec![
+        case(
+            "a green and a red sphere under a red light",
+            red_light,
+            (&[2], &[], false),
+            &[((&[1, 2], &[], false), CHANNELS)],
+        ),
+        case(
+            "a green sphere and a red emitter",
+            scene(&[wall(GREEN), emitter(RED)]),
+            NOTHING,
+            &[(BOTH, CHANNELS), ((&[], &[2], false), CHANNELS), (WALL, CHANNELS)],
+        ),
+        case(
+            "a red sphere, a green emitter and a red emitter",
+            two,
+            (&[1], &[3], false),
+            &[((&[1], &[2, 3], false), CHANNELS)],
+        ),
+        case("a green sphere and a yellow emitter", mixed, BOTH, &[]),
+        case("a green sphere and a red emitter under a green sky", sky, WALL, &[(BOTH, CHANNELS)]),
+        case(
+            "a black sphere in an environment map",
+            black,
+            NOTHING,
+            &[((&[], &[], true), UNREFLECTED), ((&[1], &[], true), UNREFLECTED)],
+        ),
+    ];
+    judge_all(trial, cases)
 }
 
 pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckResult {
@@ -340,71 +333,65 @@ pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckRe
     const SHOWN: &str = "only shapes that a root reaches are shown: use scene.shown()";
     let sampled = |what, scene, mistake| case(what, scene, BOTH, &[(WALL, mistake)]);
     let not_sampled = |what, scene, mistake| case(what, scene, WALL, &[(BOTH, mistake)]);
-    judge_all(
-        trial,
-        vec![
-            not_sampled(
-                "a diffuse sphere and a plane that emits light",
-                plain,
-                "an infinite plane is not sampled",
-            ),
-            not_sampled(
-                "a diffuse sphere and a plane, given by its equation, that emits light",
-                equation,
-                "an infinite plane is not sampled, also one that is given by its equation",
-            ),
-            sampled(
-                "a diffuse sphere, and a plane and a sphere of the same glowing material",
-                both,
-                "a material is sampled if one of its shapes can be",
-            ),
-            case(
-                "a diffuse sphere and an emitter that no root reaches, under a sky",
-                hidden,
-                WALL,
-                &[(BOTH, SHOWN), ((&[1], &[2, 3], false), SHOWN), ((&[1], &[3], false), SHOWN)],
-            ),
-            case(
-                "a diffuse sphere and an emitter that no root reaches, in the dark",
-                dark,
-                NOTHING,
-                &[(WALL, "the emission of a material that no shown shape has is no light"), (BOTH, SHOWN)],
-            ),
-            not_sampled(
-                "a diffuse sphere and an emitter that moves",
-                moving(Some(Shutter { open: 0.0, close: 1.0 })),
-                "a light that moves is not sampled",
-            ),
-            sampled(
-                "a diffuse sphere and an emitter that would move, without a shutter",
-                moving(None),
-                STILL,
-            ),
-            sampled(
-                "a diffuse sphere and an emitter that would move, with a shutter that closes when it opens",
-                moving(Some(Shutter { open: 0.5, close: 0.5 })),
-                STILL,
-            ),
-            not_sampled(
-                "a diffuse sphere and a visible light",
-                visible,
-                "a visible light is sampled as a light, not as a surface",
-            ),
-            case(
-                "one sphere that emits and reflects light",
-                scene(&[(sphere(), glow)]),
-                (&[1], &[1], false),
-                &[
-                    (WALL, "a surface that reflects light can be sampled as a light, too"),
-                    (NOTHING, "a surface can emit and reflect light"),
-                ],
-            ),
-            case(
-                "two diffuse spheres of the same colour, and an emitter",
-                scene(&[wall(), wall(), emitter()]),
-                (&[1, 2], &[3], false),
-                &[],
-            ),
-        ],
-    )
+    let cases = vec![
+        not_sampled(
+            "a diffuse sphere and a plane that emits light",
+            plain,
+            "an infinite plane is not sampled",
+        ),
+        not_sampled(
+            "a diffuse sphere and a plane, given by its equation, that emits light",
+            equation,
+            "an infinite plane is not sampled, also one that is given by its equation",
+        ),
+        sampled(
+            "a diffuse sphere, and a plane and a sphere of the same glowing material",
+            both,
+            "a material is sampled if one of its shapes can be",
+        ),
+        case(
+            "a diffuse sphere and an emitter that no root reaches, under a sky",
+            hidden,
+            WALL,
+            &[(BOTH, SHOWN), ((&[1], &[2, 3], false), SHOWN), ((&[1], &[3], false), SHOWN)],
+        ),
+        case(
+            "a diffuse sphere and an emitter that no root reaches, in the dark",
+            dark,
+            NOTHING,
+            &[(WALL, "the emission of a material that no shown shape has is no light"), (BOTH, SHOWN)],
+        ),
+        not_sampled(
+            "a diffuse sphere and an emitter that moves",
+            moving(Some(Shutter { open: 0.0, close: 1.0 })),
+            "a light that moves is not sampled",
+        ),
+        sampled("a diffuse sphere and an emitter that would move, without a shutter", moving(None), STILL),
+        sampled(
+            "a diffuse sphere and an emitter that would move, with a shutter that closes when it opens",
+            moving(Some(Shutter { open: 0.5, close: 0.5 })),
+            STILL,
+        ),
+        not_sampled(
+            "a diffuse sphere and a visible light",
+            visible,
+            "a visible light is sampled as a light, not as a surface",
+        ),
+        case(
+            "one sphere that emits and reflects light",
+            scene(&[(sphere(), glow)]),
+            (&[1], &[1], false),
+            &[
+                (WALL, "a surface that reflects light can be sampled as a light, too"),
+                (NOTHING, "a surface can emit and reflect light"),
+            ],
+        ),
+        case(
+            "two diffuse spheres of the same colour, and an emitter",
+            scene(&[wall(), wall(), emitter()]),
+            (&[1, 2], &[3], false),
+            &[],
+        ),
+    ];
+    judge_all(trial, cases)
 }

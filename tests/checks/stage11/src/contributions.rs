@@ -1,37 +1,25 @@
 //! Light that counts: `sample_light_contribution` and `emitted_contribution`.
 
 use crate::weights::both_ways;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::generate::magnitude;
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::emitter::EmitterSample;
-use raykata::kit::{EmissionQuery, LightContributionQuery};
 use std::f64::consts::PI;
 
 fn color() -> impl Strategy<Value = Vec3> + Clone {
-    checks::generate::vector(checks::generate::fractions(0..=8, 4.0))
+    checks::generate::vector(fractions(0..=8, 4.0))
 }
 
 /// A density: 0 in one of five.
 fn density() -> impl Strategy<Value = f32> + Clone {
-    prop_oneof![1 => Just(0.0f32), 2 => checks::generate::fractions(1..=32, 8.0), 2 => magnitude(-3.0, 5.0)]
-}
-
-fn paste(query: &LightContributionQuery) -> String {
-    call("sample_light_contribution", &[&query.diffuse, &query.normal, &query.sample, &query.bsdf_pdf])
+    prop_oneof![1 => Just(0.0f32), 2 => fractions(1..=32, 8.0), 2 => magnitude(-3.0, 5.0)]
 }
 
 /// Queries with a direction at an angle to the normal.
 fn queries(
     angle: impl Strategy<Value = (f64, f64)> + Clone,
 ) -> impl Strategy<Value = LightContributionQuery> + Clone {
-    let pdf = prop_oneof![1 => checks::generate::fractions(1..=32, 8.0), 1 => magnitude(-3.0, 5.0)];
-    let distance = prop_oneof![3 => checks::generate::fractions(1..=16, 4.0), 1 => Just(f32::INFINITY)];
+    let pdf = prop_oneof![1 => fractions(1..=32, 8.0), 1 => magnitude(-3.0, 5.0)];
+    let distance = prop_oneof![3 => fractions(1..=16, 4.0), 1 => Just(f32::INFINITY)];
     let sample = (nasty::unit(), angle, distance, color(), pdf).prop_map(
         |(normal, (angle, turn), distance, radiance, pdf)| {
             (normal, EmitterSample { direction: nasty::tilted(normal, angle, turn), distance, radiance, pdf })
@@ -75,7 +63,8 @@ pub(super) fn light_contributions_have_their_closed_form(trial: &Trial<'_>) -> C
             let factor = if query.bsdf_pdf == 0.0 { 1.0 } else { weight };
             let expected = factor * whole;
             let source = "kd / π · L · cos θ / pdf · mis_weight";
-            let broken = || Broken::new(paste(query), yours, expected.as_vec3(), source);
+            let broken =
+                || Broken::new(query.call("sample_light_contribution"), yours, expected.as_vec3(), source);
             let cosine = query.normal.as_dvec3().dot(query.sample.direction.as_dvec3());
             let (pdf, other) = (f64::from(query.sample.pdf), f64::from(query.bsdf_pdf));
             let is = |expected: DVec3, factor: f64| near(query, yours, expected, factor);
@@ -130,37 +119,29 @@ pub(super) fn light_from_below_adds_nothing(trial: &Trial<'_>) -> CheckResult {
     });
     let queries =
         queries(angle).prop_map(|query| LightContributionQuery { diffuse: query.diffuse + 0.25, ..query });
-    trial.forall(300, queries, |queries| {
-        compare(queries, trial.kit.sample_light_contribution(queries), |query, yours| {
-            let above = query.normal.dot(query.sample.direction) > 0.0;
-            let can_add = above && query.sample.radiance != Vec3::ZERO;
-            // The balance and the power heuristic give a weight of at least 1e-16 for these densities, in f32 not 0.
-            let adds = yours.max_element() > 0.0;
-            if yours.min_element() >= 0.0
-                && (!adds || can_add)
-                && (adds || !above || !can_add || query.bsdf_pdf > 0.0)
-            {
-                return Ok(());
-            }
-            let expected = if can_add { "light above 0" } else { "0 in all channels" };
-            Err(Broken::with_texts(paste(query), format!("{yours:?}"), expected, "the definition")
-                .explained_by([
-                    (yours.is_nan(), "you return NaN"),
-                    (
-                        !above && yours.min_element() < 0.0,
-                        "light from below the surface is negative: it must be 0",
-                    ),
-                    (
-                        !above && adds,
-                        "light from below the surface counts: take no absolute value of the cosine",
-                    ),
-                    (above && !adds, "light from above the surface counts"),
-                    (
-                        if above { !adds } else { yours.min_element() < 0.0 },
-                        "your test is reversed: light from above the surface counts, not light from below",
-                    ),
-                ]))
-        })
+    trial.each(300, queries, <dyn Kit>::sample_light_contribution, |query, yours| {
+        let above = query.normal.dot(query.sample.direction) > 0.0;
+        let can_add = above && query.sample.radiance != Vec3::ZERO;
+        // The balance and the power heuristic give a weight of at least 1e-16 for these densities, in f32 not 0.
+        let adds = yours.max_element() > 0.0;
+        if yours.min_element() >= 0.0
+            && (!adds || can_add)
+            && (adds || !above || !can_add || query.bsdf_pdf > 0.0)
+        {
+            return Ok(());
+        }
+        let expected = if can_add { "light above 0" } else { "0 in all channels" };
+        let input = query.call("sample_light_contribution");
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
+            (yours.is_nan(), "you return NaN"),
+            (!above && yours.min_element() < 0.0, "light from below the surface is negative: it must be 0"),
+            (!above && adds, "light from below the surface counts: take no absolute value of the cosine"),
+            (above && !adds, "light from above the surface counts"),
+            (
+                if above { !adds } else { yours.min_element() < 0.0 },
+                "your test is reversed: light from above the surface counts, not light from below",
+            ),
+        ]))
     })
 }
 
@@ -193,7 +174,7 @@ pub(super) fn emission_counts_by_its_weight(trial: &Trial<'_>) -> CheckResult {
             // A wrong weight of a certain direction is judged by a check of mis_weight.
             let by_own = own * query.emission;
             let is_by_own = yours == by_own || yours.is_nan() && by_own.is_nan();
-            let input = || call("emitted_contribution", &[&query.emission, &query.pdf, &query.light_pdf]);
+            let input = || query.call("emitted_contribution");
             let broken = || {
                 Broken::new(input(), yours, expected.as_vec3(), "emission · mis_weight")
                     .explained_by([(yours.is_nan(), "you return NaN: ∞ / ∞, or 0 · ∞")])

@@ -1,13 +1,7 @@
 //! Cosine-weighted directions and their density.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::call;
+use checks::prelude::*;
 use checks::statistics::{SAMPLES, columns, covers_each_part, is_other_power, pairs};
-use glam::{Vec2, Vec3, vec2};
-use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The largest random number, just below 1.
@@ -37,13 +31,8 @@ pub(super) fn cosine_directions_stay_above_the_surface(trial: &Trial<'_>) -> Che
             if unit && above >= -1e-6 && !constant {
                 return Ok(());
             }
-            let broken = Broken::new(
-                call("cosine_direction", &[&query.0, &query.1]),
-                yours,
-                "a unit direction above the surface",
-                "the definition",
-            );
-            Err(broken.explained_by([
+            let (input, expected) = (query.call("cosine_direction"), "a unit direction above the surface");
+            Err(Broken::new(input, yours, expected, "the definition").explained_by([
                 (constant, "you return the normal for every u"),
                 (
                     yours.is_nan(),
@@ -66,7 +55,7 @@ pub(super) fn cosine_directions_have_their_density(trial: &Trial<'_>) -> CheckRe
             if (yours.as_dvec3().length() - 1.0).abs() < 1e-5 {
                 return Ok(());
             }
-            let input = call("cosine_direction", &[&query.0, &query.1]);
+            let input = query.call("cosine_direction");
             Err(Broken::new(input, yours, "a unit direction", "the definition"))
         };
         all_hold(queries.iter().zip(&answers).map(judge).collect())?;
@@ -134,24 +123,22 @@ pub(super) fn place(normal: Vec3, direction: Vec3) -> (f64, f64) {
 pub(super) fn cosine_pdf_is_the_cosine_over_pi(trial: &Trial<'_>) -> CheckResult {
     let queries = (nasty::unit(), nasty::tilt())
         .prop_map(|(normal, (angle, turn))| (normal, nasty::tilted(normal, angle, turn)));
-    trial.forall(500, queries, |queries| {
-        let exact = |(normal, direction): &(Vec3, Vec3)| normal.as_dvec3().dot(direction.as_dvec3());
-        // Roundings of the three products, each at most 1.
-        let near = |yours: f32, expected: f64| (f64::from(yours) - expected).abs() <= 1e-6 * (1.0 + expected);
-        compare(queries, trial.kit.cosine_pdf(queries), |query, yours| {
-            let cosine = exact(query);
-            let input = || call("cosine_pdf", &[&query.0, &query.1]);
-            let broken = || Broken::new(input(), yours, cosine / PI, "the definition");
-            unless(near(yours, (cosine / PI).max(0.0)), broken).formulas([
-                (near(yours, cosine), "you return the cosine: divide it by π"),
-                (near(yours, 1.0 / TAU), "you return the density of the uniform hemisphere, 1 / 2π"),
-                (near(yours, 1.0 / PI), "you return 1 / π: multiply it by the cosine"),
-                (near(yours, cosine / TAU), "you divide by 2π: the integral of the cosine is π"),
-                (near(yours, 0.25 / PI), "you return the density of the whole sphere, 1 / 4π"),
-                (near(yours, cosine * cosine / PI), "you multiply by the cosine twice"),
-                (near(yours, 2.0 * cosine / PI), "twice too much: the integral of the cosine is π"),
-            ])
-        })
+    let exact = |(normal, direction): &(Vec3, Vec3)| normal.as_dvec3().dot(direction.as_dvec3());
+    // Roundings of the three products, each at most 1.
+    let near = |yours: f32, expected: f64| (f64::from(yours) - expected).abs() <= 1e-6 * (1.0 + expected);
+    trial.each(500, queries, <dyn Kit>::cosine_pdf, |query, yours| {
+        let cosine = exact(query);
+        let input = || query.call("cosine_pdf");
+        let broken = || Broken::new(input(), yours, cosine / PI, "the definition");
+        unless(near(yours, (cosine / PI).max(0.0)), broken).formulas([
+            (near(yours, cosine), "you return the cosine: divide it by π"),
+            (near(yours, 1.0 / TAU), "you return the density of the uniform hemisphere, 1 / 2π"),
+            (near(yours, 1.0 / PI), "you return 1 / π: multiply it by the cosine"),
+            (near(yours, cosine / TAU), "you divide by 2π: the integral of the cosine is π"),
+            (near(yours, 0.25 / PI), "you return the density of the whole sphere, 1 / 4π"),
+            (near(yours, cosine * cosine / PI), "you multiply by the cosine twice"),
+            (near(yours, 2.0 * cosine / PI), "twice too much: the integral of the cosine is π"),
+        ])
     })
 }
 
@@ -162,25 +149,23 @@ pub(super) fn cosine_pdf_below_the_surface_is_zero(trial: &Trial<'_>) -> CheckRe
         let direction = nasty::tilted(normal, f64::from(angle) / 8.5, f64::from(turn) / 16.0 + 0.01);
         (normal, if which == 3 { direction } else { -direction })
     });
-    trial.forall(300, queries, |queries| {
-        compare(queries, trial.kit.cosine_pdf(queries), |query, yours| {
-            let cosine = query.0.as_dvec3().dot(query.1.as_dvec3());
-            if if cosine > 0.0 { yours > 0.0 } else { yours == 0.0 } {
-                return Ok(());
-            }
-            let expected = if cosine > 0.0 { "above 0" } else { "0.0" };
-            let input = call("cosine_pdf", &[&query.0, &query.1]);
-            Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
-                (cosine < 0.0 && yours < 0.0, "your density is negative: return 0 below the surface"),
-                (
-                    cosine < 0.0 && (f64::from(yours) + cosine / PI).abs() < 1e-5,
-                    "you take the absolute value of the cosine: return 0 below the surface",
-                ),
-                (
-                    (f64::from(yours) - (-cosine / PI).max(0.0)).abs() < 1e-5,
-                    "your density is that of the other side: the cosine has the wrong sign",
-                ),
-            ]))
-        })
+    trial.each(300, queries, <dyn Kit>::cosine_pdf, |query, yours| {
+        let cosine = query.0.as_dvec3().dot(query.1.as_dvec3());
+        if if cosine > 0.0 { yours > 0.0 } else { yours == 0.0 } {
+            return Ok(());
+        }
+        let expected = if cosine > 0.0 { "above 0" } else { "0.0" };
+        let input = query.call("cosine_pdf");
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
+            (cosine < 0.0 && yours < 0.0, "your density is negative: return 0 below the surface"),
+            (
+                cosine < 0.0 && (f64::from(yours) + cosine / PI).abs() < 1e-5,
+                "you take the absolute value of the cosine: return 0 below the surface",
+            ),
+            (
+                (f64::from(yours) - (-cosine / PI).max(0.0)).abs() < 1e-5,
+                "your density is that of the other side: the cosine has the wrong sign",
+            ),
+        ]))
     })
 }

@@ -1,10 +1,7 @@
 //! Emitters as inputs, and their geometry in double precision.
 
-use checks::nasty;
-use glam::{DVec3, Vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::emitter::{AreaEmitter, EmitterShape};
-use raykata::shape::{Sphere, Triangle};
 use std::f64::consts::{PI, TAU};
 
 /// An emitter, and the point that it illuminates.
@@ -109,13 +106,19 @@ impl Lit {
         (to_center, radius, rim)
     }
 
+    /// The direction to the centre of the sphere, two directions across, and `1 - cos θ` of the rim.
+    fn frame(&self) -> ([DVec3; 3], f64) {
+        let (to_center, _, rim) = self.cone();
+        let axis = to_center.normalize_or(DVec3::Y);
+        let (x, y) = axis.any_orthonormal_pair();
+        ([axis, x, y], rim)
+    }
+
     /// The vector to the point of the emitter at these coordinates of the unit square. Cells of equal area of the square have
     /// equal areas of a parallelogram or triangle, and equal solid angles of a sphere.
     pub fn toward(&self, (s, t): (f64, f64)) -> DVec3 {
         let Some((corner, first, second, is_triangle)) = self.flat() else {
-            let (to_center, _, rim) = self.cone();
-            let axis = to_center.normalize_or(DVec3::Y);
-            let (x, y) = axis.any_orthonormal_pair();
+            let ([axis, x, y], rim) = self.frame();
             let below_one = s * rim;
             let sine = (below_one * (2.0 - below_one)).sqrt();
             let (sin, cos) = (TAU * t).sin_cos();
@@ -158,9 +161,7 @@ impl Lit {
     /// The coordinates in the unit square of the point that the direction meets.
     pub fn place(&self, direction: DVec3) -> (f64, f64) {
         let Some((_, _, _, is_triangle)) = self.flat() else {
-            let (to_center, _, rim) = self.cone();
-            let axis = to_center.normalize_or(DVec3::Y);
-            let (x, y) = axis.any_orthonormal_pair();
+            let ([axis, x, y], rim) = self.frame();
             let (cosine, sine_squared) = (direction.dot(axis), direction.cross(axis).length_squared());
             let below_one = if cosine > 0.0 { sine_squared / (1.0 + cosine) } else { 1.0 - cosine };
             let turn = direction.dot(y).atan2(direction.dot(x)) / TAU;

@@ -6,12 +6,8 @@
 //! here wrong directions find too much or too little light.
 
 use crate::rooms::are_endless;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::nasty;
+use checks::prelude::*;
 use checks::statistics::{SAMPLES, has_mean, pairs};
-use glam::{DVec3, Vec3};
-use raykata::kit::RouletteQuery;
 
 /// A part of the sphere: all points with `p · axis` above `height`, for the unit sphere.
 struct Cap {

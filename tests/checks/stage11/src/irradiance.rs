@@ -3,11 +3,8 @@
 use crate::emitters::{KINDS, Lit};
 use crate::light_densities::seen_well;
 use crate::lights::with_corners;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::prelude::*;
 use checks::statistics::has_mean;
-use glam::{DVec3, Vec2};
-use raykata::kit::EmitterQuery;
 
 /// A normal for which the whole emitter is above the horizon: not far from the direction to its middle.
 fn normal(lit: &Lit, lean: f64) -> DVec3 {

@@ -2,15 +2,9 @@
 
 use crate::emitters::{GAUSS, KINDS, Layout, Lit, layouts, nodes};
 use crate::lights::{bright, judge_sample, missing, of};
-use checks::broken::{Broken, CheckResult};
-use checks::paste::Arguments;
+use checks::prelude::*;
 use checks::statistics::{CELLS, bins, covers_each_part, is_other_power};
-use checks::{Trial, nasty};
-use glam::{DVec3, Vec2, Vec3, vec2};
-use proptest::prelude::*;
 use raykata::emitter::{EmitterSample, EmitterShape};
-use raykata::kit::{EmitterPdfQuery, EmitterQuery};
-use raykata::shape::{Sphere, Triangle};
 use std::f64::consts::{PI, TAU};
 
 /// An emitter of each kind, for statistical tests. The nearest and the farthest point of the emitter are at similar distances,

@@ -4,14 +4,8 @@
 
 use crate::emitters::layouts;
 use crate::steps::{color, describe, numbers, path, path_weight, per_some, probability, vertex};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, compare_formulas};
-use checks::nasty;
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::emitter::EmitterSample;
-use raykata::kit::{BsdfPdfQuery, EmitterQuery, Kit, StepQuery, Surface};
 use raykata::light_path::{ChosenEmitter, LightCandidate, PathVertex};
 use std::f64::consts::{FRAC_1_PI, PI};
 

@@ -2,15 +2,9 @@
 
 use crate::directions::{LARGEST, numbers};
 use crate::emitters::{Lit, layouts};
-use checks::broken::{Broken, CheckResult};
-use checks::judge::compare;
-use checks::paste::Arguments;
+use checks::prelude::*;
 use checks::statistics::{SAMPLES, pairs};
-use checks::{Trial, nasty};
-use glam::{DVec3, Vec2, Vec3, vec2};
-use proptest::prelude::*;
 use raykata::emitter::{EmitterSample, EmitterShape};
-use raykata::kit::{EmitterPdfQuery, EmitterQuery};
 
 impl Lit {
     pub(super) fn sample(&self, u: Vec2) -> EmitterQuery {
@@ -29,13 +23,9 @@ pub(super) fn of(query: &EmitterQuery) -> Lit {
 /// Every `u` gives a sample of an emitter that sends light, so a sample that is missing is a mistake.
 pub(super) fn missing(query: &EmitterQuery) -> Broken {
     let behind = query.emitter.two_sided && of(query).is_behind();
-    let broken = Broken::new(
-        query.call("sample_light"),
-        None::<EmitterSample>,
-        "a sample",
-        "the emitter sends light here",
-    );
-    broken.explained_by([(behind, "you leave out the back of emitters that are two-sided")])
+    let (yours, source) = (None::<EmitterSample>, "the emitter sends light here");
+    Broken::new(query.call("sample_light"), yours, "a sample", source)
+        .explained_by([(behind, "you leave out the back of emitters that are two-sided")])
 }
 
 /// Emitters whose front is seen, and two-sided ones that are seen from the back or from inside.
@@ -52,11 +42,9 @@ pub(super) fn bright() -> impl Strategy<Value = Lit> + Clone {
 
 pub(super) fn light_samples_lie_on_the_light(trial: &Trial<'_>) -> CheckResult {
     let queries = (bright(), numbers()).prop_map(|(lit, u)| lit.sample(u));
-    trial.forall(1000, queries, |queries| {
-        compare(queries, trial.kit.sample_light(queries), |query, yours| {
-            let Some(yours) = yours else { return Err(missing(query)) };
-            judge_sample(query, &yours)
-        })
+    trial.each(1000, queries, <dyn Kit>::sample_light, |query, yours| {
+        let Some(yours) = yours else { return Err(missing(query)) };
+        judge_sample(query, &yours)
     })
 }
 

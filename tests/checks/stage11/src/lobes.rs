@@ -1,21 +1,10 @@
 //! The choice of a lobe: `sample_bsdf` and `bsdf_pdf`.
 
 use crate::directions::{AXES, number, place};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::{Paste, call};
+use checks::prelude::*;
 use checks::statistics::{SAMPLES, covers_each_part, has_mean, measures, pairs, unused_number};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{Bounce, BsdfPdfQuery, BsdfQuery, SecondaryRay};
 use raykata::light_path::{BsdfSample, Lobe, Scattering};
 use std::f64::consts::PI;
-
-fn paste(query: &BsdfQuery) -> String {
-    call("sample_bsdf", &[&query.scattering, &query.u])
-}
 
 /// A surface with this normal and the reflectances of the three lobes. A lobe of reflectance 0 has a secondary ray, too.
 fn surface(normal: Vec3, diffuse: Vec3, reflection: Option<Vec3>, transmission: Option<Vec3>) -> Scattering {
@@ -31,7 +20,7 @@ fn surface(normal: Vec3, diffuse: Vec3, reflection: Option<Vec3>, transmission: 
 
 /// Reflectances in steps of 1/8, black in one of three.
 fn reflectance() -> impl Strategy<Value = Vec3> + Clone {
-    let channel = || checks::generate::fractions(0..=8, 8.0);
+    let channel = || fractions(0..=8, 8.0);
     prop_oneof![
         1 => Just(Vec3::ZERO),
         1 => (0..3usize, 1..=8i32).prop_map(|(axis, n)| n as f32 / 8.0 * Vec3::AXES[axis]),
@@ -87,7 +76,7 @@ pub(super) fn missing(query: &BsdfQuery) -> CheckResult {
     if is_black(&query.scattering) {
         return Ok(());
     }
-    let broken = Broken::new(paste(query), None::<BsdfSample>, "a sample", "the definition");
+    let broken = Broken::new(query.call("sample_bsdf"), None::<BsdfSample>, "a sample", "the definition");
     Err(broken
         .explained_by([(true, "None only if all lobes are black: choose again, or scale the random number")]))
 }
@@ -95,52 +84,50 @@ pub(super) fn missing(query: &BsdfQuery) -> CheckResult {
 const CHOOSES_BLACK: &str = "you choose a lobe whose reflectance is 0";
 
 pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(800, bsdf_queries(), |queries| {
-        compare(queries, trial.kit.sample_bsdf(queries), |query, yours| {
-            let scattering = &query.scattering;
-            let Some(sample) = yours else { return missing(query) };
-            if is_black(scattering) {
-                let broken = Broken::new(paste(query), yours, None::<()>, "the definition");
-                return Err(broken.explained_by([
-                    (true, "all lobes are black: there is nothing to choose"),
-                    (true, CHOOSES_BLACK),
-                ]));
-            }
-            let reflectance = reflectance_of(scattering, sample.lobe);
-            let direction = sample.direction.as_dvec3();
-            let is_unit = (direction.length() - 1.0).abs() < 1e-5;
-            let ray = scattering
-                .secondary
-                .iter()
-                .find(|ray| sample.lobe != Lobe::Diffuse && ray.bounce == sample.lobe.bounce());
-            let keeps = match ray {
-                // A secondary ray keeps its direction, up to a normalization.
-                Some(ray) => (direction - ray.direction.as_dvec3()).length() < 1e-6,
-                None => direction.dot(scattering.normal.as_dvec3()) >= -1e-6,
-            };
-            let is_certain = sample.pdf == f32::INFINITY;
-            let certainty = is_certain == (sample.lobe != Lobe::Diffuse);
-            if reflectance != Vec3::ZERO && is_unit && keeps && certainty {
-                return Ok(());
-            }
-            let expected = "a lobe that reflects light, and a direction of it";
-            Err(Broken::with_texts(paste(query), format!("{sample:?}"), expected, "the definition")
-                .explained_by([
-                    (reflectance == Vec3::ZERO, CHOOSES_BLACK),
-                    (sample.weight.is_nan() || sample.direction.is_nan(), "you return NaN"),
-                    (
-                        sample.lobe == Lobe::Diffuse && is_certain,
-                        "a diffuse direction is not certain: its density is finite",
-                    ),
-                    (
-                        sample.lobe != Lobe::Diffuse && !is_certain,
-                        "a reflected or refracted direction is certain: its density is infinite",
-                    ),
-                    (!keeps && sample.lobe == Lobe::Diffuse, "your diffuse direction goes below the surface"),
-                    (!keeps, "a reflected or refracted ray keeps its direction"),
-                    (!is_unit, "your direction does not have unit length"),
-                ]))
-        })
+    trial.each(800, bsdf_queries(), <dyn Kit>::sample_bsdf, |query, yours| {
+        let scattering = &query.scattering;
+        let Some(sample) = yours else { return missing(query) };
+        if is_black(scattering) {
+            let broken = Broken::new(query.call("sample_bsdf"), yours, None::<()>, "the definition");
+            return Err(broken.explained_by([
+                (true, "all lobes are black: there is nothing to choose"),
+                (true, CHOOSES_BLACK),
+            ]));
+        }
+        let reflectance = reflectance_of(scattering, sample.lobe);
+        let direction = sample.direction.as_dvec3();
+        let is_unit = (direction.length() - 1.0).abs() < 1e-5;
+        let ray = scattering
+            .secondary
+            .iter()
+            .find(|ray| sample.lobe != Lobe::Diffuse && ray.bounce == sample.lobe.bounce());
+        let keeps = match ray {
+            // A secondary ray keeps its direction, up to a normalization.
+            Some(ray) => (direction - ray.direction.as_dvec3()).length() < 1e-6,
+            None => direction.dot(scattering.normal.as_dvec3()) >= -1e-6,
+        };
+        let is_certain = sample.pdf == f32::INFINITY;
+        let certainty = is_certain == (sample.lobe != Lobe::Diffuse);
+        if reflectance != Vec3::ZERO && is_unit && keeps && certainty {
+            return Ok(());
+        }
+        let expected = "a lobe that reflects light, and a direction of it";
+        Err(Broken::with_texts(query.call("sample_bsdf"), format!("{sample:?}"), expected, "the definition")
+            .explained_by([
+                (reflectance == Vec3::ZERO, CHOOSES_BLACK),
+                (sample.weight.is_nan() || sample.direction.is_nan(), "you return NaN"),
+                (
+                    sample.lobe == Lobe::Diffuse && is_certain,
+                    "a diffuse direction is not certain: its density is finite",
+                ),
+                (
+                    sample.lobe != Lobe::Diffuse && !is_certain,
+                    "a reflected or refracted direction is certain: its density is infinite",
+                ),
+                (!keeps && sample.lobe == Lobe::Diffuse, "your diffuse direction goes below the surface"),
+                (!keeps, "a reflected or refracted ray keeps its direction"),
+                (!is_unit, "your direction does not have unit length"),
+            ]))
     })
 }
 
@@ -160,39 +147,35 @@ fn judge_weight(query: &BsdfQuery, sample: &BsdfSample) -> bool {
 }
 
 pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(800, bsdf_queries(), |queries| {
-        compare(queries, trial.kit.sample_bsdf(queries), |query, yours| {
-            let Some(sample) = yours else { return missing(query).map(Into::into) };
-            let scattering = &query.scattering;
-            let reflectance = reflectance_of(scattering, sample.lobe).as_dvec3();
-            let share = share(scattering, sample.lobe);
-            let near = |factor: f64| {
-                (sample.weight.as_dvec3() - factor * reflectance).abs().max_element()
-                    <= 1e-4 * factor * reflectance.max_element()
-            };
-            let largest = reflectance.max_element();
-            let broken = || {
-                let (yours, least) =
-                    (format!("weight {} for {:?}", sample.weight, sample.lobe), 0.25 * share);
-                let expected = format!(
-                    "{} divided by one probability in {least:.3}..=1, for example {share:.3}",
-                    reflectance.as_vec3()
-                );
-                let (q, text) =
-                    (probability(scattering, &sample), "this lobe is chosen less often than s / 4");
-                Broken::with_texts(paste(query), yours, expected, "the definition")
-                    .explained_by([(q < least && near(1.0 / q), text)])
-            };
-            unless(reflectance.max_element() == 0.0 || judge_weight(query, &sample), broken).formulas([
-                (near(share), "you multiply by the probability of the choice: divide by it"),
-                (near(1.0 / largest), "you divide by the reflectance, not by the probability of the choice"),
-                (
-                    near(1.0 / share / PI),
-                    "the weight of a diffuse direction has no π: it cancels against the density",
-                ),
-                (sample.weight.is_nan(), "you return NaN"),
-            ])
-        })
+    trial.each(800, bsdf_queries(), <dyn Kit>::sample_bsdf, |query, yours| {
+        let Some(sample) = yours else { return missing(query).map(Into::into) };
+        let scattering = &query.scattering;
+        let reflectance = reflectance_of(scattering, sample.lobe).as_dvec3();
+        let share = share(scattering, sample.lobe);
+        let near = |factor: f64| {
+            (sample.weight.as_dvec3() - factor * reflectance).abs().max_element()
+                <= 1e-4 * factor * reflectance.max_element()
+        };
+        let largest = reflectance.max_element();
+        let broken = || {
+            let (yours, least) = (format!("weight {} for {:?}", sample.weight, sample.lobe), 0.25 * share);
+            let expected = format!(
+                "{} divided by one probability in {least:.3}..=1, for example {share:.3}",
+                reflectance.as_vec3()
+            );
+            let (q, text) = (probability(scattering, &sample), "this lobe is chosen less often than s / 4");
+            Broken::with_texts(query.call("sample_bsdf"), yours, expected, "the definition")
+                .explained_by([(q < least && near(1.0 / q), text)])
+        };
+        unless(reflectance.max_element() == 0.0 || judge_weight(query, &sample), broken).formulas([
+            (near(share), "you multiply by the probability of the choice: divide by it"),
+            (near(1.0 / largest), "you divide by the reflectance, not by the probability of the choice"),
+            (
+                near(1.0 / share / PI),
+                "the weight of a diffuse direction has no π: it cancels against the density",
+            ),
+            (sample.weight.is_nan(), "you return NaN"),
+        ])
     })
 }
 
@@ -353,7 +336,7 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
             let sum = |lobe: Lobe| f64::from(reflectance_of(&query.scattering, lobe).element_sum());
             let by_mean = sum(Lobe::Diffuse) / LOBES.into_iter().map(sum).sum::<f64>() * cosine / PI;
             let broken = || {
-                let input = call("bsdf_pdf", &[&query.scattering, &query.direction]);
+                let input = query.call("bsdf_pdf");
                 let yours = format!("{yours:?}, and pdf {:?} of sample_bsdf", sample.pdf);
                 Broken::with_texts(input, yours, format!("{expected:?} for both"), "probability · cos θ / π")
             };
@@ -391,26 +374,24 @@ pub(super) fn bsdf_pdf_of_other_directions_is_zero(trial: &Trial<'_>) -> CheckRe
         let direction = if which < 2 || which == 3 && angle % 2 == 0 { direction } else { -direction };
         BsdfPdfQuery { scattering: Scattering { diffuse, ..scattering }, direction }
     });
-    trial.forall(400, queries, |queries| {
-        compare(queries, trial.kit.bsdf_pdf(queries), |query, yours| {
-            let scattering = &query.scattering;
-            let above = scattering.normal.dot(query.direction) > 0.0;
-            let reflects = above && scattering.diffuse != Vec3::ZERO;
-            if if reflects { yours > 0.0 && yours.is_finite() } else { yours == 0.0 } {
-                return Ok(());
-            }
-            let input = call("bsdf_pdf", &[scattering, &query.direction]);
-            let expected = if reflects { "a density above 0" } else { "0.0" };
-            Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
-                (yours.is_nan(), "you return NaN: a black surface has no probabilities"),
-                (!above && yours < 0.0, "your density is negative below the surface"),
-                (!above && yours > 0.0, "a direction below the surface is never sampled: its density is 0"),
-                (
-                    above && !reflects && yours > 0.0,
-                    "a surface without diffuse reflection samples no diffuse direction",
-                ),
-                (reflects && yours == 0.0, "this direction is sampled: its density is above 0"),
-            ]))
-        })
+    trial.each(400, queries, <dyn Kit>::bsdf_pdf, |query, yours| {
+        let scattering = &query.scattering;
+        let above = scattering.normal.dot(query.direction) > 0.0;
+        let reflects = above && scattering.diffuse != Vec3::ZERO;
+        if if reflects { yours > 0.0 && yours.is_finite() } else { yours == 0.0 } {
+            return Ok(());
+        }
+        let input = query.call("bsdf_pdf");
+        let expected = if reflects { "a density above 0" } else { "0.0" };
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
+            (yours.is_nan(), "you return NaN: a black surface has no probabilities"),
+            (!above && yours < 0.0, "your density is negative below the surface"),
+            (!above && yours > 0.0, "a direction below the surface is never sampled: its density is 0"),
+            (
+                above && !reflects && yours > 0.0,
+                "a surface without diffuse reflection samples no diffuse direction",
+            ),
+            (reflects && yours == 0.0, "this direction is sampled: its density is above 0"),
+        ]))
     })
 }

@@ -1,16 +1,11 @@
 //! The picture of stage 11: a sphere on a floor under two area lights that are seen, with next event estimation and
 //! multiple importance sampling.
 
-use checks::broken::CheckResult;
-use checks::picture::{Sampled, Size};
-use checks::{Trial, picture, statistics};
-use glam::{Vec2, Vec3, vec3};
-use proptest::prelude::*;
+use checks::picture::{self, Sampled, Size};
+use checks::prelude::*;
+use checks::statistics;
 use raykata::camera::Camera;
 use raykata::emitter::{AreaEmitter, EmitterShape};
-use raykata::kit::{EmitterPdfQuery, EmitterQuery, Kit};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 /// The size of the picture. It is small, because each pixel has many samples.
 const SIZE: Size = Size { width: 36, height: 24 };

@@ -6,13 +6,11 @@
 //! of the 384 samples of a block is close to normally distributed.
 
 use super::rooms::{Form, Paint, Room, Roulette, Wall, follow};
-use checks::broken::CheckResult;
-use checks::picture::{Sampled, Size};
-use checks::{Trial, picture, statistics};
-use glam::{DVec3, Vec3, dvec3, vec3};
-use proptest::prelude::*;
+use checks::picture::{self, Sampled, Size};
+use checks::prelude::*;
+use checks::statistics;
+use glam::dvec3;
 use raykata::camera::Camera;
-use raykata::kit::Kit;
 
 /// The size of the picture. It is small, because each pixel has many samples.
 const SIZE: Size = Size { width: 36, height: 24 };

@@ -1,15 +1,12 @@
 //! Rooms for paths, in double precision: the judge holds the geometry, and `step` gets one surface at a time.
 
 use super::steps::CERTAIN;
-use checks::broken::Broken;
+use checks::prelude::*;
 use checks::statistics::pairs;
-use glam::{DVec3, Vec3};
 use raykata::emitter::{AreaEmitter, EmitterShape};
-use raykata::kit::{Bounce, Kit, RouletteQuery, SecondaryRay, StepQuery, Surface};
 use raykata::light_path::{
     ChosenEmitter, LightCandidate, PathState, PathStep, PathVertex, Scattering, StepNumbers,
 };
-use raykata::shape::Sphere;
 
 /// The shape of a surface.
 #[derive(Clone, Copy, Debug)]

@@ -1,17 +1,7 @@
 //! Russian roulette.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, proven, unless};
-use checks::paste::Paste;
+use checks::prelude::*;
 use checks::statistics::measures;
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::kit::RouletteQuery;
-
-fn paste(query: &RouletteQuery) -> String {
-    format!("survives({}, {}, {})", query.weight.paste(), query.bounce, query.u.paste())
-}
 
 /// A weight whose largest channel is `largest`.
 fn weight(largest: impl Strategy<Value = f32> + Clone) -> impl Strategy<Value = Vec3> + Clone {
@@ -27,8 +17,8 @@ fn weight(largest: impl Strategy<Value = f32> + Clone) -> impl Strategy<Value = 
 const LEAST_CAP: f64 = 0.95;
 
 pub(super) fn roulette_keeps_the_mean(trial: &Trial<'_>) -> CheckResult {
-    let dim = checks::generate::magnitude(-4.0, 0.0);
-    let largest = prop_oneof![4 => checks::generate::fractions(1..=63, 64.0), 4 => dim, 1 => 1.0..8.0f32];
+    let dim = magnitude(-4.0, 0.0);
+    let largest = prop_oneof![4 => fractions(1..=63, 64.0), 4 => dim, 1 => 1.0..8.0f32];
     // Roulette begins at bounce 3.
     let first = [
         (0.25, 0.5, 0.125),
@@ -121,8 +111,7 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[(f32, f64)], slack: f64) -> 
 
 pub(super) fn roulette_ends_no_young_path(trial: &Trial<'_>) -> CheckResult {
     let number = || (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0);
-    let largest =
-        prop_oneof![checks::generate::fractions(1..=64, 64.0), checks::generate::magnitude(-4.0, 0.0)];
+    let largest = prop_oneof![fractions(1..=64, 64.0), magnitude(-4.0, 0.0)];
     let young = (weight(largest), 0..3u32, number(), Just(true));
     // Every fifth path has the weight 1/64, and half of these must end, whichever random numbers end them.
     let dim = (weight(Just(1.0f32 / 64.0)), 3..50u32, number(), Just(false));
@@ -141,7 +130,8 @@ pub(super) fn roulette_ends_no_young_path(trial: &Trial<'_>) -> CheckResult {
                 return Ok(());
             }
             let expected = if lives { "1.0" } else { "0.0 for about half of the numbers u" };
-            let broken = Broken::with_texts(paste(query), format!("{yours:?}"), expected, "the definition");
+            let broken =
+                Broken::with_texts(query.call("survives"), format!("{yours:?}"), expected, "the definition");
             Err(broken.explained_by([
                 (
                     lives && query.weight.max_element() < 1.0 / 64.0,
@@ -163,20 +153,18 @@ pub(super) fn roulette_ends_paths_without_weight(trial: &Trial<'_>) -> CheckResu
             if which < 3 { (Vec3::AXES[which as usize], bounce % 3) } else { (Vec3::ZERO, bounce) };
         RouletteQuery { weight, bounce, u: if which == 5 { 0.0 } else { u } }
     });
-    trial.forall(300, cases, |queries| {
-        compare(queries, trial.kit.survives(queries), |query, yours| {
-            let lives = query.weight != Vec3::ZERO;
-            if yours == f32::from(u8::from(lives)) {
-                return Ok(());
-            }
-            let expected = f32::from(u8::from(lives));
-            Err(Broken::new(paste(query), yours, expected, "the definition").explained_by([
-                (yours.is_nan(), "you return NaN: 0 / 0"),
-                (!lives && yours.is_infinite(), "you divide by 0"),
-                (!lives && query.bounce < 3, "a path without weight ends at once, also before bounce 3"),
-                (!lives, "a path without weight goes on"),
-                (lives && yours == 0.0, "you end a path that has weight in one channel"),
-            ]))
-        })
+    trial.each(300, cases, <dyn Kit>::survives, |query, yours| {
+        let lives = query.weight != Vec3::ZERO;
+        if yours == f32::from(u8::from(lives)) {
+            return Ok(());
+        }
+        let expected = f32::from(u8::from(lives));
+        Err(Broken::new(query.call("survives"), yours, expected, "the definition").explained_by([
+            (yours.is_nan(), "you return NaN: 0 / 0"),
+            (!lives && yours.is_infinite(), "you divide by 0"),
+            (!lives && query.bounce < 3, "a path without weight ends at once, also before bounce 3"),
+            (!lives, "a path without weight goes on"),
+            (lives && yours == 0.0, "you end a path that has weight in one channel"),
+        ]))
     })
 }

@@ -5,14 +5,7 @@
 
 use crate::emitters::layouts;
 use crate::lobes::{missing, surfaces};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::generate::magnitude;
-use checks::judge::{compare, unless};
-use checks::nasty;
-use glam::{DVec3, Vec2, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{BsdfQuery, EmitterPdfQuery, RouletteQuery, StepQuery, Surface};
+use checks::prelude::*;
 use raykata::light_path::{
     BsdfSample, ChosenEmitter, Lobe, NextRay, PathState, PathStep, PathVertex, Scattering, StepNumbers,
 };
@@ -22,7 +15,7 @@ pub(super) fn describe(query: &StepQuery) -> String {
 }
 
 pub(super) fn color() -> impl Strategy<Value = Vec3> + Clone {
-    checks::generate::vector(checks::generate::fractions(1..=8, 8.0))
+    checks::generate::vector(fractions(1..=8, 8.0))
 }
 
 /// The weight of a path: in half of the cases as small as 1e-4.
@@ -51,7 +44,7 @@ fn pdf() -> impl Strategy<Value = f32> + Clone {
 
 /// The probability with which an emitter is chosen. It is 1 in one of four.
 pub(super) fn probability() -> impl Strategy<Value = f32> + Clone {
-    checks::generate::fractions(1..=4, 4.0)
+    fractions(1..=4, 4.0)
 }
 
 /// A diffuse surface at a point, with both normals.
@@ -199,30 +192,24 @@ pub(super) fn steps_end_at_the_greatest_depth(trial: &Trial<'_>) -> CheckResult 
             let numbers = StepNumbers { roulette: 0.5, ..numbers };
             StepQuery { path: path(Vec3::ONE, bounces, CERTAIN, &vertex), vertex, max_depth, numbers }
         });
-    trial.forall(300, strategy, |queries| {
-        compare(queries, trial.kit.step(queries), |query, step| {
-            let (bounces, max_depth) = (query.path.bounces, query.max_depth);
-            let goes_on = bounces < max_depth;
-            if step.next.is_some() == goes_on {
-                return Ok(());
-            }
-            let says = |goes_on: bool| if goes_on { "the path continues" } else { "the path ends" };
-            let broken = Broken::with_texts(
-                describe(query),
-                says(!goes_on),
-                says(goes_on),
-                "at most max_depth bounces",
-            );
-            Err(broken.explained_by([
-                (bounces == max_depth, "one bounce too many: a path with max_depth bounces ends"),
-                (!goes_on, "paths do not end at max_depth"),
-                (
-                    bounces + 1 == max_depth,
-                    "one bounce too few: a path with fewer than max_depth bounces continues",
-                ),
-                (goes_on, "a path whose weight is 1 continues"),
-            ]))
-        })
+    trial.each(300, strategy, <dyn Kit>::step, |query, step| {
+        let (bounces, max_depth) = (query.path.bounces, query.max_depth);
+        let goes_on = bounces < max_depth;
+        if step.next.is_some() == goes_on {
+            return Ok(());
+        }
+        let says = |goes_on: bool| if goes_on { "the path continues" } else { "the path ends" };
+        let broken =
+            Broken::with_texts(describe(query), says(!goes_on), says(goes_on), "at most max_depth bounces");
+        Err(broken.explained_by([
+            (bounces == max_depth, "one bounce too many: a path with max_depth bounces ends"),
+            (!goes_on, "paths do not end at max_depth"),
+            (
+                bounces + 1 == max_depth,
+                "one bounce too few: a path with fewer than max_depth bounces continues",
+            ),
+            (goes_on, "a path whose weight is 1 continues"),
+        ]))
     })
 }
 

@@ -1,10 +1,7 @@
 //! The table of stage 11: the light that paths find in closed rooms.
 
-use checks::Trial;
-use checks::broken::CheckResult;
 use checks::golden::{Table, digits};
-use proptest::prelude::*;
-use raykata::kit::Kit;
+use checks::prelude::*;
 
 /// The numbers of bounces of the columns.
 const BOUNCES: [u32; 6] = [0, 1, 2, 4, 8, 16];

@@ -1,18 +1,9 @@
 //! Multiple importance sampling.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::generate::magnitude;
-use checks::judge::{Judged, compare, unless};
-use checks::paste::call;
-use proptest::prelude::*;
+use checks::prelude::*;
 use std::f64::consts::TAU;
 
 type Pair = (f32, f32);
-
-fn paste((own, other): &Pair) -> String {
-    call("mis_weight", &[own, other])
-}
 
 /// The answers for each pair and for the same pair in the other order.
 pub(super) fn both_ways(trial: &Trial<'_>, pairs: &[Pair]) -> Vec<Pair> {
@@ -30,7 +21,7 @@ fn judge_sum(pair: &Pair, (own, other): Pair) -> Judged {
         same(own, formula(pair.0, pair.1)) && same(other, formula(pair.1, pair.0))
     };
     let broken = || {
-        let input = format!("{} and {}", paste(pair), paste(&(pair.1, pair.0)));
+        let input = format!("{} and {}", pair.call("mis_weight"), (pair.1, pair.0).call("mis_weight"));
         let expected = "two weights in 0..=1 that sum to 1";
         Broken::with_texts(input, format!("{own:?} and {other:?}, sum {sum}"), expected, "the definition")
             .explained_by([
@@ -51,7 +42,7 @@ fn judge_sum(pair: &Pair, (own, other): Pair) -> Judged {
 }
 
 pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
-    let density = || prop_oneof![1 => checks::generate::fractions(1..=32, 8.0), 3 => magnitude(-4.0, 4.0)];
+    let density = || prop_oneof![1 => fractions(1..=32, 8.0), 3 => magnitude(-4.0, 4.0)];
     let pairs = (density(), density(), 0..6i32)
         .prop_map(|(own, other, which)| (own, if which == 0 { own } else { other }));
     trial.forall(500, pairs, |pairs| {
@@ -63,7 +54,7 @@ pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
                 return Ok(refuted);
             }
             let expected = "the larger density has the larger weight";
-            Err(Broken::new(paste(pair), answers.0, expected, "the definition").explained_by([(
+            Err(Broken::new(pair.call("mis_weight"), answers.0, expected, "the definition").explained_by([(
                 true,
                 "the smaller density gets the larger weight: own and other are exchanged",
             )]))
@@ -71,12 +62,8 @@ pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
         // Weights that are always 1/2 pass so far, although they ignore the densities.
         let all_half = pairs.len() > 1 && answers.iter().all(|(own, _)| *own == 0.5);
         if all_half {
-            let broken = Broken::with_texts(
-                paste(&pairs[0]),
-                "0.5 for all densities",
-                "a weight that depends on the densities",
-                "the definition",
-            );
+            let (yours, expected) = ("0.5 for all densities", "a weight that depends on the densities");
+            let broken = Broken::with_texts(pairs[0].call("mis_weight"), yours, expected, "the definition");
             return vec![Err(broken.explained_by([(true, "your weights are 1/2 for all densities")]))];
         }
         outcomes
@@ -89,21 +76,19 @@ pub(super) fn mis_weight_of_a_lone_density_is_one(trial: &Trial<'_>) -> CheckRes
         let special = if certain { f32::INFINITY } else { 0.0 };
         if own { (special, density) } else { (density, special) }
     });
-    trial.forall(200, cases, |pairs| {
-        compare(pairs, trial.kit.mis_weight(pairs), |pair, yours| {
-            let expected = if pair.0 == f32::INFINITY || pair.1 == 0.0 { 1.0 } else { 0.0 };
-            if yours == expected {
-                return Ok(());
-            }
-            Err(Broken::new(paste(pair), yours, expected, "the definition").explained_by([
-                (yours.is_nan(), "you return NaN: ∞ / ∞"),
-                (
-                    pair.0.is_infinite() || pair.1.is_infinite(),
-                    "a technique with infinite density always takes this sample: it gets the whole weight",
-                ),
-                (pair.1 == 0.0, "the other technique never takes this sample: its weight is 1"),
-            ]))
-        })
+    trial.each(200, cases, <dyn Kit>::mis_weight, |pair, yours| {
+        let expected = if pair.0 == f32::INFINITY || pair.1 == 0.0 { 1.0 } else { 0.0 };
+        if yours == expected {
+            return Ok(());
+        }
+        Err(Broken::new(pair.call("mis_weight"), yours, expected, "the definition").explained_by([
+            (yours.is_nan(), "you return NaN: ∞ / ∞"),
+            (
+                pair.0.is_infinite() || pair.1.is_infinite(),
+                "a technique with infinite density always takes this sample: it gets the whole weight",
+            ),
+            (pair.1 == 0.0, "the other technique never takes this sample: its weight is 1"),
+        ]))
     })?;
     // Where neither technique takes the sample, or both always do, any weight from 0 to 1 passes.
     let undecided = [(0.0, 0.0), (f32::INFINITY, f32::INFINITY)];
@@ -111,7 +96,8 @@ pub(super) fn mis_weight_of_a_lone_density_is_one(trial: &Trial<'_>) -> CheckRes
         if (0.0..=1.0).contains(&yours) {
             return Ok(());
         }
-        Err(Broken::with_texts(paste(pair), format!("{yours:?}"), "any weight in 0..=1", "the definition")
+        let (input, expected) = (pair.call("mis_weight"), "any weight in 0..=1");
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition")
             .explained_by([(yours.is_nan(), "you return NaN: 0 / 0 or ∞ / ∞")]))
     }))
 }
@@ -199,12 +185,8 @@ pub(super) fn mis_weights_keep_the_variance_low(trial: &Trial<'_>) -> CheckResul
             );
             let yours =
                 format!("variance {variance:.4} of the squared mean, mean {:.4} of the light", 1.0 + bias);
-            let broken = Broken::with_texts(
-                input,
-                yours,
-                format!("at most {LARGEST_VARIANCE}, and all of the light"),
-                "integrals over the light",
-            );
+            let expected = format!("at most {LARGEST_VARIANCE}, and all of the light");
+            let broken = Broken::with_texts(input, yours, expected, "integrals over the light");
             let all = |is: &dyn Fn(&Pair, &Pair) -> bool| {
                 pairs.iter().zip(&weights).all(|(pair, weights)| is(pair, weights))
             };

@@ -5,9 +5,8 @@
 use super::scenes::scenes;
 use super::visits::rays_through_a_cloud;
 use super::wide_tables::n_calls;
+use checks::prelude::*;
 use checks::tree::{around, half_area};
-use raykata::aabb::Aabb;
-use raykata::kit::Kit;
 use raykata::rubric;
 use raykata::wide::{BLOCK, BLOCK_COST, MAX_LEAF, NODE_COST};
 

@@ -1,13 +1,7 @@
 //! `fill_bins`, and the bin of a primitive.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, compare_formulas};
-use checks::nasty;
-use glam::{Vec3, Vec3A};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::kit::BinsQuery;
+use checks::prelude::*;
+use glam::Vec3A;
 use raykata::wide::{BinGrid, Bins, BoxA, MAX_BINS, PrimitiveBox};
 
 /// The ways in which the bin of a primitive is computed wrongly.
@@ -58,7 +52,7 @@ fn any_box() -> impl Strategy<Value = Aabb> + Clone {
     let cube = |low: Vec3, size: f32| Aabb::new(low, low + size);
     prop_oneof![
         4 => (nasty::lattice(6), 0..=3i32).prop_map(move |(low, size)| cube(low, size as f32)),
-        4 => (checks::generate::rough_point(6.0), 0..=3i32).prop_map(move |(low, size)| cube(low, size as f32 / 3.0)),
+        4 => (rough_point(6.0), 0..=3i32).prop_map(move |(low, size)| cube(low, size as f32 / 3.0)),
         1 => Just(Aabb::EMPTY),
     ]
 }
@@ -102,8 +96,7 @@ pub(super) fn n_bins() -> impl Strategy<Value = u32> + Clone {
 
 /// Boxes that are not empty.
 fn ordinary() -> impl Strategy<Value = BinsQuery> + Clone {
-    let one = (checks::generate::rough_point(6.0), 1..=8i32)
-        .prop_map(|(low, size)| Aabb::new(low, low + size as f32 / 3.0));
+    let one = (rough_point(6.0), 1..=8i32).prop_map(|(low, size)| Aabb::new(low, low + size as f32 / 3.0));
     (prop::collection::vec(one, 0..24), n_bins()).prop_map(|(boxes, n_bins)| {
         let primitives = primitives(&boxes);
         BinsQuery { grid: grid_over(&primitives, n_bins), primitives }

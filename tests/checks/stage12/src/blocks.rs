@@ -1,10 +1,6 @@
 //! `may_hit`: it keeps every triangle that may be hit, and rejects nearly all others.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::paste::Paste;
-use glam::Vec3;
+use checks::prelude::*;
 use oracle::STABLE;
 use oracle::exact::{Body, meet, triangle};
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
@@ -12,9 +8,6 @@ use oracle::gauntlet::families::families;
 use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::gauntlet::meshes::{Closed, closed};
 use oracle::splitmix::Random;
-use raykata::kit::BlockQuery;
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 use raykata::wide::{BLOCK, Filtered, LARGEST, NO_PRIMITIVE, TriangleBlock};
 
 /// A block of triangles, and a ray.

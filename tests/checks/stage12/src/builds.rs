@@ -3,16 +3,10 @@
 use super::bars::sweep_cost;
 use super::scenes::scenes;
 use super::trees::{boxes, broken_by, cost, fault, from_leaves};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, unless};
+use checks::prelude::*;
 use checks::tree::around;
-use glam::{Vec3, vec3};
 use oracle::splitmix::Random;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
 use raykata::bvh::DEEPEST_SPLIT;
-use raykata::kit::{KitError, kit_error};
 use raykata::wide::{BLOCK, FlatNode, FlatTree};
 
 pub(super) fn describe(boxes: &[Aabb]) -> String {
@@ -26,9 +20,7 @@ pub(super) fn judge_tree(boxes: &[Aabb], tree: &FlatTree) -> CheckResult {
 }
 
 pub(super) fn build_binned_holds_every_primitive_once(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(300, boxes(60), |sets| {
-        compare(sets, trial.kit.build_binned(sets), |boxes, tree| judge_tree(boxes, &tree))
-    })
+    trial.each(300, boxes(60), <dyn Kit>::build_binned, |boxes, tree| judge_tree(boxes, &tree))
 }
 
 /// The boxes below each node of a tree without faults: the smallest box around the boxes of its primitives.
@@ -66,9 +58,7 @@ pub(super) fn build_binned_boxes_are_tight(trial: &Trial<'_>) -> CheckResult {
         let shift = Vec3::splat(20.0);
         boxes.iter().map(|one| Aabb::new(one.min + shift, one.max + shift)).collect::<Vec<_>>()
     });
-    trial.forall(200, moved, |sets| {
-        compare(sets, trial.kit.build_binned(sets), |boxes, tree| judge_tight(boxes, &tree))
-    })
+    trial.each(200, moved, <dyn Kit>::build_binned, |boxes, tree| judge_tight(boxes, &tree))
 }
 
 /// A name, a set of boxes, the sizes of the leaves that its tree must have, and those that each of [`KNOWN`] gives.

@@ -1,12 +1,7 @@
 //! `flatten`.
 
 use super::trees::{drawn_tree, drawn_trees};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::compare;
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
 use raykata::bvh::{Bvh, Contents};
 use raykata::wide::FlatTree;
 

@@ -2,11 +2,9 @@
 
 use super::builds::{crowds, judge_tree};
 use super::scenes::scenes;
-use super::trees::{broken_by, fault, from_leaves};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
+use super::trees::{broken_by, fault, from_leaves, ranges};
+use checks::prelude::*;
 use oracle::splitmix::Random;
-use raykata::aabb::Aabb;
 use raykata::bvh::DEEPEST_SPLIT;
 use raykata::wide::{FlatTree, Fork, ForkKind, ForkedTree};
 use std::collections::{HashMap, HashSet};
@@ -61,11 +59,6 @@ fn depths(tree: &FlatTree) -> Vec<usize> {
         depths[node.first as usize..][..2].fill(depth);
     }
     depths
-}
-
-/// The first primitive and the number of primitives of each node of a tree without faults.
-fn ranges(tree: &FlatTree) -> Vec<(u32, u32)> {
-    from_leaves(tree, |_, leaf| (leaf.first, leaf.count), |_, left, right| (left.0, left.1 + right.1))
 }
 
 /// The work and the span of a build without faults that has logged these forks, in primitives.
@@ -138,13 +131,9 @@ pub(super) fn build_parallel_logs_the_nodes_that_it_forks(trial: &Trial<'_>) -> 
     let mut seen = HashSet::new();
     let broken = |fork: Option<&Fork>, expected: &str, cause: &'static str| {
         let yours = fork.map_or("no fork".into(), |fork| format!("{fork:?}"));
-        Err(Broken::with_texts(
-            format!("build_parallel of {} boxes", tree.order.len()),
-            yours,
-            expected,
-            "the finished tree",
-        )
-        .explained_by([(!cause.is_empty(), cause)]))
+        let input = format!("build_parallel of {} boxes", tree.order.len());
+        Err(Broken::with_texts(input, yours, expected, "the finished tree")
+            .explained_by([(!cause.is_empty(), cause)]))
     };
     if forks.is_empty() {
         return broken(

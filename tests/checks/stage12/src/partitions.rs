@@ -1,14 +1,7 @@
 //! `partition_bins`.
 
 use super::bins::{ROUNDINGS, Rounding, bin_of, grid_over, grids, n_bins, primitives};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::compare_formulas;
-use checks::nasty;
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::kit::{PartitionQuery, SplitAnswer};
+use checks::prelude::*;
 use raykata::wide::{BinGrid, BinSplit, PrimitiveBox};
 
 fn query(boxes: &[Aabb], kind: u8, n_bins: u32, axis: u32, bin: u32) -> PartitionQuery {
@@ -19,7 +12,7 @@ fn query(boxes: &[Aabb], kind: u8, n_bins: u32, axis: u32, bin: u32) -> Partitio
 
 fn cubes(rough: bool) -> impl Strategy<Value = Vec<Aabb>> + Clone {
     let cube = |(low, size): (Vec3, i32)| Aabb::new(low, low + size as f32 / 4.0);
-    let low = if rough { checks::generate::rough_point(6.0).boxed() } else { nasty::lattice(6).boxed() };
+    let low = if rough { rough_point(6.0).boxed() } else { nasty::lattice(6).boxed() };
     prop::collection::vec((low, 1..=4i32).prop_map(cube), 0..24)
 }
 

@@ -1,15 +1,9 @@
 //! The picture of stage 12: a winding ramp of triangles, found by a wide tree.
 
 use super::trees::drawn_tree;
-use checks::broken::CheckResult;
-use checks::picture::{Composed, SMALL};
-use checks::{Trial, picture};
-use glam::{Vec3, vec3};
+use checks::picture::{self, Composed, SMALL};
+use checks::prelude::*;
 use oracle::exact::{Body, meet};
-use raykata::aabb::Aabb;
-use raykata::kit::{BlockQuery, Kit, WideBoxesQuery, WideQuery};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 use raykata::wide::{BLOCK, Filtered, FlatTree, NO_PRIMITIVE, TriangleBlock, WIDE_NODE_COST, WideTree};
 use std::f32::consts::TAU;
 
@@ -97,7 +91,7 @@ pub(super) fn picture_of_a_winding_ramp(trial: &Trial<'_>) -> CheckResult {
         .map(|Triangle { a, b, c }| Aabb::new(a.min(*b).min(*c), a.max(*b).max(*c)))
         .collect();
     let tree = drawn_tree(&boxes, 6, &[28, 13, 14, 7, 6, 4, 5, 2]);
-    let rays = picture::rays_of(trial, SMALL, vec3(2.4, 2.9, 2.4), TARGET);
+    let rays = picture::rays(trial, SMALL, vec3(2.4, 2.9, 2.4), TARGET);
     // All hits are exact, so no pixel may differ.
     let composed = Composed { name: "stage12_winding_ramp", size: SMALL, rays: &rays, may_differ: 0.0 };
     composed.check(trial, |kit| depths(kit, &tree, &triangles, &rays))

@@ -1,8 +1,7 @@
 //! The sets of boxes over which trees are built.
 
-use glam::{Vec3, vec3};
+use checks::prelude::*;
 use oracle::splitmix::Random;
-use raykata::aabb::Aabb;
 
 /// The name of a set of boxes, and the boxes.
 pub type Scene = (&'static str, Vec<Aabb>);

@@ -1,11 +1,7 @@
 //! `wide_closest_hit` and `wide_any_hit`: what they find, and which boxes they enter.
 
 use super::wide_tables::{Flaw, closest, describe, flawed_search, overlapped, query, searches, two_leaves};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, compare_formulas};
-use proptest::strategy::Strategy;
-use raykata::kit::{WideAnswer, WideQuery};
+use checks::prelude::*;
 
 const TIES: [(Flaw, &str); 2] = [
     (
@@ -109,11 +105,9 @@ fn judge_nodes(query: &WideQuery, yours: &WideAnswer, function: &str) -> CheckRe
 }
 
 pub(super) fn wide_closest_hit_enters_only_boxes_it_meets(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(300, searches(120), |queries| {
-        compare(queries, trial.kit.wide_closest_hit(queries), |query, yours| {
-            judge_hit(query, &yours)?;
-            judge_nodes(query, &yours, "wide_closest_hit")
-        })
+    trial.each(300, searches(120), <dyn Kit>::wide_closest_hit, |query, yours| {
+        judge_hit(query, &yours)?;
+        judge_nodes(query, &yours, "wide_closest_hit")
     })
 }
 
@@ -139,24 +133,22 @@ fn judge_any(query: &WideQuery, yours: &WideAnswer) -> CheckResult {
 }
 
 pub(super) fn wide_any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&hit_before_the_range(), 300, searches(120), |queries| {
-        compare(queries, trial.kit.wide_any_hit(queries), |query, yours| judge_any(query, &yours))
+    trial.each_and(&hit_before_the_range(), 300, searches(120), <dyn Kit>::wide_any_hit, |query, yours| {
+        judge_any(query, &yours)
     })
 }
 
 pub(super) fn wide_any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&hit_before_the_range(), 300, searches(120), |queries| {
-        compare(queries, trial.kit.wide_any_hit(queries), |query, yours| {
-            // A search that asks nothing finds nothing.
-            judge_any(query, &yours)?;
-            if yours.calls_after_hit == 0 {
-                return Ok(());
-            }
-            let [yours, none] = [yours.calls_after_hit, 0].map(|n| format!("{n} calls after the first hit"));
-            let broken =
-                Broken::with_texts(format!("wide_any_hit in {}", describe(query)), yours, none, "counted");
-            Err(broken.explained_by([(true, "the search goes on after a hit: return true at once")]))
-        })
+    trial.each_and(&hit_before_the_range(), 300, searches(120), <dyn Kit>::wide_any_hit, |query, yours| {
+        // A search that asks nothing finds nothing.
+        judge_any(query, &yours)?;
+        if yours.calls_after_hit == 0 {
+            return Ok(());
+        }
+        let [yours, none] = [yours.calls_after_hit, 0].map(|n| format!("{n} calls after the first hit"));
+        let broken =
+            Broken::with_texts(format!("wide_any_hit in {}", describe(query)), yours, none, "counted");
+        Err(broken.explained_by([(true, "the search goes on after a hit: return true at once")]))
     })
 }
 
@@ -167,10 +159,8 @@ pub(super) fn wide_any_hit_enters_only_boxes_it_meets(trial: &Trial<'_>) -> Chec
             if query.ray.t_min > 0.0 { vec![f32::INFINITY; query.hits.len()] } else { query.hits.clone() };
         WideQuery { hits, ..query }
     });
-    trial.forall_and(&hit_before_the_range(), 300, half_missed, |queries| {
-        compare(queries, trial.kit.wide_any_hit(queries), |query, yours| {
-            judge_any(query, &yours)?;
-            judge_nodes(query, &yours, "wide_any_hit")
-        })
+    trial.each_and(&hit_before_the_range(), 300, half_missed, <dyn Kit>::wide_any_hit, |query, yours| {
+        judge_any(query, &yours)?;
+        judge_nodes(query, &yours, "wide_any_hit")
     })
 }

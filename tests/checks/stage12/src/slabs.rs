@@ -1,15 +1,8 @@
 //! `enter_boxes`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare_formulas;
-use checks::paste::Paste;
-use glam::{Vec3, vec3};
+use checks::prelude::*;
 use oracle::gauntlet::boxes::{at_a_corner, of_any_size};
 use oracle::splitmix::Random;
-use raykata::aabb::Aabb;
-use raykata::kit::WideBoxesQuery;
-use raykata::ray::Ray;
 use raykata::wide::{Child, Entered, WideNode, WideRay};
 
 /// The mistakes of a slab test.

@@ -1,14 +1,9 @@
 //! `block_cost` and `cheapest_split`.
 
 use super::bins::{n_bins, union};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::compare_formulas;
+use checks::prelude::*;
 use checks::tree::half_area;
-use glam::{Vec3, Vec3A};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::kit::BinSplitQuery;
+use glam::Vec3A;
 use raykata::wide::{BLOCK, BLOCK_COST, Bin, BinSplit, Bins, BoxA};
 
 /// The number of blocks, computed in a wrong way.

@@ -2,14 +2,9 @@
 
 use super::bins::{grid_over, primitives};
 use super::trees::drawn_tree;
-use checks::Trial;
-use checks::broken::CheckResult;
 use checks::golden::{Table, digits};
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
 use raykata::bvh::Bvh;
-use raykata::kit::{BinSplitQuery, BinsQuery, Kit, PartitionQuery};
 use raykata::wide::{ChildContents, FlatTree, WideTree};
 use std::fmt::Write;
 

@@ -1,10 +1,7 @@
 //! Flat trees: trees whose shape is drawn, and the faults and the cost of a tree.
 
-use checks::broken::Broken;
+use checks::prelude::*;
 use checks::tree::{around, half_area};
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
 use raykata::wide::{BLOCK, BLOCK_COST, FlatNode, FlatTree, MAX_LEAF, NODE_COST};
 
 /// A node that is not filled in yet.
@@ -12,7 +9,7 @@ const GAP: FlatNode = FlatNode { low: Vec3::ZERO, first: 0, high: Vec3::ZERO, co
 
 /// Boxes of whole eighths: some flat, some equal.
 pub(super) fn boxes(most: usize) -> impl Strategy<Value = Vec<Aabb>> + Clone {
-    let one = (checks::generate::point(6), 0..=6i32, 0..=3usize).prop_map(|(low, size, flat)| {
+    let one = (point(6), 0..=6i32, 0..=3usize).prop_map(|(low, size, flat)| {
         let mut size = Vec3::new(size as f32, size as f32 / 2.0, 1.0) / 4.0;
         if flat < 3 {
             size[flat] = 0.0;
@@ -176,6 +173,11 @@ pub(super) fn from_leaves<T: Copy>(
     }
     values.reverse();
     values
+}
+
+/// For each node of a tree without faults the primitives below it: where they begin in the order, and their number.
+pub(super) fn ranges(tree: &FlatTree) -> Vec<(u32, u32)> {
+    from_leaves(tree, |_, leaf| (leaf.first, leaf.count), |_, left, right| (left.0, left.1 + right.1))
 }
 
 /// The cost of a tree without faults by the surface area heuristic of this stage, for a ray that enters its root.

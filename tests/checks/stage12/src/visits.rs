@@ -2,16 +2,10 @@
 
 use super::bars::calls_of_search;
 use super::wide_tables::{Flaw, closest, flawed_search, n_calls};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
 use checks::double;
+use checks::prelude::*;
 use checks::tree::{around, sphere_box};
-use glam::{Vec3, vec3};
 use oracle::splitmix::Random;
-use raykata::aabb::Aabb;
-use raykata::kit::{WideAnswer, WideQuery};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 use raykata::wide::{BLOCK, Child, ChildContents, WideNode, WideTree};
 use std::ops::Range;
 

@@ -1,12 +1,9 @@
 //! Wide trees whose boxes and primitives are tables of answers, and searches of them.
 
 use super::trees::shuffled;
+use checks::prelude::*;
 use checks::tree::move_apart;
-use glam::Vec3;
-use proptest::prelude::*;
 use raykata::bvh::PrimitiveHit;
-use raykata::kit::{WideAnswer, WideQuery};
-use raykata::ray::Ray;
 use raykata::wide::{BLOCK, Child, ChildContents, MAX_LEAF, NO_PRIMITIVE, WideTree};
 use std::ops::Range;
 
@@ -93,7 +90,7 @@ pub(super) fn query(hits: &[f32], sizes: &[usize], choices: &[u16], ray: Ray) ->
 
 /// Searches with up to `most` primitives. Their `t` are near whole quarters, and no two are equal.
 pub(super) fn searches(most: usize) -> impl Strategy<Value = WideQuery> + Clone {
-    let t = prop_oneof![2 => checks::generate::fractions(1..=40, 4.0), 1 => Just(f32::INFINITY)];
+    let t = prop_oneof![2 => fractions(1..=40, 4.0), 1 => Just(f32::INFINITY)];
     let hits = prop::collection::vec(t, 1..=most);
     let sizes = prop::collection::vec(1..=9usize, 1..6);
     let choices = prop::collection::vec(any::<u16>(), 1..30);

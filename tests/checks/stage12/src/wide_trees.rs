@@ -1,14 +1,9 @@
 //! `collapse`.
 
-use super::trees::{Fault, broken_by, drawn_tree, drawn_trees, from_leaves};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, compare_formulas};
+use super::trees::{Fault, broken_by, drawn_tree, drawn_trees, from_leaves, ranges};
+use checks::prelude::*;
 use checks::tree::half_area;
-use glam::Vec3;
 use oracle::splitmix::Random;
-use proptest::strategy::Strategy;
-use raykata::aabb::Aabb;
 use raykata::wide::{BLOCK, Child, ChildContents, FlatNode, FlatTree, MAX_LEAF, NO_PRIMITIVE, WideTree};
 use std::collections::HashMap;
 
@@ -20,11 +15,6 @@ fn parents(tree: &FlatTree) -> Vec<usize> {
         parents[node.first as usize + 1] = index;
     }
     parents
-}
-
-/// For each node of a flat tree the primitives below it: where they begin in the order, and their number.
-fn ranges(tree: &FlatTree) -> Vec<(u32, u32)> {
-    from_leaves(tree, |_, leaf| (leaf.first, leaf.count), |_, left, right| (left.0, left.1 + right.1))
 }
 
 /// The nodes of the flat tree that a wide tree is made of: those that its inner nodes stand for, without the root, and its leaves.
@@ -165,17 +155,15 @@ fn divided_trees(most: usize) -> impl Strategy<Value = Collapsed> + Clone {
 }
 
 pub(super) fn collapse_keeps_every_leaf(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(300, divided_trees(80), |trees| {
-        compare(trees, trial.kit.collapse(trees), |(tree, _), wide| judge_leaves(tree, &wide))
-    })
+    trial.each(300, divided_trees(80), <dyn Kit>::collapse, |(tree, _), wide| judge_leaves(tree, &wide))
 }
 
 pub(super) fn collapse_of_one_leaf_and_of_nothing(trial: &Trial<'_>) -> CheckResult {
     // Leaves of one primitive, of whole blocks, and of more.
     let leaf = |n: usize| drawn_tree(&vec![Aabb::new(Vec3::ZERO, Vec3::ONE); n], n, &[1]);
     let chosen: Vec<Collapsed> = [1, 8, 9, 16, 32, 0].into_iter().map(|n| (leaf(n), 2.0)).collect();
-    trial.forall_and(&chosen, 60, trees_only(3), |trees| {
-        compare(trees, trial.kit.collapse(trees), |(tree, _), wide| judge_leaves(tree, &wide))
+    trial.each_and(&chosen, 60, trees_only(3), <dyn Kit>::collapse, |(tree, _), wide| {
+        judge_leaves(tree, &wide)
     })
 }
 

@@ -1,16 +1,7 @@
 //! Attributes of a triangle: interpolation and the face normal.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::double::U;
-use checks::generate::{point, triangle};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::{Paste, call};
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::InterpolateQuery;
-use raykata::shape::Triangle;
+use checks::generate::triangle;
+use checks::prelude::*;
 
 pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> CheckResult {
     let inputs = (0..=8i32, 0..=8i32, point(4), point(4), point(4), nasty::any_scale()).prop_map(
@@ -24,34 +15,29 @@ pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> CheckResult
     let barycentric = vec3(0.5, 0.375, 0.125);
     let drawn =
         InterpolateQuery { barycentric, corners: [vec3(8.0, 0.0, 1.0), 16.0 * Vec3::Y, 32.0 * Vec3::Z] };
-    trial.forall_and(&[drawn], 1000, inputs, |queries| {
-        compare(queries, trial.kit.interpolate(queries), |query, yours| {
-            let [a, b, c] = query.corners;
-            let w = query.barycentric;
-            // All numbers are multiples of 1/64 times a power of two, so the sums are exact in single precision.
-            let sum = |[x, y, z]: [f32; 3]| x * a + y * b + z * c;
-            let expected = sum([w.x, w.y, w.z]);
-            let direction = |v: Vec3| v.as_dvec3().normalize_or_zero();
-            let other_orders =
-                [[w.y, w.z, w.x], [w.z, w.x, w.y], [w.x, w.z, w.y], [w.z, w.y, w.x], [w.y, w.x, w.z]];
-            let input =
-                || format!("interpolate({}, [{}, {}, {}])", w.paste(), a.paste(), b.paste(), c.paste());
-            let mut mistakes = vec![(
-                (yours.as_dvec3() - direction(expected)).length() < 1e-6,
-                "your value is normalized: return the weighted sum as it is",
-            )];
-            mistakes.extend(
-                other_orders.map(|order| {
-                    (yours == sum(order), "multiply the corners a, b, c by α, β, γ in this order")
-                }),
-            );
-            mistakes.push((
-                yours == (a + b + c) / 3.0,
-                "you return the average of the corners without their coordinates",
-            ));
-            unless(yours == expected, || Broken::new(input(), yours, expected, "closed form"))
-                .formulas(mistakes)
-        })
+    trial.each_and(&[drawn], 1000, inputs, <dyn Kit>::interpolate, |query, yours| {
+        let [a, b, c] = query.corners;
+        let w = query.barycentric;
+        // All numbers are multiples of 1/64 times a power of two, so the sums are exact in single precision.
+        let sum = |[x, y, z]: [f32; 3]| x * a + y * b + z * c;
+        let expected = sum([w.x, w.y, w.z]);
+        let direction = |v: Vec3| v.as_dvec3().normalize_or_zero();
+        let other_orders =
+            [[w.y, w.z, w.x], [w.z, w.x, w.y], [w.x, w.z, w.y], [w.z, w.y, w.x], [w.y, w.x, w.z]];
+        let input = || format!("interpolate({}, [{}, {}, {}])", w.paste(), a.paste(), b.paste(), c.paste());
+        let mut mistakes = vec![(
+            (yours.as_dvec3() - direction(expected)).length() < 1e-6,
+            "your value is normalized: return the weighted sum as it is",
+        )];
+        mistakes.extend(
+            other_orders
+                .map(|order| (yours == sum(order), "multiply the corners a, b, c by α, β, γ in this order")),
+        );
+        mistakes.push((
+            yours == (a + b + c) / 3.0,
+            "you return the average of the corners without their coordinates",
+        ));
+        unless(yours == expected, || Broken::new(input(), yours, expected, "closed form")).formulas(mistakes)
     })
 }
 
@@ -125,7 +111,5 @@ pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Chec
         (vec3(4.0, 0.0, 0.0), vec3(0.0, 0.0, 2.0)),
     ];
     let drawn = corners.map(|(b, c)| Triangle { a: Vec3::ZERO, b, c });
-    trial.forall_and(&drawn, 2000, prop_oneof![triangle(), sized()], |triangles| {
-        compare(triangles, trial.kit.face_normal(triangles), judge_face_normal)
-    })
+    trial.each_and(&drawn, 2000, prop_oneof![triangle(), sized()], <dyn Kit>::face_normal, judge_face_normal)
 }

@@ -1,17 +1,8 @@
 //! The backfacing test: the side of a triangle from which a ray comes.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::{LIMITS, U};
-use checks::generate::{direction, point, triangle};
-use checks::judge::compare_formulas;
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::TriangleQuery;
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
+use checks::double::LIMITS;
+use checks::generate::triangle;
+use checks::prelude::*;
 
 /// `n·d`, and the largest error of a method in single precision.
 fn slope(query: &TriangleQuery) -> (f64, f64) {

@@ -1,13 +1,7 @@
 //! Brute force: the closest hit of many primitives.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
+use checks::prelude::*;
 use checks::tree::move_apart;
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::kit::{SearchAnswer, SearchQuery, Table};
-use raykata::ray::Ray;
 
 type Hit = Option<(u32, f32)>;
 
@@ -91,9 +85,7 @@ pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> CheckRe
             let query = query(primitives);
             SearchQuery { ray: query.ray.with_range(t_min as f32 / 2.0, t_max), ..query }
         });
-    trial.forall(2000, inputs, |queries| {
-        compare(queries, trial.kit.brute_force(queries), |query, yours| judge(query, &yours))
-    })
+    trial.each(2000, inputs, <dyn Kit>::brute_force, |query, yours| judge(query, &yours))
 }
 
 pub(super) fn brute_force_prefers_the_smaller_number(trial: &Trial<'_>) -> CheckResult {

@@ -2,16 +2,11 @@
 
 use super::method::{CHOICE, CRAMER, GRAM};
 use super::vertex_normals::octahedron;
-use checks::broken::CheckResult;
 use checks::golden::Table;
-use checks::picture::{Composed, LARGE};
-use checks::{Trial, picture};
-use glam::{Quat, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{InterpolateQuery, Kit, TriangleHit, TriangleQuery};
+use checks::picture::{self, Composed, LARGE};
+use checks::prelude::*;
+use glam::Quat;
 use raykata::mesh::Mesh;
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 
 /// The hits of each method on a fan of 25 rays, to four digits, because the methods differ in later digits.
 pub(super) fn hit_table_of_a_fan(trial: &Trial<'_>) -> CheckResult {
@@ -78,7 +73,7 @@ pub(super) fn picture_of_an_octahedron(trial: &Trial<'_>) -> CheckResult {
     let turn = Quat::from_rotation_x(tilt) * Quat::from_rotation_y(turn);
     let mut mesh = octahedron();
     mesh.positions.iter_mut().for_each(|position| *position = size * (turn * *position));
-    let rays = picture::rays(trial, vec3(1.2, 1.6, 2.4), Vec3::ZERO);
+    let rays = picture::rays(trial, LARGE, vec3(1.2, 1.6, 2.4), Vec3::ZERO);
     // The outline crosses about 120 of 4800 pixels. There rounding decides whether a ray hits or misses.
     let composed = Composed { name: "stage2_octahedron", size: LARGE, rays: &rays, may_differ: 0.002 };
     composed.check(trial, |kit| colors(kit, &rays, &mesh))

@@ -1,16 +1,7 @@
 //! The four scalars of the Gram method.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::double::U;
-use checks::generate::{direction, point, triangle};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::GramScalars;
-use raykata::shape::Triangle;
+use checks::generate::triangle;
+use checks::prelude::*;
 
 /// The scalars and their largest rounding errors.
 struct Exact {
@@ -58,12 +49,8 @@ fn judge(triangle: &Triangle, yours: GramScalars) -> Judged {
     let broken = || {
         let [uv, vv, uu, d] = [yours.uv, yours.vv, yours.uu, yours.d].map(f64::from);
         let expected = describe(exact.uv, exact.vv, exact.uu, exact.d);
-        Broken::with_texts(
-            call("gram_scalars", &[triangle]),
-            describe(uv, vv, uu, d),
-            expected,
-            "double precision",
-        )
+        let yours = describe(uv, vv, uu, d);
+        Broken::with_texts(call("gram_scalars", &[triangle]), yours, expected, "double precision")
     };
     // UV² and UU·VV are rounded before they are subtracted.
     let cancels = near(yours.d, exact.d, 16.0 * U * (exact.uv * exact.uv + exact.uu * exact.vv));
@@ -98,7 +85,5 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
     // D grows with the fourth power of the size, which must stay a normal number.
     let sized = (prop_oneof![triangle(), thin], nasty::scale(-12..=24))
         .prop_map(|(Triangle { a, b, c }, size)| Triangle { a: size * a, b: size * b, c: size * c });
-    trial.forall_and(&drawn, 2000, sized, |triangles| {
-        compare(triangles, trial.kit.gram_scalars(triangles), judge)
-    })
+    trial.each_and(&drawn, 2000, sized, <dyn Kit>::gram_scalars, judge)
 }

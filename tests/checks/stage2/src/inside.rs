@@ -1,18 +1,9 @@
 //! Inside tests I, II and III.
 
 use super::method::aimed;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double;
-use checks::generate::{point, triangle};
-use checks::judge::{Judged, compare, compare_formulas, unless};
-use checks::nasty;
-use checks::paste::{Arguments, call};
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{InsideQuery, Kit, TriangleQuery};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
+use checks::generate::triangle;
+use checks::prelude::*;
 
 /// A point in the plane of a triangle, with its barycentric coordinates `[α, β, γ]`, and whether they are exact.
 pub(super) type Case = (InsideQuery, [f64; 3], bool);

@@ -1,17 +1,8 @@
 //! Ray-triangle intersection: each check for all three methods.
 
 use super::method::{TriangleFunction, aimed, describe};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::generate::{self, point, rough_point, triangle};
-use checks::judge::compare;
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{TriangleHit, TriangleQuery};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
+use checks::generate::{self, triangle};
+use checks::prelude::*;
 
 const UNIT: Triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
 

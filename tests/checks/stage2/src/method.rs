@@ -1,16 +1,8 @@
 //! The three methods of intersecting a triangle, and how the checks judge their answers.
 
 use crate::triangle_mistakes::{mistakes, observations};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::{self, TriangleExpected, compare_tolerant};
-use checks::generate::fractions;
-use checks::paste::Arguments;
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::kit::{Kit, TriangleHit, TriangleQuery};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
+use checks::prelude::*;
 
 /// One of the three methods of intersecting a triangle.
 #[derive(Clone, Copy)]

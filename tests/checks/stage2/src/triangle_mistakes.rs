@@ -1,8 +1,7 @@
 //! Known mistakes in the intersection of a ray and a triangle, each with the answer that it gives.
 
-use checks::double::{LIMITS, U};
-use glam::{DVec3, Vec3};
-use raykata::kit::{TriangleHit, TriangleQuery};
+use checks::double::LIMITS;
+use checks::prelude::*;
 
 /// The intersection of the line along a ray with the plane of a triangle, in double precision.
 struct Line {

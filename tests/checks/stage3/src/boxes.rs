@@ -1,16 +1,8 @@
 //! Boxes: bounds of triangles and spheres, union, centroid, surface area.
 
-use checks::broken::{Broken, CheckResult};
-use checks::double;
-use checks::generate::{magnitude, point, rough_point, sphere, triangle};
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use checks::{Trial, tree};
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::shape::{Sphere, Triangle};
+use checks::generate::{sphere, triangle};
+use checks::prelude::*;
+use checks::{double, tree};
 
 const CORNERS: &str = "min and max are corners of the triangle in your box: take the smallest and the largest coordinate on each axis";
 
@@ -20,33 +12,29 @@ pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
         b: size * t.b,
         c: size * t.c,
     });
-    trial.forall(1000, sized, |triangles| {
-        compare(triangles, trial.kit.triangle_bounds(triangles), |triangle, yours| {
-            let corner = |p: Vec3| Aabb::new(p, p);
-            let expected = tree::around(&[corner(triangle.a), corner(triangle.b), corner(triangle.c)]);
-            let input = || call("triangle_bounds", &[triangle]);
-            let two = |p: Vec3, q: Vec3| tree::around(&[corner(p), corner(q)]);
-            let Triangle { a, b, c } = *triangle;
-            let pairs = [two(a, b), two(b, c), two(c, a)];
-            let mut mistakes =
-                Vec::from(pairs.map(|pair| {
-                    (yours == pair, "your box leaves out a corner: it contains only two of them")
-                }));
-            mistakes.extend([
-                (
-                    yours.contains_box(&expected) && !yours.is_empty(),
-                    "you return a padded box: boxes are closed, so even a flat box needs no padding",
-                ),
-                (
-                    yours == Aabb::new(expected.max, expected.min),
-                    "min and max are exchanged: min is the smaller one on each axis",
-                ),
-                (yours == Aabb::new(a, b), CORNERS),
-                (yours == Aabb::new(a, c), CORNERS),
-            ]);
-            unless(yours == expected, || Broken::new(input(), yours, expected, "closed form"))
-                .formulas(mistakes)
-        })
+    trial.each(1000, sized, <dyn Kit>::triangle_bounds, |triangle, yours| {
+        let corner = |p: Vec3| Aabb::new(p, p);
+        let expected = tree::around(&[corner(triangle.a), corner(triangle.b), corner(triangle.c)]);
+        let input = || call("triangle_bounds", &[triangle]);
+        let two = |p: Vec3, q: Vec3| tree::around(&[corner(p), corner(q)]);
+        let Triangle { a, b, c } = *triangle;
+        let pairs = [two(a, b), two(b, c), two(c, a)];
+        let mut mistakes = Vec::from(
+            pairs.map(|pair| (yours == pair, "your box leaves out a corner: it contains only two of them")),
+        );
+        mistakes.extend([
+            (
+                yours.contains_box(&expected) && !yours.is_empty(),
+                "you return a padded box: boxes are closed, so even a flat box needs no padding",
+            ),
+            (
+                yours == Aabb::new(expected.max, expected.min),
+                "min and max are exchanged: min is the smaller one on each axis",
+            ),
+            (yours == Aabb::new(a, b), CORNERS),
+            (yours == Aabb::new(a, c), CORNERS),
+        ]);
+        unless(yours == expected, || Broken::new(input(), yours, expected, "closed form")).formulas(mistakes)
     })
 }
 
@@ -56,36 +44,34 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
     let sized = (sphere(), nasty::any_scale())
         .prop_map(|(sphere, size)| Sphere { center: size * sphere.center, radius: size * sphere.radius });
     let spheres = prop_oneof![sphere(), spheres, sized];
-    trial.forall(1000, spheres, |spheres| {
-        compare(spheres, trial.kit.sphere_bounds(spheres), |sphere, yours| {
-            let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
-            // Allow half a float for the rounding and two floats outwards; a float is two roundings at most.
-            let slack = (center.abs() + radius) * 5.0 * double::U;
-            let near = |yours: Vec3, exact: glam::DVec3| (yours.as_dvec3() - exact).abs().cmple(slack).all();
-            let right = near(yours.min, center - radius) && near(yours.max, center + radius);
-            let expected = Aabb::new((center - radius).as_vec3(), (center + radius).as_vec3());
-            let input = || call("sphere_bounds", &[sphere]);
-            let is = |low: glam::DVec3, high: glam::DVec3| near(yours.min, low) && near(yours.max, high);
-            unless(right, || Broken::new(input(), yours, expected, "closed form")).formulas([
-                (
-                    is(glam::DVec3::splat(-radius), glam::DVec3::splat(radius)),
-                    "your box has the right size but the wrong place: go one radius from the centre",
-                ),
-                (
-                    is(center - 0.5 * radius, center + 0.5 * radius),
-                    "your box is too small: go one whole radius from the centre to each side",
-                ),
-                (is(center, center + radius), "your box begins at the centre: go one radius to each side"),
-                (
-                    is(center, center + 2.0 * radius),
-                    "your box begins at the centre: go one radius to each side of it",
-                ),
-                (
-                    is(center - 2.0 * radius, center + 2.0 * radius),
-                    "your box is too large: go one radius from the centre to each side, not the diameter",
-                ),
-            ])
-        })
+    trial.each(1000, spheres, <dyn Kit>::sphere_bounds, |sphere, yours| {
+        let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
+        // Allow half a float for the rounding and two floats outwards; a float is two roundings at most.
+        let slack = (center.abs() + radius) * 5.0 * double::U;
+        let near = |yours: Vec3, exact: glam::DVec3| (yours.as_dvec3() - exact).abs().cmple(slack).all();
+        let right = near(yours.min, center - radius) && near(yours.max, center + radius);
+        let expected = Aabb::new((center - radius).as_vec3(), (center + radius).as_vec3());
+        let input = || call("sphere_bounds", &[sphere]);
+        let is = |low: glam::DVec3, high: glam::DVec3| near(yours.min, low) && near(yours.max, high);
+        unless(right, || Broken::new(input(), yours, expected, "closed form")).formulas([
+            (
+                is(glam::DVec3::splat(-radius), glam::DVec3::splat(radius)),
+                "your box has the right size but the wrong place: go one radius from the centre",
+            ),
+            (
+                is(center - 0.5 * radius, center + 0.5 * radius),
+                "your box is too small: go one whole radius from the centre to each side",
+            ),
+            (is(center, center + radius), "your box begins at the centre: go one radius to each side"),
+            (
+                is(center, center + 2.0 * radius),
+                "your box begins at the centre: go one radius to each side of it",
+            ),
+            (
+                is(center - 2.0 * radius, center + 2.0 * radius),
+                "your box is too large: go one radius from the centre to each side, not the diameter",
+            ),
+        ])
     })
 }
 
@@ -98,8 +84,12 @@ pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> CheckResult {
     let sized = || (aabb(), nasty::any_scale()).prop_map(|(b, size)| Aabb::new(size * b.min, size * b.max));
     let boxes = || prop_oneof![9 => sized(), 1 => Just(Aabb::EMPTY)];
     let (first, second) = (Aabb::new(Vec3::ONE, 2.0 * Vec3::ONE), Aabb::new(Vec3::ZERO, Vec3::splat(0.5)));
-    trial.forall_and(&[(first, second), (second, first)], 1000, (boxes(), boxes()), |pairs| {
-        compare(pairs, trial.kit.union(pairs), |(first, second), yours| {
+    trial.each_and(
+        &[(first, second), (second, first)],
+        1000,
+        (boxes(), boxes()),
+        <dyn Kit>::union,
+        |(first, second), yours| {
             let expected = tree::around([first, second]);
             let empty = first.is_empty() || second.is_empty();
             // A right answer for an empty box may come from a case of its own.
@@ -123,28 +113,23 @@ pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> CheckResult {
                 (yours == *first || open, "you return the first box"),
                 (yours == *second || open, "you return the second box"),
             ])
-        })
-    })
+        },
+    )
 }
 
 pub(super) fn centroid_is_the_middle(trial: &Trial<'_>) -> CheckResult {
     let sized = (aabb(), nasty::any_scale()).prop_map(|(b, size)| Aabb::new(size * b.min, size * b.max));
-    trial.forall(1000, sized, |boxes| {
-        compare(boxes, trial.kit.centroid(boxes), |bounds, yours| {
-            // Exact, because all coordinates are multiples of 1/8 times a power of two.
-            let expected = 0.5 * (bounds.min + bounds.max);
-            let input = || call("centroid", &[bounds]);
-            unless(yours == expected, || Broken::new(input(), yours, expected, "closed form")).formulas([
-                (yours == bounds.min + bounds.max, "you return min + max, not halved"),
-                (
-                    yours == 0.5 * (bounds.max - bounds.min),
-                    "you return half the size of the box, not its middle",
-                ),
-                (yours == bounds.max - bounds.min, "you return the size of the box, not its middle"),
-                (yours == bounds.min, "you return a corner of the box, not its middle"),
-                (yours == bounds.max, "you return a corner of the box, not its middle"),
-            ])
-        })
+    trial.each(1000, sized, <dyn Kit>::centroid, |bounds, yours| {
+        // Exact, because all coordinates are multiples of 1/8 times a power of two.
+        let expected = 0.5 * (bounds.min + bounds.max);
+        let input = || call("centroid", &[bounds]);
+        unless(yours == expected, || Broken::new(input(), yours, expected, "closed form")).formulas([
+            (yours == bounds.min + bounds.max, "you return min + max, not halved"),
+            (yours == 0.5 * (bounds.max - bounds.min), "you return half the size of the box, not its middle"),
+            (yours == bounds.max - bounds.min, "you return the size of the box, not its middle"),
+            (yours == bounds.min, "you return a corner of the box, not its middle"),
+            (yours == bounds.max, "you return a corner of the box, not its middle"),
+        ])
     })
 }
 
@@ -152,24 +137,22 @@ pub(super) fn surface_area_counts_six_faces(trial: &Trial<'_>) -> CheckResult {
     let sized = (aabb(), nasty::scale(-50..=50)).prop_map(|(b, size)| Aabb::new(size * b.min, size * b.max));
     let cube = Aabb::new(Vec3::ZERO, Vec3::new(2.0, 3.0, 5.0));
     let boxes = prop_oneof![9 => sized, 1 => Just(Aabb::EMPTY)];
-    trial.forall_and(&[cube], 1000, boxes, |boxes| {
-        compare(boxes, trial.kit.surface_area(boxes), |bounds, yours| {
-            // Exact, because the products are multiples of 1/64 times a power of two.
-            let expected = 2.0 * tree::half_area(bounds) as f32;
-            let empty = "an empty box has no faces: return 0 (its size max - min is -inf)";
-            let broken = || {
-                Broken::new(call("surface_area", &[bounds]), yours, expected, "closed form")
-                    .explained_by([(bounds.is_empty(), empty)])
-            };
-            let size = bounds.max - bounds.min;
-            let near =
-                |area: f32| bounds.is_empty() || yours == area || (yours - area).abs() <= 1e-6 * area.abs();
-            unless(yours == expected, broken).formulas([
-                (near(size.element_product()), "you return the volume, not the area"),
-                (near(0.5 * expected), "you return half of the area: each face counts twice"),
-                (near(2.0 * expected), "you return twice the area: each face counts twice, not four times"),
-                (near(size.length_squared()), "you return the squared diagonal, not the area"),
-            ])
-        })
+    trial.each_and(&[cube], 1000, boxes, <dyn Kit>::surface_area, |bounds, yours| {
+        // Exact, because the products are multiples of 1/64 times a power of two.
+        let expected = 2.0 * tree::half_area(bounds) as f32;
+        let empty = "an empty box has no faces: return 0 (its size max - min is -inf)";
+        let broken = || {
+            Broken::new(call("surface_area", &[bounds]), yours, expected, "closed form")
+                .explained_by([(bounds.is_empty(), empty)])
+        };
+        let size = bounds.max - bounds.min;
+        let near =
+            |area: f32| bounds.is_empty() || yours == area || (yours - area).abs() <= 1e-6 * area.abs();
+        unless(yours == expected, broken).formulas([
+            (near(size.element_product()), "you return the volume, not the area"),
+            (near(0.5 * expected), "you return half of the area: each face counts twice"),
+            (near(2.0 * expected), "you return twice the area: each face counts twice, not four times"),
+            (near(size.length_squared()), "you return the squared diagonal, not the area"),
+        ])
     })
 }

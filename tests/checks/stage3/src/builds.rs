@@ -2,15 +2,10 @@
 
 use super::divided::boxes;
 use super::slabs::UNIT_BOX;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::golden::Table;
-use checks::paste::Arguments;
-use checks::{Trial, tree};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
+use checks::tree;
 use raykata::bvh::{Bvh, Contents, DEEPEST_SPLIT, Node};
-use raykata::kit::{BuildQuery, Kit, KitError, kit_error};
 use raykata::scene::Split;
 
 /// The tree of one query, or the message about a panic.
@@ -145,16 +140,12 @@ pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> CheckResult {
         let nodes = built(trial, &query)?.nodes.len();
         if nodes != 1 {
             let describe = |n: usize| format!("{n} nodes");
-            return Err(Broken::with_texts(
-                query.call("build"),
-                describe(nodes),
-                "1 node, a leaf",
-                "the definition",
-            )
-            .explained_by([(
-                nodes > 1,
-                "exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size",
-            )]));
+            let yours = describe(nodes);
+            return Err(Broken::with_texts(query.call("build"), yours, "1 node, a leaf", "the definition")
+                .explained_by([(
+                    nodes > 1,
+                    "exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size",
+                )]));
         }
     }
     Ok(())
@@ -175,12 +166,8 @@ pub(super) fn object_median_is_balanced(trial: &Trial<'_>) -> CheckResult {
         return Ok(());
     }
     let describe = |depth: usize, nodes: usize| format!("depth {depth}, {nodes} nodes");
-    Err(Broken::with_texts(
-        "build of 512 boxes, ObjectMedian, leaf_size 1",
-        describe(depth, nodes),
-        describe(10, 1023),
-        "log₂ 512 + 1",
-    ))
+    let input = "build of 512 boxes, ObjectMedian, leaf_size 1";
+    Err(Broken::with_texts(input, describe(depth, nodes), describe(10, 1023), "log₂ 512 + 1"))
 }
 
 pub(super) fn trees_of_eight_boxes(trial: &Trial<'_>) -> CheckResult {

@@ -1,10 +1,8 @@
 //! The cheapest cut of the surface area heuristic, and the mistakes that give a more expensive one.
 
 use super::divided::{Fault, boxes, divided, judge_splits};
-use checks::broken::{Broken, CheckResult};
-use checks::{Trial, tree};
-use glam::{Vec3, vec3};
-use raykata::aabb::Aabb;
+use checks::prelude::*;
+use checks::tree;
 use raykata::bvh::{INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
 use raykata::scene::Split;
 
@@ -93,17 +91,18 @@ fn cheapest(_: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> Opti
 
 /// Whether a leaf is cheaper than each cut that leaves at least so many primitives on either side.
 fn is_leaf_without(primitives: &[PrimitiveRef], fewest: [usize; 2]) -> bool {
-    let cost = |left: &[PrimitiveRef], right: &[PrimitiveRef]| {
-        if left.len() < fewest[0] || right.len() < fewest[1] {
-            f64::INFINITY
-        } else {
-            tree::cut_cost(left, right)
-        }
-    };
+    let cost = with_at_least(fewest, &tree::cut_cost);
     tree::leaf_is_cheaper(primitives, tree::least_cost(primitives, &AXES, &cost)) != Some(false)
 }
 
 type Cost<'a> = &'a dyn Fn(&[PrimitiveRef], &[PrimitiveRef]) -> f64;
+
+/// The same cost of cuts that leave at least so many primitives on either side; infinite for the others.
+fn with_at_least(fewest: [usize; 2], cost: Cost<'_>) -> impl Fn(&[PrimitiveRef], &[PrimitiveRef]) -> f64 {
+    move |left, right| {
+        if left.len() < fewest[0] || right.len() < fewest[1] { f64::INFINITY } else { cost(left, right) }
+    }
+}
 
 /// Wrong costs of a cut, each with whether the search for the cheapest cut gives this one, or a leaf if `middle` is 0.
 fn wrong_costs(ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static str)> {
@@ -198,9 +197,7 @@ fn cut_mistakes(
     let right_cost: Cost<'_> = &tree::cut_cost;
     // Whether this cut is the best one along these axes by this cost, among the cuts that leave so many on either side.
     let is_least_of = |axes: &[usize], cost: Cost<'_>, fewest: [usize; 2]| {
-        let counts = |left: &[PrimitiveRef], right: &[PrimitiveRef]| {
-            if left.len() < fewest[0] || right.len() < fewest[1] { f64::INFINITY } else { cost(left, right) }
-        };
+        let counts = with_at_least(fewest, cost);
         let yours = counts(&ordered[..middle], &ordered[middle..]);
         yours <= tree::least_cost(ordered, axes, &counts) * 1.0001
     };

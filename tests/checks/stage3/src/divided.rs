@@ -1,15 +1,8 @@
 //! How the checks judge a split: every primitive is kept, neither side is empty, and the rule of the strategy holds.
 
-use checks::broken::{Broken, CheckResult};
-use checks::generate::{point, rough_point};
-use checks::judge::compare_formulas;
-use checks::paste::list;
-use checks::{Trial, tree};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
+use checks::tree;
 use raykata::bvh::PrimitiveRef;
-use raykata::kit::{SplitAnswer, SplitQuery};
 use raykata::scene::Split;
 
 /// Sets of two boxes or more. Two of six sets are on a coarse grid or along a line, so that many centroids coincide. One of

@@ -1,12 +1,8 @@
 //! The picture of stage 3.
 
-use checks::broken::CheckResult;
-use checks::picture::{Composed, LARGE};
-use checks::{Trial, picture, tree};
-use glam::{Vec3, vec3};
-use raykata::aabb::Aabb;
-use raykata::kit::{Kit, SearchQuery};
-use raykata::shape::Sphere;
+use checks::picture::{self, Composed, LARGE};
+use checks::prelude::*;
+use checks::tree;
 use std::f32::consts::TAU;
 
 const TARGET: Vec3 = vec3(1.0, 1.0, 0.3);
@@ -26,7 +22,7 @@ pub(super) fn picture_of_depth(trial: &Trial<'_>) -> CheckResult {
     let spheres = spiral(pitch, radius);
     let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
     let bvh = tree::joined(&boxes, 2);
-    let rays = picture::rays(trial, vec3(4.0, 5.0, 6.0), TARGET);
+    let rays = picture::rays(trial, LARGE, vec3(4.0, 5.0, 6.0), TARGET);
     let queries: Vec<SearchQuery> = rays.iter().map(|ray| tree::search_query(&bvh, &spheres, ray)).collect();
     // White is near the camera, black is the background.
     let depths = |kit: &dyn Kit| {

@@ -1,8 +1,8 @@
 //! Searches with one mistake each, which go through the same tables as the searches of students.
 
+use checks::prelude::*;
 use raykata::bvh::Contents;
 use raykata::count::Counts;
-use raykata::kit::SearchQuery;
 
 type Hit = Option<(u32, f32)>;
 

@@ -1,18 +1,10 @@
 //! The three searches, compared with brute force. A table holds the answers of the probe.
 
 use super::search_mistakes::{any_mistakes, every_node, mistakes, observations};
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::generate::{fractions, point, unit};
-use checks::judge::{compare, compare_formulas};
-use checks::tree::{closest_in_table, tied};
-use checks::{Trial, tree};
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::generate::unit;
+use checks::prelude::*;
+use checks::tree::{self, closest_in_table, tied};
 use raykata::bvh::Bvh;
-use raykata::kit::{Kit, SearchAnswer, SearchQuery, Table};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 /// Searches: a ray, up to 60 spheres (0 to 29, in some scenes each of them twice), a tree and a table of answers.
 pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
@@ -144,25 +136,18 @@ pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> 
     // A search that opens nothing finds nothing.
     let simple = missed_and_hit();
     all_hold(judge_searches(&simple, trial.kit.closest_hit_both(&simple)))?;
-    trial.forall(500, searches(), |queries| {
-        compare(queries, trial.kit.closest_hit_both(queries), |query, yours| {
-            let met = tree::overlapped(query).len() as u64;
-            let visits = yours.counts.node_visits;
-            let describe = |n: u64| format!("{n} nodes opened");
-            if visits <= met {
-                return Ok(());
-            }
-            Err(Broken::with_texts(
-                describe_search(query),
-                describe(visits),
-                format!("at most {met}: the ray meets no more boxes"),
-                "counted",
-            )
-            .explained_by([(
-                visits == every_node(query),
-                "you open nodes whose box the ray misses: ask probe.enter first",
-            )]))
-        })
+    trial.each(500, searches(), <dyn Kit>::closest_hit_both, |query, yours| {
+        let met = tree::overlapped(query).len() as u64;
+        let visits = yours.counts.node_visits;
+        let describe = |n: u64| format!("{n} nodes opened");
+        if visits <= met {
+            return Ok(());
+        }
+        let (yours, expected) = (describe(visits), format!("at most {met}: the ray meets no more boxes"));
+        Err(Broken::with_texts(describe_search(query), yours, expected, "counted").explained_by([(
+            visits == every_node(query),
+            "you open nodes whose box the ray misses: ask probe.enter first",
+        )]))
     })
 }
 
@@ -180,24 +165,21 @@ pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult {
     // A search that asks nothing finds nothing.
     let simple = missed_and_hit();
     all_hold(judge_any(&simple, trial.kit.any_hit(&simple)))?;
-    trial.forall(500, searches(), |queries| {
-        compare(queries, trial.kit.any_hit(queries), |query, (_, answer)| {
-            let describe = |n: u64| format!("{n} primitive tests after the first hit");
-            let n = answer.tests_after_hit;
-            if n > 0 {
-                return Err(Broken::with_texts(describe_search(query), describe(n), describe(0), "counted")
-                    .explained_by([(n > 0, "the search goes on after a hit: return true at once")]));
-            }
-            let met = tree::overlapped(query).len() as u64;
-            let visits = answer.counts.node_visits;
-            if visits <= met {
-                return Ok(());
-            }
-            let describe = |n: u64| format!("{n} nodes opened");
-            let most = format!("at most {met}: the ray meets no more boxes");
-            Err(Broken::with_texts(describe_search(query), describe(visits), most, "counted").explained_by([
-                (visits > met, "you open nodes whose box the ray misses: ask probe.enter first"),
-            ]))
-        })
+    trial.each(500, searches(), <dyn Kit>::any_hit, |query, (_, answer)| {
+        let describe = |n: u64| format!("{n} primitive tests after the first hit");
+        let n = answer.tests_after_hit;
+        if n > 0 {
+            return Err(Broken::with_texts(describe_search(query), describe(n), describe(0), "counted")
+                .explained_by([(n > 0, "the search goes on after a hit: return true at once")]));
+        }
+        let met = tree::overlapped(query).len() as u64;
+        let visits = answer.counts.node_visits;
+        if visits <= met {
+            return Ok(());
+        }
+        let describe = |n: u64| format!("{n} nodes opened");
+        let most = format!("at most {met}: the ray meets no more boxes");
+        Err(Broken::with_texts(describe_search(query), describe(visits), most, "counted")
+            .explained_by([(visits > met, "you open nodes whose box the ray misses: ask probe.enter first")]))
     })
 }

@@ -1,7 +1,6 @@
 //! Slab tests in single precision with one mistake each.
 
-use checks::double::U;
-use raykata::kit::SlabQuery;
+use checks::prelude::*;
 use raykata::rounding::gamma;
 
 #[derive(Clone, Copy, PartialEq)]

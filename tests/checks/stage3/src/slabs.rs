@@ -2,17 +2,8 @@
 
 use super::boxes::aabb;
 use super::slab_mistakes::{mistakes, observations};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::{self, Tolerant, box_interval, compare_tolerant};
-use checks::generate::{direction, point, rough_point};
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::kit::SlabQuery;
-use raykata::ray::Ray;
+use checks::prelude::*;
 
 pub(super) const UNIT_BOX: Aabb = Aabb::new(Vec3::ZERO, Vec3::ONE);
 

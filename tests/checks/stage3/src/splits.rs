@@ -2,12 +2,9 @@
 
 use super::divided::{Fault, boxes, divided, judge_splits, split_axes};
 use super::slabs::UNIT_BOX;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::{Trial, tree};
-use glam::{Vec3, vec3};
-use raykata::aabb::Aabb;
+use checks::prelude::*;
+use checks::tree;
 use raykata::bvh::PrimitiveRef;
-use raykata::kit::{KitError, kit_error};
 use raykata::scene::Split;
 
 /// `None` where a median split always returns a cut.

@@ -1,16 +1,11 @@
 //! A teapot in a stadium: the counted costs of trees and searches.
 
 use super::search_mistakes::order_mistakes;
-use checks::broken::{Broken, CheckResult};
-use checks::{Trial, tree};
-use glam::{Vec3, vec3};
-use raykata::aabb::Aabb;
+use checks::prelude::*;
+use checks::tree;
 use raykata::bvh::Bvh;
 use raykata::count::Counts;
-use raykata::kit::{BuildQuery, SearchAnswer, SearchQuery};
-use raykata::ray::Ray;
 use raykata::scene::Split;
-use raykata::shape::Sphere;
 
 /// A small, dense object in a huge, sparse surrounding, where the surface area heuristic saves the most work.
 pub(super) fn stadium() -> Vec<Sphere> {
@@ -112,12 +107,8 @@ pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> CheckR
         if yours > most {
             let describe = |n: u64| format!("{n} nodes opened and primitives tested");
             let input = format!("180 rays through a stadium of 200 spheres, tree by {split:?}, leaf_size 4");
-            let broken = Broken::with_texts(
-                input,
-                describe(yours),
-                format!("at most {}", describe(most)),
-                "the reference tree, plus a quarter",
-            );
+            let (yours, expected) = (describe(yours), format!("at most {}", describe(most)));
+            let broken = Broken::with_texts(input, yours, expected, "the reference tree, plus a quarter");
             return Err(broken);
         }
     }
@@ -162,11 +153,6 @@ pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> CheckResu
     let describe = |visits: u64, tests: u64| format!("{visits} nodes opened, {tests} primitives tested");
     let (yours, most) =
         (describe(yours.node_visits, yours.primitive_tests), describe(most_visits, most_tests));
-    Err(Broken::with_texts(
-        format!("{} rays through a stadium", queries.len()),
-        yours,
-        format!("at most {most}"),
-        "the nearer child first",
-    )
-    .explained_by(mistakes))
+    let (input, expected) = (format!("{} rays through a stadium", queries.len()), format!("at most {most}"));
+    Err(Broken::with_texts(input, yours, expected, "the nearer child first").explained_by(mistakes))
 }

@@ -1,9 +1,6 @@
 //! Gamma 2: bytes from linear light, and linear light from bytes.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{Judged, compare, unless};
-use checks::paste::Paste;
+use checks::prelude::*;
 
 pub(super) fn gamma_is_two(trial: &Trial<'_>) -> CheckResult {
     let bytes: Vec<u8> = (0..=255).collect();

@@ -1,12 +1,8 @@
 //! A table and a picture that are compared with stored references.
 
-use checks::broken::CheckResult;
 use checks::golden::Table;
-use checks::picture::{Composed, LARGE};
-use checks::{Trial, picture};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{Kit, LightSample, ShadeAnswer, ShadeQuery, Surface};
+use checks::picture::{self, Composed, LARGE};
+use checks::prelude::*;
 use raykata::material::Material;
 
 pub(super) fn lights(at: Vec3) -> Vec<LightSample> {
@@ -68,7 +64,7 @@ pub(super) fn shading_table(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> CheckResult {
-    let rays = picture::rays(trial, vec3(0.0, 1.0, 3.2), Vec3::ZERO);
+    let rays = picture::rays(trial, LARGE, vec3(0.0, 1.0, 3.2), Vec3::ZERO);
     let points: Vec<Option<Vec3>> = rays
         .iter()
         .map(|ray| {

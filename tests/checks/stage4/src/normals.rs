@@ -1,12 +1,6 @@
 //! The shading normal.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::Vec3;
-use proptest::prelude::*;
+use checks::prelude::*;
 
 type Query = (Vec3, Option<Vec3>, Vec3);
 
@@ -16,7 +10,7 @@ pub(super) fn paste_normal_query((geometric, interpolated, direction): &Query) -
 
 /// Pairs of normals at an angle below 1, seen from all directions. The interpolated normal has any length and either sign.
 fn queries() -> impl Strategy<Value = Query> + Clone {
-    let scale = prop_oneof![3 => checks::generate::fractions(1..=8, 4.0), 1 => nasty::scale(-59..=59)];
+    let scale = prop_oneof![3 => fractions(1..=8, 4.0), 1 => nasty::scale(-59..=59)];
     (nasty::normals(), nasty::unit(), any::<bool>(), nasty::sign(), scale).prop_map(
         |((geometric, shading), direction, smooth, sign, length)| {
             (geometric, smooth.then_some(sign * length * shading), direction)
@@ -25,7 +19,7 @@ fn queries() -> impl Strategy<Value = Query> + Clone {
 }
 
 pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(2000, queries(), |queries| compare(queries, trial.kit.shading_normal(queries), judge_normal))
+    trial.each(2000, queries(), <dyn Kit>::shading_normal, judge_normal)
 }
 
 fn judge_normal(query: &Query, yours: Vec3) -> Judged {
@@ -66,8 +60,12 @@ pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> CheckResul
     let inputs = (queries(), 0..3i32).prop_map(|((geometric, good, direction), which)| {
         (geometric, if which == 0 { Some(Vec3::ZERO) } else { good }, direction)
     });
-    trial.forall_and(&[(Vec3::Y, Some(Vec3::ZERO), Vec3::Y)], 500, inputs, |queries| {
-        compare(queries, trial.kit.shading_normal(queries), |query, yours| {
+    trial.each_and(
+        &[(Vec3::Y, Some(Vec3::ZERO), Vec3::Y)],
+        500,
+        inputs,
+        <dyn Kit>::shading_normal,
+        |query, yours| {
             let (geometric, interpolated, direction) = *query;
             // Another check judges good normals. Here the answer must be one of the two normals, with either sign.
             if let Some(normal) = interpolated.filter(|normal| normal.length_squared() > 0.0) {
@@ -94,6 +92,6 @@ pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> CheckResul
                 ),
                 (yours == -expected, "your geometric normal points away from the viewer: negate it"),
             ]))
-        })
-    })
+        },
+    )
 }

@@ -2,28 +2,22 @@
 
 use super::shadows::lowest;
 use super::terms::{cos_phi, specular};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::generate::point;
-use checks::judge::{Judged, proven, unless};
-use checks::nasty;
-use checks::paste::Arguments;
-use glam::{DVec3, Vec3};
-use proptest::prelude::*;
-use raykata::kit::{LightSample, ShadeAnswer, ShadeQuery, ShadowQuery, Surface, TermQuery};
+use checks::prelude::*;
 use raykata::material::Material;
 
 pub(super) fn light() -> impl Strategy<Value = LightSample> + Clone {
-    (nasty::unit(), checks::generate::fractions(1..=40, 4.0), point(1)).prop_map(
-        |(direction, distance, color)| LightSample { direction, distance, radiance: 2.0 * color.abs() },
-    )
+    (nasty::unit(), fractions(1..=40, 4.0), point(1)).prop_map(|(direction, distance, color)| LightSample {
+        direction,
+        distance,
+        radiance: 2.0 * color.abs(),
+    })
 }
 
 /// Surfaces with two normals, and up to four lights on all sides of them.
 pub(super) fn shade_query() -> impl Strategy<Value = ShadeQuery> + Clone {
     let colors = (point(1), point(1), point(1), point(1));
     let lights = prop::collection::vec((light(), any::<bool>()), 0..5);
-    (nasty::surface(), nasty::unit(), colors, checks::generate::fractions(1..=64, 2.0), lights).prop_map(
+    (nasty::surface(), nasty::unit(), colors, fractions(1..=64, 2.0), lights).prop_map(
         |(surface, to_viewer, (ambient, a, d, s), exponent, lights)| {
             // The viewer is on the side of the geometric normal.
             let behind = to_viewer.dot(surface.geometric_normal) < 0.0;
@@ -240,13 +234,12 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
             });
             if let Some((light, ray)) = astray {
                 let (yours, own) = (format!("visible({light}, &{ray:?})"), rays[*light]);
-                return Err(Broken::with_texts(
-                    query.call("shade"),
-                    yours,
-                    format!("the ray {own:?}"),
-                    "shadow_ray",
-                )
-                .explained_by([(true, "you ask about another ray: pass the ray of shadow_ray to visible")]));
+                let expected = format!("the ray {own:?}");
+                return Err(Broken::with_texts(query.call("shade"), yours, expected, "shadow_ray")
+                    .explained_by([(
+                        true,
+                        "you ask about another ray: pass the ray of shadow_ray to visible",
+                    )]));
             }
             let has_ray: Vec<bool> = rays.iter().map(Option::is_some).collect();
             judge_traced(query, &has_ray, &yours.traced)

@@ -1,15 +1,7 @@
 //! Shadow rays.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
 use checks::offset::Start;
-use checks::paste::Arguments;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{LightSample, ShadowQuery, Surface};
-use raykata::ray::Ray;
+use checks::prelude::*;
 
 /// Angles closer to 90° than this have a cosine whose sign rounding may change; they are not asked.
 const CLEAR: f32 = 1e-4;
@@ -32,12 +24,14 @@ pub(super) fn lowest(surface: &Surface, direction: Vec3) -> f32 {
 /// Lights in front of surfaces: in all directions down to 0.001 above the horizon, on surfaces with two normals and another
 /// error on each axis, at all scales.
 pub(super) fn lit() -> impl Strategy<Value = ShadowQuery> + Clone {
-    (nasty::surface(), nasty::tilt(), checks::generate::fractions(1..=64, 4.0), nasty::any_scale())
-        .prop_filter_map("a light in front", |(surface, (angle, turn), distance, scale)| {
+    (nasty::surface(), nasty::tilt(), fractions(1..=64, 4.0), nasty::any_scale()).prop_filter_map(
+        "a light in front",
+        |(surface, (angle, turn), distance, scale)| {
             let direction = nasty::tilted(surface.geometric_normal, angle, turn);
             let light = light(direction, scale * distance);
             (lowest(&surface, direction) > CLEAR).then_some(ShadowQuery { surface, light })
-        })
+        },
+    )
 }
 
 /// The error that a query gets the text `yours`, but another one is expected.
@@ -171,9 +165,7 @@ pub(super) fn shadow_ray_is_not_traced_without_effect(trial: &Trial<'_>) -> Chec
         (flat(Vec3::NEG_Z), Vec3::NEG_Y),
     ]
     .map(|(surface, direction)| ShadowQuery { surface, light: light(direction, 5.0) });
-    trial.forall_and(&ties, 1000, lights, |queries| {
-        compare(queries, trial.kit.shadow_ray(queries), judge_effect)
-    })
+    trial.each_and(&ties, 1000, lights, <dyn Kit>::shadow_ray, judge_effect)
 }
 
 fn judge_effect(query: &ShadowQuery, yours: Option<Ray>) -> CheckResult {

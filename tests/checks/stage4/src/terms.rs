@@ -1,23 +1,17 @@
 //! The diffuse and the specular term.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::TermQuery;
+use checks::prelude::*;
 
 /// Normals, lights and viewers in all directions. Half of the viewers are near the reflected light, so that there are
 /// highlights to judge.
 pub(super) fn terms() -> impl Strategy<Value = TermQuery> + Clone {
-    (nasty::unit(), nasty::unit(), nasty::unit(), checks::generate::fractions(1..=64, 2.0), any::<bool>())
-        .prop_map(|(normal, to_light, to_viewer, exponent, aim)| {
+    (nasty::unit(), nasty::unit(), nasty::unit(), fractions(1..=64, 2.0), any::<bool>()).prop_map(
+        |(normal, to_light, to_viewer, exponent, aim)| {
             let mirrored = 2.0 * normal.dot(to_light) * normal - to_light;
             let to_viewer = if aim { (mirrored + 0.3 * to_viewer).normalize() } else { to_viewer };
             TermQuery { normal, to_light, to_viewer, exponent }
-        })
+        },
+    )
 }
 
 pub(super) fn paste_term(name: &str, query: &TermQuery) -> String {
@@ -88,9 +82,7 @@ pub(super) fn specular_term_is_the_mirrored_cosine(trial: &Trial<'_>) -> CheckRe
         let query = TermQuery { to_light: side(query.to_light, cos_theta(&query)), ..query };
         TermQuery { to_viewer: side(query.to_viewer, cos_phi(&query)), ..query }
     });
-    trial.forall_and(&[DRAWN], 2000, highlights, |queries| {
-        compare(queries, trial.kit.specular_term(queries), judge_highlight)
-    })
+    trial.each_and(&[DRAWN], 2000, highlights, <dyn Kit>::specular_term, judge_highlight)
 }
 
 /// Whether rounding decides on the sign of a cosine. Both answers pass there.
@@ -134,9 +126,7 @@ pub(super) fn light_from_behind_adds_nothing(trial: &Trial<'_>) -> CheckResult {
         TermQuery { to_light: below, to_viewer: vec3(-0.96, 0.28, 0.0), ..DRAWN },
         DRAWN,
     ];
-    trial.forall_and(&chosen, 2000, terms(), |queries| {
-        compare(queries, trial.kit.specular_term(queries), judge_sign)
-    })
+    trial.each_and(&chosen, 2000, terms(), <dyn Kit>::specular_term, judge_sign)
 }
 
 /// The result is 0 where a cosine is negative, and is not 0 at a clear highlight.

@@ -1,13 +1,6 @@
 //! The directions of reflected and refracted rays.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, compare_formulas, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::RefractQuery;
+use checks::prelude::*;
 
 /// A direction, and a normal on the side that it comes from.
 pub(super) fn arrival() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {
@@ -23,7 +16,7 @@ fn off_reflection(direction: Vec3, normal: Vec3, yours: Vec3) -> f64 {
 }
 
 pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(2000, arrival(), |queries| compare(queries, trial.kit.reflect(queries), judge_reflection))
+    trial.each(2000, arrival(), <dyn Kit>::reflect, judge_reflection)
 }
 
 const ADDED: &str = "you add 2 n (d·n): subtract it, d - 2 n (d·n)";
@@ -35,7 +28,7 @@ fn judge_reflection(query: &(Vec3, Vec3), yours: Vec3) -> Judged {
     let near = |v: DVec3, limit: f64| (yours.as_dvec3() - v).length() < limit;
     let is = |v: DVec3| near(v, 1e-5);
     let (along, added) = (d - d.dot(n) * n, d + 2.0 * d.dot(n) * n);
-    let input = || call("reflect", &[&query.0, &query.1]);
+    let input = || query.call("reflect");
     let broken = || Broken::new(input(), yours, expected.as_vec3(), "closed form");
     // The tolerance covers a few roundings of numbers up to 2.
     unless(near(expected, 1e-6), broken).formulas([
@@ -99,10 +92,6 @@ fn turned(query: &RefractQuery, sine: impl Fn(f64, f64) -> f64) -> Option<DVec3>
         .then(|| sine_2 / sine_1 * along - (1.0 - sine_2 * sine_2).sqrt() * n)
 }
 
-fn paste(query: &RefractQuery) -> String {
-    call("refract", &[&query.direction, &query.normal, &query.n1, &query.n2])
-}
-
 /// The error of a refracted direction by a careful formula: a few roundings.
 const CAREFUL: f64 = 4e-6;
 
@@ -145,7 +134,7 @@ fn judge_refraction(query: &RefractQuery, yours: Option<Vec3>, error: f64) -> Ch
     }
     let expected = expected.map(|v| v.as_vec3());
     let is_nan = yours.is_some_and(Vec3::is_nan);
-    Err(Broken::new(paste(query), yours, expected, "Snell's law in double precision")
+    Err(Broken::new(query.call("refract"), yours, expected, "Snell's law in double precision")
         .explained_by([
             (is_nan && expected.is_none(), "you return NaN beyond the critical angle: return None"),
             (
@@ -209,7 +198,7 @@ fn refractions(query: &RefractQuery, yours: &Option<Vec3>) -> Vec<(bool, &'stati
 
 /// Indices of refraction from 1/2 to 3, and pairs that are equal or almost equal.
 fn indices() -> impl Strategy<Value = (f32, f32)> + Clone {
-    let index = || checks::generate::fractions(4..=24, 8.0);
+    let index = || fractions(4..=24, 8.0);
     prop_oneof![
         6 => (index(), index()),
         1 => index().prop_map(|index| (index, index)),
@@ -256,33 +245,31 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> CheckRes
         RefractQuery { n1: 1.5, ..slanted },
         slanted,
     ];
-    trial.forall_and(&chosen, 300, straight, |queries| {
-        compare(queries, trial.kit.refract(queries), |query, yours| {
-            if *query == slanted {
-                // Another check judges the angle. Here the ray must only be bent to the normal.
-                let bent = |yours: Vec3| yours.dot(query.normal) < query.direction.dot(query.normal) - 1e-3;
-                return match yours {
-                    Some(yours) if yours == query.direction => judge_refraction(query, Some(yours), SLIDE),
-                    Some(yours) if bent(yours) || yours.is_nan() => Ok(()),
-                    _ => judge_refraction(query, yours, SLIDE),
-                };
-            }
-            // The tolerance covers the error of the slide's formula, which the root of 1 - sin² θ2 enlarges along the surface.
-            let slack = SLIDE as f32 / query.direction.dot(query.normal).abs();
-            if yours.is_some_and(|yours| (yours - query.direction).length() < slack) {
-                return Ok(());
-            }
-            let broken = Broken::new(paste(query), yours, Some(query.direction), "unchanged");
-            let along = query.direction == -query.normal;
-            let broken = broken.explained_by([
-                (along, "a ray along the normal keeps its direction, and sin θ1 is 0 there"),
-                (
-                    query.n1 == query.n2 && !along && yours.is_none(),
-                    "with equal indices every ray goes straight on",
-                ),
-            ]);
-            Err(broken.explained_by(mistakes_near_normal(query, yours)))
-        })
+    trial.each_and(&chosen, 300, straight, <dyn Kit>::refract, |query, yours| {
+        if *query == slanted {
+            // Another check judges the angle. Here the ray must only be bent to the normal.
+            let bent = |yours: Vec3| yours.dot(query.normal) < query.direction.dot(query.normal) - 1e-3;
+            return match yours {
+                Some(yours) if yours == query.direction => judge_refraction(query, Some(yours), SLIDE),
+                Some(yours) if bent(yours) || yours.is_nan() => Ok(()),
+                _ => judge_refraction(query, yours, SLIDE),
+            };
+        }
+        // The tolerance covers the error of the slide's formula, which the root of 1 - sin² θ2 enlarges along the surface.
+        let slack = SLIDE as f32 / query.direction.dot(query.normal).abs();
+        if yours.is_some_and(|yours| (yours - query.direction).length() < slack) {
+            return Ok(());
+        }
+        let broken = Broken::new(query.call("refract"), yours, Some(query.direction), "unchanged");
+        let along = query.direction == -query.normal;
+        let broken = broken.explained_by([
+            (along, "a ray along the normal keeps its direction, and sin θ1 is 0 there"),
+            (
+                query.n1 == query.n2 && !along && yours.is_none(),
+                "with equal indices every ray goes straight on",
+            ),
+        ]);
+        Err(broken.explained_by(mistakes_near_normal(query, yours)))
     })
 }
 

@@ -1,19 +1,14 @@
 //! The Fresnel reflectance.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, unless};
-use checks::paste::call;
-use proptest::prelude::*;
-use raykata::kit::FresnelQuery;
+use checks::prelude::*;
 
 /// Cosines from 0 to 1, some close to 1, and indices from 1/2 to 3, some equal.
 fn queries() -> impl Strategy<Value = FresnelQuery> + Clone {
     let cosine = prop_oneof![
-        6 => checks::generate::fractions(0..=64, 64.0),
+        6 => fractions(0..=64, 64.0),
         1 => (1..=20i32).prop_map(|halvings| 1.0 - 0.5f32.powi(halvings)),
     ];
-    let index = || checks::generate::fractions(4..=24, 8.0);
+    let index = || fractions(4..=24, 8.0);
     let all = (cosine, index(), index(), 0..8i32).prop_map(|(cos_theta, n1, n2, equal)| FresnelQuery {
         cos_theta,
         n1,

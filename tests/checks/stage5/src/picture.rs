@@ -1,13 +1,8 @@
 //! The picture of stage 5.
 
-use checks::broken::CheckResult;
-use checks::picture::{Composed, LARGE};
-use checks::{Trial, picture};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{Kit, Limits, ScatterQuery, SecondaryRay, Surface};
+use checks::picture::{self, Composed, LARGE};
+use checks::prelude::*;
 use raykata::material::{Fresnel, Material};
-use raykata::ray::Ray;
 
 /// A sphere and its material.
 #[derive(Clone, Debug)]
@@ -136,7 +131,7 @@ pub(super) fn picture_of_a_mirror_and_glass(trial: &Trial<'_>) -> CheckResult {
     let color = (0.3..0.95f32, 0.3..0.95f32, 0.3..0.95f32).prop_map(Vec3::from);
     let (x, z, index, gold) = trial.composed(public, (-0.3..0.1f32, -0.3..0.3f32, 1.2..1.8f32, color));
     let spheres = spheres(x, z, index, gold);
-    let rays = picture::rays_of(trial, LARGE, vec3(0.3, 1.9, 5.4), vec3(0.0, 0.75, 0.0));
+    let rays = picture::rays(trial, LARGE, vec3(0.3, 1.9, 5.4), vec3(0.0, 0.75, 0.0));
     // The rims of the spheres and of what is seen in them cross about 400 of 4800 pixels. There rounding decides which ray hits;
     // for a wrong pixel a ray must pass a rim at a ten-millionth of the size of the picture.
     let composed = Composed { name: "stage5_mirror_and_glass", size: LARGE, rays: &rays, may_differ: 0.002 };

@@ -2,13 +2,7 @@
 
 use super::directions::{arrival, snell};
 use super::fresnel::{exact, schlick};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::generate::point;
-use checks::judge::{Judged, compare, proven, unless};
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::kit::{Bounce, FresnelQuery, Limits, RefractQuery, ScatterQuery, SecondaryRay};
+use checks::prelude::*;
 use raykata::material::{Fresnel, Material};
 
 /// Limits that end no ray of these checks.
@@ -87,34 +81,25 @@ fn own_functions(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Own> {
 
 pub(super) fn queries() -> impl Strategy<Value = ScatterQuery> + Clone {
     let fresnel = prop::sample::select(vec![Fresnel::None, Fresnel::Schlick, Fresnel::Exact]);
-    (
-        arrival(),
-        any::<bool>(),
-        point(1),
-        point(1),
-        checks::generate::fractions(4..=16, 8.0),
-        fresnel,
-        point(1),
+    (arrival(), any::<bool>(), point(1), point(1), fractions(4..=16, 8.0), fresnel, point(1)).prop_map(
+        |((direction, normal), entering, mirror, transmission, index_of_refraction, fresnel, weight)| {
+            ScatterQuery {
+                direction,
+                normal,
+                entering,
+                material: Material {
+                    mirror: mirror.abs(),
+                    transmission: transmission.abs(),
+                    index_of_refraction,
+                    fresnel,
+                    ..Material::default()
+                },
+                weight: weight.abs(),
+                depth: 0,
+                limits: FAR,
+            }
+        },
     )
-        .prop_map(
-            |((direction, normal), entering, mirror, transmission, index_of_refraction, fresnel, weight)| {
-                ScatterQuery {
-                    direction,
-                    normal,
-                    entering,
-                    material: Material {
-                        mirror: mirror.abs(),
-                        transmission: transmission.abs(),
-                        index_of_refraction,
-                        fresnel,
-                        ..Material::default()
-                    },
-                    weight: weight.abs(),
-                    depth: 0,
-                    limits: FAR,
-                }
-            },
-        )
 }
 
 pub(super) fn scatter_weighs_rays_by_the_material(trial: &Trial<'_>) -> CheckResult {
@@ -386,8 +371,7 @@ pub(super) fn scatter_skips_rays_without_weight(trial: &Trial<'_>) -> CheckResul
             ScatterQuery { weight: Vec3::X, material, ..query }
         }
     });
-    trial.forall(1000, dull, |queries| {
-        compare(queries, trial.kit.scatter(queries), |query, yours| {
+    trial.each(1000, dull, <dyn Kit>::scatter, |query, yours| {
             let shines = query.weight * query.material.mirror != Vec3::ZERO;
             if shines && find(&yours, Bounce::Reflection).is_some() || !shines && yours.is_empty() {
                 return Ok(());
@@ -404,5 +388,4 @@ pub(super) fn scatter_skips_rays_without_weight(trial: &Trial<'_>) -> CheckResul
                 (!shines, "you trace a secondary ray of weight 0: test its own weight"),
             ]))
         })
-    })
 }

@@ -1,15 +1,7 @@
 //! The origins of secondary rays.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
 use checks::offset::Start;
-use checks::paste::call;
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::kit::{Bounce, SecondaryRay, Surface};
-use raykata::ray::Ray;
+use checks::prelude::*;
 
 /// A surface and a secondary ray that leaves it.
 type Leaving = (Surface, SecondaryRay);
@@ -45,7 +37,7 @@ fn describe((surface, child): &Leaving) -> String {
 
 /// The slide starts the ray at `hit.Point()`, which is rounded, so about half of the rays hit their own surface.
 pub(super) fn secondary_rays_leave_their_surface(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(1000, inputs(), |queries| compare(queries, trial.kit.spawn_ray(queries), judge))
+    trial.each(1000, inputs(), <dyn Kit>::spawn_ray, judge)
 }
 
 fn judge(query: &Leaving, ray: Ray) -> Judged {

@@ -2,12 +2,8 @@
 
 use super::picture::glass;
 use super::scatter::{FAR, paste};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::golden::Table;
-use checks::judge::compare_formulas;
-use glam::{Vec3, vec3};
-use raykata::kit::{Bounce, Kit, Limits, ScatterQuery};
+use checks::prelude::*;
 use raykata::material::Material;
 
 /// A tree with more rays than this is reported as infinite.

@@ -1,12 +1,7 @@
 //! The weight that decides whether a secondary ray is traced.
 
 use super::scatter::{FAR, drawn, find, paste, queries};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::compare_formulas;
-use glam::Vec3;
-use proptest::prelude::*;
-use raykata::kit::{Bounce, Limits, ScatterQuery, SecondaryRay};
+use checks::prelude::*;
 use raykata::material::{Fresnel, Material};
 
 /// A secondary ray's own weight decides, not that of the incoming ray and not that of the other secondary ray.

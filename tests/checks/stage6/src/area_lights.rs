@@ -1,15 +1,9 @@
 //! Points of area lights.
 
 use super::lens::{is_polar, polar, uneven_disk};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{Judged, proven, unless};
-use checks::nasty;
-use checks::paste::{Arguments, Paste, call};
+use checks::prelude::*;
 use checks::statistics::{SAMPLES, columns, covers_each_part, has_mean, pairs};
-use glam::{DVec3, Vec2, Vec3, vec3};
-use raykata::kit::{RectangleQuery, SphereSampleQuery};
-use raykata::shape::{Disk, Sphere};
+use raykata::shape::Disk;
 
 /// The largest random number, just below 1.
 const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
@@ -250,13 +244,8 @@ fn judge_direction(
         seen.local.push(DVec3::new(cosine, toward.dot(x), toward.dot(y)));
         return Ok(());
     }
-    let broken = Broken::new(
-        query.call("sample_sphere"),
-        direction,
-        "a unit direction to the sphere",
-        "the definition",
-    );
-    Err(broken.explained_by([
+    let (input, expected) = (query.call("sample_sphere"), "a unit direction to the sphere");
+    Err(Broken::new(input, direction, expected, "the definition").explained_by([
         (inside && all_nan, "you return NaN: from inside the sphere 1 - sin² is negative"),
         (direction.is_nan(), "you return NaN"),
         (!unit, "your direction does not have unit length"),

@@ -1,17 +1,9 @@
 //! Rays through a thin lens.
 
 use super::pixels::unit_number;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::{Paste, call};
+use checks::prelude::*;
 use checks::statistics::{Mistakes, SAMPLES, columns, covers_each_part, is_other_power, pairs};
-use glam::{DVec3, Vec2, Vec3, vec2, vec3};
-use proptest::prelude::*;
 use raykata::camera::{Camera, Lens};
-use raykata::kit::LensQuery;
-use raykata::ray::Ray;
 
 /// The squared distance of a point of the unit disk from the centre, and its angle as a fraction of a full turn.
 pub(super) fn polar(place: Vec2) -> (f64, f64) {
@@ -89,23 +81,21 @@ pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> CheckResult {
         .flat_map(|x| [vec2(x, x), vec2(x, 1.0 - x), vec2(0.5, x), vec2(x, 0.5)])
         .filter(|u| u.max_element() < 1.0)
         .collect();
-    trial.forall_and(&chosen, 1000, numbers, |queries| {
-        compare(queries, trial.kit.sample_disk(queries), |u, yours| {
-            // The tolerance covers a few roundings.
-            if yours.length() <= 1.0 + 1e-6 {
-                return Ok(());
-            }
-            let middle = *u == Vec2::splat(0.5);
-            Err(Broken::new(call("sample_disk", &[u]), yours, "a length of 1 at most", "the definition")
-                .explained_by([
-                    (
-                        middle && yours.is_nan(),
-                        "you divide 0 by 0 for the middle of the square: return (0, 0) there",
-                    ),
-                    (yours.is_nan(), "you return NaN"),
-                    (!yours.is_nan(), "your point is outside the disk"),
-                ]))
-        })
+    trial.each_and(&chosen, 1000, numbers, <dyn Kit>::sample_disk, |u, yours| {
+        // The tolerance covers a few roundings.
+        if yours.length() <= 1.0 + 1e-6 {
+            return Ok(());
+        }
+        let middle = *u == Vec2::splat(0.5);
+        Err(Broken::new(call("sample_disk", &[u]), yours, "a length of 1 at most", "the definition")
+            .explained_by([
+                (
+                    middle && yours.is_nan(),
+                    "you divide 0 by 0 for the middle of the square: return (0, 0) there",
+                ),
+                (yours.is_nan(), "you return NaN"),
+                (!yours.is_nan(), "your point is outside the disk"),
+            ]))
     })?;
     // Another check judges the distribution. Here points must only reach all four quarters of the disk.
     let places = trial.kit.sample_disk(&pairs(trial.seed, 256));
@@ -133,7 +123,7 @@ fn camera(position: Vec3) -> impl Strategy<Value = Camera> + Clone {
 
 /// Lens rays for any point of the film of a camera at `position`.
 fn lens_query(position: Vec3) -> impl Strategy<Value = LensQuery> + Clone {
-    let place = || checks::generate::fractions(-8..=8, 8.0);
+    let place = || fractions(-8..=8, 8.0);
     let on_lens = (place(), place()).prop_map(|(x, y)| vec2(x, y).clamp_length_max(1.0));
     (camera(position), (0..=16i32, 0..=16i32), on_lens, (0..=8i32), (1..=40i32)).prop_map(
         |(camera, (x, y), on_lens, aperture, distance)| LensQuery {
@@ -163,31 +153,24 @@ pub(super) fn lens_without_width_is_a_pinhole(trial: &Trial<'_>) -> CheckResult 
         2 => LensQuery { on_lens: Vec2::ZERO, ..query },
         _ => LensQuery { lens: Lens { aperture: 0.5, ..query.lens }, on_lens: vec2(0.5, -0.5), ..query },
     });
-    trial.forall(500, queries, |queries| {
-        compare(queries, trial.kit.lens_ray(queries), |query, yours| {
-            let wide = offset(query) != DVec3::ZERO;
-            if (yours == query.pinhole) != wide {
-                return Ok(());
-            }
-            if wide {
-                let expected = "a ray that starts on the lens";
-                return Err(Broken::new(paste(query), yours, expected, "the definition")
-                    .explained_by([(true, "you return the pinhole ray for a lens that has a width")]));
-            }
-            let near = (yours.direction - query.pinhole.direction).length() < 1e-5
-                && yours.origin == query.pinhole.origin;
-            let range = (yours.t_min, yours.t_max, yours.time);
-            let kept = range == (query.pinhole.t_min, query.pinhole.t_max, query.pinhole.time);
-            Err(Broken::new(paste(query), yours, query.pinhole, "the pinhole ray, bit for bit").explained_by(
-                [
-                    (
-                        near && kept,
-                        "you recompute the direction, which adds a rounding error: return *pinhole",
-                    ),
-                    (yours.direction.is_nan(), "you return NaN"),
-                ],
-            ))
-        })
+    trial.each(500, queries, <dyn Kit>::lens_ray, |query, yours| {
+        let wide = offset(query) != DVec3::ZERO;
+        if (yours == query.pinhole) != wide {
+            return Ok(());
+        }
+        if wide {
+            let expected = "a ray that starts on the lens";
+            return Err(Broken::new(paste(query), yours, expected, "the definition")
+                .explained_by([(true, "you return the pinhole ray for a lens that has a width")]));
+        }
+        let near = (yours.direction - query.pinhole.direction).length() < 1e-5
+            && yours.origin == query.pinhole.origin;
+        let range = (yours.t_min, yours.t_max, yours.time);
+        let kept = range == (query.pinhole.t_min, query.pinhole.t_max, query.pinhole.time);
+        Err(Broken::new(paste(query), yours, query.pinhole, "the pinhole ray, bit for bit").explained_by([
+            (near && kept, "you recompute the direction, which adds a rounding error: return *pinhole"),
+            (yours.direction.is_nan(), "you return NaN"),
+        ]))
     })
 }
 
@@ -200,9 +183,7 @@ fn in_focus(query: &LensQuery, ray: &Ray) -> DVec3 {
 }
 
 pub(super) fn focal_plane_is_sharp(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&[drawn()], 2000, lens_query(vec3(1.0, 2.0, 3.0)), |queries| {
-        compare(queries, trial.kit.lens_ray(queries), judge_focus)
-    })
+    trial.each_and(&[drawn()], 2000, lens_query(vec3(1.0, 2.0, 3.0)), <dyn Kit>::lens_ray, judge_focus)
 }
 
 fn judge_focus(query: &LensQuery, yours: Ray) -> Judged {
@@ -263,9 +244,7 @@ fn drawn() -> LensQuery {
 }
 
 pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&[drawn()], 1000, lens_query(vec3(1.0, 2.0, 3.0)), |queries| {
-        compare(queries, trial.kit.lens_ray(queries), judge_start)
-    })
+    trial.each_and(&[drawn()], 1000, lens_query(vec3(1.0, 2.0, 3.0)), <dyn Kit>::lens_ray, judge_start)
 }
 
 fn judge_start(query: &LensQuery, yours: Ray) -> Judged {

@@ -14,8 +14,7 @@ mod rough;
 mod table;
 
 use checks::nasty::unit;
-use glam::Vec3;
-use proptest::prelude::Strategy;
+use checks::prelude::*;
 
 /// A direction that leaves a surface, and the normal on the side to which it goes.
 fn unit_arrival() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {

@@ -1,18 +1,9 @@
 //! Times within the shutter interval, and positions of moving objects.
 
 use super::pixels::unit_number;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::generate::{magnitude, point, rough_point};
-use checks::judge::{Judged, compare, proven, unless};
-use checks::nasty;
-use checks::paste::{Paste, call};
+use checks::prelude::*;
 use checks::statistics::{columns, covers_each_part};
-use glam::{DVec3, Vec2, Vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
 use raykata::camera::Shutter;
-use raykata::kit::{KitError, TimeQuery, kit_error};
 
 /// The table of the slide.
 const TABLE: [[u32; 4]; 4] = [[7, 11, 3, 14], [4, 15, 13, 9], [16, 1, 8, 12], [6, 10, 5, 2]];
@@ -90,9 +81,7 @@ pub(super) fn times_lie_in_their_slots(trial: &Trial<'_>) -> CheckResult {
     // Begin with a shutter for which all known mistakes give different times, and one that is open for a moment only.
     let drawn = TimeQuery { shutter: Shutter { open: 0.25, close: 0.875 }, slot: 2, slots: 4, u: 0.375 };
     let moment = TimeQuery { shutter: Shutter { open: 0.3, close: 0.3 }, slot: 16, slots: 16, u: 0.75 };
-    trial.forall_and(&[drawn, moment], 3000, queries, |queries| {
-        compare(queries, trial.kit.time_in_shutter(queries), judge_time)
-    })
+    trial.each_and(&[drawn, moment], 3000, queries, <dyn Kit>::time_in_shutter, judge_time)
 }
 
 const FROM_ZERO: &str = "you count slots from 0: slot 1 begins at open";
@@ -176,29 +165,24 @@ pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> CheckResult {
         1 => (start, end, 1.0),
         _ => (start, start, time),
     });
-    trial.forall(3000, inputs, |queries| {
-        compare(queries, trial.kit.lerp(queries), |query, yours| {
-            let (start, end, time) = *query;
-            let expected = if time == 1.0 { end } else { start };
-            let is = |v: Vec3| (yours - v).abs().cmple(f32::EPSILON * v.abs()).all();
-            let still = start == end;
-            // A start at any time but 1, or an end at time 1, must be exact.
-            let source = if still { "start, because start equals end" } else { "bit for bit" };
-            unless(yours == expected, || Broken::new(describe(query), yours, expected, source)).formulas([
-                (yours == start + time * (end - start), ROUNDED_END),
-                (
-                    yours == (start + time * (end - start)).max(start.min(end)).min(start.max(end)),
-                    ROUNDED_END,
-                ),
-                (
-                    is((1.0 - time) * start + time * end),
-                    "(1 - t) a + t a has a rounding error: clamp between start and end",
-                ),
-                (yours == ((1.0 - time) * start + time * end).min(end).max(start), CLAMPED_IN_ORDER),
-                (yours == ((1.0 - time) * start + time * end).max(start).min(end), CLAMPED_IN_ORDER),
-                (yours == if time == 1.0 { start } else { end }, "you exchange start and end"),
-            ])
-        })
+    trial.each(3000, inputs, <dyn Kit>::lerp, |query, yours| {
+        let (start, end, time) = *query;
+        let expected = if time == 1.0 { end } else { start };
+        let is = |v: Vec3| (yours - v).abs().cmple(f32::EPSILON * v.abs()).all();
+        let still = start == end;
+        // A start at any time but 1, or an end at time 1, must be exact.
+        let source = if still { "start, because start equals end" } else { "bit for bit" };
+        unless(yours == expected, || Broken::new(describe(query), yours, expected, source)).formulas([
+            (yours == start + time * (end - start), ROUNDED_END),
+            (yours == (start + time * (end - start)).max(start.min(end)).min(start.max(end)), ROUNDED_END),
+            (
+                is((1.0 - time) * start + time * end),
+                "(1 - t) a + t a has a rounding error: clamp between start and end",
+            ),
+            (yours == ((1.0 - time) * start + time * end).min(end).max(start), CLAMPED_IN_ORDER),
+            (yours == ((1.0 - time) * start + time * end).max(start).min(end), CLAMPED_IN_ORDER),
+            (yours == if time == 1.0 { start } else { end }, "you exchange start and end"),
+        ])
     })
 }
 
@@ -206,34 +190,32 @@ pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> CheckResult {
     // Times just below 1, where a rounding error may leave the box, and just above 0.
     let time = prop_oneof![6 => 0.0..=1.0f32, 1 => Just(1.0 - f32::EPSILON / 2.0), 1 => Just(1e-7f32)];
     let queries = (ways(), time).prop_map(|((start, end), time)| (start, end, time));
-    trial.forall(4000, queries, |queries| {
-        compare(queries, trial.kit.lerp(queries), |query, yours| {
-            let (start, end, time) = *query;
-            let exact = start.as_dvec3().lerp(end.as_dvec3(), f64::from(time));
-            // The tolerance covers five roundings of the larger end, per axis: end - start is up to twice as large.
-            let slack = 3e-7 * start.abs().max(end.abs()).as_dvec3();
-            let off = |place: DVec3| (yours.as_dvec3() - place).abs();
-            let near = off(exact).cmple(slack).all();
-            let inside = Aabb::new(start.min(end), start.max(end)).contains(yours);
-            let at = |time: f64| start.as_dvec3().lerp(end.as_dvec3(), time);
-            let is = |place: DVec3| off(place).cmple(2.0 * slack).all();
-            let (start_at, end_at, t) = (start.as_dvec3(), end.as_dvec3(), f64::from(time));
-            let broken = || {
-                let rounded = "your point is outside the box of both ends by a rounding error: clamp";
-                Broken::new(describe(query), yours, exact.as_vec3(), "double precision, within the ends")
-                    .explained_by([(near, rounded)])
-            };
-            unless(near && inside, broken).formulas([
-                (is(at(1.0 - t)), "you exchange start and end"),
-                (is(start_at + t * end_at), "you use end as a displacement: it is a position"),
-                (is(at(t * t * (3.0 - 2.0 * t))), "your speed varies: the motion is linear in time"),
-                (is(at(0.5)), "you return the midpoint for every time"),
-                (is(start_at), "you return start for every time"),
-                (is(end_at), "you return end for every time"),
-                (is(exact.max(start_at).min(end_at)), CLAMPED_IN_ORDER),
-                (is(exact.min(end_at).max(start_at)), CLAMPED_IN_ORDER),
-            ])
-        })
+    trial.each(4000, queries, <dyn Kit>::lerp, |query, yours| {
+        let (start, end, time) = *query;
+        let exact = start.as_dvec3().lerp(end.as_dvec3(), f64::from(time));
+        // The tolerance covers five roundings of the larger end, per axis: end - start is up to twice as large.
+        let slack = 3e-7 * start.abs().max(end.abs()).as_dvec3();
+        let off = |place: DVec3| (yours.as_dvec3() - place).abs();
+        let near = off(exact).cmple(slack).all();
+        let inside = Aabb::new(start.min(end), start.max(end)).contains(yours);
+        let at = |time: f64| start.as_dvec3().lerp(end.as_dvec3(), time);
+        let is = |place: DVec3| off(place).cmple(2.0 * slack).all();
+        let (start_at, end_at, t) = (start.as_dvec3(), end.as_dvec3(), f64::from(time));
+        let broken = || {
+            let rounded = "your point is outside the box of both ends by a rounding error: clamp";
+            Broken::new(describe(query), yours, exact.as_vec3(), "double precision, within the ends")
+                .explained_by([(near, rounded)])
+        };
+        unless(near && inside, broken).formulas([
+            (is(at(1.0 - t)), "you exchange start and end"),
+            (is(start_at + t * end_at), "you use end as a displacement: it is a position"),
+            (is(at(t * t * (3.0 - 2.0 * t))), "your speed varies: the motion is linear in time"),
+            (is(at(0.5)), "you return the midpoint for every time"),
+            (is(start_at), "you return start for every time"),
+            (is(end_at), "you return end for every time"),
+            (is(exact.max(start_at).min(end_at)), CLAMPED_IN_ORDER),
+            (is(exact.min(end_at).max(start_at)), CLAMPED_IN_ORDER),
+        ])
     })
 }
 
@@ -247,7 +229,7 @@ pub(super) fn motion_bounds_covers_the_way_and_no_more(trial: &Trial<'_>) -> Che
     let scaled = |bounds: Aabb, scale: f32| Aabb::new(scale * bounds.min, scale * bounds.max);
     let ways = (around(), around(), nasty::any_scale())
         .prop_map(move |(start, end, scale)| (scaled(start, scale), scaled(end, scale)));
-    trial.forall(2000, ways, |queries| compare(queries, trial.kit.motion_bounds(queries), judge_bounds))
+    trial.each(2000, ways, <dyn Kit>::motion_bounds, judge_bounds)
 }
 
 fn judge_bounds((start, end): &(Aabb, Aabb), yours: Aabb) -> Judged {

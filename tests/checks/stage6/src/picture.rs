@@ -1,16 +1,12 @@
 //! The picture of stage 6: blurred by a lens, by motion, by a rough surface and by an area light.
 
-use checks::broken::CheckResult;
-use checks::picture::{Sampled, Size};
-use checks::{Trial, picture, statistics};
-use glam::{UVec2, Vec2, Vec3, uvec2, vec3};
-use proptest::prelude::*;
+use checks::picture::{self, Sampled, Size};
+use checks::prelude::*;
+use checks::statistics;
+use glam::{UVec2, uvec2};
 use raykata::camera::{Camera, Lens, Shutter};
-use raykata::kit::{Kit, LensQuery, PhongLobeQuery, RectangleQuery, TimeQuery};
 use raykata::random::Stratum;
-use raykata::ray::Ray;
 use raykata::scene::Sampler;
-use raykata::shape::Sphere;
 
 /// The size of the picture. It is small, because each pixel has many samples.
 const SIZE: Size = Size { width: 36, height: 24 };

@@ -1,14 +1,8 @@
 //! The positions of a pixel's samples, their weights, and the colour of the pixel.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::generate::rough_point;
-use checks::judge::{Judged, compare, proven, unless};
-use checks::paste::{Paste, call, list};
+use checks::prelude::*;
 use checks::statistics::{SAMPLES, covers_each_part, pairs};
-use glam::{DVec2, DVec3, Vec2, Vec2Swizzles, Vec3, uvec2, vec2, vec3};
-use proptest::prelude::*;
-use raykata::kit::{FILTER_RADIUS, WeightedColor};
+use glam::{DVec2, Vec2Swizzles, uvec2};
 use raykata::random::Stratum;
 use raykata::scene::Sampler;
 use std::f64::consts::FRAC_2_PI;
@@ -18,7 +12,7 @@ pub(super) const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// A multiple of 1/64, which is short to print, or the largest random number.
 pub(super) fn unit_number() -> impl Strategy<Value = f32> + Clone {
-    prop_oneof![8 => checks::generate::fractions(0..=63, 64.0), 1 => Just(LARGEST)]
+    prop_oneof![8 => fractions(0..=63, 64.0), 1 => Just(LARGEST)]
 }
 
 fn stratum() -> impl Strategy<Value = Stratum> + Clone {
@@ -35,36 +29,29 @@ fn stratum() -> impl Strategy<Value = Stratum> + Clone {
 const DRAWN: Stratum = Stratum { cell: uvec2(2, 1), grid: uvec2(4, 3), u: vec2(0.25, 0.625) };
 
 pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckResult {
-    trial.forall_and(&[DRAWN], 2000, stratum(), |queries| {
-        compare(queries, trial.kit.jittered(queries), |query, yours| {
-            let [cell, grid, u] = [query.cell.as_dvec2(), query.grid.as_dvec2(), query.u.as_dvec2()];
-            let expected = (cell + u) / grid;
-            // The tolerance covers two roundings of a number below 1.
-            let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 2e-7;
-            let rounded =
-                "you return 1, which is in the next pixel (3 + 0.99999994 is rounded to 4): stay below 1";
-            let broken = || {
-                Broken::new(
-                    call("jittered", &[query]),
-                    yours,
-                    expected.as_vec2(),
-                    "(cell + u) / grid, below 1",
-                )
+    trial.each_and(&[DRAWN], 2000, stratum(), <dyn Kit>::jittered, |query, yours| {
+        let [cell, grid, u] = [query.cell.as_dvec2(), query.grid.as_dvec2(), query.u.as_dvec2()];
+        let expected = (cell + u) / grid;
+        // The tolerance covers two roundings of a number below 1.
+        let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 2e-7;
+        let rounded =
+            "you return 1, which is in the next pixel (3 + 0.99999994 is rounded to 4): stay below 1";
+        let broken = || {
+            Broken::new(call("jittered", &[query]), yours, expected.as_vec2(), "(cell + u) / grid, below 1")
                 .explained_by([(near(expected), rounded)])
-            };
-            unless(near(expected) && yours.max_element() < 1.0, broken).formulas([
-                (near(u), "you return u: add the cell and divide by the grid"),
-                (near(u / grid), "you leave out the cell: all samples are in the first cell"),
-                (near((cell + 0.5) / grid), "you do not use u: the sample is not jittered"),
-                (near(cell / grid), "you do not use u: the sample is not jittered"),
-                (near((cell + u) / grid.yx()), "divide x by the columns of the grid and y by its rows"),
-                (near((cell + u) / grid.x), "divide x by the columns of the grid and y by its rows"),
-                (near((cell + u) / grid.y), "divide x by the columns of the grid and y by its rows"),
-                (near((cell + u.xx()) / grid), "you use one random number for both axes: use u.x and u.y"),
-                (near((cell + u.yy()) / grid), "you use one random number for both axes: use u.x and u.y"),
-                (near(((cell.yx() + u) / grid).min(DVec2::ONE)), "you exchange column and row of the cell"),
-            ])
-        })
+        };
+        unless(near(expected) && yours.max_element() < 1.0, broken).formulas([
+            (near(u), "you return u: add the cell and divide by the grid"),
+            (near(u / grid), "you leave out the cell: all samples are in the first cell"),
+            (near((cell + 0.5) / grid), "you do not use u: the sample is not jittered"),
+            (near(cell / grid), "you do not use u: the sample is not jittered"),
+            (near((cell + u) / grid.yx()), "divide x by the columns of the grid and y by its rows"),
+            (near((cell + u) / grid.x), "divide x by the columns of the grid and y by its rows"),
+            (near((cell + u) / grid.y), "divide x by the columns of the grid and y by its rows"),
+            (near((cell + u.xx()) / grid), "you use one random number for both axes: use u.x and u.y"),
+            (near((cell + u.yy()) / grid), "you use one random number for both axes: use u.x and u.y"),
+            (near(((cell.yx() + u) / grid).min(DVec2::ONE)), "you exchange column and row of the cell"),
+        ])
     })
 }
 
@@ -154,7 +141,7 @@ fn bell(x: f64) -> f64 {
 pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> CheckResult {
     // Offsets on a grid, on the border of the filter and one float to either side, and far away.
     let coordinate = prop_oneof![
-        6 => checks::generate::fractions(-16..=16, 8.0),
+        6 => fractions(-16..=16, 8.0),
         1 => prop::sample::select(vec![
             FILTER_RADIUS,
             FILTER_RADIUS.next_up(),
@@ -165,9 +152,7 @@ pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> CheckRes
         ]),
     ];
     let offsets = (coordinate.clone(), coordinate).prop_map(|(x, y)| vec2(x, y));
-    trial.forall(1000, offsets, |queries| {
-        compare(queries, trial.kit.gaussian_weight(queries), |offset, yours| judge_weight(*offset, yours))
-    })
+    trial.each(1000, offsets, <dyn Kit>::gaussian_weight, |offset, yours| judge_weight(*offset, yours))
 }
 
 const STEP_AT_R: &str = "your weight ends in a step at R: subtract e^(-2R²) along each axis";
@@ -216,16 +201,14 @@ fn paste_samples(samples: &[WeightedColor]) -> String {
 }
 
 pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> CheckResult {
-    let share = || checks::generate::fractions(0..=16, 8.0);
+    let share = || fractions(0..=16, 8.0);
     let color = (share(), share(), share()).prop_map(|(r, g, b)| vec3(r, g, b));
     let sample = (color, share()).prop_map(|(color, weight)| WeightedColor { color, weight });
     let samples = prop::collection::vec(sample, 1..8);
     // Another check asks for weights that sum to 0.
     let samples =
         samples.prop_filter("a weight above 0", |samples| samples.iter().any(|one| one.weight > 0.0));
-    trial.forall(1000, samples, |queries| {
-        compare(queries, trial.kit.filter_pixel(queries), |samples, yours| judge_pixel(samples, yours))
-    })
+    trial.each(1000, samples, <dyn Kit>::filter_pixel, |samples, yours| judge_pixel(samples, yours))
 }
 
 fn judge_pixel(samples: &[WeightedColor], yours: Vec3) -> Judged {

@@ -3,15 +3,8 @@
 use super::area_lights::n_thousandths;
 use super::pixels::unit_number;
 use crate::unit_arrival;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::nasty;
-use checks::paste::Arguments;
+use checks::prelude::*;
 use checks::statistics::{Mistakes, SAMPLES, columns, covers_each_part, has_mean, is_other_power, pairs};
-use glam::{Vec2, Vec3, vec2};
-use proptest::prelude::*;
-use raykata::kit::PhongLobeQuery;
 
 pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
     // Every fourth surface is rough, and gives another direction than `ideal`.
@@ -22,27 +15,28 @@ pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
                 _ => PhongLobeQuery { ideal, normal, roughness: 0.0, u: vec2(u, v) },
             }
         });
-    trial.forall(500, queries, |queries| {
-        compare(queries, trial.kit.sample_phong_lobe(queries), |query, yours| {
-            let rough = query.roughness > 0.0;
-            if (yours == query.ideal) != rough {
-                return Ok(());
-            }
-            if rough {
-                let expected = "a direction at an angle to ideal";
-                return Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, "roughness above 0")
-                    .explained_by([(true, "you return ideal for a rough surface")]));
-            }
-            Err(Broken::new(query.call("sample_phong_lobe"), yours, query.ideal, "roughness 0").explained_by([
-                (yours.is_nan(), "you return NaN: 2 / 0² is infinite"),
-                (
-                    (yours - query.ideal).length() < 1e-5,
-                    "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself",
-                ),
-                (!yours.is_nan(), "you change the direction: with roughness 0 return ideal itself"),
-                (!rough, "your result is not ideal, and some results are NaN: with roughness 0 return ideal itself"),
-            ]))
-        })
+    trial.each(500, queries, <dyn Kit>::sample_phong_lobe, |query, yours| {
+        let rough = query.roughness > 0.0;
+        if (yours == query.ideal) != rough {
+            return Ok(());
+        }
+        if rough {
+            let expected = "a direction at an angle to ideal";
+            return Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, "roughness above 0")
+                .explained_by([(true, "you return ideal for a rough surface")]));
+        }
+        Err(Broken::new(query.call("sample_phong_lobe"), yours, query.ideal, "roughness 0").explained_by([
+            (yours.is_nan(), "you return NaN: 2 / 0² is infinite"),
+            (
+                (yours - query.ideal).length() < 1e-5,
+                "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself",
+            ),
+            (!yours.is_nan(), "you change the direction: with roughness 0 return ideal itself"),
+            (
+                !rough,
+                "your result is not ideal, and some results are NaN: with roughness 0 return ideal itself",
+            ),
+        ]))
     })
 }
 
@@ -159,12 +153,8 @@ pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> CheckResu
     // Of a thousand intervals of equal probability a few roundings leave none out.
     if n_angles < 500 {
         let yours = format!("angles in {n_angles} of 1,000 intervals of equal probability");
-        let broken = Broken::with_texts(
-            format!("{what} for {SAMPLES} pairs u"),
-            yours,
-            "in all of them",
-            "the definition",
-        );
+        let input = format!("{what} for {SAMPLES} pairs u");
+        let broken = Broken::with_texts(input, yours, "in all of them", "the definition");
         // The formula gives many angles for a rough surface, and few for a slightly rough one.
         let few = n_angles < 64 && lobe(trial, 0.5, &axes, &u).is_ok_and(|rough| rough.n_angles() > 500);
         let imprecise =
@@ -185,17 +175,12 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
     let through = trial.kit.sample_phong_lobe(&free(&chosen));
     if !through.iter().any(|direction| direction.y < -0.1) {
         let input = "sample_phong_lobe with roughness 1 and normal = ideal = Vec3::X, for 64 pairs u";
-        return Err(Broken::with_texts(
-            input,
-            "no direction with y < -0.1",
-            "about a half",
-            "the definition",
-        ));
+        let yours = "no direction with y < -0.1";
+        return Err(Broken::with_texts(input, yours, "about a half", "the definition"));
     }
-    let queries =
-        (unit_arrival(), checks::generate::fractions(1..=16, 16.0), unit_number(), unit_number()).prop_map(
-            |((ideal, normal), roughness, u, v)| PhongLobeQuery { ideal, normal, roughness, u: vec2(u, v) },
-        );
+    let queries = (unit_arrival(), fractions(1..=16, 16.0), unit_number(), unit_number()).prop_map(
+        |((ideal, normal), roughness, u, v)| PhongLobeQuery { ideal, normal, roughness, u: vec2(u, v) },
+    );
     trial.forall_and(&chosen, 3000, queries, |queries| {
         // The same samples with the normal `ideal` give the directions before they are reflected back.
         let drawn = trial.kit.sample_phong_lobe(&free(queries));

@@ -1,12 +1,10 @@
 //! The table of stage 6: the samples of one pixel.
 
-use checks::broken::CheckResult;
 use checks::golden::{Table, digits};
-use checks::{Trial, statistics};
-use glam::{Vec2, Vec3, uvec2, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
+use checks::statistics;
+use glam::uvec2;
 use raykata::camera::Shutter;
-use raykata::kit::{Kit, TimeQuery, WeightedColor};
 use raykata::random::Stratum;
 use raykata::scene::Sampler;
 

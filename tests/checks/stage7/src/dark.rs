@@ -2,10 +2,7 @@
 
 use super::scenes::{ONE_SAMPLE, add_material, everything, light};
 use super::whole::judge;
-use checks::Trial;
-use checks::broken::{CheckResult, all_hold};
-use checks::judge::compare_formulas;
-use glam::{Vec3, vec3};
+use checks::prelude::*;
 use raykata::effects::{Effects, MaterialEffects};
 use raykata::material::Material;
 use raykata::scene::{Background, Scene};

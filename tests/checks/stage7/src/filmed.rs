@@ -2,10 +2,7 @@
 
 use super::scenes::one_sphere;
 use super::whole::{hidden_lights, judge, plain, with_lights};
-use checks::Trial;
-use checks::broken::{CheckResult, all_hold};
-use checks::judge::compare_formulas;
-use glam::Vec3;
+use checks::prelude::*;
 use raykata::camera::{Lens, Shutter};
 use raykata::effects::Effects;
 use raykata::material::Material;

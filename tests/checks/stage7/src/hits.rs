@@ -1,11 +1,7 @@
 //! Checks of `rays_of_hits` and `samples_for_error`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
-use raykata::kit::{HitsQuery, MaterialHits, RayCounts};
 use raykata::scene::Quality;
 
 /// The secondary rays of one hit: `(mirror, transmission, glossy)`, then the reflected and the refracted rays with
@@ -230,9 +226,7 @@ pub(super) fn samples_reach_the_error_that_is_asked_for(trial: &Trial<'_>) -> Ch
         let scale = 2f32.powi(exponent - 3);
         (scale * deviation as f32, scale * error as f32)
     });
-    trial.forall_and(&chosen, 500, inputs, |queries| {
-        compare(queries, trial.kit.samples_for_error(queries), judge_samples)
-    })
+    trial.each_and(&chosen, 500, inputs, <dyn Kit>::samples_for_error, judge_samples)
 }
 
 /// Whether the mean of `n` samples is good enough. The products are exact, or far from equal.

@@ -1,11 +1,7 @@
 //! Checks of `texture_color`.
 
 use super::texels::{WRAPS, row};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use glam::{DVec3, Vec3, vec2, vec3};
-use proptest::prelude::*;
-use raykata::kit::{Request, TextureQuery};
+use checks::prelude::*;
 use raykata::material::{Texture, Wrap};
 use std::sync::Arc;
 

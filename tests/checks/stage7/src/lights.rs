@@ -1,16 +1,10 @@
 //! Checks of `light_effects`.
 
 use super::scenes::{ONE_SAMPLE, light, sphere_light};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, unless};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::effects::LightEffects;
-use raykata::kit::LightQuery;
 use raykata::material::{AreaShape, Emitter, Falloff, Light};
 use raykata::scene::Quality;
-use raykata::shape::Sphere;
 
 /// A light, and what it needs.
 #[derive(Clone)]
@@ -174,7 +168,7 @@ fn drawn_lights() -> impl Strategy<Value = (LightQuery, LightEffects)> + 'static
         Vec3::from(channels)
     });
     let dark = prop_oneof![8 => Just(Dark::No), 1 => Just(Dark::Black), 1 => Just(Dark::WithoutIntensity)];
-    let position = checks::generate::rough_point(9.0);
+    let position = rough_point(9.0);
     (0..4, position, color, 0.01f32..9.0, dark, any::<bool>(), 0..=64u32).prop_map(
         |(kind, position, color, intensity, dark, shadows, light_samples)| {
             let falloff = Falloff::None;

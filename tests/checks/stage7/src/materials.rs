@@ -1,14 +1,8 @@
 //! Checks of `material_effects`.
 
 use super::scenes::light;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::paste::list;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::effects::MaterialEffects;
-use raykata::kit::MaterialQuery;
 use raykata::material::{Fresnel, Light, Material};
 use raykata::scene::Quality;
 

@@ -1,13 +1,9 @@
 //! The picture of stage 7: an image on spheres, with each of the wrap modes, and on the floor below them.
 
 use super::texels::WRAPS;
-use checks::broken::CheckResult;
-use checks::picture::{Composed, LARGE};
-use checks::{Trial, picture};
-use glam::{Vec2, Vec3, vec2, vec3};
-use raykata::kit::{Kit, TextureQuery};
+use checks::picture::{self, Composed, LARGE};
+use checks::prelude::*;
 use raykata::material::{Texture, Wrap};
-use raykata::ray::Ray;
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
@@ -72,7 +68,7 @@ pub(super) fn picture_of_an_image_on_spheres(trial: &Trial<'_>) -> CheckResult {
     let public = (0.0, -0.065, -0.014, 0.038);
     let (hue, a, b, c) = trial.composed(public, (0.1..1f32, -0.2..0.2f32, -0.2..0.2f32, -0.2..0.2f32));
     let pixels = Arc::new(image(hue));
-    let rays = picture::rays_of(trial, LARGE, vec3(0.6, 2.2, 6.2), vec3(0.0, 0.8, 0.0));
+    let rays = picture::rays(trial, LARGE, vec3(0.6, 2.2, 6.2), vec3(0.0, 0.8, 0.0));
     let spots: Vec<Option<Spot>> = rays.iter().map(|ray| spot(ray, [a, b, c])).collect();
     let query = |(_, uv, wrap): &Spot| TextureQuery {
         texture: Texture { width: SIDE, height: SIDE, pixels: pixels.clone(), wrap: *wrap },

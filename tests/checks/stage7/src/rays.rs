@@ -1,12 +1,8 @@
 //! Checks of `most_rays`.
 
 use super::scenes::{ONE_SAMPLE, add_material, light, one_sphere};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
-use raykata::kit::{BoundQuery, KitError, RayCounts, kit_error};
 use raykata::material::{Fresnel, Material};
 use raykata::scene::{FilmSettings, Quality, Scene};
 

@@ -1,11 +1,9 @@
 //! The table of stage 7: the effects that scenes need, and the rays that they need at most.
 
 use super::scenes::{BUILT, everything};
-use checks::Trial;
-use checks::broken::CheckResult;
 use checks::golden::Table;
+use checks::prelude::*;
 use raykata::effects::Effect;
-use raykata::kit::{BoundQuery, Kit, RayCounts};
 use raykata::scene::Scene;
 
 fn hyphenated(effect: Effect) -> String {

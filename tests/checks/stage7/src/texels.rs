@@ -1,10 +1,6 @@
 //! Checks of `texel`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use proptest::prelude::*;
-use raykata::kit::TexelQuery;
+use checks::prelude::*;
 use raykata::material::Wrap;
 
 pub(super) const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
@@ -40,7 +36,7 @@ pub(super) fn texels_wrap_as_they_should(trial: &Trial<'_>) -> CheckResult {
     // Indices at which each known mistake gives another column.
     let drawn = [(-1, Wrap::Repeat), (5, Wrap::Clamp), (-1, Wrap::Mirror), (5, Wrap::Mirror)]
         .map(|(index, wrap)| TexelQuery { index, size: 4, wrap });
-    trial.forall_and(&drawn, 3000, queries, |queries| compare(queries, trial.kit.texel(queries), judge_texel))
+    trial.each_and(&drawn, 3000, queries, <dyn Kit>::texel, judge_texel)
 }
 
 fn judge_texel(query: &TexelQuery, yours: u32) -> Judged {

@@ -1,11 +1,7 @@
 //! Checks of `effects` for whole scenes.
 
 use super::scenes::{BUILT, ONE_SAMPLE, add_material, everything, light, one_sphere, one_triangle, sphere};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use glam::Vec3;
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::effects::{Effect, Effects, LightEffects, MaterialEffects};
 use raykata::material::{Light, Material};
 use raykata::mesh::Mesh;

@@ -1,19 +1,9 @@
 //! Checks of `bounding_sphere` and `enter_bounding_sphere`.
 
 use super::boxes::ROUNDINGS;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::U;
-use checks::generate::{direction, point, rough_point, sphere};
-use checks::judge::{Judged, compare, compare_formulas, unless};
-use checks::nasty;
-use checks::paste::{call, list};
-use glam::{DVec3, Vec3};
+use checks::generate::sphere;
+use checks::prelude::*;
 use oracle::exact::{Body, meet};
-use proptest::prelude::*;
-use raykata::kit::BoundingSphereQuery;
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 /// Points on a grid or of any kind, at any size, often in a plane, on a line or all equal; and points far from the origin.
 fn clouds() -> impl Strategy<Value = Vec<Vec3>> + Clone {
@@ -29,8 +19,8 @@ fn clouds() -> impl Strategy<Value = Vec<Vec3>> + Clone {
 }
 
 /// The largest coordinate, whose rounding errors a sphere may add to its radius.
-fn reach(points: &[Vec3]) -> f64 {
-    points.iter().map(|point| f64::from(point.abs().max_element())).fold(0.0, f64::max)
+pub(super) fn reach<'a>(points: impl IntoIterator<Item = &'a Vec3>) -> f64 {
+    points.into_iter().map(|point| f64::from(point.abs().max_element())).fold(0.0, f64::max)
 }
 
 pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> CheckResult {
@@ -102,7 +92,7 @@ fn judge_cover(points: &Vec<Vec3>, sphere: Sphere, allowed: f64) -> Judged {
 }
 
 pub(super) fn sphere_is_small(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(500, clouds(), |queries| compare(queries, trial.kit.bounding_sphere(queries), judge_size))
+    trial.each(500, clouds(), <dyn Kit>::bounding_sphere, judge_size)
 }
 
 fn judge_size(points: &Vec<Vec3>, sphere: Sphere) -> Judged {
@@ -187,8 +177,7 @@ fn judge_entries(trial: &Trial<'_>, queries: &[Entry], never_late: bool) -> Vec<
         let (smaller, larger) = (0.999 * sphere.radius, 1.001 * sphere.radius);
         let describe = |t: Option<f32>| format!("{:?}", t.map(|t| entry.size / entry.speed * t));
         let broken = |right: Option<f32>, remark: &str| {
-            let asked = entry.asked();
-            let input = call("enter_bounding_sphere", &[&asked.ray, &asked.sphere]);
+            let input = entry.asked().call("enter_bounding_sphere");
             let expected = format!("{}{remark}", describe(right));
             let mut shown = observations(entry, yours, right);
             // Powers of two change no digit, so only a limit tells the sizes apart.
@@ -366,11 +355,11 @@ fn ranges_that_begin_at_the_exit(trial: &Trial<'_>) -> CheckResult {
     };
     let queries: Vec<BoundingSphereQuery> = [-7.0, -3.0, -2.0, -1.0, 0.0, 0.5].map(query).into();
     all_hold(compare(&queries, trial.kit.enter_bounding_sphere(&queries), |query, yours| {
-        let BoundingSphereQuery { ray, sphere } = query;
+        let ray = &query.ray;
         if yours == Some(ray.t_min) {
             return Ok(());
         }
-        let input = call("enter_bounding_sphere", &[ray, sphere]);
+        let input = query.call("enter_bounding_sphere");
         Err(Broken::new(input, yours, Some(ray.t_min), "closed form").explained_by([(
             yours.is_none(),
             "you return None for a ray whose range begins where it leaves the sphere: the surface belongs to the sphere",

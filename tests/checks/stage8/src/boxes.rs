@@ -1,15 +1,9 @@
 //! Checks of `bounds_to_world`.
 
 use super::bounding_spheres;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::double::U;
-use checks::judge::{compare, unless};
-use checks::paste::Arguments;
-use glam::{Affine3A, DVec3, Mat3, Vec3};
+use checks::prelude::*;
+use glam::{Affine3A, Mat3};
 use oracle::splitmix::Random;
-use raykata::aabb::Aabb;
-use raykata::kit::BoundsQuery;
 
 /// Transforms of all kinds and boxes of all sizes.
 fn moved(trial: &Trial<'_>) -> Vec<BoundsQuery> {
@@ -150,13 +144,10 @@ fn judge_room(query: &BoundsQuery, yours: Aabb) -> CheckResult {
             continue;
         }
         let axis = ["x", "y", "z"][row];
-        return Err(Broken::with_texts(
-            query.call("bounds_to_world"),
-            format!("{yours_low} to {yours_high} along {axis}"),
-            format!("{low} to {high}, and {room:.1e} on either side at most"),
-            "double precision",
-        )
-        .explained_by([(
+        let yours = format!("{yours_low} to {yours_high} along {axis}");
+        let expected = format!("{low} to {high}, and {room:.1e} on either side at most");
+        let broken = Broken::with_texts(query.call("bounds_to_world"), yours, expected, "double precision");
+        return Err(broken.explained_by([(
             yours_low <= low + room && yours_high >= high - room,
             "your box is larger than the rounding errors require, so rays enter it without need",
         )]));

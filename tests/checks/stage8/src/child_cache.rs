@@ -1,14 +1,12 @@
 //! Checks of `closest_hit_with_child_cache` with tables that hold the answers of `enter` and `hit`.
 
-use super::graph::{ALL, NOTHING, Row, SKIP, SORT, VOLUMES, describe, random_query, with_own_hit};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::tree::{closest_of, tie};
+use super::graph::{
+    ALL, NOTHING, Row, SKIP, SORT, VOLUMES, closest, describe, named, path_to, random_query, with_own_hit,
+};
+use checks::prelude::*;
+use checks::tree::tie;
 use oracle::splitmix::Random;
-use raykata::bvh::PrimitiveHit;
 use raykata::graph::{ChildCache, Graph};
-use raykata::kit::{CachedGraphAnswer, CachedGraphQuery, GraphQuery};
 
 /// A cache in which each node with children has one of them or, in one of three cases, none.
 fn random_cache(random: &mut Random, graph: &Graph) -> ChildCache {
@@ -50,20 +48,6 @@ fn entries(cache: &ChildCache) -> impl Iterator<Item = (usize, u32)> {
     cache.children.iter().enumerate().filter_map(|(node, child)| Some((node, (*child)?)))
 }
 
-fn closest(query: &GraphQuery) -> Option<PrimitiveHit> {
-    closest_of(&query.table.primitives, &query.ray).map(|(primitive, t)| PrimitiveHit { t, primitive })
-}
-
-/// The nodes from the root to the one that holds a primitive.
-fn path_to(graph: &Graph, primitive: u32) -> Vec<u32> {
-    let holder = graph.nodes.iter().position(|node| node.primitives.contains(&primitive)).unwrap_or(0) as u32;
-    let parent = |node: &u32| graph.nodes.iter().position(|other| other.children.contains(node));
-    let mut path: Vec<u32> =
-        std::iter::successors(Some(holder), |node| parent(node).map(|above| above as u32)).collect();
-    path.reverse();
-    path
-}
-
 pub(super) fn child_cache_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
     let queries = random_queries(trial.seed, 11);
     let judge = |query: &CachedGraphQuery, yours: CachedGraphAnswer| {
@@ -77,9 +61,7 @@ pub(super) fn child_cache_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
         if found == expected && !is_again && n_boxes <= most_boxes {
             return Ok(());
         }
-        let named = |hit: Option<PrimitiveHit>| {
-            hit.map_or("None".into(), |hit| format!("#{} at {}", hit.primitive, hit.t))
-        };
+
         let yours = format!("{}, {n_boxes} volumes, tested {asked:?}", named(found));
         let expected_text =
             format!("{}, at most {most_boxes} volumes, each primitive at most once", named(expected));

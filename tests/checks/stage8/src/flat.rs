@@ -2,13 +2,8 @@
 
 use super::hard::{judge_cases, of};
 use super::solids::{agrees_flat, input};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use glam::{Vec3, vec3};
+use checks::prelude::*;
 use oracle::splitmix::Random;
-use raykata::kit::SolidQuery;
-use raykata::ray::Ray;
 use raykata::shape::{Disk, Polygon};
 
 pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> CheckResult {
@@ -17,16 +12,14 @@ pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> CheckResul
     let coin = Disk { center: Vec3::ZERO, normal: 2.0 * Vec3::Z, radius: 5.0 };
     let down = |x: f32, y: f32| of(&coin)(vec3(x, y, 3.0), Vec3::NEG_Z);
     let rim = "you lose rays at the rim, which belongs to the disk: compare with <= instead of <";
-    judge_cases(
-        trial,
-        &[
-            (down(5.0, 0.0), Some(3.0), rim),
-            (down(3.0, -4.0), Some(3.0), rim),
-            (down(-4.0, 3.0), Some(3.0), rim),
-            (down(3.0, 2.0), Some(3.0), ""),
-            (down(5.25, 0.0), None, ""),
-        ],
-    )
+    let cases = [
+        (down(5.0, 0.0), Some(3.0), rim),
+        (down(3.0, -4.0), Some(3.0), rim),
+        (down(-4.0, 3.0), Some(3.0), rim),
+        (down(3.0, 2.0), Some(3.0), ""),
+        (down(5.25, 0.0), None, ""),
+    ];
+    judge_cases(trial, &cases)
 }
 
 const IN_A_LINE: &str = "you lose polygons with three corners on a line: sum the normal over all edges";
@@ -56,36 +49,32 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> CheckResult {
     let winding = "you lose polygons whose corners run clockwise as the ray sees them: the order of the corners must not \
         matter, because a ray can hit a polygon from both sides";
     // Students who lose diagonals may lose edges as well, so test diagonals first.
-    judge_cases(
-        trial,
-        &[
-            (down(&square, 1.0, 1.0), Some(3.0), diagonal),
-            (down(&square, 0.25, 0.25), Some(3.0), diagonal),
-            (down(&square, 0.5, 1.5), Some(3.0), ""),
-        ],
-    )?;
-    judge_cases(
-        trial,
-        &[
-            (down(&square, 0.5, 1.5), Some(3.0), ""),
-            (down(&square, 0.0, 0.0), Some(3.0), closed),
-            (down(&square, 2.0, 1.0), Some(3.0), closed),
-            (down(&square, 2.25, 1.0), None, ""),
-            (
-                down(&square, 2.0 + 2f32.powi(-13), 1.0),
-                None,
-                "you hit the polygon with rays that pass just beside an edge: do not widen it by an epsilon",
-            ),
-            (down(&turned, 0.5, 1.5), Some(3.0), winding),
-            (down(&turned, 1.5, 0.25), Some(3.0), winding),
-            (down(&in_a_line, 1.0, 0.5), Some(3.0), IN_A_LINE),
-            (down(&in_a_line, 0.75, 0.75), Some(3.0), IN_A_LINE),
-            (down(&in_a_line, 1.75, 1.0), None, ""),
-            (down(&straight_first, 0.75, 0.75), Some(3.0), IN_A_LINE),
-            (of(&square)(vec3(-1.0, 1.0, 0.0), Vec3::X), None, in_plane),
-            (of(&square)(vec3(1.0, 1.0, 0.0), vec3(1.0, 2.0, -0.0)), None, in_plane),
-        ],
-    )?;
+    let cases = [
+        (down(&square, 1.0, 1.0), Some(3.0), diagonal),
+        (down(&square, 0.25, 0.25), Some(3.0), diagonal),
+        (down(&square, 0.5, 1.5), Some(3.0), ""),
+    ];
+    judge_cases(trial, &cases)?;
+    let cases = [
+        (down(&square, 0.5, 1.5), Some(3.0), ""),
+        (down(&square, 0.0, 0.0), Some(3.0), closed),
+        (down(&square, 2.0, 1.0), Some(3.0), closed),
+        (down(&square, 2.25, 1.0), None, ""),
+        (
+            down(&square, 2.0 + 2f32.powi(-13), 1.0),
+            None,
+            "you hit the polygon with rays that pass just beside an edge: do not widen it by an epsilon",
+        ),
+        (down(&turned, 0.5, 1.5), Some(3.0), winding),
+        (down(&turned, 1.5, 0.25), Some(3.0), winding),
+        (down(&in_a_line, 1.0, 0.5), Some(3.0), IN_A_LINE),
+        (down(&in_a_line, 0.75, 0.75), Some(3.0), IN_A_LINE),
+        (down(&in_a_line, 1.75, 1.0), None, ""),
+        (down(&straight_first, 0.75, 0.75), Some(3.0), IN_A_LINE),
+        (of(&square)(vec3(-1.0, 1.0, 0.0), Vec3::X), None, in_plane),
+        (of(&square)(vec3(1.0, 1.0, 0.0), vec3(1.0, 2.0, -0.0)), None, in_plane),
+    ];
+    judge_cases(trial, &cases)?;
     judge_cases(trial, &[(on_an_edge, Some(0.0), normalized), (down(&square, 0.5, 1.5), Some(3.0), "")])?;
     // Two polygons share an edge far from the origin, and no ray may pass between them. The coordinates have few bits, so
     // that the four corners lie exactly in a plane; points on the edge between its ends need more bits.

@@ -1,17 +1,10 @@
 //! Checks of `closest_hit_in_graph` with tables that hold the answers of `enter` and `hit`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::paste::Paste;
+use checks::prelude::*;
 use checks::tree::{closest_of, move_apart, tie};
-use glam::Vec3;
 use oracle::splitmix::Random;
-use proptest::prelude::*;
 use raykata::bvh::PrimitiveHit;
 use raykata::graph::{Graph, GraphNode, GraphOptimisations};
-use raykata::kit::{GraphAnswer, GraphQuery, Table};
-use raykata::ray::Ray;
 
 pub(super) const NOTHING: GraphOptimisations =
     GraphOptimisations { volumes: false, skip: false, sort: false };
@@ -72,12 +65,8 @@ pub(super) fn describe(query: &GraphQuery) -> String {
 
 pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 1);
-    let mut queries: Vec<GraphQuery> = Vec::new();
-    for _ in 0..300 {
-        for savings in [NOTHING, VOLUMES, SKIP, SORT, ALL] {
-            queries.push(random_query(&mut random, savings));
-        }
-    }
+    let savings = (0..300).flat_map(|_| [NOTHING, VOLUMES, SKIP, SORT, ALL]);
+    let mut queries: Vec<GraphQuery> = savings.map(|savings| random_query(&mut random, savings)).collect();
     queries.push(GraphQuery {
         graph: Graph::default(),
         ray: Ray::new(Vec3::ZERO, Vec3::X),
@@ -102,18 +91,31 @@ pub(super) fn graph_prefers_the_smaller_number(trial: &Trial<'_>) -> CheckResult
     judge_hits(trial, queries)
 }
 
+pub(super) fn closest(query: &GraphQuery) -> Option<PrimitiveHit> {
+    closest_of(&query.table.primitives, &query.ray).map(|(primitive, t)| PrimitiveHit { t, primitive })
+}
+
+pub(super) fn named(hit: Option<PrimitiveHit>) -> String {
+    hit.map_or("None".into(), |hit| format!("#{} at {}", hit.primitive, hit.t))
+}
+
+/// The nodes from the root to the one that holds a primitive.
+pub(super) fn path_to(graph: &Graph, primitive: u32) -> Vec<u32> {
+    let holder = graph.nodes.iter().position(|node| node.primitives.contains(&primitive)).unwrap_or(0) as u32;
+    let parent = |node: &u32| graph.nodes.iter().position(|other| other.children.contains(node));
+    let mut path: Vec<u32> =
+        std::iter::successors(Some(holder), |node| parent(node).map(|above| above as u32)).collect();
+    path.reverse();
+    path
+}
+
 fn judge_hits(trial: &Trial<'_>, mut queries: Vec<GraphQuery>) -> CheckResult {
     plainest_first(&mut queries);
     let judge = |query: &GraphQuery, yours: GraphAnswer| {
-        let expected = closest_of(&query.table.primitives, &query.ray)
-            .map(|(primitive, t)| PrimitiveHit { t, primitive });
-        let found = yours.search.hit;
+        let (found, expected) = (yours.search.hit, closest(query));
         if found == expected {
             return Ok(());
         }
-        let named = |hit: Option<PrimitiveHit>| {
-            hit.map_or("None".into(), |hit| format!("#{} at {}", hit.primitive, hit.t))
-        };
         Err(Broken::with_texts(describe(query), named(found), named(expected), "brute force")
             .explained_by(lost_hits(query, found, expected, &yours.asked)))
     };
@@ -128,11 +130,11 @@ fn lost_hits(
     expected: Option<PrimitiveHit>,
     asked: &[u32],
 ) -> Vec<(bool, &'static str)> {
-    let nodes = &query.graph.nodes;
     let Some(right) = expected else { return Vec::new() };
-    let holder = nodes.iter().position(|node| node.primitives.contains(&right.primitive)).unwrap_or(0);
-    let parent = |node: usize| nodes.iter().position(|other| other.children.contains(&(node as u32)));
-    let above: Vec<usize> = std::iter::successors(parent(holder), |node| parent(*node)).collect();
+    let path = path_to(&query.graph, right.primitive);
+    let mut nodes = path.iter().rev().map(|number| &query.graph.nodes[*number as usize]);
+    let Some(holder) = nodes.next() else { return Vec::new() };
+    let above: Vec<&GraphNode> = nodes.collect();
     let is_tested = asked.contains(&right.primitive);
     vec![
         (
@@ -153,7 +155,7 @@ fn lost_hits(
         ),
         (is_tested && found.is_none(), "you test the nearest primitive, but you do not return its hit"),
         (
-            !is_tested && !nodes[holder].children.is_empty(),
+            !is_tested && !holder.children.is_empty(),
             "you do not test the own primitives of a node that has children: a node can have both",
         ),
         (
@@ -161,7 +163,7 @@ fn lost_hits(
             "you do not test primitives more than one level below the root: visit the children of children, too",
         ),
         (
-            !is_tested && above.iter().any(|node| !nodes[*node].primitives.is_empty()),
+            !is_tested && above.iter().any(|node| !node.primitives.is_empty()),
             "you do not visit the children of a node that has primitives of its own: a node can have both",
         ),
         (
@@ -185,22 +187,15 @@ pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Ch
         let is_twice = asked.windows(2).any(|pair| pair[0] == pair[1]);
         let left_out = all.iter().any(|primitive| !asked.contains(primitive));
         let below_a_hit = all.iter().filter(|primitive| !asked.contains(primitive)).all(|primitive| {
-            // The nodes above the one that holds this primitive.
-            let nodes = &query.graph.nodes;
-            let holder = nodes.iter().position(|node| node.primitives.contains(primitive)).unwrap_or(0);
-            let parent = |node: usize| nodes.iter().position(|other| other.children.contains(&(node as u32)));
-            let hits = |node: usize| {
-                nodes[node].primitives.iter().any(|&p| query.ray.contains(query.table.primitives[p as usize]))
+            let hits = |node: &u32| {
+                let own = &query.graph.nodes[*node as usize].primitives;
+                own.iter().any(|&p| query.ray.contains(query.table.primitives[p as usize]))
             };
-            std::iter::successors(parent(holder), |node| parent(*node)).any(hits)
+            path_to(&query.graph, *primitive).iter().rev().skip(1).any(hits)
         });
-        Err(Broken::with_texts(
-            describe(query),
-            format!("{n_boxes} volumes and the primitives {asked:?}"),
-            format!("no volume and the primitives {all:?}"),
-            "the definition",
-        )
-        .explained_by([
+        let yours = format!("{n_boxes} volumes and the primitives {asked:?}");
+        let expected = format!("no volume and the primitives {all:?}");
+        Err(Broken::with_texts(describe(query), yours, expected, "the definition").explained_by([
             (n_boxes > 0, "you call enter although `volumes` is off"),
             (is_twice, "you test a primitive twice"),
             (
@@ -248,13 +243,9 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
         let is_root_a_leaf = graph.nodes.first().is_some_and(|root| root.children.is_empty());
         let extra = asked.iter().any(|primitive| !expected.contains(primitive));
         let is_all = n_boxes == graph.nodes.len() as u64 && asked.len() == table.primitives.len();
-        Err(Broken::with_texts(
-            describe(query),
-            format!("{n_boxes} volumes, primitives {asked:?}"),
-            format!("{boxes} volumes, primitives {expected:?}"),
-            "the definition",
-        )
-        .explained_by([
+        let of = |n: u64, primitives: &[u32]| format!("{n} volumes, primitives {primitives:?}");
+        let (yours, right) = (of(n_boxes, &asked), of(boxes, &expected));
+        Err(Broken::with_texts(describe(query), yours, right, "the definition").explained_by([
             (is_twice, "you test a primitive twice"),
             (n_boxes + 1 == boxes, "you do not test the volume of the root: the root has one, too"),
             // The root may be a leaf. Some test its volume nevertheless.
@@ -326,13 +317,9 @@ fn judge_orders(trial: &Trial<'_>, cases: &[Case<'_>]) -> CheckResult {
             if yours.asked == *expected {
                 return Ok(());
             }
-            Err(Broken::with_texts(
-                describe(query),
-                format!("tested the primitives {:?}", yours.asked),
-                format!("{expected:?}"),
-                "the definition",
-            )
-            .explained_by(mistakes.iter().map(|(wrong, text)| (yours.asked == *wrong, *text))))
+            let (got, right) = (format!("tested the primitives {:?}", yours.asked), format!("{expected:?}"));
+            Err(Broken::with_texts(describe(query), got, right, "the definition")
+                .explained_by(mistakes.iter().map(|(wrong, text)| (yours.asked == *wrong, *text))))
         });
     all_hold(outcomes)
 }
@@ -344,24 +331,14 @@ pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> Check
     let always = "you skip a volume although `skip` is off";
     let own_last = "you visit the children before a node's own primitives: their hits may save the children";
     Row::all(trial).iter().try_for_each(|row| {
-        judge_orders(
-            trial,
-            &[
-                (
-                    with_own_hit(row.query(&[1, 0], SKIP)),
-                    &[2],
-                    &[(&[1, 0, 2], own_last), (&[2, 1, 0], never)],
-                ),
-                (row.query(&[0, 1, 2, 3], SKIP), &[0], &[(&[0, 1, 2, 3], never)]),
-                (row.query(&[3, 2, 1, 0], SKIP), &[3, 2, 1, 0], &[(&[0], sorted), (&[0, 1, 2, 3], never)]),
-                (row.query(&[1, 3, 0, 2], SKIP), &[1, 0], &[(&[1, 3, 0, 2], never), (&[0], sorted)]),
-                (
-                    row.query(&[2, 0, 3, 1], VOLUMES),
-                    &[2, 0, 3, 1],
-                    &[(&[2, 0], always), (&[0, 1, 2, 3], sorted)],
-                ),
-            ],
-        )
+        let cases: [Case<'_>; 5] = [
+            (with_own_hit(row.query(&[1, 0], SKIP)), &[2], &[(&[1, 0, 2], own_last), (&[2, 1, 0], never)]),
+            (row.query(&[0, 1, 2, 3], SKIP), &[0], &[(&[0, 1, 2, 3], never)]),
+            (row.query(&[3, 2, 1, 0], SKIP), &[3, 2, 1, 0], &[(&[0], sorted), (&[0, 1, 2, 3], never)]),
+            (row.query(&[1, 3, 0, 2], SKIP), &[1, 0], &[(&[1, 3, 0, 2], never), (&[0], sorted)]),
+            (row.query(&[2, 0, 3, 1], VOLUMES), &[2, 0, 3, 1], &[(&[2, 0], always), (&[0, 1, 2, 3], sorted)]),
+        ];
+        judge_orders(trial, &cases)
     })
 }
 
@@ -376,47 +353,45 @@ pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> CheckResu
         children, the nearest first";
     let always = "you skip a volume although `skip` is off";
     Row::all(trial).iter().try_for_each(|row| {
-        judge_orders(
-            trial,
-            &[
-                (
-                    row.query(&[3, 2, 1, 0], ALL),
-                    &[0],
-                    &[
-                        (&[3, 2, 1, 0], listed),
-                        (&[3, 2, 1, 0], backwards),
-                        (&[2, 0], numbers),
-                        (&[1, 0], numbers),
-                        (&[0, 1, 2, 3], never),
-                    ],
-                ),
-                (
-                    row.query(&[1, 3, 0, 2], ALL),
-                    &[0],
-                    &[
-                        (&[1, 0], listed),
-                        (&[3, 2, 1, 0], backwards),
-                        (&[2, 0], numbers),
-                        (&[1, 0], numbers),
-                        (&[0, 1, 2, 3], never),
-                        (&[1, 3, 0, 2], "you neither sort nor skip"),
-                    ],
-                ),
-                (
-                    row.query(&[3, 1, 0, 2], SORT),
-                    &[0, 1, 2, 3],
-                    &[
-                        (&[3, 1, 0, 2], to_skip),
-                        (&[3, 1, 0, 2], listed),
-                        (&[3, 2, 1, 0], backwards),
-                        (&[2, 0, 3, 1], numbers),
-                        (&[1, 3, 0, 2], numbers),
-                        (&[0, 3, 1, 2], nearest_only),
-                        (&[0, 1, 3, 2], nearest_only),
-                        (&[0], always),
-                    ],
-                ),
-            ],
-        )
+        let cases: [Case<'_>; 3] = [
+            (
+                row.query(&[3, 2, 1, 0], ALL),
+                &[0],
+                &[
+                    (&[3, 2, 1, 0], listed),
+                    (&[3, 2, 1, 0], backwards),
+                    (&[2, 0], numbers),
+                    (&[1, 0], numbers),
+                    (&[0, 1, 2, 3], never),
+                ],
+            ),
+            (
+                row.query(&[1, 3, 0, 2], ALL),
+                &[0],
+                &[
+                    (&[1, 0], listed),
+                    (&[3, 2, 1, 0], backwards),
+                    (&[2, 0], numbers),
+                    (&[1, 0], numbers),
+                    (&[0, 1, 2, 3], never),
+                    (&[1, 3, 0, 2], "you neither sort nor skip"),
+                ],
+            ),
+            (
+                row.query(&[3, 1, 0, 2], SORT),
+                &[0, 1, 2, 3],
+                &[
+                    (&[3, 1, 0, 2], to_skip),
+                    (&[3, 1, 0, 2], listed),
+                    (&[3, 2, 1, 0], backwards),
+                    (&[2, 0, 3, 1], numbers),
+                    (&[1, 3, 0, 2], numbers),
+                    (&[0, 3, 1, 2], nearest_only),
+                    (&[0, 1, 3, 2], nearest_only),
+                    (&[0], always),
+                ],
+            ),
+        ];
+        judge_orders(trial, &cases)
     })
 }

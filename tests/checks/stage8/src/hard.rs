@@ -2,13 +2,8 @@
 
 use super::solid::{Solid, turned};
 use super::solids::input;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::{compare, compare_formulas};
-use glam::{Vec3, vec3};
+use checks::prelude::*;
 use oracle::splitmix::Random;
-use raykata::kit::{SolidHit, SolidQuery};
-use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder};
 
 /// A ray, the expected `t`, and what students do who answer only rays of this kind wrongly. The text of an ordinary ray is
@@ -121,13 +116,9 @@ fn judge_leaving<S: Solid>(
         if t.is_some_and(|t| range.contains(&t)) {
             return Ok(());
         }
-        Err(Broken::with_texts(
-            input(query),
-            format!("{t:?}"),
-            format!("Some t between {} and {}", range.start, range.end),
-            "the ray starts inside",
-        )
-        .explained_by([
+        let expected = format!("Some t between {} and {}", range.start, range.end);
+        let broken = Broken::with_texts(input(query), format!("{t:?}"), expected, "the ray starts inside");
+        Err(broken.explained_by([
             (!ordinary && t.is_none(), lost),
             (
                 t.is_none(),
@@ -226,31 +217,27 @@ pub(super) fn cylinder_seen_along_its_axis(trial: &Trial<'_>) -> CheckResult {
     let along = "you are wrong for rays parallel to the axis: a = |d × A|² is 0 and 0/0 is NaN there; such a ray is in \
         the infinite cylinder for all t or for no t";
     let leaning = Cylinder { base: Vec3::ZERO, top: vec3(2.0, 2.0, 0.0), radius: 1.0 };
-    judge_cases(
-        trial,
-        &[
-            (ask(vec3(0.5, -3.0, 0.0), Vec3::Y), Some(3.0), along),
-            (ask(vec3(0.5, 5.0, -0.0), vec3(-0.0, -1.0, 0.0)), Some(3.0), along),
-            (ask(vec3(0.0, 5.0, 0.0), vec3(0.0, -2.0, -0.0)), Some(1.5), along),
-            (ask(vec3(1.5, -3.0, 0.0), Vec3::Y), None, BESIDE_CYLINDER),
-            (ask(vec3(0.0, 3.0, -1.25), vec3(0.0, -1.0, -0.0)), None, BESIDE_CYLINDER),
-            (ask(vec3(0.5, 1.0, 0.0), Vec3::Y), Some(1.0), along),
-            (of(&leaning)(vec3(-1.0, -1.0, 0.5), vec3(1.0, 1.0, 0.0)), Some(1.0), along),
-            (ask(vec3(-3.0, 1.0, 0.0), Vec3::X), Some(2.0), ""),
-            (ask(vec3(-3.0, 1.0, 0.25), vec3(2.0, 0.25, 0.0)), Some((3.0 - 0.9375f32.sqrt()) / 2.0), ""),
-            (ask(vec3(0.0, 4.0, -1.0), vec3(0.0, -2.0, 1.0)), Some(1.0), ""),
-            (ask(vec3(-3.0, 2.5, 0.0), Vec3::X), None, ""),
-            (ask(vec3(-3.0, -0.5, 0.0), Vec3::X), None, ""),
-        ],
-    )?;
+    let cases = [
+        (ask(vec3(0.5, -3.0, 0.0), Vec3::Y), Some(3.0), along),
+        (ask(vec3(0.5, 5.0, -0.0), vec3(-0.0, -1.0, 0.0)), Some(3.0), along),
+        (ask(vec3(0.0, 5.0, 0.0), vec3(0.0, -2.0, -0.0)), Some(1.5), along),
+        (ask(vec3(1.5, -3.0, 0.0), Vec3::Y), None, BESIDE_CYLINDER),
+        (ask(vec3(0.0, 3.0, -1.25), vec3(0.0, -1.0, -0.0)), None, BESIDE_CYLINDER),
+        (ask(vec3(0.5, 1.0, 0.0), Vec3::Y), Some(1.0), along),
+        (of(&leaning)(vec3(-1.0, -1.0, 0.5), vec3(1.0, 1.0, 0.0)), Some(1.0), along),
+        (ask(vec3(-3.0, 1.0, 0.0), Vec3::X), Some(2.0), ""),
+        (ask(vec3(-3.0, 1.0, 0.25), vec3(2.0, 0.25, 0.0)), Some((3.0 - 0.9375f32.sqrt()) / 2.0), ""),
+        (ask(vec3(0.0, 4.0, -1.0), vec3(0.0, -2.0, 1.0)), Some(1.0), ""),
+        (ask(vec3(-3.0, 2.5, 0.0), Vec3::X), None, ""),
+        (ask(vec3(-3.0, -0.5, 0.0), Vec3::X), None, ""),
+    ];
+    judge_cases(trial, &cases)?;
     // Judge rays in the surface alone, because other mistakes lose them as well.
-    judge_cases(
-        trial,
-        &[
-            (ask(vec3(1.0, -3.0, 0.0), Vec3::Y), Some(3.0), IN_THE_SIDE),
-            (ask(vec3(0.0, 4.0, -1.0), vec3(0.0, -2.0, 0.0)), Some(1.0), IN_THE_SIDE),
-        ],
-    )
+    let cases = [
+        (ask(vec3(1.0, -3.0, 0.0), Vec3::Y), Some(3.0), IN_THE_SIDE),
+        (ask(vec3(0.0, 4.0, -1.0), vec3(0.0, -2.0, 0.0)), Some(1.0), IN_THE_SIDE),
+    ];
+    judge_cases(trial, &cases)
 }
 
 const IN_THE_SIDE: &str =
@@ -293,18 +280,16 @@ pub(super) fn cone_is_not_its_mirror_image(trial: &Trial<'_>) -> CheckResult {
     let ask = of(&HAT);
     let mirrored =
         "you are wrong above the apex, where the equation has a second cone: it is not part of the solid";
-    judge_cases(
-        trial,
-        &[
-            (ask(vec3(-5.0, 2.0, 0.0), Vec3::X), None, mirrored),
-            (ask(vec3(-5.0, 1.5, 0.25), Vec3::X), None, mirrored),
-            (ask(vec3(0.125, 5.0, 0.0), Vec3::NEG_Y), Some(4.125), mirrored),
-            (ask(vec3(0.0, 3.0, 0.0), Vec3::X), None, mirrored),
-            (ask(vec3(-5.0, 0.5, 0.0), Vec3::X), Some(4.5), ""),
-            (ask(vec3(-5.0, -0.5, 0.0), Vec3::X), None, ""),
-            (ask(vec3(2.0, -1.0, 0.0), vec3(-2.0, 1.0, 0.0)), Some(1.0), ""),
-        ],
-    )
+    let cases = [
+        (ask(vec3(-5.0, 2.0, 0.0), Vec3::X), None, mirrored),
+        (ask(vec3(-5.0, 1.5, 0.25), Vec3::X), None, mirrored),
+        (ask(vec3(0.125, 5.0, 0.0), Vec3::NEG_Y), Some(4.125), mirrored),
+        (ask(vec3(0.0, 3.0, 0.0), Vec3::X), None, mirrored),
+        (ask(vec3(-5.0, 0.5, 0.0), Vec3::X), Some(4.5), ""),
+        (ask(vec3(-5.0, -0.5, 0.0), Vec3::X), None, ""),
+        (ask(vec3(2.0, -1.0, 0.0), vec3(-2.0, 1.0, 0.0)), Some(1.0), ""),
+    ];
+    judge_cases(trial, &cases)
 }
 
 /// Rays parallel to the side, and steeper rays.
@@ -313,31 +298,27 @@ pub(super) fn cone_seen_along_its_side(trial: &Trial<'_>) -> CheckResult {
     let linear = "you are wrong for rays parallel to the side: a is 0 there, so solve 2 b t + c = 0";
     let steep = "you are wrong for rays that are steeper than the side: a is negative, so a ray is inside beyond a root, \
         not between the two";
-    judge_cases(
-        trial,
-        &[
-            (ask(vec3(-1.0, 1.5, 0.0), vec3(1.0, -1.0, 0.0)), Some(0.75), linear),
-            (ask(vec3(0.0, 1.5, -1.0), vec3(0.0, -0.5, 0.5)), Some(1.5), linear),
-            (ask(vec3(-0.5, 0.25, 0.0), vec3(1.0, 1.0, 0.0)), Some(0.625), linear),
-            (ask(vec3(-0.75, -0.5, 0.0), vec3(1.0, 1.0, 0.0)), Some(0.5), linear),
-            (ask(vec3(0.5, 3.0, 0.0), Vec3::NEG_Y), Some(2.5), steep),
-            (ask(vec3(0.5, -1.0, 0.0), Vec3::Y), Some(1.0), steep),
-            (ask(vec3(0.25, 0.25, 0.0), Vec3::Y), Some(0.5), steep),
-            (ask(vec3(0.25, 0.25, 0.0), Vec3::NEG_Y), Some(0.25), steep),
-            (ask(vec3(2.5, 3.0, 0.0), Vec3::NEG_Y), None, steep),
-            (ask(vec3(-5.0, 0.5, 0.0), Vec3::X), Some(4.5), ""),
-            (ask(vec3(3.0, 0.25, 0.0), Vec3::NEG_X), Some(2.25), ""),
-        ],
-    )?;
+    let cases = [
+        (ask(vec3(-1.0, 1.5, 0.0), vec3(1.0, -1.0, 0.0)), Some(0.75), linear),
+        (ask(vec3(0.0, 1.5, -1.0), vec3(0.0, -0.5, 0.5)), Some(1.5), linear),
+        (ask(vec3(-0.5, 0.25, 0.0), vec3(1.0, 1.0, 0.0)), Some(0.625), linear),
+        (ask(vec3(-0.75, -0.5, 0.0), vec3(1.0, 1.0, 0.0)), Some(0.5), linear),
+        (ask(vec3(0.5, 3.0, 0.0), Vec3::NEG_Y), Some(2.5), steep),
+        (ask(vec3(0.5, -1.0, 0.0), Vec3::Y), Some(1.0), steep),
+        (ask(vec3(0.25, 0.25, 0.0), Vec3::Y), Some(0.5), steep),
+        (ask(vec3(0.25, 0.25, 0.0), Vec3::NEG_Y), Some(0.25), steep),
+        (ask(vec3(2.5, 3.0, 0.0), Vec3::NEG_Y), None, steep),
+        (ask(vec3(-5.0, 0.5, 0.0), Vec3::X), Some(4.5), ""),
+        (ask(vec3(3.0, 0.25, 0.0), Vec3::NEG_X), Some(2.25), ""),
+    ];
+    judge_cases(trial, &cases)?;
     // Judge rays in the surface alone, because other mistakes lose them as well.
-    judge_cases(
-        trial,
-        &[
-            (ask(vec3(2.0, -1.0, 0.0), vec3(-1.0, 1.0, 0.0)), Some(1.0), IN_THE_SIDE),
-            (ask(vec3(0.0, 2.0, -1.0), vec3(0.0, -2.0, 2.0)), Some(0.5), IN_THE_SIDE),
-            (ask(vec3(2.0, -1.0, 0.5), vec3(-1.0, 1.0, 0.0)), None, ""),
-        ],
-    )
+    let cases = [
+        (ask(vec3(2.0, -1.0, 0.0), vec3(-1.0, 1.0, 0.0)), Some(1.0), IN_THE_SIDE),
+        (ask(vec3(0.0, 2.0, -1.0), vec3(0.0, -2.0, 2.0)), Some(0.5), IN_THE_SIDE),
+        (ask(vec3(2.0, -1.0, 0.5), vec3(-1.0, 1.0, 0.0)), None, ""),
+    ];
+    judge_cases(trial, &cases)
 }
 
 /// Rays to the apex and to the rim.

@@ -2,9 +2,7 @@
 //! weights are measured: each old vertex is moved a little, and the answers are compared.
 
 use super::subdivision::{Unlike, edges, judge, opposite};
-use checks::Trial;
-use checks::broken::CheckResult;
-use glam::DVec3;
+use checks::prelude::*;
 use raykata::mesh::Mesh;
 
 const BORDER: &str =

@@ -2,10 +2,8 @@
 //!
 //! A mistake explains an answer if both are hits at the same `t`, or both are misses.
 
-use checks::double::LIMITS;
-use glam::{DVec3, Vec3};
-use raykata::kit::SolidQuery;
-use raykata::ray::Ray;
+use checks::double::{LIMITS, slab_interval};
+use checks::prelude::*;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 
 /// Mistakes, each with whether it gives the student's answer.
@@ -38,18 +36,9 @@ fn is(ray: &Ray, yours: Option<f32>, wrong: Option<f64>) -> bool {
 
 pub(super) fn of_cuboid(query: &SolidQuery<Cuboid>, yours: Option<f32>, _: f64) -> Mistakes {
     let SolidQuery { ray, solid } = query;
-    let interval = |axis: usize| {
-        let [low, high, origin, direction] =
-            [solid.min[axis], solid.max[axis], ray.origin[axis], ray.direction[axis]].map(f64::from);
-        let (p, q) = ((low - origin) / direction, (high - origin) / direction);
-        match direction == 0.0 {
-            true if low <= origin && origin <= high => (f64::NEG_INFINITY, f64::INFINITY),
-            true => (f64::INFINITY, f64::NEG_INFINITY),
-            false => (p.min(q), p.max(q)),
-        }
-    };
+    let bounds = Aabb::new(solid.min, solid.max);
     let without = |axis: usize| {
-        let [p, q] = [interval((axis + 1) % 3), interval((axis + 2) % 3)];
+        let [p, q] = [1, 2].map(|next| slab_interval(ray, &bounds, (axis + next) % 3));
         let (enter, leave) = (p.0.max(q.0), p.1.min(q.1));
         is(ray, yours, first(ray, [enter, leave]).filter(|_| enter <= leave))
     };

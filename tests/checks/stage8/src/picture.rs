@@ -1,11 +1,8 @@
 //! The picture of stage 8: two instances of a tower, a house, a pond and a gate.
 
-use checks::broken::CheckResult;
-use checks::picture::{Composed, LARGE};
-use checks::{Trial, picture};
-use glam::{Affine3A, Quat, Vec3, vec3};
-use raykata::kit::{Kit, NormalQuery, ObjectRayQuery, SolidHit, SolidQuery};
-use raykata::ray::Ray;
+use checks::picture::{self, Composed, LARGE};
+use checks::prelude::*;
+use glam::{Affine3A, Quat};
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 use std::f32::consts::TAU;
 
@@ -129,7 +126,7 @@ fn colors(kit: &dyn Kit, rays: &[Ray], parts: &[Part]) -> Vec<Vec3> {
 pub(super) fn picture_of_placed_solids(trial: &Trial<'_>) -> CheckResult {
     let (turn, stretch) = trial.composed((0.15, 0.8), (-0.6..0.6f32, 0.5..1.2f32));
     let parts = parts(turn, stretch);
-    let rays = picture::rays_of(trial, LARGE, vec3(0.4, 3.2, 6.6), vec3(0.0, 0.85, 0.0));
+    let rays = picture::rays(trial, LARGE, vec3(0.4, 3.2, 6.6), vec3(0.0, 0.85, 0.0));
     // Outlines and edges cross about 700 of 4800 pixels. There rounding decides which part a ray hits; single precision is off
     // by less than a ten-thousandth of a pixel.
     let composed = Composed { name: "stage8_placed_solids", size: LARGE, rays: &rays, may_differ: 0.002 };

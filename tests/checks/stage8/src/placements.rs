@@ -1,19 +1,13 @@
 //! Checks of `placement`.
 
 use crate::spaces::{determinant, transform};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{Judged, compare, unless};
-use checks::paste::list;
-use glam::{Affine3A, DAffine3, DMat3, Mat3, Vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
+use glam::{Affine3A, DAffine3, DMat3, Mat3};
 use raykata::graph::Placement;
 
 pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> CheckResult {
     let paths = prop::collection::vec(transform(-8..=8), 1..5);
-    trial.forall_and(&[Vec::new()], 1000, paths, |paths| {
-        compare(paths, trial.kit.placement(paths), judge_placement)
-    })
+    trial.each_and(&[Vec::new()], 1000, paths, <dyn Kit>::placement, judge_placement)
 }
 
 /// Whether a matrix and a translation are those of `right`, each compared with its own largest entry. The tolerance is a
@@ -53,7 +47,7 @@ fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> Judged {
     // A few rounding errors, which an inverse of the product multiplies by its condition number.
     let size = |matrix: DMat3| matrix.to_cols_array().iter().map(|entry| entry * entry).sum::<f64>().sqrt();
     let condition: f64 = all().map(|one| size(one.matrix3) * size(one.matrix3.inverse())).product();
-    let tolerance = (32.0 * checks::double::U * condition).clamp(1e-4, 0.05);
+    let tolerance = (32.0 * U * condition).clamp(1e-4, 0.05);
     let near = |yours: &Affine3A, right: &DAffine3| is_transform(yours, right, tolerance);
     let (up, down) = (near(&yours.to_world, &exact), near(&yours.to_object, &exact.inverse()));
     let turned = product(&mut all().rev());
@@ -70,14 +64,10 @@ fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> Judged {
     };
     let (got, right) = if up { (yours.to_object, exact.inverse()) } else { (yours.to_world, exact) };
     let which = if up { "to_object" } else { "to_world" };
-    let describe = |entries: Vec<f64>| format!("{which} {entries:.3?}");
+    let describe = |transform: DAffine3| format!("{which} {:.3?}", transform.to_cols_array());
     unless(up && down, || {
-        Broken::with_texts(
-            input(),
-            describe(got.as_daffine3().to_cols_array().to_vec()),
-            describe(right.to_cols_array().to_vec()),
-            "double precision",
-        )
+        let [yours, expected] = [got.as_daffine3(), right].map(describe);
+        Broken::with_texts(input(), yours, expected, "double precision")
     })
     .formulas([
         (up && near(&yours.to_object, &exact), "you return to_world as to_object, without the inverse"),

@@ -76,28 +76,22 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
         });
     }
     if got != expected {
-        let describe = "triangles with the material of another face";
-        return Err(unlike(
-            describe,
-            "the material of the old triangle for each",
-            "the four triangles take the material of the old triangle",
-        ));
+        let (got, expected) =
+            ("triangles with the material of another face", "the material of the old triangle for each");
+        return Err(unlike(got, expected, "the four triangles take the material of the old triangle"));
     }
     for (vertex, &(p, q)) in labels.iter().enumerate().take(yours.uvs.len()) {
         let right = 0.5 * (mesh.uvs[p as usize] + mesh.uvs[q as usize]);
         // The tolerance covers the rounding of halves of numbers up to 1.
         if (yours.uvs[vertex] - right).length() > 1e-6 {
-            let mistakes = if p == q {
-                vec![(true, "the texture coordinates of an old vertex stay")]
+            let mistake = if p == q {
+                "the texture coordinates of an old vertex stay"
             } else {
-                vec![(
-                    true,
-                    "the texture coordinates of a new vertex are the mean of those at the ends of its edge",
-                )]
+                "the texture coordinates of a new vertex are the mean of those at the ends of its edge"
             };
             let got =
                 format!("texture coordinates {} at vertex {vertex}, of edge {p} {q}", yours.uvs[vertex]);
-            return Err(Unlike::new(got, format!("{right}"), mistakes));
+            return Err(unlike(got, format!("{right}"), mistake));
         }
     }
     Ok(())

@@ -2,13 +2,8 @@
 //! normal.
 
 use super::mistakes::{self, Mistakes, WrongNormals};
-use checks::generate::{direction, fractions, point};
-use checks::nasty;
-use glam::{DVec3, Vec3};
+use checks::prelude::*;
 use oracle::exact::{Body, Meeting, meet, polygon::meet_fan};
-use proptest::prelude::*;
-use raykata::kit::{Kit, SolidHit, SolidQuery};
-use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 use std::fmt::Debug;
 
@@ -36,14 +31,27 @@ pub(super) trait Solid: checks::paste::Paste + Clone + Debug + Send + Sync + 'st
     /// The exact answer.
     fn meet(&self, ray: &Ray) -> Option<Meeting>;
 
-    /// The same shape, scaled by this factor around a point inside.
-    fn grown(&self, factor: f32) -> Self;
+    /// The same shape with each point and each direction mapped, and its radius times `size`.
+    fn mapped(&self, point: Map<'_>, direction: Map<'_>, size: f32) -> Self;
+
+    /// A point inside.
+    fn middle(&self) -> Vec3;
+
+    /// The same shape, scaled by this factor around its middle.
+    fn grown(&self, factor: f32) -> Self {
+        let middle = self.middle();
+        self.mapped(&|point| middle + factor * (point - middle), &|direction| direction, factor)
+    }
 
     /// The same shape, scaled by this power of two around the origin, which is exact.
-    fn scaled(&self, factor: f32) -> Self;
+    fn scaled(&self, factor: f32) -> Self {
+        self.mapped(&|point| factor * point, &|direction| factor * direction, factor)
+    }
 
     /// The same shape with x, y and z exchanged in a circle, see [`turned`].
-    fn turned(&self) -> Self;
+    fn turned(&self) -> Self {
+        self.mapped(&turned, &turned, 1.0)
+    }
 
     /// A point inside for each point of the cube from -1 to 1.
     fn inside(&self, at: Vec3) -> Vec3;
@@ -55,13 +63,11 @@ pub(super) trait Solid: checks::paste::Paste + Clone + Debug + Send + Sync + 'st
     fn any() -> BoxedStrategy<Self>;
 }
 
+type Map<'a> = &'a dyn Fn(Vec3) -> Vec3;
+
 /// The same point with x, y and z exchanged in a circle: x becomes y, y becomes z and z becomes x. This is a rotation.
 pub(super) fn turned(v: Vec3) -> Vec3 {
     Vec3::new(v.z, v.x, v.y)
-}
-
-fn around(center: Vec3, factor: f32) -> impl Fn(Vec3) -> Vec3 {
-    move |point| center + factor * (point - center)
 }
 
 /// Directions of axes: on a grid, along the axes of the world, diagonal, and almost parallel to an axis.
@@ -97,15 +103,12 @@ impl Solid for Cuboid {
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
         meet(ray, Body::Cuboid(*self))
     }
-    fn grown(&self, factor: f32) -> Self {
-        let place = around(0.5 * (self.min + self.max), factor);
-        Cuboid { min: place(self.min), max: place(self.max) }
+    fn mapped(&self, point: Map<'_>, _: Map<'_>, _: f32) -> Self {
+        Cuboid { min: point(self.min), max: point(self.max) }
     }
-    fn scaled(&self, factor: f32) -> Self {
-        Cuboid { min: factor * self.min, max: factor * self.max }
-    }
-    fn turned(&self) -> Self {
-        Cuboid { min: turned(self.min), max: turned(self.max) }
+
+    fn middle(&self) -> Vec3 {
+        0.5 * (self.min + self.max)
     }
     fn inside(&self, at: Vec3) -> Vec3 {
         self.min + (0.5 + 0.45 * at) * (self.max - self.min)
@@ -134,15 +137,12 @@ impl Solid for Cylinder {
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
         meet(ray, Body::Cylinder(*self))
     }
-    fn grown(&self, factor: f32) -> Self {
-        let place = around(0.5 * (self.base + self.top), factor);
-        Cylinder { base: place(self.base), top: place(self.top), radius: factor * self.radius }
+    fn mapped(&self, point: Map<'_>, _: Map<'_>, size: f32) -> Self {
+        Cylinder { base: point(self.base), top: point(self.top), radius: size * self.radius }
     }
-    fn scaled(&self, factor: f32) -> Self {
-        Cylinder { base: factor * self.base, top: factor * self.top, radius: factor * self.radius }
-    }
-    fn turned(&self) -> Self {
-        Cylinder { base: turned(self.base), top: turned(self.top), radius: self.radius }
+
+    fn middle(&self) -> Vec3 {
+        0.5 * (self.base + self.top)
     }
     fn inside(&self, at: Vec3) -> Vec3 {
         in_round(self.base, self.top - self.base, self.radius, 0.5 + 0.45 * at.z, at)
@@ -169,15 +169,12 @@ impl Solid for Cone {
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
         meet(ray, Body::Cone(*self))
     }
-    fn grown(&self, factor: f32) -> Self {
-        let place = around(self.base + 0.25 * (self.apex - self.base), factor);
-        Cone { base: place(self.base), apex: place(self.apex), radius: factor * self.radius }
+    fn mapped(&self, point: Map<'_>, _: Map<'_>, size: f32) -> Self {
+        Cone { base: point(self.base), apex: point(self.apex), radius: size * self.radius }
     }
-    fn scaled(&self, factor: f32) -> Self {
-        Cone { base: factor * self.base, apex: factor * self.apex, radius: factor * self.radius }
-    }
-    fn turned(&self) -> Self {
-        Cone { base: turned(self.base), apex: turned(self.apex), radius: self.radius }
+
+    fn middle(&self) -> Vec3 {
+        self.base + 0.25 * (self.apex - self.base)
     }
     fn inside(&self, at: Vec3) -> Vec3 {
         // Use a cylinder inside the cone, with less than half the height and less than half the radius.
@@ -205,15 +202,13 @@ impl Solid for Disk {
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
         meet(ray, Body::Disk(*self))
     }
-    fn grown(&self, factor: f32) -> Self {
-        Disk { radius: factor * self.radius, ..*self }
+    fn mapped(&self, point: Map<'_>, direction: Map<'_>, size: f32) -> Self {
+        // The normal of a disk may have any length.
+        Disk { center: point(self.center), normal: direction(self.normal), radius: size * self.radius }
     }
-    fn scaled(&self, factor: f32) -> Self {
-        // The normal of a disk may have any length, so scale it as well.
-        Disk { center: factor * self.center, normal: factor * self.normal, radius: factor * self.radius }
-    }
-    fn turned(&self) -> Self {
-        Disk { center: turned(self.center), normal: turned(self.normal), radius: self.radius }
+
+    fn middle(&self) -> Vec3 {
+        self.center
     }
     fn inside(&self, at: Vec3) -> Vec3 {
         in_round(self.center, self.normal, self.radius, 0.0, at)
@@ -239,20 +234,16 @@ impl Solid for Polygon {
     fn meet(&self, ray: &Ray) -> Option<Meeting> {
         meet_fan(ray, self).map(|(meeting, _)| meeting)
     }
-    fn grown(&self, factor: f32) -> Self {
-        let middle = self.corners.iter().sum::<Vec3>() / self.corners.len() as f32;
-        Polygon { corners: self.corners.iter().copied().map(around(middle, factor)).collect() }
+    fn mapped(&self, point: Map<'_>, _: Map<'_>, _: f32) -> Self {
+        Polygon { corners: self.corners.iter().copied().map(point).collect() }
     }
-    fn scaled(&self, factor: f32) -> Self {
-        Polygon { corners: self.corners.iter().map(|corner| factor * corner).collect() }
-    }
-    fn turned(&self) -> Self {
-        Polygon { corners: self.corners.iter().copied().map(turned).collect() }
+
+    fn middle(&self) -> Vec3 {
+        self.corners.iter().sum::<Vec3>() / self.corners.len() as f32
     }
     fn inside(&self, at: Vec3) -> Vec3 {
-        let middle = self.corners.iter().sum::<Vec3>() / self.corners.len() as f32;
         let corner = ((0.5 + 0.49 * at.x) * self.corners.len() as f32) as usize;
-        middle.lerp(self.corners[corner], 0.9 * at.y.abs())
+        self.middle().lerp(self.corners[corner], 0.9 * at.y.abs())
     }
     fn reach(&self, normal: DVec3) -> f64 {
         self.corners.iter().map(|corner| normal.dot(corner.as_dvec3())).fold(f64::NEG_INFINITY, f64::max)

@@ -2,16 +2,7 @@
 
 use super::mistakes::{Mistakes, OUTSIDE, is_near};
 use super::solid::Solid;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::generate::{direction, point};
-use checks::judge::{compare, compare_formulas};
-use checks::nasty;
-use checks::paste::call;
-use glam::{DVec3, Vec3};
-use proptest::prelude::*;
-use raykata::kit::{SolidHit, SolidQuery};
-use raykata::ray::Ray;
+use checks::prelude::*;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 
 macro_rules! laws {
@@ -399,7 +390,7 @@ fn judge_ranges<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> Vec<C
                 ),
             ]))
         });
-        checks::broken::all_hold(judged.collect())
+        all_hold(judged.collect())
     };
     let of_hits = asked.chunks(6).zip(answers.chunks(6)).zip(hits);
     of_hits.map(|((asked, answers), t)| judge(asked, answers, t)).collect()

@@ -1,15 +1,7 @@
 //! Checks of `ray_to_object` and `normal_to_world`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::generate::{direction, point, rough_point};
-use checks::judge::{Judged, compare, unless};
-use checks::nasty;
-use checks::paste::call;
-use glam::{Affine3A, DMat3, DVec3, Mat3, Vec3};
-use proptest::prelude::*;
-use raykata::kit::{NormalQuery, ObjectRayQuery};
-use raykata::ray::Ray;
+use checks::prelude::*;
+use glam::{Affine3A, DMat3, Mat3};
 
 /// Rotations, shears, scales and reflections with small whole numbers and a determinant of at least 1 in size, all multiplied
 /// by one power of two.
@@ -53,85 +45,75 @@ pub(super) fn rays_pass_the_same_points_in_every_space(trial: &Trial<'_>) -> Che
         }
     });
     let inputs = prop_oneof![4 => near, 1 => far];
-    trial.forall_and(&[turned], 2000, inputs, |queries| judge_points(trial, queries))
+    trial.each_and(&[turned], 2000, inputs, <dyn Kit>::ray_to_object, judge_points)
 }
 
-fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResult> {
-    compare(queries, trial.kit.ray_to_object(queries), |query, yours| {
-        let ObjectRayQuery { ray, to_object } = query;
-        let exact = to_object.as_daffine3();
-        let (origin, direction) = (
-            exact.transform_point3(ray.origin.as_dvec3()),
-            exact.transform_vector3(ray.direction.as_dvec3()),
-        );
-        let sizes = |v: Vec3, and: DVec3| {
-            let columns = [exact.matrix3.x_axis, exact.matrix3.y_axis, exact.matrix3.z_axis].map(DVec3::abs);
-            let v = v.as_dvec3().abs();
-            columns[0] * v.x + columns[1] * v.y + columns[2] * v.z + and.abs()
-        };
-        // Allow six rounding errors of the terms, for three products and three sums in single precision.
-        let close = |yours: Vec3, right: DVec3, size: DVec3| {
-            ((yours.as_dvec3() - right).abs()).cmple(6.0 * checks::double::U * size).all()
-        };
-        let right_origin = close(yours.origin, origin, sizes(ray.origin, exact.translation));
-        let right_dir = close(yours.direction, direction, sizes(ray.direction, DVec3::ZERO))
-            || is_along(yours.direction, direction); // another check tests the length
-        let along = |matrix: DMat3| is_roughly_along(yours.direction, matrix * ray.direction.as_dvec3());
-        // The answer of a mistake that concerns the direction only, or the origin only.
-        let turned = |direction: bool| right_origin && direction;
-        let moved = |origin: bool| right_dir && origin;
-        let back = exact.inverse();
-        let there = |point: DVec3| {
-            let size = sizes(ray.origin, exact.translation).length().max(point.length());
-            (yours.origin.as_dvec3() - point).length() <= 1e-4 * size
-        };
-        let from = ray.origin.as_dvec3();
-        let input = || call("ray_to_object", &[ray, to_object]);
-        let describe = |origin: Vec3, direction: Vec3| format!("origin {origin}, direction {direction}");
-        unless(right_origin && right_dir, || {
-            Broken::with_texts(
-                input(),
-                describe(yours.origin, yours.direction),
-                describe(origin.as_vec3(), direction.as_vec3()),
-                "double precision",
-            )
-        })
-        .formulas([
-            (
-                turned(along(exact.matrix3.transpose())),
-                "you multiply the direction by the transpose of to_object, the inverse transpose of \
-                 to_world, as the slide does: this is for normals only",
-            ),
-            (
-                turned(along(exact.matrix3.inverse().transpose())),
-                "you multiply the direction by the inverse transpose of to_object: this is for normals only",
-            ),
-            (
-                turned(along(exact.matrix3.inverse())),
-                "you multiply the direction by the inverse of to_object, which leads to the world",
-            ),
-            (
-                turned(is_along(yours.direction, ray.direction.as_dvec3())),
-                "you do not transform the direction",
-            ),
-            (turned(is_along(yours.direction, -direction)), "you reverse the direction"),
-            (moved(there(origin + direction)), "you start at origin + direction: start at the origin"),
-            (
-                turned(is_along(yours.direction, direction + exact.translation)),
-                "you translate the direction: only points are translated",
-            ),
-            (moved(there(origin - exact.translation)), "you do not translate the origin: it is a point"),
-            (moved(there(from)), "you do not transform the origin"),
-            (
-                moved(there(back.transform_point3(from))),
-                "you transform the origin by the inverse of to_object, which leads to the world",
-            ),
-            (
-                along(exact.matrix3.inverse()) && there(back.transform_point3(from)),
-                "you transform the ray by the inverse of to_object, which leads to the world",
-            ),
-        ])
+fn judge_points(query: &ObjectRayQuery, yours: Ray) -> Judged {
+    let ObjectRayQuery { ray, to_object } = query;
+    let exact = to_object.as_daffine3();
+    let (origin, direction) =
+        (exact.transform_point3(ray.origin.as_dvec3()), exact.transform_vector3(ray.direction.as_dvec3()));
+    let sizes = |v: Vec3, and: DVec3| terms(&exact.matrix3, v.as_dvec3()) + and.abs();
+    // Allow six rounding errors of the terms, for three products and three sums in single precision.
+    let close = |yours: Vec3, right: DVec3, size: DVec3| {
+        ((yours.as_dvec3() - right).abs()).cmple(6.0 * U * size).all()
+    };
+    let right_origin = close(yours.origin, origin, sizes(ray.origin, exact.translation));
+    let right_dir = close(yours.direction, direction, sizes(ray.direction, DVec3::ZERO))
+        || is_along(yours.direction, direction); // another check tests the length
+    let along = |matrix: DMat3| is_roughly_along(yours.direction, matrix * ray.direction.as_dvec3());
+    // The answer of a mistake that concerns the direction only, or the origin only.
+    let turned = |direction: bool| right_origin && direction;
+    let moved = |origin: bool| right_dir && origin;
+    let back = exact.inverse();
+    let there = |point: DVec3| {
+        let size = sizes(ray.origin, exact.translation).length().max(point.length());
+        (yours.origin.as_dvec3() - point).length() <= 1e-4 * size
+    };
+    let from = ray.origin.as_dvec3();
+    let describe = |origin: Vec3, direction: Vec3| format!("origin {origin}, direction {direction}");
+    unless(right_origin && right_dir, || {
+        let expected = describe(origin.as_vec3(), direction.as_vec3());
+        let yours = describe(yours.origin, yours.direction);
+        Broken::with_texts(query.call("ray_to_object"), yours, expected, "double precision")
     })
+    .formulas([
+        (
+            turned(along(exact.matrix3.transpose())),
+            "you multiply the direction by the transpose of to_object, the inverse transpose of \
+                 to_world, as the slide does: this is for normals only",
+        ),
+        (
+            turned(along(exact.matrix3.inverse().transpose())),
+            "you multiply the direction by the inverse transpose of to_object: this is for normals only",
+        ),
+        (
+            turned(along(exact.matrix3.inverse())),
+            "you multiply the direction by the inverse of to_object, which leads to the world",
+        ),
+        (turned(is_along(yours.direction, ray.direction.as_dvec3())), "you do not transform the direction"),
+        (turned(is_along(yours.direction, -direction)), "you reverse the direction"),
+        (moved(there(origin + direction)), "you start at origin + direction: start at the origin"),
+        (
+            turned(is_along(yours.direction, direction + exact.translation)),
+            "you translate the direction: only points are translated",
+        ),
+        (moved(there(origin - exact.translation)), "you do not translate the origin: it is a point"),
+        (moved(there(from)), "you do not transform the origin"),
+        (
+            moved(there(back.transform_point3(from))),
+            "you transform the origin by the inverse of to_object, which leads to the world",
+        ),
+        (
+            along(exact.matrix3.inverse()) && there(back.transform_point3(from)),
+            "you transform the ray by the inverse of to_object, which leads to the world",
+        ),
+    ])
+}
+
+/// The sums of the sizes of the terms of a product.
+fn terms(matrix: &DMat3, v: DVec3) -> DVec3 {
+    matrix.x_axis.abs() * v.x.abs() + matrix.y_axis.abs() * v.y.abs() + matrix.z_axis.abs() * v.z.abs()
 }
 
 /// Whether a direction is that of a mistake, whose rounding errors are not known.
@@ -142,7 +124,7 @@ fn is_roughly_along(yours: Vec3, wrong: DVec3) -> bool {
 fn is_along(yours: Vec3, right: DVec3) -> bool {
     // The error of a cross product of two rounded vectors is a few rounding errors of their lengths.
     let (yours, length) = (yours.as_dvec3(), yours.length() as f64 * right.length());
-    yours.dot(right) > 0.0 && yours.cross(right).length() <= 16.0 * checks::double::U * length
+    yours.dot(right) > 0.0 && yours.cross(right).length() <= 16.0 * U * length
 }
 
 pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> CheckResult {
@@ -162,9 +144,7 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> CheckResult
     );
     let timed = Ray { time: 0.25, ..grown.ray.with_range(0.5, 8.0) };
     let chosen = [grown, ObjectRayQuery { ray: timed, ..grown }];
-    trial.forall_and(&chosen, 500, inputs, |queries| {
-        compare(queries, trial.kit.ray_to_object(queries), judge_range)
-    })
+    trial.each_and(&chosen, 500, inputs, <dyn Kit>::ray_to_object, judge_range)
 }
 
 fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
@@ -173,12 +153,8 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
     let exact = to_object.as_daffine3().transform_vector3(world).length();
     let length = yours.direction.as_dvec3().length();
     // Allow eight rounding errors of the terms, whose sum may be shorter.
-    let matrix = to_object.as_daffine3().matrix3;
-    let terms = matrix.x_axis.abs() * world.x.abs()
-        + matrix.y_axis.abs() * world.y.abs()
-        + matrix.z_axis.abs() * world.z.abs();
-    let near =
-        |right: f64| (length - right).abs() <= 8.0 * checks::double::U * (terms.length() / exact) * right;
+    let terms = terms(&to_object.as_daffine3().matrix3, world).length();
+    let near = |right: f64| (length - right).abs() <= 8.0 * U * (terms / exact) * right;
     let same_length = near(exact);
     let same_range = (yours.t_min, yours.t_max) == (ray.t_min, ray.t_max);
     let same_time = yours.time == ray.time;
@@ -193,12 +169,8 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
         format!("length {length:.6e}, t in {:?}..{:?}, time {:?}", ray.t_min, ray.t_max, ray.time)
     };
     unless(same_length && same_range && same_time, || {
-            Broken::with_texts(
-                call("ray_to_object", &[ray, to_object]),
-                describe(length, &yours),
-                describe(exact, ray),
-                "the definition",
-            )
+            let (got, right) = (describe(length, &yours), describe(exact, ray));
+            Broken::with_texts(query.call("ray_to_object"), got, right, "the definition")
             .explained_by([(
                 same_length && same_time && yours.t_max == ray.t_max && yours.t_min > ray.t_min,
                 "you raise t_min: the range stays, and an offset of the origin belongs to other rays",
@@ -244,46 +216,41 @@ fn normal(query: &NormalQuery) -> DVec3 {
     (query.to_object.as_daffine3().matrix3.transpose() * query.normal.as_dvec3()).normalize()
 }
 
-fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<CheckResult> {
-    compare(queries, trial.kit.normal_to_world(queries), |query, yours| {
-        let (right, exact) = (normal(query), query.to_object.as_daffine3().matrix3);
-        let own = query.normal.as_dvec3();
-        // Allow sixteen rounding errors of the terms, whose sum may be shorter, and some of the usual terms.
-        let terms = DVec3::from_array([0, 1, 2].map(|row| exact.col(row).abs().dot(own.abs())));
-        let cancels = terms.length() / (exact.transpose() * own).length();
-        let near = 1e-5f64.max(16.0 * checks::double::U * cancels);
-        let unit = (yours.as_dvec3().length() - 1.0).abs() <= near;
-        let like = |other: DVec3| (yours.as_dvec3().normalize_or_zero() - other.normalize()).length() <= near;
-        let broken = || {
-            let input = call("normal_to_world", &[&query.normal, &query.to_object]);
-            Broken::new(input, yours, right.as_vec3(), "double precision").explained_by([
-                (
-                    yours == Vec3::ZERO,
-                    "your normal is 0: a short product has a direction, too, so normalize it",
-                ),
-                (like(right) && !unit, "your normal does not have unit length"),
-                (
-                    like(-right) && unit,
-                    "your normal points inwards: the inverse transpose needs no change of sign, also for a \
+fn judge_normals(query: &NormalQuery, yours: Vec3) -> Judged {
+    let (right, exact) = (normal(query), query.to_object.as_daffine3().matrix3);
+    let own = query.normal.as_dvec3();
+    // Allow sixteen rounding errors of the terms, whose sum may be shorter, and some of the usual terms.
+    let terms = DVec3::from_array([0, 1, 2].map(|row| exact.col(row).abs().dot(own.abs())));
+    let cancels = terms.length() / (exact.transpose() * own).length();
+    let near = 1e-5f64.max(16.0 * U * cancels);
+    let unit = (yours.as_dvec3().length() - 1.0).abs() <= near;
+    let like = |other: DVec3| (yours.as_dvec3().normalize_or_zero() - other.normalize()).length() <= near;
+    let broken = || {
+        let input = query.call("normal_to_world");
+        Broken::new(input, yours, right.as_vec3(), "double precision").explained_by([
+            (yours == Vec3::ZERO, "your normal is 0: a short product has a direction, too, so normalize it"),
+            (like(right) && !unit, "your normal does not have unit length"),
+            (
+                like(-right) && unit,
+                "your normal points inwards: the inverse transpose needs no change of sign, also for a \
                      reflection",
-                ),
-            ])
-        };
-        unless((yours.as_dvec3() - right).length() <= near, broken).formulas([
-            (
-                like(exact.inverse() * own),
-                "you transform the normal like a point, by to_world: it is then not perpendicular to the \
-                 surface",
             ),
-            (like(exact * own), "you multiply by to_object without the transpose"),
-            (
-                like(exact.inverse().transpose() * own),
-                "you multiply by the transpose of to_world: use the transpose of to_object, which is the \
-                 inverse",
-            ),
-            (like(own), "you do not transform the normal"),
         ])
-    })
+    };
+    unless((yours.as_dvec3() - right).length() <= near, broken).formulas([
+        (
+            like(exact.inverse() * own),
+            "you transform the normal like a point, by to_world: it is then not perpendicular to the \
+                 surface",
+        ),
+        (like(exact * own), "you multiply by to_object without the transpose"),
+        (
+            like(exact.inverse().transpose() * own),
+            "you multiply by the transpose of to_world: use the transpose of to_object, which is the \
+                 inverse",
+        ),
+        (like(own), "you do not transform the normal"),
+    ])
 }
 
 pub(super) fn normals_are_at_right_angles_to_the_surface(trial: &Trial<'_>) -> CheckResult {
@@ -300,7 +267,7 @@ pub(super) fn normals_are_at_right_angles_to_the_surface(trial: &Trial<'_>) -> C
         to_object: Affine3A::from_scale(Vec3::new(1e3, 1.0, 1e-3)),
     });
     let inputs = prop_oneof![8 => any, 1 => extreme];
-    trial.forall_and(&[leaning], 2000, inputs, |queries| judge_normals(trial, queries))
+    trial.each_and(&[leaning], 2000, inputs, <dyn Kit>::normal_to_world, judge_normals)
 }
 
 pub(super) fn normals_stay_outside_in_a_mirror(trial: &Trial<'_>) -> CheckResult {
@@ -310,5 +277,5 @@ pub(super) fn normals_stay_outside_in_a_mirror(trial: &Trial<'_>) -> CheckResult
         let to_object = if mirrored { to_object } else { to_object * mirror };
         NormalQuery { normal, to_object }
     });
-    trial.forall(1000, inputs, |queries| judge_normals(trial, queries))
+    trial.each(1000, inputs, <dyn Kit>::normal_to_world, judge_normals)
 }

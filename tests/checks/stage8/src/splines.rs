@@ -1,15 +1,7 @@
 //! Checks of `bspline_basis` and `nurbs_point`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::double::U;
-use checks::generate::point;
-use checks::judge::{compare, proven, unless};
-use checks::nasty;
-use checks::paste::{Paste, list};
-use glam::{DVec3, Vec3, vec2};
-use proptest::prelude::*;
-use raykata::kit::{BasisQuery, NurbsQuery};
+use super::bounding_spheres::reach;
+use checks::prelude::*;
 use raykata::shape::NurbsPatch;
 
 /// A degree, knots and a parameter of their domain.
@@ -151,23 +143,20 @@ pub(super) fn bspline_basis_follows_the_recursion(trial: &Trial<'_>) -> CheckRes
         u: spline.u,
         knots: spline.knots,
     });
-    trial.forall(1000, inputs, |queries| {
-        let value = |query: &BasisQuery, rule: Rule| {
-            rule.basis(&query.knots, query.degree, query.index, f64::from(query.u))
+    let value = |query: &BasisQuery, rule: Rule| {
+        rule.basis(&query.knots, query.degree, query.index, f64::from(query.u))
+    };
+    trial.each(1000, inputs, <dyn Kit>::bspline_basis, |query, yours| {
+        let gives = |rule: Rule| {
+            let value = value(query, rule);
+            same(f64::from(yours), value, room(query.degree, value))
         };
-        compare(queries, trial.kit.bspline_basis(queries), |query, yours| {
-            let gives = |rule: Rule| {
-                let value = value(query, rule);
-                same(f64::from(yours), value, room(query.degree, value))
-            };
-            let broken = || {
-                let (knots, degree, index, u) =
-                    (list(&query.knots), query.degree, query.index, query.u.paste());
-                let input = format!("bspline_basis(&{knots}, {degree}, {index}, {u})");
-                Broken::new(input, yours, value(query, Rule::Right) as f32, "the recursion in double")
-            };
-            unless(gives(Rule::Right), broken).formulas(WRONG.map(|(rule, text)| (gives(rule), text)))
-        })
+        let broken = || {
+            let (knots, degree, index, u) = (list(&query.knots), query.degree, query.index, query.u.paste());
+            let input = format!("bspline_basis(&{knots}, {degree}, {index}, {u})");
+            Broken::new(input, yours, value(query, Rule::Right) as f32, "the recursion in double")
+        };
+        unless(gives(Rule::Right), broken).formulas(WRONG.map(|(rule, text)| (gives(rule), text)))
     })
 }
 
@@ -298,28 +287,24 @@ impl Mean {
 /// product with weight and point, and of both sums, relative to the largest coordinate of the net, because a mean with
 /// positive factors is no larger.
 fn point_room(patch: &NurbsPatch) -> f64 {
-    let largest =
-        patch.rows.iter().flatten().fold(0.0, |size: f32, point| size.max(point.abs().max_element()));
     let of_basis: usize = patch.degrees.iter().map(|degree| 8 * degree + 4).sum();
     let n_points = patch.rows.len() * patch.rows[0].len();
-    2.0 * (of_basis + n_points + 4) as f64 * U * f64::from(largest)
+    2.0 * (of_basis + n_points + 4) as f64 * U * reach(patch.rows.iter().flatten())
 }
 
 pub(super) fn nurbs_point_is_the_weighted_mean_of_its_net(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(400, surface(), |queries| {
-        let near = |query: &NurbsQuery, yours: Vec3, mean: Mean| {
-            let (yours, other) = (yours.as_dvec3(), mean.point(query));
-            let room = point_room(&query.patch);
-            (0..3).all(|axis| same(yours[axis], other[axis], room))
+    let near = |query: &NurbsQuery, yours: Vec3, mean: Mean| {
+        let (yours, other) = (yours.as_dvec3(), mean.point(query));
+        let room = point_room(&query.patch);
+        (0..3).all(|axis| same(yours[axis], other[axis], room))
+    };
+    trial.each(400, surface(), <dyn Kit>::nurbs_point, |query, yours| {
+        let broken = || {
+            let right = Mean::Right.point(query).as_vec3();
+            Broken::new(describe(query), yours, right, "the weighted mean in double")
         };
-        compare(queries, trial.kit.nurbs_point(queries), |query, yours| {
-            let broken = || {
-                let right = Mean::Right.point(query).as_vec3();
-                Broken::new(describe(query), yours, right, "the weighted mean in double")
-            };
-            unless(near(query, yours, Mean::Right), broken)
-                .formulas(WRONG_MEANS.map(|(mean, text)| (near(query, yours, mean), text)))
-        })
+        unless(near(query, yours, Mean::Right), broken)
+            .formulas(WRONG_MEANS.map(|(mean, text)| (near(query, yours, mean), text)))
     })
 }
 
@@ -352,28 +337,21 @@ fn arc() -> impl Strategy<Value = Arc> + Clone {
             let bent = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
             let straight = vec![0.0, 0.0, 1.0, 1.0];
             let u = f32::from(at) / 16.0;
-            let query = if along_v {
-                NurbsQuery {
-                    patch: NurbsPatch {
-                        degrees: [1, 2],
-                        knots: [straight, bent],
-                        rows: (0..3).map(|i| rows.iter().map(|row| row[i]).collect()).collect(),
-                        weights: weights.map(|weight| vec![weight; 2]).to_vec(),
-                    },
-                    uv: vec2(0.5, u),
-                }
-            } else {
-                NurbsQuery {
-                    patch: NurbsPatch {
-                        degrees: [2, 1],
-                        knots: [bent, straight],
-                        rows: rows.map(|row| row.to_vec()).to_vec(),
-                        weights: vec![weights.to_vec(); 2],
-                    },
-                    uv: vec2(u, 0.5),
-                }
+            let mut patch = NurbsPatch {
+                degrees: [2, 1],
+                knots: [bent, straight],
+                rows: rows.map(|row| row.to_vec()).to_vec(),
+                weights: vec![weights.to_vec(); 2],
             };
-            Arc { query, axis, radius }
+            let mut uv = vec2(u, 0.5);
+            if along_v {
+                uv = vec2(0.5, u);
+                patch.degrees.reverse();
+                patch.knots.reverse();
+                patch.rows = (0..3).map(|i| rows.iter().map(|row| row[i]).collect()).collect();
+                patch.weights = weights.map(|weight| vec![weight; 2]).to_vec();
+            }
+            Arc { query: NurbsQuery { patch, uv }, axis, radius }
         },
     )
 }

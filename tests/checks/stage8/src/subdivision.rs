@@ -1,10 +1,7 @@
 //! Checks of `loop_subdivide`: the triangles and the positions of their vertices.
 
 use super::quarters::triangles_are_quarters;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use glam::{Vec3, vec2, vec3};
-use proptest::prelude::*;
+use checks::prelude::*;
 use raykata::mesh::Mesh;
 
 fn tetrahedron() -> Mesh {

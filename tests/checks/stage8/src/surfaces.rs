@@ -1,14 +1,7 @@
 //! Checks of `bezier_point`.
 
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::generate::point;
-use checks::judge::{compare, proven, unless};
-use checks::nasty;
-use checks::paste::Paste;
-use glam::{DVec3, Vec3, vec2};
-use proptest::prelude::*;
-use raykata::kit::PatchQuery;
+use super::bounding_spheres::reach;
+use checks::prelude::*;
 use raykata::shape::BezierPatch;
 
 fn patch() -> impl Strategy<Value = BezierPatch> + Clone {
@@ -81,66 +74,56 @@ pub(super) fn bezier_point_is_the_mean_of_its_net(trial: &Trial<'_>) -> CheckRes
     let grid = (0..=8u32, 0..=8u32).prop_map(|(u, v)| vec2(u as f32, v as f32) / 8.0);
     let any = (0.0..1.0f32, 0.0..1.0f32).prop_map(|(u, v)| vec2(u, v));
     let inputs = (patch(), prop_oneof![grid, any]).prop_map(|(patch, uv)| PatchQuery { patch, uv });
-    trial.forall_and(&[hilly], 1000, inputs, |queries| judge_points(trial, queries))
+    trial.each_and(&[hilly], 1000, inputs, <dyn Kit>::bezier_point, judge_points)
 }
 
-fn judge_points(trial: &Trial<'_>, queries: &[PatchQuery]) -> Vec<CheckResult> {
-    compare(queries, trial.kit.bezier_point(queries), |query, yours| {
-        let at = |[u, v]: [f32; 2], weights: fn(f64) -> [f64; 4]| -> DVec3 {
-            let [across, along] = [u, v].map(|t| weights(f64::from(t)));
-            let terms =
-                (0..16).map(|i| across[i % 4] * along[i / 4] * query.patch.rows[i / 4][i % 4].as_dvec3());
-            terms.sum()
-        };
-        let [u, v] = query.uv.to_array();
-        let right = at([u, v], bernstein);
-        // Allow two rounding errors for each of six nested interpolations of these numbers, and some more for Bernstein
-        // polynomials.
-        let size = query
-            .patch
-            .rows
-            .iter()
-            .flatten()
-            .fold(0.0, |size: f32, point| size.max(point.abs().max_element()));
-        let near = |right: DVec3| {
-            (yours.as_dvec3() - right).abs().max_element() <= 16.0 * checks::double::U * f64::from(size)
-        };
-        let once = |t: f64| [(1.0 - t) * (1.0 - t), t * (1.0 - t), t * (1.0 - t), t * t];
-        unless(near(right), || {
-            Broken::new(describe(query), yours, right.as_vec3(), "Bernstein polynomials in double")
-        })
-        .formulas([
-            (near(at([v, u], bernstein)), "you exchange u and v: u runs along the rows, v along the columns"),
-            (near(at([1.0 - u, 1.0 - v], bernstein)), "you exchange t and 1 - t"),
-            (near(at([1.0 - u, v], bernstein)), "you exchange u and 1 - u"),
-            (near(at([u, 1.0 - v], bernstein)), "you exchange v and 1 - v"),
-            (
-                near(at([u, u], bernstein)),
-                "you use one parameter twice, u: u runs along the rows, v along the columns",
-            ),
-            (
-                near(at([v, v], bernstein)),
-                "you use one parameter twice, v: u runs along the rows, v along the columns",
-            ),
-            (
-                near(at([u, v], |t| [1.0 - t, 0.0, 0.0, t])),
-                "you use only the corners: the control points between them have weights, too",
-            ),
-            (
-                near(at([u, v], once)),
-                "you interpolate twice along a curve: four points need three rounds, 4, 3, 2, 1",
-            ),
-            (
-                near(at([u, v], without_factors)),
-                "your weights do not add up to 1: their factors are 1, 3, 3 and 1",
-            ),
-            (
-                near(at([u, v], interpolating)),
-                "your surface passes through all control points: a Bézier patch passes only through its \
-                 corners in general",
-            ),
-        ])
+fn judge_points(query: &PatchQuery, yours: Vec3) -> Judged {
+    let at = |[u, v]: [f32; 2], weights: fn(f64) -> [f64; 4]| -> DVec3 {
+        let [across, along] = [u, v].map(|t| weights(f64::from(t)));
+        let terms = (0..16).map(|i| across[i % 4] * along[i / 4] * query.patch.rows[i / 4][i % 4].as_dvec3());
+        terms.sum()
+    };
+    let [u, v] = query.uv.to_array();
+    let right = at([u, v], bernstein);
+    // Allow two rounding errors for each of six nested interpolations of these numbers, and some more for Bernstein
+    // polynomials.
+    let room = 16.0 * U * reach(query.patch.rows.iter().flatten());
+    let near = |right: DVec3| (yours.as_dvec3() - right).abs().max_element() <= room;
+    let once = |t: f64| [(1.0 - t) * (1.0 - t), t * (1.0 - t), t * (1.0 - t), t * t];
+    unless(near(right), || {
+        Broken::new(describe(query), yours, right.as_vec3(), "Bernstein polynomials in double")
     })
+    .formulas([
+        (near(at([v, u], bernstein)), "you exchange u and v: u runs along the rows, v along the columns"),
+        (near(at([1.0 - u, 1.0 - v], bernstein)), "you exchange t and 1 - t"),
+        (near(at([1.0 - u, v], bernstein)), "you exchange u and 1 - u"),
+        (near(at([u, 1.0 - v], bernstein)), "you exchange v and 1 - v"),
+        (
+            near(at([u, u], bernstein)),
+            "you use one parameter twice, u: u runs along the rows, v along the columns",
+        ),
+        (
+            near(at([v, v], bernstein)),
+            "you use one parameter twice, v: u runs along the rows, v along the columns",
+        ),
+        (
+            near(at([u, v], |t| [1.0 - t, 0.0, 0.0, t])),
+            "you use only the corners: the control points between them have weights, too",
+        ),
+        (
+            near(at([u, v], once)),
+            "you interpolate twice along a curve: four points need three rounds, 4, 3, 2, 1",
+        ),
+        (
+            near(at([u, v], without_factors)),
+            "your weights do not add up to 1: their factors are 1, 3, 3 and 1",
+        ),
+        (
+            near(at([u, v], interpolating)),
+            "your surface passes through all control points: a Bézier patch passes only through its \
+                 corners in general",
+        ),
+    ])
 }
 
 fn bernstein(t: f64) -> [f64; 4] {

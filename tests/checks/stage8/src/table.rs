@@ -1,11 +1,7 @@
 //! The table of stage 8: points of a Bézier patch, and a subdivided mesh.
 
-use checks::Trial;
-use checks::broken::CheckResult;
 use checks::golden::{Table, digits};
-use glam::{Vec3, vec2, vec3};
-use proptest::prelude::*;
-use raykata::kit::{Kit, PatchQuery};
+use checks::prelude::*;
 use raykata::mesh::Mesh;
 use raykata::shape::BezierPatch;
 

@@ -3,12 +3,8 @@
 use super::scenes::{Scene, Thing, along, room, sphere};
 use super::searches::{BSP, Described, agrees, queries, spheres_and_rays};
 use super::structures::{bsp, diagonal, tile, two_leaves};
-use checks::Trial;
-use checks::broken::CheckResult;
-use glam::{Vec3, vec3};
+use checks::prelude::*;
 use raykata::partition::CutPlane;
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     // The box of the large sphere crosses the plane x + y = 0, so both leaves list it. Its hit is in front of the

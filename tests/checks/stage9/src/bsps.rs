@@ -2,15 +2,7 @@
 
 use super::hulls::{self, usable};
 use super::lists::{Fault, ended, fact, judge_references};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::generate::{point, rough_point};
-use checks::judge::compare;
-use checks::nasty;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::kit::BspQuery;
+use checks::prelude::*;
 use raykata::partition::{Bsp, CutPlane, MOST_REFERENCES, TreeNode, corners};
 
 /// A leaf: its number, the planes above it with the side on which it lies, and the primitives that it lists.
@@ -42,11 +34,8 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
             let count = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
             if !usable(hull) {
                 if times > 0 {
-                    return Some(fact(
-                        count(times),
-                        count(0),
-                        "you list a hull without corners: leave it out",
-                    ));
+                    let mistake = "you list a hull without corners: leave it out";
+                    return Some(fact(count(times), count(0), mistake));
                 }
                 continue;
             }
@@ -80,11 +69,8 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
                 ));
             }
             if outside && times > 0 {
-                return Some(fact(
-                    count(times),
-                    count(0),
-                    "you list a primitive in a leaf that it does not overlap",
-                ));
+                let mistake = "you list a primitive in a leaf that it does not overlap";
+                return Some(fact(count(times), count(0), mistake));
             }
         }
     }
@@ -105,9 +91,7 @@ pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResu
         hulls.iter_mut().flatten().for_each(|corner| *corner *= scale);
         BspQuery { hulls, leaf_size, max_depth }
     });
-    trial.forall(140, inputs, |queries| {
-        compare(queries, trial.kit.bsp_build(queries), |query, yours| judge_tree(query, &yours))
-    })
+    trial.each(140, inputs, <dyn Kit>::bsp_build, |query, yours| judge_tree(query, &yours))
 }
 
 pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
@@ -200,11 +184,6 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     ];
     let yours = format!("up to {fullest} sheets per leaf, {references} references, {depth} levels");
     let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 32");
-    Err(Broken::with_texts(
-        input,
-        yours,
-        format!("2 per leaf, at most {} references, 8 levels", 2 * n),
-        "counted",
-    )
-    .explained_by(mistakes))
+    let expected = format!("2 per leaf, at most {} references, 8 levels", 2 * n);
+    Err(Broken::with_texts(input, yours, expected, "counted").explained_by(mistakes))
 }

@@ -1,19 +1,10 @@
 //! The laws of the last hit and of packets of rays: the same answers with fewer tests and fewer opened nodes.
 
 use super::scenes::{Scene, rays, scenes, sphere};
-use checks::broken::{Broken, CheckResult};
-use checks::generate::{fractions, point, unit};
-use checks::judge::compare;
-use checks::paste::Paste;
-use checks::tree::{closest_in_table, closest_of, search_query, sphere_box};
-use checks::{Trial, tree};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::generate::unit;
+use checks::prelude::*;
+use checks::tree::{self, closest_in_table, closest_of, search_query, sphere_box};
 use raykata::bvh::PrimitiveHit;
-use raykata::kit::{CachedQuery, PacketAnswer, PacketQuery, SearchQuery};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 fn cached(scene: &Scene, ray: &Ray, last: Option<u32>) -> CachedQuery {
     let hits = scene.hits(ray);
@@ -91,13 +82,8 @@ pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> CheckResult {
         (counts[0] > 32, "you test a primitive before the search although there is no known hit"),
         (counts[1] == 1, "you leave out the search: this ray may hit a nearer primitive"),
     ];
-    Err(Broken::with_texts(
-        "a ray along 32 spheres in a row, and the next ray, which hits the same one",
-        describe(counts),
-        describe([32, 2]),
-        "counted",
-    )
-    .explained_by(mistakes))
+    let input = "a ray along 32 spheres in a row, and the next ray, which hits the same one";
+    Err(Broken::with_texts(input, describe(counts), describe([32, 2]), "counted").explained_by(mistakes))
 }
 
 fn packet(spheres: &[Sphere], rays: &[Ray]) -> (PacketQuery, Vec<SearchQuery>) {
@@ -260,12 +246,8 @@ fn judge_opened(what: &str, yours: &PacketAnswer, singles: &[SearchQuery], most:
         return Err(broken);
     }
     if let Some(pair) = again {
-        let broken = Broken::with_texts(
-            input,
-            format!("node {} is opened again", pair[0]),
-            "once per packet",
-            "counted",
-        );
+        let yours = format!("node {} is opened again", pair[0]);
+        let broken = Broken::with_texts(input, yours, "once per packet", "counted");
         // Of children that are entered at the same t, either may come first.
         let alone: u64 = singles.iter().map(opened_alone).sum();
         let one_by_one = (opened.len() as u64).abs_diff(alone) <= alone / 4;
@@ -275,12 +257,8 @@ fn judge_opened(what: &str, yours: &PacketAnswer, singles: &[SearchQuery], most:
         )]));
     }
     if yours.opened.len() as u64 > most {
-        let broken = Broken::with_texts(
-            input,
-            describe(yours.opened.len() as u64),
-            format!("at most {}", describe(most)),
-            "counted",
-        );
+        let (got, right) = (describe(yours.opened.len() as u64), format!("at most {}", describe(most)));
+        let broken = Broken::with_texts(input, got, right, "counted");
         return Err(broken.explained_by([(needless(yours, singles) > 0, NEEDLESS)]));
     }
     Ok(())

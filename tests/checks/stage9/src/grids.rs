@@ -5,18 +5,9 @@ use super::parts;
 use super::scenes::{Scales, Scene, Thing, along, lattice, rays, scales, sphere, straight, wall};
 use super::searches::{Described, GRID, grid_queries};
 use super::structures::{around_loosely, filled};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::nasty;
-use checks::paste::Paste;
-use glam::{DVec3, UVec3, Vec3, uvec3, vec3};
-use proptest::prelude::Strategy;
-use raykata::aabb::Aabb;
-use raykata::kit::{CellsQuery, GridQuery};
+use checks::prelude::*;
+use glam::{UVec3, uvec3};
 use raykata::partition::{Cell, Grid};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 pub(super) fn grid_lists_what_reaches_into_cells(trial: &Trial<'_>) -> CheckResult {
     let inputs = (some_boxes(), 1..=6u32, 1..=5u32, 1..=4u32)

@@ -1,11 +1,7 @@
 //! The laws of the five heuristics of the kd-tree: each is tested alone, switched on and switched off.
 
 use super::lists::below;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use glam::{Vec3, vec3};
-use raykata::aabb::Aabb;
-use raykata::kit::KdQuery;
+use checks::prelude::*;
 use raykata::partition::{KdHeuristics, KdNode, KdTree};
 
 const NONE: KdHeuristics = KdHeuristics::NONE;
@@ -36,8 +32,11 @@ fn first_cut(tree: &KdTree) -> Option<Cut> {
 }
 
 impl Built {
-    /// The error that another cut is expected.
-    fn refuse(&self, expected: &str, mistake: (bool, &'static str)) -> CheckResult {
+    /// An error unless the cut is right.
+    fn must(&self, is_right: bool, expected: &str, mistake: (bool, &'static str)) -> CheckResult {
+        if is_right {
+            return Ok(());
+        }
         let yours = match self.cut {
             None => "no cut at the root".into(),
             Some((axis, at, [left, right, both])) => {
@@ -45,6 +44,10 @@ impl Built {
                 format!("a cut across {axis} at {at:.3}: {left} left, {right} right, {both} on both sides")
             }
         };
+        self.refuse(yours, expected, mistake)
+    }
+
+    fn refuse(&self, yours: String, expected: &str, mistake: (bool, &'static str)) -> CheckResult {
         let input = format!("build of {}, leaf_size 2", self.what);
         Err(Broken::with_texts(input, yours, expected, "the heuristic").explained_by([mistake]))
     }
@@ -53,6 +56,9 @@ impl Built {
 fn cubes(places: impl Iterator<Item = Vec3>) -> Vec<Aabb> {
     places.map(|p| Aabb::new(p, p + 0.5)).collect()
 }
+
+const OTHER_AXIS: &str = "you cut across an axis that is not the longest side of the cell";
+const UNBALANCED: &str = "your cut leaves counts that are not balanced";
 
 pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> CheckResult {
     for axis in 0..3 {
@@ -64,22 +70,18 @@ pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> CheckResult 
         let what = format!("16 boxes along {}", ["x", "y", "z"][axis]);
         let alone = KdHeuristics { longest_axis: true, ..NONE };
         let on = build(trial, format!("{what}, longest_axis alone"), &row, alone);
-        if on.cut.is_none_or(|(yours, ..)| yours != axis) {
-            return on.refuse(
-                "a cut across that axis",
-                (on.cut.is_some(), "you cut across an axis that is not the longest side of the cell"),
-            );
-        }
+        on.must(
+            on.cut.is_some_and(|(yours, ..)| yours == axis),
+            "a cut across that axis",
+            (on.cut.is_some(), OTHER_AXIS),
+        )?;
         let off = build(trial, format!("{what}, no heuristic"), &row, NONE);
-        if off.cut.is_none_or(|(yours, ..)| yours != 0) {
-            return off.refuse(
-                "a cut across x: axes in turn, x first",
-                (
-                    off.cut.is_some_and(|(yours, ..)| yours == axis),
-                    "you cut across the longest axis although longest_axis is switched off",
-                ),
-            );
-        }
+        let says = "you cut across the longest axis although longest_axis is switched off";
+        off.must(
+            off.cut.is_some_and(|(yours, ..)| yours == 0),
+            "a cut across x: axes in turn, x first",
+            (off.cut.is_some_and(|(yours, ..)| yours == axis), says),
+        )?;
     }
     // A wall of 8 boxes along y stands at one end of a cell of 20 × 9, which is left of the first cut.
     let wall = cubes((0..8).map(|i| vec3(0.0, 1.25 * i as f32, 0.0)).chain([vec3(40.0, 0.0, 0.0)]));
@@ -96,10 +98,7 @@ pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> CheckResult 
         }
     });
     if let Some(yours) = other {
-        let input = format!("build of {}, leaf_size 2", on.what);
-        let says = "you cut across an axis that is not the longest side of the cell";
-        let broken = Broken::with_texts(input, yours, "cuts across the longest side", "the heuristic");
-        return Err(broken.explained_by([(true, says)]));
+        return on.refuse(yours, "cuts across the longest side", (true, OTHER_AXIS));
     }
     // Axes in turn: x at the root, y and z below it.
     let block = cubes((0..64).map(|i| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32)));
@@ -121,67 +120,52 @@ pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> CheckResult 
 pub(super) fn kd_balances_counts(trial: &Trial<'_>) -> CheckResult {
     let crowd = cubes((0..40).map(|i| vec3(i as f32, 0.0, 0.0)).chain([vec3(400.0, 0.0, 0.0)]));
     let what = "40 boxes side by side from x = 0 and one at 400";
+    let is_balanced =
+        |built: &Built| built.cut.is_some_and(|(_, _, [left, right, _])| left.abs_diff(right) <= 2);
     // No cut between two boxes has straddlers, so with both heuristics the counts decide.
     for others in [NONE, KdHeuristics { few_straddlers: true, ..NONE }] {
         let with = if others == NONE { " alone" } else { " and few_straddlers" };
         let what = format!("{what}, balanced_counts{with}");
         let on = build(trial, what, &crowd, KdHeuristics { balanced_counts: true, ..others });
-        if on.cut.is_none_or(|(_, _, [left, right, _])| left.abs_diff(right) > 2) {
-            return on.refuse(
-                "about 20 on each side",
-                (on.cut.is_some(), "your cut leaves counts that are not balanced"),
-            );
-        }
+        on.must(is_balanced(&on), "about 20 on each side", (on.cut.is_some(), UNBALANCED))?;
     }
     // A plane before the planks has 5 and 7 beside it. One through the centre of the planks has 5 and none.
     let planks = (0..7).map(|i| Aabb::new(vec3(6.0, i as f32, 0.0), vec3(20.0, i as f32 + 0.5, 0.5)));
     let long: Vec<Aabb> = cubes((0..5).map(|i| vec3(i as f32, 0.0, 0.0))).into_iter().chain(planks).collect();
     let alone = KdHeuristics { balanced_counts: true, ..NONE };
     let on = build(trial, "5 small boxes and 7 planks from x = 6 to 20, balanced_counts alone", &long, alone);
-    if on.cut.is_none_or(|(_, _, [left, right, _])| left.abs_diff(right) > 2) {
-        let says = "your cut leaves counts that are not balanced";
-        return on.refuse("a difference of at most 2", (on.cut.is_some(), says));
-    }
+    on.must(is_balanced(&on), "a difference of at most 2", (on.cut.is_some(), UNBALANCED))?;
     // A plane through the 4 planks has 10 and 9 beside it. One before them has 6 and 9, so its fuller side is less full.
     let few = (0..4).map(|i| Aabb::new(vec3(7.0, i as f32, 0.0), vec3(14.0, i as f32 + 0.5, 0.5)));
     let ends = cubes((0..6).chain(15..20).map(|i| vec3(i as f32, 0.0, 0.0)));
-    let what = "6 small boxes, 4 planks from x = 7 to 14 and 5 more small boxes";
-    let on =
-        build(trial, format!("{what}, balanced_counts alone"), &few.chain(ends).collect::<Vec<_>>(), alone);
-    if on.cut.is_none_or(|(_, _, [left, right, _])| left.abs_diff(right) > 1) {
-        let fuller = on.cut.is_some_and(|(_, _, [left, right, _])| left.max(right) == 9);
-        let says = "you minimise the number on the fuller side: minimise the difference of both counts";
-        return on.refuse("a difference of at most 1", (fuller, says));
-    }
-    let off = build(trial, "40 boxes side by side from x = 0 and one at 400, no heuristic", &crowd, NONE);
-    if off.cut.is_none_or(|(_, at, _)| (at - 200.25).abs() > 1.0) {
-        return off.refuse(
-            "a cut in the middle, at 200.25",
-            (off.cut.is_some(), "your cut is not in the middle of the cell although no heuristic is on"),
-        );
-    }
+    let planks = "6 small boxes, 4 planks from x = 7 to 14 and 5 more small boxes, balanced_counts alone";
+    let on = build(trial, planks, &few.chain(ends).collect::<Vec<_>>(), alone);
+    let Some((_, _, [left, right, _])) = on.cut else { return on.must(false, "a cut", (false, UNBALANCED)) };
+    let says = "you minimise the number on the fuller side: minimise the difference of both counts";
+    on.must(left.abs_diff(right) <= 1, "a difference of at most 1", (left.max(right) == 9, says))?;
+    let off = build(trial, format!("{what}, no heuristic"), &crowd, NONE);
+    off.must(
+        off.cut.is_some_and(|(_, at, _)| (at - 200.25).abs() <= 1.0),
+        "a cut in the middle, at 200.25",
+        (off.cut.is_some(), "your cut is not in the middle of the cell although no heuristic is on"),
+    )?;
     // Below the root, too, where the boxes fill a part of their cell.
-    let what = "40 boxes side by side from x = 0 and one at 400, longest_axis alone";
-    let off = build(trial, what, &crowd, KdHeuristics { longest_axis: true, ..NONE });
+    let alone = KdHeuristics { longest_axis: true, ..NONE };
+    let below = build(trial, format!("{what}, longest_axis alone"), &crowd, alone);
     let mut other = None;
-    off.tree.walk(64, |node, cell, _| {
-        if let KdNode::Inner { axis, at, .. } = off.tree.nodes[node as usize] {
+    below.tree.walk(64, |node, cell, _| {
+        if let KdNode::Inner { axis, at, .. } = below.tree.nodes[node as usize] {
             let (low, high) = (cell.min[usize::from(axis)], cell.max[usize::from(axis)]);
-            let is_middle = (f64::from(at) - 0.5 * (low + high)).abs() < 0.01 * (high - low);
-            if !is_middle {
+            if (f64::from(at) - 0.5 * (low + high)).abs() > 0.01 * (high - low) {
                 other = Some(format!("a cut of {low:.2}..{high:.2} at {at:.2}"));
             }
         }
     });
-    if let Some(yours) = other {
-        let input = format!("build of {}, leaf_size 2", off.what);
-        let broken = Broken::with_texts(input, yours, "a cut in the middle of the cell", "the heuristic");
-        return Err(broken.explained_by([(
-            true,
-            "your cut is in the middle of the boxes, or elsewhere: cut the cell in the middle",
-        )]));
-    }
-    Ok(())
+    let Some(yours) = other else { return Ok(()) };
+    let input = format!("build of {}, leaf_size 2", below.what);
+    let broken = Broken::with_texts(input, yours, "a cut in the middle of the cell", "the heuristic");
+    let says = "your cut is in the middle of the boxes, or elsewhere: cut the cell in the middle";
+    Err(broken.explained_by([(true, says)]))
 }
 
 pub(super) fn kd_avoids_straddlers(trial: &Trial<'_>) -> CheckResult {
@@ -195,25 +179,20 @@ pub(super) fn kd_avoids_straddlers(trial: &Trial<'_>) -> CheckResult {
         let with = if others == NONE { " alone" } else { " and balanced_counts" };
         let what = format!("{what}, few_straddlers{with}");
         let on = build(trial, what, &all, KdHeuristics { few_straddlers: true, ..others });
-        if on.cut.is_none_or(|(axis, at, [.., both])| axis != 0 || both > 0 || !(1.9..=3.1).contains(&at)) {
-            return on.refuse(
-                "a cut across x between 2 and 3, with none on both sides",
-                (
-                    on.cut.is_some_and(|(.., [.., both])| both > 0),
-                    "you choose a plane with many on both sides",
-                ),
-            );
-        }
+        let has_many = on.cut.is_some_and(|(.., [.., both])| both > 0);
+        on.must(
+            !has_many && on.cut.is_some_and(|(axis, at, _)| axis == 0 && (1.9..=3.1).contains(&at)),
+            "a cut across x between 2 and 3, with none on both sides",
+            (has_many, "you choose a plane with many on both sides"),
+        )?;
     }
     let off = build(trial, format!("{what}, no heuristic"), &all, NONE);
-    if off.cut.is_none_or(|(_, _, [.., both])| both < 12) {
-        let on = build(trial, what, &all, KdHeuristics { few_straddlers: true, ..NONE });
-        return off.refuse(
-            "a cut in the middle, with 12 on both sides",
-            (off.cut == on.cut, "you avoid straddlers although few_straddlers is switched off"),
-        );
-    }
-    Ok(())
+    let on = build(trial, what, &all, KdHeuristics { few_straddlers: true, ..NONE });
+    off.must(
+        off.cut.is_some_and(|(_, _, [.., both])| both >= 12),
+        "a cut in the middle, with 12 on both sides",
+        (off.cut == on.cut, "you avoid straddlers although few_straddlers is switched off"),
+    )
 }
 
 /// The fraction of the volume that is in empty leaves down to this depth.
@@ -277,12 +256,10 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> CheckResult {
         }
     });
     if !below_the_first.is_some_and(|(axis, at)| axis == 1 && (2.0..18.0).contains(&at)) {
-        let input = format!("build of {}, leaf_size 2", narrow.what);
         let yours = format!("a cut (axis, at) = {below_the_first:?} left of the first one");
         let is_margin = below_the_first.is_some_and(|(axis, at)| axis == 1 && !(2.0..18.0).contains(&at));
-        let broken = Broken::with_texts(input, yours, "a cut across y in the middle", "the heuristic");
         let says = "you cut off a margin that is no more than a tenth of the cell";
-        return Err(broken.explained_by([(is_margin, says)]));
+        return narrow.refuse(yours, "a cut across y in the middle", (is_margin, says));
     }
     // Cuts in the middle leave less of the volume in empty leaves at depth 2.
     let [early, off] = [on, off].map(|tree| empty_share(&tree, 2));
@@ -311,32 +288,21 @@ pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> CheckResult {
     // On the left are 8 planks, on the right 8 planks and 12 small boxes: 8 of 8 on the left are also on the right.
     let what = "8 planks from x = 0 to 64 and 12 small boxes right of x = 40";
     let on = build(trial, format!("{what}, stop_at_overlap alone"), &planks(8, 12), stop);
-    if on.tree.nodes.len() != 1 {
-        return on.refuse(
-            "a leaf: all 8 on the left are also on the right",
-            (
-                on.tree.nodes.len() > 1,
-                "you divide although 60 % of those on one side are on both: compare with the count of each side",
-            ),
-        );
-    }
+    let says =
+        "you divide although 60 % of those on one side are on both: compare with the count of each side";
+    let n = on.tree.nodes.len();
+    on.must(n == 1, "a leaf: all 8 on the left are also on the right", (n > 1, says))?;
     // On the left are 3 planks and 2 small boxes: exactly 60 % of them are also on the right.
     let two = cubes((0..2).map(|i| vec3(1.0 + i as f32, 0.0, 0.0)));
-    let exactly = build(
-        trial,
-        "3 planks from x = 0 to 64, 2 small boxes at x = 1 and 12 right of x = 40, stop_at_overlap alone",
-        &[planks(3, 12), two].concat(),
-        stop,
-    );
-    if exactly.tree.nodes.len() != 1 {
-        let says = "you divide where exactly 60 % of one side are on both: at least 60 % make a leaf";
-        return exactly.refuse("a leaf: 3 of 5 on the left are also on the right", (true, says));
-    }
+    let few =
+        "3 planks from x = 0 to 64, 2 small boxes at x = 1 and 12 right of x = 40, stop_at_overlap alone";
+    let exactly = build(trial, few, &[planks(3, 12), two].concat(), stop);
+    let says = "you divide where exactly 60 % of one side are on both: at least 60 % make a leaf";
+    let n = exactly.tree.nodes.len();
+    exactly.must(n == 1, "a leaf: 3 of 5 on the left are also on the right", (n > 1, says))?;
     let off = build(trial, format!("{what}, no heuristic"), &planks(8, 12), NONE);
-    if off.tree.nodes.len() == 1 {
-        let says = "you make a leaf because of overlap although stop_at_overlap is switched off";
-        return off.refuse("a cut in the middle", (true, says));
-    }
+    let says = "you make a leaf because of overlap although stop_at_overlap is switched off";
+    off.must(off.tree.nodes.len() != 1, "a cut in the middle", (true, says))?;
     // 4 planks across the middle, 4 small boxes on the left and 4 on the right: half of each side, which is below 60 %.
     let small = |x: f32| {
         (0..4).map(move |i| {
@@ -346,20 +312,16 @@ pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> CheckResult {
     let few: Vec<Aabb> = planks(4, 0).into_iter().chain(small(1.0)).chain(small(50.0)).collect();
     let what = "4 planks from x = 0 to 64 and 4 small boxes at either end, stop_at_overlap alone";
     let divided = build(trial, what, &few, stop);
-    if divided.tree.nodes.len() == 1 {
-        return divided.refuse(
-            "a cut in the middle: half of each side is on the other, which is below 60 %",
-            (true, "you make a leaf although less than 60 % of each side are on both"),
-        );
-    }
+    divided.must(
+        divided.tree.nodes.len() != 1,
+        "a cut in the middle: half of each side is on the other, which is below 60 %",
+        (true, "you make a leaf although less than 60 % of each side are on both"),
+    )?;
     // 8 small boxes near x = 0 and one at 100: the second cut has all of its primitives on one side.
     let row: Vec<Aabb> = cubes((0..8).map(|i| vec3(i as f32, 0.0, 0.0)).chain([vec3(100.0, 0.0, 0.0)]));
     let what = "8 boxes from x = 0 to 8 and one at 100, longest_axis and stop_at_overlap";
     let divided = build(trial, what, &row, KdHeuristics { longest_axis: true, ..stop });
     let is_full = |node: &KdNode| matches!(node, KdNode::Leaf { count, .. } if *count >= 8);
-    if divided.tree.nodes.iter().any(is_full) {
-        let says = "you make a leaf where one side has no primitives: then no primitive is on both sides";
-        return divided.refuse("the 8 boxes in several leaves", (true, says));
-    }
-    Ok(())
+    let says = "you make a leaf where one side has no primitives: then no primitive is on both sides";
+    divided.must(!divided.tree.nodes.iter().any(is_full), "the 8 boxes in several leaves", (true, says))
 }

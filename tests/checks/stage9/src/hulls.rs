@@ -1,10 +1,7 @@
 //! What the laws of both builders of BSP trees share: hulls, and the judgement of a tree over them.
 
 use super::lists::{self, Fault};
-use checks::broken::CheckResult;
-use glam::{Vec3, vec3};
-use raykata::aabb::Aabb;
-use raykata::kit::BspQuery;
+use checks::prelude::*;
 use raykata::partition::{MOST_REFERENCES, corners};
 
 pub(super) fn describe(BspQuery { hulls, leaf_size, max_depth }: &BspQuery) -> String {

@@ -4,18 +4,11 @@ use super::lists::{
     Fault, below, ended, fact, infinite, judge_references, leaves, listing_fault, some_boxes, too_deep,
 };
 use super::scenes::{Scene, Thing, along, wall};
-use super::searches::{BSP, Described, GRID, KD_TREE, OCTREE, queries, spheres_and_rays};
+use super::searches::{Described, GRID, KD_TREE, OCTREE, queries, spheres_and_rays};
 use super::structures::{filled, kd_tree};
-use checks::Trial;
-use checks::broken::CheckResult;
-use checks::judge::compare;
-use glam::{DVec3, UVec3, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::kit::{CellsQuery, KdQuery};
-use raykata::partition::{CutPlane, KdHeuristics, KdNode, KdTree, MOST_REFERENCES, Octree};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
+use checks::prelude::*;
+use glam::UVec3;
+use raykata::partition::{KdHeuristics, KdNode, KdTree, MOST_REFERENCES, Octree};
 
 fn describe(query: &KdQuery) -> String {
     format!("build over {} boxes, leaf_size {}, {:?}", query.bounds.len(), query.leaf_size, query.heuristics)
@@ -80,9 +73,7 @@ fn heuristics() -> impl Strategy<Value = KdHeuristics> + Clone {
 pub(super) fn kd_tree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
     let inputs = (some_boxes(), heuristics(), 1..=4usize)
         .prop_map(|(bounds, heuristics, leaf_size)| KdQuery { bounds, heuristics, leaf_size });
-    trial.forall(200, inputs, |queries| {
-        compare(queries, trial.kit.kd_build(queries), |query, yours| judge_tree(query, &yours))
-    })
+    trial.each(200, inputs, <dyn Kit>::kd_build, |query, yours| judge_tree(query, &yours))
 }
 
 pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> CheckResult {
@@ -140,7 +131,7 @@ pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Check
 /// Two primitives lie in one face; that of the right cell has a `t` one float smaller than that of the
 /// left.
 pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> CheckResult {
-    let (mut trees, mut grids, mut bsps) = (Described::new(), Described::new(), Described::new());
+    let (mut trees, mut grids) = (Described::new(), Described::new());
     for axis in 0..3 {
         for (at, x) in [(1.0f32, -2.0f32), (0.75, -5.3), (-3.125, -7.7), (512.0, 1.0)] {
             let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(2.0 * at + 8.0));
@@ -151,9 +142,6 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
             let ray = Ray::new(along(axis, vec3(x, 0.0, 0.0)), along(axis, Vec3::X));
             trees.control("kd-tree", tree([&[0, 1, 2], &[]]), ray, (0.0, exact));
             grids.control("grid", grid([&[0, 1, 2], &[]]), ray, (0.0, exact));
-            let plane = CutPlane { normal: DVec3::AXES[axis], offset: at.into() };
-            let bsp = |lists: [&[u32]; 2]| super::structures::two_leaves(plane, lists[0], lists[1]);
-            bsps.control("BSP tree", bsp([&[0, 1, 2], &[]]), ray, (0.0, exact));
             let cases: [(_, [&[u32]; 2], _); 3] = [
                 // A hit behind the end of the first cell waits, because the second cell has a nearer one.
                 (
@@ -176,14 +164,11 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
             for ([in_tree, in_grid], lists, hits) in cases {
                 let query = CellsQuery { cells: tree(lists), ray, hits: hits.clone() };
                 trees.add(format!("kd-tree{in_tree}"), query);
-                let query = CellsQuery { cells: bsp(lists), ray, hits: hits.clone() };
-                bsps.add(format!("BSP tree{in_tree}"), query);
                 grids.add(format!("grid{in_grid}"), CellsQuery { cells: grid(lists), ray, hits });
             }
         }
     }
     trees.judge(trial.kit, &KD_TREE)?;
-    bsps.judge(trial.kit, &BSP)?;
     grids.judge(trial.kit, &GRID)
 }
 

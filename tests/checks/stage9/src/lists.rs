@@ -1,12 +1,6 @@
 //! The laws that all builders share: which primitives a cell lists.
 
-use checks::broken::{Broken, CheckResult};
-use checks::generate::{point, rough_point};
-use checks::nasty;
-use checks::paste::Paste;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
+use checks::prelude::*;
 use raykata::kit::kit_error::{self, KitError};
 use raykata::partition::{Cell, CellTree, Tree, TreeNode};
 use std::collections::BTreeSet;
@@ -150,16 +144,14 @@ pub(super) fn judge_tree(
 ) -> CheckResult {
     let fault = match (nothing, n_nodes) {
         (true, 0) => None,
-        (true, n) => Some(fact(
-            format!("{n} nodes"),
-            "no nodes".into(),
-            "you make nodes although there are no primitives",
-        )),
-        (false, 0) => Some(fact(
-            "no nodes".into(),
-            "at least one node".into(),
-            "you make no node although there are primitives",
-        )),
+        (true, n) => {
+            let mistake = "you make nodes although there are no primitives";
+            Some(fact(format!("{n} nodes"), "no nodes".into(), mistake))
+        }
+        (false, 0) => {
+            let mistake = "you make no node although there are primitives";
+            Some(fact("no nodes".into(), "at least one node".into(), mistake))
+        }
         (false, _) => fault(),
     };
     fault.map_or(Ok(()), |(yours, expected, mistakes)| {

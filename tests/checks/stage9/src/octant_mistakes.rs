@@ -3,8 +3,8 @@
 
 use super::parts::exactly;
 use super::search_mistakes::{Hit, Mistakes, ROOM, Wrong};
+use checks::prelude::*;
 use raykata::partition::{Cell, Octree, OctreeNode};
-use raykata::ray::Ray;
 
 /// The hit of a search of an octree that keeps one of several octants with the same entry: the last one, as a map with the
 /// entries as keys does, or the first one.

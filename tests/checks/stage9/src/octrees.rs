@@ -10,17 +10,8 @@ use super::searches::{
     Described, OCTREE, OCTREE_BY_CELLS, OCTREE_BY_NEIGHBOURS, Search, Searched, queries, spheres_and_rays,
 };
 use super::structures::octree;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::nasty;
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::kit::{CellsAnswer, CellsQuery, OctreeQuery, kit_error};
+use checks::prelude::*;
 use raykata::partition::{MOST_REFERENCES, Octree, OctreeNode, TreeNode};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 fn describe(query: &OctreeQuery) -> String {
     let OctreeQuery { bounds, leaf_size, max_depth } = query;
@@ -42,11 +33,8 @@ fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
     let sides = yours.bounds.max - yours.bounds.min;
     // Rounding changes a side by far less than a hundredth.
     if sides.min_element() < 0.99 * sides.max_element() {
-        return Some(fact(
-            format!("bounds with the sides {sides}"),
-            "a cube".into(),
-            "the root cell must be a cube",
-        ));
+        let yours = format!("bounds with the sides {sides}");
+        return Some(fact(yours, "a cube".into(), "the root cell must be a cube"));
     }
     listing_fault("leaf", &yours.bounds, &query.bounds, &leaves(yours))
 }
@@ -54,9 +42,7 @@ fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
 pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
     let inputs = (some_boxes(), 1..=4usize, 0..=4usize)
         .prop_map(|(bounds, leaf_size, max_depth)| OctreeQuery { bounds, leaf_size, max_depth });
-    trial.forall(140, inputs, |queries| {
-        compare(queries, trial.kit.octree_build(queries), |query, yours| judge_octree(query, &yours))
-    })
+    trial.each(140, inputs, <dyn Kit>::octree_build, |query, yours| judge_octree(query, &yours))
 }
 
 pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResult {
@@ -102,13 +88,8 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResu
     let yours = format!("up to {most} primitives per leaf, {depth} levels, {n} nodes");
     let expected =
         "at most 2 per leaf, more levels where boxes are dense, and no division of cells with 2 or fewer";
-    Err(Broken::with_texts(
-        "build of 64 boxes in 4 × 4 × 4, and 8 more in one corner, leaf_size 2, max_depth 8",
-        yours,
-        expected,
-        "counted",
-    )
-    .explained_by(mistakes))
+    let input = "build of 64 boxes in 4 × 4 × 4, and 8 more in one corner, leaf_size 2, max_depth 8";
+    Err(Broken::with_texts(input, yours, expected, "counted").explained_by(mistakes))
 }
 
 pub(super) fn octree_build_ends(trial: &Trial<'_>) -> CheckResult {

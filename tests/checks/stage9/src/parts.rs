@@ -1,10 +1,9 @@
 //! The intervals of a ray in the nodes of a structure, computed by the definition: every node is tested.
 
 use checks::double::box_interval;
+use checks::prelude::*;
 use glam::{UVec3, uvec3};
-use raykata::aabb::Aabb;
 use raykata::partition::{Cell, CellTree, CutPlane, Grid, PlaneNode, PolygonBsp, Tree, TreeNode};
-use raykata::ray::Ray;
 
 /// A room for a cell that is a little larger, so that it includes what a ray only touches: a share of its longest side.
 pub(super) fn touching(cell: &Cell) -> f64 {

@@ -2,14 +2,9 @@
 
 use super::scenes::{Scene, Thing};
 use super::searches::queries;
-use checks::broken::CheckResult;
-use checks::picture::{Composed, SMALL};
-use checks::{Trial, picture};
-use glam::{Vec3, vec3};
-use raykata::kit::{BspQuery, CellsAnswer, GridQuery, KdQuery, Kit, OctreeQuery, ResolutionQuery};
+use checks::picture::{self, Composed, SMALL};
+use checks::prelude::*;
 use raykata::partition::{KdHeuristics, Tree};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 use std::f32::consts::TAU;
 
 /// The steps of the staircase.
@@ -94,7 +89,7 @@ fn color(answer: &CellsAnswer) -> Vec3 {
 pub(super) fn picture_searched_in_six_structures(trial: &Trial<'_>) -> CheckResult {
     let (turns, radius) = trial.composed((1.4, 1.5), (1.0..2f32, 1.2..1.7f32));
     let scene = staircase(turns, radius);
-    let rays = picture::rays_of(trial, SMALL, vec3(0.6, 2.4, 3.9), vec3(0.0, -0.15, 0.0));
+    let rays = picture::rays(trial, SMALL, vec3(0.6, 2.4, 3.9), vec3(0.0, -0.15, 0.0));
     // Six columns of the picture, from the left to the right.
     let band = |index: usize| 6 * picture::column(trial, SMALL, index) / SMALL.width as usize;
     let groups: [Vec<Ray>; 6] = std::array::from_fn(|group| {

@@ -2,8 +2,8 @@
 //! student's answer.
 
 use super::search_mistakes::{Hit, Mistakes, ROOM, Wrong};
+use checks::prelude::*;
 use raykata::partition::{CutPlane, Tree, TreeNode};
-use raykata::ray::Ray;
 
 /// How a search of a binary tree treats a plane.
 #[derive(Clone, Copy, PartialEq)]

@@ -4,14 +4,8 @@ use super::parts;
 use super::scenes::{Scene, Thing, room, sphere, wall};
 use super::searches::{Described, POLYGON_BSP, agrees, place, queries, spheres_and_rays};
 use super::structures::{diagonal, one_plane, polygon_bsp, tile};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::paste::Paste;
-use glam::{Vec3, vec3};
-use raykata::kit::{CellsAnswer, CellsQuery};
+use checks::prelude::*;
 use raykata::partition::{PolygonBsp, TreeNode};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 
 pub(super) fn polygon_bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     // A large sphere in the leaf of the near side is hit on the far side, behind a triangle on the plane.

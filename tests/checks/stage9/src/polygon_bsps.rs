@@ -2,15 +2,7 @@
 
 use super::hulls::{self, usable};
 use super::lists::{Fault, ended, fact, judge_references};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::generate::{point, rough_point};
-use checks::judge::compare;
-use checks::nasty;
-use glam::{DVec3, Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::kit::BspQuery;
+use checks::prelude::*;
 use raykata::partition::{CutPlane, MOST_REFERENCES, PlaneNode, PolygonBsp, PolygonBspNode, corners};
 
 const WHAT_MAKES_IT: &str = "the definition of a BSP tree with polygons in its nodes";
@@ -66,11 +58,9 @@ fn fault(query: &BspQuery, yours: &PolygonBsp) -> Option<Fault> {
             let inside = |p: &Vec3| above.iter().all(|(plane, side)| side * plane.distance(*p) >= -step);
             let is_solid = usable(hull) && kind(hull, size) == Kind::Solid;
             if is_solid && hull.iter().any(inside) && !listed.contains(&(id as u32)) {
-                faults.push(fact(
-                    format!("solid {id} is not listed in leaf {node}"),
-                    "once".into(),
-                    "a solid belongs to every leaf that it overlaps or touches",
-                ));
+                let yours = format!("solid {id} is not listed in leaf {node}");
+                let mistake = "a solid belongs to every leaf that it overlaps or touches";
+                faults.push(fact(yours, "once".into(), mistake));
             }
         }
     });
@@ -87,11 +77,8 @@ fn listing_fault(
 ) -> Option<Fault> {
     for (index, &id) in listed.iter().enumerate() {
         let Some(hull) = query.hulls.get(id as usize) else {
-            return Some(fact(
-                format!("primitive {id}"),
-                "a number of a hull".into(),
-                "there is no such primitive",
-            ));
+            let yours = format!("primitive {id}");
+            return Some(fact(yours, "a number of a hull".into(), "there is no such primitive"));
         };
         let says = |what: &str| format!("node {node} lists primitive {id}{what}");
         if !usable(hull) {
@@ -212,9 +199,7 @@ pub(super) fn polygon_bsp_puts_polygons_on_planes(trial: &Trial<'_>) -> CheckRes
         hulls.iter_mut().flatten().for_each(|corner| *corner *= scale);
         BspQuery { hulls, leaf_size, max_depth }
     });
-    trial.forall(140, inputs, |queries| {
-        compare(queries, trial.kit.polygon_bsp_build(queries), |query, yours| judge_tree(query, &yours))
-    })
+    trial.each(140, inputs, <dyn Kit>::polygon_bsp_build, |query, yours| judge_tree(query, &yours))
 }
 
 pub(super) fn polygon_bsp_build_ends(trial: &Trial<'_>) -> CheckResult {

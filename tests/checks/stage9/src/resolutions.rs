@@ -1,18 +1,9 @@
 //! The laws of the resolution of a grid and of the interval of a ray in a cell.
 
 use super::scenes::{Scales, rays, scales};
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::slabs_interval;
-use checks::generate::rough_point;
-use checks::judge::{compare, unless};
-use checks::nasty;
-use checks::paste::{Arguments, Paste};
-use glam::{UVec3, Vec3, uvec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
-use raykata::kit::{ResolutionQuery, SlabQuery};
-use raykata::ray::Ray;
+use checks::prelude::*;
+use glam::{UVec3, uvec3};
 
 pub(super) fn spans_of_cells_agree_with_double_precision(trial: &Trial<'_>) -> CheckResult {
     let on_lattice = (nasty::lattice(4), nasty::lattice(3));
@@ -162,40 +153,35 @@ pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> CheckResult {
             density: density as f32 / 2.0,
         },
     );
-    trial.forall(200, inputs, |queries| {
-        compare(queries, trial.kit.grid_resolution(queries), |query, yours| {
-            let wanted = f64::from(query.density) * query.n_primitives as f64;
-            let n: f64 = yours.to_array().into_iter().map(f64::from).product();
-            let side = (query.bounds.max - query.bounds.min) / yours.as_vec3();
-            let cubes = side.max_element() <= 2.0 * side.min_element();
-            // Rounding up or down on three axes of five or more cells changes the number by at most half.
-            let is_right = cubes && 0.5 * wanted <= n && n <= 2.0 * wanted;
-            let broken = || {
-                let expected = format!("about {wanted} cells that are nearly cubes");
-                let yours = format!("{yours}, {n} cells");
-                Broken::with_texts(describe(query), yours, expected, "the definition").explained_by([
-                    (!cubes, "your cells are not nearly cubes"),
-                    (
-                        n < wanted,
-                        "you make too few cells: the product over the three axes must be about density · n",
-                    ),
-                    (
-                        n > wanted,
-                        "you make too many cells: the product over the three axes must be about density · n",
-                    ),
-                ])
-            };
-            unless(is_right, broken).formulas([
+    trial.each(200, inputs, <dyn Kit>::grid_resolution, |query, yours| {
+        let wanted = f64::from(query.density) * query.n_primitives as f64;
+        let n: f64 = yours.to_array().into_iter().map(f64::from).product();
+        let side = (query.bounds.max - query.bounds.min) / yours.as_vec3();
+        let cubes = side.max_element() <= 2.0 * side.min_element();
+        // Rounding up or down on three axes of five or more cells changes the number by at most half.
+        let is_right = cubes && 0.5 * wanted <= n && n <= 2.0 * wanted;
+        let broken = || {
+            let expected = format!("about {wanted} cells that are nearly cubes");
+            let yours = format!("{yours}, {n} cells");
+            Broken::with_texts(describe(query), yours, expected, "the definition").explained_by([
+                (!cubes, "your cells are not nearly cubes"),
                 (
-                    yours.x == yours.y && yours.y == yours.z,
-                    "you make as many cells on every axis: a longer side needs more",
+                    n < wanted,
+                    "you make too few cells: the product over the three axes must be about density · n",
                 ),
                 (
-                    cubes && (n * f64::from(query.density) / wanted - 1.0).abs() < 0.6,
-                    "you leave out the density",
+                    n > wanted,
+                    "you make too many cells: the product over the three axes must be about density · n",
                 ),
             ])
-        })
+        };
+        unless(is_right, broken).formulas([
+            (
+                yours.x == yours.y && yours.y == yours.z,
+                "you make as many cells on every axis: a longer side needs more",
+            ),
+            (cubes && (n * f64::from(query.density) / wanted - 1.0).abs() < 0.6, "you leave out the density"),
+        ])
     })
 }
 

@@ -2,15 +2,9 @@
 //! precision, then rounded as if each primitive had its own formula.
 
 use checks::double::sphere_roots;
-use checks::generate::{fractions, point};
-use checks::nasty;
+use checks::prelude::*;
 use checks::tree::{closest_of, move_apart};
-use glam::{Vec3, vec3};
-use proptest::prelude::*;
-use raykata::aabb::Aabb;
 use raykata::partition::corners;
-use raykata::ray::Ray;
-use raykata::shape::{Sphere, Triangle};
 
 /// A primitive of a scene.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,8 @@
 //! named only if its search gives exactly the student's answer.
 
 use super::parts::Leaf;
+use checks::prelude::*;
 use checks::tree::closest_of;
-use raykata::ray::Ray;
 
 pub(super) type Hit = Option<(u32, f32)>;
 

@@ -6,16 +6,10 @@ use super::plane_mistakes::{Planes, at_planes};
 use super::scenes::{Scene, Thing, odd_scenes, scenes, sphere};
 use super::search_mistakes::{FIRST_CELL_ONLY, Hit, Mistakes, facts, in_cells};
 use super::structures;
-use checks::Trial;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare_formulas;
+use checks::prelude::*;
 use checks::tree::closest_of;
-use glam::{UVec3, Vec3, vec3};
-use raykata::aabb::Aabb;
-use raykata::kit::{CellsAnswer, CellsQuery, Kit};
+use glam::UVec3;
 use raykata::partition::{Bsp, CutPlane, Grid, KdNode, KdTree, Octree, PlaneNode, PolygonBsp};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 
 /// A search of a student, in structures of the type `S`: cells with numbers, or trees with numbered nodes.
 pub(super) struct Search<S> {

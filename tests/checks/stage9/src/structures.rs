@@ -5,13 +5,11 @@
 
 use super::parts;
 use super::scenes::{Scene, Thing};
+use checks::prelude::*;
 use checks::tree::around;
 use checks::tree::closest_of;
-use glam::{DVec3, UVec3, Vec3, vec3};
-use raykata::aabb::Aabb;
+use glam::UVec3;
 use raykata::partition::{Bsp, BspNode, Cell, CutPlane, Grid, KdTree, Octree, PolygonBsp, PolygonBspNode};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
 
 /// Numbered boxes with room for rounding. Empty boxes are left out.
 fn loose(boxes: &[Aabb]) -> (Vec<(u32, Aabb)>, Aabb) {

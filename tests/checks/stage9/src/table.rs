@@ -2,12 +2,9 @@
 
 use super::scenes::{Scene, sphere};
 use super::searches::queries;
-use checks::Trial;
-use checks::broken::CheckResult;
 use checks::golden::{Table, digits};
-use glam::{DVec3, uvec3, vec3};
-use raykata::kit::{GridQuery, Kit};
-use raykata::ray::Ray;
+use checks::prelude::*;
+use glam::uvec3;
 
 const COLUMNS: u32 = 12;
 const ROWS: u32 = 7;

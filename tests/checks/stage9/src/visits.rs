@@ -1,11 +1,8 @@
 //! Judges which cells a search visits, and which primitives it tests.
 
 use super::searches::Search;
-use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
-use checks::paste::Paste;
+use checks::prelude::*;
 use checks::tree::closest_of;
-use raykata::kit::{CellsAnswer, CellsQuery, Kit};
 
 impl<S> Search<S> {
     /// Judges the visits of the searches for these rays, each of which is aimed at a primitive.

@@ -1,3 +1,0 @@
-//! The rubric, as `raykata::rubric` reads it.
-
-pub use raykata::rubric::*;
