@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use raykata::camera::Camera;
-use raykata::film::{Film, encode_srgb};
+use raykata::film::{Film, decode_srgb, encode_srgb};
 use raykata::kit::{Kit, RenderJob, Rendering, TriangleQuery, View};
 use raykata::partition::KdHeuristics;
 use raykata::ray::Ray;
@@ -259,11 +259,10 @@ pub fn three_scales(_kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
 /// Panels whose pixels are bytes already, from 0 to 1.
 fn panels_of_bytes(parts: &[(Film, String)]) -> Result<Vec<u8>> {
     // Decode what `panels` encodes.
-    let linear = |x: f32| if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) };
     let decoded: Vec<(Film, String)> = parts
         .iter()
         .map(|(film, text)| {
-            let pixels = film.pixels.iter().map(|pixel| pixel.map(linear)).collect();
+            let pixels = film.pixels.iter().map(|pixel| pixel.map(decode_srgb)).collect();
             (Film { pixels, ..*film }, text.clone())
         })
         .collect();

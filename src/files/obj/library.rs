@@ -2,7 +2,8 @@
 
 use super::{ObjMaterial, lines};
 use crate::files::error::{LoadError, Warnings};
-use crate::files::ply::text::{Word, quote, read_bytes, readable, words};
+use crate::files::ply::text::{Word, read_bytes, readable, words};
+use crate::files::words::quoted;
 use glam::Vec3;
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
@@ -29,14 +30,14 @@ pub(super) fn find(
     let mut paths = Vec::new();
     for (index, part) in text[names.clone()].split('"').enumerate() {
         let start = part.as_ptr() as usize - text.as_ptr() as usize;
-        let quoted = Word { text: part, span: start..start + part.len() };
-        for name in if index % 2 == 1 { vec![quoted] } else { words(part, start) } {
+        let in_quotes = Word { text: part, span: start..start + part.len() };
+        for name in if index % 2 == 1 { vec![in_quotes] } else { words(part, start) } {
             let path = path_of(name.text);
             if path.is_file() {
                 paths.push(path);
                 continue;
             }
-            let message = format!("there is no material library {}", quote(name.text));
+            let message = format!("there is no material library {}", quoted(name.text));
             warnings.push(LoadError::at(file, text, name.span, message).help(format!(
                 "looked for {}: put the library there, or remove the `mtllib` line",
                 path.display()
@@ -61,15 +62,12 @@ pub(super) fn read(file: &Path, warnings: &mut Vec<LoadError>) -> Vec<ObjMateria
 /// Reads all materials from the bytes of a library. A mesh can be shown without any line of it, so nothing here is an
 /// error: a line that cannot be used is left out, a number out of range is replaced by the nearest one in range, and each
 /// adds a warning.
-///
-/// As in the OBJ file, `tobj` gets only lines that have been checked, because a colour with two numbers makes
-/// it panic.
 pub(super) fn parse(file: &Path, bytes: &[u8], warnings: &mut Vec<LoadError>) -> Vec<ObjMaterial> {
     let text = readable(bytes);
     let mut reader = Reader {
         file,
         text: &text,
-        clean: String::new(),
+        materials: Vec::new(),
         named: false,
         current: Current::default(),
         warnings: Warnings::default(),
@@ -81,56 +79,27 @@ pub(super) fn parse(file: &Path, bytes: &[u8], warnings: &mut Vec<LoadError>) ->
     }
     reader.end_material();
     warnings.extend(reader.warnings.list());
-
-    let directory = file.parent().unwrap_or(Path::new(""));
-    match tobj::load_mtl_buf(&mut reader.clean.as_bytes()) {
-        Ok((materials, _)) => materials.into_iter().map(|material| convert(material, directory)).collect(),
-        Err(error) => {
-            let message = format!("the library cannot be read: {error}");
-            warnings.push(LoadError::new(file, message).help("export it again"));
-            Vec::new()
-        }
-    }
-}
-
-fn convert(material: tobj::Material, directory: &Path) -> ObjMaterial {
-    ObjMaterial {
-        name: material.name,
-        ambient: material.ambient.map(Vec3::from),
-        diffuse: material.diffuse.map(Vec3::from),
-        specular: material.specular.map(Vec3::from),
-        shininess: material.shininess,
-        index_of_refraction: material.optical_density,
-        dissolve: material.dissolve,
-        diffuse_texture: material.diffuse_texture.map(|name| directory.join(name)),
-        emission: material.emissive.map(Vec3::from),
-    }
+    reader.materials
 }
 
 struct Reader<'a> {
     file: &'a Path,
     text: &'a str,
-    /// The valid lines that are used.
-    clean: String,
+    materials: Vec<ObjMaterial>,
     /// Whether a `newmtl` line has been seen.
     named: bool,
     current: Current,
     warnings: Warnings,
 }
 
-/// What is known of the material that is being read, because its values depend on each other.
+/// The material that is being read.
 #[derive(Default)]
 struct Current {
+    material: ObjMaterial,
     /// Whether it has a line `d`, which has precedence over `Tr`.
     opacity_given: bool,
-    /// Whether light passes through it, by `d` or `Tr`.
-    transparent: bool,
-    /// Whether its index of refraction is not 1.
-    refracts: bool,
-    /// Whether its specular colour is not black.
-    highlight: bool,
-    /// The number after `Ns`, and its place.
-    exponent: Option<(f32, Range<usize>)>,
+    /// The place of the number after `Ns`.
+    exponent: Option<Range<usize>>,
     /// The number after `illum`, and its place.
     illumination: Option<(u32, Range<usize>)>,
 }
@@ -144,18 +113,17 @@ impl Reader<'_> {
         self.warnings.add(help, || LoadError::at(self.file, self.text, span, message));
     }
 
-    /// Copies a line that can be used, or adds a warning.
+    /// Takes the value of a line that can be used, or adds a warning.
     fn line(&mut self, line: &str, start: usize) {
         let words = words(line, start);
         let Some((keyword, rest)) = words.split_first() else { return };
         match self.checked(keyword, rest) {
-            Ok(Some(clean)) if self.named => self.clean.push_str(&format!("{clean}\n")),
-            Ok(Some(_)) => {
+            Ok(true) if !self.named => {
                 let message = format!("`{}` before the first `newmtl`; the line is ignored", keyword.text);
                 let help = "put `newmtl` and a name above the values of each material";
                 self.warn(keyword.span.clone(), &message, help);
             }
-            Ok(None) => {}
+            Ok(_) => {}
             Err(error) => {
                 let help = error.help.clone().unwrap_or_default();
                 let message = format!("{}; the line is ignored", error.message);
@@ -164,29 +132,24 @@ impl Reader<'_> {
         }
     }
 
-    /// The line as `tobj` gets it, or `None` if it is not needed. Some exporters write keywords in small letters.
-    fn checked(&mut self, keyword: &Word, rest: &[Word]) -> Result<Option<String>, LoadError> {
+    /// Reads a line, and returns whether it has a value of the material. Some exporters write keywords in small letters.
+    fn checked(&mut self, keyword: &Word, rest: &[Word]) -> Result<bool, LoadError> {
         let comment = rest.iter().position(|word| word.text.starts_with('#')).unwrap_or(rest.len());
         let values = &rest[..comment];
-        Ok(Some(match &*keyword.text.to_ascii_lowercase() {
+        match &*keyword.text.to_ascii_lowercase() {
             "newmtl" => {
                 let name = self.name(keyword, rest, "give it one, as in `newmtl red`")?;
                 self.end_material();
                 self.named = true;
-                format!("newmtl {name}")
+                self.current.material.name = name;
             }
-            "ka" => self.color("Ka", keyword, values, 1.0)?,
-            "kd" => self.color("Kd", keyword, values, 1.0)?,
-            "ke" => self.color("Ke", keyword, values, f32::MAX)?,
-            "ks" => {
-                let clean = self.color("Ks", keyword, values, 1.0)?;
-                self.current.highlight = clean != "Ks 0.0 0.0 0.0";
-                clean
-            }
+            "ka" => self.current.material.ambient = Some(self.color("Ka", keyword, values, 1.0)?),
+            "kd" => self.current.material.diffuse = Some(self.color("Kd", keyword, values, 1.0)?),
+            "ke" => self.current.material.emission = Some(self.color("Ke", keyword, values, f32::MAX)?),
+            "ks" => self.current.material.specular = Some(self.color("Ks", keyword, values, 1.0)?),
             "ns" => {
-                let exponent = self.in_range(keyword, values, 0.0..=f32::MAX)?;
-                self.current.exponent = Some((exponent, values[0].span.clone()));
-                format!("Ns {exponent:?}")
+                self.current.material.shininess = Some(self.in_range(keyword, values, 0.0..=f32::MAX)?);
+                self.current.exponent = Some(values[0].span.clone());
             }
             // No real material has such an index: the bounds only exclude values that cannot be an index of refraction.
             // Exporters write 0 for "none".
@@ -198,24 +161,21 @@ impl Reader<'_> {
                     self.warn(values[0].span.clone(), &message, help);
                     index = 1.0;
                 }
-                self.current.refracts = index != 1.0;
-                format!("Ni {index:?}")
+                self.current.material.index_of_refraction = Some(index);
             }
             "d" => {
                 // `d -halo 0.5` makes the opacity depend on the angle; only its number is used.
                 let halo = values.first().is_some_and(|word| word.text == "-halo");
                 let opacity = self.in_range(keyword, &values[usize::from(halo)..], 0.0..=1.0)?;
+                self.current.material.dissolve = Some(opacity);
                 self.current.opacity_given = true;
-                self.current.transparent = opacity < 1.0;
-                format!("d {opacity:?}")
             }
             "tr" => {
                 let transparency = self.in_range(keyword, values, 0.0..=1.0)?;
                 if self.current.opacity_given {
-                    return Ok(None);
+                    return Ok(false);
                 }
-                self.current.transparent = transparency > 0.0;
-                format!("d {:?}", 1.0 - transparency)
+                self.current.material.dissolve = Some(1.0 - transparency);
             }
             "illum" => {
                 // A model that is not a number is ignored: it changes nothing.
@@ -224,7 +184,7 @@ impl Reader<'_> {
                 {
                     self.current.illumination = Some((model, word.span.clone()));
                 }
-                return Ok(None);
+                return Ok(false);
             }
             "map_kd" => {
                 let image = after_options(rest);
@@ -233,28 +193,39 @@ impl Reader<'_> {
                     let help = "scale or move the texture coordinates of the mesh instead";
                     self.warn(rest[0].span.clone(), "the options of `map_Kd` are ignored", help);
                 }
-                format!("map_Kd {}", name.trim_matches('"').replace('\\', "/"))
+                let directory = self.file.parent().unwrap_or(Path::new(""));
+                let path = directory.join(name.trim_matches('"').replace('\\', "/"));
+                self.current.material.diffuse_texture = Some(path);
             }
             "map_d" => {
                 let help = "cut the holes out of the mesh";
                 self.warn(keyword.span.clone(), "`map_d` is ignored: an image gives no opacity", help);
-                return Ok(None);
+                return Ok(false);
             }
-            _ => return Ok(None),
-        }))
+            _ => return Ok(false),
+        }
+        Ok(true)
     }
 
-    /// Warns if the material that ends here asks for an illumination model that differs from what is rendered, which is
+    /// Adds the material that ends here, and warns if it asks for an illumination model that differs from what is rendered, which is
     /// the Phong model (`illum 2`) with transmission by `d`.
     fn end_material(&mut self) {
-        let Current { transparent, refracts, highlight, exponent, illumination, .. } =
-            std::mem::take(&mut self.current);
+        let Current { mut material, exponent: place, illumination, .. } = std::mem::take(&mut self.current);
+        let highlight = material.specular.is_some_and(|color| color != Vec3::ZERO);
+        let is_glass = material.dissolve.is_some_and(|opacity| opacity < 1.0)
+            && material.index_of_refraction.is_some_and(|index| index != 1.0);
         // With such an exponent the highlight would cover all that is lit. Exporters write it for materials without one.
-        if let Some((exponent, span)) = exponent.filter(|(exponent, _)| highlight && *exponent < 1.0) {
+        if let (Some(exponent), Some(span)) = (material.shininess, place)
+            && highlight
+            && exponent < 1.0
+        {
             let message =
                 format!("`Ns` is {exponent}, so the highlight of `Ks` has no edge; none is rendered");
             self.warn(span, &message, "write an exponent of at least 1, for example `Ns 30`");
-            self.clean.push_str("Ks 0 0 0\n");
+            material.specular = Some(Vec3::ZERO);
+        }
+        if self.named {
+            self.materials.push(material);
         }
         let Some((model, span)) = illumination else { return };
         let asks = match model {
@@ -262,7 +233,7 @@ impl Reader<'_> {
             1 if highlight => "asks for no highlight, but `Ks` gives the material one",
             1 | 2 => return,
             3 | 5 | 8 => "asks for reflections, which MTL files have no value for; none are rendered",
-            4 | 6 | 7 | 9 if transparent && refracts => return,
+            4 | 6 | 7 | 9 if is_glass => return,
             4 | 6 | 7 | 9 => "asks for glass, but only `d` below 1 and `Ni` other than 1 give glass",
             _ => "is not a model that is rendered; the Phong model is used",
         };
@@ -282,24 +253,24 @@ impl Reader<'_> {
         }
     }
 
-    /// The line of a colour: three numbers, or one for a grey. Each is at least 0 and at most `most`: a surface that
+    /// A colour: three numbers, or one for a grey. Each is at least 0 and at most `most`: a surface that
     /// reflects more than all light would make light.
-    fn color(&mut self, name: &str, keyword: &Word, values: &[Word], most: f32) -> Result<String, LoadError> {
+    fn color(&mut self, name: &str, keyword: &Word, values: &[Word], most: f32) -> Result<Vec3, LoadError> {
         if let [word, ..] = values
             && ["spectral", "xyz"].contains(&word.text)
         {
             return Err(self
-                .trouble(word.span.clone(), format!("a colour as {} is not supported", quote(word.text)))
+                .trouble(word.span.clone(), format!("a colour as {} is not supported", quoted(word.text)))
                 .help("write red, green and blue, as in `Kd 0.8 0.2 0.2`"));
         }
         let colour = match values.len() {
             1 => [self.numbers::<1>(keyword, values)?[0]; 3],
             _ => self.numbers::<3>(keyword, values)?,
         };
-        let [r, g, b] = colour.map(|component| component.clamp(0.0, most));
+        let clamped = colour.map(|component| component.clamp(0.0, most));
         if let Some(outside) = colour.iter().position(|component| !(0.0..=most).contains(component)) {
             let span = values[outside.min(values.len() - 1)].span.clone();
-            let nearest = [r, g, b][outside];
+            let nearest = clamped[outside];
             let message = format!("`{name}` has the component {}; {nearest} is used", colour[outside]);
             let help = match most {
                 f32::MAX => "write a number of at least 0",
@@ -307,7 +278,7 @@ impl Reader<'_> {
             };
             self.warn(span, &message, help);
         }
-        Ok(format!("{name} {r:?} {g:?} {b:?}"))
+        Ok(Vec3::from_array(clamped))
     }
 
     /// One number; the nearest number in `range` if it is outside.
@@ -340,7 +311,7 @@ impl Reader<'_> {
         let mut numbers = [0.0; N];
         for (number, word) in numbers.iter_mut().zip(values) {
             *number = word.text.parse().ok().filter(|number: &f32| number.is_finite()).ok_or_else(|| {
-                self.trouble(word.span.clone(), format!("{} is not a number", quote(word.text)))
+                self.trouble(word.span.clone(), format!("{} is not a number", quoted(word.text)))
                     .help("replace it by a number, with a decimal point and not a comma")
             })?;
         }
