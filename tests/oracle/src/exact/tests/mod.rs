@@ -19,8 +19,11 @@ fn number(name: &str, default: u64) -> u64 {
     std::env::var(name).ok().and_then(|number| number.parse().ok()).unwrap_or(default)
 }
 
-/// The shapes of a case, and the functions that answer for them with big integers.
-fn bodies(case: &ComparedCase) -> [(Body, fn(&ComparedCase) -> Answer); 7] {
+/// Answers for a shape of a case with big integers.
+type Reference = fn(&ComparedCase) -> Answer;
+
+/// The shapes of a case, and the functions that answer for them.
+fn bodies(case: &ComparedCase) -> [(Body, Reference); 7] {
     [
         (Body::Triangle(case.triangle), |case| reference::triangle(&case.ray, &case.triangle)),
         (Body::Plane(case.plane), |case| reference::plane(&case.ray, &case.plane)),
