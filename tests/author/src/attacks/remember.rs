@@ -8,11 +8,12 @@ use all_checks::STAGES;
 use anyhow::{Result, bail, ensure};
 use grader::grade::Once;
 use grader::kits::{Need, Source, Which, root};
+use grader::queue::lock;
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, Request, Transport};
 use raykata::message::to_bytes;
 use std::collections::BTreeMap;
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex};
 
 /// Maps the bytes of all arguments to the bytes of the answer.
 type Known = BTreeMap<Vec<u8>, Vec<u8>>;
@@ -104,7 +105,7 @@ fn learned(name: &str) -> Result<Known> {
             other => bail!("the reference fails {}: {other:?}", check.name),
         }
     }
-    Ok(std::mem::take(&mut *known.lock().unwrap_or_else(PoisonError::into_inner)))
+    Ok(std::mem::take(&mut *lock(&known)))
 }
 
 /// The reference, with a record of its answers to one function.
@@ -117,7 +118,7 @@ struct Listener {
 impl Transport for Listener {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         if request.queries().is_some_and(|(name, _)| name == self.name) {
-            let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut known = lock(&self.known);
             for question in (0..).map_while(|index| request.only(index)) {
                 let mut asked = to_bytes(&question)[HEADER..].to_vec();
                 // The function gets the centre of the sphere only, and the query has its radius, too.
