@@ -69,4 +69,5 @@ pub mod frame {
 #[cfg(test)]
 mod tests {
     mod floors;
+    pub mod folder;
 }

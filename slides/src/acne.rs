@@ -1,6 +1,6 @@
 //! Pictures of shadow acne: spheres on a floor, traced with the kit's own functions, whose shadow rays start in three ways.
 
-use crate::pictures::{crop, load, magnified, panels};
+use crate::pictures::{crop, load, magnified, panels, rays_of};
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use raykata::camera::Camera;
@@ -183,12 +183,6 @@ fn started(
             kit.offset_origin(&rays.iter().map(query).collect::<Vec<_>>())
         }
     }
-}
-
-fn rays_of(camera: &Camera, [width, height]: [u32; 2]) -> Vec<Ray> {
-    let place = |i: u32, n: u32| (i as f32 + 0.5) / n as f32;
-    let ray = |i: u32| camera.ray(place(i % width, width), place(i / width, height));
-    (0..width * height).map(ray).collect()
 }
 
 /// scenes/stage4.toml with shadow rays that start at the computed point, and with those of `shadow_ray`.

@@ -6,10 +6,9 @@
 //! commands of `raykata` make pictures and plots.
 
 mod acne;
-mod camera_frame;
+mod camera;
 mod curves;
 mod leaks;
-mod lens;
 mod lighting;
 mod list;
 mod optics;
@@ -26,7 +25,6 @@ mod spheres;
 mod splits;
 mod surfaces;
 mod transport;
-mod triangles;
 
 use anyhow::{Context, Result, bail};
 use list::{Exact, Figure};
@@ -53,16 +51,15 @@ macro_rules! drawings {
 
 /// All diagrams.
 const DIAGRAMS: &[(&str, Draw)] = drawings! {
-    camera_frame: camera_frame;
+    camera: camera_frame;
     spheres: sphere_roots, sphere_geometry, sphere_cancellation;
-    triangles: traversal_order;
     pipeline: judge_and_worker;
     lighting: face_forward, phong_vectors, lambert, phong_exponents, tone_curves;
     optics: reflection, critical_angle, fresnel;
     rays: ray_tree_bound;
     sampling: gaussian_weight, disk_samples, penumbra, motion_bounds;
     splits: sah_cuts, object_median_problem, spatial_median_corner;
-    searches: wide_search;
+    searches: traversal_order, wide_search;
     curves: ray_to_object, normal_transform, de_casteljau, bspline_basis;
     surfaces: inside_tests, vertex_normals, texture_coordinates, bilinear;
     rounding: silhouette_normal, rounded_point, edge_gap, offset_bound;
@@ -74,7 +71,7 @@ const DIAGRAMS: &[(&str, Draw)] = drawings! {
 
 /// All figures that are made from scenes.
 const FROM_SCENES: &[(&str, FromScenes)] = drawings! {
-    lens: circle_of_confusion;
+    camera: circle_of_confusion;
     rays: ray_tree, grid_resolution;
     pictures: antialias_crops, sampler_strip, sampling_101, hierarchy_levels, four_partitions, kd_easy_and_five;
     pictures: split_heatmaps, cramer_determinant, tiles, heckbert, gamma_steps, three_scales;

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use raykata::camera::Camera;
-use raykata::film::{Film, encode_srgb};
+use raykata::film::{Film, decode_srgb, encode_srgb};
 use raykata::kit::{Kit, RenderJob, Rendering, TriangleQuery, View};
 use raykata::partition::KdHeuristics;
 use raykata::ray::Ray;
@@ -48,6 +48,13 @@ pub fn heat_panels(mut films: Vec<(Film, String)>, sum: fn(&Vec3) -> f32) -> Res
 /// The picture as a screen shows it, in linear light up to 1.
 pub fn shown(kit: &dyn Kit, scene: &Scene) -> Result<Film> {
     Ok(render(kit, scene)?.film.toned(scene.film.tone))
+}
+
+/// The rays through the centres of all pixels, row by row.
+pub fn rays_of(camera: &Camera, [width, height]: [u32; 2]) -> Vec<Ray> {
+    let place = |i: u32, n: u32| (i as f32 + 0.5) / n as f32;
+    let ray = |i: u32| camera.ray(place(i % width, width), place(i / width, height));
+    (0..width * height).map(ray).collect()
 }
 
 /// The part of a picture from column and row `corner`, `size` pixels wide and high.
@@ -245,29 +252,15 @@ pub fn three_scales(_kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let picture = image::open(root.join("tests/golden/stage10_three_scales.png"))?.into_rgb8();
     let (width, height) = (picture.width(), picture.height());
     let mut film = Film::new(width, height);
+    // Decode what `panels` encodes.
     for (pixel, bytes) in film.pixels.iter_mut().zip(picture.pixels()) {
-        *pixel = Vec3::from(bytes.0.map(f32::from)) / 255.0;
+        *pixel = (Vec3::from(bytes.0.map(f32::from)) / 255.0).map(decode_srgb);
     }
     let third = width / 3;
     let part = |index: u32, name: &str| {
         (magnified(&crop(&film, [index * third, 0], [third, height]), 8), name.to_owned())
     };
-    let parts = [part(0, "2^-60"), part(1, "1"), part(2, "2^60")];
-    panels_of_bytes(&parts)
-}
-
-/// Panels whose pixels are bytes already, from 0 to 1.
-fn panels_of_bytes(parts: &[(Film, String)]) -> Result<Vec<u8>> {
-    // Decode what `panels` encodes.
-    let linear = |x: f32| if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) };
-    let decoded: Vec<(Film, String)> = parts
-        .iter()
-        .map(|(film, text)| {
-            let pixels = film.pixels.iter().map(|pixel| pixel.map(linear)).collect();
-            (Film { pixels, ..*film }, text.clone())
-        })
-        .collect();
-    panels(&decoded, parts.len() as u32)
+    panels(&[part(0, "2^-60"), part(1, "1"), part(2, "2^60")], 3)
 }
 
 /// The leaves of two kd-trees over the same scene, the easy way and with all heuristics.
@@ -317,8 +310,7 @@ pub fn cramer_determinant(kit: &dyn Kit, _root: &Path) -> Result<Vec<u8>> {
     let position = vec3(1.3, -0.9, 2.2);
     let target = (triangle.a + triangle.b + triangle.c) / 3.0;
     let camera = Camera::new(position, target - position, Vec3::Y, 50.0, 1.0)?;
-    let place = |i: u32| (i as f32 + 0.5) / SIZE as f32;
-    let rays: Vec<Ray> = (0..SIZE * SIZE).map(|i| camera.ray(place(i % SIZE), place(i / SIZE))).collect();
+    let rays = rays_of(&camera, [SIZE; 2]);
     let queries: Vec<_> = rays.iter().map(|&ray| TriangleQuery { ray, triangle }).collect();
     let right = kit.triangle_cramer(&queries).into_iter().map(|hit| hit.map(|hit| [hit.beta, hit.gamma]));
     let wrong = rays.iter().map(|ray| with_wrong_determinant(ray, &triangle));

@@ -232,6 +232,12 @@ pub fn encode_srgb(linear: f32) -> u8 {
     (srgb_curve(linear) + 0.5) as u8
 }
 
+/// The component of linear light, from 0 to 1, for one of sRGB in this range: the inverse of [`encode_srgb`]. Linear near black, a
+/// power above.
+pub fn decode_srgb(encoded: f32) -> f32 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
 /// The curve of [`encode_srgb`] before it is rounded, from 0 to 255.
 fn srgb_curve(linear: f32) -> f32 {
     let linear = linear.clamp(0.0, 1.0);
@@ -285,6 +291,7 @@ fn nearest_rgbe(color: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tests::folder::Folder;
 
     #[test]
     fn the_srgb_curve_meets_its_published_points() {
@@ -294,6 +301,7 @@ mod tests {
         assert_eq!(encode_srgb(-1.0), 0);
         assert_eq!(encode_srgb(7.0), 255);
         assert_eq!(encode_srgb(0.002), 7); // on the straight part: 12.92 · 0.002 · 255 = 6.6
+        assert!((0..=255u8).all(|byte| encode_srgb(decode_srgb(f32::from(byte) / 255.0)) == byte));
     }
 
     #[test]
@@ -349,13 +357,11 @@ mod tests {
             (Vec3::new(4.0, f32::NAN, 0.02), Vec3::new(4.0, 0.0, 1.0 / 32.0)),
             (Vec3::splat(1e-45), Vec3::ZERO),
         ];
-        let folder = std::env::temp_dir().join(format!("raykata-hdr-{}", std::process::id()));
-        fs::create_dir(&folder).expect("a new folder");
+        let folder = Folder::new("hdr");
         let mut film = Film::new(colors.len() as u32, 1);
         film.pixels = colors.map(|(color, _)| color).to_vec();
-        film.write_hdr(&folder.join("colors.hdr")).expect("a picture");
-        let back = image::open(folder.join("colors.hdr")).expect("a picture").into_rgb32f();
-        fs::remove_dir_all(&folder).expect("the folder");
+        film.write_hdr(&folder.path("colors.hdr")).expect("a picture");
+        let back = image::open(folder.path("colors.hdr")).expect("a picture").into_rgb32f();
         for (pixel, (color, nearest)) in back.pixels().zip(colors) {
             assert_eq!(Vec3::from_array(pixel.0), nearest, "{color}");
         }
@@ -363,18 +369,16 @@ mod tests {
 
     #[test]
     fn a_failed_write_leaves_nothing_behind() {
-        let folder = std::env::temp_dir().join(format!("raykata-film-{}", std::process::id()));
-        fs::create_dir(&folder).expect("a new folder");
-        let file = folder.join("picture.png");
+        let folder = Folder::new("film");
+        let file = folder.path("picture.png");
         let result = write_atomically(&file, |_| Err(io::Error::other("no more light")));
         assert_eq!(result.unwrap_err().to_string(), "no more light");
-        assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 0);
+        assert_eq!(fs::read_dir(folder.path("")).expect("the folder").count(), 0);
         let mut bright = Film::new(3, 2);
         bright.pixels[1] = Vec3::new(f32::INFINITY, f32::NAN, -1.0);
-        bright.write_hdr(&folder.join("picture.hdr")).expect("a picture");
-        fs::remove_file(folder.join("picture.hdr")).expect("the file");
+        bright.write_hdr(&folder.path("picture.hdr")).expect("a picture");
+        fs::remove_file(folder.path("picture.hdr")).expect("the file");
         Film::new(3, 2).write_png(&file, encode_srgb).expect("a picture");
-        assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 1);
-        fs::remove_dir_all(&folder).expect("the folder goes");
+        assert_eq!(fs::read_dir(folder.path("")).expect("the folder").count(), 1);
     }
 }

@@ -4,3 +4,4 @@ pub mod error;
 pub mod obj;
 pub mod ply;
 pub mod scene;
+mod words;

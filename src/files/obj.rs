@@ -22,7 +22,8 @@ mod lines;
 mod tests;
 
 use crate::files::error::{LoadError, Warnings};
-use crate::files::ply::text::{LOOKS_LIKE_OBJ, guess, quote, read_bytes, readable};
+use crate::files::ply::text::{LOOKS_LIKE_OBJ, guess, read_bytes, readable};
+use crate::files::words::quoted;
 use crate::mesh::{Mesh, SceneMesh};
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
@@ -141,7 +142,7 @@ fn parse_with(file: &Path, bytes: &[u8], with_libraries: bool) -> Result<ObjFile
         mesh.mesh.material_names.contains(name) && materials.iter().all(|material| material.name != **name)
     });
     let undefined = undefined.map(|(name, span)| {
-        let message = format!("material {} is not defined", quote(name));
+        let message = format!("material {} is not defined", quoted(name));
         (name.clone(), LoadError::at(file, &text, span.clone(), message))
     });
     Ok(ObjFile { undefined: undefined.collect(), mesh, materials, warnings })

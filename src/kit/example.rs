@@ -22,6 +22,17 @@ macro_rules! examples {
     };
 }
 
+/// `Example` for types whose default is the simplest value.
+macro_rules! defaults {
+    ($($Type:ty),*) => {
+        $(impl Example for $Type {
+            fn example() -> Self {
+                Self::default()
+            }
+        })*
+    };
+}
+
 pub(super) fn example<T: Example>() -> T {
     T::example()
 }
@@ -62,6 +73,11 @@ impl<S: Example> Example for CellsQuery<S> {
     }
 }
 
+defaults! {
+    Mesh, Material, Quality, Effects, KdHeuristics, Bsp, PolygonBsp, Vec<WeightedColor>, Vec<Light>,
+    Vec<MaterialHits>, Vec<PrimitiveBox>, Bvh, FlatTree, Vec<Aabb>
+}
+
 examples! {
     f32 => 1.0;
     u8 => 1;
@@ -87,10 +103,6 @@ examples! {
         rows: vec![vec![Vec3::ZERO; 2]; 2],
         weights: vec![vec![1.0; 2]; 2],
     };
-    Mesh => Mesh::default();
-    Material => Material::default();
-    Quality => Quality::default();
-    Effects => Effects::default();
     Stratum => Stratum { cell: UVec2::ZERO, grid: UVec2::ONE, u: Vec2::ZERO };
     Sampler => Sampler::Jittered;
     Split => Split::SurfaceArea;
@@ -98,7 +110,6 @@ examples! {
     Limits => Limits { max_depth: 0, min_contribution: 0.0 };
     Lens => Lens { aperture: 0.0, focal_distance: 1.0 };
     Shutter => Shutter { open: 0.0, close: 1.0 };
-    KdHeuristics => KdHeuristics::default();
     PathState => PathState {
         origin: Vec3::Z,
         direction: Vec3::NEG_Z,
@@ -137,18 +148,12 @@ examples! {
     Grid => Grid { bounds: Aabb::EMPTY, resolution: UVec3::ONE, starts: vec![0, 0], items: Vec::new() };
     Octree => Octree::empty();
     KdTree => KdTree::new(Aabb::EMPTY);
-    Bsp => Bsp::default();
-    PolygonBsp => PolygonBsp::default();
 
     Vec<PrimitiveRef> => [0, 1].map(|id| PrimitiveRef { id, bounds: example(), centroid: Vec3::splat(0.5) }).into();
-    Vec<WeightedColor> => Vec::new();
     Vec<Affine3A> => Vec::new();
     Vec<Vec3> => vec![Vec3::ZERO];
     Vec<f32> => vec![0.0, 0.0, 1.0, 1.0]; // the knots of a straight line
-    Vec<Light> => Vec::new();
-    Vec<MaterialHits> => Vec::new();
     Vec<Vec<Vec3>> => Vec::new();
-    Vec<PrimitiveBox> => Vec::new();
 
     SphereQuery => SphereQuery { ray: example(), sphere: example() };
     PlaneQuery => PlaneQuery {
@@ -181,9 +186,6 @@ examples! {
     AreaEmitter => AreaEmitter { shape: EmitterShape::Sphere(example()), radiance: Vec3::ONE, two_sided: false };
     Scattering => Scattering { diffuse: Vec3::ONE, normal: Vec3::Z, secondary: Vec::new() };
     EmitterSample => EmitterSample { direction: Vec3::Z, distance: 1.0, radiance: Vec3::ONE, pdf: 1.0 };
-    Bvh => Bvh::default();
-    FlatTree => FlatTree::default();
-    Vec<Aabb> => Vec::new();
     BinGrid => BinGrid { low: glam::Vec3A::ZERO, scale: glam::Vec3A::ONE, n_bins: 2 };
     BinSplitQuery => BinSplitQuery { bins: Box::new(Bins::EMPTY), n_bins: 2 };
     PartitionQuery => PartitionQuery {

@@ -4,7 +4,7 @@
 use crate::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use crate::count::{Counts, Event, Tally};
 use crate::kit::Table;
-use crate::kit::questions::Asker;
+use crate::kit::questions::{Asker, Call};
 use crate::kit::table::Known;
 use crate::message;
 use crate::partition::Cells;
@@ -60,7 +60,7 @@ impl CachedQuery {
     /// If `hits` is shorter than `entries`.
     pub fn search(&self, probe: &mut CellsProbe<'_>, ray: &Ray) -> Option<PrimitiveHit> {
         if let Some(asker) = &mut probe.asker {
-            return asker.search(ray);
+            return asker.found(Call::Search(*ray));
         }
         for (primitive, _) in (0..).zip(&self.entries).filter(|(_, entry)| **entry < ray.t_max) {
             probe.visit(primitive);
@@ -142,7 +142,7 @@ impl Cells for CellsProbe<'_> {
 
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         if let Some(asker) = &mut self.asker {
-            return asker.hit(primitive, ray);
+            return asker.t(Call::Hit(primitive, *ray));
         }
         self.answer.tests.push(primitive);
         let t = self.hits[primitive as usize];
@@ -196,7 +196,7 @@ impl<'a> PacketProbe<'a> {
 impl Probe for PacketProbe<'_> {
     fn open(&mut self, node: u32) -> Contents {
         if let Some(asker) = &mut self.asker {
-            return asker.open(node);
+            return asker.contents(Call::Open(node));
         }
         let above = self.known.open_above(node);
         self.known.open(node);
@@ -207,7 +207,7 @@ impl Probe for PacketProbe<'_> {
     #[track_caller]
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         if let Some(asker) = &mut self.asker {
-            return asker.enter(node, ray);
+            return asker.t(Call::Enter(node, *ray));
         }
         self.answer.counts.note(Event::BoxTest);
         let above = self.known.open_above(node);
@@ -218,7 +218,7 @@ impl Probe for PacketProbe<'_> {
     #[track_caller]
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         if let Some(asker) = &mut self.asker {
-            return asker.hit(primitive, ray);
+            return asker.t(Call::Hit(primitive, *ray));
         }
         self.answer.counts.note(Event::PrimitiveTest);
         let above = self.known.open_leaf_of(primitive);

@@ -101,6 +101,19 @@ pub(super) struct Asker {
     visits: Vec<u32>,
 }
 
+/// Defines methods that ask for a [`Response`] of one kind.
+macro_rules! asks {
+    ($($name:ident: $Kind:ident($Value:ty);)*) => {
+        $(#[track_caller]
+        pub(super) fn $name(&mut self, call: Call) -> $Value {
+            match self.ask(call) {
+                Response::$Kind(value) => value,
+                other => panic!("the judge answers another question: {other:?}"),
+            }
+        })*
+    };
+}
+
 impl Asker {
     /// The asker for the next query of the request; `None` if probes answer from their own tables.
     pub(super) fn for_next_query() -> Option<Asker> {
@@ -117,71 +130,13 @@ impl Asker {
         self.visits.push(node);
     }
 
-    #[track_caller]
-    pub(super) fn open(&mut self, node: u32) -> Contents {
-        match self.ask(Call::Open(node)) {
-            Response::Contents(contents) => contents,
-            other => out_of_step(&other),
-        }
-    }
-
-    #[track_caller]
-    pub(super) fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
-        match self.ask(Call::Enter(node, *ray)) {
-            Response::T(t) => t,
-            other => out_of_step(&other),
-        }
-    }
-
-    #[track_caller]
-    pub(super) fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
-        match self.ask(Call::Hit(primitive, *ray)) {
-            Response::T(t) => t,
-            other => out_of_step(&other),
-        }
-    }
-
-    #[track_caller]
-    pub(super) fn search(&mut self, ray: &Ray) -> Option<PrimitiveHit> {
-        match self.ask(Call::Search(*ray)) {
-            Response::Found(hit) => hit,
-            other => out_of_step(&other),
-        }
-    }
-
-    #[track_caller]
-    pub(super) fn visible(&mut self, light: usize, ray: &Ray) -> bool {
-        match self.ask(Call::Visible(u32::try_from(light).unwrap_or(u32::MAX), *ray)) {
-            Response::Visible(visible) => visible,
-            other => out_of_step(&other),
-        }
-    }
-
-    /// Asks which children of a wide node are entered.
-    #[track_caller]
-    pub(super) fn entered(&mut self, call: Call) -> Entered {
-        match self.ask(call) {
-            Response::Entered(entered) => entered,
-            other => out_of_step(&other),
-        }
-    }
-
-    /// Asks which lanes of a block may be hit.
-    #[track_caller]
-    pub(super) fn lanes(&mut self, call: Call) -> u32 {
-        match self.ask(call) {
-            Response::Lanes(lanes) => lanes,
-            other => out_of_step(&other),
-        }
-    }
-
-    /// Asks for the hit with the primitive in a lane.
-    #[track_caller]
-    pub(super) fn found(&mut self, call: Call) -> Option<PrimitiveHit> {
-        match self.ask(call) {
-            Response::Found(hit) => hit,
-            other => out_of_step(&other),
-        }
+    asks! {
+        contents: Contents(Contents);
+        t: T(Option<f32>);
+        found: Found(Option<PrimitiveHit>);
+        visible: Visible(bool);
+        entered: Entered(Entered);
+        lanes: Lanes(u32);
     }
 
     /// Reports the visits after the last question.
@@ -200,9 +155,4 @@ impl Asker {
             Err(error) => panic!("the judge does not answer: {error}"),
         }
     }
-}
-
-#[track_caller]
-fn out_of_step(response: &Response) -> ! {
-    panic!("the judge answers another question: {response:?}")
 }

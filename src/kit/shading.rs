@@ -1,6 +1,6 @@
 //! Stage 4, shading and shadows: queries and answers.
 
-use crate::kit::questions::Asker;
+use crate::kit::questions::{Asker, Call};
 use crate::light::surface::{LightSample, Surface};
 use crate::material::Material;
 use crate::message;
@@ -62,7 +62,7 @@ impl<'a> ShadowProbe<'a> {
     #[track_caller]
     pub fn visible(&mut self, light: usize, ray: &Ray) -> bool {
         if let Some(asker) = &mut self.asker {
-            return asker.visible(light, ray);
+            return asker.visible(Call::Visible(u32::try_from(light).unwrap_or(u32::MAX), *ray));
         }
         self.traced.push(light);
         self.rays.push(*ray);

@@ -4,7 +4,7 @@
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, PrimitiveRef, Probe};
 use crate::count::{Counts, Event, Tally};
-use crate::kit::questions::Asker;
+use crate::kit::questions::{Asker, Call};
 use crate::message;
 use crate::ray::Ray;
 use crate::scene::Split;
@@ -172,7 +172,7 @@ impl<'a> TableProbe<'a> {
 impl Probe for TableProbe<'_> {
     fn open(&mut self, node: u32) -> Contents {
         if let Some(asker) = &mut self.asker {
-            return asker.open(node);
+            return asker.contents(Call::Open(node));
         }
         self.counts.node_visits += 1 + self.known.open_above(node).len() as u64;
         self.known.open(node);
@@ -181,7 +181,7 @@ impl Probe for TableProbe<'_> {
 
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         if let Some(asker) = &mut self.asker {
-            return asker.enter(node, ray);
+            return asker.t(Call::Enter(node, *ray));
         }
         self.counts.note(Event::BoxTest);
         self.counts.node_visits += self.known.open_above(node).len() as u64;
@@ -190,7 +190,7 @@ impl Probe for TableProbe<'_> {
 
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         if let Some(asker) = &mut self.asker {
-            return asker.hit(primitive, ray);
+            return asker.t(Call::Hit(primitive, *ray));
         }
         self.counts.note(Event::PrimitiveTest);
         self.counts.node_visits += self.known.open_leaf_of(primitive).len() as u64;

@@ -55,6 +55,11 @@ impl Scene {
         materials.collect::<BTreeSet<usize>>().into_iter().collect()
     }
 
+    /// Whether a node has a surface that is drawn with curves.
+    pub fn has_curved_surface(&self) -> bool {
+        self.nodes.iter().any(|node| matches!(node.shape, Some(Shape::Bezier { .. } | Shape::Nurbs { .. })))
+    }
+
     fn materials_of(&self, shape: &Shape, otherwise: usize) -> Vec<usize> {
         let Shape::Mesh(index) = shape else { return vec![otherwise] };
         let mesh = &self.meshes[*index];

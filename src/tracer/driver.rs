@@ -206,7 +206,6 @@ fn render_tile<T: Tally>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::progress::Unwatched;
 
     fn settings(width: u32, height: u32, samples_per_pixel: u32, threads: usize) -> FrameSettings {
         let sampler = Sampler::LowDiscrepancy;
@@ -226,46 +225,6 @@ mod tests {
 
     fn mean(samples: &[WeightedColor]) -> Vec3 {
         samples.iter().map(|sample| sample.color).sum::<Vec3>() / samples.len() as f32
-    }
-
-    fn noise(threads: usize) -> (Film, Counts) {
-        noise_of(settings(50, 33, 3, threads))
-    }
-
-    fn noise_of(settings: FrameSettings) -> (Film, Counts) {
-        let frame = render::<Counts>(
-            &settings,
-            &Unwatched,
-            |sample, tally| {
-                tally.note(Event::Primary);
-                let u = sample.pixel.expect("three samples are spread").u;
-                WeightedColor { color: Vec3::new(u.x, u.y, sample.column as f32), weight: 1.0 }
-            },
-            mean,
-        );
-        frame.expect("not cancelled")
-    }
-
-    #[test]
-    fn every_number_of_threads_makes_the_same_picture() {
-        let (film, counts) = noise(1);
-        assert_eq!((counts.primary, counts.random_numbers), (50 * 33 * 3, 2 * 50 * 33 * 3));
-        for threads in [2, 3, 8] {
-            let (other, other_counts) = noise(threads);
-            assert_eq!(film, other);
-            assert_eq!(counts, other_counts);
-        }
-    }
-
-    #[test]
-    fn some_rows_are_those_of_the_whole_picture() {
-        let whole = noise(1).0;
-        for rows in [Rows { start: 0, end: 16 }, Rows { start: 16, end: 32 }, Rows { start: 16, end: 33 }] {
-            let (piece, counts) = noise_of(FrameSettings { rows, ..settings(50, 33, 3, 2) });
-            assert_eq!((piece.width, piece.height), (50, rows.n_rows()));
-            assert_eq!(piece.pixels, whole.pixels[50 * rows.start as usize..50 * rows.end as usize]);
-            assert_eq!(counts.primary, 3 * 50 * u64::from(rows.n_rows()));
-        }
     }
 
     #[test]

@@ -6,14 +6,14 @@
 #[path = "../../../src/files/scene/tests/changed.rs"]
 mod changed;
 
-use crate::frames::render;
-use crate::scene::scene;
+use crate::scene::{render, scene};
 use changed::changed;
 use std::fmt::Write;
 
 #[test]
 fn what_changes_nothing_costs_nothing() {
-    let white = std::env::temp_dir().join(format!("raykata-white-{}.png", std::process::id()));
+    let folder = tempfile::tempdir().expect("a folder");
+    let white = folder.path().join("white.png");
     image::RgbImage::from_pixel(4, 2, image::Rgb([255; 3])).save(&white).expect("an image");
     let mut wrong = String::new();
     for section in include_str!("called_for.txt").split("=== ").skip(1) {
@@ -36,6 +36,5 @@ fn what_changes_nothing_costs_nothing() {
             }
         }
     }
-    let _ = std::fs::remove_file(white);
     assert!(wrong.is_empty(), "{wrong}");
 }

@@ -2,8 +2,7 @@
 //! structure is coarser than the scene asks for.
 
 use super::adversarial::hard_lists;
-use super::frames::render;
-use crate::scene::scene;
+use crate::scene::{render, scene};
 use raykata::kit::Rendering;
 use raykata::mesh::Mesh;
 use raykata::partition::MOST_REFERENCES;

@@ -2,22 +2,13 @@
 //! sharp, half a visible light gives half the light, and every search finds moving shapes on any number of
 //! threads.
 
-use crate::scene::scene;
+use crate::scene::{differing, job, render, rendered, scene};
 use glam::Vec3;
-use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, Rendering, View};
+use raykata::kit::RenderJob;
 use raykata::scene::{Accelerator, Sampler, Scene};
 
 const SAMPLERS: [Sampler; 5] =
     [Sampler::Center, Sampler::Random, Sampler::Jittered, Sampler::Gaussian, Sampler::LowDiscrepancy];
-
-fn job(scene: &Scene, threads: usize) -> RenderJob {
-    RenderJob { scene: scene.clone(), view: View::Shaded, seed: 5, threads, count: true, reuse: false }
-}
-
-fn render(scene: &Scene) -> Rendering {
-    solutions::kit().render(&job(scene, 1), &Unwatched).expect("not cancelled")
-}
 
 /// A scene with every distributed effect, over a floor with tiles.
 fn full(samples: u32) -> Scene {
@@ -87,7 +78,7 @@ fn every_search_finds_what_moves_and_threads_change_nothing() {
         let found = render(&scene);
         assert!(found.film.not_a_number() == 0 && found.counts.random_numbers > 0);
         for threads in [2, 5] {
-            let other = solutions::kit().render(&job(&scene, threads), &Unwatched).expect("not cancelled");
+            let other = rendered(&RenderJob { threads, ..job(&scene) });
             assert_eq!(
                 (&other.film, other.counts),
                 (&found.film, found.counts),
@@ -122,7 +113,7 @@ fn what_has_no_extent_changes_no_bit() {
 /// The points at `distance` along the view that the camera rays of a pixel reach, for many seeds.
 fn on_plane(scene: &Scene, x: u32, y: u32, distance: f32) -> Vec<Vec3> {
     let place = |seed| {
-        let ray = &solutions::kit().trace(&RenderJob { seed, ..job(scene, 1) }, x, y)[0];
+        let ray = &solutions::kit().trace(&RenderJob { seed, ..job(scene) }, x, y)[0];
         let along = ray.direction.dot(scene.camera.towards);
         ray.origin
             + (distance - (ray.origin - scene.camera.position).dot(scene.camera.towards)) / along
@@ -249,6 +240,5 @@ fn a_shutter_that_does_not_open_shows_the_moment() {
     });
     let still = render(&moving);
     // Blended matrices and blended points differ by rounding errors, which may move a ray past an edge.
-    let off = found.film.pixels.iter().zip(&still.film.pixels).filter(|(a, b)| (**a - **b).length() > 0.02);
-    assert!(off.count() * 100 <= found.film.pixels.len());
+    assert!(differing(&found.film, &still.film, 0.01) * 100 <= found.film.pixels.len());
 }

@@ -1,7 +1,6 @@
 //! Rays that start on edges and vertices stay on their side: the inside of a closed mirror shows nothing but itself.
 
-use crate::frames::render;
-use crate::scene::scene;
+use crate::scene::{render, scene};
 use glam::{DQuat, DVec3, Vec3, vec3};
 use oracle::gauntlet::families::families;
 use oracle::gauntlet::job::job;

@@ -1,22 +1,11 @@
 //! Whole frames of the reference: the picture is the same for every search and any number of threads, no
 //! unnecessary ray is traced, and there is no shadow acne at any size.
 
-use crate::scene::scene;
+use crate::scene::{differing, job, render, rendered, scene};
 use glam::Vec3;
 use raykata::count::Counts;
-use raykata::film::Film;
-use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, Rendering, View};
+use raykata::kit::{RenderJob, View};
 use raykata::scene::{Accelerator, Quality, Scene, Split};
-
-fn render_with(scene: &Scene, threads: usize, count: bool) -> Rendering {
-    let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads, count, reuse: false };
-    solutions::kit().render(&job, &Unwatched).expect("not cancelled")
-}
-
-pub fn render(scene: &Scene) -> Rendering {
-    render_with(scene, 1, true)
-}
 
 const VASES: &str = r#"
 film = { width = 72, height = 54 }
@@ -42,8 +31,7 @@ shape = { sphere = { center = [1.2, 1, 0], radius = 1 } }
 
 #[test]
 fn a_frame_up_to_a_stage_calls_no_later_function() {
-    let job = |view| RenderJob { scene: scene(VASES), view, seed: 1, threads: 1, count: true, reuse: false };
-    let render = |view| solutions::kit().render(&job(view), &Unwatched).expect("not cancelled");
+    let render = |view| rendered(&RenderJob { view, ..job(&scene(VASES)) });
     assert_eq!(render(View::UpToStage(12)).film, render(View::Shaded).film);
     let shadow_rays = [3, 4].map(|stage| render(View::UpToStage(stage)).counts.shadow);
     assert!(shadow_rays[0] == 0 && shadow_rays[1] > 0, "{shadow_rays:?}");
@@ -66,7 +54,7 @@ fn every_search_and_every_number_of_threads_makes_the_same_picture() {
     }
     let one = render(&scene);
     for threads in [2, 5] {
-        let many = render_with(&scene, threads, true);
+        let many = rendered(&RenderJob { threads, ..job(&scene) });
         assert_eq!((many.film, many.counts), (one.film.clone(), one.counts));
     }
 }
@@ -89,21 +77,6 @@ fn a_scene_that_names_no_accelerator_gets_the_fastest_hierarchy_that_fits_it() {
     assert_eq!(rays(&binary.counts), rays(&wide.counts));
 }
 
-#[test]
-fn caches_make_the_same_picture_with_the_same_counts_on_any_number_of_threads() {
-    let mut scene = scene(VASES);
-    let expected = render(&scene);
-    for accelerator in [Accelerator::CachedBvh, Accelerator::CachedBoundingBoxes] {
-        scene.quality.accelerator = accelerator;
-        let one = render(&scene);
-        assert_eq!(one.film, expected.film, "{accelerator:?}");
-        for threads in [2, 5] {
-            let many = render_with(&scene, threads, true);
-            assert_eq!((many.film, many.counts), (one.film.clone(), one.counts), "{accelerator:?}");
-        }
-    }
-}
-
 fn rays(counts: &Counts) -> (u64, u64) {
     (counts.primary, counts.shadow)
 }
@@ -111,27 +84,9 @@ fn rays(counts: &Counts) -> (u64, u64) {
 #[test]
 fn counting_changes_no_pixel() {
     let scene = scene(VASES);
-    let (counted, uncounted) = (render_with(&scene, 1, true), render_with(&scene, 1, false));
+    let (counted, uncounted) = (render(&scene), rendered(&RenderJob { count: false, ..job(&scene) }));
     assert_eq!(counted.film, uncounted.film);
     assert_eq!(uncounted.counts, Counts::default());
-}
-
-#[test]
-fn all_triangle_tests_make_nearly_the_same_picture() {
-    use raykata::scene::TriangleMethod::{Choice, Cramer, Gram, Watertight};
-    let mut scene = scene(VASES);
-    let picture = |method, scene: &mut Scene| {
-        scene.quality.triangle_method = method;
-        render(scene).film
-    };
-    let watertight = picture(Watertight, &mut scene);
-    for method in [Cramer, Gram, Choice] {
-        let film = picture(method, &mut scene);
-        let off =
-            film.pixels.iter().zip(&watertight.pixels).filter(|(p, q)| (**p - **q).length() > 0.02).count();
-        // The tests may disagree about rays that pass an edge within rounding error: a few of 3,888.
-        assert!(off <= 8, "{method:?}: {off} pixels differ");
-    }
 }
 
 #[test]
@@ -156,56 +111,6 @@ shape = { plane = { point = [0, 0, 0], normal = [0, 1, 0] } }
     );
     // Every pixel sees the floor. One light shines on it, one is below it, one has intensity 0.
     assert_eq!(rays(&render(&scene).counts), (1200, 1200));
-}
-
-/// A scene of this size, with `offset` from the origin, in which every surface that is seen is fully lit.
-fn lit_scene(size: f32, offset: f32) -> String {
-    let at = |x: f32, y: f32, z: f32| {
-        format!("[{}, {}, {}]", offset + size * x, offset + size * y, offset + size * z)
-    };
-    format!(
-        r#"
-film = {{ width = 60, height = 45 }}
-camera = {{ position = {eye}, look_at = {center} }}
-[environment]
-background = 1
-[[lights]]
-point = {{ position = {light} }}
-[[nodes]]
-shape = {{ sphere = {{ center = {center}, radius = {radius} }} }}
-[[nodes]]
-shape = {{ triangle = {{ a = {a}, b = {b}, c = {c} }} }}
-[[nodes]]
-shape = {{ box = {{ min = {low}, max = {high} }} }}
-"#,
-        // The light is just behind the camera, so no visible point lies in shadow.
-        eye = at(0.3, 0.5, 6.0),
-        light = at(0.3, 0.5, 6.1),
-        center = at(0.0, 0.0, 0.0),
-        radius = size,
-        a = at(-3.0, -2.0, -2.0),
-        b = at(3.0, -2.0, -2.0),
-        c = at(0.0, 3.0, -2.5),
-        low = at(1.2, -1.5, -0.5),
-        high = at(2.0, -0.5, 0.5),
-    )
-}
-
-fn dark_pixels(film: &Film) -> usize {
-    film.pixels.iter().filter(|pixel| pixel.x <= 0.0).count()
-}
-
-#[test]
-fn no_surface_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
-    for size in [1e-3, 1e-2, 0.1, 1.0, 10.0, 1e3, 1e5] {
-        for offset in [0.0, 30.0 * size] {
-            let film = render(&scene(&lit_scene(size, offset))).film;
-            assert_eq!(film.not_a_number(), 0);
-            // Light and camera are a little apart, so one or two visible pixels along outlines may lie in shadow.
-            let dark = dark_pixels(&film);
-            assert!(dark <= 6, "size {size}, offset {offset}: {dark} of 2700 pixels are dark");
-        }
-    }
 }
 
 #[test]
@@ -252,8 +157,7 @@ fn glass_that_bends_nothing_is_not_seen() {
         render(&scene)
     };
     let glass = render(&sphere_of("transmission = 1"));
-    let off =
-        empty.film.pixels.iter().zip(&glass.film.pixels).filter(|(p, q)| (**p - **q).length() > 1e-3).count();
+    let off = differing(&empty.film, &glass.film, 5e-4);
     // At the surface of the sphere the ray is moved by a rounding error, which may change pixels at outlines
     // behind it.
     assert!(off <= 3, "{off} of 2700 pixels differ");
@@ -268,8 +172,7 @@ fn a_mirror_traces_one_ray_for_each_ray_that_meets_it() {
     assert_eq!(dull.counts.reflection, 0);
     // No reflected ray hits the convex sphere again, so there are as many reflected rays as pixels that show
     // the sphere.
-    let shown = mirror.film.pixels.iter().zip(&dull.film.pixels).filter(|(p, q)| p != q).count();
-    assert_eq!(mirror.counts.reflection, shown as u64);
+    assert_eq!(mirror.counts.reflection, differing(&mirror.film, &dull.film, 0.0) as u64);
 }
 
 #[test]

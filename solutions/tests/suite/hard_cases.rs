@@ -1,13 +1,11 @@
 //! Hard cases of `tests/cases.toml` that no exercise contains: media that touch, the shadow terminator of smooth meshes, spheres
 //! far from the origin and meshes that move.
 
-use crate::frames::render;
-use crate::scene::scene;
+use crate::scene::{job, render, rendered, scene};
 use glam::{DVec3, Vec3};
 use oracle::splitmix::Random;
 use raykata::camera::{Camera, Shutter};
 use raykata::film::Film;
-use raykata::frame::Unwatched;
 use raykata::kit::{RenderJob, View};
 use raykata::mesh::SceneMesh;
 use raykata::scene::{Sampler, Scene};
@@ -15,15 +13,8 @@ use solutions::stage8_surfaces::loop_subdivide;
 use std::sync::Arc;
 
 fn normals_of(scene: &Scene) -> (RenderJob, Film) {
-    let job = RenderJob {
-        scene: scene.clone(),
-        view: View::Normals,
-        seed: 0,
-        threads: 1,
-        count: false,
-        reuse: false,
-    };
-    let film = solutions::kit().render(&job, &Unwatched).expect("not cancelled").film;
+    let job = RenderJob { view: View::Normals, ..job(scene) };
+    let film = rendered(&job).film;
     (job, film)
 }
 

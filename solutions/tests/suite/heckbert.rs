@@ -12,15 +12,9 @@
 //! The card samples the upper left corners of pixels, the kit their centres. `heckbert_centers.txt` is the output after
 //! `yx%32-32/2` has become `yx%32-32/2+.5`, and `32/2-yx++/32` has become `32/2-.5-yx++/32`.
 
-use crate::frames::render;
+use crate::scene::{render, whole};
 use raykata::camera::Camera;
-use raykata::scene::{Scene, load};
-use std::path::Path;
-
-fn card() -> Scene {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/heckbert.toml");
-    load::load(&file).expect("the scene")
-}
+use raykata::scene::Scene;
 
 /// The upper left 32 by 32 pixels are those of a program's output, in steps of 1/255.
 #[track_caller]
@@ -40,13 +34,13 @@ fn assert_card(scene: &Scene, output: &str) {
 
 #[test]
 fn the_business_card_is_the_picture_of_its_program() {
-    assert_card(&card(), include_str!("../../../tests/golden/heckbert_centers.txt"));
+    assert_card(&whole("heckbert"), include_str!("../../../tests/golden/heckbert_centers.txt"));
 }
 
 /// In a picture of 33 by 33 pixels of the same size, the centres are the corners of the card's pixels.
 #[test]
 fn the_business_card_is_that_of_the_unchanged_program() {
-    let mut scene = card();
+    let mut scene = whole("heckbert");
     (scene.film.width, scene.film.height) = (33, 33);
     let half_height = (12.5f64.to_radians().tan() * 33.0 / 32.0) as f32;
     let degrees = 2.0 * half_height.atan().to_degrees();

@@ -1,12 +1,10 @@
 //! Indirect light in frames: the pictures of scenes whose light is known, both techniques against each other, and what is
 //! traced and looked up.
 
-use crate::frames::render;
-use crate::scene::scene;
+use crate::scene::{job, render, rendered, scene};
 use glam::{DVec3, Vec3};
 use raykata::film::Film;
-use raykata::frame::Unwatched;
-use raykata::kit::{RayKind, RenderJob, Rendering, TracedRay, View};
+use raykata::kit::{RayKind, RenderJob, Rendering, TracedRay};
 use raykata::material::{Texture, Wrap};
 use raykata::scene::{Background, EnvironmentMap, NextEvent, Scene};
 use std::sync::Arc;
@@ -213,8 +211,7 @@ fn both_techniques_have_less_noise_in_rough_mirrors_than_either() {
         let mut scene = scene.clone();
         let quality = &mut scene.quality;
         (quality.next_event, quality.max_depth, quality.samples_per_pixel) = (next_event, 1, samples);
-        let job = RenderJob { scene, view: View::Shaded, seed, threads: 1, count: false, reuse: false };
-        solutions::kit().render(&job, &Unwatched).expect("not cancelled").film
+        rendered(&RenderJob { seed, ..job(&scene) }).film
     };
     let right = film(NextEvent::On, 1, 4096);
     let error = |next_event| {
@@ -325,15 +322,7 @@ fn everything() -> Scene {
 #[test]
 fn threads_change_no_pixel_and_no_count_of_indirect_light() {
     let frame = |threads: usize| {
-        let job = RenderJob {
-            scene: everything(),
-            view: View::Shaded,
-            seed: 5,
-            threads,
-            count: true,
-            reuse: false,
-        };
-        let rendering = solutions::kit().render(&job, &Unwatched).expect("not cancelled");
+        let rendering = rendered(&RenderJob { threads, ..job(&everything()) });
         (rendering.film, rendering.counts)
     };
     let one = frame(1);
@@ -347,11 +336,10 @@ fn threads_change_no_pixel_and_no_count_of_indirect_light() {
 fn the_counts_of_paths_are_those_of_their_rays() {
     let mut scene = everything();
     scene.quality.samples_per_pixel = 1;
-    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: true, reuse: false };
-    let door = solutions::kit();
-    let counts = door.render(&job, &Unwatched).expect("not cancelled").counts;
+    let job = job(&scene);
+    let counts = rendered(&job).counts;
     let pixels = (0..30).flat_map(|y| (0..40).map(move |x| (x, y)));
-    let paths: Vec<Vec<TracedRay>> = pixels.map(|(x, y)| door.trace(&job, x, y)).collect();
+    let paths: Vec<Vec<TracedRay>> = pixels.map(|(x, y)| solutions::kit().trace(&job, x, y)).collect();
     let of_kind = |kind| paths.iter().flatten().filter(|ray| ray.kind == kind).count() as u64;
     assert_eq!(counts.primary, of_kind(RayKind::Primary));
     assert_eq!(counts.shadow, of_kind(RayKind::Shadow));

@@ -1,8 +1,7 @@
 //! Frames that use the structures of earlier frames again are the same frames.
 
-use crate::scene::scene;
-use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, Rendering, View};
+use crate::scene::{self, rendered, scene};
+use raykata::kit::RenderJob;
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Precision, Scene, Split};
 
@@ -29,11 +28,7 @@ transform = [{ translate = [1.2, 0, 0.5] }]
 "#;
 
 fn job(scene: &Scene, seed: u64, reuse: bool) -> RenderJob {
-    RenderJob { scene: scene.clone(), view: View::Shaded, seed, threads: 1, count: true, reuse }
-}
-
-fn render(job: &RenderJob) -> Rendering {
-    solutions::kit().render(job, &Unwatched).expect("not cancelled")
+    RenderJob { seed, reuse, ..scene::job(scene) }
 }
 
 #[test]
@@ -64,7 +59,7 @@ fn a_structure_that_is_used_again_changes_no_pixel_and_no_count() {
     // Twice, so that the second time every structure has been kept.
     for seed in 0..2 {
         for (index, scene) in scenes.iter().enumerate() {
-            let [again, alone] = [true, false].map(|reuse| render(&job(scene, seed, reuse)));
+            let [again, alone] = [true, false].map(|reuse| rendered(&job(scene, seed, reuse)));
             assert_eq!(again.film, alone.film, "scene {index}");
             assert_eq!((again.counts, again.notes), (alone.counts, alone.notes), "scene {index}");
             assert!(again.build_seconds > 0.0);
@@ -81,7 +76,7 @@ fn a_plain_world_is_not_that_of_a_frame() {
             ..Ray::new(scene.camera.position, glam::Vec3::NEG_Z)
         })
         .collect();
-    render(&job(&scene, 0, true));
+    rendered(&job(&scene, 0, true));
     let kit = solutions::kit();
     let [alone, first, again] =
         [false, true, true].map(|reuse| kit.first_hits(&job(&scene, 0, reuse), &rays));

@@ -1,7 +1,6 @@
 //! Light that rays see directly: surfaces that emit it, area lights that are visible, and the background.
 
-use crate::frames::render;
-use crate::scene::scene;
+use crate::scene::{render, scene};
 use glam::Vec3;
 use raykata::count::Counts;
 use raykata::material::{Texture, Wrap};

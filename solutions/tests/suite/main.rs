@@ -29,8 +29,6 @@ mod printed_calls;
 mod recorded;
 mod scales;
 mod scene;
-mod seeds;
-mod slabs;
 mod specials;
 mod stages;
 mod subsets;

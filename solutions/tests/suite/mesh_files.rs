@@ -1,23 +1,23 @@
 //! Pictures of meshes from files: what a file says of shading, and that its materials do not make light.
 
-use crate::frames::render;
+use crate::scene::render;
 use glam::Vec3;
 use raykata::scene::load;
-use std::path::PathBuf;
+use tempfile::TempDir;
 
-/// A folder for the files of a test, which is removed in the end.
-struct Folder(PathBuf);
+/// A folder for the files of a test.
+struct Folder(TempDir);
 
 impl Folder {
-    fn with<T: AsRef<[u8]>>(name: &str, files: &[(&str, T)]) -> Folder {
-        let folder = std::env::temp_dir().join(format!("raykata-mesh-files-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a folder");
-        files.iter().for_each(|(name, text)| std::fs::write(folder.join(name), text).expect("a file"));
+    fn with<T: AsRef<[u8]>>(files: &[(&str, T)]) -> Folder {
+        let folder = tempfile::tempdir().expect("a folder");
+        files.iter().for_each(|(name, text)| std::fs::write(folder.path().join(name), text).expect("a file"));
         Folder(folder)
     }
 
     fn pixels(&self, scene: &str) -> Vec<Vec3> {
-        let scene = load::parse(&self.0.join("scene.toml"), scene).unwrap_or_else(|error| panic!("{error}"));
+        let scene =
+            load::parse(&self.0.path().join("scene.toml"), scene).unwrap_or_else(|error| panic!("{error}"));
         render(&scene).film.pixels
     }
 
@@ -28,12 +28,6 @@ impl Folder {
              [environment]\nambient = 0.2\n[[lights]]\npoint = {{ position = [6, 6, 3] }}\n\
              [meshes.m]\nmaterials = false\n{mesh}\n[[nodes]]\nshape = {{ mesh = 'm' }}\n{node}"
         ))
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 
@@ -73,16 +67,13 @@ fn what_corners_have_does_not_change_the_shape() {
                property float t\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n";
     let ply_faces =
         (0..6).map(|face| format!("4 {} {} {} {}\n", 4 * face, 4 * face + 1, 4 * face + 2, 4 * face + 3));
-    let folder = Folder::with(
-        "corners",
-        &[
-            ("plain.obj", plain.clone()),
-            ("uv.obj", cube() + tables + &faces(0, "/#").concat()),
-            ("all.obj", cube() + tables + &faces(0, "/#/@").concat()),
-            ("materials.obj", plain.replace("f ", "usemtl a\nusemtl b\nf ").replacen("usemtl b", "", 3)),
-            ("uv.ply", ply.chars().map(String::from).chain(rows).chain(ply_faces).collect()),
-        ],
-    );
+    let folder = Folder::with(&[
+        ("plain.obj", plain.clone()),
+        ("uv.obj", cube() + tables + &faces(0, "/#").concat()),
+        ("all.obj", cube() + tables + &faces(0, "/#/@").concat()),
+        ("materials.obj", plain.replace("f ", "usemtl a\nusemtl b\nf ").replacen("usemtl b", "", 3)),
+        ("uv.ply", ply.chars().map(String::from).chain(rows).chain(ply_faces).collect()),
+    ]);
     for settings in ["", "subdivide = 1", "subdivide = 3"] {
         let of = |file: &str| folder.mesh(&format!("file = '{file}'\n{settings}"), "");
         for file in ["uv.obj", "materials.obj", "uv.ply", "all.obj"] {
@@ -99,15 +90,12 @@ fn normals_are_averaged_within_smoothing_groups() {
     let pick = |lines: &[String], list: &[usize]| list.iter().map(|&i| &*lines[i]).collect::<String>();
     let (own, copied) = (faces(0, ""), faces(8, ""));
     let (one, other) = (pick(&own, &[1, 4]), [0, 2, 3, 5]);
-    let folder = Folder::with(
-        "groups",
-        &[
-            ("plain.obj", cube() + &own.concat()),
-            ("off.obj", cube() + "s off\n" + &own.concat()),
-            ("groups.obj", cube() + "s 1\n" + &one + "s 7\n" + &pick(&own, &other)),
-            ("copies.obj", cube() + &cube() + &one + &pick(&copied, &other)),
-        ],
-    );
+    let folder = Folder::with(&[
+        ("plain.obj", cube() + &own.concat()),
+        ("off.obj", cube() + "s off\n" + &own.concat()),
+        ("groups.obj", cube() + "s 1\n" + &one + "s 7\n" + &pick(&own, &other)),
+        ("copies.obj", cube() + &cube() + &one + &pick(&copied, &other)),
+    ]);
     let of = |mesh: &str| folder.mesh(mesh, "");
     let (flat, smooth) = (of("file = 'plain.obj'\nsmooth = false"), of("file = 'plain.obj'"));
     assert!(of("file = 'off.obj'") == flat && flat != smooth);
@@ -122,7 +110,7 @@ fn a_mesh_far_away_keeps_its_shape() {
     let far = corners("v ", 0.125, [500_000.25, 5_000_000.5, 30.0]).concat();
     let files =
         [("near.obj", cube()), ("far.obj", far)].map(|(name, text)| (name, text + &faces(0, "").concat()));
-    let folder = Folder::with("far", &files);
+    let folder = Folder::with(&files);
     let steps = "transform = [{ translate = [-500000.25, -5000000.5, -30] }, { scale = 8 }]\n";
     assert!(folder.mesh("file = 'near.obj'", "") == folder.mesh("file = 'far.obj'", steps));
 }
@@ -149,7 +137,7 @@ fn materials_of_libraries_make_no_light() {
         cubes += &corners("v ", 0.4, [(number % 20) as f64, (number / 20) as f64, 0.0]).concat();
         cubes += &format!("usemtl m{number}\n{}", faces(-9, "").concat());
     }
-    let folder = Folder::with("furnace", &[("m.mtl", library), ("m.obj", cubes)]);
+    let folder = Folder::with(&[("m.mtl", library), ("m.obj", cubes)]);
     for light in ["ambient = 1", "indirect_light = true"] {
         let pixels = folder.pixels(&format!(
             "[film]\nwidth = 80\nheight = 60\n[camera]\nposition = [9.5, 7, 30]\nlook_at = [9.5, 7, 0]\nvertical_fov = 30\n\
@@ -167,7 +155,7 @@ fn materials_of_libraries_make_no_light() {
 fn the_image_of_a_sphere_does_not_repeat_across_the_poles() {
     let [red, blue] = [[128, 0, 0, 129], [0, 0, 128, 129]].map(|pixel: [u8; 4]| pixel.repeat(4 * 32));
     let header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 4\n";
-    let folder = Folder::with("poles", &[("sky.hdr", [&header[..], &red, &blue].concat())]);
+    let folder = Folder::with(&[("sky.hdr", [&header[..], &red, &blue].concat())]);
     for (filter, height) in [("bilinear", 4), ("mipmap", 4), ("bilinear", -4), ("mipmap", -4)] {
         let pixels = folder.pixels(&format!(
             "[film]\nwidth = 9\nheight = 9\n[camera]\nposition = [0, {height}, 0]\nlook_at = [0, 0, 0]\nup = [0, 0, 1]\n\

@@ -1,10 +1,9 @@
 //! A picture that is rendered in pieces, each by itself, is equal to the picture that is rendered at once: each pixel to the
 //! last bit, and the counts of the pieces add up to those of the whole.
 
-use crate::scene::scene;
+use crate::scene::{job, rendered, scene};
 use raykata::count::Counts;
-use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, Rendering, View};
+use raykata::kit::{RenderJob, Rendering};
 use raykata::rows::Rows;
 use raykata::scene::{Accelerator, Scene};
 
@@ -47,8 +46,7 @@ transform_end = [{ translate = [0.4, 0, 0] }]
 fn render(scene: &Scene, rows: Option<Rows>) -> Rendering {
     let mut scene = scene.clone();
     scene.film.rows = rows;
-    let job = RenderJob { scene, view: View::Shaded, seed: 11, threads: 0, count: true, reuse: false };
-    solutions::kit().render(&job, &Unwatched).expect("not cancelled")
+    rendered(&RenderJob { threads: 0, ..job(&scene) })
 }
 
 fn bits(rendering: &Rendering) -> Vec<[u32; 3]> {

@@ -1,21 +1,18 @@
 //! `precision = "double"` in whole frames: the same picture in easy scenes, and the correct one in hard scenes.
 
-use crate::scene::scene;
+use crate::scene::{differing, render, scene, small};
 use glam::{Vec3, vec3};
 use oracle::exact::{Body, verdict};
 use raykata::count::Counts;
-use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, Rendering, View};
-use raykata::scene::{Accelerator, Precision, Scene, TriangleMethod, load};
+use raykata::kit::Rendering;
+use raykata::scene::{Accelerator, Precision, Scene, TriangleMethod};
 use raykata::shape::{Shape, Sphere};
 use raykata::world::camera_for;
-use std::path::Path;
 
 fn in_precision(scene: &Scene, precision: Precision) -> Rendering {
     let mut scene = scene.clone();
     scene.quality.precision = precision;
-    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: true, reuse: false };
-    let frame = solutions::kit().render(&job, &Unwatched).expect("not cancelled");
+    let frame = render(&scene);
     assert!(frame.notes.is_empty(), "{:?}", frame.notes);
     frame
 }
@@ -27,10 +24,8 @@ fn work(counts: &Counts) -> [u64; 5] {
 
 #[test]
 fn more_digits_move_few_pixels_and_hardly_any_count() {
-    for name in ["effects.toml", "stage8.toml", "stage5.toml"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
-        let mut scene = load::load(&path).unwrap_or_else(|error| panic!("{error}"));
-        (scene.film.width, scene.film.height, scene.quality.samples_per_pixel) = (48, 32, 1);
+    for name in ["effects", "stage8", "stage5"] {
+        let mut scene = small(name, 48, 32);
         let methods = [
             TriangleMethod::Watertight,
             TriangleMethod::Choice,
@@ -41,8 +36,7 @@ fn more_digits_move_few_pixels_and_hardly_any_count() {
             scene.quality.triangle_method = method;
             let [single, double] = [Precision::Single, Precision::Double].map(|p| in_precision(&scene, p));
             // Count pixels that show another surface, which happens at outlines, also behind glass.
-            let pixels = single.film.pixels.iter().zip(&double.film.pixels);
-            let other = pixels.filter(|(p, q)| (**p - **q).abs().max_element() > 0.01).count();
+            let other = differing(&single.film, &double.film, 0.01);
             assert!(other <= 8, "{name}, {method:?}: {other} of 1536 pixels differ");
             for (single, double) in work(&single.counts).into_iter().zip(work(&double.counts)) {
                 assert!(single.abs_diff(double) <= single / 200, "{name}, {method:?}: {single} and {double}");
@@ -155,8 +149,8 @@ fn tiles(rise: f32) -> Scene {
 
 #[test]
 fn exact_arithmetic_is_rare() {
-    let mut room = load::load("../scenes/cornell.toml".as_ref()).unwrap_or_else(|error| panic!("{error}"));
-    (room.film.width, room.film.height, room.quality.samples_per_pixel) = (64, 64, 4);
+    let mut room = small("cornell", 64, 64);
+    room.quality.samples_per_pixel = 4;
     for (name, scene) in [("room", room), ("grid", tiles(0.0)), ("terrace", tiles(0.25))] {
         let counts = in_precision(&scene, Precision::Single).counts;
         // Some rays graze a tile or meet an edge.

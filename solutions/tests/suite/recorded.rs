@@ -1,13 +1,12 @@
 //! The reference pictures in `scenes/reference`, with which `raykata view` compares in a hand-out, are those of the solutions.
 //! `INSTA_UPDATE=always` writes them: each pixel is the mean of two by two pixels of the picture, in linear light.
 
+use crate::scene::{job, path, rendered, whole};
 use glam::Vec3;
 use image::RgbImage;
-use raykata::film::{Film, encode_srgb};
-use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, View};
-use raykata::scene::{Scene, load};
-use std::path::{Path, PathBuf};
+use raykata::film::{Film, decode_srgb, encode_srgb};
+use raykata::kit::RenderJob;
+use raykata::scene::Scene;
 
 /// The scenes of the stages. Stages 10 and 12 have `scenes/showcase.png`.
 const NAMES: [&str; 10] =
@@ -17,14 +16,8 @@ const NAMES: [&str; 10] =
 const RECORDED: u32 = 2;
 const COMPARED: u32 = 10;
 
-fn scenes() -> PathBuf {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes")).into()
-}
-
-fn picture(scene: Scene) -> Film {
-    let tone = scene.film.tone;
-    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: false, reuse: false };
-    solutions::kit().render(&job, &Unwatched).unwrap().film.toned(tone)
+fn picture(scene: &Scene) -> Film {
+    rendered(&RenderJob { seed: 0, threads: 0, ..job(scene) }).film.toned(scene.film.tone)
 }
 
 /// The mean of each block of pixels.
@@ -38,33 +31,27 @@ fn means(film: &Film, scale: u32) -> Film {
     means
 }
 
-/// The linear light of a component in sRGB.
-fn linear(byte: u8) -> f32 {
-    let x = f32::from(byte) / 255.0;
-    if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-}
-
 #[test]
 fn recorded_references_are_the_pictures_of_the_solutions() {
     let writes = std::env::var("INSTA_UPDATE").is_ok_and(|how| how == "always");
     for name in NAMES {
-        let mut scene = load::load(&scenes().join(name).with_extension("toml")).unwrap();
-        let file = scenes().join("reference").join(name).with_extension("png");
+        let mut scene = whole(name);
+        let file = path(&format!("reference/{name}")).with_extension("png");
         if writes {
-            std::fs::create_dir_all(scenes().join("reference")).unwrap();
-            means(&picture(scene), RECORDED).write_png(&file, encode_srgb).unwrap();
+            means(&picture(&scene), RECORDED).write_png(&file, encode_srgb).unwrap();
             continue;
         }
         // Compare a small picture, which takes little time, with the means of the record.
         let record: RgbImage = image::open(&file).unwrap().into_rgb8();
         let (width, height) = (scene.film.width, scene.film.height);
         assert_eq!(record.dimensions(), (width / RECORDED, height / RECORDED), "{name}");
+        let linear = |byte: u8| decode_srgb(f32::from(byte) / 255.0);
         let bytes = record.pixels().map(|pixel| Vec3::from_array(pixel.0.map(linear))).collect();
         let record = Film { width: width / RECORDED, height: height / RECORDED, pixels: bytes };
         let record = means(&record, COMPARED / RECORDED);
         (scene.film.width, scene.film.height) = (width / COMPARED, height / COMPARED);
         scene.quality.samples_per_pixel = scene.quality.samples_per_pixel.clamp(16, 36);
-        let small = picture(scene);
+        let small = picture(&scene);
         let off = |(a, b): (&Vec3, &Vec3)| f64::from((*a - *b).abs().element_sum()) / 3.0;
         let mean = record.pixels.iter().zip(&small.pixels).map(off).sum::<f64>() / record.pixels.len() as f64;
         println!("{name}: mean difference {mean:.5}");

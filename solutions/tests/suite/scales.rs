@@ -4,10 +4,8 @@
 //! The limits are those of squares in single precision, which glam's lengths and scalar products compute: the square of
 //! 2^-60 is near the smallest normal number, that of 2^60 near the largest. Intersection tests compute in double precision.
 
-use crate::frames::render;
-use crate::scene::scene;
+use crate::scene::{job, render, scene};
 use oracle::splitmix::Random;
-use raykata::kit::{RenderJob, View};
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Scene};
 
@@ -120,12 +118,10 @@ fn first_hits_do_not_depend_on_the_size_of_the_scene() {
         let hits = |k: i32| {
             let mut scene = scaled(k);
             scene.quality.accelerator = accelerator;
-            let job =
-                RenderJob { scene, view: View::Shaded, seed: 1, threads: 1, count: false, reuse: false };
             let size = 2f32.powi(k);
             // Directions keep their lengths, so t has the size of the scene.
             let rays: Vec<Ray> = rays.iter().map(|ray| Ray::new(size * ray.origin, ray.direction)).collect();
-            let hits = solutions::kit().first_hits(&job, &rays);
+            let hits = solutions::kit().first_hits(&job(&scene), &rays);
             hits.into_iter().map(|hit| hit.map(|hit| (hit.primitive, hit.t / size))).collect::<Vec<_>>()
         };
         let one = hits(0);

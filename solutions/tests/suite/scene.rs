@@ -1,10 +1,48 @@
-//! Scenes that tests write as text.
+//! Scenes that tests write as text or take from `scenes`, and frames of them.
 
+use raykata::film::Film;
+use raykata::frame::Unwatched;
+use raykata::kit::{RenderJob, Rendering, View};
 use raykata::scene::{Scene, load};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// The path of a scene in `scenes`.
+pub fn path(name: &str) -> PathBuf {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes")).join(name).with_extension("toml")
+}
 
 /// The scene in `text`, as if it were a file in `scenes`.
 pub fn scene(text: &str) -> Scene {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/test.toml");
-    load::parse(&file, text).unwrap_or_else(|error| panic!("{error}"))
+    load::parse(&path("test"), text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The scene of this name in `scenes`.
+pub fn whole(name: &str) -> Scene {
+    load::load(&path(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The scene of this name in a picture of this size, with one sample per pixel.
+pub fn small(name: &str, width: u32, height: u32) -> Scene {
+    let mut scene = whole(name);
+    (scene.film.width, scene.film.height, scene.quality.samples_per_pixel) = (width, height, 1);
+    scene
+}
+
+/// A frame on one thread, with counts.
+pub fn job(scene: &Scene) -> RenderJob {
+    RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads: 1, count: true, reuse: false }
+}
+
+pub fn rendered(job: &RenderJob) -> Rendering {
+    solutions::kit().render(job, &Unwatched).expect("not cancelled")
+}
+
+pub fn render(scene: &Scene) -> Rendering {
+    rendered(&job(scene))
+}
+
+/// How many pixels differ by more than `most` in a channel.
+pub fn differing(one: &Film, other: &Film, most: f32) -> usize {
+    let pairs = one.pixels.iter().zip(&other.pixels);
+    pairs.filter(|(p, q)| (**p - **q).abs().max_element() > most).count()
 }

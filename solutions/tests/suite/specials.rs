@@ -1,10 +1,9 @@
 //! Zeros of both signs, denormal numbers and the largest numbers everywhere in a scene: each scene is refused
 //! with an error that names the place, or is rendered without NaN.
 
+use crate::scene::render;
 use glam::Vec3;
 use oracle::splitmix::Random;
-use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, View};
 use raykata::material::{Texture, Wrap};
 use raykata::scene::{Accelerator, load};
 use std::path::Path;
@@ -67,22 +66,15 @@ transform = [{ translate = [#, #, #] }]
 "#;
 
 fn fill(random: &mut Random, rate: f32) -> String {
-    let mut pick = |list: &[&str]| list[random.below(list.len() as u64) as usize].to_owned();
     let mut parts = SCENE.split('#');
     let mut text = parts.next().unwrap_or_default().to_owned();
     for part in parts {
-        let chance =
-            pick(&["0", "1", "2", "3", "4", "5", "6", "7", "8", "9"]).parse::<f32>().unwrap_or(0.0) / 10.0;
-        let number = match () {
-            () if chance >= rate => pick(&ORDINARY),
-            () if pick(&["no", "no", "no", "no", "no", "no", "no", "no", "no", "no", "no", "yes"])
-                == "yes" =>
-            {
-                pick(&ENDLESS)
-            }
-            () => pick(&FINITE),
+        let list: &[&str] = match () {
+            () if random.unit() >= rate => &ORDINARY,
+            () if random.below(12) == 0 => &ENDLESS,
+            () => &FINITE,
         };
-        text += &number;
+        text += list[random.below(list.len() as u64) as usize];
         text += part;
     }
     text
@@ -110,16 +102,7 @@ fn numbers_that_break_formulas_break_no_picture() {
         scene.materials.iter_mut().for_each(|material| material.texture = Some(0));
         for accelerator in [Accelerator::Bvh, Accelerator::BruteForce] {
             scene.quality.accelerator = accelerator;
-            let job = RenderJob {
-                scene: scene.clone(),
-                view: View::Shaded,
-                seed: n,
-                threads: 1,
-                count: true,
-                reuse: false,
-            };
-            let frame = solutions::kit().render(&job, &Unwatched).expect("not cancelled");
-            let bad = frame.film.pixels.iter().filter(|pixel| !pixel.is_finite()).count();
+            let bad = render(&scene).film.pixels.iter().filter(|pixel| !pixel.is_finite()).count();
             assert_eq!(bad, 0, "{bad} pixels are not finite, {accelerator:?}\n{text}");
         }
         rendered += 1;

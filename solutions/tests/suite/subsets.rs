@@ -5,17 +5,15 @@
 //! Indirect light is the tenth effect. It changes most pixels, so it is judged by other laws, for a set of sets in which every
 //! two effects are present together, absent together, and each without the other.
 
-use crate::scene::scene;
+use crate::scene::{job, path, rendered, scene};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::count::Counts;
 use raykata::effects::Effect;
 use raykata::film::Film;
-use raykata::frame::Unwatched;
-use raykata::kit::{RayKind, RenderJob, TracedRay, View};
+use raykata::kit::{RayKind, TracedRay};
 use raykata::mesh::Mesh;
 use raykata::scene::Scene;
-use std::path::Path;
 use std::sync::Arc;
 
 /// All effects but indirect light, which is the last.
@@ -41,8 +39,7 @@ impl Set {
 }
 
 fn text() -> String {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/effects.toml");
-    std::fs::read_to_string(file).expect("a scene of this kit")
+    std::fs::read_to_string(path("effects")).expect("a scene of this kit")
 }
 
 /// The scene in few pixels, with one sample each, and with a coarse smooth mesh in place of the vase.
@@ -74,8 +71,8 @@ fn frame(set: Set) -> Frame {
 }
 
 fn frame_of(scene: Scene) -> Frame {
-    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: true, reuse: false };
-    let rendering = solutions::kit().render(&job, &Unwatched).expect("not cancelled");
+    let job = job(&scene);
+    let rendering = rendered(&job);
     let film = job.scene.film;
     let pixels = (0..film.height).flat_map(|y| (0..film.width).map(move |x| (x, y)));
     let trees = pixels.map(|(x, y)| solutions::kit().trace(&job, x, y)).collect();

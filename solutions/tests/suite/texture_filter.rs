@@ -1,7 +1,6 @@
 //! Filtered images: what the cone of a ray covers is what many rays see, and the reads are counted.
 
-use crate::frames::render;
-use crate::scene::scene;
+use crate::scene::{render, scene};
 use glam::Vec3;
 use raykata::film::Film;
 use raykata::material::{Texture, Wrap};

@@ -1,23 +1,15 @@
 //! What the searches for the rays of a pixel visit is what a frame counts.
 
-use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, View};
-use raykata::scene::load;
-use std::path::Path;
+use crate::scene::{job, rendered, small};
 
 #[test]
 fn the_visits_of_a_pixel_are_those_that_its_frame_counts() {
     let kit = solutions::kit();
     for name in ["stage1", "stage5", "graph", "shapes", "cornell", "veach"] {
-        let file =
-            Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes")).join(name).with_extension("toml");
-        let mut scene = load::load(&file).unwrap();
-        (scene.film.width, scene.film.height) = (1, 1);
-        scene.quality.samples_per_pixel = 1;
-        let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: true, reuse: false };
+        let job = job(&small(name, 1, 1));
         let (rays, visits): (Vec<_>, Vec<_>) = kit.visits(&job, 0, 0).into_iter().unzip();
         assert_eq!(rays, kit.trace(&job, 0, 0), "{name}: one search per ray");
-        let counts = kit.render(&job, &Unwatched).unwrap().counts;
+        let counts = rendered(&job).counts;
         assert_eq!(counts.rays(), rays.len() as u64, "{name}");
         let sum = |of: fn(&raykata::kit::RayVisits) -> u64| visits.iter().map(of).sum::<u64>();
         assert_eq!(counts.node_visits, sum(|one| one.node_visits), "{name}");

@@ -1,16 +1,20 @@
-//! The watertight triangle test of stage 10 against exact arithmetic.
+//! The watertight triangle test and the slab test of stage 10 against exact arithmetic.
 //!
-//! It answers as exact arithmetic does, on every input: it hits where the exact line meets the closed triangle in one
+//! The triangle test answers as exact arithmetic does, on every input: it hits where the exact line meets the closed triangle in one
 //! point, and its `t` is the exact one, rounded. That is why closed meshes do not leak: see `watertight` in
 //! `solutions/src/stage10_stability.rs`.
 
 use glam::{Vec3, vec3};
+use oracle::STABLE;
+use oracle::exact::aabb::overlap;
 use oracle::exact::{Body, meet, triangle};
+use oracle::gauntlet::boxes::of_any_size;
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
 use oracle::splitmix::Random;
+use raykata::kit::SlabQuery;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
-use solutions::stage10_stability::watertight;
+use solutions::stage10_stability::{conservative_slab, watertight};
 
 /// A float with any sign and mantissa and an exponent within `-range..=range`.
 fn any_size(random: &mut Random, range: i32) -> f32 {
@@ -121,4 +125,28 @@ fn watertight_answers_as_exact_arithmetic_does() {
         }
         println!("{name}: {hits} hits");
     }
+}
+
+/// The slab test loses no box that a ray meets, for any range and direction.
+#[test]
+fn slabs_lose_no_box_that_is_met() {
+    let mut random = Random::new(1, 0);
+    let (mut met, mut passed, mut close) = (0, 0, 0);
+    for _ in 0..1_000_000 {
+        let Some(SlabQuery { ray, bounds }) = of_any_size(&mut random) else { continue };
+        let Some(exact) = overlap(&ray, &bounds) else { continue };
+        let yours = conservative_slab(&ray, ray.direction.recip(), &bounds);
+        if exact.verdict.is_hit() {
+            met += 1;
+            assert!(yours.is_some(), "lost: {ray:?} {bounds:?}");
+        } else if exact.margin > STABLE {
+            passed += 1;
+            // A box whose exit overflows may be entered at infinity, which costs a visit.
+            let yours = yours.filter(|(enter, _)| enter.is_finite());
+            assert_eq!(yours, None, "{ray:?} {bounds:?} {}", exact.margin);
+        } else {
+            close += 1;
+        }
+    }
+    println!("{met} met, {passed} passed, {close} passed by a few roundings");
 }

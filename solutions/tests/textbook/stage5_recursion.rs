@@ -19,7 +19,7 @@ pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> 
 }
 
 /// The cosine behind the surface, by Snell's law.
-pub(crate) fn cos_2(cos_1: f32, n1: f32, n2: f32) -> Option<f32> {
+fn cos_2(cos_1: f32, n1: f32, n2: f32) -> Option<f32> {
     let squared = 1.0 - (n1 / n2).powi(2) * (1.0 - cos_1 * cos_1);
     (squared >= 0.0).then(|| squared.sqrt())
 }

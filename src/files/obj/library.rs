@@ -2,7 +2,8 @@
 
 use super::{ObjMaterial, lines};
 use crate::files::error::{LoadError, Warnings};
-use crate::files::ply::text::{Word, quote, read_bytes, readable, words};
+use crate::files::ply::text::{Word, read_bytes, readable, words};
+use crate::files::words::quoted;
 use glam::Vec3;
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
@@ -29,14 +30,14 @@ pub(super) fn find(
     let mut paths = Vec::new();
     for (index, part) in text[names.clone()].split('"').enumerate() {
         let start = part.as_ptr() as usize - text.as_ptr() as usize;
-        let quoted = Word { text: part, span: start..start + part.len() };
-        for name in if index % 2 == 1 { vec![quoted] } else { words(part, start) } {
+        let in_quotes = Word { text: part, span: start..start + part.len() };
+        for name in if index % 2 == 1 { vec![in_quotes] } else { words(part, start) } {
             let path = path_of(name.text);
             if path.is_file() {
                 paths.push(path);
                 continue;
             }
-            let message = format!("there is no material library {}", quote(name.text));
+            let message = format!("there is no material library {}", quoted(name.text));
             warnings.push(LoadError::at(file, text, name.span, message).help(format!(
                 "looked for {}: put the library there, or remove the `mtllib` line",
                 path.display()
@@ -289,7 +290,7 @@ impl Reader<'_> {
             && ["spectral", "xyz"].contains(&word.text)
         {
             return Err(self
-                .trouble(word.span.clone(), format!("a colour as {} is not supported", quote(word.text)))
+                .trouble(word.span.clone(), format!("a colour as {} is not supported", quoted(word.text)))
                 .help("write red, green and blue, as in `Kd 0.8 0.2 0.2`"));
         }
         let colour = match values.len() {
@@ -340,7 +341,7 @@ impl Reader<'_> {
         let mut numbers = [0.0; N];
         for (number, word) in numbers.iter_mut().zip(values) {
             *number = word.text.parse().ok().filter(|number: &f32| number.is_finite()).ok_or_else(|| {
-                self.trouble(word.span.clone(), format!("{} is not a number", quote(word.text)))
+                self.trouble(word.span.clone(), format!("{} is not a number", quoted(word.text)))
                     .help("replace it by a number, with a decimal point and not a comma")
             })?;
         }

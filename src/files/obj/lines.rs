@@ -2,7 +2,8 @@
 
 use super::DEFAULT_MATERIAL;
 use crate::files::error::{LoadError, Warnings};
-use crate::files::ply::text::{Word, nearest, number, quote, words};
+use crate::files::ply::text::{Word, number, words};
+use crate::files::words::{nearest, quoted};
 use crate::geometry::triangulate::{self, Cut};
 use glam::{DVec3, Vec2, Vec3};
 use std::collections::HashMap;
@@ -194,7 +195,7 @@ impl<'a> Reader<'a> {
         let mut numbers = DVec3::ZERO;
         for (index, word) in values.iter().take(count).enumerate() {
             numbers[index] = number(word.text).ok_or_else(|| {
-                let error = self.trouble(word.span.clone(), format!("{} is not a number", quote(word.text)));
+                let error = self.trouble(word.span.clone(), format!("{} is not a number", quoted(word.text)));
                 error.help(if word.text.contains(',') {
                     "write a decimal point, not a comma, and blanks between numbers"
                 } else {
@@ -270,7 +271,7 @@ impl<'a> Reader<'a> {
         ];
         let malformed = |reader: &Self| {
             reader
-                .trouble(corner.span.clone(), format!("{} is not a corner of a face", quote(corner.text)))
+                .trouble(corner.span.clone(), format!("{} is not a corner of a face", quoted(corner.text)))
                 .help(
                     "write a corner as `1`, `1/2`, `1//3` or `1/2/3`: vertex, texture coordinate and normal",
                 )
@@ -365,7 +366,7 @@ impl<'a> Reader<'a> {
             Some(meant) if meant != keyword.text && !keyword.text.starts_with('#') => Err(self
                 .trouble(
                     keyword.span.clone(),
-                    format!("{} is not a keyword of OBJ files", quote(keyword.text)),
+                    format!("{} is not a keyword of OBJ files", quoted(keyword.text)),
                 )
                 .help(format!("did you mean `{meant}`?"))),
             _ => Ok(()),

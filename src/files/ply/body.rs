@@ -3,8 +3,9 @@
 
 use super::header::{Element, Encoding, Header, Kind, Property};
 use super::scalar::Scalar;
-use super::text::{quote, readable, trouble_at};
+use super::text::{readable, trouble_at};
 use crate::files::error::LoadError;
+use crate::files::words::quoted;
 use std::ops::Range;
 use std::path::Path;
 
@@ -181,7 +182,7 @@ impl<'a> Body<'a> {
         let (element, property) = (&place.element.name, &place.property.name);
         let message = format!(
             "{} is not a number; `{property}` of {element} {} should be here",
-            quote(&word),
+            quoted(&word),
             place.number
         );
         self.trouble(place, message).help(if word.contains(',') {

@@ -1,8 +1,9 @@
 //! The header of a PLY file: which elements follow, how many of each, and which numbers make one element.
 
 use super::scalar::{ByteOrder, Scalar};
-use super::text::{Word, guess, nearest, quote, readable, trouble_at, words};
+use super::text::{Word, guess, readable, trouble_at, words};
 use crate::files::error::{LoadError, Warnings};
+use crate::files::words::{nearest, quoted};
 use std::ops::Range;
 use std::path::Path;
 
@@ -164,14 +165,14 @@ impl Draft<'_> {
         }
         let Some((_, encoding)) = ENCODINGS.iter().find(|(known, _)| *known == name.text) else {
             return Err(self
-                .trouble(name.span.clone(), format!("{} is not a format of PLY files", quote(name.text)))
+                .trouble(name.span.clone(), format!("{} is not a format of PLY files", quoted(name.text)))
                 .help(did_you_mean(
                     nearest(name.text, ENCODINGS.map(|(known, _)| known)),
                     "the formats are ascii, binary_little_endian and binary_big_endian",
                 )));
         };
         if version.text != "1.0" {
-            let message = format!("version {} of the format is unknown", quote(version.text));
+            let message = format!("version {} of the format is unknown", quoted(version.text));
             return Err(self
                 .trouble(version.span.clone(), message)
                 .help("the only version is 1.0: write `1.0` if the file follows it"));
@@ -184,14 +185,14 @@ impl Draft<'_> {
     fn element(&mut self, words: &[Word]) -> Result<(), LoadError> {
         let [_, name, count] = words else { return Err(self.malformed(words, "element vertex 8")) };
         let Ok(number) = count.text.parse() else {
-            let message = format!("{} is not a number of elements", quote(count.text));
+            let message = format!("{} is not a number of elements", quoted(count.text));
             return Err(self
                 .trouble(count.span.clone(), message)
                 .help(format!("write how many there are, as in `element {} 8`", name.text)));
         };
         if self.elements.iter().any(|element| element.name == name.text) {
             return Err(self
-                .trouble(name.span.clone(), format!("element {} is declared twice", quote(name.text)))
+                .trouble(name.span.clone(), format!("element {} is declared twice", quoted(name.text)))
                 .help("declare each element once, with all of its properties below it"));
         }
         self.elements.push(Element {
@@ -223,7 +224,7 @@ impl Draft<'_> {
                 .help("put a line such as `element vertex 8` above the properties of a vertex"));
         };
         if element.properties.iter().any(|earlier| earlier.name == property.name) {
-            let message = format!("element `{}` has two properties {}", element.name, quote(name.text));
+            let message = format!("element `{}` has two properties {}", element.name, quoted(name.text));
             return Err(self
                 .trouble(property.span, message)
                 .help("give each property of an element its own name"));
@@ -238,7 +239,7 @@ impl Draft<'_> {
             return Ok(scalar);
         }
         let error =
-            self.trouble(word.span.clone(), format!("{} is not a type of PLY files", quote(word.text)));
+            self.trouble(word.span.clone(), format!("{} is not a type of PLY files", quoted(word.text)));
         let help = did_you_mean(nearest(word.text, Scalar::NAMES.map(|(name, _)| name)), TYPES);
         if self.encoding != Some(Encoding::Ascii) {
             return Err(error.help(help));
@@ -264,7 +265,7 @@ impl Draft<'_> {
         }
         let error = self.trouble(
             keyword.span.clone(),
-            format!("{} is not a keyword of PLY headers", quote(keyword.text)),
+            format!("{} is not a keyword of PLY headers", quoted(keyword.text)),
         );
         let all = "the keywords are format, comment, obj_info, element, property and end_header";
         // Compare the whole line as well, because `end header` is `end_header` without its underscore.

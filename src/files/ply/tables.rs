@@ -3,8 +3,9 @@
 use super::body::{Body, NumberLocation};
 use super::header::{Element, Header, Kind, Property};
 use super::scalar::Scalar;
-use super::text::{nearest, trouble_at};
+use super::text::trouble_at;
 use crate::files::error::{LoadError, Warnings};
+use crate::files::words::nearest;
 use crate::geometry::triangulate::{self, Cut};
 use crate::mesh::Mesh;
 use glam::{DVec2, DVec3, Vec2, Vec3};

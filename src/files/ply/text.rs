@@ -1,5 +1,4 @@
-//! Text from files that may hold any bytes: words with their places, quotations, and suggestions for misspelt
-//! words.
+//! Text from files that may hold any bytes: words with their places.
 
 use crate::files::error::LoadError;
 use std::borrow::Cow;
@@ -75,31 +74,6 @@ pub(crate) fn number(word: &str) -> Option<f64> {
         let word = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
         (word.starts_with("nan(") || word.starts_with("1.#")).then_some(f64::NAN)
     })
-}
-
-/// The word between backticks, for messages: at most 24 of its characters, special characters escaped.
-pub(crate) fn quote(word: &str) -> String {
-    const LONGEST: usize = 24;
-    let start: String = word.chars().take(LONGEST).flat_map(char::escape_debug).collect();
-    if word.chars().count() > LONGEST { format!("`{start}…`") } else { format!("`{start}`") }
-}
-
-/// The candidate with the smallest Damerau-Levenshtein distance to `word`, if it is a likely misspelling: a
-/// distance of at most 1 plus a fifth of the candidate's length. Case does not matter in `word`; a word of
-/// more than 40 bytes has no candidate.
-pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // Skip longer words: they are not typing mistakes, and the distance takes time quadratic in the length.
-    const LONGEST: usize = 40;
-    if word.len() > LONGEST {
-        return None;
-    }
-    let word = word.to_lowercase();
-    candidates
-        .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(&word, candidate), candidate))
-        .filter(|&(distance, candidate)| distance <= 1 + candidate.len() / 5)
-        .min_by_key(|&(distance, _)| distance)
-        .map(|(_, candidate)| candidate)
 }
 
 /// The advice for an OBJ file that has another extension.

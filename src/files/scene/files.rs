@@ -1,8 +1,8 @@
 //! Files that a scene names: their paths, and the messages if they are missing.
 
 use super::reader::{NO_BACKSLASHES, Value};
-use super::words::{nearest, quoted};
 use crate::files::error::LoadError;
+use crate::files::words::{nearest, quoted};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 

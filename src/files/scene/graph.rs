@@ -1,8 +1,8 @@
 //! Checks of the scene graph as a whole: it has no loops, and its depth and number of shapes are limited.
 
 use super::reader::Value;
-use super::words::one_line;
 use crate::files::error::LoadError;
+use crate::files::words::one_line;
 use crate::scene::Node;
 
 /// The largest number of levels. Programs that traverse the graph by recursion call themselves once per

@@ -10,7 +10,6 @@ mod names;
 mod nodes;
 mod numbers;
 mod nurbs;
-mod polygon;
 mod radiance;
 pub(crate) mod reader;
 mod settings;
@@ -19,7 +18,6 @@ mod shapes;
 mod tests;
 mod textures;
 mod transform;
-mod words;
 
 use super::error::LoadError;
 use crate::scene::{Gamma2, Scene};
@@ -109,7 +107,7 @@ pub fn parse_within(file: &Path, text: &str, limits: Limits) -> Result<Loaded, L
     let root = Table::root(&source, "the scene", &document, &TABLES)?;
 
     if let Some(encoding) = root.get("color_encoding") {
-        source.encoding.set(encoding.choice(&words::ENCODINGS)?);
+        source.encoding.set(encoding.choice(&settings::ENCODINGS)?);
     }
     let film = settings::film(root.get("film"))?;
     let camera = match root.get("camera") {

@@ -3,9 +3,9 @@
 use super::names::Names;
 use super::reader::{Table, Value};
 use super::shapes::{self, KINDS};
-use super::words::quoted;
 use super::{graph, transform};
 use crate::files::error::LoadError;
+use crate::files::words::quoted;
 use crate::scene::{Node, SceneMesh};
 use glam::Affine3A;
 use std::collections::BTreeSet;

@@ -2,8 +2,8 @@
 //! `f32` only.
 
 use super::reader::Value;
-use super::textures::srgb_to_linear;
 use crate::files::error::LoadError;
+use crate::film::decode_srgb;
 use crate::scene::{ColorPlace, Encoding};
 use glam::{DVec3, Vec3};
 use std::ops::RangeInclusive;
@@ -116,7 +116,7 @@ impl<'a> Value<'a> {
             if self.source.encoding.get() == Encoding::Gamma2 {
                 self.source.gamma2.borrow_mut().colors.push((place, bytes));
             }
-            return Ok(Vec3::from_array(bytes.map(|byte| srgb_to_linear(f32::from(byte) / 255.0))));
+            return Ok(Vec3::from_array(bytes.map(|byte| decode_srgb(f32::from(byte) / 255.0))));
         }
         let color = self.one_or_three(wanted)?;
         self.each_component(color, "at least 0", |number| number >= 0.0)

@@ -2,8 +2,8 @@
 //! the words of scenes and points at the text that is wrong. `numbers` reads the numbers.
 
 use super::limits::{Budget, Limits};
-use super::words::{listed, nearest, one_line, quoted};
 use crate::files::error::LoadError;
+use crate::files::words::{listed, nearest, one_line, quoted};
 use crate::scene::{Encoding, Gamma2};
 use std::cell::{Cell, RefCell};
 use std::ops::Range;

@@ -4,18 +4,20 @@ use super::files;
 use super::limits::Limits;
 use super::reader::{Source, Table, Value};
 use super::textures::Images;
-use super::words::ENCODINGS;
 use crate::camera::{Camera, Lens, Shutter};
 use crate::files::error::LoadError;
 use crate::film::ToneCurve;
 use crate::material::Wrap;
 use crate::scene::{
-    Background, ColorPlace, EnvironmentMap, Field, FilmSettings, Gradient, GradientColor, Quality,
+    Background, ColorPlace, Encoding, EnvironmentMap, Field, FilmSettings, Gradient, GradientColor, Quality,
 };
 use glam::Vec3;
 use std::path::Path;
 use toml::Spanned;
 use toml::de::DeValue;
+
+/// How bytes encode linear light: those of 8-bit pictures, of colours as text, and of images.
+pub(super) const ENCODINGS: [(&str, Encoding); 2] = [("srgb", Encoding::Srgb), ("gamma2", Encoding::Gamma2)];
 
 /// The largest width or height of a picture, in pixels.
 const MAX_SIDE: u32 = 65_536;

@@ -4,8 +4,9 @@ use super::files;
 use super::names::Names;
 use super::radiance;
 use super::reader::Value;
-use super::words::{one_line, quoted};
 use crate::files::error::LoadError;
+use crate::files::words::{one_line, quoted};
+use crate::film::decode_srgb;
 use crate::material::{Texture, Wrap};
 use glam::Vec3;
 use image::{DynamicImage, ImageReader};
@@ -200,7 +201,7 @@ fn curve_of_png(mut file: impl Read + Seek) -> Option<Curve> {
 /// The pixels row by row from the top, in linear light; transparency is ignored.
 fn linear_pixels(image: DynamicImage, curve: Curve) -> Vec<Vec3> {
     let to_linear = |encoded: f32| match curve {
-        Curve::Srgb => srgb_to_linear(encoded),
+        Curve::Srgb => decode_srgb(encoded),
         Curve::Power(power) => encoded.powf(power),
     };
     match image {
@@ -222,9 +223,4 @@ fn linear_pixels(image: DynamicImage, curve: Curve) -> Vec<Vec3> {
             image.to_rgb8().pixels().map(|pixel| Vec3::from_array(pixel.0.map(decode))).collect()
         }
     }
-}
-
-/// The inverse of the sRGB curve (IEC 61966-2-1): linear near black, a power above; both values in `0..=1`.
-pub(super) fn srgb_to_linear(encoded: f32) -> f32 {
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

@@ -59,10 +59,6 @@ fn has_mesh(scene: &Scene, wanted: fn(&SceneMesh) -> bool) -> bool {
     scene.meshes.iter().any(wanted)
 }
 
-fn has_curve(scene: &Scene) -> bool {
-    scene.nodes.iter().any(|node| matches!(node.shape, Some(Shape::Bezier { .. } | Shape::Nurbs { .. })))
-}
-
 fn sphere_functions(test: SphereTest) -> &'static [Function] {
     match test {
         SphereTest::Algebraic => &[Function::sphere_algebraic, Function::sphere_normal],
@@ -139,7 +135,7 @@ pub(super) fn capabilities(tests: ShapeTests) -> [Capability; 24] {
             },
         ),
         lacks(NORMALS, "smooth meshes are flat: {} is", |_, scene| has_mesh(scene, |mesh| mesh.smooth)),
-        lacks(NORMALS, "curved surfaces have flat parts: {} is", |_, scene| has_curve(scene)),
+        lacks(NORMALS, "curved surfaces have flat parts: {} is", |_, scene| scene.has_curved_surface()),
         lacks(
             &[F::scatter, F::spawn_ray],
             "mirrors and glass spawn no secondary rays: stage 5 is",

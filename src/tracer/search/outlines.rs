@@ -4,7 +4,7 @@ use super::structure::{Structure, Volumes};
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents};
 use crate::graph::Graph;
-use crate::partition::corners;
+use crate::partition;
 use crate::shape::Sphere;
 use glam::{DVec3, Vec3};
 use std::f32::consts::TAU;
@@ -15,7 +15,8 @@ use std::f32::consts::TAU;
 /// Of a BSP tree, the segments are the edges of the polygons in which its planes above this depth cut each
 /// other. Brute force has no segments.
 pub fn outlines(structure: &Structure, depth: usize) -> Vec<[Vec3; 2]> {
-    let edges = |boxes: Vec<Aabb>| boxes.iter().filter(|one| !one.is_empty()).flat_map(edges_of).collect();
+    let edges =
+        |boxes: Vec<Aabb>| boxes.iter().filter(|one| !one.is_empty()).flat_map(partition::edges).collect();
     match structure {
         Structure::List | Structure::Painter => Vec::new(),
         Structure::Wide(wide) => edges(wide.boxes_at(depth)),
@@ -42,13 +43,6 @@ fn sides_of(polygons: Vec<Vec<DVec3>>) -> Vec<[Vec3; 2]> {
         (0..corners.len()).map(move |i| [corners[i], corners[(i + 1) % corners.len()]])
     };
     polygons.into_iter().flat_map(sides).collect()
-}
-
-fn edges_of(bounds: &Aabb) -> Vec<[Vec3; 2]> {
-    let corners = corners(bounds);
-    let from =
-        |corner: usize| (0..3).filter(move |axis| corner >> axis & 1 == 0).map(move |axis| (corner, axis));
-    (0..8).flat_map(from).map(|(corner, axis)| [corners[corner], corners[corner | 1 << axis]]).collect()
 }
 
 /// Three circles on the sphere, one around each axis, of 48 segments each.

@@ -119,3 +119,11 @@ pub fn corners(bounds: &Aabb) -> Vec<Vec3> {
     };
     (0..8).map(|corner| Vec3::new(pick(corner, 0), pick(corner, 1), pick(corner, 2))).collect()
 }
+
+/// The twelve edges of a box.
+pub fn edges(bounds: &Aabb) -> Vec<[Vec3; 2]> {
+    let corners = corners(bounds);
+    let from =
+        |corner: usize| (0..3).filter(move |axis| corner >> axis & 1 == 0).map(move |axis| (corner, axis));
+    (0..8).flat_map(from).map(|(corner, axis)| [corners[corner], corners[corner | 1 << axis]]).collect()
+}

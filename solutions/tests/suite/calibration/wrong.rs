@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, vec2, vec3};
 use raykata::emitter::EmitterSample;
-use raykata::kit::{Answer, BsdfQuery, PhongLobeQuery, Request, RouletteQuery, SphereSampleQuery, StepQuery};
+use raykata::kit::{Answer, PhongLobeQuery, Request, RouletteQuery, SphereSampleQuery, StepQuery};
 use raykata::light_path::{Lobe, PathStep};
 use std::f32::consts::{PI, TAU};
 
@@ -18,91 +18,84 @@ fn polar(radius: f32, turn: f32) -> Vec2 {
     radius * Vec2::from_angle(TAU * turn)
 }
 
-fn each<Q, A>(queries: &[Q], answer: impl Fn(&Q) -> A) -> Vec<A> {
-    queries.iter().map(answer).collect()
+/// The answer to a request of this kind by a function of each query; `None` for other requests.
+macro_rules! answers {
+    ($request:expr, $Message:ident, $answer:expr) => {
+        match $request {
+            Request::$Message(queries) => Some(Answer::$Message(queries.iter().map($answer).collect())),
+            _ => None,
+        }
+    };
 }
 
 fn disk(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
-    match request {
-        Request::SampleDisk(queries) => Some(Answer::SampleDisk(each(queries, |u| place(*u)))),
-        _ => None,
-    }
+    answers!(request, SampleDisk, |u| place(*u))
 }
 
 fn round_light(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
-    let Request::SampleLightDisk(queries) = request else { return None };
-    let point = |(disk, u): &(raykata::shape::Disk, Vec2)| {
+    answers!(request, SampleLightDisk, |(disk, u)| {
         let (x, y) = disk.normal.normalize().any_orthonormal_pair();
         let place = disk.radius * place(*u);
         disk.center + place.x * x + place.y * y
-    };
-    Some(Answer::SampleLightDisk(each(queries, point)))
+    })
 }
 
 fn rectangle(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
-    let Request::SampleRectangle(queries) = request else { return None };
-    Some(Answer::SampleRectangle(each(queries, |query| {
+    answers!(request, SampleRectangle, |query| {
         let shares = place(query.u);
         query.corner + shares.x * query.edges.0 + shares.y * query.edges.1
-    })))
+    })
 }
 
 /// Directions to a sphere from its rim's sine and cosine and two random numbers.
 fn sphere(request: &Request, cosine: fn(sin_rim: f32, u: f32) -> f32) -> Option<Answer> {
-    let Request::SampleSphere(queries) = request else { return None };
-    Some(Answer::SampleSphere(each(queries, |SphereSampleQuery { sphere, from, u }| {
+    answers!(request, SampleSphere, |SphereSampleQuery { sphere, from, u }| {
         let to_center = sphere.center - *from;
         let sin_rim = sphere.radius / to_center.length();
         around(to_center.normalize_or(Vec3::Y), cosine(sin_rim, u.x), u.y)
-    })))
+    })
 }
 
 /// Directions of glossy reflection from the roughness and a random number.
 fn lobe(request: &Request, cosine: fn(roughness: f32, u: f32) -> f32) -> Option<Answer> {
-    let Request::SamplePhongLobe(queries) = request else { return None };
-    Some(Answer::SamplePhongLobe(each(queries, |PhongLobeQuery { ideal, roughness, u, .. }| {
+    answers!(request, SamplePhongLobe, |PhongLobeQuery { ideal, roughness, u, .. }| {
         around(*ideal, cosine(*roughness, u.x), u.y)
-    })))
+    })
 }
 
 fn cells(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
-    let Request::Jittered(strata) = request else { return None };
-    Some(Answer::Jittered(each(strata, |stratum| {
+    answers!(request, Jittered, |stratum| {
         (stratum.cell.as_vec2() + place(stratum.u)) / stratum.grid.as_vec2()
-    })))
+    })
 }
 
 fn times(request: &Request, place: fn(f32) -> f32) -> Option<Answer> {
-    let Request::TimeInShutter(queries) = request else { return None };
-    Some(Answer::TimeInShutter(each(queries, |query| {
+    answers!(request, TimeInShutter, |query| {
         let share = ((query.slot - 1) as f32 + place(query.u)) / query.slots as f32;
         query.shutter.open + share * (query.shutter.close - query.shutter.open)
-    })))
+    })
 }
 
 /// Directions on the side of a normal, from a function that gives the cosine and may give too few turns.
 fn hemisphere(request: &Request, place: fn(Vec2) -> (f32, f32)) -> Option<Answer> {
-    let Request::CosineDirection(queries) = request else { return None };
-    Some(Answer::CosineDirection(each(queries, |(normal, u)| {
+    answers!(request, CosineDirection, |(normal, u)| {
         let (cosine, turn) = place(*u);
         around(*normal, cosine, turn)
-    })))
+    })
 }
 
 /// The reference's samples of light with other random numbers, and with a density that is changed.
 fn light(request: &Request, place: fn(Vec2) -> Vec2, pdf: fn(&EmitterSample) -> f32) -> Option<Answer> {
-    let Request::SampleLight(queries) = request else { return None };
-    Some(Answer::SampleLight(each(queries, |query| {
+    answers!(request, SampleLight, |query| {
         let u = place(query.u).clamp(Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON / 2.0));
         let sample = solutions::stage11_light_transport::sample_light(&query.emitter, query.from, u)?;
         Some(EmitterSample { pdf: pdf(&sample), ..sample })
-    })))
+    })
 }
 
 /// The factor of Russian roulette by another rule.
 fn roulette(request: &Request, factor: fn(&RouletteQuery) -> f32) -> Option<Answer> {
-    let Request::Survives(queries) = request else { return None };
-    Some(Answer::Survives(each(queries, factor)))
+    answers!(request, Survives, factor)
 }
 
 fn right_roulette(query: &RouletteQuery) -> f32 {
@@ -115,15 +108,14 @@ fn stepped(
     before: fn(&mut StepQuery),
     after: fn(&StepQuery, &mut PathStep),
 ) -> Option<Answer> {
-    let Request::Step(queries) = request else { return None };
-    Some(Answer::Step(each(queries, |query| {
+    answers!(request, Step, |query| {
         let mut asked = query.clone();
         before(&mut asked);
         let StepQuery { path, vertex, max_depth, numbers } = &asked;
         let mut step = solutions::stage11_paths::step(path, vertex, *max_depth, numbers);
         after(query, &mut step);
         step
-    })))
+    })
 }
 
 /// A diffuse step in another direction, from a function that gives the cosine and the turn.
@@ -143,10 +135,9 @@ fn brighter(step: &mut PathStep, factor: f32) {
 
 /// The reference's samples of lobes, with other random numbers.
 fn lobes(request: &Request, numbers: fn(Vec3) -> Vec3) -> Option<Answer> {
-    let Request::SampleBsdf(queries) = request else { return None };
-    let sample =
-        |query: &BsdfQuery| solutions::stage11_paths::sample_bsdf(&query.scattering, numbers(query.u));
-    Some(Answer::SampleBsdf(each(queries, sample)))
+    answers!(request, SampleBsdf, |query| {
+        solutions::stage11_paths::sample_bsdf(&query.scattering, numbers(query.u))
+    })
 }
 
 /// The mistake, the check that must reject it, and the wrong answers.
@@ -169,13 +160,9 @@ pub(super) const WRONG: &[Wrong] = &[
         sphere(r, |_, u| 1.0 - 2.0 * u.powf(1.02))
     }),
     ("sphere: half of the rim", "half_a_sphere_makes_half_a_shadow", |r| {
-        let Request::SampleSphere(queries) = r else { return None };
-        let halved =
-            |query: &SphereSampleQuery| SphereSampleQuery { u: vec2(query.u.x, 0.5 * query.u.y), ..*query };
-        Some(
-            Request::SampleSphere(each(queries, halved))
-                .answer(&*solutions::kit(), &raykata::frame::Unwatched),
-        )
+        answers!(r, SampleSphere, |SphereSampleQuery { sphere, from, u }| {
+            solutions::stage6_distribution::sample_sphere(sphere, *from, vec2(u.x, 0.5 * u.y))
+        })
     }),
     ("glossy: n + 1 is 2 % too large", "phong_lobe_falls_with_the_power_of_the_cosine", |r| {
         lobe(r, |rough, u| u.powf(1.0 / (1.02 * (2.0 / (rough * rough) - 1.0))))

@@ -120,7 +120,7 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
             DARK.into()
         }
         Effect::Motion => "the shutter opens and closes at the same time".into(),
-        Effect::SmoothNormals if scene.meshes.is_empty() && has_curved_surface(scene) => {
+        Effect::SmoothNormals if scene.meshes.is_empty() && scene.has_curved_surface() => {
             "there is no mesh; curved surfaces have normals of their own".into()
         }
         Effect::SmoothNormals if scene.meshes.is_empty() => "there is no mesh".into(),
@@ -135,10 +135,6 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
         Effect::IndirectLight if scene.indirect_light => DARK.into(),
         Effect::IndirectLight => "[environment] does not request it".into(),
     }
-}
-
-fn has_curved_surface(scene: &Scene) -> bool {
-    scene.nodes.iter().any(|node| matches!(node.shape, Some(Shape::Bezier { .. } | Shape::Nurbs { .. })))
 }
 
 fn light_name(scene: &Scene, light: usize) -> String {

@@ -3,55 +3,36 @@
 use super::super::library::parse;
 use super::super::{ObjMaterial, read};
 use crate::files::error::LoadError;
+use crate::tests::folder::Folder;
 use glam::Vec3;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 fn parsed(text: impl AsRef<[u8]>) -> (Vec<ObjMaterial>, Vec<LoadError>) {
     let mut warnings = Vec::new();
     (parse(Path::new("models/a.mtl"), text.as_ref(), &mut warnings), warnings)
 }
 
-/// A directory that is removed when the value is dropped.
-struct Directory(PathBuf);
-
-impl Directory {
-    fn with(name: &str, files: &[(&str, &str)]) -> Directory {
-        let path = std::env::temp_dir().join(format!("raykata-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        for (file, text) in files {
-            std::fs::write(path.join(file), text).unwrap();
-        }
-        Directory(path)
-    }
-}
-
-impl Drop for Directory {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 #[test]
 fn libraries_lie_next_to_the_file_that_names_them() {
-    let directory = Directory::with(
-        "libraries",
-        &[
-            (
-                "a.obj",
-                "mtllib one.mtl two.mtl\nmtllib three of them.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl b\nf 1 2 3\n",
-            ),
-            ("one.mtl", "newmtl a\nnewmtl b\nKd 1 0 0\nmap_Kd b.png"),
-            ("two.mtl", "newmtl b\nKd 0 1 0\n"),
-            ("three of them.mtl", "newmtl c\nmap_Kd c.png\n"),
-        ],
-    );
-    let file = read(&directory.0.join("a.obj")).unwrap();
+    let folder = Folder::new("libraries");
+    for (file, text) in [
+        (
+            "a.obj",
+            "mtllib one.mtl two.mtl\nmtllib three of them.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl b\nf 1 2 3\n",
+        ),
+        ("one.mtl", "newmtl a\nnewmtl b\nKd 1 0 0\nmap_Kd b.png"),
+        ("two.mtl", "newmtl b\nKd 0 1 0\n"),
+        ("three of them.mtl", "newmtl c\nmap_Kd c.png\n"),
+    ] {
+        folder.write(file, text);
+    }
+    let file = read(&folder.path("a.obj")).unwrap();
     assert_eq!(file.mesh.mesh.material_names, ["b"]);
     assert_eq!(file.mesh.mesh.face_materials, [0]);
     let names: Vec<&str> = file.materials.iter().map(|material| &*material.name).collect();
     assert_eq!(names, ["a", "b", "c"]);
     assert_eq!(file.materials[1].diffuse, Some(Vec3::Y), "the last definition counts");
-    assert_eq!(file.materials[2].diffuse_texture, Some(directory.0.join("c.png")));
+    assert_eq!(file.materials[2].diffuse_texture, Some(folder.path("c.png")));
 }
 
 #[test]

@@ -5,37 +5,12 @@ use crate::files::error::LoadError;
 use crate::files::scene::{Limits, parse, parse_within};
 use crate::material::{Material, Wrap};
 use crate::scene::{Background, EnvironmentMap, Scene};
+use crate::tests::folder::Folder;
 use glam::Vec3;
-use std::path::PathBuf;
 
-/// A folder that is removed when the value is dropped.
-pub(super) struct Folder(PathBuf);
-
-impl Folder {
-    pub(super) fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("raykata-{}-{name}", std::process::id()));
-        std::fs::create_dir_all(&path).expect("a folder for the test");
-        Folder(path)
-    }
-
-    pub(super) fn path(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-
-    pub(super) fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
-        std::fs::write(self.path(name), bytes).expect("a file for the test");
-    }
-
-    /// Reads `text` behind a camera, and shows all of its meshes and textures, as if it lay in this folder.
-    fn parse(&self, text: &str) -> Result<Scene, LoadError> {
-        parse(&self.path("s.toml"), &showing_all(&format!("{CAMERA}{text}")))
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+/// Reads `text` behind a camera, and shows all of its meshes and textures, as if it lay in this folder.
+fn parse_in(folder: &Folder, text: &str) -> Result<Scene, LoadError> {
+    parse(&folder.path("s.toml"), &showing_all(&format!("{CAMERA}{text}")))
 }
 
 /// The message, without the path of the file in front, and its help.
@@ -49,9 +24,11 @@ fn an_image_is_decoded_to_linear_light() {
     let folder = Folder::new("textures");
     let pixels = image::RgbImage::from_raw(2, 1, vec![0, 255, 188, 10, 0, 0]).expect("six bytes");
     pixels.save(folder.path("wood.png")).expect("a texture");
-    let scene = folder
-        .parse("[textures.wood]\nfile = 'wood.png'\nwrap = 'mirror'\n[materials.m]\ntexture = 'wood'")
-        .expect("a scene");
+    let scene = parse_in(
+        &folder,
+        "[textures.wood]\nfile = 'wood.png'\nwrap = 'mirror'\n[materials.m]\ntexture = 'wood'",
+    )
+    .expect("a scene");
     let texture = &scene.textures[0];
     assert_eq!((texture.width, texture.height, texture.wrap), (2, 1, Wrap::Mirror));
     // Code 188 is middle grey: ((188/255 + 0.055) / 1.055)^2.4 = 0.5029; code 10 lies on the linear part:
@@ -68,9 +45,9 @@ fn finer_images_keep_their_fineness() {
     code(32_768).save(folder.path("grey.png")).expect("a texture");
     let bright = image::Rgb32FImage::from_pixel(1, 1, image::Rgb([4.0, 0.5, 0.0]));
     bright.save(folder.path("sky.hdr")).expect("a texture");
-    let scene = folder
-        .parse("[textures]\ngrey.file = 'grey.png'\nsky = { file = 'sky.hdr', wrap = 'clamp' }")
-        .expect("a scene");
+    let scene =
+        parse_in(&folder, "[textures]\ngrey.file = 'grey.png'\nsky = { file = 'sky.hdr', wrap = 'clamp' }")
+            .expect("a scene");
     // ((32768/65535 + 0.055) / 1.055)^2.4; 8 bits would give 0.2159 for code 128.
     assert!((scene.textures[0].pixels[0] - Vec3::splat(0.214_053)).abs().max_element() < 1e-5);
     assert_eq!(scene.textures[1].pixels[0], Vec3::new(4.0, 0.5, 0.0)); // powers of two are exact in RGBE
@@ -84,7 +61,8 @@ fn an_environment_map_is_an_image_around_the_scene() {
     bright.save(folder.path("even.hdr")).expect("an image");
     bright.put_pixel(1, 0, image::Rgb([0.0; 3]));
     bright.save(folder.path("sky.hdr")).expect("an image");
-    let parse = |map: &str| folder.parse(&format!("environment.background = {{ {map} }}")).expect("a scene");
+    let parse =
+        |map: &str| parse_in(&folder, &format!("environment.background = {{ {map} }}")).expect("a scene");
     let scene = parse("file = 'sky.hdr', rotation = 180, scale = 2");
     let map = EnvironmentMap { texture: 0, rotation: std::f32::consts::PI, scale: 2.0 };
     assert_eq!(scene.background, Background::Map(map));
@@ -96,13 +74,13 @@ fn an_environment_map_is_an_image_around_the_scene() {
 
     // The size of the image is known from its header; 4 GB are enough for 100 million pixels.
     folder.write("large.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20000 +X 40000\n");
-    let (_, message, _) = trouble(folder.parse("environment.background.file = 'large.hdr'"));
+    let (_, message, _) = trouble(parse_in(&folder, "environment.background.file = 'large.hdr'"));
     assert!(message.starts_with("an image of 40000 by 20000 pixels takes about 32.0 GB"), "{message}");
 }
 
 #[test]
 fn a_name_that_the_system_refuses_is_an_error() {
-    let (_, message, _) = trouble(Folder::new("names").parse("meshes.bunny.file = \"\\u0000\""));
+    let (_, message, _) = trouble(parse_in(&Folder::new("names"), "meshes.bunny.file = \"\\u0000\""));
     assert_eq!(message, "the file name `\\u{0}` contains a control character");
 }
 
@@ -117,8 +95,7 @@ fn a_mesh_comes_with_its_materials_unless_the_scene_knows_better() {
     folder.write("m.ply", PLY);
     folder.write("m.obj", OBJ);
     folder.write("m.mtl", MTL);
-    let scene = folder
-        .parse("[meshes.p]\nfile = 'm.ply'\nsmooth = false\n[meshes.o]\nfile = 'm.obj'\n")
+    let scene = parse_in(&folder, "[meshes.p]\nfile = 'm.ply'\nsmooth = false\n[meshes.o]\nfile = 'm.obj'\n")
         .expect("a scene");
     assert_eq!(scene.meshes[0].mesh.triangles, [[0, 1, 2]]);
     assert_eq!(scene.meshes[0].mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
@@ -133,14 +110,14 @@ fn a_mesh_comes_with_its_materials_unless_the_scene_knows_better() {
     };
     assert_eq!(scene.materials[1], red);
 
-    let scene = folder.parse("[materials.red]\n[meshes.o]\nfile = 'm.obj'\n").expect("a scene");
+    let scene = parse_in(&folder, "[materials.red]\n[meshes.o]\nfile = 'm.obj'\n").expect("a scene");
     assert_eq!((scene.materials.len(), &scene.meshes[0].materials), (2, &vec![1]));
-    let scene = folder.parse("[meshes.o]\nfile = 'm.obj'\nmaterials = false").expect("a scene");
+    let scene = parse_in(&folder, "[meshes.o]\nfile = 'm.obj'\nmaterials = false").expect("a scene");
     assert_eq!((scene.materials.len(), scene.meshes[0].materials.len()), (1, 0));
 
     // If another name is defined, faces with this one get the default.
     folder.write("m.obj", format!("{OBJ}usemtl blue\nf 1 3 2\n"));
-    let scene = folder.parse("[meshes.o]\nfile = 'm.obj'\n").expect("a scene");
+    let scene = parse_in(&folder, "[meshes.o]\nfile = 'm.obj'\n").expect("a scene");
     assert_eq!(scene.meshes[0].materials, [1, 0]);
 }
 
@@ -183,7 +160,7 @@ fn memory_is_bounded_before_it_is_allocated() {
 fn a_mesh_has_triangles() {
     let folder = Folder::new("empty");
     folder.write("m.ply", PLY.replace("element face 1", "element face 0").replace("3 0 1 2\n", ""));
-    let error = folder.parse("[meshes.p]\nfile = 'm.ply'\n").expect_err("an empty mesh");
+    let error = parse_in(&folder, "[meshes.p]\nfile = 'm.ply'\n").expect_err("an empty mesh");
     assert!(error.message.contains("no triangles"), "{error}");
 }
 
@@ -211,7 +188,7 @@ fn an_image_is_decoded_by_the_curve_that_it_states() {
     ] {
         folder.write("grey.png", bytes);
         let scene =
-            folder.parse(&format!("[textures.grey]\nfile = 'grey.png'\n{encoding}\n")).expect("a scene");
+            parse_in(&folder, &format!("[textures.grey]\nfile = 'grey.png'\n{encoding}\n")).expect("a scene");
         let grey = scene.textures[0].pixels[0].x;
         assert!((grey - expected).abs() < 1e-6, "{grey} for {expected}, {encoding}"); // a few roundings of a power
     }

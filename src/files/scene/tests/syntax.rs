@@ -46,7 +46,7 @@ fn nesting_has_a_bottom() {
 
 #[test]
 fn a_scene_that_is_not_there_is_missed_by_name() {
-    let folder = super::files::Folder::new("syntax");
+    let folder = crate::tests::folder::Folder::new("syntax");
     folder.write("room.toml", CAMERA);
     assert!(load(&folder.path("room.toml")).is_ok());
     let error = load(&folder.path("rom.toml")).unwrap_err();

@@ -1,10 +1,9 @@
 //! The rays of a pixel and the boxes that are tested for them, as lines on the picture.
 
 use glam::Vec3;
-use raykata::aabb::Aabb;
 use raykata::camera::Camera;
 use raykata::kit::{RayKind, RayVisits, TracedRay};
-use raykata::partition::corners;
+use raykata::partition::edges;
 use raykata::scene::Scene;
 use raykata::world::camera_for;
 use raykata_cli::compare::projected;
@@ -54,12 +53,4 @@ fn line(camera: &Camera, scene: &Scene, ends: [Vec3; 2]) -> Option<Value> {
     let [p, q] = projected(camera, (scene.film.width, scene.film.height), ends)?;
     let tenths = [p.x, p.y, q.x, q.y].map(|x| f64::from((10.0 * x).round()) / 10.0);
     Some(json!(tenths))
-}
-
-/// The twelve edges of a box.
-fn edges(bounds: &Aabb) -> Vec<[Vec3; 2]> {
-    let corners = corners(bounds);
-    let from =
-        |corner: usize| (0..3).filter(move |axis| corner >> axis & 1 == 0).map(move |axis| (corner, axis));
-    (0..8).flat_map(from).map(|(corner, axis)| [corners[corner], corners[corner | 1 << axis]]).collect()
 }

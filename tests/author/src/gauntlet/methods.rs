@@ -1,11 +1,13 @@
 //! Ray–triangle intersection methods: as printed in the lectures, as commonly used, and corrected. All are in single
 //! precision, some also in double.
 
-use super::printed;
 use glam::{DVec3, Vec3};
 use oracle::exact::{Body, meet};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
+use single::{
+    edge_forms, gram_weights, in_range, moeller_trumbore, numbers, on_plane, plane_sides, t_of_plane,
+};
 
 /// An intersection method.
 pub struct TriangleTest {
@@ -18,24 +20,24 @@ pub struct TriangleTest {
 /// All methods.
 pub const METHODS: [TriangleTest; 25] = [
     TriangleTest { name: "Möller–Trumbore", hit: single::moeller_trumbore },
-    TriangleTest { name: "  cut off at |det| < 1e-6", hit: printed::moeller_trumbore_cut_off },
+    TriangleTest { name: "  cut off at |det| < 1e-6", hit: moeller_trumbore_cut_off },
     TriangleTest { name: "  in double", hit: double::moeller_trumbore },
     TriangleTest { name: "Cramer", hit: single::cramer },
-    TriangleTest { name: "  as printed in 002", hit: printed::cramer },
+    TriangleTest { name: "  as printed in 002", hit: cramer_as_printed },
     TriangleTest { name: "  in double", hit: double::cramer },
     TriangleTest { name: "plane and Gram", hit: single::gram },
-    TriangleTest { name: "  0 <= s + t <= 1 as printed in 001", hit: printed::gram_sum_only },
+    TriangleTest { name: "  0 <= s + t <= 1 as printed in 001", hit: gram_sum_only },
     TriangleTest { name: "  in double", hit: double::gram },
     TriangleTest { name: "inside test I, planes", hit: single::by_planes },
-    TriangleTest { name: "  one winding, as printed", hit: printed::by_planes_of_one_winding },
+    TriangleTest { name: "  one winding, as printed", hit: by_planes_of_one_winding },
     TriangleTest { name: "  in double", hit: double::by_planes },
     TriangleTest { name: "inside test II, directions", hit: single::by_direction },
     TriangleTest { name: "  in double", hit: double::by_direction },
     TriangleTest { name: "inside test III, areas", hit: single::by_areas },
     TriangleTest { name: "  in double", hit: double::by_areas },
-    TriangleTest { name: "  without signs, as printed", hit: printed::by_unsigned_areas },
+    TriangleTest { name: "  without signs, as printed", hit: by_unsigned_areas },
     TriangleTest { name: "Plücker", hit: single::pluecker },
-    TriangleTest { name: "  with a band of one step", hit: printed::pluecker_with_a_band },
+    TriangleTest { name: "  with a band of one step", hit: pluecker_with_a_band },
     TriangleTest { name: "  in double", hit: double::pluecker },
     TriangleTest { name: "Woop", hit: single::woop },
     TriangleTest { name: "  t from the plane", hit: single::woop_with_plane },
@@ -51,7 +53,7 @@ fn exactly(ray: &Ray, triangle: &Triangle) -> Option<f32> {
 /// Defines the methods for one precision.
 macro_rules! precision {
     ($module:ident, $Float:ty, $Vector:ty, $convert:expr) => {
-        pub(super) mod $module {
+        mod $module {
             use super::*;
 
             /// Returns origin, direction and the three corners.
@@ -219,3 +221,57 @@ macro_rules! precision {
 
 precision!(single, f32, Vec3, |v: Vec3| v);
 precision!(double, f64, DVec3, Vec3::as_dvec3);
+
+// Methods with errors that are printed in lectures or commonly used. They stay unchanged, so that the gauntlet can show their cost.
+
+/// A common error: it treats a determinant below a fixed number as parallel, for triangles of any size.
+fn moeller_trumbore_cut_off(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+    let det = (triangle.b - triangle.a).dot(ray.direction.cross(triangle.c - triangle.a));
+    if det.abs() < 1e-6 { None } else { moeller_trumbore(ray, triangle) }
+}
+
+/// Lecture 002 prints terms of another numerator in the determinant.
+fn cramer_as_printed(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+    let [o, direction, corner, second, third] = numbers(ray, triangle);
+    let (first, other, rhs) = (second - corner, third - corner, o - corner);
+    let [a, e, i] = first.to_array();
+    let [b, f, j] = other.to_array();
+    let [c, g, k] = (-direction).to_array();
+    let [d, h, l] = rhs.to_array();
+    let det = a * (f * k - g * j) + b * (g * l - h * k) + c * (h * j - f * l);
+    let beta = (d * (f * k - g * j) + b * (g * l - h * k) + c * (h * j - f * l)) / det;
+    let gamma = (a * (h * k - g * l) + d * (g * i - e * k) + c * (e * l - h * i)) / det;
+    let t = (a * (f * l - h * j) + b * (h * i - e * l) + d * (e * j - f * i)) / det;
+    let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
+    if inside { in_range(ray, t) } else { None }
+}
+
+/// Lecture 001 tests only the sum of the barycentric coordinates.
+fn gram_sum_only(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+    let (beta, gamma, t) = gram_weights(ray, triangle);
+    if (0.0..=1.0).contains(&(beta + gamma)) { in_range(ray, t) } else { None }
+}
+
+/// Lecture 003 returns a miss at the first negative distance, which is right for one winding only.
+fn by_planes_of_one_winding(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+    let (t, sides) = plane_sides(ray, triangle);
+    if sides.iter().any(|&side| side < 0.0) { None } else { in_range(ray, t) }
+}
+
+/// Lecture 003 uses areas without a sign.
+fn by_unsigned_areas(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+    let [_, _, a, b, c] = numbers(ray, triangle);
+    let (t, point, n) = on_plane(ray, triangle);
+    let share = |from: Vec3, to: Vec3| (from - point).cross(to - point).length() / n.length();
+    let (alpha, beta) = (share(b, c), share(c, a));
+    if alpha + beta <= 1.0 { in_range(ray, t) } else { None }
+}
+
+/// Edges widened by a rounding error of the whole area: it leaks less, but hits where it should miss.
+fn pluecker_with_a_band(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+    let forms = edge_forms(ray, triangle);
+    let sum: f32 = forms.iter().sum();
+    let band = f32::EPSILON * sum.abs();
+    let inside = forms.iter().all(|&form| form >= -band) || forms.iter().all(|&form| form <= band);
+    if inside && sum != 0.0 { in_range(ray, t_of_plane(ray, triangle)) } else { None }
+}

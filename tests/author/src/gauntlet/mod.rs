@@ -1,11 +1,10 @@
 //! `author gauntlet`: shows what accuracy costs. It runs intersection methods on distributions of hard inputs and judges
 //! them by exact arithmetic.
 //!
-//! `methods` and `printed` (triangle tests) · `files` (the tables as a page)
+//! `methods` (triangle tests) · `files` (the tables as a page)
 
 mod files;
 mod methods;
-mod printed;
 
 use anyhow::Result;
 use grader::kits::{Need, Source, Which, root};

@@ -21,7 +21,7 @@ use anyhow::{Context, Result, bail};
 use checks::Check;
 use grader::files_below::{files_below, last_part};
 use grader::kits::root;
-use grader::queue;
+use grader::queue::{self, lock};
 use grader::report::bar_of_steps;
 use judges::Judge;
 use numbers::numbers;
@@ -35,7 +35,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 /// `author weaken`.
 pub static SPEC: Spec = Spec {
@@ -315,8 +315,4 @@ impl Guard {
             }
         })
     }
-}
-
-fn lock<T>(shared: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,6 +1,7 @@
 //! Exercises are made from solutions and contain no line of an answer.
 
 use super::program_runs::root;
+use grader::exercises::{Block, blocks, exercises, stub};
 
 /// Whether `line` is `name: Type,` and no more: a parameter or a field.
 fn is_parameter(line: &str) -> bool {
@@ -13,25 +14,18 @@ fn is_parameter(line: &str) -> bool {
 /// The lines between the marks are answers. None of them may occur in an exercise.
 #[test]
 fn no_line_of_an_answer_is_in_an_exercise() {
-    for exercise in grader::exercises::exercises(&root()).expect("the kit is whole") {
+    // Short lines, such as brackets, parameters, fields, attributes and marks are not answers.
+    let is_answer = |line: &str| {
+        line.len() > 12 && !is_parameter(line) && !line.starts_with("#[") && !line.starts_with("// <")
+    };
+    for exercise in exercises(&root()).expect("the kit is whole") {
         let solution = root().join("solutions/src").join(exercise.path.file_name().expect("a name"));
         let text = std::fs::read_to_string(&solution).expect("a solution");
-        let mut inside = false;
-        for line in text.lines().map(str::trim) {
-            match line {
-                "// <solution>" => inside = true,
-                "// </solution>" => inside = false,
-                // Skip short lines, such as brackets, parameters, fields and attributes. They are not answers.
-                _ if inside
-                    && line.len() > 12
-                    && !is_parameter(line)
-                    && !line.starts_with("#[")
-                    && !line.starts_with("// <stub>") =>
-                {
-                    let left = exercise.stub.lines().any(|stub| stub.trim() == line);
-                    assert!(!left, "{}: {line}", exercise.path.display());
-                }
-                _ => {}
+        for block in blocks(&text, &solution).expect("pairs of marks") {
+            let Block::Answer(answer, _) = block else { continue };
+            for line in answer.into_iter().map(str::trim).filter(|line| is_answer(line)) {
+                let left = exercise.stub.lines().any(|stub| stub.trim() == line);
+                assert!(!left, "{}: {line}", exercise.path.display());
             }
         }
     }
@@ -39,10 +33,10 @@ fn no_line_of_an_answer_is_in_an_exercise() {
 
 #[test]
 fn sync_is_the_same_every_time() {
-    for exercise in grader::exercises::exercises(&root()).expect("the kit is whole") {
+    for exercise in exercises(&root()).expect("the kit is whole") {
         assert!(!exercise.stub.contains("<solution>") && !exercise.stub.contains("<stub>"));
         // A file without marks is its own stub, so generating twice changes nothing.
-        let again = grader::exercises::stub(&exercise.stub, &exercise.path).expect("no marks are left");
+        let again = stub(&exercise.stub, &exercise.path).expect("no marks are left");
         assert_eq!(again, exercise.stub);
     }
 }

@@ -5,7 +5,7 @@ use super::counted::Costly;
 use super::result::{CheckResult, Outcome, Picture};
 use crate::grade::report::clean;
 use crate::kits::{Need, Source, Which};
-use crate::queue;
+use crate::queue::{self, lock};
 use crate::sandbox::{Confinement, Purpose, Sandbox};
 use crate::worker::{self, Worker};
 use all_checks::STAGES;
@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::mem::{Discriminant, discriminant};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// Time limit per call, in processor time. The reference's slowest call takes half a second without optimisation.
@@ -430,10 +430,6 @@ fn asked(reference: &Arc<Worker>, check: &Check, seed: u64, inputs: Inputs) -> (
     let passes = matches!(checks::examine(check, &kit, seed, inputs), Ok(Ok(())));
     let record = lock(&record).clone();
     (record, passes)
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The reference, with a record of the questions.

@@ -1,8 +1,9 @@
 //! Results that are computed once per key.
 
+use crate::queue::lock;
 use anyhow::Result;
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// Results by key. Threads that ask for the same key at the same time wait for one of them, which computes the result.
 pub struct Once<K, V>(Mutex<BTreeMap<K, Arc<Mutex<Option<V>>>>>);
@@ -16,8 +17,8 @@ impl<K, V> Default for Once<K, V> {
 impl<K: Ord, V: Clone> Once<K, V> {
     /// Returns the result for `key`, and computes it if no thread has done so. An error is not kept.
     pub fn get(&self, key: K, compute: impl FnOnce() -> Result<V>) -> Result<V> {
-        let place = self.0.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default().clone();
-        let mut place = place.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = lock(&self.0).entry(key).or_default().clone();
+        let mut place = lock(&place);
         if let Some(known) = &*place {
             return Ok(known.clone());
         }

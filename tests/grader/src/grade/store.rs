@@ -6,6 +6,7 @@ use super::result::{Class, Graded, Note, Session};
 use super::shard::Part;
 use crate::course::CourseFiles;
 use crate::platform::PlatformTable;
+use crate::queue::lock;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use raykata_cli::lock::Lock;
 use rusqlite::{Connection, OptionalExtension, params};
@@ -13,7 +14,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
 
 /// The name of the database in the folder of results.
 pub const FILE: &str = "grades.sqlite";
@@ -298,7 +299,7 @@ impl Store {
     }
 
     fn lock(&self) -> MutexGuard<'_, Connection> {
-        self.connection.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.connection)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Runs a command to its end, even if it does not end by itself.
 
 use super::{Ended, How, processes};
+use crate::queue::lock;
 use nix::errno::Errno;
 use nix::sys::prctl;
 use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
@@ -10,7 +11,7 @@ use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 /// First pause between two looks at a process. It is short, because some processes need only a millisecond.
@@ -80,7 +81,7 @@ fn spawn(command: Command) -> io::Result<Child> {
     let gone = || io::Error::other("the thread that starts processes is gone");
     let spawner = spawner.as_ref().map_err(|error| io::Error::new(error.kind(), error.to_string()))?;
     let (answer, answered) = channel();
-    spawner.lock().unwrap_or_else(PoisonError::into_inner).send((command, answer)).map_err(|_| gone())?;
+    lock(spawner).send((command, answer)).map_err(|_| gone())?;
     answered.recv().map_err(|_| gone())?
 }
 

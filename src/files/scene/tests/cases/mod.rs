@@ -18,11 +18,11 @@
 //! `flat` a mesh that asks for flat faces, `groups` its smoothing groups, and `area` is that of all triangles. `diffuse 1 0 0` is a value of the first material of the file that is not the default.
 
 use super::changed::changed;
-use super::files::Folder;
 use super::{CAMERA, showing_all};
 use crate::files::scene::{Limits, Loaded, parse_within};
 use crate::material::Material;
 use crate::scene::{Scene, SceneMesh};
+use crate::tests::folder::Folder;
 use std::fmt::Write;
 
 #[test]

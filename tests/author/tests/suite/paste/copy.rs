@@ -89,7 +89,7 @@ pub fn append(file: &Path, code: &str) {
 }
 
 fn copy_folder(root: &Path, to: &Path, folder: &str, open: &[String]) {
-    let is_kept = |path: &str| !["tests/checks/all/tests", "tests/oracle/examples"].contains(&path);
+    let is_kept = |path: &str| path != "tests/checks/all/tests";
     for path in files_below(root, folder, &is_kept).unwrap_or_else(|error| panic!("{error:#}")) {
         let source = root.join(&path);
         if path.ends_with(".rs") {

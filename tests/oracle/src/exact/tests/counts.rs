@@ -4,7 +4,7 @@ use super::cases;
 use crate::exact::body::{Against, First, Meet, Order};
 use crate::exact::ring::{Approx, Ring};
 use crate::exact::scale::{Frame, Scale};
-use crate::exact::{Body, Question, WIDEST, Wide};
+use crate::exact::{Question, WIDEST, Wide};
 use std::cell::Cell;
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -102,15 +102,7 @@ fn bits_and_roundings_are_as_counted() {
     for number in 0..600 {
         let case = cases::any(3, number);
         let ray = &case.ray;
-        let bodies = [
-            Body::Triangle(case.triangle),
-            Body::Plane(case.plane),
-            Body::Disk(case.disk),
-            Body::Sphere(case.sphere),
-            Body::Cuboid(case.cuboid),
-            Body::Cylinder(case.cylinder),
-            Body::Cone(case.cone),
-        ];
+        let bodies = super::bodies(&case).map(|(body, _)| body);
         for body in bodies {
             count(&First { ray, body }, 60);
             count(&Meet { ray, body }, 60);

@@ -1,23 +1,42 @@
 //! Compares the tiers with big integers, and verifies the bounds that they rely on.
 
-mod boxes;
-#[path = "../../../examples/oracle/cases.rs"]
-#[expect(dead_code, reason = "some of it is for measuring")]
 mod cases;
 mod counts;
 mod hard;
-#[path = "../../../examples/oracle/reference/mod.rs"]
 mod reference;
 
-use super::{Body, Contact, Tier, aabb, meet_with, order_with, verdict_with};
+use super::{Body, Contact, Tier, aabb, meet, meet_with, order_with, triangle, verdict, verdict_with};
 use crate::splitmix::Random;
 use cases::ComparedCase;
 use raykata::aabb::Aabb;
+use raykata::kit::least_seconds;
 use raykata::ray::Ray;
 use reference::Answer;
+use std::hint::black_box;
+
+/// A number from the environment.
+fn number(name: &str, default: u64) -> u64 {
+    std::env::var(name).ok().and_then(|number| number.parse().ok()).unwrap_or(default)
+}
+
+/// Answers for a shape of a case with big integers.
+type Reference = fn(&ComparedCase) -> Answer;
+
+/// The shapes of a case, and the functions that answer for them.
+fn bodies(case: &ComparedCase) -> [(Body, Reference); 7] {
+    [
+        (Body::Triangle(case.triangle), |case| reference::triangle(&case.ray, &case.triangle)),
+        (Body::Plane(case.plane), |case| reference::plane(&case.ray, &case.plane)),
+        (Body::Disk(case.disk), |case| reference::disk(&case.ray, &case.disk)),
+        (Body::Sphere(case.sphere), |case| reference::sphere(&case.ray, &case.sphere)),
+        (Body::Cuboid(case.cuboid), |case| reference::cuboid(&case.ray, &case.cuboid)),
+        (Body::Cylinder(case.cylinder), |case| reference::cylinder(&case.ray, &case.cylinder)),
+        (Body::Cone(case.cone), |case| reference::cone(&case.ray, &case.cone)),
+    ]
+}
 
 fn agree(ray: &Ray, body: Body, answer: &Answer, context: u64) {
-    // The widest integers are slow in this profile; the long run of `examples/oracle` asks them always.
+    // The widest integers are slow.
     for tier in Tier::ALL.into_iter().filter(|&tier| tier != Tier::Widest || context.is_multiple_of(8)) {
         let must = matches!(tier, Tier::Auto | Tier::Widest);
         let word = |verdict| [Contact::Out, Contact::On, Contact::In].iter().position(|&v| v == verdict);
@@ -41,13 +60,9 @@ fn agree(ray: &Ray, body: Body, answer: &Answer, context: u64) {
 
 fn agree_on_all(case: &ComparedCase, context: u64) {
     let ray = &case.ray;
-    agree(ray, Body::Triangle(case.triangle), &reference::triangle(ray, &case.triangle), context);
-    agree(ray, Body::Plane(case.plane), &reference::plane(ray, &case.plane), context);
-    agree(ray, Body::Disk(case.disk), &reference::disk(ray, &case.disk), context);
-    agree(ray, Body::Sphere(case.sphere), &reference::sphere(ray, &case.sphere), context);
-    agree(ray, Body::Cuboid(case.cuboid), &reference::cuboid(ray, &case.cuboid), context);
-    agree(ray, Body::Cylinder(case.cylinder), &reference::cylinder(ray, &case.cylinder), context);
-    agree(ray, Body::Cone(case.cone), &reference::cone(ray, &case.cone), context);
+    for (body, slow) in bodies(case) {
+        agree(ray, body, &slow(case), context);
+    }
     let bounds = Aabb::new(case.cuboid.min, case.cuboid.max);
     let overlaps = reference::overlaps(ray, &bounds);
     for tier in Tier::ALL.into_iter().filter(|&tier| tier != Tier::Widest || context.is_multiple_of(8)) {
@@ -63,14 +78,15 @@ fn agree_on_all(case: &ComparedCase, context: u64) {
     }
 }
 
+/// `CASES=1000000 SEED=7 cargo test --release -p oracle big_integers` compares more and other cases.
 #[test]
 fn all_tiers_agree_with_big_integers() {
-    for case in 0..20_000 {
-        agree_on_all(&cases::any(1, case), case);
+    for case in 0..number("CASES", 20_000) {
+        agree_on_all(&cases::any(number("SEED", 1), case), case);
     }
 }
 
-/// Spheres, cylinders and cones in every order, around the same points and around others.
+/// All shapes in every order, and spheres around the same points and around others.
 #[test]
 fn orders_of_surds_agree_with_big_integers() {
     let (mut compared, mut equal) = (0, 0);
@@ -79,14 +95,11 @@ fn orders_of_surds_agree_with_big_integers() {
         let ray = &case.ray;
         let mut twin = case.sphere;
         twin.center += 2.0 * ray.direction.any_orthogonal_vector().normalize_or_zero().round();
-        let asked = [
-            (Body::Sphere(case.sphere), reference::sphere(ray, &case.sphere)),
-            (Body::Sphere(twin), reference::sphere(ray, &twin)),
-            (Body::Sphere(other.sphere), reference::sphere(ray, &other.sphere)),
-            (Body::Cylinder(case.cylinder), reference::cylinder(ray, &case.cylinder)),
-            (Body::Cone(case.cone), reference::cone(ray, &case.cone)),
-            (Body::Disk(case.disk), reference::disk(ray, &case.disk)),
-        ];
+        let mut asked: Vec<(Body, Answer)> =
+            bodies(&case).into_iter().map(|(body, slow)| (body, slow(&case))).collect();
+        asked.extend(
+            [twin, other.sphere].map(|sphere| (Body::Sphere(sphere), reference::sphere(ray, &sphere))),
+        );
         for (one, first) in &asked {
             for (two, second) in &asked {
                 let (Some(first), Some(second)) = (&first.1, &second.1) else { continue };
@@ -111,4 +124,37 @@ fn orders_of_surds_agree_with_big_integers() {
         }
     }
     assert!(compared > 300 && equal > 30 && equal < compared, "{compared} {equal}");
+}
+
+/// Prints how many questions are answered per second: `CASES=20000 cargo test --release -p oracle speed -- --nocapture`.
+#[test]
+fn speed() {
+    type Make = fn(u64, u64) -> ComparedCase;
+    let kinds: [(&str, Make); 4] = [
+        ("typical", cases::typical),
+        ("ties, whole numbers to 16", cases::tied),
+        ("ties, whole numbers to 2 million", cases::finely_tied),
+        ("scales from 2^-100 to 2^100", cases::of_all_scales),
+    ];
+    for (name, make) in kinds {
+        println!("{name}");
+        let all: Vec<ComparedCase> = (0..number("CASES", 20)).map(|case| make(1, case)).collect();
+        for (index, what) in
+            ["triangle", "plane", "disk", "sphere", "box", "cylinder", "cone"].into_iter().enumerate()
+        {
+            let asked: Vec<(Ray, Body)> = all.iter().map(|case| (case.ray, bodies(case)[index].0)).collect();
+            rate(&format!("{what}, verdict"), &asked, |(ray, body)| verdict(ray, *body));
+            rate(&format!("{what}, verdict and t"), &asked, |(ray, body)| meet(ray, *body));
+        }
+        rate("triangle, margin", &all, |case| triangle::margin(&case.ray, &case.triangle));
+        rate("triangle, barycentric", &all, |case| triangle::weights(&case.ray, &case.triangle));
+    }
+}
+
+fn rate<T, A>(what: &str, all: &[T], ask: impl Fn(&T) -> A) {
+    let ask = |one: &T| {
+        black_box(ask(black_box(one)));
+    };
+    let seconds = least_seconds(|| all.iter().for_each(ask));
+    println!("  {what:26} {:8.2} million per second", all.len() as f64 / seconds / 1e6);
 }

@@ -1,13 +1,8 @@
 //! Names in messages: how they are shown, and which known name was probably meant.
 
-use crate::scene::Encoding;
-
-/// How bytes encode linear light: those of 8-bit pictures, of colours as text, and of images.
-pub(super) const ENCODINGS: [(&str, Encoding); 2] = [("srgb", Encoding::Srgb), ("gamma2", Encoding::Gamma2)];
-
 /// The known name with the smallest Damerau-Levenshtein distance to `word`, without regard to case, if at
 /// most a third of the letters differ (or one). A name of more than 100 characters is never the answer.
-pub(super) fn nearest<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+pub(crate) fn nearest<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let word = word.to_lowercase();
     known
         .into_iter()
@@ -25,13 +20,13 @@ pub(super) fn nearest<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) 
 }
 
 /// The name between backticks, on one line and cut after 60 characters.
-pub(super) fn quoted(name: &str) -> String {
+pub(crate) fn quoted(name: &str) -> String {
     format!("`{}`", one_line(name))
 }
 
 /// The first 60 characters of `text` on one line, control characters escaped; an ellipsis stands for the
 /// rest.
-pub(super) fn one_line(text: &str) -> String {
+pub(crate) fn one_line(text: &str) -> String {
     const LONGEST: usize = 60; // keeps a message with two names within two lines of a terminal
     let cut = text.char_indices().nth(LONGEST).map_or(text.len(), |(end, _)| end);
     let mut line = String::new();
@@ -49,7 +44,7 @@ pub(super) fn one_line(text: &str) -> String {
 
 /// The names for a sentence, each between backticks: "`a`, `b`, `c`". After 17 names only the number of the
 /// others is given.
-pub(super) fn listed<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
+pub(crate) fn listed<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
     const MOST: usize = 17; // the most keys that a table has; a scene may define hundreds of materials
     let mut names = names.into_iter();
     let shown: Vec<String> = names.by_ref().take(MOST).map(quoted).collect();
