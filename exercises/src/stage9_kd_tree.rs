@@ -32,7 +32,7 @@ use raykata::ray::Ray;
 /// 5. `longest_axis`: cut across the cell's longest side. Off: x, y, z in turn, x first.
 /// 6. `balanced_counts`: minimise the difference of counts.
 /// 7. `few_straddlers`: minimise the number on both sides. With both, minimise the sum; with
-///    neither, cut in the middle.
+///    neither, cut the cell in the middle.
 /// 8. `cut_off_empty_space`: first cut off an empty margin of over a tenth of the cell.
 /// 9. `stop_at_overlap`: make a leaf if at least 60 % of one side, but not 0, would be on both.
 ///

@@ -6,7 +6,7 @@ use raykata::aabb::Aabb;
 use raykata::kit::{Kit, SlabQuery, WideBoxesQuery};
 use raykata::ray::Ray;
 use raykata::wide::{Child, WideNode};
-use touch::svg::{Drawing, End, Ink, Middle, SMALL, Start, View, offset, plane};
+use touch::svg::{Drawing, End, Ink, Middle, SMALL, Start, TEXT, View, offset, plane};
 
 /// Two boxes that overlap, and the steps of a search for the closest hit.
 pub fn traversal_order(kit: &dyn Kit) -> Result<String> {

@@ -55,9 +55,9 @@ const SIDE: usize = 384;
 const FINE: usize = 24;
 
 /// The bounds of bins along each side of the unit square: eighths, and narrow bins at both rims.
-const EDGES: [f64; 17] = {
-    let [a, b, c, d] = [1.0 / 16384.0, 1.0 / 4096.0, 1.0 / 512.0, 1.0 / 64.0];
-    [0.0, a, b, c, d, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - d, 1.0 - c, 1.0 - b, 1.0 - a, 1.0]
+const EDGES: [f64; 15] = {
+    let [a, b, c] = [1.0 / 4096.0, 1.0 / 512.0, 1.0 / 64.0];
+    [0.0, a, b, c, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - c, 1.0 - b, 1.0 - a, 1.0]
 };
 /// The number of bins along each side.
 const BINS: usize = EDGES.len() - 1;
@@ -73,9 +73,9 @@ pub fn bins() -> impl Iterator<Item = ((f64, f64), (f64, f64))> {
 
 /// The parts of the square that are counted, as ranges of bins along x and y.
 fn parts() -> Vec<[Range<usize>; 2]> {
-    let eighth = |index: usize| if index < 8 { index.min(1) * 4 + index } else { BINS };
+    let eighth = |index: usize| if index < 8 { index.min(1) * 3 + index } else { BINS };
     let even = |n: usize| (0..n).map(|i| eighth(8 / n * i)..eighth(8 / n * (i + 1))).collect::<Vec<_>>();
-    let rims = (1..5).flat_map(|n| [0..n, BINS - n..BINS]).collect::<Vec<_>>();
+    let rims = (1..4).flat_map(|n| [0..n, BINS - n..BINS]).collect::<Vec<_>>();
     let (whole, quarters, eighths) = (even(1), even(4), even(8));
     let pairs = [(&quarters, &eighths), (&eighths, &quarters), (&eighths, &whole), (&whole, &eighths)];
     let pairs = pairs.into_iter().chain([(&rims, &whole), (&whole, &rims)]);
@@ -187,7 +187,7 @@ pub fn covers_each_part(
     // Count in cells of equal size.
     let mut cells = vec![0.0; (CELLS * CELLS) as usize];
     for ([x, y], weight) in weighted() {
-        let eighth = |bin: usize| bin.clamp(4, BINS - 5) - 4;
+        let eighth = |bin: usize| bin.clamp(3, BINS - 4) - 3;
         cells[eighth(y) * CELLS as usize + eighth(x)] += weight;
     }
     let cells: Vec<u64> = cells.into_iter().map(|count: f64| count.round() as u64).collect();

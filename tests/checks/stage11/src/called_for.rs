@@ -342,7 +342,7 @@ pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckRe
         not_sampled(
             "a diffuse sphere and a plane, given by its equation, that emits light",
             equation,
-            "an infinite plane is not sampled, also one that is given by its equation",
+            "an infinite plane is not sampled",
         ),
         sampled(
             "a diffuse sphere, and a plane and a sphere of the same glowing material",

@@ -113,6 +113,10 @@ impl Filmed {
                 "you ignore when the shutter closes: all rays have the same time if it closes as it opens",
             ),
             (
+                is(lens, self.shutter.is_some_and(|(open, close)| close >= open) && moves),
+                "all rays have the same time if the shutter closes as it opens: compare both times by >",
+            ),
+            (
                 is(lens, self.shutter.is_some_and(|(open, close)| close != open) && moves),
                 "a shutter that closes before it opens takes no time: compare both times by >",
             ),

@@ -309,9 +309,7 @@ fn entries(aimed: bool, behind: bool) -> impl Strategy<Value = Entry> + Clone {
         2 => (Just(1.0f32), Just(1.0f32)),
         1 => (nasty::scale(-20..=20), nasty::scale(-12..=12)),
     ];
-    // The difference of the centre and a rough origin is rounded in single precision.
-    let origin = prop_oneof![3 => point(8), 1 => checks::generate::rough_point(8.0)];
-    (origin, directions, sphere(), 0..4 + u32::from(behind), scales).prop_map(
+    (point(8), directions, sphere(), 0..4 + u32::from(behind), scales).prop_map(
         move |(origin, direction, sphere, range, (size, speed))| {
             let to_center = sphere.center - origin;
             let direction = if aimed && to_center != Vec3::ZERO {

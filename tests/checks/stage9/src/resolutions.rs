@@ -67,12 +67,9 @@ fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
         let half = |t: f64| if t.is_finite() { (-21f64).exp2() * t.abs() } else { 0.0 };
         let wider = (expected.0 - half(expected.0), expected.1 + half(expected.1));
         let is_close = |(t, t_end): (f64, f64)| close(t, expected.0) && close(t_end, expected.1);
+        let has_span = expected.0 <= expected.1 + room(expected.1);
         let fits = match yours {
-            Some(span) => {
-                expected.0 <= expected.1 + room(expected.1)
-                    && is_close(span)
-                    && (span.0 <= wider.0 && span.1 >= wider.1)
-            }
+            Some(span) => has_span && is_close(span) && (span.0 <= wider.0 && span.1 >= wider.1),
             None => !(wider.0 <= wider.1),
         };
         if fits {
@@ -102,8 +99,10 @@ fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
             ),
             (!is_none && query.bounds.is_empty(), "you return a span for an empty cell"),
             (
-                yours
-                    .is_some_and(|(t, t_end)| t < range.0 - room(range.0) || t_end > range.1 + room(range.1)),
+                // A span behind the origin is lost by a range that begins there.
+                yours.map_or(expected.0 <= expected.1 && expected.1 < 0.0, |(t, t_end)| {
+                    t < range.0 - room(range.0) || t_end > range.1 + room(range.1)
+                }),
                 "you ignore the range of the ray",
             ),
             (
@@ -123,7 +122,7 @@ fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
                 "your answer is wrong for a ray along a face: its direction is 0 there, so compare its origin with both planes",
             ),
             (
-                yours.map_or(expected.0 > expected.1, is_close),
+                yours.map_or(expected.0 > expected.1, |span| has_span && is_close(span)),
                 "you leave out the room for rounding: the range of the ray and the faces have ROUNDING as room",
             ),
             (is_none && near == far, "you return None for a ray that touches the cell: the cell is closed"),
