@@ -203,7 +203,7 @@ fn a_parallel_build_gives_the_same_tree_and_the_same_log() {
     assert!(alone == parallel, "trees and logs are the same");
 }
 
-/// No check of stage 12 builds a tree over an empty box, or over one that makes all costs alike.
+/// No check of stage 12 builds a tree over an empty box, or a box so far away that all costs round to one number.
 #[test]
 fn trees_over_empty_and_far_boxes_have_every_primitive_once_and_tight_boxes() {
     let mut random = Random::new(12, 3);

@@ -7,7 +7,7 @@ use checks::prelude::*;
 use checks::tree::around;
 use oracle::splitmix::Random;
 use raykata::bvh::DEEPEST_SPLIT;
-use raykata::wide::{BLOCK, FlatNode, FlatTree};
+use raykata::wide::{FlatNode, FlatTree};
 
 pub(super) fn describe(boxes: &[Aabb]) -> String {
     format!("build_binned of {} boxes", boxes.len())
@@ -235,15 +235,6 @@ fn build_of(trial: &Trial<'_>, what: &str, boxes: Vec<Aabb>) -> CheckResult {
     let input = format!("build_binned of {what}");
     let tree = build(trial, &boxes, input.clone())?;
     judge_tree(&boxes, &tree).map_err(|broken| Broken { input: input.clone(), ..broken })?;
-    let small = tree.nodes.iter().filter(|node| node.is_leaf()).count();
-    if small * BLOCK < boxes.len() / 8 {
-        return Err(Broken::with_texts(
-            input,
-            format!("{small} leaves"),
-            "more leaves".to_owned(),
-            "counted",
-        ));
-    }
     // From depth DEEPEST_SPLIT on, each inner node is halved. Parents stand before their children.
     let sizes = from_leaves(&tree, |_, node| node.count, |_, left, right| left + right);
     let mut depths = vec![0; tree.nodes.len()];

@@ -161,11 +161,10 @@ pub(super) fn kd_balances_counts(trial: &Trial<'_>) -> CheckResult {
             }
         }
     });
-    let Some(yours) = other else { return Ok(()) };
-    let input = format!("build of {}, leaf_size 2", below.what);
-    let broken = Broken::with_texts(input, yours, "a cut in the middle of the cell", "the heuristic");
-    let says = "your cut is in the middle of the boxes, or elsewhere: cut the cell in the middle";
-    Err(broken.explained_by([(true, says)]))
+    let says =
+        "your cut is not in the middle of the cell: without balanced_counts and few_straddlers, cut it there";
+    let middle = "cuts in the middle of their cells";
+    other.map_or(Ok(()), |yours| below.refuse(yours, middle, (true, says)))
 }
 
 pub(super) fn kd_avoids_straddlers(trial: &Trial<'_>) -> CheckResult {

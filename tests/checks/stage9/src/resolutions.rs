@@ -19,8 +19,8 @@ pub(super) fn spans_of_cells_agree_with_double_precision(trial: &Trial<'_>) -> C
 }
 
 /// The ray with a range that begins or ends where the ray enters the box (six ranges) or leaves it (six more), or one float
-/// beside it; or, for six numbers, one that begins within the box, also behind the origin. For other numbers, and if the ray never does, the range is
-/// that of the ray.
+/// beside it. For six numbers it begins in the middle of the box, which may lie behind the origin. For other numbers, and if the
+/// ray never enters the box, the range is that of the ray.
 fn at_border(ray: Ray, bounds: &Aabb, range: usize) -> Ray {
     let (near, far) = slabs_interval(&ray, bounds);
     let t = if range < 6 { near } else { far } as f32;

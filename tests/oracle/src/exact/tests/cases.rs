@@ -73,38 +73,6 @@ pub struct ComparedCase {
     pub cone: Cone,
 }
 
-/// Random numbers of size one, as typical scenes have: half of the rays aim at the inside of the triangle.
-pub fn typical(seed: u64, case: u64) -> ComparedCase {
-    let mut random = Random::new(seed, case);
-    let [o, a, b, c, q] = [(); 5].map(|()| random.vector(Style::Unit));
-    let inside = a.lerp(b, random.unit()).lerp(c, random.unit());
-    let target = if case.is_multiple_of(2) { inside } else { q };
-    shapes(Ray::new(o, target - o), [a, b, c], q, 0.5 * random.unit())
-}
-
-/// Whole numbers: every ray hits its triangle exactly on an edge, unless the triangle is degenerate; other
-/// shapes have many ties as well.
-pub fn tied(seed: u64, case: u64) -> ComparedCase {
-    tied_on(Style::Lattice, seed, case)
-}
-
-/// The same on whole numbers up to a million.
-pub fn finely_tied(seed: u64, case: u64) -> ComparedCase {
-    tied_on(Style::Fine, seed, case)
-}
-
-/// Numbers from `2^-100` to `2^100` in one case.
-pub fn of_all_scales(seed: u64, case: u64) -> ComparedCase {
-    make(&mut Random::new(seed, case), Style::Scales, case % 8)
-}
-
-fn tied_on(lattice: Style, seed: u64, case: u64) -> ComparedCase {
-    let mut random = Random::new(seed, case);
-    let [o, a, b, c, q] = [(); 5].map(|()| random.vector(lattice));
-    // The middle of an edge between corners with even coordinates is on the lattice.
-    shapes(Ray::new(o, a + b - o), [2.0 * a, 2.0 * b, 2.0 * c], q, 2.0)
-}
-
 /// A case of any kind.
 pub fn any(seed: u64, case: u64) -> ComparedCase {
     let mut random = Random::new(seed, case);

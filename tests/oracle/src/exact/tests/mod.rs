@@ -5,14 +5,12 @@ mod counts;
 mod hard;
 mod reference;
 
-use super::{Body, Contact, Tier, aabb, meet, meet_with, order_with, triangle, verdict, verdict_with};
+use super::{Body, Contact, Tier, aabb, meet_with, order_with, verdict_with};
 use crate::splitmix::Random;
 use cases::ComparedCase;
 use raykata::aabb::Aabb;
-use raykata::kit::least_seconds;
 use raykata::ray::Ray;
 use reference::Answer;
-use std::hint::black_box;
 
 /// A number from the environment.
 fn number(name: &str, default: u64) -> u64 {
@@ -124,37 +122,4 @@ fn orders_of_surds_agree_with_big_integers() {
         }
     }
     assert!(compared > 300 && equal > 30 && equal < compared, "{compared} {equal}");
-}
-
-/// Prints how many questions are answered per second: `CASES=20000 cargo test --release -p oracle speed -- --nocapture`.
-#[test]
-fn speed() {
-    type Make = fn(u64, u64) -> ComparedCase;
-    let kinds: [(&str, Make); 4] = [
-        ("typical", cases::typical),
-        ("ties, whole numbers to 16", cases::tied),
-        ("ties, whole numbers to 2 million", cases::finely_tied),
-        ("scales from 2^-100 to 2^100", cases::of_all_scales),
-    ];
-    for (name, make) in kinds {
-        println!("{name}");
-        let all: Vec<ComparedCase> = (0..number("CASES", 20)).map(|case| make(1, case)).collect();
-        for (index, what) in
-            ["triangle", "plane", "disk", "sphere", "box", "cylinder", "cone"].into_iter().enumerate()
-        {
-            let asked: Vec<(Ray, Body)> = all.iter().map(|case| (case.ray, bodies(case)[index].0)).collect();
-            rate(&format!("{what}, verdict"), &asked, |(ray, body)| verdict(ray, *body));
-            rate(&format!("{what}, verdict and t"), &asked, |(ray, body)| meet(ray, *body));
-        }
-        rate("triangle, margin", &all, |case| triangle::margin(&case.ray, &case.triangle));
-        rate("triangle, barycentric", &all, |case| triangle::weights(&case.ray, &case.triangle));
-    }
-}
-
-fn rate<T, A>(what: &str, all: &[T], ask: impl Fn(&T) -> A) {
-    let ask = |one: &T| {
-        black_box(ask(black_box(one)));
-    };
-    let seconds = least_seconds(|| all.iter().for_each(ask));
-    println!("  {what:26} {:8.2} million per second", all.len() as f64 / seconds / 1e6);
 }
