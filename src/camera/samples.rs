@@ -98,6 +98,7 @@ impl Points {
 
     /// The address of sample `sample` (`0 <= sample < samples`) of pixel number `pixel`, for a given sampler
     /// and seed. `samples` is the number of samples per pixel, at least 1.
+    #[inline]
     pub fn new(sampler: Sampler, seed: u64, pixel: u64, sample: u32, samples: u32) -> Points {
         Points { sampler, key: mix(seed ^ mix(pixel)), index: sample, count: samples }
     }
@@ -136,6 +137,7 @@ impl Points {
         }
     }
 
+    #[inline]
     fn nth(&self, part: u32, parts: u32) -> u32 {
         self.index.wrapping_mul(parts).wrapping_add(part)
     }

@@ -69,7 +69,7 @@ fn classroom_gets_workflows_whose_steps_are_scripts() {
             fs::read_to_string(folder.path().join("out/.github/workflows").join(name)).expect("a workflow");
         assert!(text.contains("--stages 1-4 --seed ") && !text.contains("{options}"), "{text}");
         // Students can read their own workflow, so the final grades have another seed.
-        assert_eq!(text.contains("--seed 77"), name == "class.yml", "{text}");
+        assert_eq!(text.split_whitespace().any(|word| word == "77"), name == "class.yml", "{text}");
         assert!(!text.contains('\t'));
         let mut scripts = 0;
         for step in text.split("run: |\n").skip(1) {
