@@ -64,6 +64,18 @@ impl Mistake {
     }
 }
 
+/// The words of a mistake before what says whether it is made: long words take a line of their own.
+pub trait Words {
+    /// A pair with the words last, as in a list of mistakes.
+    fn when<T>(self, given: T) -> (T, &'static str);
+}
+
+impl Words for &'static str {
+    fn when<T>(self, given: T) -> (T, &'static str) {
+        (given, self)
+    }
+}
+
 /// The bytes of a PNG file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Png(pub Vec<u8>);

@@ -5,6 +5,8 @@ use glam::{DVec3, Vec3};
 use raykata::kit::Surface;
 use raykata::ray::Ray;
 
+const PER_AXIS: &str = "you move each axis by its own error: move along the normal, by error·|n|";
+
 /// The start of a ray that leaves a surface on one side.
 pub struct Start {
     /// The start relative to the point of the surface.
@@ -91,6 +93,13 @@ impl Start {
             ),
             (along_the_side(error.dot(self.side)), "you leave out the absolute values in error·|n|"),
             (
+                along_the_side(error.dot(self.side).abs()),
+                "you take the absolute value of error·n: take those of n",
+            ),
+            (self.is(error * self.side), PER_AXIS),
+            (self.is(error * self.side.signum()), PER_AXIS),
+            (along_the_side(error.x), "you move by the error of x: along the normal the error is error·|n|"),
+            (
                 along_the_side(error.max_element()),
                 "you move by the largest error: along the normal the error is error·|n|",
             ),
@@ -107,6 +116,29 @@ impl Start {
             let text = "you move along the shading normal: move along the geometric normal";
             all.push((self.is_along(shading), text));
         }
+        let times = [5, 6, 8, 10, 16, 20, 32, 50, 64, 100, 1000];
+        all.extend(times.map(|n| {
+            let text =
+                "you move by a multiple of error·|n|: the error itself is enough, and 4 times it is the most";
+            (along_the_side(f64::from(n) * self.least()), text)
+        }));
+        let point = self.surface.point.as_dvec3().abs();
+        let sizes = [
+            point.max_element(),
+            point.length(),
+            point.element_sum(),
+            point.max_element().max(1.0),
+            1.0 + point.length(),
+        ];
+        all.extend(
+            sizes.into_iter().flat_map(|size| (2..=7).map(move |digits| size * 10f64.powi(-digits))).map(
+                |length| {
+                    let text =
+                        "your offset grows with the distance of the point from the origin: move by error·|n|";
+                    (along_the_side(length), text)
+                },
+            ),
+        );
         // A round number, alone or in addition to the bound.
         let lengths = (0..=7).flat_map(|digits| [1.0, 2.0, 5.0].map(|n| n * 10f64.powi(-digits)));
         all.extend(lengths.flat_map(|length| [length, length + self.least(), length.max(self.least())]).map(

@@ -1,6 +1,6 @@
 //! The words of nearly all checks, with the questions and answers of the door: `use checks::prelude::*`.
 
-pub use crate::broken::{Broken, CheckResult, all_hold};
+pub use crate::broken::{Broken, CheckResult, Words, all_hold};
 pub use crate::double::U;
 pub use crate::generate::{direction, fractions, magnitude, point, rough_point};
 pub use crate::judge::{Judged, compare, compare_formulas, proven, unless};

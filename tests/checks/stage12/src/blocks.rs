@@ -44,18 +44,12 @@ fn causes(ray: &Ray, triangle: &Triangle, t: f32) -> [(bool, &'static str); 5] {
     let clear = triangle::margin(ray, triangle).is_some_and(|margin| margin > STABLE);
     let at_end = t >= ray.t_max.next_down().next_down() || t <= ray.t_min.next_up().next_up();
     [
-        (
-            edge_on,
-            "the triangle is seen edge-on: where d·n is smaller than its error, neither its sign nor that of t is known",
-        ),
-        (
-            at_end && clear,
-            "the hit is at an end of the range: reject it only if it is beyond the end by more than its error",
-        ),
-        (
-            is_far && !clear,
-            "rounding errors decide here, and they grow with the distance of the triangle, not with its size",
-        ),
+        "the triangle is seen edge-on: where d·n is smaller than its error, neither its sign nor that of t is known"
+            .when(edge_on),
+        "the hit is at an end of the range: reject it only if it is beyond the end by more than its error"
+            .when(at_end && clear),
+        "rounding errors decide here, and they grow with the distance of the triangle, not with its size"
+            .when(is_far && !clear),
         (!clear, "rounding errors decide here: reject only if both numbers are larger than their errors"),
         (clear, "no rounding decides here: the signs of U, V, W or t are wrong"),
     ]

@@ -1,7 +1,7 @@
 //! The whole Phong model: the ambient term, and per light the diffuse and the specular term.
 
 use super::shadows::lowest;
-use super::terms::{cos_phi, specular};
+use super::terms::{WHOLE, cos_phi, specular};
 use checks::prelude::*;
 use raykata::material::Material;
 
@@ -107,6 +107,7 @@ pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Che
     proven(judged.iter().zip(answers).map(|(query, answer)| judge_shade(query, &answer)))
 }
 
+const FALLOFF: &str = "you divide by the distance to the light: its radiance has the distance in it";
 const LIGHT_BEHIND: &str =
     "you add a light behind the surface: skip lights for which shadow_ray returns None";
 
@@ -158,10 +159,53 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
         let term = TermQuery { normal, ..term(query, light) };
         parts(query, light, cosine(query, light, normal), specular(&term)).iter().sum::<DVec3>()
     };
+    let ks = query.material.specular.as_dvec3();
+    let unlit = |light: usize| kd * diffuse(light) + ks * right(light);
     let white = |light: usize| {
-        let ks = query.material.specular.as_dvec3();
-        if radiance(light) == DVec3::ZERO { DVec3::ZERO } else { kd * diffuse(light) + ks * right(light) }
+        if radiance(light) == DVec3::ZERO { DVec3::ZERO } else { unlit(light) }
     };
+    let mean = |color: DVec3| DVec3::splat(color.element_sum() / 3.0);
+    let whole = |round: fn(f32) -> f32| {
+        let of = |light: usize| {
+            let term = TermQuery { exponent: round(query.material.exponent), ..term(query, light) };
+            parts(query, light, diffuse(light), specular(&term)).iter().sum::<DVec3>()
+        };
+        same(ambient + of_visible(&of))
+    };
+    // The lights for which a shadow ray is asked for, in order, and those that count if the number of the ray is passed.
+    let asked = lights
+        .iter()
+        .copied()
+        .filter(|&light| share(query, light, diffuse(light), right(light)) != DVec3::ZERO);
+    let by_number: Vec<usize> =
+        asked.enumerate().filter(|(n, _)| query.visible[*n]).map(|(_, light)| light).collect();
+    let distance = |light: usize| f64::from(query.lights[light].distance);
+    let of_kinds: [(&dyn Fn(usize) -> DVec3, &str); 9] = [
+        (&|light| split(light).into_iter().sum::<DVec3>() / distance(light), FALLOFF),
+        (&|light| split(light).into_iter().sum::<DVec3>() / distance(light).powi(2), FALLOFF),
+        (
+            &|light| unlit(light) * radiance(light).powf(2.0),
+            "the radiance is squared: it is a factor of the sum once",
+        ),
+        (
+            &|light| unlit(light) * mean(radiance(light)),
+            "the light is grey: multiply by its radiance channel by channel",
+        ),
+        (
+            &|light| radiance(light) * kd * diffuse(light) + ks * right(light),
+            "the highlight is not multiplied by the radiance",
+        ),
+        (
+            &|light| radiance(light) * ks * right(light) + kd * diffuse(light),
+            "the diffuse term is not multiplied by the radiance",
+        ),
+        (
+            &|light| split(light)[0] + split(light)[1] * diffuse(light),
+            "the highlight is multiplied by cos θ: it is I·ks·cosⁿφ",
+        ),
+        (&|light| radiance(light) * (ks * diffuse(light) + kd * right(light)), "kd and ks are exchanged"),
+        (&|light| split(light)[0] + radiance(light) * right(light), "ks is left out"),
+    ];
     let flat = |light: usize| parts(query, light, 1.0, right(light)).iter().sum::<DVec3>();
     // A sum over all visible lights, also over those behind the surface.
     let unclamped = |least: f64| {
@@ -172,6 +216,9 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
     let n_lights = query.lights.len().max(1) as f64;
     let of_lights = |lights: &[usize], text: &'static str| gives(lights).map(|gives| (gives, text));
     let mut mistakes = vec![(same(expected - ambient), "the ambient term A·ka is missing")];
+    mistakes.extend(of_kinds.map(|(share, text)| (same(ambient + of_visible(share)), text)));
+    let text = "you pass the number of the shadow ray to visible: pass the index of the light";
+    mistakes.extend(of_lights(&by_number, text));
     if !occluded.is_empty() {
         mistakes.extend(of_lights(&lights, "you add lights that are occluded: multiply by V_i"));
         mistakes.extend(of_lights(&occluded, "you add the occluded lights and leave out the visible ones"));
@@ -193,6 +240,18 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
         (same(ambient + of_visible(&flat)), "you leave out the cosine of the diffuse term"),
         (same(ambient + (expected - ambient) * kd), "you multiply the light by kd twice"),
         (same(expected + (n_lights - 1.0) * ambient), "you add the ambient term once per light: add it once"),
+        (
+            same(ambient + (expected - ambient) / n_lights),
+            "you divide by the number of lights: the light of all adds up",
+        ),
+        (same(expected / n_lights), "you divide by the number of lights: the light of all adds up"),
+        "without lights you return black: the ambient term remains".when(same(if query.lights.is_empty() {
+            DVec3::ZERO
+        } else {
+            expected
+        })),
+        (same(expected - ambient + ambient * kd), "the ambient term has kd: it is A·ka"),
+        (whole(f32::floor) || whole(f32::round) || whole(f32::ceil), WHOLE),
         (same(unclamped(0.0)), LIGHT_BEHIND),
         (same(unclamped(-1.0)), LIGHT_BEHIND),
     ]);

@@ -1,6 +1,7 @@
 //! The diffuse and the specular term.
 
 use checks::prelude::*;
+use std::f64::consts::PI;
 
 /// Normals, lights and viewers in all directions. Half of the viewers are near the reflected light, so that there are
 /// highlights to judge.
@@ -20,6 +21,8 @@ pub(super) fn paste_term(name: &str, query: &TermQuery) -> String {
         _ => call(name, &[&query.normal, &query.to_light, &query.to_viewer, &query.exponent]),
     }
 }
+
+const HALF: &str = "you move the cosine to 0..=1 (half Lambert): a light behind the surface gives 0, and cos θ is not scaled";
 
 pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> CheckResult {
     // The tolerance covers three products and two sums of numbers up to 1.
@@ -41,6 +44,13 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> CheckResult {
                  negated?",
             ),
             (yours == 0.0, "you return 0 for a light in front of the surface"),
+            (near(yours, expected.powi(2)), "you square the cosine: the diffuse term is the cosine itself"),
+            (near(yours, expected.powi(3)), "you cube the cosine: the diffuse term is the cosine itself"),
+            (near(yours, expected.sqrt()), "you take the root of the cosine: the diffuse term is the cosine itself"),
+            (near(yours, expected / PI), "you divide by π: the diffuse term of the Phong model is the cosine alone"),
+            (near(yours, 0.5 + 0.5 * cosine), HALF),
+            (near(yours, (0.5 + 0.5 * cosine).powi(2)), HALF),
+            (near(yours, (1.0 - expected.powi(2)).sqrt()), "you return the sine: the diffuse term is the cosine"),
         ])
     };
     let judge = |queries: &[TermQuery]| compare(queries, trial.kit.diffuse_term(queries), judge);
@@ -90,6 +100,9 @@ fn is_on_edge(query: &TermQuery) -> bool {
     cos_theta(query).abs() <= EDGE || cos_phi(query).abs() <= EDGE
 }
 
+pub(super) const WHOLE: &str = "the exponent is rounded to a whole number: it may be any, so use `powf`";
+const SCALED: &str =
+    "you scale the highlight by its exponent, as a normalized lobe is: the specular term is cosⁿ φ alone";
 const BLINN: &str = "you use the half vector (Blinn-Phong): the lecture reflects the light (Phong)";
 
 fn judge_highlight(query: &TermQuery, yours: f32) -> Judged {
@@ -103,7 +116,30 @@ fn judge_highlight(query: &TermQuery, yours: f32) -> Judged {
     let power = |cosine: f64| cosine.max(0.0).powf(exponent);
     let half = (l + v).normalize().dot(n);
     let broken = || Broken::new(paste_term("specular_term", query), yours, expected as f32, "closed form");
+    let raised = |exponent: f64| near(cos_phi.max(0.0).powf(exponent));
+    let angle = (cos_phi.clamp(-1.0, 1.0)).acos();
+    let n_plus = |n: f64, d: f64| near((exponent + n) / d * expected);
     unless(right, broken).formulas([
+        (raised(exponent.floor()), WHOLE),
+        (raised(exponent.round()), WHOLE),
+        (raised(exponent.ceil()), WHOLE),
+        (raised(0.5 * exponent), "you halve the exponent: the specular term is cosⁿ φ"),
+        (raised(2.0 * exponent), "you double the exponent: the specular term is cosⁿ φ"),
+        (raised(exponent + 1.0), "the exponent is one too large: the specular term is cosⁿ φ"),
+        (raised(exponent - 1.0), "the exponent is one too small: the specular term is cosⁿ φ"),
+        (n_plus(1.0, 1.0), SCALED),
+        (n_plus(2.0, 1.0), SCALED),
+        (n_plus(1.0, 2.0), SCALED),
+        (n_plus(2.0, 2.0), SCALED),
+        (n_plus(1.0, 2.0 * PI), SCALED),
+        (n_plus(2.0, 2.0 * PI), SCALED),
+        (n_plus(8.0, 8.0 * PI), SCALED),
+        (near(power(1.0 - angle)), "you raise one minus the angle: raise the cosine of the angle"),
+        (
+            near(power(1.0 - angle / (0.5 * PI))),
+            "you raise one minus the angle: raise the cosine of the angle",
+        ),
+        (near(exponent * cos_phi), "you multiply by the exponent: the cosine is raised to it"),
         (near(power(half)), BLINN),
         (near(half.powf(exponent)) || !(half >= 1e-2), BLINN),
         (near(power(n.dot(l))), "you use θ: φ is the angle between the reflected light and the viewer"),
