@@ -59,7 +59,9 @@ impl Start {
     /// rounding of the way and of the bound.
     fn slack(&self, moved: DVec3) -> DVec3 {
         let point = self.surface.point.as_dvec3();
-        5.0 * U * point.abs().max((point + moved).abs()) + 1e-6 * (moved.abs().max_element() + self.least())
+        let relative = 5.0 * U * point.abs().max((point + moved).abs());
+        // The floats beside 0 are 1.4e-45 apart.
+        relative + 1e-6 * (moved.abs().max_element() + self.least()) + 1e-44
     }
 
     /// Whether the start is where a student's formula puts it.

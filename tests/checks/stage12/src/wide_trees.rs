@@ -36,13 +36,15 @@ const SAME_BLOCKS: &str =
 const GAP_FIRST: &str = "an empty place stands before a child: fill the places from 0 on";
 const CHILD_FIRST: &str = "a node gets its index after the nodes below it: a parent has the smaller index";
 
-/// Whether the leaves have full blocks only.
+/// Whether only the full blocks of leaves exist, and some leaf has one that is not full.
 fn lacks_blocks(wide: &WideTree) -> bool {
-    let of = |child: Child| match child.contents() {
-        ChildContents::Leaf { count, .. } => count as usize / BLOCK,
+    let counts = wide.nodes.iter().flat_map(|node| node.children).map(|child| match child.contents() {
+        ChildContents::Leaf { count, .. } => count as usize,
         ChildContents::Inner(_) => 0,
-    };
-    wide.nodes.iter().flat_map(|node| node.children).map(of).sum::<usize>() == wide.blocks.len()
+    });
+    let counts: Vec<usize> = counts.collect();
+    counts.iter().map(|count| count / BLOCK).sum::<usize>() == wide.blocks.len()
+        && counts.iter().any(|count| !count.is_multiple_of(BLOCK))
 }
 
 /// The leaves and places of a wide tree over `tree`, or the first fault.
@@ -112,10 +114,10 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
                         let is_again =
                             lanes.len() > BLOCK && lanes.chunks(BLOCK).all(|block| block[0] == lanes[0]);
                         let causes = [
+                            (lacks_blocks(wide), MISSING_BLOCK),
                             (leaf.is_some(), FREE_LANES),
                             (is_part, SPLIT_LEAF),
                             (is_again, SAME_BLOCKS),
-                            (lacks_blocks(wide), MISSING_BLOCK),
                         ];
                         let expected =
                             "the primitives of one binary node in order, and NO_PRIMITIVE in the free lanes";

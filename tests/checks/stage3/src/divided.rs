@@ -104,8 +104,17 @@ pub(super) fn judge_splits(
 
 /// Whether `middle` divides the centroids along `axis`: none before it is beyond one behind it, in either direction.
 pub(super) fn divided(ordered: &[PrimitiveRef], middle: usize, axis: usize) -> bool {
+    divided_by(ordered, middle, &|p| p.centroid[axis])
+}
+
+/// The same with another number of each primitive.
+pub(super) fn divided_by(
+    ordered: &[PrimitiveRef],
+    middle: usize,
+    key: &dyn Fn(&PrimitiveRef) -> f32,
+) -> bool {
     let range = |part: &[PrimitiveRef]| {
-        let at = part.iter().map(|p| p.centroid[axis]);
+        let at = part.iter().map(key);
         at.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
     };
     let (left, right) = (range(&ordered[..middle]), range(&ordered[middle..]));

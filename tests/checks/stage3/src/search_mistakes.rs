@@ -32,9 +32,15 @@ enum Wrong {
     LeftOnly,
     RightOnly,
     NearOnly,
+    /// All primitives of a leaf must be hit.
+    AllOfLeaf,
+    /// A box in which the ray begins is not entered.
+    InsideLeftOut,
 }
 
-const MISTAKES: [(Wrong, &str); 15] = [
+const MISTAKES: [(Wrong, &str); 17] = [
+    (Wrong::AllOfLeaf, "a leaf counts only if all of its primitives are hit: one is enough"),
+    (Wrong::InsideLeftOut, "a box in which the ray begins is left out: its entry is at t_min, which counts"),
     (
         Wrong::TieToTheLast,
         "of two hits at the same t the smaller primitive number wins: you keep the later one",
@@ -79,7 +85,8 @@ impl Search<'_> {
     fn enter(&self, node: u32) -> Option<f32> {
         let (near, far) = self.query.table.boxes[node as usize];
         let near = near.max(self.query.ray.t_min);
-        (near <= far && near < self.query.ray.t_max).then_some(near)
+        let is_left_out = self.wrong == Wrong::InsideLeftOut && near <= self.query.ray.t_min;
+        (near <= far && near < self.query.ray.t_max && !is_left_out).then_some(near)
     }
 
     fn nearer(&self, first: Hit, second: Hit) -> Hit {
@@ -103,6 +110,9 @@ impl Search<'_> {
         };
         let hits = ids.iter().map(|&id| (id, self.query.table.primitives[id as usize]));
         let mut hits = hits.filter(|(_, t)| self.query.ray.contains(*t));
+        if self.wrong == Wrong::AllOfLeaf && hits.clone().count() < ids.len() {
+            return None;
+        }
         if self.wrong == Wrong::LeafStops {
             return hits.next();
         }
@@ -147,10 +157,8 @@ pub(super) fn observations(query: &SearchQuery, yours: Hit, counts: &Counts) -> 
     let nothing_is_opened = yours.is_none() && counts.node_visits == 0;
     [
         (yours.is_some_and(|(_, t)| !query.ray.contains(t)), "you return a hit outside the ray's range"),
-        (
-            yours.is_some_and(|hit| !is_in_table(hit)),
-            "the t of your hit is not that of its primitive: keep both together",
-        ),
+        "the t of your hit is not that of its primitive: keep both together"
+            .when(yours.is_some_and(|hit| !is_in_table(hit))),
         (nothing_is_opened, "you open no node, although the ray enters the box of the root"),
     ]
 }
@@ -176,6 +184,9 @@ pub(super) fn any_mistakes(query: &SearchQuery, yours: bool) -> Vec<(bool, &'sta
     all_hit.table.primitives.fill(query.ray.t_max.min(1e30).next_down());
     let enters_a_leaf = found_by(Wrong::Nothing, &all_hit).is_some();
     let is = |wrong: Wrong| yours == found_by(wrong, query).is_some();
+    let right = found_by(Wrong::Nothing, query).is_some();
+    let inside = |&(near, far): &(f32, f32)| near <= query.ray.t_min && query.ray.t_min <= far;
+    let around_start = query.table.boxes.iter().any(inside);
     vec![
         (yours == enters_a_leaf, "you take a box for a hit: to enter a box is not yet a hit"),
         (yours == with_range(query.ray.t_min, f32::INFINITY), "you count a hit beyond t_max"),
@@ -185,6 +196,18 @@ pub(super) fn any_mistakes(query: &SearchQuery, yours: bool) -> Vec<(bool, &'sta
         (is(Wrong::RightOnly), "a hit was overlooked: the left child is left out"),
         (is(Wrong::OneOfLeaf), "a hit was overlooked: ask all of a leaf's primitives"),
         (is(Wrong::LastOfLeafLeftOut), "a hit was overlooked: the last primitive of a leaf is left out"),
+        (is(Wrong::NearOnly), "a hit was overlooked: the farther child is left out"),
+        (is(Wrong::FirstOfLeafLeftOut), "a hit was overlooked: the first primitive of a leaf is left out"),
+        (
+            is(Wrong::NothingIfOneIsMissed),
+            "a hit was overlooked: if one box is missed, the other may still be met",
+        ),
+        (is(Wrong::AllOfLeaf), "a hit was overlooked: one primitive of a leaf is enough"),
+        (is(Wrong::InsideLeftOut), "a hit was overlooked: the ray begins in a box, whose entry is at t_min"),
+        (
+            yours == (right || around_start),
+            "you take a box around the start of the ray for a hit: ask its primitives",
+        ),
         (is(Wrong::NothingIfOneHasNone), "a hit was overlooked: one child is enough"),
     ]
 }
@@ -260,16 +283,12 @@ pub(super) fn order_mistakes(queries: &[SearchQuery], yours: u64) -> [(bool, &'s
         yours.abs_diff(count) <= count / 50
     };
     [
-        (
-            is(Order::NeverPrunes),
-            "no node is skipped: let ray.t_max shrink with each hit, and enter the nearer child first",
-        ),
+        "no node is skipped: let ray.t_max shrink with each hit, and enter the nearer child first"
+            .when(is(Order::NeverPrunes)),
         (is(Order::NotAgain), "the farther box is not tested again after a nearer hit was found"),
         (is(Order::FartherFirst), "the farther child is searched first: enter the nearer child first"),
-        (
-            is(Order::FartherFirstNotAgain),
-            "the farther child is searched first, and no box is tested again: enter the nearer child first",
-        ),
+        "the farther child is searched first, and no box is tested again: enter the nearer child first"
+            .when(is(Order::FartherFirstNotAgain)),
         (is(Order::LeftFirst), "the left child is always searched first: enter the nearer child first"),
     ]
 }

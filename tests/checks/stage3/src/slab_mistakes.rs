@@ -36,6 +36,11 @@ enum Mistake {
     NotFromInside,
     /// The exit must lie behind `t_min`.
     ExitBehindStart,
+    /// The entry must lie before `t_max`, and both at once.
+    EntryBeforeEnd,
+    OpenRange,
+    /// The range begins at 0.
+    FromZero,
     /// Entry or exit is not limited by the range.
     StartIgnored,
     EndIgnored,
@@ -57,7 +62,13 @@ const LEFT_OUT: &str = "an axis is left out: the ray must be between the planes 
 
 const PADDED_DIRECTION: &str = "you replace a direction near 0 by an epsilon, so the ray bends: 1/d may be infinite, and 0 · ∞ is NaN and dropped";
 
-const MISTAKES: [(Mistake, &str); 19] = [
+const MISTAKES: [(Mistake, &str); 22] = [
+    (Mistake::FromZero, "your range begins at 0: only the part within t_min..t_max counts"),
+    (Mistake::EntryBeforeEnd, "the ends of the range count: an entry exactly at t_max is a hit"),
+    (
+        Mistake::OpenRange,
+        "the ends of the range count: an exit exactly at t_min is a hit, and so is an entry at t_max",
+    ),
     (Mistake::NotSwapped, "for a negative direction component the ray enters at max: swap the two planes"),
     (Mistake::SwappedByLess, "-0.0 ≥ 0 is true, but 1 / -0.0 is -∞: swap the two planes by the sign of 1/d"),
     (
@@ -167,14 +178,18 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
         let (less, more) = (1.0 - 2.0 * gamma(3), 1.0 + 2.0 * gamma(3));
         (near, far) = ((near * less).min(near * more), (far * less).max(far * more));
     }
-    if mistake == Mistake::ExitBehindStart && far <= ray.t_min {
+    let (at_start, at_end) = (far <= ray.t_min, near >= ray.t_max);
+    if matches!(mistake, Mistake::ExitBehindStart | Mistake::OpenRange) && at_start
+        || matches!(mistake, Mistake::EntryBeforeEnd | Mistake::OpenRange) && at_end
+    {
         return None;
     }
+    let t_min = if mistake == Mistake::FromZero { 0.0 } else { ray.t_min };
     let line = (near, far);
     let is_open = matches!(mistake, Mistake::Open | Mistake::Padded(_));
     if !matches!(mistake, Mistake::StartIgnored | Mistake::RangeIgnored) {
         let is_dropped = near.is_nan() && mistake == Mistake::NanEntry;
-        near = if near < ray.t_min || is_dropped { ray.t_min } else { near };
+        near = if near < t_min || is_dropped { t_min } else { near };
     }
     if !matches!(mistake, Mistake::EndIgnored | Mistake::RangeIgnored) {
         far = if far > ray.t_max { ray.t_max } else { far };
@@ -210,18 +225,12 @@ pub(super) fn observations(query: &SlabQuery, yours: Option<(f32, f32)>) -> [(bo
         && slab(Mistake::None, false, query).is_none()
         && slab(Mistake::None, true, query).is_some();
     [
-        (
-            query.bounds.is_empty() && yours.is_some(),
-            "the empty box (inf, -inf) has no point, but sorted planes make it infinite: test is_empty()",
-        ),
-        (
-            is_lost_by_rounding,
-            "1/d, the difference and the product are rounded, so far may be slightly below near: multiply far by 1 + 2 γ₃",
-        ),
-        (
-            yours.is_some_and(|(enter, leave)| enter.is_nan() || leave.is_nan()),
-            "you return NaN: 0 · ∞ is NaN, so order the comparison so that it drops NaN",
-        ),
+        "the empty box (inf, -inf) has no point, but sorted planes make it infinite: test is_empty()"
+            .when(query.bounds.is_empty() && yours.is_some()),
+        "1/d, the difference and the product are rounded, so far may be slightly below near: multiply far by 1 + 2 γ₃"
+            .when(is_lost_by_rounding),
+        "you return NaN: 0 · ∞ is NaN, so order the comparison so that it drops NaN"
+            .when(yours.is_some_and(|(enter, leave)| enter.is_nan() || leave.is_nan())),
     ]
 }
 

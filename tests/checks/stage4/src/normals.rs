@@ -49,18 +49,12 @@ fn judge_normal(query: &Query, yours: Vec3) -> Judged {
     };
     let mean = smooth.map_or(facing, |smooth| (turned(smooth, -facing) + facing).normalize());
     unless(right, broken).formulas([
-        (
-            same(mean),
-            "you return the mean of both normals: the interpolated one alone shades a smooth surface",
-        ),
-        (
-            smooth.map_or(right, |smooth| same(turned(smooth, direction))),
-            "you turn the interpolated normal by `direction`: turn it to the side of the geometric normal",
-        ),
-        (
-            same(facing) || (grazing && same(-facing)),
-            "you return the geometric normal where there is an interpolated one",
-        ),
+        "you return the mean of both normals: the interpolated one alone shades a smooth surface"
+            .when(same(mean)),
+        "you turn the interpolated normal by `direction`: turn it to the side of the geometric normal"
+            .when(smooth.map_or(right, |smooth| same(turned(smooth, direction)))),
+        "you return the geometric normal where there is an interpolated one"
+            .when(same(facing) || (grazing && same(-facing))),
     ])
 }
 
@@ -95,10 +89,8 @@ pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> CheckResul
             }
             let source = "the geometric normal, turned to the viewer";
             Err(Broken::new(paste_normal_query(query), yours, expected, source).explained_by([
-                (
-                    yours.is_nan() || yours == Vec3::ZERO,
-                    "a normal of length 0 has no direction: return the geometric normal",
-                ),
+                "a normal of length 0 has no direction: return the geometric normal"
+                    .when(yours.is_nan() || yours == Vec3::ZERO),
                 (yours == -expected, "your geometric normal points away from the viewer: negate it"),
             ]))
         },

@@ -240,10 +240,8 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
         (same(ambient + of_visible(&flat)), "you leave out the cosine of the diffuse term"),
         (same(ambient + (expected - ambient) * kd), "you multiply the light by kd twice"),
         (same(expected + (n_lights - 1.0) * ambient), "you add the ambient term once per light: add it once"),
-        (
-            same(ambient + (expected - ambient) / n_lights),
-            "you divide by the number of lights: the light of all adds up",
-        ),
+        "you divide by the number of lights: the light of all adds up"
+            .when(same(ambient + (expected - ambient) / n_lights)),
         (same(expected / n_lights), "you divide by the number of lights: the light of all adds up"),
         "without lights you return black: the ambient term remains".when(same(if query.lights.is_empty() {
             DVec3::ZERO
@@ -345,15 +343,17 @@ fn judge_traced(query: &ShadeQuery, has_ray: &[bool], traced: &[usize]) -> Check
         return Ok(());
     }
     let describe = |lights: &[usize]| format!("shadow rays to lights {lights:?}");
-    Err(Broken::with_texts(query.call("shade"), describe(&sorted), describe(&needed), "counted").explained_by([
+    Err(Broken::with_texts(query.call("shade"), describe(&sorted), describe(&needed), "counted")
+        .explained_by([
         (twice, "you trace two rays to one light: trace one and keep the answer"),
         (vain(&dark), "you trace a ray to a light that is switched off"),
         (vain(&behind), "you trace a ray to a light that is behind the surface"),
-        (vain(&black), "you trace a ray to a light that adds 0 to the surface, for example to a black surface"),
         (
-            vain(&behind) || vain(&dark) || vain(&black),
-            "you trace rays to lights that add nothing: behind the surface, switched off, or on a black surface",
+            vain(&black),
+            "you trace a ray to a light that adds 0 to the surface, for example to a black surface",
         ),
+        "you trace rays to lights that add nothing: behind the surface, switched off, or on a black surface"
+            .when(vain(&behind) || vain(&dark) || vain(&black)),
         (missed, "you count a light without asking whether it is visible"),
     ]))
 }
