@@ -1,7 +1,7 @@
 //! The start of a ray that leaves a surface: how far it must be from the surface, and which known mistake moved it.
 
 use crate::double::U;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec3Swizzles as _};
 use raykata::kit::Surface;
 use raykata::ray::Ray;
 
@@ -118,6 +118,13 @@ impl Start {
             let text = "you move along the shading normal: move along the geometric normal";
             all.push((self.is_along(shading), text));
         }
+        let turned = [error.yzx(), error.zxy(), error.yxz(), error.xzy(), error.zyx()];
+        let text = "the errors belong to other axes: multiply each by the same axis of |n|";
+        all.extend(turned.map(|error| (along_the_side(error.dot(self.side.abs())), text)));
+        let text = "the error along an axis is left out: error·|n| has all three";
+        all.extend(
+            DVec3::AXES.map(|axis| (along_the_side((error * (1.0 - axis)).dot(self.side.abs())), text)),
+        );
         let times = [5, 6, 8, 10, 16, 20, 32, 50, 64, 100, 1000];
         all.extend(times.map(|n| {
             let text =

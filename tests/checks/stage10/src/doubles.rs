@@ -1,6 +1,6 @@
 //! The laws of `triangle_in_double`, and special numbers as input of both functions in double precision.
 
-use super::triangles::{aim_again, draw};
+use super::triangles::{aim_again, draw, wrong_verdicts};
 use checks::prelude::*;
 use oracle::STABLE;
 use oracle::exact::{Body, meet, t_error_in_ulps, t_in_double, triangle, verdict};
@@ -64,10 +64,29 @@ pub(super) fn double_triangle_is_right_at_edges(trial: &Trial<'_>) -> CheckResul
             let margin = triangle::margin(&query.ray, &query.triangle)?;
             Some(Wrong { query: *query, yours, exact: exact.t, margin })
         };
-        let mut wrong: Vec<Wrong> = queries.iter().zip(answers).filter_map(judge).collect();
+        let mut wrong: Vec<Wrong> = queries.iter().zip(answers.clone()).filter_map(judge).collect();
         // Report the plainest error.
         wrong.sort_by(|p, q| q.margin.total_cmp(&p.margin));
-        all_hold(explain(trial, &wrong))?;
+        let known: Vec<(bool, &str)> = match wrong.first() {
+            None => Vec::new(),
+            // A verdict is named if it gives each answer that rounding does not decide.
+            Some(first) => (0..wrong_verdicts(&first.query).len())
+                .map(|n| {
+                    let gives = |(query, yours): (&TriangleQuery, &Option<TriangleHit>)| {
+                        let clear = triangle::margin(&query.ray, &query.triangle)
+                            .is_some_and(|margin| margin > STABLE);
+                        !clear || wrong_verdicts(query)[n].0 == yours.is_some()
+                    };
+                    (queries.iter().zip(&answers).all(gives), wrong_verdicts(&first.query)[n].1)
+                })
+                .collect(),
+        };
+        all_hold(
+            explain(trial, &wrong)
+                .into_iter()
+                .map(|law| law.map_err(|broken| broken.explained_by(known.clone())))
+                .collect(),
+        )?;
     }
     points_on_edges_belong(trial)
 }
@@ -259,10 +278,8 @@ pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> CheckResul
             let (input, yours) = (query.call("triangle_in_double"), format!("{:?}", yours.map(|hit| hit.t)));
             Err(Broken::with_texts(input, yours, expected, "exactly").explained_by([
                 (converted_late, CONVERTED_LATE),
-                (
-                    single,
-                    "t has only the accuracy of single precision: round the quotient, and nothing before it",
-                ),
+                "t has only the accuracy of single precision: round the quotient, and nothing before it"
+                    .when(single),
             ]))
         };
         all_hold(wrong.iter().map(broken).collect())?;
@@ -339,14 +356,10 @@ pub(super) fn judge_ends(
         let is = |of: &dyn Fn(f64) -> bool| exact.is_some_and(of) == yours.is_some();
         let rounded = |t: f64| f64::from(t as f32);
         vec![
-            (
-                is(&|t| t_min <= rounded(t) && rounded(t) <= t_max),
-                "the range of a ray is open at both ends: ask ray.contains(t)",
-            ),
-            (
-                is(&|t| t_min < t && t < t_max),
-                "you compare t with the range before you round it: ask ray.contains of the rounded t",
-            ),
+            "the range of a ray is open at both ends: ask ray.contains(t)"
+                .when(is(&|t| t_min <= rounded(t) && rounded(t) <= t_max)),
+            "you compare t with the range before you round it: ask ray.contains of the rounded t"
+                .when(is(&|t| t_min < t && t < t_max)),
         ]
     };
     compare_formulas(&at_ends, ask(&only), judge, formulas)
