@@ -40,6 +40,13 @@ const PANICS: [(&str, &str); 10] = [
     ("index out of bounds", "an index is not below the length of its list"),
 ];
 
+/// A panic that no batch of inputs has caught, with its mistake.
+pub(crate) fn panic_text(message: &str, place: &str) -> String {
+    let known = PANICS.into_iter().find(|(words, _)| message.contains(words));
+    let looks = known.map_or(String::new(), |(_, text)| format!("\n  looks like: {text}"));
+    format!("{}{looks}", KitError::Panicked { message: message.into(), place: place.into() })
+}
+
 /// Whether the input fails that this function judges.
 pub(crate) type Fails<'a> = dyn FnMut(&dyn Fn() -> Vec<CheckResult>) -> bool + 'a;
 

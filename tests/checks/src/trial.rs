@@ -365,6 +365,9 @@ pub fn verdict(check: &Check, examined: Result<CheckResult, KitError>) -> Verdic
         Ok(Ok(())) => Verdict::Passed,
         Ok(Err(broken)) => Verdict::Failed(broken.message(check.name, &entry)),
         Err(KitError::NotWritten { task, place, .. }) => Verdict::NotWritten { task, place },
+        Err(KitError::Panicked { message, place }) => {
+            without_answer(check, law::panic_text(&message, &place))
+        }
         Err(error) => without_answer(check, error),
     }
 }

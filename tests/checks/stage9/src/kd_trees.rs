@@ -49,7 +49,18 @@ fn fault(query: &KdQuery, yours: &KdTree) -> Option<Fault> {
         let mistake = "you divide primitives that are all on both sides: make a leaf of them";
         return Some(fact(described, "a leaf".into(), mistake));
     }
-    listing_fault("leaf", &yours.bounds, &query.bounds, &leaves(yours))
+    let listing = |tree: &KdTree| listing_fault("leaf", &tree.bounds, &query.bounds, &leaves(tree));
+    let mut exchanged = yours.clone();
+    for node in &mut exchanged.nodes {
+        if let KdNode::Inner { left, right, .. } = node {
+            std::mem::swap(left, right);
+        }
+    }
+    let is_exchanged = |(yours, expected, mistakes): Fault| match listing(&exchanged) {
+        None => fact(yours, expected, "the children are exchanged: the left one has the smaller coordinates"),
+        Some(_) => (yours, expected, mistakes),
+    };
+    listing(yours).map(is_exchanged)
 }
 
 /// Whether all primitives of an inner node are on both sides of its plane.

@@ -153,24 +153,16 @@ pub(super) fn facts<'a>(
     let is_visited = visits.iter().any(|&node| listed(node).contains(&best));
     vec![
         out_of_range(found, ray),
-        (
-            found.is_some() && is_tested,
-            "you keep the farther of two hits: you test the primitive with the nearer hit, but return another one",
-        ),
-        (
-            found.is_none() && visits.is_empty(),
-            "you visit no cell although the ray enters the structure's bounds",
-        ),
+        "you keep the farther of two hits: you test the primitive with the nearer hit, but return another one"
+            .when(found.is_some() && is_tested),
+        "you visit no cell although the ray enters the structure's bounds"
+            .when(found.is_none() && visits.is_empty()),
         (found.is_none() && is_tested, "you find a hit and reject it: it counts wherever its cell ends"),
         (is_visited && !is_tested, "you visit a cell, but do not test all of its primitives"),
-        (
-            found.is_some() && !is_visited,
-            "you stop before a cell with a nearer hit, or leave it out: you never visit a cell that lists the primitive",
-        ),
-        (
-            found.is_none() && !is_visited,
-            "you leave out a cell that the ray passes through: you never visit a cell that lists the primitive",
-        ),
+        "you stop before a cell with a nearer hit, or leave it out: you never visit a cell that lists the primitive"
+            .when(found.is_some() && !is_visited),
+        "you leave out a cell that the ray passes through: you never visit a cell that lists the primitive"
+            .when(found.is_none() && !is_visited),
         (!is_visited, "you never visit a cell that lists the primitive with the nearest hit"),
     ]
 }

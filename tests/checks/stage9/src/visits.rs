@@ -55,9 +55,8 @@ impl<S> Search<S> {
         let unlisted = tests.find(|primitive| !is_listed(primitive));
         // Each fault as `(yours, expected, source)` with its mistake; the message shows the first.
         let faults = [
-            (
+            "you visit a cell that the ray does not enter".when(
                 missed.map(|visit| (format!("a visit to {visit}"), "none".to_owned(), "the ray misses it")),
-                "you visit a cell that the ray does not enter",
             ),
             (
                 behind.map(|(visit, t)| {
@@ -66,10 +65,8 @@ impl<S> Search<S> {
                 }),
                 "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
             ),
-            (
-                twice.map(|visit| (format!("{visit} is visited again"), "once".to_owned(), "counted")),
-                "you visit a cell several times",
-            ),
+            "you visit a cell several times"
+                .when(twice.map(|visit| (format!("{visit} is visited again"), "once".to_owned(), "counted"))),
             (
                 unlisted.map(|primitive| {
                     let test = format!("a test of primitive {primitive}");
