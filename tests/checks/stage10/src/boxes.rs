@@ -41,7 +41,6 @@ enum Mistake {
 #[derive(Clone, Copy, PartialEq)]
 enum Widened {
     Not,
-    Entry,
     Exit,
     Both,
 }
@@ -51,7 +50,7 @@ const OVERFLOW: &str = "1/d is infinite although d is not 0: divide by d there";
 
 /// The mistakes with the words of the diagnosis, those that lose the fewest boxes first: the first one that explains all lost
 /// boxes is named.
-const MISTAKES: [(Mistake, Widened, &str); 22] = {
+const MISTAKES: [(Mistake, Widened, &str); 21] = {
     use Mistake::*;
     use Widened::*;
     [
@@ -63,7 +62,6 @@ const MISTAKES: [(Mistake, Widened, &str); 22] = {
         (Overflow, Both, OVERFLOW),
         (Overflow, Exit, OVERFLOW),
         (Overflow, Not, OVERFLOW),
-        (None, Entry, "the exit is not moved: rounding loses corners, so move it later by 2 γ₃ |t|"),
         (FromZero, Both, "the range begins at 0 in your test: it begins at t_min, which may be negative"),
         (FromZero, Exit, "the range begins at 0 in your test: it begins at t_min, which may be negative"),
         (FromZero, Not, "the range begins at 0 in your test: it begins at t_min, which may be negative"),
@@ -107,8 +105,8 @@ impl Mistake {
             } else {
                 axis
             };
-            let (o, d) = (ray.origin[axis], ray.direction[of]);
-            let inverse = 1.0 / d;
+            let (o, d) = (ray.origin[axis], ray.direction[axis]);
+            let inverse = 1.0 / ray.direction[of];
             let t = |plane: f32| match self {
                 Mistake::FastForm => plane * inverse - o * inverse,
                 Mistake::Overflow => (plane - o) * inverse,
@@ -132,16 +130,8 @@ impl Mistake {
         if self == Mistake::FactorOnly {
             (near, far) = (near * less, far * more);
         } else {
-            near = if matches!(widened, Widened::Both | Widened::Entry) {
-                (near * less).min(near * more)
-            } else {
-                near
-            };
-            far = if matches!(widened, Widened::Not | Widened::Entry) {
-                far
-            } else {
-                (far * less).max(far * more)
-            };
+            near = if widened == Widened::Both { (near * less).min(near * more) } else { near };
+            far = if widened == Widened::Not { far } else { (far * less).max(far * more) };
         }
         let t_min = match self {
             Mistake::FromZero => 0.0,

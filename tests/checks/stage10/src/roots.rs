@@ -194,9 +194,10 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> CheckResult {
         // The double root of the parabola with the same axis that touches.
         let axis = -f64::from(query[1]) / (2.0 * f64::from(query[0]));
         let touches = yours.is_some_and(|yours| are_near(yours, [axis, axis]));
-        let near_axis = |root: f32| (f64::from(root) - axis).abs() <= 1e-6 * axis.abs();
-        let touches =
-            touches || yours.is_some_and(|yours| yours.map(near_axis) == [true, true] && value < 0.0);
+        // A discriminant of 0 makes q = -b / 2, and q / a and c / q differ.
+        let (q, [a, c]) = (-0.5 * f64::from(query[1]), [query[0], query[2]].map(f64::from));
+        let of_band = if q == 0.0 { [0.0, 0.0] } else { [(q / a).min(c / q), (q / a).max(c / q)] };
+        let touches = touches || yours.is_some_and(|yours| are_near(yours, of_band));
         let band = (!double && touches, "you treat a discriminant near 0 as 0: it is not 0");
         let broken = |expected: String| {
             Broken::with_texts(describe(query), format!("{yours:?}"), expected, "whole numbers, exactly")

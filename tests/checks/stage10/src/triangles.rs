@@ -56,7 +56,7 @@ fn small(query: &TriangleQuery) -> bool {
 }
 
 /// Wrong verdicts on a triangle in double precision, each with whether it is a hit.
-pub(super) fn wrong_verdicts(query: &TriangleQuery) -> [(bool, &'static str); 8] {
+pub(super) fn wrong_verdicts(query: &TriangleQuery) -> [(bool, &'static str); 10] {
     let ray = &query.ray;
     let [o, d, a, b, c] =
         [ray.origin, ray.direction, query.triangle.a, query.triangle.b, query.triangle.c].map(Vec3::as_dvec3);
@@ -67,10 +67,13 @@ pub(super) fn wrong_verdicts(query: &TriangleQuery) -> [(bool, &'static str); 8]
     let [alpha, beta, gamma] =
         if alpha + beta + gamma < 0.0 { [-alpha, -beta, -gamma] } else { [alpha, beta, gamma] };
     let [in_a, in_b, in_c] = [alpha, beta, gamma].map(|weight| weight >= 0.0);
+    let main = d[d.abs().max_position()];
     let (inside, counts) = (in_a && in_b && in_c, |t: f64| ray.contains(t as f32));
     [
         (inside && counts(t) && slope < 0.0, ONE_SIDE),
         (inside && counts(t) && slope > 0.0, ONE_SIDE),
+        (inside && counts(t) && slope * main > 0.0, ONE_TURN),
+        (inside && counts(t) && slope * main < 0.0, ONE_TURN),
         (in_a && in_b && counts(t), TWO_EDGES),
         (in_a && in_c && counts(t), TWO_EDGES),
         (in_b && in_c && counts(t), TWO_EDGES),
@@ -82,6 +85,7 @@ pub(super) fn wrong_verdicts(query: &TriangleQuery) -> [(bool, &'static str); 8]
     ]
 }
 
+const ONE_TURN: &str = "a triangle is hit only if its corners turn one way in the coordinates of the ray: U, V and W may all be below 0";
 const ONE_SIDE: &str = "a triangle is hit from one side only: both sides count";
 const TWO_EDGES: &str = "only two of the three edges are tested: the point is inside of all three";
 

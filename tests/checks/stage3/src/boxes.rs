@@ -57,8 +57,8 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
         let is = |low: DVec3, high: DVec3| near(yours.min, low) && near(yours.max, high);
         // A box that is larger on each side by the same length, or by the same part of the radius.
         let (low, high) = (center - radius - yours.min.as_dvec3(), yours.max.as_dvec3() - center - radius);
-        let is_padded =
-            low.min(high).cmpgt(slack).all() && (low - high).abs().cmple(2.0 * slack + 1e-3 * low).all();
+        let pad = DVec3::splat(low.max(high).max_element());
+        let is_padded = (low - pad).abs().max((high - pad).abs()).cmple(slack + 1e-3 * pad).all();
         let broken = || {
             Broken::new(input(), yours, expected, "closed form").explained_by([(
                 is_padded,

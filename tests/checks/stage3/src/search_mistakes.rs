@@ -34,13 +34,16 @@ enum Wrong {
     NearOnly,
     /// All primitives of a leaf must be hit.
     AllOfLeaf,
-    /// A box in which the ray begins is not entered.
-    InsideLeftOut,
+    /// A box in which the ray begins is not entered, from this node on.
+    InsideLeftOut(u32),
 }
 
-const MISTAKES: [(Wrong, &str); 17] = [
+const INSIDE: &str = "a box in which the ray begins is left out: its entry is at t_min, which counts";
+
+const MISTAKES: [(Wrong, &str); 18] = [
     (Wrong::AllOfLeaf, "a leaf counts only if all of its primitives are hit: one is enough"),
-    (Wrong::InsideLeftOut, "a box in which the ray begins is left out: its entry is at t_min, which counts"),
+    (Wrong::InsideLeftOut(0), INSIDE),
+    (Wrong::InsideLeftOut(1), INSIDE),
     (
         Wrong::TieToTheLast,
         "of two hits at the same t the smaller primitive number wins: you keep the later one",
@@ -85,7 +88,8 @@ impl Search<'_> {
     fn enter(&self, node: u32) -> Option<f32> {
         let (near, far) = self.query.table.boxes[node as usize];
         let near = near.max(self.query.ray.t_min);
-        let is_left_out = self.wrong == Wrong::InsideLeftOut && near <= self.query.ray.t_min;
+        let from = if let Wrong::InsideLeftOut(from) = self.wrong { from } else { u32::MAX };
+        let is_left_out = node >= from && near <= self.query.ray.t_min;
         (near <= far && near < self.query.ray.t_max && !is_left_out).then_some(near)
     }
 
@@ -203,7 +207,10 @@ pub(super) fn any_mistakes(query: &SearchQuery, yours: bool) -> Vec<(bool, &'sta
             "a hit was overlooked: if one box is missed, the other may still be met",
         ),
         (is(Wrong::AllOfLeaf), "a hit was overlooked: one primitive of a leaf is enough"),
-        (is(Wrong::InsideLeftOut), "a hit was overlooked: the ray begins in a box, whose entry is at t_min"),
+        (
+            is(Wrong::InsideLeftOut(0)) || is(Wrong::InsideLeftOut(1)),
+            "a hit was overlooked: the ray begins in a box, whose entry is at t_min",
+        ),
         (
             yours == (right || around_start),
             "you take a box around the start of the ray for a hit: ask its primitives",

@@ -114,8 +114,16 @@ const MISTAKES: [(Mistake, &str); 22] = [
     (Mistake::OfTheLine, "you do not limit the interval to t_min..t_max"),
 ];
 
+/// How far a slab test widens its interval.
+#[derive(Clone, Copy, PartialEq)]
+enum Widened {
+    Not,
+    Exit,
+    Both,
+}
+
 /// The interval that the box of a wrong test has in common with the ray.
-fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &SlabQuery) -> Option<(f32, f32)> {
+fn slab(mistake: Mistake, widened: Widened, SlabQuery { ray, bounds, .. }: &SlabQuery) -> Option<(f32, f32)> {
     if bounds.is_empty() {
         return None;
     }
@@ -174,10 +182,9 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
     {
         return None;
     }
-    if is_widened {
-        let (less, more) = (1.0 - 2.0 * gamma(3), 1.0 + 2.0 * gamma(3));
-        (near, far) = ((near * less).min(near * more), (far * less).max(far * more));
-    }
+    let (less, more) = (1.0 - 2.0 * gamma(3), 1.0 + 2.0 * gamma(3));
+    near = if widened == Widened::Both { (near * less).min(near * more) } else { near };
+    far = if widened == Widened::Not { far } else { (far * less).max(far * more) };
     let (at_start, at_end) = (far <= ray.t_min, near >= ray.t_max);
     if matches!(mistake, Mistake::ExitBehindStart | Mistake::OpenRange) && at_start
         || matches!(mistake, Mistake::EntryBeforeEnd | Mistake::OpenRange) && at_end
@@ -204,7 +211,7 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
 /// Whether a test with this mistake gives this answer, up to a few roundings, or this verdict.
 fn gives(
     mistake: Mistake,
-    is_widened: bool,
+    widened: Widened,
     query: &SlabQuery,
     yours: Option<(f32, f32)>,
     only_verdict: bool,
@@ -213,7 +220,7 @@ fn gives(
         let (yours, t) = (f64::from(yours), f64::from(t));
         yours == t || (yours - t).abs() <= 32.0 * U * t.abs() || (yours.is_nan() && t.is_nan())
     };
-    match (yours, slab(mistake, is_widened, query)) {
+    match (yours, slab(mistake, widened, query)) {
         (Some((enter, leave)), Some((near, far))) if !only_verdict => same(enter, near) && same(leave, far),
         (yours, other) => yours.is_some() == other.is_some(),
     }
@@ -222,8 +229,8 @@ fn gives(
 /// Mistakes that a wrong answer alone shows.
 pub(super) fn observations(query: &SlabQuery, yours: Option<(f32, f32)>) -> [(bool, &'static str); 3] {
     let is_lost_by_rounding = yours.is_none()
-        && slab(Mistake::None, false, query).is_none()
-        && slab(Mistake::None, true, query).is_some();
+        && slab(Mistake::None, Widened::Not, query).is_none()
+        && slab(Mistake::None, Widened::Both, query).is_some();
     [
         "the empty box (inf, -inf) has no point, but sorted planes make it infinite: test is_empty()"
             .when(query.bounds.is_empty() && yours.is_some()),
@@ -247,7 +254,8 @@ pub(super) fn mistakes(
         .chain([0, 1, 2].map(|axis| (Mistake::LeftOut(axis), LEFT_OUT)));
     // A wrong test may widen the interval or not.
     let variants = |(mistake, text)| {
-        [false, true].map(|is_widened| (gives(mistake, is_widened, query, yours, only_verdict), text))
+        [Widened::Not, Widened::Exit, Widened::Both]
+            .map(|widened| (gives(mistake, widened, query, yours, only_verdict), text))
     };
     all.flat_map(variants).collect()
 }

@@ -69,7 +69,12 @@ pub(super) fn judge(what: &str, yours: &Effects, expected: &Effects) -> CheckRes
             effects.lens, effects.motion, effects.indirect_light
         ),
     };
-    Err(Broken::with_texts(format!("effects of {what}"), part(yours), part(expected), "the definition"))
+    // If a single effect is wrong, its name and what it depends on.
+    let is_wrong = |effect: &Effect| yours.calls_for(*effect) != expected.calls_for(*effect);
+    let wrong: Vec<Effect> = BUILT.into_iter().filter(is_wrong).collect();
+    let clue = if let [only] = wrong[..] { clue(only, expected.calls_for(only)) } else { "" };
+    Err(Broken::with_texts(format!("effects of {what}"), part(yours), part(expected), "the definition")
+        .explained_by([(!clue.is_empty(), clue)]))
 }
 
 const DROPPED: &str =

@@ -87,15 +87,11 @@ pub(super) fn child_cache_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
         let is_cached_only = is_of(&|node, child| query.cache.get(node).is_none_or(|cached| cached == child));
         let is_left_out = is_of(&|node, child| query.cache.get(node) != Some(child));
         Err(Broken::with_texts(describe_cached(query), yours, expected_text, "brute force").explained_by([
-            (
-                is_cached_only,
-                "you visit only the cached child of a node: the others may have a nearer hit, and must be visited, too",
-            ),
+            "you visit only the cached child of a node: the others may have a nearer hit, and must be visited, too"
+                .when(is_cached_only),
             (is_left_out, "you do not visit the cached child: visit it first, and then the others"),
-            (
-                is_again || n_boxes > most_boxes && search.savings.volumes,
-                "the cached child takes part twice: leave it out of the other children",
-            ),
+            "the cached child takes part twice: leave it out of the other children"
+                .when(is_again || n_boxes > most_boxes && search.savings.volumes),
         ]))
     };
     all_hold(compare(&queries, trial.kit.closest_hit_with_child_cache(&queries), judge))
@@ -203,10 +199,8 @@ pub(super) fn child_cache_stores_the_way_to_the_hit(trial: &Trial<'_>) -> CheckR
         Err(Broken::with_texts(describe_cached(query), text, expected, "the definition").explained_by([
             (unchanged, "you do not change the cache: store the child with the closest hit"),
             (root_only, "you store the child of the root only: each node on the path has an entry"),
-            (
-                stray.is_none() && wrong.is_some_and(|(node, _)| yours.cache.get(node).is_some()),
-                "you store another child of the node than the one with the closest hit",
-            ),
+            "you store another child of the node than the one with the closest hit"
+                .when(stray.is_none() && wrong.is_some_and(|(node, _)| yours.cache.get(node).is_some())),
         ]))
     };
     all_hold(compare(&queries, trial.kit.closest_hit_with_child_cache(&queries), judge))

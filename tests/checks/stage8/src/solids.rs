@@ -379,10 +379,8 @@ fn judge_ranges<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> Vec<C
             let expected = if counts { format!("Some at t = {t:?}") } else { format!("no hit at t = {t:?}") };
             let source = "your t without these ends of the range";
             Err(Broken::with_texts(input(query), format!("{yours:?}"), expected, source).explained_by([
-                (
-                    !counts && (t == query.ray.t_min || t == query.ray.t_max),
-                    "the range is open: a hit exactly at t_min or t_max does not count, so test ray.contains(t)",
-                ),
+                "the range is open: a hit exactly at t_min or t_max does not count, so test ray.contains(t)"
+                    .when(!counts && (t == query.ray.t_min || t == query.ray.t_max)),
                 (
                     counts && yours.is_none(),
                     "you lose a hit that is one float inside the range: compare t with t_min and t_max, without an \

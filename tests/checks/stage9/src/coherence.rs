@@ -123,7 +123,10 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> CheckResu
                 ]));
             }
             let right: Vec<_> = singles.iter().map(closest_in_table).collect();
-            let in_reverse = yours.hits.iter().rev().map(|hit| hit.map(|hit| (hit.primitive, hit.t))).eq(right);
+            let found: Vec<_> = yours.hits.iter().map(|hit| hit.map(|hit| (hit.primitive, hit.t))).collect();
+            // All in reverse order, or each packet.
+            let packets = found.chunks(8).flat_map(|packet| packet.iter().rev());
+            let in_reverse = packets.eq(&right) || found.iter().rev().eq(&right);
             let yours_opened = &yours.opened;
             for (index, (single, yours)) in singles.iter().zip(&yours.hits).enumerate() {
                 let expected = closest_in_table(single);
