@@ -111,6 +111,10 @@ fn wrong_counts(HitsQuery { hits, effects, quality }: &HitsQuery) -> Vec<(RayCou
         let takes = &effects.materials[row.material];
         takes.lights.iter().any(|light| effects.lights[*light].shadows)
     };
+    let first = |row: &MaterialHits| {
+        let lights = &effects.materials[row.material].lights;
+        lights.iter().find(|light| effects.lights[**light].shadows).map_or(0, |light| row.in_front[*light])
+    };
     let per_hit = "you count a shadow ray per hit, or per hit and light: in_front says how many samples lie in front of the surface";
     let per_sample =
         "you count hits times light samples: in_front says how many samples lie in front of the surface";
@@ -127,6 +131,10 @@ fn wrong_counts(HitsQuery { hits, effects, quality }: &HitsQuery) -> Vec<(RayCou
             per_hit,
         ),
         (RayCounts { shadow: right.primary, ..right }, per_hit),
+        (
+            RayCounts { shadow: hits.iter().map(first).sum(), ..right },
+            "you count only the first light of each row",
+        ),
         (lights(false, true, &|row, light| row.in_front[light] * samples(light)), times),
         (
             secondary(&|_, takes| mirror(takes), &|_, takes| transmission(takes)),

@@ -130,6 +130,8 @@ enum Reads {
     Nearest,
     Smooth,
     TowardsZero,
+    /// The weights are the parts behind the point, which are negative for negative numbers.
+    Fraction,
     Another(Wrap),
     /// The second column and row are those behind the first ones in the image: the last one, or the first one again.
     NextStays,
@@ -140,7 +142,11 @@ enum Reads {
     UpsideDown,
 }
 
-const MISTAKES: [(Reads, &str); 16] = [
+const MISTAKES: [(Reads, &str); 17] = [
+    (
+        Reads::Fraction,
+        "the weights are negative left of the first pixel's centre: subtract floor(x), and use no fract",
+    ),
     (Reads::ExchangedAxes, "you exchange the weights of columns and rows"),
     (
         Reads::ExchangedWeights,
@@ -186,6 +192,7 @@ impl Reads {
             Reads::AlongY => (0.0, dy),
             Reads::UpperLeft => (0.0, 0.0),
             Reads::Nearest => (dx.round(), dy.round()),
+            Reads::Fraction => (x.fract(), y.fract()),
             Reads::Smooth => (smooth(dx), smooth(dy)),
             _ => (dx, dy),
         };

@@ -207,6 +207,7 @@ pub(super) fn of_cone(query: &SolidQuery<Cone>, yours: Option<f32>, _: f64) -> M
     };
     let end = |at: f64, radius: f64| Some(line.at_height(at)).filter(|t| line.distance(*t) <= radius);
     let base = |radius: f64| end(1.0, radius);
+    let unit = 1.0 / height;
     let slope = radius / height;
     let endless = within(slope, 0.0, f64::INFINITY);
     let double = within(slope, f64::NEG_INFINITY, 1.0).chain(base(radius));
@@ -223,16 +224,12 @@ pub(super) fn of_cone(query: &SolidQuery<Cone>, yours: Option<f32>, _: f64) -> M
         "your base lies halfway to the apex: it is at `base`".when(is(
             ray,
             yours,
-            first(ray, within(slope, 0.0, 0.5).chain(end(0.5, 0.5 * radius).or(end(0.5, radius)))),
+            first(ray, within(slope, 0.0, 0.5).chain(end(0.5, 0.5 * radius))),
         )),
         "your cone has the height 1: its axis goes from `apex` to `base`".when(is(
             ray,
             yours,
-            first(
-                ray,
-                within(slope, 0.0, 1.0 / height)
-                    .chain(end(1.0 / height, radius / height).or(end(1.0 / height, radius))),
-            ),
+            first(ray, within(slope, 0.0, unit).chain(end(unit, radius * unit))),
         )),
         "your cone has no base: it goes on beyond `base`"
             .when(is(ray, yours, first(ray, endless)) || (no_end && yours.is_none_or(|t| t > 1e3))),
