@@ -1,5 +1,6 @@
 //! The start of a ray that leaves a surface: how far it must be from the surface, and which known mistake moved it.
 
+use crate::broken::Words;
 use crate::double::U;
 use glam::{DVec3, Vec3, Vec3Swizzles as _};
 use raykata::kit::Surface;
@@ -85,34 +86,22 @@ impl Start {
         let shading = shading * self.side.dot(shading).signum();
         let along_the_side = |distance: f64| self.is(distance * self.side);
         let mut all = vec![
-            (
-                self.moved == DVec3::ZERO,
-                "your ray starts on the rounded point, so it may hit its own surface (shadow acne)",
-            ),
-            (
-                along_the_side(self.least()),
-                "you move by error·|n|, but rounding makes the sum smaller: move each coordinate one float further",
-            ),
+            "your ray starts on the rounded point, so it may hit its own surface (shadow acne)"
+                .when(self.moved == DVec3::ZERO),
+            "you move by error·|n|, but rounding makes the sum smaller: move each coordinate one float further"
+                .when(along_the_side(self.least())),
             (along_the_side(error.dot(self.side)), "you leave out the absolute values in error·|n|"),
-            (
-                along_the_side(error.dot(self.side).abs()),
-                "you take the absolute value of error·n: take those of n",
-            ),
+            "you take the absolute value of error·n: take those of n"
+                .when(along_the_side(error.dot(self.side).abs())),
             (self.is(error * self.side), PER_AXIS),
             (self.is(error * self.side.signum()), PER_AXIS),
             (along_the_side(error.x), "you move by the error of x: along the normal the error is error·|n|"),
-            (
-                along_the_side(error.max_element()),
-                "you move by the largest error: along the normal the error is error·|n|",
-            ),
-            (
-                along_the_side(f64::from(self.surface.error.length())),
-                "you move by the length of error: along the normal the error is error·|n|",
-            ),
-            (
-                along_the_side(error.element_sum()),
-                "you add up the errors of all axes: along the normal it is error·|n|",
-            ),
+            "you move by the largest error: along the normal the error is error·|n|"
+                .when(along_the_side(error.max_element())),
+            "you move by the length of error: along the normal the error is error·|n|"
+                .when(along_the_side(f64::from(self.surface.error.length()))),
+            "you add up the errors of all axes: along the normal it is error·|n|"
+                .when(along_the_side(error.element_sum())),
         ];
         if self.surface.shading_normal != self.surface.geometric_normal {
             let text = "you move along the shading normal: move along the geometric normal";
@@ -157,10 +146,8 @@ impl Start {
         ));
         all.extend((1..=7).map(|digits| {
             let is_fixed = self.t_min == Some(10f32.powi(-digits));
-            (
-                is_fixed,
-                "your t_min is the same at every scale, as in One Weekend: move the origin by error·|n|",
-            )
+            "your t_min is the same at every scale, as in One Weekend: move the origin by error·|n|"
+                .when(is_fixed)
         }));
         // A start at the point itself is along any way, if the point is not so large that its rounding loses a step.
         let step = f64::from(self.surface.error.length()).min(1e-4);

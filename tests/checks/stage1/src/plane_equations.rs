@@ -49,10 +49,8 @@ fn formulas(query: &PlaneEquationQuery, yours: Option<f32>, is_right: bool) -> V
                 || (yours.is_none() && t.abs() <= of_coordinates),
             "D and n·o cancel far from the origin: add them in double precision",
         ),
-        (
-            gives((d - along) / slope),
-            "the sign of D is wrong: the plane is n·p + D = 0, so t = (-D - n·o) / (n·v)",
-        ),
+        "the sign of D is wrong: the plane is n·p + D = 0, so t = (-D - n·o) / (n·v)"
+            .when(gives((d - along) / slope)),
         (gives(-d / slope), "you leave out n·o: the ray need not start at the origin"),
         (gives((-d * length - along) / slope), "if you normalize n, divide D by the length of n as well"),
         (gives(t * length), "n need not be a unit vector: the length of n must cancel in t"),

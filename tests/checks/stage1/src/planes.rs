@@ -24,14 +24,10 @@ fn judge_cases(trial: &Trial<'_>, cases: &[Case], source: &'static str) -> Vec<C
 /// Mistakes that a wrong answer alone shows.
 pub(super) fn observations(ray: &Ray, yours: Option<f32>) -> [(bool, &'static str); 3] {
     [
-        (
-            yours.is_some_and(|t| !t.is_finite()),
-            "a ray along the plane makes t infinite or NaN, and neither counts: ask ray.contains(t)",
-        ),
-        (
-            yours.is_some_and(|t| t == ray.t_min || t == ray.t_max),
-            "the range is open: t_min (0 for a ray that starts in the plane) and t_max do not count",
-        ),
+        "a ray along the plane makes t infinite or NaN, and neither counts: ask ray.contains(t)"
+            .when(yours.is_some_and(|t| !t.is_finite())),
+        "the range is open: t_min (0 for a ray that starts in the plane) and t_max do not count"
+            .when(yours.is_some_and(|t| t == ray.t_min || t == ray.t_max)),
         (yours.is_some_and(|t| !ray.contains(t)), "you return a t that ray.contains(t) refuses"),
     ]
 }
@@ -64,10 +60,8 @@ fn mistakes(query: &PlaneQuery, yours: Option<f32>, is_right: bool) -> Vec<(bool
                 || (yours.is_none() && t <= of_coordinates),
             "-(D + n·o) cancels far from the origin; (p0 - o)·n does not",
         ),
-        (
-            gives(t.abs(), range),
-            "you return |t| for a plane behind the ray: keep the signs of (p0 - o)·n and of n·d",
-        ),
+        "you return |t| for a plane behind the ray: keep the signs of (p0 - o)·n and of n·d"
+            .when(gives(t.abs(), range)),
         (gives(-t, range), "the sign of t is wrong: compute p0 - o, not o - p0"),
     ]);
     all

@@ -60,6 +60,14 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> Judged {
         (with_nan(first_that_counts([first, second])), SORTED_WITH_NAN),
         (with_nan(first_if_it_counts([second, first])), SORTED_WITH_NAN),
         (with_nan(first_that_counts([second, first])), SORTED_WITH_NAN),
+        (
+            if first.is_nan() { yours.is_none() } else { is_right },
+            "one root is NaN, but the other one may still count",
+        ),
+        (
+            if second.is_nan() { yours.is_none() } else { is_right },
+            "one root is NaN, but the other one may still count",
+        ),
         (with_nan(yours.is_none()), "one root is NaN, but the other one may still count"),
     ])
 }

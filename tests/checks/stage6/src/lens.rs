@@ -20,17 +20,20 @@ pub(super) fn is_polar(u: &[Vec2], places: &[Vec2]) -> Mistakes {
         })
     };
     vec![
-        (
-            radius_is(|u| u),
-            "too many points near the centre: your radius is u; use √u, because area grows with its square",
-        ),
+        "too many points near the centre: your radius is u; use √u, because area grows with its square"
+            .when(radius_is(|u| u)),
+        "your points keep their angle in the square: the concentric map turns them, φ = π/4 · b/a in each quarter"
+            .when(u.iter().zip(places).all(|(u, place)| {
+                let at = 2.0 * *u - 1.0;
+                let by_angle = at.abs().max_element() * at.normalize_or_zero();
+                let elliptic = at * (Vec2::ONE - 0.5 * vec2(at.y, at.x).powf(2.0)).map(f32::sqrt);
+                (*place - by_angle).length() < 1e-3 || (*place - elliptic).length() < 1e-3
+            })),
         (radius_is(|u| u * u), "too many points near the centre: your radius is u²; use √u"),
         (radius_is(f32::cbrt), "too many points near the rim: your radius is ∛u, as in a sphere; use √u"),
         (radius_is(|_| 1.0), "too many points near the rim: all of your points are on it"),
-        (
-            is_other_power(u, &places.iter().map(|place| f64::from(place.length())).collect::<Vec<_>>(), 0.5),
-            "your radius is another power of a random number: use √u",
-        ),
+        "your radius is another power of a random number: use √u"
+            .when(is_other_power(u, &places.iter().map(|place| f64::from(place.length())).collect::<Vec<_>>(), 0.5)),
     ]
 }
 
