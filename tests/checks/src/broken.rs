@@ -76,6 +76,12 @@ impl Words for &'static str {
     }
 }
 
+/// A table of mistakes with their words: `named![Flaw::Open => "…"]`.
+#[macro_export]
+macro_rules! named {
+    ($($given:expr => $words:expr),* $(,)?) => { [$(($given, $words)),*] };
+}
+
 /// The bytes of a PNG file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Png(pub Vec<u8>);

@@ -5,7 +5,7 @@ pub use crate::double::U;
 pub use crate::generate::{direction, fractions, magnitude, point, rough_point};
 pub use crate::judge::{Judged, compare, compare_formulas, proven, unless};
 pub use crate::paste::{Arguments, Paste, call, list};
-pub use crate::{Trial, nasty};
+pub use crate::{Trial, named, nasty};
 pub use glam::{DVec3, Vec2, Vec3, vec2, vec3};
 pub use proptest::prelude::*;
 pub use raykata::aabb::Aabb;

@@ -54,11 +54,10 @@ fn mistakes(query: &PlaneQuery, yours: Option<f32>, is_right: bool) -> Vec<(bool
     let of_coordinates = 8.0 * U * n.abs().dot(o.abs() + p.abs()) / slope.abs();
     let mut all = of_tests(ray, t, slope, yours, is_right, &gives);
     all.extend([
-        (
+        "-(D + n·o) cancels far from the origin; (p0 - o)·n does not".when(
             is_right
                 || yours.is_some_and(|t1| ray.contains(t1) && (f64::from(t1) - t).abs() <= of_coordinates)
                 || (yours.is_none() && t <= of_coordinates),
-            "-(D + n·o) cancels far from the origin; (p0 - o)·n does not",
         ),
         "you return |t| for a plane behind the ray: keep the signs of (p0 - o)·n and of n·d"
             .when(gives(t.abs(), range)),

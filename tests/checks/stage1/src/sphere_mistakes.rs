@@ -83,10 +83,9 @@ fn of_cancellation(query: &SphereQuery, yours: Option<f32>) -> Vec<(bool, &'stat
     let mut all = vec![
         (is(b * b - a * c, &|root| [(b - root) / a, (b + root) / a]), ALGEBRAIC),
         (is(b * b - a * c, &|root| [c / (b + root.copysign(b)), (b + root.copysign(b)) / a]), ALGEBRAIC),
-        (
-            is(twice * twice - 4.0 * a * c, &|root| [(twice - root) / (2.0 * a), (twice + root) / (2.0 * a)]),
-            ALGEBRAIC,
-        ),
+        ALGEBRAIC.when(is(twice * twice - 4.0 * a * c, &|root| {
+            [(twice - root) / (2.0 * a), (twice + root) / (2.0 * a)]
+        })),
         (is(twice * twice - 4.0 * c, &|root| [(twice - root) / 2.0, (twice + root) / 2.0]), ALGEBRAIC),
         (is(r_squared - (f.dot(f) - b * b), &|t_hc| [b - t_hc, b + t_hc]), GEOMETRIC),
     ];

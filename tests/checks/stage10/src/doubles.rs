@@ -116,20 +116,15 @@ fn points_on_edges_belong(trial: &Trial<'_>) -> CheckResult {
         let lost = |on: fn(f64, f64) -> bool| {
             yours.is_none() && weights.is_some_and(|[beta, gamma]| on(beta, gamma))
         };
-        Err(Broken::new(query.call("triangle_in_double"), yours, "a hit at t = 3", "integers, exactly").explained_by([
-            (
-                lost(|beta, gamma| beta + gamma == 1.0),
-                "you leave out points with β + γ = 1: points on the edge from b to c belong to the triangle",
-            ),
-            (
-                lost(|beta, gamma| beta == 0.0 || gamma == 0.0),
-                "you leave out points with β = 0 or γ = 0: points on these edges belong to the triangle",
-            ),
-            (
-                lost(|beta, gamma| beta == 0.0 || gamma == 0.0 || beta + gamma == 1.0),
-                "you leave out points on edges: they belong to the triangle",
-            ),
-        ]))
+        Err(Broken::new(query.call("triangle_in_double"), yours, "a hit at t = 3", "integers, exactly")
+            .explained_by([
+                "you leave out points with β + γ = 1: points on the edge from b to c belong to the triangle"
+                    .when(lost(|beta, gamma| beta + gamma == 1.0)),
+                "you leave out points with β = 0 or γ = 0: points on these edges belong to the triangle"
+                    .when(lost(|beta, gamma| beta == 0.0 || gamma == 0.0)),
+                "you leave out points on edges: they belong to the triangle"
+                    .when(lost(|beta, gamma| beta == 0.0 || gamma == 0.0 || beta + gamma == 1.0)),
+            ]))
     }))
 }
 
@@ -152,22 +147,18 @@ fn explain(trial: &Trial<'_>, wrong: &[Wrong]) -> Vec<CheckResult> {
         let expected = format!("{exact:?}, {}", describe(*margin));
         let yours_t = format!("{:?}", yours.map(|hit| hit.t));
         Err(Broken::with_texts(query.call("triangle_in_double"), yours_t, expected, "exactly").explained_by([
-            (
-                yours.is_none() && enlarged.is_some(),
-                "you treat a small determinant as 0: a determinant that is small is not 0, and the same triangle enlarged is hit",
-            ),
-            (
-                yours.is_some() && on_the_line,
-                "you return a hit behind the origin or beyond the range: t counts only within the range of the ray",
-            ),
-            (
-                outside && beyond_the_third_edge,
-                "you return a hit where β + γ > 1: α = 1 - β - γ must be at least 0, too",
-            ),
-            (
-                outside && !beyond_the_third_edge,
-                "you return a hit where there is none: β and γ must be at least 0",
-            ),
+            "you treat a small determinant as 0: a determinant that is small is not 0, and the same triangle enlarged is hit"
+                .when(yours.is_none() && enlarged.is_some()
+                ),
+            "you return a hit behind the origin or beyond the range: t counts only within the range of the ray"
+                .when(yours.is_some() && on_the_line
+                ),
+            "you return a hit where β + γ > 1: α = 1 - β - γ must be at least 0, too"
+                .when(outside && beyond_the_third_edge
+                ),
+            "you return a hit where there is none: β and γ must be at least 0"
+                .when(outside && !beyond_the_third_edge
+                ),
             (converted_late, CONVERTED_LATE),
             (single, SINGLE),
         ]))

@@ -110,10 +110,8 @@ pub(super) fn judge_sample(query: &EmitterQuery, yours: &EmitterSample) -> Check
         "you divide the radiance by the squared distance: that is already in the density"
             .when(on_it && !same_radiance && over_distance),
         (on_it && !same_radiance && by_pdf, "you divide the radiance by the density: the caller does that"),
-        (
-            on_it && !same_radiance && by_cosine,
-            "you multiply the radiance by the cosine at the light: it is in the density",
-        ),
+        "you multiply the radiance by the cosine at the light: it is in the density"
+            .when(on_it && !same_radiance && by_cosine),
         (on_it && !same_radiance, "you return another radiance than that of the emitter"),
         (on_it && same_radiance && !density, "your density is not above 0 and finite"),
     ]))

@@ -64,10 +64,8 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[(f32, f64)], slack: f64) -> 
             (factors.iter().any(|(factor, _)| factor.is_nan()), "you return NaN"),
             "your roulette begins too late: it begins at bounce 3"
                 .when(share == 1.0 && near(mean, 1.0) && bounce == 3),
-            (
-                share == 0.0,
-                "a path of this small weight always ends: it must survive with a probability above 0",
-            ),
+            "a path of this small weight always ends: it must survive with a probability above 0"
+                .when(share == 0.0),
             "the factor is below 1 / q for this small weight: you limit it, so light is lost"
                 .when(is_one_factor && near(share, largest) && 1.0 < factor && factor < 0.99 / share),
             "too many bright paths end: of those whose weight is 0.95 or more, at most one in twenty may end"

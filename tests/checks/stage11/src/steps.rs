@@ -222,27 +222,21 @@ enum Roulette {
     Number(usize),
 }
 
-const ROULETTES: [(Roulette, &str); 11] = [
-    (Roulette::Bounce(1), ""),
-    (Roulette::Bounce(0), "the roulette counts surfaces: path.bounces + 1"),
-    (Roulette::Bounce(2), "the roulette counts one surface too many: path.bounces + 1"),
-    (
-        Roulette::OfPath,
+const ROULETTES: [(Roulette, &str); 11] = named![
+    Roulette::Bounce(1) => "",
+    Roulette::Bounce(0) => "the roulette counts surfaces: path.bounces + 1",
+    Roulette::Bounce(2) => "the roulette counts one surface too many: path.bounces + 1",
+    Roulette::OfPath =>
         "the roulette gets the weight before the bounce: multiply by that of the sample first",
-    ),
-    (
-        Roulette::OfSample,
+    Roulette::OfSample =>
         "the roulette gets the weight of the surface alone: multiply by that of the path first",
-    ),
-    (
-        Roulette::OfSurface,
+    Roulette::OfSurface =>
         "the roulette gets the reflectance of the surface: it gets the weight that the path would have",
-    ),
-    (Roulette::Number(0), REUSED),
-    (Roulette::Number(1), REUSED),
-    (Roulette::Number(2), REUSED),
-    (Roulette::Number(3), REUSED),
-    (Roulette::Number(4), REUSED),
+    Roulette::Number(0) => REUSED,
+    Roulette::Number(1) => REUSED,
+    Roulette::Number(2) => REUSED,
+    Roulette::Number(3) => REUSED,
+    Roulette::Number(4) => REUSED,
 ];
 
 const REUSED: &str =
@@ -353,13 +347,12 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
                     .when(is_next(&sample, unless_below(by(factor) * sample.weight.as_dvec3()))),
                 "reflected and refracted rays end, too: only diffuse ones must stay above the geometric normal"
                     .when(is_next(&sample, if height < 0.0 { DVec3::ZERO } else { by(factor) * whole })),
-                (
-                    is_next(
+                "the density lacks the probability of the diffuse lobe: pass on that of sample_bsdf"
+                    .when(is_next(
                         &BsdfSample { pdf: cosine_pdf(query, &sample), ..sample },
                         unless_below(by(factor) * whole),
+                    )
                     ),
-                    "the density lacks the probability of the diffuse lobe: pass on that of sample_bsdf",
-                ),
                 "the density of a diffuse ray is that of sample_bsdf"
                     .when(is_next(&BsdfSample { pdf: f32::INFINITY, ..sample }, unless_below(by(factor) * whole))),
             ];

@@ -193,13 +193,10 @@ pub(super) fn mis_weights_keep_the_variance_low(trial: &Trial<'_>) -> CheckResul
             };
             return Err(broken.explained_by([
                 (weights.iter().any(|(p, q)| p.is_nan() || q.is_nan()), "you return NaN"),
-                (
-                    by(&|pair| share(0.5, pair)) || by(&|pair| share(0.25, pair)),
-                    "your weights are those of the roots of the densities, which differ too little",
-                ),
-                (
+                "your weights are those of the roots of the densities, which differ too little"
+                    .when(by(&|pair| share(0.5, pair)) || by(&|pair| share(0.25, pair))),
+                "your weights are the mean of 1/2 and a heuristic, so a rare sample counts too much".when(
                     by(&|pair| 0.25 + 0.5 * share(1.0, pair)) || by(&|pair| 0.25 + 0.5 * share(2.0, pair)),
-                    "your weights are the mean of 1/2 and a heuristic, so a rare sample counts too much",
                 ),
                 (all(&|_, weights| *weights == (0.5, 0.5)), "your weights are 1/2 for all densities"),
                 "the smaller density gets the larger weight: own and other are exchanged"

@@ -20,20 +20,18 @@ pub(super) enum Rounding {
     MostBins,
 }
 
-pub(super) const ROUNDINGS: [(Rounding, &str); 10] = [
-    (Rounding::Nearest, "the bin is rounded to the nearest one: round down"),
-    (Rounding::Up, "the bin is rounded up: round down"),
-    (Rounding::OfCentroid, "the grid is that of twice the centroids: do not halve them"),
-    (Rounding::OfLow, "the bin is that of the low corner of the box: take twice the centroid"),
-    (Rounding::OfAxis(0), "the same coordinate is used on all axes"),
-    (Rounding::WithoutLow, "grid.low is left out: the first bin begins there"),
-    (
-        Rounding::TwoProducts,
+pub(super) const ROUNDINGS: [(Rounding, &str); 10] = named![
+    Rounding::Nearest => "the bin is rounded to the nearest one: round down",
+    Rounding::Up => "the bin is rounded up: round down",
+    Rounding::OfCentroid => "the grid is that of twice the centroids: do not halve them",
+    Rounding::OfLow => "the bin is that of the low corner of the box: take twice the centroid",
+    Rounding::OfAxis(0) => "the same coordinate is used on all axes",
+    Rounding::WithoutLow => "grid.low is left out: the first bin begins there",
+    Rounding::TwoProducts =>
         "the place is a difference of two products, which rounds otherwise: (c - low) · scale",
-    ),
-    (Rounding::NegativeLast, "a bin below 0 becomes the last one: it counts as bin 0"),
-    (Rounding::FloorLast, "a bin below 0 becomes the last one: it counts as bin 0"),
-    (Rounding::MostBins, "the last bin is that of MAX_BINS: only grid.n_bins are in use"),
+    Rounding::NegativeLast => "a bin below 0 becomes the last one: it counts as bin 0",
+    Rounding::FloorLast => "a bin below 0 becomes the last one: it counts as bin 0",
+    Rounding::MostBins => "the last bin is that of MAX_BINS: only grid.n_bins are in use",
 ];
 
 /// The number of the bin along an axis, by the definition or by a wrong one.

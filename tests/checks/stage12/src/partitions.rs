@@ -86,11 +86,10 @@ fn mistakes(query: &PartitionQuery, yours: &SplitAnswer) -> Vec<(bool, &'static 
             .when(is(left_side(query, |primitive| primitive.twice_centroid()[axis] < plane))),
         "the number of the left side is right, but the primitives stay as they come"
             .when(yours.order.iter().copied().eq(primitives.iter().map(PrimitiveBox::id)) && middle == left.len()),
-        (
-            yours.middle == Some(primitives.len() - left.len())
-                && yours.order.get(..left.len()).is_some_and(|first| sorted(first) == left),
-            "you return the number of the right side",
-        ),
+        "you return the number of the right side"
+            .when(yours.middle == Some(primitives.len() - left.len())
+                && yours.order.get(..left.len()).is_some_and(|first| sorted(first) == left)
+            ),
     ];
     mistakes.extend(ROUNDINGS.map(|(rounding, text)| (is(before_split(query, rounding)), text)));
     mistakes.into_iter().map(|(gives, text)| (gives && is_complete, text)).collect()

@@ -4,15 +4,11 @@ use super::wide_tables::{Flaw, closest, describe, flawed_search, overlapped, que
 use checks::prelude::*;
 use raykata::wide::{BLOCK, Child, ChildContents, NO_PRIMITIVE};
 
-const TIES: [(Flaw, &str); 2] = [
-    (
-        Flaw::FirstOfEqual,
+const TIES: [(Flaw, &str); 2] = named![
+    Flaw::FirstOfEqual =>
         "of two hits at the same t the smaller primitive number wins, and not the one that is tested first",
-    ),
-    (
-        Flaw::SkippedAtTheBest,
+    Flaw::SkippedAtTheBest =>
         "a child that is entered exactly at the best t is skipped: it may hold a hit at the same t with a smaller number",
-    ),
 ];
 
 const FIRST_ENDS: &str = "the first hit in a block ends the test of the block: another lane may be nearer";

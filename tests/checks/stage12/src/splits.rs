@@ -105,32 +105,22 @@ fn right_cost(sides: &[(BoxA, u32); 2]) -> f64 {
     sides.iter().map(|side| area(&side.0) * blocks(side)).sum()
 }
 
-const WRONG_COSTS: [(Cost, &str); 10] = [
-    (|sides| area(&sides[0].0) * blocks(&sides[0]), "only the left side is counted in the cost"),
-    (|sides| area(&sides[1].0) * blocks(&sides[1]), "only the right side is counted in the cost"),
-    (
-        |sides| sides.iter().map(|(bounds, n)| area(bounds) * f64::from(n / BLOCK as u32)).sum(),
+const WRONG_COSTS: [(Cost, &str); 10] = named![
+    |sides| area(&sides[0].0) * blocks(&sides[0]) => "only the left side is counted in the cost",
+    |sides| area(&sides[1].0) * blocks(&sides[1]) => "only the right side is counted in the cost",
+    |sides| sides.iter().map(|(bounds, n)| area(bounds) * f64::from(n / BLOCK as u32)).sum() =>
         "the number of blocks is rounded down: a block that is not full costs as much as a full one",
-    ),
-    (
-        |sides| (area(&sides[0].0) + area(&sides[1].0)) * (blocks(&sides[0]) + blocks(&sides[1])),
+    |sides| (area(&sides[0].0) + area(&sides[1].0)) * (blocks(&sides[0]) + blocks(&sides[1])) =>
         "the sum of the areas is multiplied by the sum of the costs: each side has a product of its own",
-    ),
-    (|sides| 1.0 / right_cost(sides), "the most expensive split is chosen"),
-    (
-        |sides| sides.iter().map(|(bounds, n)| area(bounds) * f64::from(*n)).sum(),
+    |sides| 1.0 / right_cost(sides) => "the most expensive split is chosen",
+    |sides| sides.iter().map(|(bounds, n)| area(bounds) * f64::from(*n)).sum() =>
         "the sides count single primitives: a leaf pays for whole blocks, block_cost",
-    ),
-    (|sides| sides.iter().map(|(bounds, _)| area(bounds)).sum(), "the counts are left out of the cost"),
-    (|sides| sides.iter().map(blocks).sum(), "the areas are left out of the cost"),
-    (
-        |sides| sides.iter().map(|side| volume(&side.0) * blocks(side)).sum(),
+    |sides| sides.iter().map(|(bounds, _)| area(bounds)).sum() => "the counts are left out of the cost",
+    |sides| sides.iter().map(blocks).sum() => "the areas are left out of the cost",
+    |sides| sides.iter().map(|side| volume(&side.0) * blocks(side)).sum() =>
         "the cost has volumes in place of surface areas",
-    ),
-    (
-        |sides| area(&sides[0].0) * blocks(&sides[1]) + area(&sides[1].0) * blocks(&sides[0]),
+    |sides| area(&sides[0].0) * blocks(&sides[1]) + area(&sides[1].0) * blocks(&sides[0]) =>
         "each area is multiplied by the cost of the other side",
-    ),
 ];
 
 /// Two costs are the same if they differ by less than the rounding errors of sums of 16 areas.

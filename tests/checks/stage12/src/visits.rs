@@ -116,22 +116,16 @@ fn mistakes(queries: &[WideQuery], n: usize) -> Vec<(bool, &'static str)> {
     COSTLY.map(|(flaw, text)| (by(flaw), text)).to_vec()
 }
 
-const COSTLY: [(Flaw, &str); 6] = [
-    (Flaw::Unsorted, "the children are visited in the order of their places: visit the nearest first"),
-    (Flaw::FarthestFirst, "the farthest child is visited first: put the nearest on top of the stack"),
-    (
-        Flaw::NothingSkipped,
+const COSTLY: [(Flaw, &str); 6] = named![
+    Flaw::Unsorted => "the children are visited in the order of their places: visit the nearest first",
+    Flaw::FarthestFirst => "the farthest child is visited first: put the nearest on top of the stack",
+    Flaw::NothingSkipped =>
         "a child beyond the best hit is visited: compare its entry again when it comes from the stack",
-    ),
-    (Flaw::NotShortened, "the ray is not shortened, so nothing is skipped: after a hit it ends there"),
-    (
-        Flaw::EveryLane,
+    Flaw::NotShortened => "the ray is not shortened, so nothing is skipped: after a hit it ends there",
+    Flaw::EveryLane =>
         "each lane of a block is tested exactly: only those of the mask of `candidates` may be hit",
-    ),
-    (
-        Flaw::Everything,
+    Flaw::Everything =>
         "each lane of a block is tested exactly, and children beyond the best hit are visited: use the masks, and compare again",
-    ),
 ];
 
 /// Judges the hits of searches, so that no search is cheap because it finds nothing.

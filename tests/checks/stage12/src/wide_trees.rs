@@ -218,27 +218,21 @@ enum Rule {
     Pairs,
 }
 
-const WRONG_RULES: [(Rule, &str); 11] = [
-    (
-        Rule::Greedy,
+const WRONG_RULES: [(Rule, &str); 11] = named![
+    Rule::Greedy =>
         "the inner child with the largest surface area is opened until there are eight: this is not always the cheapest",
-    ),
-    (Rule::Most(2), "a node gets at most two children, not eight"),
-    (Rule::Most(4), "a node gets at most four children, not eight"),
-    (Rule::Most(7), "a node gets at most seven children, not eight"),
-    (Rule::LeavesStay, "every leaf stays a leaf: everything below an inner node may become one leaf as well"),
-    (Rule::Primitives, "the costs count single primitives: a leaf pays for whole blocks, block_cost"),
-    (Rule::NodesAreFree, "the cost of a node is left out: visiting it costs something, too"),
-    (Rule::Halves(false), HALVES),
-    (Rule::Halves(true), HALVES),
-    (
-        Rule::Exchanged,
+    Rule::Most(2) => "a node gets at most two children, not eight",
+    Rule::Most(4) => "a node gets at most four children, not eight",
+    Rule::Most(7) => "a node gets at most seven children, not eight",
+    Rule::LeavesStay => "every leaf stays a leaf: everything below an inner node may become one leaf as well",
+    Rule::Primitives => "the costs count single primitives: a leaf pays for whole blocks, block_cost",
+    Rule::NodesAreFree => "the cost of a node is left out: visiting it costs something, too",
+    Rule::Halves(false) => HALVES,
+    Rule::Halves(true) => HALVES,
+    Rule::Exchanged =>
         "both children get each other's places: the left one gets those that were counted for it",
-    ),
-    (
-        Rule::Pairs,
+    Rule::Pairs =>
         "a node costs as much as two children in one place each: its two children share eight places",
-    ),
 ];
 
 const HALVES: &str = "both children get half of the places: try each number of places for the left one";

@@ -84,12 +84,11 @@ fn judge_face_normal(triangle: &Triangle, yours: Option<Vec3>) -> Judged {
             "a triangle without area has no normal: 0/0 is NaN, so return None"
                 .when(yours.is_some() && expected.is_none()),
             (backwards, "your normal points the other way: compute u × v, not v × u"),
-            (
+            "|u × v|² underflows for tiny edges and overflows for huge ones: scale u and v first".when(
                 underflows
                     && (yours.is_none()
                         || near(yours.unwrap_or_default())
                         || yours.is_some_and(|n| n.is_nan() || n == Vec3::ZERO)),
-                "|u × v|² underflows for tiny edges and overflows for huge ones: scale u and v first",
             ),
         ])
     };

@@ -116,12 +116,11 @@ pub(super) fn observations(query: &TriangleQuery, yours: Option<TriangleHit>) ->
             .when(yours.is_none() && on_an_edge && line.determinant != 0.0),
         "the range is open: a hit at t_min or t_max does not count (t = 0 for a ray that starts in the triangle)"
             .when(yours.is_some_and(|hit| hit.t == ray.t_min || hit.t == ray.t_max)),
-        (
-            yours.is_some_and(|TriangleHit { beta, gamma, .. }| {
+        "you accept a point slightly outside: test β ≥ 0, γ ≥ 0 and β + γ ≤ 1 without a tolerance"
+            .when(yours.is_some_and(|TriangleHit { beta, gamma, .. }| {
                 (-0.01..0.0).contains(&beta.min(gamma).min(1.0 - beta - gamma))
-            }),
-            "you accept a point slightly outside: test β ≥ 0, γ ≥ 0 and β + γ ≤ 1 without a tolerance",
-        ),
+            })
+            ),
     ]
 }
 
@@ -191,13 +190,12 @@ fn of_values(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
     };
     let is_in_sum = |hit: &TriangleHit| (0.0..=1.0).contains(&(hit.beta + hit.gamma));
     vec![
-        (
-            slide_determinant(answer.query).map_or(answer.is_right, |factor| {
+        "you use the determinant as the slide prints it; it must be a(fk - gj) + b(gi - ek) + c(ej - fi)"
+            .when(slide_determinant(answer.query).map_or(answer.is_right, |factor| {
                 let hit = [t, beta, gamma].map(|value| factor * value);
                 answer.is_inside(hit, hit[1].min(hit[2]).min(1.0 - hit[1] - hit[2]))
-            }),
-            "you use the determinant as the slide prints it; it must be a(fk - gj) + b(gi - ek) + c(ej - fi)",
-        ),
+            })
+            ),
         (answer.is_inside([t, gamma, beta], least), "β and γ look swapped"),
         "you return (α, γ) with α, a weight of corner a: β belongs to b and γ to c"
             .when(answer.is_inside([t, alpha, gamma], least)),

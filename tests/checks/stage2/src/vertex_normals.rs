@@ -91,10 +91,8 @@ fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> Judged {
     let too_early = [0.05, 0.1, 0.2, 0.25, 0.5, 0.75, 1.0].map(|limit| {
         let gives =
             if sums.plain.length() < limit { sums.faces.iter().any(|&face| near(face)) } else { right };
-        (
-            is_open || gives,
-            "a short sum is taken for one that cancels: normalize it, unless it consists of roundings",
-        )
+        "a short sum is taken for one that cancels: normalize it, unless it consists of roundings"
+            .when(is_open || gives)
     });
     unless(right, broken).formulas(
         too_early.into_iter().chain([

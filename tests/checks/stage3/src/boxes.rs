@@ -115,10 +115,8 @@ pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> CheckResult {
                     .when(yours == tree::around([&or_origin(first), &or_origin(second)])),
                 "you return what both boxes share: take the smaller min and the larger max"
                     .when(open || yours == shared),
-                (
-                    open || yours == least || yours == most,
-                    "you take the smaller, or the larger, corner for both sides",
-                ),
+                "you take the smaller, or the larger, corner for both sides"
+                    .when(open || yours == least || yours == most),
                 (yours == *first || open, "you return the first box"),
                 (yours == *second || open, "you return the second box"),
             ])
@@ -171,10 +169,8 @@ pub(super) fn surface_area_counts_six_faces(trial: &Trial<'_>) -> CheckResult {
             (near(expected - 2.0 * size.x * size.y), FOUR_FACES),
             (near(expected - 2.0 * size.y * size.z), FOUR_FACES),
             (near(expected - 2.0 * size.z * size.x), FOUR_FACES),
-            (
-                near(6.0 * size.max_element() * size.max_element()),
-                "you return the area of a cube with the longest edge",
-            ),
+            "you return the area of a cube with the longest edge"
+                .when(near(6.0 * size.max_element() * size.max_element())),
             (near(4.0 * size.element_sum()), "you return the length of the edges, not the area"),
         ])
     })

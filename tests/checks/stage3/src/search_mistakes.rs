@@ -40,43 +40,31 @@ enum Wrong {
 
 const INSIDE: &str = "a box in which the ray begins is left out: its entry is at t_min, which counts";
 
-const MISTAKES: [(Wrong, &str); 18] = [
-    (Wrong::AllOfLeaf, "a leaf counts only if all of its primitives are hit: one is enough"),
-    (Wrong::InsideLeftOut(0), INSIDE),
-    (Wrong::InsideLeftOut(1), INSIDE),
-    (
-        Wrong::TieToTheLast,
+const MISTAKES: [(Wrong, &str); 18] = named![
+    Wrong::AllOfLeaf => "a leaf counts only if all of its primitives are hit: one is enough",
+    Wrong::InsideLeftOut(0) => INSIDE,
+    Wrong::InsideLeftOut(1) => INSIDE,
+    Wrong::TieToTheLast =>
         "of two hits at the same t the smaller primitive number wins: you keep the later one",
-    ),
-    (
-        Wrong::TieToTheFirst,
+    Wrong::TieToTheFirst =>
         "of two hits at the same t the smaller primitive number wins: you keep the first one",
-    ),
-    (Wrong::Farther, "the farther of two hits is kept"),
-    (
-        Wrong::FartherOrLarger,
+    Wrong::Farther => "the farther of two hits is kept",
+    Wrong::FartherOrLarger =>
         "the farther of two hits is kept, and of equal ones the one with the larger number",
-    ),
-    (Wrong::OneOfLeaf, "you take the first primitive only: ask all of a leaf's primitives"),
-    (Wrong::LeafStops, "you take the first hit of a leaf: ask all of a leaf's primitives"),
-    (Wrong::LastOfLeafLeftOut, "part of a leaf was left out: its last primitive"),
-    (Wrong::FirstOfLeafLeftOut, "part of a leaf was left out: its first primitive"),
-    (
-        Wrong::LeftIfAny,
+    Wrong::OneOfLeaf => "you take the first primitive only: ask all of a leaf's primitives",
+    Wrong::LeafStops => "you take the first hit of a leaf: ask all of a leaf's primitives",
+    Wrong::LastOfLeafLeftOut => "part of a leaf was left out: its last primitive",
+    Wrong::FirstOfLeafLeftOut => "part of a leaf was left out: its first primitive",
+    Wrong::LeftIfAny =>
         "boxes overlap: the search stopped before it had seen the nearer hit, which is in the right child",
-    ),
-    (
-        Wrong::NearIfAny,
+    Wrong::NearIfAny =>
         "boxes overlap: the search stopped before it had seen the nearer hit, which is in the farther child",
-    ),
-    (
-        Wrong::NothingIfOneHasNone,
+    Wrong::NothingIfOneHasNone =>
         "a subtree was left out: if one child has no hit, the other may still have one",
-    ),
-    (Wrong::NothingIfOneIsMissed, "a subtree was left out: if one box is missed, the other may still be met"),
-    (Wrong::LeftOnly, "a subtree was left out: the right child"),
-    (Wrong::RightOnly, "a subtree was left out: the left child"),
-    (Wrong::NearOnly, "a subtree was left out: the farther child"),
+    Wrong::NothingIfOneIsMissed => "a subtree was left out: if one box is missed, the other may still be met",
+    Wrong::LeftOnly => "a subtree was left out: the right child",
+    Wrong::RightOnly => "a subtree was left out: the left child",
+    Wrong::NearOnly => "a subtree was left out: the farther child",
 ];
 
 struct Search<'a> {
@@ -202,19 +190,13 @@ pub(super) fn any_mistakes(query: &SearchQuery, yours: bool) -> Vec<(bool, &'sta
         (is(Wrong::LastOfLeafLeftOut), "a hit was overlooked: the last primitive of a leaf is left out"),
         (is(Wrong::NearOnly), "a hit was overlooked: the farther child is left out"),
         (is(Wrong::FirstOfLeafLeftOut), "a hit was overlooked: the first primitive of a leaf is left out"),
-        (
-            is(Wrong::NothingIfOneIsMissed),
-            "a hit was overlooked: if one box is missed, the other may still be met",
-        ),
+        "a hit was overlooked: if one box is missed, the other may still be met"
+            .when(is(Wrong::NothingIfOneIsMissed)),
         (is(Wrong::AllOfLeaf), "a hit was overlooked: one primitive of a leaf is enough"),
-        (
-            is(Wrong::InsideLeftOut(0)) || is(Wrong::InsideLeftOut(1)),
-            "a hit was overlooked: the ray begins in a box, whose entry is at t_min",
-        ),
-        (
-            yours == (right || around_start),
-            "you take a box around the start of the ray for a hit: ask its primitives",
-        ),
+        "a hit was overlooked: the ray begins in a box, whose entry is at t_min"
+            .when(is(Wrong::InsideLeftOut(0)) || is(Wrong::InsideLeftOut(1))),
+        "you take a box around the start of the ray for a hit: ask its primitives"
+            .when(yours == (right || around_start)),
         (is(Wrong::NothingIfOneHasNone), "a hit was overlooked: one child is enough"),
     ]
 }

@@ -60,14 +60,10 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
             vec![
                 (by(|p, axis| p.bounds.min[axis]), BY_LOW),
                 (by(|p, axis| p.bounds.max[axis]), BY_HIGH),
-                (
-                    by(|p, _| p.centroid.length()),
-                    "you sort by the distance from the origin: sort by the centroid along the axis",
-                ),
-                (
-                    by(|p, axis| (p.bounds.max - p.bounds.min)[axis]),
-                    "you sort by the size of the boxes: sort by the centroid",
-                ),
+                "you sort by the distance from the origin: sort by the centroid along the axis"
+                    .when(by(|p, _| p.centroid.length())),
+                "you sort by the size of the boxes: sort by the centroid"
+                    .when(by(|p, axis| (p.bounds.max - p.bounds.min)[axis])),
                 (as_given, "the primitives are not sorted: you cut them as they come"),
                 (along(0), "you always sort along x, not along the longest axis"),
                 (along(1), "you always sort along y, not along the longest axis"),
@@ -144,10 +140,8 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
             vec![
                 (cut(|p, axis| p.bounds.min[axis], &|low, size| low + 0.5 * size), BY_LOW),
                 (cut(|p, axis| p.bounds.max[axis], &|low, size| low + 0.5 * size), BY_HIGH),
-                (
-                    cut(centroid, &|_, size| 0.5 * size),
-                    "you cut at half of the size of the box: the middle is half of min + max",
-                ),
+                "you cut at half of the size of the box: the middle is half of min + max"
+                    .when(cut(centroid, &|_, size| 0.5 * size)),
                 (at(1.0 / 3.0), ELSEWHERE),
                 (at(2.0 / 3.0), ELSEWHERE),
                 (at(0.25), ELSEWHERE),

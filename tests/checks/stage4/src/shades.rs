@@ -180,32 +180,31 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
     let by_number: Vec<usize> =
         asked.enumerate().filter(|(n, _)| query.visible[*n]).map(|(_, light)| light).collect();
     let distance = |light: usize| f64::from(query.lights[light].distance);
-    let of_kinds: [(&dyn Fn(usize) -> DVec3, &str); 9] = [
-        (&|light| split(light).into_iter().sum::<DVec3>() / distance(light), FALLOFF),
-        (&|light| split(light).into_iter().sum::<DVec3>() / distance(light).powi(2), FALLOFF),
-        (
-            &|light| unlit(light) * radiance(light).powf(2.0),
-            "the radiance is squared: it is a factor of the sum once",
-        ),
-        (
-            &|light| unlit(light) * mean(radiance(light)),
-            "the light is grey: multiply by its radiance channel by channel",
-        ),
-        (
-            &|light| radiance(light) * kd * diffuse(light) + ks * right(light),
-            "the highlight is not multiplied by the radiance",
-        ),
-        (
-            &|light| radiance(light) * ks * right(light) + kd * diffuse(light),
-            "the diffuse term is not multiplied by the radiance",
-        ),
-        (
-            &|light| split(light)[0] + split(light)[1] * diffuse(light),
-            "the highlight is multiplied by cos θ: it is I·ks·cosⁿφ",
-        ),
-        (&|light| radiance(light) * (ks * diffuse(light) + kd * right(light)), "kd and ks are exchanged"),
-        (&|light| split(light)[0] + radiance(light) * right(light), "ks is left out"),
+    let kinds = [
+        FALLOFF,
+        FALLOFF,
+        "the radiance is squared: it is a factor of the sum once",
+        "the light is grey: multiply by its radiance channel by channel",
+        "the highlight is not multiplied by the radiance",
+        "the diffuse term is not multiplied by the radiance",
+        "the highlight is multiplied by cos θ: it is I·ks·cosⁿφ",
+        "kd and ks are exchanged",
+        "ks is left out",
     ];
+    let of_kind = |kind: usize, light: usize| {
+        let ([of_kd, of_ks], radiance) = (split(light), radiance(light));
+        match kind {
+            0 => (of_kd + of_ks) / distance(light),
+            1 => (of_kd + of_ks) / distance(light).powi(2),
+            2 => unlit(light) * radiance * radiance,
+            3 => unlit(light) * mean(radiance),
+            4 => of_kd + ks * right(light),
+            5 => of_ks + kd * diffuse(light),
+            6 => of_kd + of_ks * diffuse(light),
+            7 => radiance * (ks * diffuse(light) + kd * right(light)),
+            _ => of_kd + radiance * right(light),
+        }
+    };
     let flat = |light: usize| parts(query, light, 1.0, right(light)).iter().sum::<DVec3>();
     // A sum over all visible lights, also over those behind the surface.
     let unclamped = |least: f64| {
@@ -216,7 +215,8 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
     let n_lights = query.lights.len().max(1) as f64;
     let of_lights = |lights: &[usize], text: &'static str| gives(lights).map(|gives| (gives, text));
     let mut mistakes = vec![(same(expected - ambient), "the ambient term A·ka is missing")];
-    mistakes.extend(of_kinds.map(|(share, text)| (same(ambient + of_visible(share)), text)));
+    let gives_kind = |kind| same(ambient + of_visible(&|light| of_kind(kind, light)));
+    mistakes.extend(kinds.into_iter().enumerate().map(|(kind, text)| (gives_kind(kind), text)));
     let text = "you pass the number of the shadow ray to visible: pass the index of the light";
     mistakes.extend(of_lights(&by_number, text));
     if !occluded.is_empty() {
@@ -348,10 +348,8 @@ fn judge_traced(query: &ShadeQuery, has_ray: &[bool], traced: &[usize]) -> Check
         (twice, "you trace two rays to one light: trace one and keep the answer"),
         (vain(&dark), "you trace a ray to a light that is switched off"),
         (vain(&behind), "you trace a ray to a light that is behind the surface"),
-        (
-            vain(&black),
-            "you trace a ray to a light that adds 0 to the surface, for example to a black surface",
-        ),
+        "you trace a ray to a light that adds 0 to the surface, for example to a black surface"
+            .when(vain(&black)),
         "you trace rays to lights that add nothing: behind the surface, switched off, or on a black surface"
             .when(vain(&behind) || vain(&dark) || vain(&black)),
         (missed, "you count a light without asking whether it is visible"),

@@ -165,16 +165,13 @@ fn refractions(query: &RefractQuery, yours: &Option<Vec3>) -> Vec<(bool, &'stati
         "you negate the part along the surface: keep its sign"
             .when(gives(turned(query, |sine, ratio| -ratio * sine))),
         // Near a right angle the arc sine enlarges a rounding error of 1e-7 to 4e-4.
-        (
-            gives_within(
-                turned(query, |sine, ratio| match ratio * sine.min(1.0).asin() {
-                    angle if angle > std::f64::consts::FRAC_PI_2 => f64::INFINITY,
-                    angle => angle.sin(),
-                }),
-                5e-3,
-            ),
-            ANGLE,
-        ),
+        ANGLE.when(gives_within(
+            turned(query, |sine, ratio| match ratio * sine.min(1.0).asin() {
+                angle if angle > std::f64::consts::FRAC_PI_2 => f64::INFINITY,
+                angle => angle.sin(),
+            }),
+            5e-3,
+        )),
         (gives_within(turned(query, |sine, ratio| (ratio * sine.min(1.0).asin()).sin()), 5e-3), ANGLE),
         (
             gives(turned(query, |sine, ratio| {

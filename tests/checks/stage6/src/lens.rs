@@ -92,10 +92,8 @@ pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> CheckResult {
         let middle = *u == Vec2::splat(0.5);
         Err(Broken::new(call("sample_disk", &[u]), yours, "a length of 1 at most", "the definition")
             .explained_by([
-                (
-                    middle && yours.is_nan(),
-                    "you divide 0 by 0 for the middle of the square: return (0, 0) there",
-                ),
+                "you divide 0 by 0 for the middle of the square: return (0, 0) there"
+                    .when(middle && yours.is_nan()),
                 (yours.is_nan(), "you return NaN"),
                 (!yours.is_nan(), "your point is outside the disk"),
             ]))
@@ -216,18 +214,12 @@ fn judge_focus(query: &LensQuery, yours: Ray) -> Judged {
         ])
     };
     unless(off < 2e-5 && !pinhole, broken).formulas([
-        (
-            aims(distance * direction - start),
-            "you go focal_distance along the ray: divide it by the cosine with camera.towards",
-        ),
-        (
-            aims(distance * direction.dot(towards) * direction - start),
-            "you multiply focal_distance by the cosine with camera.towards: divide by it",
-        ),
-        (
-            aims(distance * towards - start),
-            "you aim every ray at the centre of the focal plane: aim where its pinhole ray meets it",
-        ),
+        "you go focal_distance along the ray: divide it by the cosine with camera.towards"
+            .when(aims(distance * direction - start)),
+        "you multiply focal_distance by the cosine with camera.towards: divide by it"
+            .when(aims(distance * direction.dot(towards) * direction - start)),
+        "you aim every ray at the centre of the focal plane: aim where its pinhole ray meets it"
+            .when(aims(distance * towards - start)),
         (aims(expected + start), "you add the offset to the focus: subtract it"),
         (aims(direction), "your ray is parallel to the pinhole ray: aim where that meets the focal plane"),
     ])
@@ -266,27 +258,17 @@ fn judge_start(query: &LensQuery, yours: Ray) -> Judged {
             .explained_by([(near(expected) && !unit, "your direction does not have unit length")])
     };
     unless(near(expected) && unit, broken).formulas([
-        (
-            is(position + 2.0 * offset(query)),
-            "you use aperture as the radius of the lens: it is the diameter",
-        ),
+        "you use aperture as the radius of the lens: it is the diameter"
+            .when(is(position + 2.0 * offset(query))),
         (is(position), "you start every ray at the centre of the lens: use on_lens"),
-        (
-            is(position + place.x * right),
-            "your lens is a line: it extends along camera.right and along camera.up",
-        ),
-        (
-            is(position + place.y * up),
-            "your lens is a line: it extends along camera.right and along camera.up",
-        ),
-        (
-            is(position + place.extend(0.0)),
-            "you use the world's x and y axes: use camera.right and camera.up",
-        ),
-        (
-            is(position + place.y * right + place.x * up),
-            "you exchange x and y of on_lens: x is along camera.right",
-        ),
+        "your lens is a line: it extends along camera.right and along camera.up"
+            .when(is(position + place.x * right)),
+        "your lens is a line: it extends along camera.right and along camera.up"
+            .when(is(position + place.y * up)),
+        "you use the world's x and y axes: use camera.right and camera.up"
+            .when(is(position + place.extend(0.0))),
+        "you exchange x and y of on_lens: x is along camera.right"
+            .when(is(position + place.y * right + place.x * up)),
         (is(offset(query)), "you leave out camera.position"),
     ])
 }

@@ -50,10 +50,8 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckRe
             (is((cell + u) / side) || is((cell + u) / side.ceil()) || is((cell + u) / side.round()), square),
             (is((cell + u) / grid.max_element()) || is((cell + u) / grid.min_element()), square),
             (is((cell + u * u) / grid), "you square the random numbers: use them as they are"),
-            (
-                is((cell + 0.25 + 0.5 * u) / grid),
-                "you use the middle half of each cell: samples reach its borders",
-            ),
+            "you use the middle half of each cell: samples reach its borders"
+                .when(is((cell + 0.25 + 0.5 * u) / grid)),
             (near(u / grid), "you leave out the cell: all samples are in the first cell"),
             (near((cell + 0.5) / grid), "you do not use u: the sample is not jittered"),
             (near(cell / grid), "you do not use u: the sample is not jittered"),
@@ -193,10 +191,8 @@ fn judge_weight(offset: Vec2, yours: f32) -> Judged {
         (near(if outside { 0.0 } else { infinite }), STEP_AT_R),
         (near(bell(x.hypot(y))), "your filter is round: multiply a weight along x by a weight along y"),
         (near(with(|x| -3.0 * x * x)), "your bell is too narrow: it is e^(-2x²), not e^(-3x²)"),
-        (
-            near((1.0 - x.abs() / radius).max(0.0) * (1.0 - y.abs() / radius).max(0.0)),
-            "your filter is a tent: it is a bell, e^(-2x²)",
-        ),
+        "your filter is a tent: it is a bell, e^(-2x²)"
+            .when(near((1.0 - x.abs() / radius).max(0.0) * (1.0 - y.abs() / radius).max(0.0))),
         (near(with(|x| -x * x)), "your bell is too wide: it is e^(-2x²), not e^(-x²)"),
         (near(with(|x| -2.0 * x.abs())), "you do not square x: e^(-2x²)"),
         (near(bell(x) + bell(y)), "you add the two weights: multiply them"),

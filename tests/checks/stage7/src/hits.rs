@@ -131,35 +131,28 @@ fn wrong_counts(HitsQuery { hits, effects, quality }: &HitsQuery) -> Vec<(RayCou
             per_hit,
         ),
         (RayCounts { shadow: right.primary, ..right }, per_hit),
-        (
-            RayCounts { shadow: hits.iter().map(first).sum(), ..right },
-            "you count only the first light of each row",
-        ),
+        "you count only the first light of each row"
+            .when(RayCounts { shadow: hits.iter().map(first).sum(), ..right }
+            ),
         (lights(false, true, &|row, light| row.in_front[light] * samples(light)), times),
-        (
-            secondary(&|_, takes| mirror(takes), &|_, takes| transmission(takes)),
-            "you count one ray of each kind per hit of a rough surface: it spawns glossy_samples",
-        ),
-        (
-            secondary(&|_, takes| mirror(takes) * parts(takes), &|_, takes| transmission(takes)),
-            "you count one refracted ray per hit of a rough surface: it spawns glossy_samples refracted rays, too",
-        ),
-        (
-            secondary(&|_, takes| mirror(takes), &|_, takes| transmission(takes) * parts(takes)),
-            "you count one reflected ray per hit of a rough surface: it spawns glossy_samples reflected rays, too",
-        ),
-        (
-            secondary(&|_, takes| mirror(takes) * n, &|_, takes| transmission(takes) * n),
-            "you count glossy_samples rays per hit of a smooth surface: it spawns one",
-        ),
-        (
-            secondary(&|_, takes| parts(takes), &|_, takes| parts(takes)),
-            "you count secondary rays for a material whose mirror and transmission are false",
-        ),
-        (
-            RayCounts { primary: hits.len() as u64, ..right },
-            "you count rows: one ray made each hit, so primary is the sum of hits",
-        ),
+        "you count one ray of each kind per hit of a rough surface: it spawns glossy_samples"
+            .when(secondary(&|_, takes| mirror(takes), &|_, takes| transmission(takes))
+            ),
+        "you count one refracted ray per hit of a rough surface: it spawns glossy_samples refracted rays, too"
+            .when(secondary(&|_, takes| mirror(takes) * parts(takes), &|_, takes| transmission(takes))
+            ),
+        "you count one reflected ray per hit of a rough surface: it spawns glossy_samples reflected rays, too"
+            .when(secondary(&|_, takes| mirror(takes), &|_, takes| transmission(takes) * parts(takes))
+            ),
+        "you count glossy_samples rays per hit of a smooth surface: it spawns one"
+            .when(secondary(&|_, takes| mirror(takes) * n, &|_, takes| transmission(takes) * n)
+            ),
+        "you count secondary rays for a material whose mirror and transmission are false"
+            .when(secondary(&|_, takes| parts(takes), &|_, takes| parts(takes))
+            ),
+        "you count rows: one ray made each hit, so primary is the sum of hits"
+            .when(RayCounts { primary: hits.len() as u64, ..right }
+            ),
     ];
     let of_rows = |rows: Vec<MaterialHits>| {
         let mut sum = RayCounts::default();

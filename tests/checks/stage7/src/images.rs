@@ -89,13 +89,10 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> CheckResult
             color([column, 2 - row])
         })),
         (all(&|[column, row]| color([3 - column, row])), "your image is reversed: u points to the right"),
-        (
-            all(&|[column, row]| {
-                let number = 3 * column + row;
-                color([number % 4, number / 4])
-            }),
-            "you read the pixels column by column: they are stored row by row",
-        ),
+        "you read the pixels column by column: they are stored row by row".when(all(&|[column, row]| {
+            let number = 3 * column + row;
+            color([number % 4, number / 4])
+        })),
         "you apply gamma: the pixels are linear light already"
             .when([2.0, 2.2, 0.5, 1.0 / 2.2].into_iter().any(is_power)),
         "you are half a pixel off: the colour of a pixel belongs to its centre"
@@ -142,30 +139,26 @@ enum Reads {
     UpsideDown,
 }
 
-const MISTAKES: [(Reads, &str); 17] = [
-    (
-        Reads::Fraction,
+const MISTAKES: [(Reads, &str); 17] = named![
+    Reads::Fraction =>
         "the weights are negative left of the first pixel's centre: subtract floor(x), and use no fract",
-    ),
-    (Reads::ExchangedAxes, "you exchange the weights of columns and rows"),
-    (
-        Reads::ExchangedWeights,
+    Reads::ExchangedAxes => "you exchange the weights of columns and rows",
+    Reads::ExchangedWeights =>
         "you exchange the weights w and 1 - w: the nearer a pixel, the larger its weight",
-    ),
-    (Reads::AlongX, "you interpolate along x only: interpolate between the two rows, too"),
-    (Reads::AlongY, "you interpolate along y only: interpolate between the two columns, too"),
-    (Reads::TowardsZero, "you round towards 0: left of the first pixel's centre x is negative, so use floor"),
-    (Reads::Another(Wrap::Repeat), ANOTHER_WRAP),
-    (Reads::Another(Wrap::Clamp), ANOTHER_WRAP),
-    (Reads::Another(Wrap::Mirror), ANOTHER_WRAP),
-    (Reads::NextStays, NEXT),
-    (Reads::NextStartsAgain, NEXT),
-    (Reads::NextClamped, NEXT),
-    (Reads::NextBefore, "the second column and row are those before the first: they are those behind it"),
-    (Reads::Smooth, "you smooth the weights: they are the distances themselves"),
-    (Reads::UpperLeft, "you return the upper left of the four pixels: interpolate all four"),
-    (Reads::Nearest, "you return the nearest pixel: interpolate the four around the point"),
-    (Reads::UpsideDown, "your image is upside down: v points up, and rows are stored from the top"),
+    Reads::AlongX => "you interpolate along x only: interpolate between the two rows, too",
+    Reads::AlongY => "you interpolate along y only: interpolate between the two columns, too",
+    Reads::TowardsZero => "you round towards 0: left of the first pixel's centre x is negative, so use floor",
+    Reads::Another(Wrap::Repeat) => ANOTHER_WRAP,
+    Reads::Another(Wrap::Clamp) => ANOTHER_WRAP,
+    Reads::Another(Wrap::Mirror) => ANOTHER_WRAP,
+    Reads::NextStays => NEXT,
+    Reads::NextStartsAgain => NEXT,
+    Reads::NextClamped => NEXT,
+    Reads::NextBefore => "the second column and row are those before the first: they are those behind it",
+    Reads::Smooth => "you smooth the weights: they are the distances themselves",
+    Reads::UpperLeft => "you return the upper left of the four pixels: interpolate all four",
+    Reads::Nearest => "you return the nearest pixel: interpolate the four around the point",
+    Reads::UpsideDown => "your image is upside down: v points up, and rows are stored from the top",
 ];
 
 const NEXT: &str =

@@ -63,13 +63,12 @@ fn judge_texel(query: &TexelQuery, yours: u32) -> Judged {
         ),
         "you are off by one: Wrap::Mirror shows each border pixel twice in a row, and you show it once"
             .when(only(Wrap::Mirror, once.min(period - once))),
-        (
-            only(Wrap::Mirror, {
+        "you are off by one for negative indices: Wrap::Mirror shows each border pixel twice in a row"
+            .when(only(Wrap::Mirror, {
                 let there = index.abs() % (2 * size);
                 there.min(2 * size - 1 - there)
-            }),
-            "you are off by one for negative indices: Wrap::Mirror shows each border pixel twice in a row",
-        ),
+            })
+            ),
         "you are off by one on the way back: Wrap::Mirror shows each border pixel twice in a row"
             .when(only(Wrap::Mirror, twice.min(2 * size - twice))),
         "you continue the border for Wrap::Repeat, as Wrap::Clamp does"
@@ -81,13 +80,12 @@ fn judge_texel(query: &TexelQuery, yours: u32) -> Judged {
         (is(of(Wrap::Clamp)), "you continue the border for each wrap mode, as Wrap::Clamp does"),
         (is(of(Wrap::Repeat)), "you repeat the image for each wrap mode, as Wrap::Repeat does"),
         (is(of(Wrap::Mirror)), "you mirror the image for each wrap mode, as Wrap::Mirror does"),
-        (
-            is(match wrap {
+        "you exchange two modes: for Wrap::Repeat you continue the border, as Wrap::Clamp does"
+            .when(is(match wrap {
                 Wrap::Repeat => of(Wrap::Clamp),
                 Wrap::Clamp => of(Wrap::Repeat),
                 Wrap::Mirror => expected,
-            }),
-            "you exchange two modes: for Wrap::Repeat you continue the border, as Wrap::Clamp does",
-        ),
+            })
+            ),
     ])
 }

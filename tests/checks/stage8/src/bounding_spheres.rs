@@ -71,10 +71,9 @@ fn judge_cover(points: &Vec<Vec3>, sphere: Sphere, allowed: f64) -> Judged {
         "your radius is half the shortest side of the box: its corners lie outside"
             .when(near(0.5 * (max - min).min_element())),
         (near(mean), "your radius is the mean distance from the centre: take the largest"),
-        (
+        "your sphere contains the first and the last point only".when(
             near(0.5 * ends[0].distance(ends[1]))
                 && (center - 0.5 * (ends[0] + ends[1])).length() <= 16.0 * U * reach(points),
-            "your sphere contains the first and the last point only",
         ),
         "your radius is the smallest distance from the centre"
             .when(near(distances().fold(f64::INFINITY, f64::min))),

@@ -173,12 +173,11 @@ impl<'a> Step<'a> {
             (!around.is_empty() && own_only, "you do not move the old vertices: they move, too"),
             (uses_moved, FROM_BEFORE),
             (border && !own_only && around.len() > 2 && is_even(&around), BORDER),
-            (
+            BORDER.when(
                 border
                     && inner_shares(around.len())
                         .iter()
                         .any(|share| self.takes(index, &shared(vertex, &around, *share))),
-                BORDER,
             ),
             (
                 border && !own_only && is_even(&along),

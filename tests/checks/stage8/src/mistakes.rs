@@ -155,19 +155,16 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>, scal
         (only(&[top], &side), "you leave out the end at `base`: a ray can enter or leave through it"),
         (only(&[base, top], &[]), "you leave out the side: only the ends are hit"),
         (other(radius, 0.0, unit), "your cylinder has the height 1: its axis goes from `base` to `top`"),
-        (
-            other(radius, 0.0, line.axis.length()),
-            "your cylinder ends at the square of its height: divide by the length of the axis",
-        ),
-        (
-            other(radius, -1.0, 1.0),
-            "your cylinder goes from `base` both ways: its axis goes from `base` to `top`",
-        ),
+        "your cylinder ends at the square of its height: divide by the length of the axis".when(other(
+            radius,
+            0.0,
+            line.axis.length(),
+        )),
+        "your cylinder goes from `base` both ways: its axis goes from `base` to `top`"
+            .when(other(radius, -1.0, 1.0)),
         (other(radius, 0.0, 0.5), "your cylinder ends halfway: its axis goes from `base` to `top`"),
-        (
-            other(2.0 * radius, 0.0, 1.0) || other(0.5 * radius, 0.0, 1.0),
-            "you take the radius for the diameter, or twice the radius for the radius",
-        ),
+        "you take the radius for the diameter, or twice the radius for the radius"
+            .when(other(2.0 * radius, 0.0, 1.0) || other(0.5 * radius, 0.0, 1.0)),
         (of_root, "you use the radius in place of its square: the distance from the axis is squared, too"),
         (
             match endless.first().is_none_or(|enter| *enter <= f64::from(ray.t_min)) {
@@ -177,10 +174,8 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>, scal
             "you give up because the ray enters the infinite cylinder before t_min: it can still enter through an end, or \
              leave",
         ),
-        (
-            only(&[], &endless) || (endless.is_empty() && yours.is_none_or(|t| t > 1e3)),
-            "your cylinder has no ends: it goes on beyond `base` and `top`",
-        ),
+        "your cylinder has no ends: it goes on beyond `base` and `top`"
+            .when(only(&[], &endless) || (endless.is_empty() && yours.is_none_or(|t| t > 1e3))),
     ];
     all.extend(limited.map(|gives| (gives, LIMITED)));
     all

@@ -72,22 +72,18 @@ const CLOSED: &str = "your spans contain both ends: at a knot inside, two functi
 const NOT_A_NUMBER: &str = "you divide 0 by 0 where knots are equal: leave out a term whose denominator is 0";
 
 /// The wrong recursions with what to say about them.
-const WRONG: [(Rule, &str); 9] = [
-    (Rule::UniformKnots, "your knots are one apart: divide by the differences of the knots themselves"),
-    (Rule::HalfOpenAtTheEnd, HALF_OPEN),
-    (Rule::ClosedSpans, CLOSED),
-    (Rule::ZeroOverZero, NOT_A_NUMBER),
-    (Rule::FirstTermOnly, "you leave out the second term, with N(i+1, p-1)"),
-    (
-        Rule::OneDenominator,
+const WRONG: [(Rule, &str); 9] = named![
+    Rule::UniformKnots => "your knots are one apart: divide by the differences of the knots themselves",
+    Rule::HalfOpenAtTheEnd => HALF_OPEN,
+    Rule::ClosedSpans => CLOSED,
+    Rule::ZeroOverZero => NOT_A_NUMBER,
+    Rule::FirstTermOnly => "you leave out the second term, with N(i+1, p-1)",
+    Rule::OneDenominator =>
         "you divide both terms by k_{i+p} - k_i: the second denominator is k_{i+p+1} - k_{i+1}",
-    ),
-    (
-        Rule::FactorsExchanged,
+    Rule::FactorsExchanged =>
         "you exchange the two factors: that of N(i, p-1) rises, and that of N(i+1, p-1) falls",
-    ),
-    (Rule::SameFunctionTwice, "you use N(i, p-1) in both terms: the second one has N(i+1, p-1)"),
-    (Rule::OneDegreeLess, "you return the function of one degree less"),
+    Rule::SameFunctionTwice => "you use N(i, p-1) in both terms: the second one has N(i+1, p-1)",
+    Rule::OneDegreeLess => "you return the function of one degree less",
 ];
 
 impl Rule {
@@ -244,30 +240,22 @@ enum Mean {
     WeightsOfFirstRow,
 }
 
-const WRONG_MEANS: [(Mean, &str); 11] = [
-    (Mean::WithoutWeights, "you leave out the weights"),
-    (
-        Mean::NotDivided,
+const WRONG_MEANS: [(Mean, &str); 11] = named![
+    Mean::WithoutWeights => "you leave out the weights",
+    Mean::NotDivided =>
         "you do not divide by the sum of the factors: with weights it is not 1, although the basis functions add up to 1",
-    ),
-    (
-        Mean::DividedByTheNumber,
+    Mean::DividedByTheNumber =>
         "you divide by the sum of all weights: weight each by its basis functions, too",
-    ),
-    (Mean::WeightsBelowOnly, "you use the weights in the denominator only: the points have the same factors"),
-    (Mean::ParametersExchanged, "you exchange u and v: u runs along the rows, v from row to row"),
-    (Mean::OneParameterTwice, "you use u in both directions: v runs from row to row"),
-    (Mean::OneDegree(0), "you use one degree in both directions: u has degrees[0], and v has degrees[1]"),
-    (Mean::OneDegree(1), "you use one degree in both directions: u has degrees[0], and v has degrees[1]"),
-    (
-        Mean::OneListOfKnots(0),
+    Mean::WeightsBelowOnly => "you use the weights in the denominator only: the points have the same factors",
+    Mean::ParametersExchanged => "you exchange u and v: u runs along the rows, v from row to row",
+    Mean::OneParameterTwice => "you use u in both directions: v runs from row to row",
+    Mean::OneDegree(0) => "you use one degree in both directions: u has degrees[0], and v has degrees[1]",
+    Mean::OneDegree(1) => "you use one degree in both directions: u has degrees[0], and v has degrees[1]",
+    Mean::OneListOfKnots(0) =>
         "you use the same knots in both directions: u has knots[0], and v has knots[1]",
-    ),
-    (
-        Mean::OneListOfKnots(1),
+    Mean::OneListOfKnots(1) =>
         "you use the same knots in both directions: u has knots[0], and v has knots[1]",
-    ),
-    (Mean::WeightsOfFirstRow, "you use the weights of the first row for all rows: each point has its own"),
+    Mean::WeightsOfFirstRow => "you use the weights of the first row for all rows: each point has its own",
 ];
 
 impl Mean {

@@ -173,10 +173,8 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
     };
     let input = format!("grid of {} cells without primitives\n{}", query.cells.resolution, query.ray.paste());
     Err(Broken::with_texts(input, yours, expected, "every cell tested in double precision").explained_by([
-        (
-            left_out.is_some() && visits.is_empty(),
-            "you do not find the first cell: clip the ray to the grid's bounds, and start there",
-        ),
+        "you do not find the first cell: clip the ray to the grid's bounds, and start there"
+            .when(left_out.is_some() && visits.is_empty()),
         (visits == across_the_farthest(query, 0.0), FARTHEST_FACE),
         (visits == across_the_farthest(query, 1e-6), FARTHEST_FACE),
         (missed.is_some(), "you visit a cell that the ray does not enter"),
