@@ -65,16 +65,14 @@ impl Mistake {
 }
 
 /// The words of a mistake before what says whether it is made: long words take a line of their own.
-pub trait Words {
+pub trait Words: Sized {
     /// A pair with the words last, as in a list of mistakes.
-    fn when<T>(self, given: T) -> (T, &'static str);
-}
-
-impl Words for &'static str {
-    fn when<T>(self, given: T) -> (T, &'static str) {
+    fn when<T>(self, given: T) -> (T, Self) {
         (given, self)
     }
 }
+
+impl Words for &'static str {}
 
 /// A table of mistakes with their words: `named![Flaw::Open => "…"]`.
 #[macro_export]

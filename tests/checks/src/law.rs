@@ -9,35 +9,18 @@ use raykata::kit::{KitError, kit_error};
 const SHRINK_STEPS: usize = 400;
 
 /// What a panic says by itself: words of its message, and the mistake that they prove.
-const PANICS: [(&str, &str); 10] = [
-    (
-        "ask only for the primitives of the leaf",
-        "a free lane of a block is asked for: the last block of a leaf may not be full",
-    ),
-    (
-        "so the recursion never ends",
+const PANICS: [(&str, &str); 10] = crate::named![
+    "only for the primitives of the leaf" => "a free lane of a block is asked for: the last block of a leaf may not be full",
+    "so the recursion never ends" =>
         "a side of a split is empty, so the other one is divided again and again: halve the list there",
-    ),
-    ("the search does not end", "a step of the search does not advance, so it does not end"),
-    ("only t_max may change", "the probe is asked with another ray than those of the packet"),
-    (
-        "subtract with overflow",
-        "a difference of whole numbers does not fit into its type: it is below 0, or too small",
-    ),
-    (
-        "add with overflow",
-        "a sum of whole numbers does not fit into its type: saturate it, or take a larger type",
-    ),
-    (
-        "multiply with overflow",
-        "a product of whole numbers does not fit into its type: saturate it, or take a larger type",
-    ),
-    (
-        "`None` value",
-        "`None` is unwrapped: the input has no such value, and this case needs an answer of its own",
-    ),
-    ("divide by zero", "a whole number is divided by 0: this case needs an answer of its own"),
-    ("index out of bounds", "an index is not below the length of its list"),
+    "the search does not end" => "a step of the search does not advance, so it does not end",
+    "only t_max may change" => "the probe is asked with another ray than those of the packet",
+    "subtract with overflow" => "a difference of whole numbers does not fit into its type: it is below 0, or too small",
+    "add with overflow" => "a sum of whole numbers does not fit into its type: saturate it, or take a larger type",
+    "multiply with overflow" => "a product of whole numbers does not fit into its type: saturate it, or take a larger type",
+    "`None` value" => "`None` is unwrapped: the input has no such value, and this case needs an answer of its own",
+    "divide by zero" => "a whole number is divided by 0: this case needs an answer of its own",
+    "index out of bounds" => "an index is not below the length of its list",
 ];
 
 /// A panic that no batch of inputs has caught, with its mistake.

@@ -221,10 +221,9 @@ pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Che
                     (along, "the length of the normal must not change: do not normalize it"),
                 ])
             };
-            unless(yours == expected || (open && yours == -expected), broken).formulas([(
-                yours == *normal || (open && yours == -*normal),
-                "you return the normal as it is, also if it points away from the viewer",
-            )])
+            unless(yours == expected || (open && yours == -expected), broken)
+                .formulas(["you return the normal as it is, also if it points away from the viewer"
+                    .when(yours == *normal || (open && yours == -*normal))])
         },
     )
 }

@@ -131,26 +131,23 @@ fn of_choices(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) ->
     let is = |choose: &dyn Fn([f64; 2]) -> Option<f64>| gives(yours, quadratic, roots, choose);
     let one = |t: f64, range: Within| range.first([t, t]);
     let forward = Within(0.0, f64::INFINITY);
-    let mut all = vec![
-        (is(&|[_, far]| one(far, range)), "you return the far root"),
-        "t_ca < 0 is not a miss: a ray that starts inside still hits the far side"
-            .when(is(&|roots| if b < 0.0 { None } else { range.first(roots) })),
-        "you only try the near root: if the ray starts inside, it is behind the ray, and the far one counts"
-            .when(is(&|[near, _]| one(near, range))),
-        "you return a t beyond t_max: ask ray.contains(t)"
-            .when(is(&|roots| Within(t_min, f64::INFINITY).first(roots))),
-        (is(&|roots| Within(0.0, t_max).first(roots)), "you return a t before t_min: ask ray.contains(t)"),
-        (is(&|roots| forward.first(roots)), "you ask t > 0 and not ray.contains(t): t_min and t_max count"),
-        (is(&|[near, _]| Some(near)), "you return the near root in any case: ask ray.contains(t)"),
-        "you choose a root before you ask ray.contains(t): if the near root does not count, the far one may"
-            .when(is(&|[near, far]| forward.first([near, far]).filter(|&t| t_min < t && t < t_max))),
-        "you return t_max for a hit beyond it: that is a miss"
-            .when(is(&|[near, far]| range.first([near, far].map(|t| if t < t_max { t } else { t_max })))),
-        "the sign of b (or of t_ca) is wrong: both roots are negated"
-            .when(is(&|[near, far]| range.first([-near, -far]))),
-        "you return the t of the point nearest to the centre: half the chord is missing"
-            .when(is(&|_| one(b / a, range))),
-    ];
+    let mut all = named![
+        is(&|[_, far]| one(far, range)) => "you return the far root",
+        is(&|roots| if b < 0.0 { None } else { range.first(roots) }) =>
+            "t_ca < 0 is not a miss: a ray that starts inside still hits the far side",
+        is(&|[near, _]| one(near, range)) =>
+            "you only try the near root: if the ray starts inside, it is behind the ray, and the far one counts",
+        is(&|roots| Within(t_min, f64::INFINITY).first(roots)) => "you return a t beyond t_max: ask ray.contains(t)",
+        is(&|roots| Within(0.0, t_max).first(roots)) => "you return a t before t_min: ask ray.contains(t)",
+        is(&|roots| forward.first(roots)) => "you ask t > 0 and not ray.contains(t): t_min and t_max count",
+        is(&|[near, _]| Some(near)) => "you return the near root in any case: ask ray.contains(t)",
+        is(&|[near, far]| forward.first([near, far]).filter(|&t| t_min < t && t < t_max)) =>
+            "you choose a root before you ask ray.contains(t): if the near root does not count, the far one may",
+        is(&|[near, far]| range.first([near, far].map(|t| if t < t_max { t } else { t_max }))) =>
+            "you return t_max for a hit beyond it: that is a miss",
+        is(&|[near, far]| range.first([-near, -far])) => "the sign of b (or of t_ca) is wrong: both roots are negated",
+        is(&|_| one(b / a, range)) => "you return the t of the point nearest to the centre: half the chord is missing",
+    ].to_vec();
     // The limit replaces t_min, or is asked before or after the root is chosen.
     all.extend(EPSILONS.into_iter().flat_map(|epsilon| {
         let text = DROPS_NEAR_HITS;

@@ -246,10 +246,9 @@ pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> CheckResult {
                     (near(outwards), "your normal is not of unit length"),
                 ])
             };
-            unless(near(expected) || anywhere, broken).formulas([(
-                near(point.as_dvec3().normalize_or_zero()),
-                "you return the direction from the world's origin: subtract the centre first",
-            )])
+            unless(near(expected) || anywhere, broken)
+                .formulas(["you return the direction from the world's origin: subtract the centre first"
+                    .when(near(point.as_dvec3().normalize_or_zero()))])
         },
     )
 }

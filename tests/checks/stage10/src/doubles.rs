@@ -146,21 +146,15 @@ fn explain(trial: &Trial<'_>, wrong: &[Wrong]) -> Vec<CheckResult> {
         let outside = yours.is_some() && !on_the_line && clear;
         let expected = format!("{exact:?}, {}", describe(*margin));
         let yours_t = format!("{:?}", yours.map(|hit| hit.t));
-        Err(Broken::with_texts(query.call("triangle_in_double"), yours_t, expected, "exactly").explained_by([
-            "you treat a small determinant as 0: a determinant that is small is not 0, and the same triangle enlarged is hit"
-                .when(yours.is_none() && enlarged.is_some()
-                ),
-            "you return a hit behind the origin or beyond the range: t counts only within the range of the ray"
-                .when(yours.is_some() && on_the_line
-                ),
-            "you return a hit where β + γ > 1: α = 1 - β - γ must be at least 0, too"
-                .when(outside && beyond_the_third_edge
-                ),
-            "you return a hit where there is none: β and γ must be at least 0"
-                .when(outside && !beyond_the_third_edge
-                ),
-            (converted_late, CONVERTED_LATE),
-            (single, SINGLE),
+        Err(Broken::with_texts(query.call("triangle_in_double"), yours_t, expected, "exactly").explained_by(named![
+            yours.is_none() && enlarged.is_some() =>
+                "you treat a small determinant as 0: a determinant that is small is not 0, and the same triangle enlarged is hit",
+            yours.is_some() && on_the_line =>
+                "you return a hit behind the origin or beyond the range: t counts only within the range of the ray",
+            outside && beyond_the_third_edge => "you return a hit where β + γ > 1: α = 1 - β - γ must be at least 0, too",
+            outside && !beyond_the_third_edge => "you return a hit where there is none: β and γ must be at least 0",
+            converted_late => CONVERTED_LATE,
+            single => SINGLE,
         ]))
     };
     wrong.iter().zip(enlarged).map(judge).collect()

@@ -40,16 +40,14 @@ fn observations(query: &OffsetQuery, origin: Vec3) -> [(bool, &'static str); 5] 
     let relative = [point.length(), point.abs().max_element()]
         .into_iter()
         .any(|size| (1..=7).any(|digits| (height / (size * 10f64.powi(-digits)) - 1.0).abs() < 0.01));
-    [
-        "a direction perpendicular to the normal goes to the side of the normal"
-            .when(along == 0.0 && height < 0.0),
-        (relative, "your offset is a fixed fraction of the size of the point: move by error·|n|"),
-        "the ray starts on the side of the normal, but it goes to the other side: turn the normal to the side of the direction"
-            .when(along < 0.0 && start.height() < 0.0),
-        "the ray starts on the other side: turn the normal to the side of the direction"
-            .when(start.height() < 0.0),
-        "the ray starts on the other side, up to rounding: turn the normal to the side of the direction"
-            .when(height < 4.0 * U * point.abs().max_element()),
+    named![
+        along == 0.0 && height < 0.0 => "a direction perpendicular to the normal goes to the side of the normal",
+        relative => "your offset is a fixed fraction of the size of the point: move by error·|n|",
+        along < 0.0 && start.height() < 0.0 =>
+            "the ray starts on the side of the normal, but it goes to the other side: turn the normal to the side of the direction",
+        start.height() < 0.0 => "the ray starts on the other side: turn the normal to the side of the direction",
+        height < 4.0 * U * point.abs().max_element() =>
+            "the ray starts on the other side, up to rounding: turn the normal to the side of the direction",
     ]
 }
 

@@ -66,26 +66,22 @@ fn wrong_roots(query: &Coefficients) -> [(Option<[f64; 2]>, &'static str); 15] {
     let some = |roots: [f64; 2]| (right >= 0.0).then_some(roots);
     let [low, high] = roots(*query);
     let single = query[1] * query[1] - 4.0 * query[0] * query[2];
-    [
-        (by(right, &|root| -0.5 * (b - root.copysign(b))), OTHER_SIGN),
-        (by(right, &|root| f64::from(-0.5 * (b as f32 - (root as f32).copysign(b as f32)))), OTHER_SIGN),
-        "you take the absolute value of b: q has the sign of -b"
-            .when(by(right, &|root| -0.5 * (b.abs() + root))),
-        "q has the wrong sign: it is -(b + sign(b) √(b² - 4ac)) / 2"
-            .when(by(right, &|root| 0.5 * (b + root.copysign(b)))),
-        (by(b * b - 2.0 * a * c, &usual), DISCRIMINANT),
-        (by(b * b - a * c, &usual), DISCRIMINANT),
-        (by(b * b + 4.0 * a * c, &usual), DISCRIMINANT),
-        "the discriminant is computed in single precision, where it loses its digits"
-            .when(by(f64::from(single), &usual)),
-        "one root is divided by 2 a, although q is halved already: it is q / a"
-            .when(some(sorted(q / (2.0 * a), c / q))),
-        (some(sorted(q / a, q / c)), "the second root is turned over: it is c / q"),
-        (some(sorted(q / a, c * q)), "the second root is a product: it is c / q"),
-        (some(if low < 0.0 { [high, high] } else { [low, high] }), POSITIVE),
-        (some([low.abs(), high.abs()]), POSITIVE),
-        (if b == 0.0 { some([0.0, 0.0]) } else { some([low, high]) }, OF_ZERO),
-        (some([low, high]).filter(|_| b != 0.0), OF_ZERO),
+    named![
+        by(right, &|root| -0.5 * (b - root.copysign(b))) => OTHER_SIGN,
+        by(right, &|root| f64::from(-0.5 * (b as f32 - (root as f32).copysign(b as f32)))) => OTHER_SIGN,
+        by(right, &|root| -0.5 * (b.abs() + root)) => "you take the absolute value of b: q has the sign of -b",
+        by(right, &|root| 0.5 * (b + root.copysign(b))) => "q has the wrong sign: it is -(b + sign(b) √(b² - 4ac)) / 2",
+        by(b * b - 2.0 * a * c, &usual) => DISCRIMINANT,
+        by(b * b - a * c, &usual) => DISCRIMINANT,
+        by(b * b + 4.0 * a * c, &usual) => DISCRIMINANT,
+        by(f64::from(single), &usual) => "the discriminant is computed in single precision, where it loses its digits",
+        some(sorted(q / (2.0 * a), c / q)) => "one root is divided by 2 a, although q is halved already: it is q / a",
+        some(sorted(q / a, q / c)) => "the second root is turned over: it is c / q",
+        some(sorted(q / a, c * q)) => "the second root is a product: it is c / q",
+        some(if low < 0.0 { [high, high] } else { [low, high] }) => POSITIVE,
+        some([low.abs(), high.abs()]) => POSITIVE,
+        if b == 0.0 { some([0.0, 0.0]) } else { some([low, high]) } => OF_ZERO,
+        some([low, high]).filter(|_| b != 0.0) => OF_ZERO,
     ]
 }
 
@@ -117,11 +113,9 @@ fn mistakes(query: &Coefficients, yours: [f32; 2], expected: [f64; 2]) -> ([Name
     let shown = [
         (is([expected[1], expected[0]]), LARGER_FIRST),
         "one root has cancelled to 0: -b + √(b² - 4ac) subtracts two nearly equal numbers"
-            .when(lost && yours[small] == 0.0
-            ),
+            .when(lost && yours[small] == 0.0),
         "one root has lost its digits, because two nearly equal numbers are subtracted: where one root has cancelled, compute it as c / q"
-            .when(lost
-            ),
+            .when(lost),
     ];
     let [half, twice] = [0.5, 2.0].map(|factor| is(scaled(factor)) || is(sorted(scaled(factor))));
     let without_sign = [in_double, in_single].map(|roots| (is(roots), WITHOUT_SIGN));

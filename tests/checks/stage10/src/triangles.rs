@@ -69,19 +69,17 @@ pub(super) fn wrong_verdicts(query: &TriangleQuery) -> [(bool, &'static str); 10
     let [in_a, in_b, in_c] = [alpha, beta, gamma].map(|weight| weight >= 0.0);
     let main = d[d.abs().max_position()];
     let (inside, counts) = (in_a && in_b && in_c, |t: f64| ray.contains(t as f32));
-    [
-        (inside && counts(t) && slope < 0.0, ONE_SIDE),
-        (inside && counts(t) && slope > 0.0, ONE_SIDE),
-        (inside && counts(t) && slope * main > 0.0, ONE_TURN),
-        (inside && counts(t) && slope * main < 0.0, ONE_TURN),
-        (in_a && in_b && counts(t), TWO_EDGES),
-        (in_a && in_c && counts(t), TWO_EDGES),
-        (in_b && in_c && counts(t), TWO_EDGES),
-        "a point of the parallelogram is a hit: β + γ is at most 1"
-            .when(in_b && in_c && beta <= 1.0 && gamma <= 1.0 && counts(t)),
-        (inside && counts(-t), "t has the wrong sign: it is the way from the origin to the plane"),
-        "you return a hit behind the origin or beyond the range: t counts only within the range of the ray"
-            .when(inside),
+    named![
+        inside && counts(t) && slope < 0.0 => ONE_SIDE,
+        inside && counts(t) && slope > 0.0 => ONE_SIDE,
+        inside && counts(t) && slope * main > 0.0 => ONE_TURN,
+        inside && counts(t) && slope * main < 0.0 => ONE_TURN,
+        in_a && in_b && counts(t) => TWO_EDGES,
+        in_a && in_c && counts(t) => TWO_EDGES,
+        in_b && in_c && counts(t) => TWO_EDGES,
+        in_b && in_c && beta <= 1.0 && gamma <= 1.0 && counts(t) => "a point of the parallelogram is a hit: β + γ is at most 1",
+        inside && counts(-t) => "t has the wrong sign: it is the way from the origin to the plane",
+        inside => "you return a hit behind the origin or beyond the range: t counts only within the range of the ray",
     ]
 }
 
@@ -396,10 +394,8 @@ pub(super) fn finite_hits(trial: &Trial<'_>, (name, ask): TriangleTest) -> Check
         Some(_) if *query == beside => Err(Broken::new(query.call(name), yours, "None", "exactly")),
         Some(hit) if !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
             let broken = Broken::new(query.call(name), hit, "finite numbers, or None", "the definition");
-            Err(broken.explained_by([(
-                hit.t.is_nan() || hit.beta.is_nan() || hit.gamma.is_nan(),
-                "NaN is no hit: test the conditions of a hit, which are false for NaN",
-            )]))
+            Err(broken.explained_by(["NaN is no hit: test the conditions of a hit, which are false for NaN"
+                .when(hit.t.is_nan() || hit.beta.is_nan() || hit.gamma.is_nan())]))
         }
         _ => Ok(()),
     };

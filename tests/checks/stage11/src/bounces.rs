@@ -57,20 +57,18 @@ fn judge(query: &(f32, f32), yours: u32) -> Judged {
                 (yours == 0 && estimate > 0.0, "0 bounces are not enough here"),
             ])
     };
-    unless(right, broken).formulas([
-        "one bounce too many: the power is n + 1, because light is also seen directly"
-            .when(n == estimate + 1.0 || (right && estimate < 1.0)),
-        (n == (bounces.floor().max(0.0)), "one bounce too few: round up"),
-        "the quotient of the logarithms is rounded: test the power for this number and the one before"
-            .when(n == (quotient.ceil() - 1.0).max(0.0) || n == estimate.max(0.0)),
-        "the logarithms are in single precision, whose quotient may be off by many bounces"
-            .when(n == single.max(0.0)),
-        "the quotient is rounded to the nearest number: round up"
-            .when(n == quotient.round().max(0.0) || n == bounces.round().max(0.0)),
-        "the quotient of the logarithms is rounded down: it is n + 1, rounded up"
-            .when(n == quotient.floor().max(0.0)),
-        "the error is that of one bounce: all light after the last one is missing"
-            .when(n == of_last.ceil().max(0.0) || n == (of_last - 1.0).ceil().max(0.0)),
+    unless(right, broken).formulas(named![
+        n == estimate + 1.0 || (right && estimate < 1.0) =>
+            "one bounce too many: the power is n + 1, because light is also seen directly",
+        n == (bounces.floor().max(0.0)) => "one bounce too few: round up",
+        n == (quotient.ceil() - 1.0).max(0.0) || n == estimate.max(0.0) =>
+            "the quotient of the logarithms is rounded: test the power for this number and the one before",
+        n == single.max(0.0) => "the logarithms are in single precision, whose quotient may be off by many bounces",
+        n == quotient.round().max(0.0) || n == bounces.round().max(0.0) =>
+            "the quotient is rounded to the nearest number: round up",
+        n == quotient.floor().max(0.0) => "the quotient of the logarithms is rounded down: it is n + 1, rounded up",
+        n == of_last.ceil().max(0.0) || n == (of_last - 1.0).ceil().max(0.0) =>
+            "the error is that of one bounce: all light after the last one is missing",
     ])
 }
 

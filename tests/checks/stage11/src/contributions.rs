@@ -71,36 +71,31 @@ pub(super) fn light_contributions_have_their_closed_form(trial: &Trial<'_>) -> C
             let (pdf, other) = (f64::from(query.sample.pdf), f64::from(query.bsdf_pdf));
             let is = |expected: DVec3, factor: f64| near(query, yours, expected, factor);
             let least = |least: f64| is(weight * whole * (pdf / pdf.max(least)), 1.0);
-            unless(near(query, yours, expected, factor), broken).formulas([
-                (yours.is_nan(), "you return NaN"),
-                "the weight of multiple importance sampling is missing, so light counts twice"
-                    .when(is(whole, 1.0)),
-                "own and other are exchanged: own is the density of the light's sample"
-                    .when(is(f64::from(swapped) * whole, f64::from(swapped))),
-                (is(PI * weight * whole, PI), "a diffuse surface sends kd / π on: the π is missing"),
-                "the cosine at the surface is missing"
-                    .when(is(weight * whole / cosine.max(1e-9), 1.0 / cosine.max(1e-9))),
-                (is(weight * whole * cosine, 1.0), "you multiply by the cosine twice"),
-                (is(weight * whole * pdf, pdf), "you do not divide by the density of the sample"),
-                "you multiply by the density of the sample: divide by it"
-                    .when(is(weight * whole * pdf * pdf, pdf * pdf)),
-                "you divide by the density of the surface, not by that of the light"
-                    .when(other == 0.0 || is(weight * whole * pdf / other, pdf / other)),
-                "the diffuse reflectance is missing"
-                    .when(is(weight * query.sample.radiance.as_dvec3() * (cosine / PI / pdf), 1.0)),
-                (is(weight * whole / PI, 1.0), "you divide by π twice"),
-                (is(weight * whole * pdf, pdf), "you do not divide by the density of the sample"),
-                (is(weight * whole / pdf, 1.0 / pdf), "you divide by the density twice"),
-                (is(weight * weight * whole, 1.0), "you multiply by the weight of mis_weight twice"),
-                (least(1e-4), LEAST),
-                (least(1e-3), LEAST),
-                (least(1e-2), LEAST),
-                (least(0.1), LEAST),
-                (least(1.0), LEAST),
-                "you divide by the squared distance: it is in the density of the sample"
-                    .when(is(weight * whole / f64::from(query.sample.distance).powi(2), 1.0)),
-                "you divide by the sum of both densities and do not weight by mis_weight"
-                    .when(is(whole * (pdf / (pdf + other)), 1.0)),
+            unless(near(query, yours, expected, factor), broken).formulas(named![
+                yours.is_nan() => "you return NaN",
+                is(whole, 1.0) => "the weight of multiple importance sampling is missing, so light counts twice",
+                is(f64::from(swapped) * whole, f64::from(swapped)) =>
+                    "own and other are exchanged: own is the density of the light's sample",
+                is(PI * weight * whole, PI) => "a diffuse surface sends kd / π on: the π is missing",
+                is(weight * whole / cosine.max(1e-9), 1.0 / cosine.max(1e-9)) => "the cosine at the surface is missing",
+                is(weight * whole * cosine, 1.0) => "you multiply by the cosine twice",
+                is(weight * whole * pdf, pdf) => "you do not divide by the density of the sample",
+                is(weight * whole * pdf * pdf, pdf * pdf) => "you multiply by the density of the sample: divide by it",
+                other == 0.0 || is(weight * whole * pdf / other, pdf / other) =>
+                    "you divide by the density of the surface, not by that of the light",
+                is(weight * query.sample.radiance.as_dvec3() * (cosine / PI / pdf), 1.0) => "the diffuse reflectance is missing",
+                is(weight * whole / PI, 1.0) => "you divide by π twice",
+                is(weight * whole * pdf, pdf) => "you do not divide by the density of the sample",
+                is(weight * whole / pdf, 1.0 / pdf) => "you divide by the density twice",
+                is(weight * weight * whole, 1.0) => "you multiply by the weight of mis_weight twice",
+                least(1e-4) => LEAST,
+                least(1e-3) => LEAST,
+                least(1e-2) => LEAST,
+                least(0.1) => LEAST,
+                least(1.0) => LEAST,
+                is(weight * whole / f64::from(query.sample.distance).powi(2), 1.0) =>
+                    "you divide by the squared distance: it is in the density of the sample",
+                is(whole * (pdf / (pdf + other)), 1.0) => "you divide by the sum of both densities and do not weight by mis_weight",
             ])
         })
     })

@@ -141,25 +141,21 @@ pub(super) fn steps_sample_the_light(trial: &Trial<'_>) -> CheckResult {
                 let surface = &query.vertex.surface;
                 let [by_geometric, by_shading] = [surface.geometric_normal, surface.shading_normal]
                     .map(|normal| f64::from(normal.dot(sample.direction)).max(1e-9));
-                vec![
-                    (shadow.light.is_nan(), "you return NaN"),
-                    "the probability with which the emitter is chosen is missing in the density"
-                        .when(near(shadow.light, choice * unscaled * whole)),
-                    "you divide the density by the probability of the emitter: multiply"
-                        .when(near(shadow.light, choice * choice * divided * whole)),
-                    "you do not divide by the probability with which the emitter is chosen"
-                        .when(near(shadow.light, choice * weight * whole)),
-                    "the weight of multiple importance sampling is missing, so light counts twice"
-                        .when(near(shadow.light, whole)),
-                    "the weight of the path is missing"
-                        .when(near(shadow.light, weight * unweighted(query, sample, choice as f32))),
-                    "a diffuse surface sends kd / π on: the π is missing"
-                        .when(near(shadow.light, PI * weight * whole)),
-                    "the cosine is that of the geometric normal: use the shading normal"
-                        .when(near(shadow.light, by_geometric / by_shading * weight * whole)),
-                    "your shadow ray points from the light to the surface"
-                        .when((shadow.direction + sample.direction).length() < 1e-5),
-                ]
+                named![
+                    shadow.light.is_nan() => "you return NaN",
+                    near(shadow.light, choice * unscaled * whole) =>
+                        "the probability with which the emitter is chosen is missing in the density",
+                    near(shadow.light, choice * choice * divided * whole) =>
+                        "you divide the density by the probability of the emitter: multiply",
+                    near(shadow.light, choice * weight * whole) =>
+                        "you do not divide by the probability with which the emitter is chosen",
+                    near(shadow.light, whole) => "the weight of multiple importance sampling is missing, so light counts twice",
+                    near(shadow.light, weight * unweighted(query, sample, choice as f32)) => "the weight of the path is missing",
+                    near(shadow.light, PI * weight * whole) => "a diffuse surface sends kd / π on: the π is missing",
+                    near(shadow.light, by_geometric / by_shading * weight * whole) =>
+                        "the cosine is that of the geometric normal: use the shading normal",
+                    (shadow.direction + sample.direction).length() < 1e-5 => "your shadow ray points from the light to the surface",
+                ].to_vec()
             },
         )
     })

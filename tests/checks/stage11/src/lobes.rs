@@ -332,15 +332,13 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
                 let yours = format!("{yours:?}, and pdf {:?} of sample_bsdf", sample.pdf);
                 Broken::with_texts(input, yours, format!("{expected:?} for both"), "probability · cos θ / π")
             };
-            unless(both(expected), broken).formulas([
-                (both(cosine / PI), "the probability of the diffuse lobe is missing in both densities"),
-                (near(yours, cosine / PI), "the probability of the diffuse lobe is missing in bsdf_pdf"),
-                "the probability of the diffuse lobe is missing in the pdf of sample_bsdf"
-                    .when(near(sample.pdf, cosine / PI)),
-                "bsdf_pdf chooses by the means of the channels, and sample_bsdf does not: use one q"
-                    .when(near(yours, by_mean) && near(sample.pdf, expected)),
-                "you divide by the probability of the diffuse lobe: multiply by it"
-                    .when(near(yours, cosine / PI / probability)),
+            unless(both(expected), broken).formulas(named![
+                both(cosine / PI) => "the probability of the diffuse lobe is missing in both densities",
+                near(yours, cosine / PI) => "the probability of the diffuse lobe is missing in bsdf_pdf",
+                near(sample.pdf, cosine / PI) => "the probability of the diffuse lobe is missing in the pdf of sample_bsdf",
+                near(yours, by_mean) && near(sample.pdf, expected) =>
+                    "bsdf_pdf chooses by the means of the channels, and sample_bsdf does not: use one q",
+                near(yours, cosine / PI / probability) => "you divide by the probability of the diffuse lobe: multiply by it",
             ])
         })
     })

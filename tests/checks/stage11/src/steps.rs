@@ -226,12 +226,9 @@ const ROULETTES: [(Roulette, &str); 11] = named![
     Roulette::Bounce(1) => "",
     Roulette::Bounce(0) => "the roulette counts surfaces: path.bounces + 1",
     Roulette::Bounce(2) => "the roulette counts one surface too many: path.bounces + 1",
-    Roulette::OfPath =>
-        "the roulette gets the weight before the bounce: multiply by that of the sample first",
-    Roulette::OfSample =>
-        "the roulette gets the weight of the surface alone: multiply by that of the path first",
-    Roulette::OfSurface =>
-        "the roulette gets the reflectance of the surface: it gets the weight that the path would have",
+    Roulette::OfPath => "the roulette gets the weight before the bounce: multiply by that of the sample first",
+    Roulette::OfSample => "the roulette gets the weight of the surface alone: multiply by that of the path first",
+    Roulette::OfSurface => "the roulette gets the reflectance of the surface: it gets the weight that the path would have",
     Roulette::Number(0) => REUSED,
     Roulette::Number(1) => REUSED,
     Roulette::Number(2) => REUSED,
@@ -323,10 +320,8 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
                 let expected = (weight != DVec3::ZERO).then_some(expected);
                 let source = "path.weight · weight of sample_bsdf · survives";
                 let ended = expected.is_some() && step.next.is_none();
-                Broken::with_texts(describe(query), says(step.next), says(expected), source).explained_by([(
-                    ended,
-                    "a path ends that survives its roulette, and is above the surface",
-                )])
+                Broken::with_texts(describe(query), says(step.next), says(expected), source).explained_by(["a path ends that survives its roulette, and is above the surface"
+                    .when(ended)])
             };
             let whole = (query.path.weight * sample.weight).as_dvec3();
             let is_next = |sample: &BsdfSample, weight: DVec3| is(&step, sample, weight);

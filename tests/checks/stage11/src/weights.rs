@@ -52,10 +52,9 @@ pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
                 return Ok(refuted);
             }
             let expected = "the larger density has the larger weight";
-            Err(Broken::new(pair.call("mis_weight"), answers.0, expected, "the definition").explained_by([(
-                true,
-                "the smaller density gets the larger weight: own and other are exchanged",
-            )]))
+            Err(Broken::new(pair.call("mis_weight"), answers.0, expected, "the definition").explained_by([
+                "the smaller density gets the larger weight: own and other are exchanged".when(true),
+            ]))
         });
         // Weights that are always 1/2 pass so far, although they ignore the densities.
         let all_half = pairs.len() > 1 && answers.iter().all(|(own, _)| *own == 0.5);

@@ -27,8 +27,7 @@ pub(super) const ROUNDINGS: [(Rounding, &str); 10] = named![
     Rounding::OfLow => "the bin is that of the low corner of the box: take twice the centroid",
     Rounding::OfAxis(0) => "the same coordinate is used on all axes",
     Rounding::WithoutLow => "grid.low is left out: the first bin begins there",
-    Rounding::TwoProducts =>
-        "the place is a difference of two products, which rounds otherwise: (c - low) · scale",
+    Rounding::TwoProducts => "the place is a difference of two products, which rounds otherwise: (c - low) · scale",
     Rounding::NegativeLast => "a bin below 0 becomes the last one: it counts as bin 0",
     Rounding::FloorLast => "a bin below 0 becomes the last one: it counts as bin 0",
     Rounding::MostBins => "the last bin is that of MAX_BINS: only grid.n_bins are in use",

@@ -225,10 +225,10 @@ fn build_of(trial: &Trial<'_>, what: &str, boxes: Vec<Aabb>) -> CheckResult {
             let yours =
                 format!("{} and {} primitives below a node at depth {depth}", sizes[left], sizes[left + 1]);
             let broken = Broken::with_texts(input, yours, "halves".to_owned(), "counted");
-            return Err(broken.explained_by([(
-                true,
-                "each level splits off few primitives: from depth DEEPEST_SPLIT on divide them in half",
-            )]));
+            return Err(broken.explained_by([
+                "each level splits off few primitives: from depth DEEPEST_SPLIT on divide them in half"
+                    .when(true),
+            ]));
         }
     }
     Ok(())

@@ -5,8 +5,7 @@ use checks::prelude::*;
 use raykata::wide::{BLOCK, Child, ChildContents, NO_PRIMITIVE};
 
 const TIES: [(Flaw, &str); 2] = named![
-    Flaw::FirstOfEqual =>
-        "of two hits at the same t the smaller primitive number wins, and not the one that is tested first",
+    Flaw::FirstOfEqual => "of two hits at the same t the smaller primitive number wins, and not the one that is tested first",
     Flaw::SkippedAtTheBest =>
         "a child that is entered exactly at the best t is skipped: it may hold a hit at the same t with a smaller number",
 ];
@@ -50,21 +49,18 @@ fn never_asked(query: &WideQuery, yours: &WideAnswer, lost: bool) -> Vec<(bool, 
     };
     let is_one = |visited: &[bool]| visited.iter().filter(|is_visited| **is_visited).count() <= 1;
     let blocks = &yours.blocks;
-    let rules = [
-        "only the first block of a leaf is tested: a leaf has ⌈count / BLOCK⌉ blocks"
-            .when(blocks.iter().all(is_first)),
-        "a block that is not full is left out: a leaf has ⌈count / BLOCK⌉ blocks"
-            .when(blocks.iter().all(|&block| !lanes(block).contains(&NO_PRIMITIVE))),
-        "only one lane of a block is tested: test each one of the mask of `candidates`"
-            .when(blocks.iter().all(|&block| n_asked(block) <= 1)),
-        (blocks.iter().all(|&block| !goes_on(block)), FIRST_ENDS),
-        (each(false, &is_one), "only one child of a node is visited: the others wait on the stack"),
-        "of the inner children of a node only one is visited: the others wait on the stack"
-            .when(each(true, &is_one)),
-        "the first child of a node that the ray enters is never visited"
-            .when(each(false, &|visited| visited.first() != Some(&true))),
-        "the last child of a node that the ray enters is never visited, unless it is the only one"
-            .when(each(false, &|visited| visited.last() != Some(&true) || visited.len() == 1)),
+    let rules = named![
+        blocks.iter().all(is_first) => "only the first block of a leaf is tested: a leaf has ⌈count / BLOCK⌉ blocks",
+        blocks.iter().all(|&block| !lanes(block).contains(&NO_PRIMITIVE)) =>
+            "a block that is not full is left out: a leaf has ⌈count / BLOCK⌉ blocks",
+        blocks.iter().all(|&block| n_asked(block) <= 1) =>
+            "only one lane of a block is tested: test each one of the mask of `candidates`",
+        blocks.iter().all(|&block| !goes_on(block)) => FIRST_ENDS,
+        each(false, &is_one) => "only one child of a node is visited: the others wait on the stack",
+        each(true, &is_one) => "of the inner children of a node only one is visited: the others wait on the stack",
+        each(false, &|visited| visited.first() != Some(&true)) => "the first child of a node that the ray enters is never visited",
+        each(false, &|visited| visited.last() != Some(&true) || visited.len() == 1) =>
+            "the last child of a node that the ray enters is never visited, unless it is the only one",
     ];
     rules.map(|(holds, text)| (holds && lost, text)).to_vec()
 }
@@ -90,15 +86,12 @@ fn mistakes(query: &WideQuery, yours: &WideAnswer, found: Option<(u32, f32)>) ->
     let hits = yours.primitives.iter().filter(|&&id| query.ray.contains(query.hits[id as usize]));
     let hits: Vec<(u32, f32)> = hits.map(|&id| (id, query.hits[id as usize])).collect();
     let is_other = !missed && found != expected && found.is_some();
-    let mut mistakes = vec![
-        "you return a hit outside of the range of the ray"
-            .when(found.is_some_and(|(_, t)| !query.ray.contains(t))),
-        "you return the last hit, not the closest: keep the better one"
-            .when(is_other && found == hits.last().copied()),
-        "you return the first hit, not the closest: a later one may be nearer"
-            .when(is_other && found == hits.first().copied()),
-        (found.is_none() && !missed, "you test the closest primitive and return None"),
-    ];
+    let mut mistakes = named![
+        found.is_some_and(|(_, t)| !query.ray.contains(t)) => "you return a hit outside of the range of the ray",
+        is_other && found == hits.last().copied() => "you return the last hit, not the closest: keep the better one",
+        is_other && found == hits.first().copied() => "you return the first hit, not the closest: a later one may be nearer",
+        found.is_none() && !missed => "you test the closest primitive and return None",
+    ].to_vec();
     mistakes.extend(expected.map(|(id, _)| loses(query, yours, id)).unwrap_or_default());
     mistakes
 }

@@ -21,8 +21,7 @@ enum Flaw {
 
 const FLAWS: [(Flaw, &str); 8] = named![
     Flaw::EntryIsExit => "the exit is returned as the entry: `t` has the entries of the boxes",
-    Flaw::Exchanged =>
-        "the entry is the smallest t of the near planes: a ray is in a box when it has entered on all axes",
+    Flaw::Exchanged => "the entry is the smallest t of the near planes: a ray is in a box when it has entered on all axes",
     Flaw::NearForBoth =>
         "far planes have factors of their own, scale[1] and offset[1]: with those of near planes the exit is too early, and rounding loses boxes",
     Flaw::FarForBoth =>
@@ -30,8 +29,7 @@ const FLAWS: [(Flaw, &str); 8] = named![
     Flaw::EndsAtInfinity => "t_max is left out: a box beyond it is not entered",
     Flaw::StartsAtZero => "t_min is left out: the entry is t_min or later",
     Flaw::Open => "boxes without thickness are lost: near <= far, not near < far",
-    Flaw::SidesNotSwapped =>
-        "a ray in negative direction passes the largest coordinate first: near_side says which",
+    Flaw::SidesNotSwapped => "a ray in negative direction passes the largest coordinate first: near_side says which",
 ];
 
 /// Whether the product and the sum of near planes are rounded once, and those of far planes: all are right.

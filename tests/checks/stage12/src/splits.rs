@@ -117,8 +117,7 @@ const WRONG_COSTS: [(Cost, &str); 10] = named![
         "the sides count single primitives: a leaf pays for whole blocks, block_cost",
     |sides| sides.iter().map(|(bounds, _)| area(bounds)).sum() => "the counts are left out of the cost",
     |sides| sides.iter().map(blocks).sum() => "the areas are left out of the cost",
-    |sides| sides.iter().map(|side| volume(&side.0) * blocks(side)).sum() =>
-        "the cost has volumes in place of surface areas",
+    |sides| sides.iter().map(|side| volume(&side.0) * blocks(side)).sum() => "the cost has volumes in place of surface areas",
     |sides| area(&sides[0].0) * blocks(&sides[1]) + area(&sides[1].0) * blocks(&sides[0]) =>
         "each area is multiplied by the cost of the other side",
 ];

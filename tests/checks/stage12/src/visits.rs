@@ -119,11 +119,9 @@ fn mistakes(queries: &[WideQuery], n: usize) -> Vec<(bool, &'static str)> {
 const COSTLY: [(Flaw, &str); 6] = named![
     Flaw::Unsorted => "the children are visited in the order of their places: visit the nearest first",
     Flaw::FarthestFirst => "the farthest child is visited first: put the nearest on top of the stack",
-    Flaw::NothingSkipped =>
-        "a child beyond the best hit is visited: compare its entry again when it comes from the stack",
+    Flaw::NothingSkipped => "a child beyond the best hit is visited: compare its entry again when it comes from the stack",
     Flaw::NotShortened => "the ray is not shortened, so nothing is skipped: after a hit it ends there",
-    Flaw::EveryLane =>
-        "each lane of a block is tested exactly: only those of the mask of `candidates` may be hit",
+    Flaw::EveryLane => "each lane of a block is tested exactly: only those of the mask of `candidates` may be hit",
     Flaw::Everything =>
         "each lane of a block is tested exactly, and children beyond the best hit are visited: use the masks, and compare again",
 ];

@@ -229,10 +229,8 @@ const WRONG_RULES: [(Rule, &str); 11] = named![
     Rule::NodesAreFree => "the cost of a node is left out: visiting it costs something, too",
     Rule::Halves(false) => HALVES,
     Rule::Halves(true) => HALVES,
-    Rule::Exchanged =>
-        "both children get each other's places: the left one gets those that were counted for it",
-    Rule::Pairs =>
-        "a node costs as much as two children in one place each: its two children share eight places",
+    Rule::Exchanged => "both children get each other's places: the left one gets those that were counted for it",
+    Rule::Pairs => "a node costs as much as two children in one place each: its two children share eight places",
 ];
 
 const HALVES: &str = "both children get half of the places: try each number of places for the left one";

@@ -135,24 +135,22 @@ fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
     let lost_if = |lost: bool| if lost { !is_hit } else { is_right };
     let tests = |least: f64| answer.is_inside(hit, least);
     let within = |counts: bool| answer.is(hit, counts && inside);
-    let mut all = vec![
-        (within(t_min < t), "you return a hit beyond t_max: ask ray.contains(t)"),
-        (within(t < t_max), "you return a hit behind the ray or before t_min: ask ray.contains(t)"),
-        (within(0.0 < t), "you ask t > 0 and not ray.contains(t): t_min and t_max count"),
-        (within(true), "you do not ask ray.contains(t)"),
-        "you test β ≤ 1 and γ ≤ 1, which makes a parallelogram: β + γ ≤ 1 is not tested"
-            .when(tests(beta.min(gamma).min(1.0 - beta).min(1.0 - gamma))),
-        (tests(beta.min(gamma)), "you accept a point beyond the side b c: β + γ ≤ 1 is not tested"),
-        (tests(beta.min(alpha)), "you accept a γ below 0: γ ≥ 0 is not tested"),
-        (tests(gamma.min(alpha)), "you accept a β below 0: β ≥ 0 is not tested"),
-        "you accept a β or γ below 0: 0 ≤ β + γ ≤ 1 is not enough, test β ≥ 0 and γ ≥ 0 as well"
-            .when(tests((beta + gamma).min(alpha))),
-        (tests(1.0), "you do not test whether the point is inside the triangle"),
-        "you test the triangle from one side only: it is hit from the back as well"
-            .when(lost_if(determinant < 0.0)),
-        "you test the triangle from one side only: it is hit from the front as well"
-            .when(lost_if(determinant > 0.0)),
-    ];
+    let mut all = named![
+        within(t_min < t) => "you return a hit beyond t_max: ask ray.contains(t)",
+        within(t < t_max) => "you return a hit behind the ray or before t_min: ask ray.contains(t)",
+        within(0.0 < t) => "you ask t > 0 and not ray.contains(t): t_min and t_max count",
+        within(true) => "you do not ask ray.contains(t)",
+        tests(beta.min(gamma).min(1.0 - beta).min(1.0 - gamma)) =>
+            "you test β ≤ 1 and γ ≤ 1, which makes a parallelogram: β + γ ≤ 1 is not tested",
+        tests(beta.min(gamma)) => "you accept a point beyond the side b c: β + γ ≤ 1 is not tested",
+        tests(beta.min(alpha)) => "you accept a γ below 0: γ ≥ 0 is not tested",
+        tests(gamma.min(alpha)) => "you accept a β below 0: β ≥ 0 is not tested",
+        tests((beta + gamma).min(alpha)) =>
+            "you accept a β or γ below 0: 0 ≤ β + γ ≤ 1 is not enough, test β ≥ 0 and γ ≥ 0 as well",
+        tests(1.0) => "you do not test whether the point is inside the triangle",
+        lost_if(determinant < 0.0) => "you test the triangle from one side only: it is hit from the back as well",
+        lost_if(determinant > 0.0) => "you test the triangle from one side only: it is hit from the front as well",
+    ].to_vec();
     // Rounding decides about a determinant next to the limit.
     let is_next_to = |limit: f64| (determinant.abs() / limit - 1.0).abs() < 1e-3;
     all.extend(LIMITS.map(|limit| {

@@ -60,10 +60,9 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
         let pad = DVec3::splat(low.max(high).max_element());
         let is_padded = (low - pad).abs().max((high - pad).abs()).cmple(slack + 1e-3 * pad).all();
         let broken = || {
-            Broken::new(input(), yours, expected, "closed form").explained_by([(
-                is_padded,
-                "you pad the box: one radius from the centre is enough, up to rounding",
-            )])
+            Broken::new(input(), yours, expected, "closed form").explained_by([
+                "you pad the box: one radius from the centre is enough, up to rounding".when(is_padded),
+            ])
         };
         unless(right, broken).formulas([
             "your box has the right size but the wrong place: go one radius from the centre"
@@ -110,15 +109,13 @@ pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> CheckResult {
             let most = Aabb::new(first.min.max(second.min), expected.max);
             let origin = Aabb::new(Vec3::ZERO, Vec3::ZERO);
             let or_origin = |b: &Aabb| if b.is_empty() { origin } else { *b };
-            unless(yours == expected, broken).formulas([
-                "the empty box (inf, -inf) must change nothing: you take it for a box at the origin"
-                    .when(yours == tree::around([&or_origin(first), &or_origin(second)])),
-                "you return what both boxes share: take the smaller min and the larger max"
-                    .when(open || yours == shared),
-                "you take the smaller, or the larger, corner for both sides"
-                    .when(open || yours == least || yours == most),
-                (yours == *first || open, "you return the first box"),
-                (yours == *second || open, "you return the second box"),
+            unless(yours == expected, broken).formulas(named![
+                yours == tree::around([&or_origin(first), &or_origin(second)]) =>
+                    "the empty box (inf, -inf) must change nothing: you take it for a box at the origin",
+                open || yours == shared => "you return what both boxes share: take the smaller min and the larger max",
+                open || yours == least || yours == most => "you take the smaller, or the larger, corner for both sides",
+                yours == *first || open => "you return the first box",
+                yours == *second || open => "you return the second box",
             ])
         },
     )

@@ -140,10 +140,9 @@ pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> CheckResult {
             let describe = |n: usize| format!("{n} nodes");
             let yours = describe(nodes);
             return Err(Broken::with_texts(query.call("build"), yours, "1 node, a leaf", "the definition")
-                .explained_by([(
-                    nodes > 1,
-                    "exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size",
-                )]));
+                .explained_by([
+                    "exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size".when(nodes > 1)
+                ]));
         }
     }
     Ok(())

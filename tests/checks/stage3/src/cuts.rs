@@ -124,24 +124,22 @@ fn wrong_costs(ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static s
             _ => as_cut <= as_leaf * 1.0001 && cost(&ordered[..middle], &ordered[middle..]) <= least * 1.0001,
         }
     };
-    vec![
-        "your cut is the best by areas alone: the counts are left out"
-            .when(gives(&|left, right| area(left) + area(right))),
-        "your cut is the best by counts alone: the areas are left out"
-            .when(gives(&|left, right| n(left).max(n(right)))),
-        "your cut is the best by volumes: take the surface areas"
-            .when(gives(&|left, right| volume(left) * n(left) + volume(right) * n(right))),
-        "the counts are squared: each area is multiplied by its count once"
-            .when(gives(&|left, right| area(left) * n(left).powi(2) + area(right) * n(right).powi(2))),
-        "both areas have the larger count: each side has a product of its own"
-            .when(gives(&|left, right| (area(left) + area(right)) * n(left).max(n(right)))),
-        (gives(&|left, _| area(left) * n(left)), "only the left side is counted in the cost"),
-        (gives(&|_, right| area(right) * n(right)), "only the right side is counted in the cost"),
-        "your cut is the best by the edges of the boxes: take the surface areas"
-            .when(gives(&|left, right| size(left) * n(left) + size(right) * n(right))),
-        "each area is multiplied by the count of the other side"
-            .when(gives(&|left, right| area(left) * n(right) + area(right) * n(left))),
-    ]
+    named![
+        gives(&|left, right| area(left) + area(right)) => "your cut is the best by areas alone: the counts are left out",
+        gives(&|left, right| n(left).max(n(right))) => "your cut is the best by counts alone: the areas are left out",
+        gives(&|left, right| volume(left) * n(left) + volume(right) * n(right)) =>
+            "your cut is the best by volumes: take the surface areas",
+        gives(&|left, right| area(left) * n(left).powi(2) + area(right) * n(right).powi(2)) =>
+            "the counts are squared: each area is multiplied by its count once",
+        gives(&|left, right| (area(left) + area(right)) * n(left).max(n(right))) =>
+            "both areas have the larger count: each side has a product of its own",
+        gives(&|left, _| area(left) * n(left)) => "only the left side is counted in the cost",
+        gives(&|_, right| area(right) * n(right)) => "only the right side is counted in the cost",
+        gives(&|left, right| size(left) * n(left) + size(right) * n(right)) =>
+            "your cut is the best by the edges of the boxes: take the surface areas",
+        gives(&|left, right| area(left) * n(right) + area(right) * n(left)) =>
+            "each area is multiplied by the count of the other side",
+    ].to_vec()
 }
 
 /// Wrong rules, each with whether it gives this cut, or a leaf if `middle` is 0.

@@ -79,10 +79,9 @@ pub(super) fn judge_splits(
                 query.primitives.iter().all(|p| p.centroid[axis] <= cut + slack)
                     || query.primitives.iter().all(|p| p.centroid[axis] >= cut - slack)
             });
-            return Err(broken.explained_by([(
-                one_side,
-                "all centroids are on one side of the cut: fall back on another split",
-            )]));
+            return Err(broken.explained_by([
+                "all centroids are on one side of the cut: fall back on another split".when(one_side),
+            ]));
         }
         match law(&query.primitives, &in_order(query, &order), middle) {
             None => Ok(()),

@@ -44,23 +44,17 @@ const MISTAKES: [(Wrong, &str); 18] = named![
     Wrong::AllOfLeaf => "a leaf counts only if all of its primitives are hit: one is enough",
     Wrong::InsideLeftOut(0) => INSIDE,
     Wrong::InsideLeftOut(1) => INSIDE,
-    Wrong::TieToTheLast =>
-        "of two hits at the same t the smaller primitive number wins: you keep the later one",
-    Wrong::TieToTheFirst =>
-        "of two hits at the same t the smaller primitive number wins: you keep the first one",
+    Wrong::TieToTheLast => "of two hits at the same t the smaller primitive number wins: you keep the later one",
+    Wrong::TieToTheFirst => "of two hits at the same t the smaller primitive number wins: you keep the first one",
     Wrong::Farther => "the farther of two hits is kept",
-    Wrong::FartherOrLarger =>
-        "the farther of two hits is kept, and of equal ones the one with the larger number",
+    Wrong::FartherOrLarger => "the farther of two hits is kept, and of equal ones the one with the larger number",
     Wrong::OneOfLeaf => "you take the first primitive only: ask all of a leaf's primitives",
     Wrong::LeafStops => "you take the first hit of a leaf: ask all of a leaf's primitives",
     Wrong::LastOfLeafLeftOut => "part of a leaf was left out: its last primitive",
     Wrong::FirstOfLeafLeftOut => "part of a leaf was left out: its first primitive",
-    Wrong::LeftIfAny =>
-        "boxes overlap: the search stopped before it had seen the nearer hit, which is in the right child",
-    Wrong::NearIfAny =>
-        "boxes overlap: the search stopped before it had seen the nearer hit, which is in the farther child",
-    Wrong::NothingIfOneHasNone =>
-        "a subtree was left out: if one child has no hit, the other may still have one",
+    Wrong::LeftIfAny => "boxes overlap: the search stopped before it had seen the nearer hit, which is in the right child",
+    Wrong::NearIfAny => "boxes overlap: the search stopped before it had seen the nearer hit, which is in the farther child",
+    Wrong::NothingIfOneHasNone => "a subtree was left out: if one child has no hit, the other may still have one",
     Wrong::NothingIfOneIsMissed => "a subtree was left out: if one box is missed, the other may still be met",
     Wrong::LeftOnly => "a subtree was left out: the right child",
     Wrong::RightOnly => "a subtree was left out: the left child",
@@ -179,26 +173,24 @@ pub(super) fn any_mistakes(query: &SearchQuery, yours: bool) -> Vec<(bool, &'sta
     let right = found_by(Wrong::Nothing, query).is_some();
     let inside = |&(near, far): &(f32, f32)| near <= query.ray.t_min && query.ray.t_min <= far;
     let around_start = query.table.boxes.iter().any(inside);
-    vec![
-        (yours == enters_a_leaf, "you take a box for a hit: to enter a box is not yet a hit"),
-        (yours == with_range(query.ray.t_min, f32::INFINITY), "you count a hit beyond t_max"),
-        (yours == with_range(0.0, query.ray.t_max), "you count a hit before t_min"),
-        (yours == with_range(0.0, f32::INFINITY), "you count a hit before t_min or beyond t_max"),
-        (is(Wrong::LeftOnly), "a hit was overlooked: the right child is left out"),
-        (is(Wrong::RightOnly), "a hit was overlooked: the left child is left out"),
-        (is(Wrong::OneOfLeaf), "a hit was overlooked: ask all of a leaf's primitives"),
-        (is(Wrong::LastOfLeafLeftOut), "a hit was overlooked: the last primitive of a leaf is left out"),
-        (is(Wrong::NearOnly), "a hit was overlooked: the farther child is left out"),
-        (is(Wrong::FirstOfLeafLeftOut), "a hit was overlooked: the first primitive of a leaf is left out"),
-        "a hit was overlooked: if one box is missed, the other may still be met"
-            .when(is(Wrong::NothingIfOneIsMissed)),
-        (is(Wrong::AllOfLeaf), "a hit was overlooked: one primitive of a leaf is enough"),
-        "a hit was overlooked: the ray begins in a box, whose entry is at t_min"
-            .when(is(Wrong::InsideLeftOut(0)) || is(Wrong::InsideLeftOut(1))),
-        "you take a box around the start of the ray for a hit: ask its primitives"
-            .when(yours == (right || around_start)),
-        (is(Wrong::NothingIfOneHasNone), "a hit was overlooked: one child is enough"),
-    ]
+    named![
+        yours == enters_a_leaf => "you take a box for a hit: to enter a box is not yet a hit",
+        yours == with_range(query.ray.t_min, f32::INFINITY) => "you count a hit beyond t_max",
+        yours == with_range(0.0, query.ray.t_max) => "you count a hit before t_min",
+        yours == with_range(0.0, f32::INFINITY) => "you count a hit before t_min or beyond t_max",
+        is(Wrong::LeftOnly) => "a hit was overlooked: the right child is left out",
+        is(Wrong::RightOnly) => "a hit was overlooked: the left child is left out",
+        is(Wrong::OneOfLeaf) => "a hit was overlooked: ask all of a leaf's primitives",
+        is(Wrong::LastOfLeafLeftOut) => "a hit was overlooked: the last primitive of a leaf is left out",
+        is(Wrong::NearOnly) => "a hit was overlooked: the farther child is left out",
+        is(Wrong::FirstOfLeafLeftOut) => "a hit was overlooked: the first primitive of a leaf is left out",
+        is(Wrong::NothingIfOneIsMissed) => "a hit was overlooked: if one box is missed, the other may still be met",
+        is(Wrong::AllOfLeaf) => "a hit was overlooked: one primitive of a leaf is enough",
+        is(Wrong::InsideLeftOut(0)) || is(Wrong::InsideLeftOut(1)) =>
+            "a hit was overlooked: the ray begins in a box, whose entry is at t_min",
+        yours == (right || around_start) => "you take a box around the start of the ray for a hit: ask its primitives",
+        is(Wrong::NothingIfOneHasNone) => "a hit was overlooked: one child is enough",
+    ].to_vec()
 }
 
 /// The nodes and primitives that a search with a mistake visits, if it goes to the nearer child first.

@@ -65,32 +65,23 @@ const PADDED_DIRECTION: &str = "you replace a direction near 0 by an epsilon, so
 const MISTAKES: [(Mistake, &str); 22] = named![
     Mistake::FromZero => "your range begins at 0: only the part within t_min..t_max counts",
     Mistake::EntryBeforeEnd => "the ends of the range count: an entry exactly at t_max is a hit",
-    Mistake::OpenRange =>
-        "the ends of the range count: an exit exactly at t_min is a hit, and so is an entry at t_max",
+    Mistake::OpenRange => "the ends of the range count: an exit exactly at t_min is a hit, and so is an entry at t_max",
     Mistake::NotSwapped => "for a negative direction component the ray enters at max: swap the two planes",
     Mistake::SwappedByLess => "-0.0 ≥ 0 is true, but 1 / -0.0 is -∞: swap the two planes by the sign of 1/d",
-    Mistake::FastForm =>
-        "1/d is ∞ for d = 0, and ∞ - ∞ is NaN: subtract first, (b - o) · 1/d and not b/d - o/d",
+    Mistake::FastForm => "1/d is ∞ for d = 0, and ∞ - ∞ is NaN: subtract first, (b - o) · 1/d and not b/d - o/d",
     Mistake::MinMax => "0 · ∞ is NaN, and min and max drop NaN: a ray within a face hits the closed box",
     Mistake::SwappedIfGreater => SORTED,
     Mistake::SwappedUnlessLess => SORTED,
-    Mistake::Vectors =>
-        "0 · ∞ is NaN, and Vec3::min and max may return NaN or drop it: a ray within a face hits",
-    Mistake::FirstAxis =>
-        "0 · ∞ is NaN, and your interval begins with that of x: begin with the range of the ray",
-    Mistake::NanTakenOver =>
-        "0 · ∞ is NaN, and it becomes your entry or exit: order the comparison so that it drops NaN",
-    Mistake::NanEntry =>
-        "0 · ∞ is NaN, and it takes the place of your entry: order the comparison so that it drops NaN",
+    Mistake::Vectors => "0 · ∞ is NaN, and Vec3::min and max may return NaN or drop it: a ray within a face hits",
+    Mistake::FirstAxis => "0 · ∞ is NaN, and your interval begins with that of x: begin with the range of the ray",
+    Mistake::NanTakenOver => "0 · ∞ is NaN, and it becomes your entry or exit: order the comparison so that it drops NaN",
+    Mistake::NanEntry => "0 · ∞ is NaN, and it takes the place of your entry: order the comparison so that it drops NaN",
     Mistake::Overflow => "1/d overflows to ∞ for a tiny d: divide by d there",
     Mistake::ExitBehindStart => "the box is closed: an exit exactly at t_min is a hit",
     Mistake::Open => "entry equals exit in a flat box or at an edge: compare with ≤, not with <",
-    Mistake::NotFromInside =>
-        "you return None if the ray starts inside, where the entry is behind it: test the exit, not t_b⁻ ≥ 0",
-    Mistake::StartIgnored =>
-        "your entry or your exit is before t_min: only the part within t_min..t_max counts",
-    Mistake::EndIgnored =>
-        "your entry or your exit is beyond t_max: only the part within t_min..t_max counts",
+    Mistake::NotFromInside => "you return None if the ray starts inside, where the entry is behind it: test the exit, not t_b⁻ ≥ 0",
+    Mistake::StartIgnored => "your entry or your exit is before t_min: only the part within t_min..t_max counts",
+    Mistake::EndIgnored => "your entry or your exit is beyond t_max: only the part within t_min..t_max counts",
     Mistake::Widest => "you unite the intervals of the axes: intersect them",
     Mistake::RangeIgnored => "you do not limit the interval to t_min..t_max",
     Mistake::OfTheLine => "you do not limit the interval to t_min..t_max",

@@ -57,20 +57,17 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
             let by = |key: fn(&PrimitiveRef, usize) -> f32| {
                 axes.iter().any(|&axis| divided_by(ordered, middle, &|p| key(p, axis)))
             };
-            vec![
-                (by(|p, axis| p.bounds.min[axis]), BY_LOW),
-                (by(|p, axis| p.bounds.max[axis]), BY_HIGH),
-                "you sort by the distance from the origin: sort by the centroid along the axis"
-                    .when(by(|p, _| p.centroid.length())),
-                "you sort by the size of the boxes: sort by the centroid"
-                    .when(by(|p, axis| (p.bounds.max - p.bounds.min)[axis])),
-                (as_given, "the primitives are not sorted: you cut them as they come"),
-                (along(0), "you always sort along x, not along the longest axis"),
-                (along(1), "you always sort along y, not along the longest axis"),
-                (along(2), "you always sort along z, not along the longest axis"),
-                "you sort along the shortest axis, not along the longest axis"
-                    .when((0..3).any(|axis| shortest(axis) && along(axis))),
-            ]
+            named![
+                by(|p, axis| p.bounds.min[axis]) => BY_LOW,
+                by(|p, axis| p.bounds.max[axis]) => BY_HIGH,
+                by(|p, _| p.centroid.length()) => "you sort by the distance from the origin: sort by the centroid along the axis",
+                by(|p, axis| (p.bounds.max - p.bounds.min)[axis]) => "you sort by the size of the boxes: sort by the centroid",
+                as_given => "the primitives are not sorted: you cut them as they come",
+                along(0) => "you always sort along x, not along the longest axis",
+                along(1) => "you always sort along y, not along the longest axis",
+                along(2) => "you always sort along z, not along the longest axis",
+                (0..3).any(|axis| shortest(axis) && along(axis)) => "you sort along the shortest axis, not along the longest axis",
+            ].to_vec()
         };
         judge_splits(trial, Split::ObjectMedian, sets, law, formulas)
     })

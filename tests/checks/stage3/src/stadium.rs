@@ -82,24 +82,18 @@ pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) ->
     .explained_by([
         (is_a_median, "your tree costs as much as one by object median"),
         "each group of leaf_size or fewer is a leaf: by the heuristic it is still split if that is cheaper"
-            .when(sizes_below(&bvh).into_iter().zip(&bvh.nodes).all(|(n, node)| n > 4 || is_leaf(node))),
+            .when(!divides_few(&bvh)),
     ]))
 }
 
-fn is_leaf(node: &Node) -> bool {
-    matches!(node.contents, Contents::Leaf { .. })
-}
-
-/// The number of primitives below each node. Parents stand before their children.
-fn sizes_below(bvh: &Bvh) -> Vec<u32> {
-    let mut sizes = vec![0; bvh.nodes.len()];
-    for (index, node) in bvh.nodes.iter().enumerate().rev() {
-        sizes[index] = match node.contents {
-            Contents::Leaf { count, .. } => count,
-            Contents::Inner { left, right } => sizes[left as usize] + sizes[right as usize],
-        };
-    }
-    sizes
+/// Whether two leaves of four primitives or fewer together have the same parent.
+fn divides_few(bvh: &Bvh) -> bool {
+    let count = |node: u32| match bvh.nodes[node as usize].contents {
+        Contents::Leaf { count, .. } => count,
+        Contents::Inner { .. } => 5,
+    };
+    let is_few = |node: &Node| matches!(node.contents, Contents::Inner { left, right } if count(left) + count(right) <= 4);
+    bvh.nodes.iter().any(is_few)
 }
 
 /// The number of nodes and primitives that the rays through the stadium have to visit in this tree.

@@ -48,13 +48,11 @@ fn judge_normal(query: &Query, yours: Vec3) -> Judged {
         ])
     };
     let mean = smooth.map_or(facing, |smooth| (turned(smooth, -facing) + facing).normalize());
-    unless(right, broken).formulas([
-        "you return the mean of both normals: the interpolated one alone shades a smooth surface"
-            .when(same(mean)),
-        "you turn the interpolated normal by `direction`: turn it to the side of the geometric normal"
-            .when(smooth.map_or(right, |smooth| same(turned(smooth, direction)))),
-        "you return the geometric normal where there is an interpolated one"
-            .when(same(facing) || (grazing && same(-facing))),
+    unless(right, broken).formulas(named![
+        same(mean) => "you return the mean of both normals: the interpolated one alone shades a smooth surface",
+        smooth.map_or(right, |smooth| same(turned(smooth, direction))) =>
+            "you turn the interpolated normal by `direction`: turn it to the side of the geometric normal",
+        same(facing) || (grazing && same(-facing)) => "you return the geometric normal where there is an interpolated one",
     ])
 }
 

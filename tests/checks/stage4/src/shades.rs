@@ -293,10 +293,9 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
                 let (yours, own) = (format!("visible({light}, &{ray:?})"), rays[*light]);
                 let expected = format!("the ray {own:?}");
                 return Err(Broken::with_texts(query.call("shade"), yours, expected, "shadow_ray")
-                    .explained_by([(
-                        true,
-                        "you ask about another ray: pass the ray of shadow_ray to visible",
-                    )]));
+                    .explained_by([
+                        "you ask about another ray: pass the ray of shadow_ray to visible".when(true)
+                    ]));
             }
             let has_ray: Vec<bool> = rays.iter().map(Option::is_some).collect();
             judge_traced(query, &has_ray, &yours.traced)

@@ -135,14 +135,12 @@ fn judge_refraction(query: &RefractQuery, yours: Option<Vec3>, error: f64) -> Ch
     let expected = expected.map(|v| v.as_vec3());
     let is_nan = yours.is_some_and(Vec3::is_nan);
     Err(Broken::new(query.call("refract"), yours, expected, "Snell's law in double precision")
-        .explained_by([
-            (is_nan && expected.is_none(), "you return NaN beyond the critical angle: return None"),
-            "you return the reflected direction"
-                .when(yours.is_some_and(|yours| off_reflection(query.direction, query.normal, yours) < 1e-4)),
-            "you return a ray beyond the critical angle: return None"
-                .when(expected.is_none() && margin < 0.0 && yours.is_some()),
-            "your refracted ray stays on the side that it came from"
-                .when(yours.is_some_and(|yours| yours.dot(query.normal) > 1e-3)),
+        .explained_by(named![
+            is_nan && expected.is_none() => "you return NaN beyond the critical angle: return None",
+            yours.is_some_and(|yours| off_reflection(query.direction, query.normal, yours) < 1e-4) =>
+                "you return the reflected direction",
+            expected.is_none() && margin < 0.0 && yours.is_some() => "you return a ray beyond the critical angle: return None",
+            yours.is_some_and(|yours| yours.dot(query.normal) > 1e-3) => "your refracted ray stays on the side that it came from",
         ])
         .explained_by(mistakes_near_normal(query, yours)))
 }

@@ -187,26 +187,23 @@ fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Ju
         Broken::with_texts(paste(query), describe(&yours), expected, "the formula in double precision")
             .explained_by([(is(coloured), text)])
     };
-    let rest = [
-        "you leave out the weight of the incoming ray: multiply by `weight`"
-            .when(is([mirror + share * transmission, (1.0 - share) * transmission])),
-        (is([weight * reflected, weight * through]), WEIGHT_TWICE),
-        (is([weight * reflected, through]), WEIGHT_TWICE),
-        (is([reflected, weight * through]), WEIGHT_TWICE),
-        "clear glass reflects by Fresnel: test the reflected weight, not material.mirror"
-            .when(is([if mirror == DVec3::ZERO { mirror } else { reflected }, through])),
-        "you exchange material.mirror and material.transmission"
-            .when(is([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror])),
-        (is([weight * mirror, weight * transmission]), "you leave out material.fresnel"),
-        "you add F transmission to the reflected ray, but do not take it off the refracted one: (1 - F) transmission"
-            .when(is([reflected, weight * transmission])),
-        "you take F off the refracted ray, but do not add F transmission to the reflected one"
-            .when(is([weight * mirror, through])),
-        "you multiply the mirror by F: the reflected ray has mirror + F transmission"
-            .when(is([weight * share * mirror, through])),
-        "you exchange F and 1 - F"
-            .when(is([weight * (mirror + (1.0 - share) * transmission), weight * share * transmission])),
-        (is(weights(exchanged)), "you exchange n1 and n2 in the Fresnel reflectance"),
+    let rest = named![
+        is([mirror + share * transmission, (1.0 - share) * transmission]) =>
+            "you leave out the weight of the incoming ray: multiply by `weight`",
+        is([weight * reflected, weight * through]) => WEIGHT_TWICE,
+        is([weight * reflected, through]) => WEIGHT_TWICE,
+        is([reflected, weight * through]) => WEIGHT_TWICE,
+        is([if mirror == DVec3::ZERO { mirror } else { reflected }, through]) =>
+            "clear glass reflects by Fresnel: test the reflected weight, not material.mirror",
+        is([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror]) =>
+            "you exchange material.mirror and material.transmission",
+        is([weight * mirror, weight * transmission]) => "you leave out material.fresnel",
+        is([reflected, weight * transmission]) =>
+            "you add F transmission to the reflected ray, but do not take it off the refracted one: (1 - F) transmission",
+        is([weight * mirror, through]) => "you take F off the refracted ray, but do not add F transmission to the reflected one",
+        is([weight * share * mirror, through]) => "you multiply the mirror by F: the reflected ray has mirror + F transmission",
+        is([weight * (mirror + (1.0 - share) * transmission), weight * share * transmission]) => "you exchange F and 1 - F",
+        is(weights(exchanged)) => "you exchange n1 and n2 in the Fresnel reflectance",
     ];
     unless(right, broken).formulas(rest.into_iter().chain(of_fresnel))
 }

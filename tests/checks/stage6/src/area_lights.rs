@@ -311,10 +311,9 @@ pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> CheckR
             return Ok(());
         }
         let input = format!("sample_sphere from the centre of the sphere, {}", call("u =", &[&query.u]));
-        Err(Broken::new(input, direction, "any unit direction", "the definition").explained_by([(
-            direction.is_nan(),
-            "from the centre the vector to the centre is 0: use any axis",
-        )]))
+        Err(Broken::new(input, direction, "any unit direction", "the definition").explained_by([
+            "from the centre the vector to the centre is 0: use any axis".when(direction.is_nan()),
+        ]))
     };
     all_hold(queries.iter().zip(trial.kit.sample_sphere(&queries)).map(judge).collect())
 }

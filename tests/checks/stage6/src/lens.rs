@@ -257,19 +257,14 @@ fn judge_start(query: &LensQuery, yours: Ray) -> Judged {
         Broken::new(paste(query), yours, expected.as_vec3(), source)
             .explained_by([(near(expected) && !unit, "your direction does not have unit length")])
     };
-    unless(near(expected) && unit, broken).formulas([
-        "you use aperture as the radius of the lens: it is the diameter"
-            .when(is(position + 2.0 * offset(query))),
-        (is(position), "you start every ray at the centre of the lens: use on_lens"),
-        "your lens is a line: it extends along camera.right and along camera.up"
-            .when(is(position + place.x * right)),
-        "your lens is a line: it extends along camera.right and along camera.up"
-            .when(is(position + place.y * up)),
-        "you use the world's x and y axes: use camera.right and camera.up"
-            .when(is(position + place.extend(0.0))),
-        "you exchange x and y of on_lens: x is along camera.right"
-            .when(is(position + place.y * right + place.x * up)),
-        (is(offset(query)), "you leave out camera.position"),
+    unless(near(expected) && unit, broken).formulas(named![
+        is(position + 2.0 * offset(query)) => "you use aperture as the radius of the lens: it is the diameter",
+        is(position) => "you start every ray at the centre of the lens: use on_lens",
+        is(position + place.x * right) => "your lens is a line: it extends along camera.right and along camera.up",
+        is(position + place.y * up) => "your lens is a line: it extends along camera.right and along camera.up",
+        is(position + place.extend(0.0)) => "you use the world's x and y axes: use camera.right and camera.up",
+        is(position + place.y * right + place.x * up) => "you exchange x and y of on_lens: x is along camera.right",
+        is(offset(query)) => "you leave out camera.position",
     ])
 }
 
@@ -293,10 +288,9 @@ pub(super) fn lens_is_as_sharp_a_million_units_away(trial: &Trial<'_>) -> CheckR
                 return Ok(());
             }
             let broken = Broken::new(paste(query), yours.direction, expected.as_vec3(), "double precision");
-            Err(broken.explained_by([(
-                is_right(*near),
-                "your direction is imprecise: compute it relative to camera.position",
-            )]))
+            Err(broken
+                .explained_by(["your direction is imprecise: compute it relative to camera.position"
+                    .when(is_right(*near))]))
         })
     })
 }

@@ -195,20 +195,18 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
             // puts below it, too. They are at a right angle to ideal.
             let replaced = *drawn == query.ideal && yours.dot(query.ideal).abs() < 1e-5;
             let mirrored = unreflected - 2.0 * unreflected.dot(query.normal) * query.normal;
-            Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, source).explained_by([
-                (yours.is_nan(), "you return NaN: ln 0 is -∞, and 0 · ∞ is NaN"),
-                "you reverse the whole direction: reverse only its part along the normal"
-                    .when(through && near(-*drawn)),
-                "you subtract the part along the normal once: subtract it twice"
-                    .when(through && near((*drawn - above * query.normal).normalize_or_zero())),
-                "you return ideal, which changes the distribution: reflect the ray back by the normal"
-                    .when((through && near(query.ideal)) || replaced),
-                (through && near(*drawn), "your ray goes through the surface: reflect it back by the normal"),
-                "you reflect rays that are on the right side: reflect only those below the surface"
-                    .when(!through && near(*drawn - 2.0 * above * query.normal)),
-                (near(mirrored), "you reflect every ray: reflect only those below the surface"),
-                "your ray goes through the surface: reflect it back by the normal"
-                    .when(yours.dot(query.normal) < 0.0),
+            Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, source).explained_by(named![
+                yours.is_nan() => "you return NaN: ln 0 is -∞, and 0 · ∞ is NaN",
+                through && near(-*drawn) => "you reverse the whole direction: reverse only its part along the normal",
+                through && near((*drawn - above * query.normal).normalize_or_zero()) =>
+                    "you subtract the part along the normal once: subtract it twice",
+                (through && near(query.ideal)) || replaced =>
+                    "you return ideal, which changes the distribution: reflect the ray back by the normal",
+                through && near(*drawn) => "your ray goes through the surface: reflect it back by the normal",
+                !through && near(*drawn - 2.0 * above * query.normal) =>
+                    "you reflect rays that are on the right side: reflect only those below the surface",
+                near(mirrored) => "you reflect every ray: reflect only those below the surface",
+                yours.dot(query.normal) < 0.0 => "your ray goes through the surface: reflect it back by the normal",
             ]))
         })
     })

@@ -58,26 +58,23 @@ impl Dark {
         });
         let without_indirect = of_any_light && !self.scene.indirect_light;
         let without_sky = self.scene.background.is_black() || self.listed() || any_bright;
-        vec![
-            "an image shows only where light reaches its material: a light, ambient light, or indirect light"
-                .when(*yours == self.effects(self.shines, shown_colour)),
-            "light of one channel shows nothing of a colour in another: multiply channel by channel"
-                .when(*yours == self.effects(self.shines, of_any_light)),
-            "indirect light reaches images too"
-                .when(*yours == self.effects(self.shines, self.lit && without_indirect)),
-            "a material that no shape has does not shine"
-                .when(*yours == self.effects(self.shines || any_bright, self.lit)),
-            "indirect light shows no image of a material without a diffuse colour"
-                .when(*yours == self.effects(self.shines, self.lit || self.scene.indirect_light)),
-            "ambient light shows no image of a material that has none of its channels"
-                .when(*yours == self.effects(self.shines, self.lit || self.scene.ambient != Vec3::ZERO)),
-            "what is before a bright background is seen: the background shines, too"
-                .when(*yours == self.effects(self.shines && without_sky, self.lit)),
-            "a scene without lights is not dark: emitters, ambient light and the background shine, too"
-                .when(*yours == self.effects(self.shines && !self.scene.lights.is_empty(), self.lit)),
-            "nothing shines in this scene, so its picture is black and needs nothing"
-                .when(*yours == self.effects(true, self.lit)),
-        ]
+        named![
+            *yours == self.effects(self.shines, shown_colour) =>
+                "an image shows only where light reaches its material: a light, ambient light, or indirect light",
+            *yours == self.effects(self.shines, of_any_light) =>
+                "light of one channel shows nothing of a colour in another: multiply channel by channel",
+            *yours == self.effects(self.shines, self.lit && without_indirect) => "indirect light reaches images too",
+            *yours == self.effects(self.shines || any_bright, self.lit) => "a material that no shape has does not shine",
+            *yours == self.effects(self.shines, self.lit || self.scene.indirect_light) =>
+                "indirect light shows no image of a material without a diffuse colour",
+            *yours == self.effects(self.shines, self.lit || self.scene.ambient != Vec3::ZERO) =>
+                "ambient light shows no image of a material that has none of its channels",
+            *yours == self.effects(self.shines && without_sky, self.lit) =>
+                "what is before a bright background is seen: the background shines, too",
+            *yours == self.effects(self.shines && !self.scene.lights.is_empty(), self.lit) =>
+                "a scene without lights is not dark: emitters, ambient light and the background shine, too",
+            *yours == self.effects(true, self.lit) => "nothing shines in this scene, so its picture is black and needs nothing",
+        ].to_vec()
     }
 }
 

@@ -67,113 +67,86 @@ fn drawn() -> HitsQuery {
 /// (4); light 2 casts no shadows. Each of the 10 hits of rough glass spawns 3 reflected and 3 refracted rays.
 const DRAWN: RayCounts = RayCounts { primary: 17, shadow: 27, reflection: 30, transmission: 30 };
 
+const PER_HIT: &str = "you count a shadow ray per hit, or per hit and light: in_front says how many samples lie in front of the surface";
+const PER_SAMPLE: &str =
+    "you count hits times light samples: in_front says how many samples lie in front of the surface";
+const ROUGH: &str = "you count one ray of each kind per hit of a rough surface: it spawns glossy_samples";
+const SMOOTH: &str = "you count glossy_samples rays per hit of a smooth surface: it spawns one";
+
 /// Wrong counts, each with its diagnosis.
 fn wrong_counts(HitsQuery { hits, effects, quality }: &HitsQuery) -> Vec<(RayCounts, &'static str)> {
     type OfRow<'a> = &'a dyn Fn(&MaterialHits, &MaterialEffects) -> u64;
-    let n = u64::from(quality.glossy_samples);
-    let parts = |takes: &MaterialEffects| if takes.glossy { n } else { 1 };
-    // The sum over rows of shadow rays per row, and of reflected and refracted rays per hit.
-    let count = |shadow: OfRow<'_>, reflected: OfRow<'_>, refracted: OfRow<'_>| {
-        let mut sum = RayCounts::default();
-        for row in hits {
+    let parts = |takes: &MaterialEffects| if takes.glossy { u64::from(quality.glossy_samples) } else { 1 };
+    let n = |_: &MaterialEffects| u64::from(quality.glossy_samples);
+    // The sum over rows of shadow rays per row, and of reflected and refracted rays per hit with these numbers of parts.
+    let count = |rows: &[MaterialHits], shadow: OfRow<'_>, reflected: OfRow<'_>, refracted: OfRow<'_>| {
+        rows.iter().fold(RayCounts::default(), |sum, row| {
             let takes = &effects.materials[row.material];
-            sum.primary += row.hits;
-            sum.shadow += shadow(row, takes);
-            sum.reflection += row.hits * reflected(row, takes);
-            sum.transmission += row.hits * refracted(row, takes);
-        }
-        sum
-    };
-    // The sum over lights: those that are listed, or all; those that cast shadows, or all.
-    let lights = |all: bool, casting: bool, rays: &dyn Fn(&MaterialHits, usize) -> u64| {
-        let of = |row: &MaterialHits, takes: &MaterialEffects| -> u64 {
-            let counts = |light: &usize| {
-                (all || takes.lights.contains(light)) && (!casting || effects.lights[*light].shadows)
-            };
-            (0..effects.lights.len()).filter(counts).map(|light| rays(row, light)).sum()
-        };
-        count(&of, &|_, takes| u64::from(takes.mirror) * parts(takes), &|_, takes| {
-            u64::from(takes.transmission) * parts(takes)
+            RayCounts {
+                primary: sum.primary + row.hits,
+                shadow: sum.shadow + shadow(row, takes),
+                reflection: sum.reflection + row.hits * reflected(row, takes),
+                transmission: sum.transmission + row.hits * refracted(row, takes),
+            }
         })
     };
-    let in_front = |row: &MaterialHits, light: usize| row.in_front[light];
+    let casts = |light: &usize| effects.lights[*light].shadows;
+    let in_front = |row: &MaterialHits, takes: &MaterialEffects| {
+        takes.lights.iter().filter(|light| casts(light)).map(|&light| row.in_front[light]).sum::<u64>()
+    };
+    let mirror = |_: &MaterialHits, takes: &MaterialEffects| u64::from(takes.mirror) * parts(takes);
+    let refracted = |_: &MaterialHits, takes: &MaterialEffects| u64::from(takes.transmission) * parts(takes);
+    let right = count(hits, &in_front, &mirror, &refracted);
+    let of_shadow = |shadow: OfRow<'_>| count(hits, shadow, &mirror, &refracted);
+    // Per light that is listed, and casts shadows or not.
+    let lights = |casting: bool, rays: &dyn Fn(&MaterialHits, usize) -> u64| {
+        let counts = |light: &&usize| !casting || casts(light);
+        of_shadow(&|row, takes| takes.lights.iter().filter(counts).map(|&light| rays(row, light)).sum())
+    };
     let samples = |light: usize| u64::from(effects.lights[light].samples);
-    let right = lights(false, true, &in_front);
-    let secondary = |reflected: OfRow<'_>, refracted: OfRow<'_>| RayCounts {
-        shadow: right.shadow,
-        ..count(&|_, _| 0, reflected, refracted)
+    let is_lit = |takes: &MaterialEffects| u64::from(takes.lights.iter().any(casts));
+    let first = |row: &MaterialHits, takes: &MaterialEffects| {
+        takes.lights.iter().find(|light| casts(light)).map_or(0, |&light| row.in_front[light])
     };
-    let (mirror, transmission) = (
-        |takes: &MaterialEffects| u64::from(takes.mirror),
-        |takes: &MaterialEffects| u64::from(takes.transmission),
-    );
-    let is_lit = |row: &MaterialHits| {
-        let takes = &effects.materials[row.material];
-        takes.lights.iter().any(|light| effects.lights[*light].shadows)
+    let secondary = |of_mirror: &dyn Fn(&MaterialEffects) -> u64,
+                     of_glass: &dyn Fn(&MaterialEffects) -> u64| {
+        count(hits, &in_front, &|_, takes| u64::from(takes.mirror) * of_mirror(takes), &|_, takes| {
+            u64::from(takes.transmission) * of_glass(takes)
+        })
     };
-    let first = |row: &MaterialHits| {
-        let lights = &effects.materials[row.material].lights;
-        lights.iter().find(|light| effects.lights[**light].shadows).map_or(0, |light| row.in_front[*light])
-    };
-    let per_hit = "you count a shadow ray per hit, or per hit and light: in_front says how many samples lie in front of the surface";
-    let per_sample =
-        "you count hits times light samples: in_front says how many samples lie in front of the surface";
-    let times = "you multiply in_front by the samples of the light: it already counts samples, over all hits";
-    let mut wrong = vec![
-        (lights(true, true, &in_front), "you count lights that do not matter to the material"),
-        (lights(false, false, &in_front), "you count lights that cast no shadows"),
-        (lights(false, true, &|row, light| row.hits * samples(light)), per_sample),
-        (lights(false, false, &|row, light| row.hits * samples(light)), per_sample),
-        (lights(false, true, &|row, _| row.hits), per_hit),
-        (lights(false, false, &|row, _| row.hits), per_hit),
-        (
-            RayCounts { shadow: hits.iter().filter(|row| is_lit(row)).map(|row| row.hits).sum(), ..right },
-            per_hit,
-        ),
-        (RayCounts { shadow: right.primary, ..right }, per_hit),
-        "you count only the first light of each row"
-            .when(RayCounts { shadow: hits.iter().map(first).sum(), ..right }
-            ),
-        (lights(false, true, &|row, light| row.in_front[light] * samples(light)), times),
-        "you count one ray of each kind per hit of a rough surface: it spawns glossy_samples"
-            .when(secondary(&|_, takes| mirror(takes), &|_, takes| transmission(takes))
-            ),
-        "you count one refracted ray per hit of a rough surface: it spawns glossy_samples refracted rays, too"
-            .when(secondary(&|_, takes| mirror(takes) * parts(takes), &|_, takes| transmission(takes))
-            ),
-        "you count one reflected ray per hit of a rough surface: it spawns glossy_samples reflected rays, too"
-            .when(secondary(&|_, takes| mirror(takes), &|_, takes| transmission(takes) * parts(takes))
-            ),
-        "you count glossy_samples rays per hit of a smooth surface: it spawns one"
-            .when(secondary(&|_, takes| mirror(takes) * n, &|_, takes| transmission(takes) * n)
-            ),
-        "you count secondary rays for a material whose mirror and transmission are false"
-            .when(secondary(&|_, takes| parts(takes), &|_, takes| parts(takes))
-            ),
-        "you count rows: one ray made each hit, so primary is the sum of hits"
-            .when(RayCounts { primary: hits.len() as u64, ..right }
-            ),
-    ];
-    let of_rows = |rows: Vec<MaterialHits>| {
-        let mut sum = RayCounts::default();
-        for row in rows {
-            let takes = &effects.materials[row.material];
-            let casting = takes.lights.iter().filter(|light| effects.lights[**light].shadows);
-            sum.primary += row.hits;
-            sum.shadow += casting.map(|light| row.in_front[*light]).sum::<u64>();
-            sum.reflection += row.hits * mirror(takes) * parts(takes);
-            sum.transmission += row.hits * transmission(takes) * parts(takes);
-        }
-        sum
-    };
-    let last = hits.last().cloned().into_iter().collect();
-    wrong.push((of_rows(last), "you return the counts of the last row: add up all rows"));
-    let numbered = (0..effects.materials.len())
-        .zip(hits)
-        .map(|(material, row)| MaterialHits { material, ..row.clone() });
-    let text = "you use the number of the row as its material: take effects.materials[row.material]";
-    wrong.push((of_rows(numbered.collect()), text));
-    wrong
+    let any =
+        |row: &MaterialHits| (0..row.in_front.len()).filter(casts).map(|light| row.in_front[light]).sum();
+    let last = hits.last().cloned().into_iter().collect::<Vec<_>>();
+    let numbered = (0..effects.materials.len()).zip(hits);
+    let numbered =
+        numbered.map(|(material, row)| MaterialHits { material, ..row.clone() }).collect::<Vec<_>>();
+    named![
+        of_shadow(&|row, _| any(row)) => "you count lights that do not matter to the material",
+        lights(false, &|row, light| row.in_front[light]) => "you count lights that cast no shadows",
+        lights(true, &|row, light| row.hits * samples(light)) => PER_SAMPLE,
+        lights(false, &|row, light| row.hits * samples(light)) => PER_SAMPLE,
+        lights(true, &|row, _| row.hits) => PER_HIT,
+        lights(false, &|row, _| row.hits) => PER_HIT,
+        of_shadow(&|row, takes| row.hits * is_lit(takes)) => PER_HIT,
+        of_shadow(&|row, _| row.hits) => PER_HIT,
+        of_shadow(&first) => "you count only the first light of each row",
+        lights(true, &|row, light| row.in_front[light] * samples(light)) =>
+            "you multiply in_front by the samples of the light: it already counts samples, over all hits",
+        secondary(&|_| 1, &|_| 1) => ROUGH,
+        secondary(&parts, &|_| 1) =>
+            "you count one refracted ray per hit of a rough surface: it spawns glossy_samples refracted rays, too",
+        secondary(&|_| 1, &parts) =>
+            "you count one reflected ray per hit of a rough surface: it spawns glossy_samples reflected rays, too",
+        secondary(&n, &n) => SMOOTH,
+        count(hits, &in_front, &|_, takes| parts(takes), &|_, takes| parts(takes)) =>
+            "you count secondary rays for a material whose mirror and transmission are false",
+        RayCounts { primary: hits.len() as u64, ..right } =>
+            "you count rows: one ray made each hit, so primary is the sum of hits",
+        count(&last, &in_front, &mirror, &refracted) => "you return the counts of the last row: add up all rows",
+        count(&numbered, &in_front, &mirror, &refracted) =>
+            "you use the number of the row as its material: take effects.materials[row.material]",
+    ]
+    .to_vec()
 }
 
 fn broken(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'static str) -> Broken {

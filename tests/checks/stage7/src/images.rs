@@ -140,11 +140,9 @@ enum Reads {
 }
 
 const MISTAKES: [(Reads, &str); 17] = named![
-    Reads::Fraction =>
-        "the weights are negative left of the first pixel's centre: subtract floor(x), and use no fract",
+    Reads::Fraction => "the weights are negative left of the first pixel's centre: subtract floor(x), and use no fract",
     Reads::ExchangedAxes => "you exchange the weights of columns and rows",
-    Reads::ExchangedWeights =>
-        "you exchange the weights w and 1 - w: the nearer a pixel, the larger its weight",
+    Reads::ExchangedWeights => "you exchange the weights w and 1 - w: the nearer a pixel, the larger its weight",
     Reads::AlongX => "you interpolate along x only: interpolate between the two rows, too",
     Reads::AlongY => "you interpolate along y only: interpolate between the two columns, too",
     Reads::TowardsZero => "you round towards 0: left of the first pixel's centre x is negative, so use floor",

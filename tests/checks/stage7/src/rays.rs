@@ -70,10 +70,9 @@ fn judge(trial: &Trial<'_>, BoundedScene { what, query, expected, wrong }: Bound
         Err(KitError::Panicked { message, place }) => {
             let yours = format!("a panic at {place}: {message}");
             let broken = Broken::with_texts(input, yours, format!("{expected:?}"), "counted by hand");
-            Err(broken.explained_by([(
-                message.contains("overflow"),
-                "a number overflows: count in u64, with saturating_add and saturating_mul",
-            )]))
+            Err(broken
+                .explained_by(["a number overflows: count in u64, with saturating_add and saturating_mul"
+                    .when(message.contains("overflow"))]))
         }
         Err(error) => kit_error::unwind(error),
     }

@@ -141,8 +141,7 @@ fn judge_refusal(path: &Vec<Affine3A>, yours: Option<Placement>) -> CheckResult 
     match (yours, has_inverse) {
         (Some(_), false) => Err(Broken::with_texts(input, "Some", "None", "a transform has no inverse").explained_by([
             "you accept a path with a singular transform: if one factor has no inverse, the product has none"
-                .when(flat
-                ),
+                .when(flat),
             (!flat, "you accept a transform with NaN or infinite numbers: its inverse is not finite"),
             (true, "you accept a path with a transform that has no inverse: if one has none, the product has none"),
         ])),

@@ -206,35 +206,30 @@ fn mistakes<S: Solid>(scaled: &Scaled<S>, yours: Option<f32>, exact: Option<f32>
     let is_last_dropped = S::FLAT || last().is_none_or(|t| is_dropped(t) || t >= f64::from(ray.t_max));
     vec![
         "you return NaN: write the comparisons so that they are false for NaN"
-            .when(yours.is_some_and(f32::is_nan)
-            ),
+            .when(yours.is_some_and(f32::is_nan)),
         (counts_from(length), "your t has another unit, that of the world: it counts lengths of direction"),
         (counts_from(length.recip()), "your t has another unit: you divide by the length of direction twice"),
         // Some return None for a small t, and others go on to the far side, which may be dropped, too.
         (is_small && lost, FIXED_EPSILON),
         (is_small && (is_far || (lost && is_last_dropped)), FIXED_EPSILON),
         "you use 0 in place of t_min: a hit outside of the ray's range does not count, so test ray.contains(t)"
-            .when(ray.t_min != 0.0 && is_range(0.0, ray.t_max)
-            ),
+            .when(ray.t_min != 0.0 && is_range(0.0, ray.t_max)),
         "you do not test t_max: a hit outside of the ray's range does not count, so test ray.contains(t)"
-            .when(ray.t_max != f32::INFINITY && is_range(ray.t_min, f32::INFINITY)
-            ),
+            .when(ray.t_max != f32::INFINITY && is_range(ray.t_min, f32::INFINITY)),
         (
             lost && inside && !S::FLAT,
             "you return None for a ray that starts inside: it hits the surface where it leaves, on a side or \
              on an end",
         ),
         "you give up because the entry lies before t_min: the exit still counts"
-            .when(lost && !S::FLAT && first.is_some_and(|t| t <= ray.t_min)
-            ),
+            .when(lost && !S::FLAT && first.is_some_and(|t| t <= ray.t_min)),
         (
             is_far && exact.is_some(),
             "you return the far side: the hit is the nearest point of the surface in the ray's range, on a \
              side or on an end",
         ),
         "you return a t outside of the ray's range: test ray.contains(t)"
-            .when(yours.is_some_and(|t| !ray.contains(t))
-            ),
+            .when(yours.is_some_and(|t| !ray.contains(t))),
         (S::FLAT && yours.is_some() && exact.is_none(), OUTSIDE),
     ]
 }

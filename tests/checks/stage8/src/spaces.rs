@@ -161,10 +161,8 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
     unless(same_length && same_range && same_time, || {
             let (got, right) = (describe(length, &yours), describe(exact, ray));
             Broken::with_texts(query.call("ray_to_object"), got, right, "the definition")
-            .explained_by([(
-                same_length && same_time && yours.t_max == ray.t_max && yours.t_min > ray.t_min,
-                "you raise t_min: the range stays, and an offset of the origin belongs to other rays",
-            )])
+            .explained_by(["you raise t_min: the range stays, and an offset of the origin belongs to other rays"
+                .when(same_length && same_time && yours.t_max == ray.t_max && yours.t_min > ray.t_min)])
         }).formulas([
             "you normalize the direction: t then has another unit than in the world and cannot be compared"
                 .when(only_length && near(1.0)),

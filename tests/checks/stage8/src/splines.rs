@@ -78,10 +78,8 @@ const WRONG: [(Rule, &str); 9] = named![
     Rule::ClosedSpans => CLOSED,
     Rule::ZeroOverZero => NOT_A_NUMBER,
     Rule::FirstTermOnly => "you leave out the second term, with N(i+1, p-1)",
-    Rule::OneDenominator =>
-        "you divide both terms by k_{i+p} - k_i: the second denominator is k_{i+p+1} - k_{i+1}",
-    Rule::FactorsExchanged =>
-        "you exchange the two factors: that of N(i, p-1) rises, and that of N(i+1, p-1) falls",
+    Rule::OneDenominator => "you divide both terms by k_{i+p} - k_i: the second denominator is k_{i+p+1} - k_{i+1}",
+    Rule::FactorsExchanged => "you exchange the two factors: that of N(i, p-1) rises, and that of N(i+1, p-1) falls",
     Rule::SameFunctionTwice => "you use N(i, p-1) in both terms: the second one has N(i+1, p-1)",
     Rule::OneDegreeLess => "you return the function of one degree less",
 ];
@@ -244,17 +242,14 @@ const WRONG_MEANS: [(Mean, &str); 11] = named![
     Mean::WithoutWeights => "you leave out the weights",
     Mean::NotDivided =>
         "you do not divide by the sum of the factors: with weights it is not 1, although the basis functions add up to 1",
-    Mean::DividedByTheNumber =>
-        "you divide by the sum of all weights: weight each by its basis functions, too",
+    Mean::DividedByTheNumber => "you divide by the sum of all weights: weight each by its basis functions, too",
     Mean::WeightsBelowOnly => "you use the weights in the denominator only: the points have the same factors",
     Mean::ParametersExchanged => "you exchange u and v: u runs along the rows, v from row to row",
     Mean::OneParameterTwice => "you use u in both directions: v runs from row to row",
     Mean::OneDegree(0) => "you use one degree in both directions: u has degrees[0], and v has degrees[1]",
     Mean::OneDegree(1) => "you use one degree in both directions: u has degrees[0], and v has degrees[1]",
-    Mean::OneListOfKnots(0) =>
-        "you use the same knots in both directions: u has knots[0], and v has knots[1]",
-    Mean::OneListOfKnots(1) =>
-        "you use the same knots in both directions: u has knots[0], and v has knots[1]",
+    Mean::OneListOfKnots(0) => "you use the same knots in both directions: u has knots[0], and v has knots[1]",
+    Mean::OneListOfKnots(1) => "you use the same knots in both directions: u has knots[0], and v has knots[1]",
     Mean::WeightsOfFirstRow => "you use the weights of the first row for all rows: each point has its own",
 ];
 

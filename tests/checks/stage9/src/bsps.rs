@@ -176,14 +176,11 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     if fullest <= 2 && references <= 2 * n && depth <= 8 {
         return judge_straddlers(trial);
     }
-    let mistakes = [
-        (yours.nodes.len() == 1, "you make no cut: the planes of the polygons are the candidates"),
-        "you do not divide the parallel sheets down to leaf_size: the planes of the polygons are the candidates"
-            .when(fullest > 2),
-        "your planes have many sheets on both sides: the planes of the polygons are the candidates"
-            .when(references > 2 * n),
-        "your planes leave most sheets on one side: choose those that leave few primitives on the fuller side"
-            .when(depth > 8),
+    let mistakes = named![
+        yours.nodes.len() == 1 => "you make no cut: the planes of the polygons are the candidates",
+        fullest > 2 => "you do not divide the parallel sheets down to leaf_size: the planes of the polygons are the candidates",
+        references > 2 * n => "your planes have many sheets on both sides: the planes of the polygons are the candidates",
+        depth > 8 => "your planes leave most sheets on one side: choose those that leave few primitives on the fuller side",
     ];
     let yours = format!("up to {fullest} sheets per leaf, {references} references, {depth} levels");
     let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 32");

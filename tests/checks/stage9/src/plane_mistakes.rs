@@ -41,16 +41,13 @@ const AT_PLANES: [(AtPlane, &str); 15] = named![
         "a ray in the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side above only",
     AtPlane::StartAhead =>
         "a ray that starts on the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side ahead only",
-    AtPlane::StartBehind =>
-        "a ray that starts on the plane is on both sides: you search only the side from which it comes",
+    AtPlane::StartBehind => "a ray that starts on the plane is on both sides: you search only the side from which it comes",
     AtPlane::BelowAndAhead =>
         "a ray in the plane, or that starts on it, is on both sides: you search the side below only, or the side ahead only",
     AtPlane::AboveAndAhead =>
         "a ray in the plane, or that starts on it, is on both sides: you search the side above only, or the side ahead only",
-    AtPlane::OnPlaneBelow =>
-        "a ray in the plane, or that starts on it, is on both sides: you search the side below only",
-    AtPlane::OnPlaneAbove =>
-        "a ray in the plane, or that starts on it, is on both sides: you search the side above only",
+    AtPlane::OnPlaneBelow => "a ray in the plane, or that starts on it, is on both sides: you search the side below only",
+    AtPlane::OnPlaneAbove => "a ray in the plane, or that starts on it, is on both sides: you search the side above only",
     AtPlane::NotCrossedNone =>
         "if the plane is behind the ray or beyond its end, the whole ray is on one side, and you must search that side",
     AtPlane::NotCrossedBelow =>
@@ -59,8 +56,7 @@ const AT_PLANES: [(AtPlane, &str); 15] = named![
         "if the plane is behind the ray or beyond its end, the ray is on the side of its origin: you always take the side above",
     AtPlane::ParallelNone => "a ray parallel to the plane is on the side of its origin: you search no side",
     AtPlane::NearOnly => "you search only the side of the origin: the ray goes on to the other side",
-    AtPlane::ByDirection =>
-        "you choose the side by the direction alone: the ray is first on the side of its origin",
+    AtPlane::ByDirection => "you choose the side by the direction alone: the ray is first on the side of its origin",
     AtPlane::PolygonsLeftOut => "step 2 of the slide is missing: you do not test the polygons on the plane",
 ];
 

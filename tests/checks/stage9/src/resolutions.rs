@@ -150,12 +150,10 @@ pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> CheckResult {
         let broken = || {
             let expected = format!("about {wanted} cells that are nearly cubes");
             let yours = format!("{yours}, {n} cells");
-            Broken::with_texts(describe(query), yours, expected, "the definition").explained_by([
-                (!cubes, "your cells are not nearly cubes"),
-                "you make too few cells: the product over the three axes must be about density · n"
-                    .when(n < wanted),
-                "you make too many cells: the product over the three axes must be about density · n"
-                    .when(n > wanted),
+            Broken::with_texts(describe(query), yours, expected, "the definition").explained_by(named![
+                !cubes => "your cells are not nearly cubes",
+                n < wanted => "you make too few cells: the product over the three axes must be about density · n",
+                n > wanted => "you make too many cells: the product over the three axes must be about density · n",
             ])
         };
         unless(is_right, broken).formulas([

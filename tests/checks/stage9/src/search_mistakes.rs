@@ -101,24 +101,20 @@ impl Wrong {
 pub(super) const FIRST_CELL_ONLY: &str = "you search only the first cell that the ray enters";
 
 const MISTAKES: [(Wrong, &str); 11] = named![
-    Wrong::TieToTheFirst =>
-        "of two hits at the same t the smaller primitive number wins: you keep the first one",
-    Wrong::TieToTheLast =>
-        "of two hits at the same t the smaller primitive number wins: you keep the last one",
+    Wrong::TieToTheFirst => "of two hits at the same t the smaller primitive number wins: you keep the first one",
+    Wrong::TieToTheLast => "of two hits at the same t the smaller primitive number wins: you keep the last one",
     Wrong::FirstOfCell => "you take the first hit in the list of a cell: keep the nearest of all",
     Wrong::LastOfCell => "you take the last hit in the list of a cell: keep the nearest of all",
     Wrong::Farthest => "you keep the farther of two hits",
     Wrong::BeforeTheEnd =>
         "`hit.distance < t'` loses a hit on the far face of its cell, and behind it: a hit counts wherever its cell ends",
-    Wrong::BeforeTheEndOrAt =>
-        "`hit.distance <= t'` loses a hit behind the end of its cell: a hit counts wherever its cell ends",
+    Wrong::BeforeTheEndOrAt => "`hit.distance <= t'` loses a hit behind the end of its cell: a hit counts wherever its cell ends",
     Wrong::FirstCellWithAHit =>
         "`Some hit → Some hit` stops at the first cell with a hit, and a later cell has a nearer hit: go on until the next cell begins behind the best hit",
     Wrong::FirstCellOnly => FIRST_CELL_ONLY,
     Wrong::NoRoom =>
         "t of a hit and t of a cell are rounded differently; stop only if the hit is before the cell by more than the rounding error",
-    Wrong::NoRoomOrAt =>
-        "you stop at a cell that begins exactly at the best hit, but another primitive there may have the same t",
+    Wrong::NoRoomOrAt => "you stop at a cell that begins exactly at the best hit, but another primitive there may have the same t",
 ];
 
 /// The known mistakes of a search that goes through these cells, each with whether it finds this hit.
