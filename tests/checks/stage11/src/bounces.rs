@@ -46,7 +46,6 @@ fn judge(query: &(f32, f32), yours: u32) -> Judged {
     let bounces = if albedo <= error { 0.0 } else { error.ln() / albedo.ln() - 1.0 };
     let estimate = bounces.ceil();
     let quotient = if albedo <= error { 1.0 } else { error.ln() / albedo.ln() };
-    let single = if albedo <= error { 0.0 } else { f64::from((query.1.ln() / query.0.ln()).ceil() - 1.0) };
     let of_last = if albedo <= error { 0.0 } else { (error / (1.0 - albedo)).ln() / albedo.ln() };
     let expected = format!("about {estimate}, the smallest n with albedo^(n + 1) <= error");
     let right = is_enough && is_smallest;
@@ -63,9 +62,8 @@ fn judge(query: &(f32, f32), yours: u32) -> Judged {
         n == (bounces.floor().max(0.0)) => "one bounce too few: round up",
         n == (quotient.ceil() - 1.0).max(0.0) || n == estimate.max(0.0) =>
             "the quotient of the logarithms is rounded: test the power for this number and the one before",
-        n == single.max(0.0) => "the logarithms are in single precision, whose quotient may be off by many bounces",
-        n == quotient.round().max(0.0) || n == bounces.round().max(0.0) =>
-            "the quotient is rounded to the nearest number: round up",
+        n == quotient.round().max(0.0) => "the quotient is rounded to the nearest number: round up",
+        n == bounces.round().max(0.0) => "the quotient is rounded to the nearest number: round up",
         n == quotient.floor().max(0.0) => "the quotient of the logarithms is rounded down: it is n + 1, rounded up",
         n == of_last.ceil().max(0.0) || n == (of_last - 1.0).ceil().max(0.0) =>
             "the error is that of one bounce: all light after the last one is missing",

@@ -332,7 +332,6 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
             let others = others.map(|(other, (_, text))| (is_next(&sample, unless_below(by(*other) * whole)), text));
             let formulas = [
                 (step.next.is_some_and(|next| next.weight.is_nan()), "you return NaN"),
-                (is_next(&sample, weight.min(DVec3::ONE)), "the weight is clamped to 1, so light is lost"),
                 "a diffuse ray below the geometric normal hits its own surface: end the path"
                     .when(is_next(&sample, by(factor) * whole)),
                 "the factor of survives is missing in the weight"

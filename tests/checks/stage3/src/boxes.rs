@@ -58,7 +58,8 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
         // A box that is larger on each side by the same length, or by the same part of the radius.
         let (low, high) = (center - radius - yours.min.as_dvec3(), yours.max.as_dvec3() - center - radius);
         let pad = DVec3::splat(low.max(high).max_element());
-        let is_padded = (low - pad).abs().max((high - pad).abs()).cmple(slack + 1e-3 * pad).all();
+        let is_padded =
+            (low - pad).abs().max((high - pad).abs()).cmple(slack.max_element() + 1e-3 * pad).all();
         let broken = || {
             Broken::new(input(), yours, expected, "closed form").explained_by([
                 "you pad the box: one radius from the centre is enough, up to rounding".when(is_padded),

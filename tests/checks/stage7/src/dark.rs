@@ -57,7 +57,10 @@ impl Dark {
             material.emission != Vec3::ZERO || self.scene.ambient * material.ambient != Vec3::ZERO
         });
         let without_indirect = of_any_light && !self.scene.indirect_light;
-        let without_sky = self.scene.background.is_black() || self.listed() || any_bright;
+        let without_sky = self.scene.background.is_black()
+            || self.listed()
+            || self.scene.ambient * material.ambient != Vec3::ZERO;
+        let without_emitters = !self.scene.background.is_black() || self.listed();
         named![
             *yours == self.effects(self.shines, shown_colour) =>
                 "an image shows only where light reaches its material: a light, ambient light, or indirect light",
@@ -71,7 +74,8 @@ impl Dark {
                 "ambient light shows no image of a material that has none of its channels",
             *yours == self.effects(self.shines && without_sky, self.lit) =>
                 "what is before a bright background is seen: the background shines, too",
-            *yours == self.effects(self.shines && !self.scene.lights.is_empty(), self.lit) =>
+            *yours == self.effects(self.shines && !self.scene.lights.is_empty(), self.lit)
+                || *yours == self.effects(self.shines && without_emitters, self.lit) =>
                 "a scene without lights is not dark: emitters, ambient light and the background shine, too",
             *yours == self.effects(true, self.lit) => "nothing shines in this scene, so its picture is black and needs nothing",
         ].to_vec()

@@ -135,11 +135,12 @@ enum Reads {
     NextStartsAgain,
     /// The second column and row are limited to the image, and not wrapped.
     NextClamped,
-    NextBefore,
+    /// The second column, or row, is that before the first one.
+    NextBefore(usize),
     UpsideDown,
 }
 
-const MISTAKES: [(Reads, &str); 17] = named![
+const MISTAKES: [(Reads, &str); 18] = named![
     Reads::Fraction => "the weights are negative left of the first pixel's centre: subtract floor(x), and use no fract",
     Reads::ExchangedAxes => "you exchange the weights of columns and rows",
     Reads::ExchangedWeights => "you exchange the weights w and 1 - w: the nearer a pixel, the larger its weight",
@@ -152,13 +153,15 @@ const MISTAKES: [(Reads, &str); 17] = named![
     Reads::NextStays => NEXT,
     Reads::NextStartsAgain => NEXT,
     Reads::NextClamped => NEXT,
-    Reads::NextBefore => "the second column and row are those before the first: they are those behind it",
+    Reads::NextBefore(0) => BEFORE,
+    Reads::NextBefore(1) => BEFORE,
     Reads::Smooth => "you smooth the weights: they are the distances themselves",
     Reads::UpperLeft => "you return the upper left of the four pixels: interpolate all four",
     Reads::Nearest => "you return the nearest pixel: interpolate the four around the point",
     Reads::UpsideDown => "your image is upside down: v points up, and rows are stored from the top",
 ];
 
+const BEFORE: &str = "the second column and row are those before the first: they are those behind it";
 const NEXT: &str =
     "you do not wrap the pixel next to the last one: get the column and row of all four from texel";
 
@@ -166,7 +169,8 @@ impl Reads {
     /// Whether this colour is that of the mistake. A point at the centre of a pixel may belong to the pixel before.
     fn gives(self, query: &TextureQuery, yours: Vec3) -> bool {
         let near = |x: f64, y: f64| apart(yours, self.color(query, x, y)) < NEAR_A_MISTAKE;
-        [-1e-5, 1e-5].into_iter().any(|x| near(x, -1e-5) || near(x, 1e-5))
+        let shifts = [-1e-5, 0.0, 1e-5];
+        shifts.into_iter().any(|x| shifts.into_iter().any(|y| near(x, y)))
     }
 
     fn color(self, TextureQuery { texture, uv }: &TextureQuery, right: f64, down: f64) -> DVec3 {
@@ -189,18 +193,18 @@ impl Reads {
         };
         let wrap = if let Reads::Another(wrap) = self { wrap } else { texture.wrap };
         let index = |at: i64, size: u32| row(size, wrap, at.abs())[(at + at.abs()) as usize];
-        let both = |at: f64, size: u32| {
-            let at = at as i64;
+        let both = |axis: usize, size: u32| {
+            let at = first[axis] as i64;
             let next = match self {
                 Reads::NextStays => (index(at, size) + 1).min(size - 1),
                 Reads::NextStartsAgain => (index(at, size) + 1) % size,
                 Reads::NextClamped => (at + 1).clamp(0, i64::from(size) - 1) as u32,
-                Reads::NextBefore => index(at - 1, size),
+                Reads::NextBefore(other) if other == axis => index(at - 1, size),
                 _ => index(at + 1, size),
             };
             [index(at, size), next]
         };
-        let ([left, right], [top, bottom]) = (both(first[0], texture.width), both(first[1], texture.height));
+        let ([left, right], [top, bottom]) = (both(0, texture.width), both(1, texture.height));
         let pixel = |x: u32, y: u32| texture.pixels[(y * texture.width + x) as usize].as_dvec3();
         let along = |y: u32| pixel(left, y).lerp(pixel(right, y), dx);
         along(top).lerp(along(bottom), dy)

@@ -103,6 +103,7 @@ pub(super) fn child_cache_goes_first(trial: &Trial<'_>) -> CheckResult {
     let cached_only = "you visit the cached child only";
     let own_later = "you visit the cached child before the node's own primitives";
     let as_listed = "you do not sort the other children although `sort` is on";
+    let unasked = "you visit the cached child without asking for its volume";
     let never = "you do not skip a child that begins beyond the closest hit";
     // A root with four children at the places 0 to 3 along the ray, as listed; the place in the cache; the tests expected.
     type Case<'a> = (
@@ -137,7 +138,13 @@ pub(super) fn child_cache_goes_first(trial: &Trial<'_>) -> CheckResult {
             &[(&[0], ignored), (&[2], cached_only), (&[2, 1, 0], as_listed), (&[2, 0, 1, 3], never)],
         ),
         (&[3, 2, 1, 0], Some(0), SKIP, &[0], &[(&[3, 2, 1, 0], ignored), (&[0, 3, 2, 1], never)]),
-        (&[3, 1, 0, 2], Some(2), SKIP, &[4], &[(&[2, 4], own_later), (&[4, 2, 3, 1, 0], never)]),
+        (
+            &[3, 1, 0, 2],
+            Some(2),
+            SKIP,
+            &[4],
+            &[(&[2, 4], own_later), (&[4, 2], unasked), (&[4, 2, 3, 1, 0], never)],
+        ),
         (&[3, 1, 0, 2], None, ALL, &[0], &[(&[0, 1, 2, 3], never)]),
     ];
     let query = |(order, cached, savings, expected, _): &Case<'_>| {

@@ -155,11 +155,6 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>, scal
         (only(&[top], &side), "you leave out the end at `base`: a ray can enter or leave through it"),
         (only(&[base, top], &[]), "you leave out the side: only the ends are hit"),
         (other(radius, 0.0, unit), "your cylinder has the height 1: its axis goes from `base` to `top`"),
-        "your cylinder ends at the square of its height: divide by the length of the axis".when(other(
-            radius,
-            0.0,
-            line.axis.length(),
-        )),
         "your cylinder goes from `base` both ways: its axis goes from `base` to `top`"
             .when(other(radius, -1.0, 1.0)),
         (other(radius, 0.0, 0.5), "your cylinder ends halfway: its axis goes from `base` to `top`"),
@@ -209,37 +204,23 @@ pub(super) fn of_cone(query: &SolidQuery<Cone>, yours: Option<f32>, _: f64) -> M
     let exchanged = within(height / radius, 0.0, 1.0).chain(base(height * height / radius));
     let not_squared = within(slope.sqrt(), 0.0, 1.0).chain(base(slope.sqrt() * height));
     let no_end = endless.clone().next().is_none();
-    vec![
-        "you leave out the base: a ray can enter or leave through it".when(is(
-            ray,
-            yours,
-            first(ray, within(slope, 0.0, 1.0)),
-        )),
-        (is(ray, yours, first(ray, base(radius))), "you leave out the side: only the base is hit"),
-        "your base lies halfway to the apex: it is at `base`".when(is(
-            ray,
-            yours,
-            first(ray, within(slope, 0.0, 0.5).chain(end(0.5, 0.5 * radius))),
-        )),
-        "your cone has the height 1: its axis goes from `apex` to `base`".when(is(
-            ray,
-            yours,
-            first(ray, within(slope, 0.0, unit).chain(end(unit, radius * unit))),
-        )),
-        "your cone has no base: it goes on beyond `base`"
-            .when(is(ray, yours, first(ray, endless)) || (no_end && yours.is_none_or(|t| t > 1e3))),
-        (is(ray, yours, first(ray, not_squared)), "you do not square the slope of the side, radius / height"),
-        "you return a point of the second cone, above the apex, which is not part of the solid".when(is(
-            ray,
-            yours,
-            first(ray, double),
-        )),
-        "you exchange radius and height in the slope of the surface: it is radius / height".when(is(
-            ray,
-            yours,
-            first(ray, exchanged),
-        )),
+    let hits = |ts: &mut dyn Iterator<Item = f64>| is(ray, yours, first(ray, ts));
+    let side = |high: f64| within(slope, 0.0, high);
+    named![
+        hits(&mut side(1.0)) => "you leave out the base: a ray can enter or leave through it",
+        hits(&mut base(radius).into_iter()) => "you leave out the side: only the base is hit",
+        hits(&mut side(0.5).chain(end(0.5, 0.5 * radius))) => "your base lies halfway to the apex: it is at `base`",
+        hits(&mut side(unit).chain(end(unit, radius * unit))) =>
+            "your cone has the height 1: its axis goes from `apex` to `base`",
+        hits(&mut endless.clone()) || (no_end && yours.is_none_or(|t| t > 1e3)) =>
+            "your cone has no base: it goes on beyond `base`",
+        hits(&mut not_squared.clone()) => "you do not square the slope of the side, radius / height",
+        hits(&mut double.clone()) =>
+            "you return a point of the second cone, above the apex, which is not part of the solid",
+        hits(&mut exchanged.clone()) =>
+            "you exchange radius and height in the slope of the surface: it is radius / height",
     ]
+    .to_vec()
 }
 
 pub(super) fn normals_of_cone(cone: &Cone, at: DVec3) -> WrongNormals {

@@ -107,7 +107,9 @@ impl Rule {
         };
         let (first_width, second_width) = (k(degree) - k(0), k(degree + 1) - k(1));
         let (first_width, second_width) = match self {
-            Rule::UniformKnots => (degree as f64, degree as f64),
+            Rule::UniformKnots => [first_width, second_width]
+                .map(|width| if width == 0.0 { width } else { degree as f64 })
+                .into(),
             _ => (first_width, second_width),
         };
         let second_width = if self == Rule::OneDenominator { first_width } else { second_width };
