@@ -13,7 +13,7 @@ const PANICS: [(&str, &str); 10] = crate::named![
     "only for the primitives of the leaf" => "a free lane of a block is asked for: the last block of a leaf may not be full",
     "so the recursion never ends" =>
         "a side of a split is empty, so the other one is divided again and again: halve the list there",
-    "the search does not end" => "a step of the search does not advance, so it does not end",
+    "the search does not end" => "a step of the search does not advance along the ray, so it does not end",
     "only t_max may change" => "the probe is asked with another ray than those of the packet",
     "subtract with overflow" => "a difference of whole numbers does not fit into its type: it is below 0, or too small",
     "add with overflow" => "a sum of whole numbers does not fit into its type: saturate it, or take a larger type",

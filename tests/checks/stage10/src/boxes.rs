@@ -50,7 +50,7 @@ const OVERFLOW: &str = "1/d is infinite although d is not 0: divide by d there";
 
 /// The mistakes with the words of the diagnosis, those that lose the fewest boxes first: the first one that explains all lost
 /// boxes is named.
-const MISTAKES: [(Mistake, Widened, &str); 21] = {
+const MISTAKES: [(Mistake, Widened, &str); 17] = {
     use Mistake::*;
     use Widened::*;
     [
@@ -60,11 +60,7 @@ const MISTAKES: [(Mistake, Widened, &str); 21] = {
             "a factor of 1 + 2 γ₃ moves a negative exit the wrong way: move it later by 2 γ₃ |t|",
         ),
         (Overflow, Both, OVERFLOW),
-        (Overflow, Exit, OVERFLOW),
-        (Overflow, Not, OVERFLOW),
         (FromZero, Both, "the range begins at 0 in your test: it begins at t_min, which may be negative"),
-        (FromZero, Exit, "the range begins at 0 in your test: it begins at t_min, which may be negative"),
-        (FromZero, Not, "the range begins at 0 in your test: it begins at t_min, which may be negative"),
         (StartIgnored, Both, "a box before t_min is met: the interval is that of the ray's range"),
         (StartIgnored, Exit, "a box before t_min is met: the interval is that of the ray's range"),
         (EndIgnored, Both, "a box beyond t_max is met: the interval is that of the ray's range"),

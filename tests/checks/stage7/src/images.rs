@@ -127,32 +127,37 @@ enum Reads {
     Nearest,
     Smooth,
     TowardsZero,
-    /// The weights are the parts behind the point, which are negative for negative numbers.
-    Fraction,
+    /// The image is repeated before its wrap mode is asked.
+    Repeated,
     Another(Wrap),
     /// The second column and row are those behind the first ones in the image: the last one, or the first one again.
     NextStays,
     NextStartsAgain,
     /// The second column and row are limited to the image, and not wrapped.
     NextClamped,
+    /// The second column (0), row (1), or both (2), is at most the last one.
+    NextLimited(usize),
     /// The second column, or row, is that before the first one.
     NextBefore(usize),
     UpsideDown,
 }
 
-const MISTAKES: [(Reads, &str); 18] = named![
-    Reads::Fraction => "the weights are negative left of the first pixel's centre: subtract floor(x), and use no fract",
+const MISTAKES: [(Reads, &str); 21] = named![
     Reads::ExchangedAxes => "you exchange the weights of columns and rows",
     Reads::ExchangedWeights => "you exchange the weights w and 1 - w: the nearer a pixel, the larger its weight",
     Reads::AlongX => "you interpolate along x only: interpolate between the two rows, too",
     Reads::AlongY => "you interpolate along y only: interpolate between the two columns, too",
     Reads::TowardsZero => "you round towards 0: left of the first pixel's centre x is negative, so use floor",
+    Reads::Repeated => ANOTHER_WRAP,
     Reads::Another(Wrap::Repeat) => ANOTHER_WRAP,
     Reads::Another(Wrap::Clamp) => ANOTHER_WRAP,
     Reads::Another(Wrap::Mirror) => ANOTHER_WRAP,
     Reads::NextStays => NEXT,
     Reads::NextStartsAgain => NEXT,
     Reads::NextClamped => NEXT,
+    Reads::NextLimited(0) => NEXT,
+    Reads::NextLimited(1) => NEXT,
+    Reads::NextLimited(2) => NEXT,
     Reads::NextBefore(0) => BEFORE,
     Reads::NextBefore(1) => BEFORE,
     Reads::Smooth => "you smooth the weights: they are the distances themselves",
@@ -175,6 +180,7 @@ impl Reads {
 
     fn color(self, TextureQuery { texture, uv }: &TextureQuery, right: f64, down: f64) -> DVec3 {
         let [u, v] = [uv.x, uv.y].map(f64::from);
+        let [u, v] = if self == Reads::Repeated { [u.rem_euclid(1.0), v.rem_euclid(1.0)] } else { [u, v] };
         let v = if self == Reads::UpsideDown { v } else { 1.0 - v };
         let (x, y) = (u * f64::from(texture.width) - 0.5 + right, v * f64::from(texture.height) - 0.5 + down);
         let first = [x, y].map(|x| if self == Reads::TowardsZero { x.trunc() } else { x.floor() });
@@ -187,7 +193,6 @@ impl Reads {
             Reads::AlongY => (0.0, dy),
             Reads::UpperLeft => (0.0, 0.0),
             Reads::Nearest => (dx.round(), dy.round()),
-            Reads::Fraction => (x.fract(), y.fract()),
             Reads::Smooth => (smooth(dx), smooth(dy)),
             _ => (dx, dy),
         };
@@ -199,6 +204,9 @@ impl Reads {
                 Reads::NextStays => (index(at, size) + 1).min(size - 1),
                 Reads::NextStartsAgain => (index(at, size) + 1) % size,
                 Reads::NextClamped => (at + 1).clamp(0, i64::from(size) - 1) as u32,
+                Reads::NextLimited(other) if other == axis || other == 2 => {
+                    index((at + 1).min(i64::from(size) - 1), size)
+                }
                 Reads::NextBefore(other) if other == axis => index(at - 1, size),
                 _ => index(at + 1, size),
             };

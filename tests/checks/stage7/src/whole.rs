@@ -72,7 +72,13 @@ pub(super) fn judge(what: &str, yours: &Effects, expected: &Effects) -> CheckRes
     // If a single effect is wrong, its name and what it depends on.
     let is_wrong = |effect: &Effect| yours.calls_for(*effect) != expected.calls_for(*effect);
     let wrong: Vec<Effect> = BUILT.into_iter().filter(is_wrong).collect();
-    let clue = if let [only] = wrong[..] { clue(only, expected.calls_for(only)) } else { "" };
+    let samples = |effects: &Effects| effects.lights.iter().map(|light| light.samples).collect::<Vec<_>>();
+    let clue = match wrong[..] {
+        [only] if only == Effect::AreaLights || samples(yours) == samples(expected) => {
+            clue(only, expected.calls_for(only))
+        }
+        _ => "",
+    };
     Err(Broken::with_texts(format!("effects of {what}"), part(yours), part(expected), "the definition")
         .explained_by([(!clue.is_empty(), clue)]))
 }

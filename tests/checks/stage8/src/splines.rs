@@ -63,7 +63,6 @@ enum Rule {
     FactorsExchanged,
     SameFunctionTwice,
     OneDegreeLess,
-    UniformKnots,
 }
 
 const HALF_OPEN: &str =
@@ -72,8 +71,7 @@ const CLOSED: &str = "your spans contain both ends: at a knot inside, two functi
 const NOT_A_NUMBER: &str = "you divide 0 by 0 where knots are equal: leave out a term whose denominator is 0";
 
 /// The wrong recursions with what to say about them.
-const WRONG: [(Rule, &str); 9] = named![
-    Rule::UniformKnots => "your knots are one apart: divide by the differences of the knots themselves",
+const WRONG: [(Rule, &str); 8] = named![
     Rule::HalfOpenAtTheEnd => HALF_OPEN,
     Rule::ClosedSpans => CLOSED,
     Rule::ZeroOverZero => NOT_A_NUMBER,
@@ -106,12 +104,6 @@ impl Rule {
             under => over / under,
         };
         let (first_width, second_width) = (k(degree) - k(0), k(degree + 1) - k(1));
-        let (first_width, second_width) = match self {
-            Rule::UniformKnots => [first_width, second_width]
-                .map(|width| if width == 0.0 { width } else { degree as f64 })
-                .into(),
-            _ => (first_width, second_width),
-        };
         let second_width = if self == Rule::OneDenominator { first_width } else { second_width };
         let mut factors = [divide(u - k(0), first_width), divide(k(degree + 1) - u, second_width)];
         if self == Rule::FactorsExchanged {
