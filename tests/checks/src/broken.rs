@@ -64,6 +64,22 @@ impl Mistake {
     }
 }
 
+/// The words of a mistake before what says whether it is made: long words take a line of their own.
+pub trait Words: Sized {
+    /// A pair with the words last, as in a list of mistakes.
+    fn when<T>(self, given: T) -> (T, Self) {
+        (given, self)
+    }
+}
+
+impl Words for &'static str {}
+
+/// A table of mistakes with their words: `named![Flaw::Open => "…"]`.
+#[macro_export]
+macro_rules! named {
+    ($($given:expr => $words:expr),* $(,)?) => { [$(($given, $words)),*] };
+}
+
 /// The bytes of a PNG file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Png(pub Vec<u8>);

@@ -1,9 +1,12 @@
 //! The start of a ray that leaves a surface: how far it must be from the surface, and which known mistake moved it.
 
+use crate::broken::Words;
 use crate::double::U;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec3Swizzles as _};
 use raykata::kit::Surface;
 use raykata::ray::Ray;
+
+const PER_AXIS: &str = "you move each axis by its own error: move along the normal, by error·|n|";
 
 /// The start of a ray that leaves a surface on one side.
 pub struct Start {
@@ -57,7 +60,9 @@ impl Start {
     /// rounding of the way and of the bound.
     fn slack(&self, moved: DVec3) -> DVec3 {
         let point = self.surface.point.as_dvec3();
-        5.0 * U * point.abs().max((point + moved).abs()) + 1e-6 * (moved.abs().max_element() + self.least())
+        let relative = 5.0 * U * point.abs().max((point + moved).abs());
+        // The floats beside 0 are 1.4e-45 apart.
+        relative + 1e-6 * (moved.abs().max_element() + self.least()) + 1e-44
     }
 
     /// Whether the start is where a student's formula puts it.
@@ -81,32 +86,57 @@ impl Start {
         let shading = shading * self.side.dot(shading).signum();
         let along_the_side = |distance: f64| self.is(distance * self.side);
         let mut all = vec![
-            (
-                self.moved == DVec3::ZERO,
-                "your ray starts on the rounded point, so it may hit its own surface (shadow acne)",
-            ),
-            (
-                along_the_side(self.least()),
-                "you move by error·|n|, but rounding makes the sum smaller: move each coordinate one float further",
-            ),
+            "your ray starts on the rounded point, so it may hit its own surface (shadow acne)"
+                .when(self.moved == DVec3::ZERO),
+            "you move by error·|n|, but rounding makes the sum smaller: move each coordinate one float further"
+                .when(along_the_side(self.least())),
             (along_the_side(error.dot(self.side)), "you leave out the absolute values in error·|n|"),
-            (
-                along_the_side(error.max_element()),
-                "you move by the largest error: along the normal the error is error·|n|",
-            ),
-            (
-                along_the_side(f64::from(self.surface.error.length())),
-                "you move by the length of error: along the normal the error is error·|n|",
-            ),
-            (
-                along_the_side(error.element_sum()),
-                "you add up the errors of all axes: along the normal it is error·|n|",
-            ),
+            "you take the absolute value of error·n: take those of n"
+                .when(along_the_side(error.dot(self.side).abs())),
+            (self.is(error * self.side), PER_AXIS),
+            (self.is(error * self.side.signum()), PER_AXIS),
+            (along_the_side(error.x), "you move by the error of x: along the normal the error is error·|n|"),
+            "you move by the largest error: along the normal the error is error·|n|"
+                .when(along_the_side(error.max_element())),
+            "you move by the length of error: along the normal the error is error·|n|"
+                .when(along_the_side(f64::from(self.surface.error.length()))),
+            "you add up the errors of all axes: along the normal it is error·|n|"
+                .when(along_the_side(error.element_sum())),
         ];
         if self.surface.shading_normal != self.surface.geometric_normal {
             let text = "you move along the shading normal: move along the geometric normal";
             all.push((self.is_along(shading), text));
         }
+        let turned = [error.yzx(), error.zxy(), error.yxz(), error.xzy(), error.zyx()];
+        let text = "the errors belong to other axes: multiply each by the same axis of |n|";
+        all.extend(turned.map(|error| (along_the_side(error.dot(self.side.abs())), text)));
+        let text = "the error along an axis is left out: error·|n| has all three";
+        all.extend(
+            DVec3::AXES.map(|axis| (along_the_side((error * (1.0 - axis)).dot(self.side.abs())), text)),
+        );
+        let times = [5, 6, 8, 10, 16, 20, 32, 50, 64, 100, 1000];
+        all.extend(times.map(|n| {
+            let text =
+                "you move by a multiple of error·|n|: the error itself is enough, and 4 times it is the most";
+            (along_the_side(f64::from(n) * self.least()), text)
+        }));
+        let point = self.surface.point.as_dvec3().abs();
+        let sizes = [
+            point.max_element(),
+            point.length(),
+            point.element_sum(),
+            point.max_element().max(1.0),
+            1.0 + point.length(),
+        ];
+        all.extend(
+            sizes.into_iter().flat_map(|size| (2..=7).map(move |digits| size * 10f64.powi(-digits))).map(
+                |length| {
+                    let text =
+                        "your offset grows with the distance of the point from the origin: move by error·|n|";
+                    (along_the_side(length), text)
+                },
+            ),
+        );
         // A round number, alone or in addition to the bound.
         let lengths = (0..=7).flat_map(|digits| [1.0, 2.0, 5.0].map(|n| n * 10f64.powi(-digits)));
         all.extend(lengths.flat_map(|length| [length, length + self.least(), length.max(self.least())]).map(
@@ -116,10 +146,8 @@ impl Start {
         ));
         all.extend((1..=7).map(|digits| {
             let is_fixed = self.t_min == Some(10f32.powi(-digits));
-            (
-                is_fixed,
-                "your t_min is the same at every scale, as in One Weekend: move the origin by error·|n|",
-            )
+            "your t_min is the same at every scale, as in One Weekend: move the origin by error·|n|"
+                .when(is_fixed)
         }));
         // A start at the point itself is along any way, if the point is not so large that its rounding loses a step.
         let step = f64::from(self.surface.error.length()).min(1e-4);

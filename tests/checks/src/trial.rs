@@ -145,15 +145,12 @@ impl<'a> Trial<'a> {
 
     /// Draws `cases` inputs, calls `judge` with all of them at once, and shrinks the first input that breaks the law.
     #[track_caller]
-    pub fn forall<S: Strategy>(
+    pub fn forall<S: Strategy<Value: Clone + Send + Sync + 'static>>(
         &self,
         cases: usize,
         inputs: S,
         judge: impl Fn(&[S::Value]) -> Vec<CheckResult>,
-    ) -> CheckResult
-    where
-        S::Value: Clone + Send + Sync + 'static,
-    {
+    ) -> CheckResult {
         self.forall_and(&[], cases, inputs, judge)
     }
 
@@ -162,16 +159,13 @@ impl<'a> Trial<'a> {
     /// A chosen input is reported as it is. Choose inputs to which every known mistake gives another answer: a message
     /// names a mistake only if it [explains](crate::Broken::explained_by) all failing inputs.
     #[track_caller]
-    pub fn forall_and<S: Strategy>(
+    pub fn forall_and<S: Strategy<Value: Clone + Send + Sync + 'static>>(
         &self,
         chosen: &[S::Value],
         cases: usize,
         inputs: S,
         judge: impl Fn(&[S::Value]) -> Vec<CheckResult>,
-    ) -> CheckResult
-    where
-        S::Value: Clone + Send + Sync + 'static,
-    {
+    ) -> CheckResult {
         let cases = cases.div_ceil(self.inputs.one_in).max(FEWEST_HIDDEN.min(cases));
         let draw = || {
             let mut runner = self.runner();
@@ -191,32 +185,26 @@ impl<'a> Trial<'a> {
 
     /// Draws `cases` inputs, asks a function of the kit about all of them at once, and [judges](compare) each answer.
     #[track_caller]
-    pub fn each<S: Strategy, A, R: Into<Refuted>>(
+    pub fn each<S: Strategy<Value: Clone + Send + Sync + 'static>, A, R: Into<Refuted>>(
         &self,
         cases: usize,
         inputs: S,
         ask: impl Fn(&'a dyn Kit, &[S::Value]) -> Vec<A>,
         judge: impl Fn(&S::Value, A) -> Result<R, Broken>,
-    ) -> CheckResult
-    where
-        S::Value: Clone + Send + Sync + 'static,
-    {
+    ) -> CheckResult {
         self.each_and(&[], cases, inputs, ask, judge)
     }
 
     /// The same as [`Trial::each`], with [chosen](Trial::forall_and) inputs before those that are drawn.
     #[track_caller]
-    pub fn each_and<S: Strategy, A, R: Into<Refuted>>(
+    pub fn each_and<S: Strategy<Value: Clone + Send + Sync + 'static>, A, R: Into<Refuted>>(
         &self,
         chosen: &[S::Value],
         cases: usize,
         inputs: S,
         ask: impl Fn(&'a dyn Kit, &[S::Value]) -> Vec<A>,
         judge: impl Fn(&S::Value, A) -> Result<R, Broken>,
-    ) -> CheckResult
-    where
-        S::Value: Clone + Send + Sync + 'static,
-    {
+    ) -> CheckResult {
         self.forall_and(chosen, cases, inputs, |queries| compare(queries, ask(self.kit, queries), &judge))
     }
 
@@ -365,6 +353,9 @@ pub fn verdict(check: &Check, examined: Result<CheckResult, KitError>) -> Verdic
         Ok(Ok(())) => Verdict::Passed,
         Ok(Err(broken)) => Verdict::Failed(broken.message(check.name, &entry)),
         Err(KitError::NotWritten { task, place, .. }) => Verdict::NotWritten { task, place },
+        Err(KitError::Panicked { message, place }) => {
+            without_answer(check, law::panic_text(&message, &place))
+        }
         Err(error) => without_answer(check, error),
     }
 }

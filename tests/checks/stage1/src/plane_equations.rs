@@ -43,16 +43,13 @@ fn formulas(query: &PlaneEquationQuery, yours: Option<f32>, is_right: bool) -> V
     let gives = |t: f64| gives_in(t, (f64::from(ray.t_min), f64::from(ray.t_max)));
     let of_coordinates = 8.0 * U * (d.abs() + n.abs().dot(o.abs())) / slope.abs();
     let mut all = vec![
-        (
+        "D and n·o cancel far from the origin: add them in double precision".when(
             is_right
                 || yours.is_some_and(|t1| ray.contains(t1) && (f64::from(t1) - t).abs() <= of_coordinates)
                 || (yours.is_none() && t.abs() <= of_coordinates),
-            "D and n·o cancel far from the origin: add them in double precision",
         ),
-        (
-            gives((d - along) / slope),
-            "the sign of D is wrong: the plane is n·p + D = 0, so t = (-D - n·o) / (n·v)",
-        ),
+        "the sign of D is wrong: the plane is n·p + D = 0, so t = (-D - n·o) / (n·v)"
+            .when(gives((d - along) / slope)),
         (gives(-d / slope), "you leave out n·o: the ray need not start at the origin"),
         (gives((-d * length - along) / slope), "if you normalize n, divide D by the length of n as well"),
         (gives(t * length), "n need not be a unit vector: the length of n must cancel in t"),

@@ -24,14 +24,10 @@ fn judge_cases(trial: &Trial<'_>, cases: &[Case], source: &'static str) -> Vec<C
 /// Mistakes that a wrong answer alone shows.
 pub(super) fn observations(ray: &Ray, yours: Option<f32>) -> [(bool, &'static str); 3] {
     [
-        (
-            yours.is_some_and(|t| !t.is_finite()),
-            "a ray along the plane makes t infinite or NaN, and neither counts: ask ray.contains(t)",
-        ),
-        (
-            yours.is_some_and(|t| t == ray.t_min || t == ray.t_max),
-            "the range is open: t_min (0 for a ray that starts in the plane) and t_max do not count",
-        ),
+        "a ray along the plane makes t infinite or NaN, and neither counts: ask ray.contains(t)"
+            .when(yours.is_some_and(|t| !t.is_finite())),
+        "the range is open: t_min (0 for a ray that starts in the plane) and t_max do not count"
+            .when(yours.is_some_and(|t| t == ray.t_min || t == ray.t_max)),
         (yours.is_some_and(|t| !ray.contains(t)), "you return a t that ray.contains(t) refuses"),
     ]
 }
@@ -58,16 +54,13 @@ fn mistakes(query: &PlaneQuery, yours: Option<f32>, is_right: bool) -> Vec<(bool
     let of_coordinates = 8.0 * U * n.abs().dot(o.abs() + p.abs()) / slope.abs();
     let mut all = of_tests(ray, t, slope, yours, is_right, &gives);
     all.extend([
-        (
+        "-(D + n·o) cancels far from the origin; (p0 - o)·n does not".when(
             is_right
                 || yours.is_some_and(|t1| ray.contains(t1) && (f64::from(t1) - t).abs() <= of_coordinates)
                 || (yours.is_none() && t <= of_coordinates),
-            "-(D + n·o) cancels far from the origin; (p0 - o)·n does not",
         ),
-        (
-            gives(t.abs(), range),
-            "you return |t| for a plane behind the ray: keep the signs of (p0 - o)·n and of n·d",
-        ),
+        "you return |t| for a plane behind the ray: keep the signs of (p0 - o)·n and of n·d"
+            .when(gives(t.abs(), range)),
         (gives(-t, range), "the sign of t is wrong: compute p0 - o, not o - p0"),
     ]);
     all
@@ -228,10 +221,9 @@ pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Che
                     (along, "the length of the normal must not change: do not normalize it"),
                 ])
             };
-            unless(yours == expected || (open && yours == -expected), broken).formulas([(
-                yours == *normal || (open && yours == -*normal),
-                "you return the normal as it is, also if it points away from the viewer",
-            )])
+            unless(yours == expected || (open && yours == -expected), broken)
+                .formulas(["you return the normal as it is, also if it points away from the viewer"
+                    .when(yours == *normal || (open && yours == -*normal))])
         },
     )
 }

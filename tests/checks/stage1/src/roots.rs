@@ -30,10 +30,8 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> Judged {
     // Each comparison with NaN is false, so a sort by an if-else always swaps the roots, or never.
     let with_nan = |gives: bool| if first.is_nan() || second.is_nan() { gives } else { is_right };
     unless(is_right, broken).formulas([
-        (
-            yours == among(&|t| ray.t_min <= t && t <= ray.t_max),
-            "you return an end of the range; the range is open: t_min and t_max do not count",
-        ),
+        "you return an end of the range; the range is open: t_min and t_max do not count"
+            .when(yours == among(&|t| ray.t_min <= t && t <= ray.t_max)),
         (yours == among(&|t| ray.t_min < t && t <= ray.t_max), OPEN_AT_BOTH_ENDS),
         (yours == among(&|t| ray.t_min <= t && t < ray.t_max), OPEN_AT_BOTH_ENDS),
         (yours == among(&|t| t > ray.t_min), "you return a root beyond t_max, which ray.contains(t) refuses"),
@@ -41,25 +39,29 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> Judged {
         (yours == among(&|t| t > 0.0), T_ABOVE_0),
         (yours == among(&|t| t > 0.0 && t < ray.t_max), T_ABOVE_0),
         (yours == Some(near), "you return the smaller root, also if ray.contains(t) refuses it"),
-        (
-            yours == Some(near).filter(|&t| counting(t)),
-            "you return None if the smaller root does not count, but the larger one may",
-        ),
+        "you return None if the smaller root does not count, but the larger one may"
+            .when(yours == Some(near).filter(|&t| counting(t))),
         (first_if_it_counts([first, second]), "you only look at the first root, but they come in any order"),
-        (
-            first_that_counts([first, second]),
-            "you take the first root that counts for the smaller one, but they come in any order",
-        ),
+        "you take the first root that counts for the smaller one, but they come in any order"
+            .when(first_that_counts([first, second])),
         (yours == Some(far).filter(|&t| counting(t)), LARGER),
         (first_that_counts([far, near]), LARGER),
-        (
-            first_that_counts(if near.abs() <= far.abs() { [near, far] } else { [far, near] }),
-            "you take the root with the smaller absolute value first, but -1 is smaller than 0.5",
-        ),
+        "you take the root with the smaller absolute value first, but -1 is smaller than 0.5"
+            .when(first_that_counts(if near.abs() <= far.abs() { [near, far] } else { [far, near] })),
         (with_nan(first_if_it_counts([first, second])), SORTED_WITH_NAN),
         (with_nan(first_that_counts([first, second])), SORTED_WITH_NAN),
         (with_nan(first_if_it_counts([second, first])), SORTED_WITH_NAN),
         (with_nan(first_that_counts([second, first])), SORTED_WITH_NAN),
+        "one root is NaN, but the other one may still count".when(if first.is_nan() {
+            yours.is_none()
+        } else {
+            is_right
+        }),
+        "one root is NaN, but the other one may still count".when(if second.is_nan() {
+            yours.is_none()
+        } else {
+            is_right
+        }),
         (with_nan(yours.is_none()), "one root is NaN, but the other one may still count"),
     ])
 }

@@ -83,10 +83,9 @@ fn of_cancellation(query: &SphereQuery, yours: Option<f32>) -> Vec<(bool, &'stat
     let mut all = vec![
         (is(b * b - a * c, &|root| [(b - root) / a, (b + root) / a]), ALGEBRAIC),
         (is(b * b - a * c, &|root| [c / (b + root.copysign(b)), (b + root.copysign(b)) / a]), ALGEBRAIC),
-        (
-            is(twice * twice - 4.0 * a * c, &|root| [(twice - root) / (2.0 * a), (twice + root) / (2.0 * a)]),
-            ALGEBRAIC,
-        ),
+        ALGEBRAIC.when(is(twice * twice - 4.0 * a * c, &|root| {
+            [(twice - root) / (2.0 * a), (twice + root) / (2.0 * a)]
+        })),
         (is(twice * twice - 4.0 * c, &|root| [(twice - root) / 2.0, (twice + root) / 2.0]), ALGEBRAIC),
         (is(r_squared - (f.dot(f) - b * b), &|t_hc| [b - t_hc, b + t_hc]), GEOMETRIC),
     ];
@@ -116,14 +115,10 @@ pub(super) fn observations(query: &SphereQuery, yours: Option<f32>) -> [(bool, &
     let touches = Quadratic::of(query).discriminant == 0.0;
     [
         (yours.is_some_and(f32::is_nan), "you return NaN: compare so that NaN fails"),
-        (
-            yours.is_some_and(|t| t == query.ray.t_min || t == query.ray.t_max),
-            "the range is open: a hit at t_min or at t_max does not count (t = 0 for a ray that starts on the sphere)",
-        ),
-        (
-            yours.is_none() && touches,
-            "you return None for a ray that touches the sphere: a discriminant of exactly 0 is a hit",
-        ),
+        "the range is open: a hit at t_min or at t_max does not count (t = 0 for a ray that starts on the sphere)"
+            .when(yours.is_some_and(|t| t == query.ray.t_min || t == query.ray.t_max)),
+        "you return None for a ray that touches the sphere: a discriminant of exactly 0 is a hit"
+            .when(yours.is_none() && touches),
     ]
 }
 
@@ -136,40 +131,23 @@ fn of_choices(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) ->
     let is = |choose: &dyn Fn([f64; 2]) -> Option<f64>| gives(yours, quadratic, roots, choose);
     let one = |t: f64, range: Within| range.first([t, t]);
     let forward = Within(0.0, f64::INFINITY);
-    let mut all = vec![
-        (is(&|[_, far]| one(far, range)), "you return the far root"),
-        (
-            is(&|roots| if b < 0.0 { None } else { range.first(roots) }),
+    let mut all = named![
+        is(&|[_, far]| one(far, range)) => "you return the far root",
+        is(&|roots| if b < 0.0 { None } else { range.first(roots) }) =>
             "t_ca < 0 is not a miss: a ray that starts inside still hits the far side",
-        ),
-        (
-            is(&|[near, _]| one(near, range)),
+        is(&|[near, _]| one(near, range)) =>
             "you only try the near root: if the ray starts inside, it is behind the ray, and the far one counts",
-        ),
-        (
-            is(&|roots| Within(t_min, f64::INFINITY).first(roots)),
-            "you return a t beyond t_max: ask ray.contains(t)",
-        ),
-        (is(&|roots| Within(0.0, t_max).first(roots)), "you return a t before t_min: ask ray.contains(t)"),
-        (is(&|roots| forward.first(roots)), "you ask t > 0 and not ray.contains(t): t_min and t_max count"),
-        (is(&|[near, _]| Some(near)), "you return the near root in any case: ask ray.contains(t)"),
-        (
-            is(&|[near, far]| forward.first([near, far]).filter(|&t| t_min < t && t < t_max)),
+        is(&|roots| Within(t_min, f64::INFINITY).first(roots)) => "you return a t beyond t_max: ask ray.contains(t)",
+        is(&|roots| Within(0.0, t_max).first(roots)) => "you return a t before t_min: ask ray.contains(t)",
+        is(&|roots| forward.first(roots)) => "you ask t > 0 and not ray.contains(t): t_min and t_max count",
+        is(&|[near, _]| Some(near)) => "you return the near root in any case: ask ray.contains(t)",
+        is(&|[near, far]| forward.first([near, far]).filter(|&t| t_min < t && t < t_max)) =>
             "you choose a root before you ask ray.contains(t): if the near root does not count, the far one may",
-        ),
-        (
-            is(&|[near, far]| range.first([near, far].map(|t| if t < t_max { t } else { t_max }))),
+        is(&|[near, far]| range.first([near, far].map(|t| if t < t_max { t } else { t_max }))) =>
             "you return t_max for a hit beyond it: that is a miss",
-        ),
-        (
-            is(&|[near, far]| range.first([-near, -far])),
-            "the sign of b (or of t_ca) is wrong: both roots are negated",
-        ),
-        (
-            is(&|_| one(b / a, range)),
-            "you return the t of the point nearest to the centre: half the chord is missing",
-        ),
-    ];
+        is(&|[near, far]| range.first([-near, -far])) => "the sign of b (or of t_ca) is wrong: both roots are negated",
+        is(&|_| one(b / a, range)) => "you return the t of the point nearest to the centre: half the chord is missing",
+    ].to_vec();
     // The limit replaces t_min, or is asked before or after the root is chosen.
     all.extend(EPSILONS.into_iter().flat_map(|epsilon| {
         let text = DROPS_NEAR_HITS;
@@ -182,6 +160,8 @@ fn of_choices(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) ->
     all
 }
 
+const CHORD: &str =
+    "half of the chord and t_ca have different units: divide both by the length of direction, or none";
 const A_IS_ONE: &str = "direction is not a unit vector here: you take a = d·d for 1";
 
 /// Wrong roots.
@@ -204,19 +184,28 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
         let q = b + root.copysign(b);
         [c / q, q]
     };
+    // One root with half of the chord in world units, and the other one by the product of both.
+    let by_power = |root: f64| {
+        let away = b / a + (root / a.sqrt()).copysign(b);
+        [c / a / away, away]
+    };
     let radius = f64::from(query.sphere.radius);
     vec![
-        (
-            of(quadratic, a.sqrt()),
-            "your t counts world units; it must count lengths of direction (which is no unit vector here)",
-        ),
+        "your t counts world units; it must count lengths of direction (which is no unit vector here)"
+            .when(of(quadratic, a.sqrt())),
         (of(quadratic, a), "direction is not a unit vector here: divide by a = d·d"),
+        (gives(yours, quadratic, |root| [(b - root * a.sqrt()) / a, (b + root * a.sqrt()) / a], first), CHORD),
+        (gives(yours, quadratic, by_power, first), CHORD),
+        (gives(yours, quadratic, |root| [(b * a.sqrt() - root) / a, (b * a.sqrt() + root) / a], first), CHORD),
+        (of(quadratic, 0.5), "both roots are halved: with b = -f·d they are divided by a alone"),
+        (of(quadratic, 2.0), "both roots are doubled: they are divided by a"),
+        (of(&Quadratic::with_radius(query, 0.5 * radius), 1.0), "you take the radius for a diameter"),
+        (of(&Quadratic::with_radius(query, 2.0 * radius), 1.0), "you take the diameter for the radius"),
+        (of(&Quadratic::with_radius(query, 0.0), 1.0), "the radius is left out: c = f·f - r²"),
         (of(&a_is_one, 1.0), A_IS_ONE),
         (gives(yours, &chord, by_product, first), A_IS_ONE),
-        (
-            gives(yours, &a_is_one, |root| [b - root, b + root], |roots| first(roots).filter(|_| b >= 0.0)),
-            "t_ca < 0 is not a miss: a ray that starts inside still hits the far side\nand: direction is not a unit vector here: you take a = d·d for 1",
-        ),
+        "t_ca < 0 is not a miss: a ray that starts inside still hits the far side\nand: direction is not a unit vector here: you take a = d·d for 1"
+            .when(gives(yours, &a_is_one, |root| [b - root, b + root], |roots| first(roots).filter(|_| b >= 0.0))),
         (of(&Quadratic::with_radius(query, radius.sqrt()), 1.0), "r stands where r² belongs"),
     ]
 }

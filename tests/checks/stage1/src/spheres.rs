@@ -132,10 +132,8 @@ fn judge_ends(trial: &Trial<'_>, method: SphereFunction, queries: &[SphereQuery]
         let broken = Broken::with_texts(query.call(method.name), format!("{yours:?}"), expected, source);
         let given = yours == Some(t);
         outcomes[i] = outcomes[i].clone().and(Err(broken.explained_by([
-            (
-                given && (t == query.ray.t_min || t == query.ray.t_max),
-                "the range is open: a hit at t_min or at t_max does not count (t = 0 for a ray that starts on the sphere)",
-            ),
+            "the range is open: a hit at t_min or at t_max does not count (t = 0 for a ray that starts on the sphere)"
+                .when(given && (t == query.ray.t_min || t == query.ray.t_max)),
             (given && t > query.ray.t_max, "you return a t beyond t_max: ask ray.contains(t)"),
             (given && t < query.ray.t_min, "you return a t before t_min: ask ray.contains(t)"),
         ])));
@@ -248,10 +246,9 @@ pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> CheckResult {
                     (near(outwards), "your normal is not of unit length"),
                 ])
             };
-            unless(near(expected) || anywhere, broken).formulas([(
-                near(point.as_dvec3().normalize_or_zero()),
-                "you return the direction from the world's origin: subtract the centre first",
-            )])
+            unless(near(expected) || anywhere, broken)
+                .formulas(["you return the direction from the world's origin: subtract the centre first"
+                    .when(near(point.as_dvec3().normalize_or_zero()))])
         },
     )
 }

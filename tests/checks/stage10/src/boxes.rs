@@ -28,6 +28,13 @@ enum Mistake {
     Overflow,
     /// `b/d - o/d` in place of `(b - o)/d`.
     FastForm,
+    /// The range begins at 0, or at -∞, or has no end.
+    FromZero,
+    StartIgnored,
+    EndIgnored,
+    /// This axis is left out, or its planes are divided by the direction along another one.
+    LeftOut(usize),
+    Mixed(usize, usize),
 }
 
 /// How far a slab test widens its interval.
@@ -38,9 +45,12 @@ enum Widened {
     Both,
 }
 
+const MIXED: &str = "the planes across an axis are divided by the direction along another axis";
+const OVERFLOW: &str = "1/d is infinite although d is not 0: divide by d there";
+
 /// The mistakes with the words of the diagnosis, those that lose the fewest boxes first: the first one that explains all lost
 /// boxes is named.
-const MISTAKES: [(Mistake, Widened, &str); 12] = {
+const MISTAKES: [(Mistake, Widened, &str); 17] = {
     use Mistake::*;
     use Widened::*;
     [
@@ -49,7 +59,12 @@ const MISTAKES: [(Mistake, Widened, &str); 12] = {
             Both,
             "a factor of 1 + 2 γ₃ moves a negative exit the wrong way: move it later by 2 γ₃ |t|",
         ),
-        (Overflow, Both, "1/d is infinite although d is not 0: divide by d there"),
+        (Overflow, Both, OVERFLOW),
+        (FromZero, Both, "the range begins at 0 in your test: it begins at t_min, which may be negative"),
+        (StartIgnored, Both, "a box before t_min is met: the interval is that of the ray's range"),
+        (StartIgnored, Exit, "a box before t_min is met: the interval is that of the ray's range"),
+        (EndIgnored, Both, "a box beyond t_max is met: the interval is that of the ray's range"),
+        (EndIgnored, Exit, "a box beyond t_max is met: the interval is that of the ray's range"),
         (Open, Not, "you return None for a flat or only touched box: compare with <= and not with <"),
         (NotFromInside, Both, "you return None although the ray starts in the box: it enters at t_min"),
         (
@@ -78,9 +93,16 @@ const MISTAKES: [(Mistake, Widened, &str); 12] = {
 impl Mistake {
     fn slab(self, widened: Widened, SlabQuery { ray, bounds, .. }: &SlabQuery) -> Option<(f32, f32)> {
         let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
-        for axis in 0..3 {
+        for axis in (0..3).filter(|&axis| self != Mistake::LeftOut(axis)) {
+            let of = if let Mistake::Mixed(of, other) = self
+                && of == axis
+            {
+                other
+            } else {
+                axis
+            };
             let (o, d) = (ray.origin[axis], ray.direction[axis]);
-            let inverse = 1.0 / d;
+            let inverse = 1.0 / ray.direction[of];
             let t = |plane: f32| match self {
                 Mistake::FastForm => plane * inverse - o * inverse,
                 Mistake::Overflow => (plane - o) * inverse,
@@ -107,7 +129,13 @@ impl Mistake {
             near = if widened == Widened::Both { (near * less).min(near * more) } else { near };
             far = if widened == Widened::Not { far } else { (far * less).max(far * more) };
         }
-        let (near, far) = (near.max(ray.t_min), far.min(ray.t_max));
+        let t_min = match self {
+            Mistake::FromZero => 0.0,
+            Mistake::StartIgnored => f32::NEG_INFINITY,
+            _ => ray.t_min,
+        };
+        let t_max = if self == Mistake::EndIgnored { f32::INFINITY } else { ray.t_max };
+        let (near, far) = (near.max(t_min), far.min(t_max));
         (if self == Mistake::Open { near < far } else { near <= far }).then_some((near, far))
     }
 }
@@ -121,16 +149,27 @@ fn hit_and_missed_boxes_differ(trial: &Trial<'_>, queries: &[SlabQuery]) -> Chec
             Broken::with_texts(query.call("conservative_slab"), format!("{yours:?}"), expected, "exactly")
         };
         // A box whose exit overflows may be entered at infinity, which costs a visit.
-        if yours.is_some_and(|(enter, _)| !enter.is_infinite()) && !is_hit && exact.margin > STABLE {
-            return Err(broken("None: the ray passes by the box"));
-        }
-        let loses = |mistake: Mistake, widened| mistake.slab(widened, query).is_none() == yours.is_none();
+        let is_wrong =
+            yours.is_some_and(|(enter, _)| !enter.is_infinite()) && !is_hit && exact.margin > STABLE;
+        let same = |mistake: Mistake, widened| mistake.slab(widened, query).is_none() == yours.is_none();
         // Rounding loses a box if the test without widening loses it. A test that widens too little keeps some.
         let rounding = "rounding loses a corner of the box: move the exit later by 2 γ₃ |t|";
-        let is_rounding = Mistake::None.slab(Widened::Not, query).is_none();
-        let lost = || broken("Some: the ray meets the box").explained_by([(is_rounding, rounding)]);
-        unless(!is_hit || yours.is_some(), lost)
-            .formulas(MISTAKES.map(|(mistake, widened, text)| (!is_hit || loses(mistake, widened), text)))
+        let is_rounding = !is_wrong && Mistake::None.slab(Widened::Not, query).is_none();
+        let lost = || {
+            let expected =
+                if is_wrong { "None: the ray passes by the box" } else { "Some: the ray meets the box" };
+            broken(expected).explained_by([(is_rounding, rounding)])
+        };
+        let axes = || (0..3).flat_map(|axis| [(axis, (axis + 1) % 3), (axis, (axis + 2) % 3)]);
+        let mixed = axes().map(|(axis, other)| (Mistake::Mixed(axis, other), MIXED));
+        let out = (0..3).map(|axis| {
+            (Mistake::LeftOut(axis), "an axis is left out: the ray is between the planes of all three")
+        });
+        let others = mixed.chain(out).map(|(mistake, text)| (mistake, Widened::Both, text));
+        let all = MISTAKES.into_iter().chain(others);
+        let open = !is_hit && exact.margin <= STABLE || yours.is_some_and(|(enter, _)| enter.is_infinite());
+        unless(!is_wrong && (!is_hit || yours.is_some()), lost)
+            .formulas(all.map(|(mistake, widened, text)| (open || same(mistake, widened), text)))
     };
     all_hold(compare(queries, trial.kit.conservative_slab(queries), judge))
 }
@@ -246,8 +285,13 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckRe
             Some((enter, _)) if is_clear && !is_entry(query, enter) => {
                 let (near, _) = double::slabs_interval(&query.ray, &query.bounds);
                 let expected = format!("enters at {}", near.max(f64::from(query.ray.t_min)));
-                let yours = format!("enters at {enter}");
-                Err(Broken::with_texts(query.call("conservative_slab"), yours, expected, "double precision"))
+                let text = format!("enters at {enter}");
+                let broken = Broken::with_texts(query.call("conservative_slab"), text, expected, "double precision");
+                let is_exit = yours.is_some_and(|(enter, leave)| enter == leave);
+                Err(broken.explained_by([
+                    (enter == query.ray.t_min, "the box is entered at t_min: return where the ray enters it"),
+                    (is_exit, "the exit is returned as the entry"),
+                ]))
             }
             Some((enter, _)) if enter > t => Err(Broken::with_texts(
                 query.call("conservative_slab"),

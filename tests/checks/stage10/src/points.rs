@@ -40,24 +40,14 @@ fn observations(query: &OffsetQuery, origin: Vec3) -> [(bool, &'static str); 5] 
     let relative = [point.length(), point.abs().max_element()]
         .into_iter()
         .any(|size| (1..=7).any(|digits| (height / (size * 10f64.powi(-digits)) - 1.0).abs() < 0.01));
-    [
-        (
-            along == 0.0 && height < 0.0,
-            "a direction perpendicular to the normal goes to the side of the normal",
-        ),
-        (relative, "your offset is a fixed fraction of the size of the point: move by error·|n|"),
-        (
-            along < 0.0 && start.height() < 0.0,
+    named![
+        along == 0.0 && height < 0.0 => "a direction perpendicular to the normal goes to the side of the normal",
+        relative => "your offset is a fixed fraction of the size of the point: move by error·|n|",
+        along < 0.0 && start.height() < 0.0 =>
             "the ray starts on the side of the normal, but it goes to the other side: turn the normal to the side of the direction",
-        ),
-        (
-            start.height() < 0.0,
-            "the ray starts on the other side: turn the normal to the side of the direction",
-        ),
-        (
-            height < 4.0 * U * point.abs().max_element(),
+        start.height() < 0.0 => "the ray starts on the other side: turn the normal to the side of the direction",
+        height < 4.0 * U * point.abs().max_element() =>
             "the ray starts on the other side, up to rounding: turn the normal to the side of the direction",
-        ),
     ]
 }
 
@@ -136,31 +126,40 @@ pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> C
             possibly: underflow.possibly || overflow.possibly,
         };
         let of = |acts: Acts, answer: bool| if is_wrong { acts.possibly && answer } else { !acts.certainly };
-        unless(!is_wrong, broken).formulas([
-            (
-                of(underflow, is_none),
-                "you return None for a short vector: the squares underflow, so scale by the largest coordinate first",
-            ),
-            (
-                of(overflow, is_none),
-                "you return None for a long vector: the squares overflow, so scale by the largest coordinate first",
-            ),
+        let v = query.as_dvec3();
+        let is = |value: DVec3| {
+            yours.is_some_and(|yours| (yours.as_dvec3() - value).length() <= 1e-6 * value.length())
+        };
+        let sum = v.abs().element_sum();
+        let by_length = "you divide by another length: the length is the root of the sum of the squares";
+        let epsilons = [1e-12, 1e-10, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3].map(|epsilon| {
+            let value = v / (v.length() + epsilon);
+            "a number is added to the length: short vectors become shorter than 1"
+                .when(is(value) || is_none && value.length() < 1e-30)
+        });
+        let has_zero = query.to_array().contains(&0.0);
+        unless(!is_wrong, broken).formulas(epsilons.into_iter().chain([
+            (is(v / v.abs().max_element()), by_length),
+            (is(v / sum), by_length),
+            (is(v / v.element_sum()), by_length),
+            (is(v / v.length_squared()), by_length),
+            (is(v), "you return the vector as it is: divide it by its length"),
+            "you return None for a vector with a coordinate of 0: only the zero vector has no direction"
+                .when(!is_wrong || is_none && has_zero),
+            "you return None for a short vector: the squares underflow, so scale by the largest coordinate first"
+                .when(of(underflow, is_none)),
+            "you return None for a long vector: the squares overflow, so scale by the largest coordinate first"
+                .when(of(overflow, is_none)),
             (of(underflow, true), "the squares underflow: scale by the largest coordinate first"),
             (of(overflow, true), "the squares overflow: scale by the largest coordinate first"),
             (of(either, true), "the squares underflow or overflow: scale by the largest coordinate first"),
-            (
-                of(reciprocal, !is_none),
-                "1 / x is infinite for the smallest x: divide by the largest coordinate, and do not multiply by its reciprocal",
-            ),
-            (
-                !is_wrong || (is_none && query.length() < 1.0),
-                "you return None for a short vector: only the zero vector has no direction",
-            ),
-            (
-                !is_wrong || is_zero,
-                "you return 0, as a division by an infinite length does: the squares overflow, so scale by the largest coordinate first",
-            ),
-        ])
+            "1 / x is infinite for the smallest x: divide by the largest coordinate, and do not multiply by its reciprocal"
+                .when(of(reciprocal, !is_none)),
+            "you return None for a short vector: only the zero vector has no direction"
+                .when(!is_wrong || (is_none && query.length() < 1.0)),
+            "you return 0, as a division by an infinite length does: the squares overflow, so scale by the largest coordinate first"
+                .when(!is_wrong || is_zero),
+        ]))
     };
     let judge = |queries: &[Vec3]| compare(queries, trial.kit.safe_normalize(queries), judge);
     trial.forall_and(&longest, 4000, vectors, judge)

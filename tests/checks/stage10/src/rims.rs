@@ -126,14 +126,10 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> CheckResult {
             subtracted_in_single(query).is_some_and(|exact| exact.t.is_some() == yours.is_some());
         let expected = format!("{exact:?}, {}", describe(margin(query) / U));
         Err(Broken::with_texts(query.call("sphere_in_double"), format!("{yours:?}"), expected, "exactly").explained_by([
-            (
-                yours.is_some() && on_the_line,
-                "you return a hit behind the origin or beyond the range: a root counts only within the range of the ray",
-            ),
-            (
-                yours.is_none() && only_the_far_root,
-                "you return None although the far root is in the range: the ray starts inside, or its range begins inside",
-            ),
+            "you return a hit behind the origin or beyond the range: a root counts only within the range of the ray"
+                .when(yours.is_some() && on_the_line),
+            "you return None although the far root is in the range: the ray starts inside, or its range begins inside"
+                .when(yours.is_none() && only_the_far_root),
             (converted_late, CONVERTED_LATE),
             (assumes_unit, "you take the direction to have length 1: a = d·d, and both roots are divided by it"),
             (single, SINGLE),
@@ -250,10 +246,8 @@ pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> CheckResult 
         let is_far = roots.is_some_and(|roots| query.ray.contains(roots.near as f32) && is(roots.far as f32));
         let input = query.call("sphere_in_double");
         Err(Broken::with_texts(input, format!("{yours:?}"), expected, "exactly").explained_by([
-            (
-                yours.is_some_and(|yours| !query.ray.contains(yours)),
-                "you return the near root, which is outside the range of the ray: the far one is the hit",
-            ),
+            "you return the near root, which is outside the range of the ray: the far one is the hit"
+                .when(yours.is_some_and(|yours| !query.ray.contains(yours))),
             (subtracted_in_single(query).and_then(|exact| exact.t).is_some_and(is), CONVERTED_LATE),
             (is_far, "you return the far root, but the near one counts as well"),
             (single, "t has only the accuracy of single precision: round the root, and nothing before it"),
@@ -292,10 +286,8 @@ pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> CheckResult 
         let closed = first(&|t| (t_min..=t_max).contains(&f64::from(t as f32)));
         vec![
             (closed == *yours, "the range of a ray is open at both ends: ask ray.contains(t)"),
-            (
-                first(&|t| t_min < t && t < t_max) == *yours,
-                "you compare t with the range before you round it: ask ray.contains of the rounded t",
-            ),
+            "you compare t with the range before you round it: ask ray.contains of the rounded t"
+                .when(first(&|t| t_min < t && t < t_max) == *yours),
         ]
     };
     all_hold(compare_formulas(&at_ends, trial.kit.sphere_in_double(&only), judge, formulas))

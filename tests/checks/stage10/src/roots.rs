@@ -52,6 +52,45 @@ fn without_the_sign_of_b(coefficients: Coefficients) -> [[f32; 2]; 2] {
     [of(q), of(f64::from(single))]
 }
 
+/// Wrong formulas in double precision, each with the roots that it gives.
+fn wrong_roots(query: &Coefficients) -> [(Option<[f64; 2]>, &'static str); 15] {
+    let [a, b, c] = query.map(f64::from);
+    let sorted = |p: f64, r: f64| [p.min(r), p.max(r)];
+    // The roots by q for a discriminant and the number that is added to b.
+    let by = |discriminant: f64, q: &dyn Fn(f64) -> f64| {
+        let q = q(discriminant.sqrt());
+        (discriminant >= 0.0).then(|| if q == 0.0 { [0.0, 0.0] } else { sorted(q / a, c / q) })
+    };
+    let (right, usual) = (discriminant(*query).0, |root: f64| -0.5 * (b + root.copysign(b)));
+    let q = usual(right.sqrt());
+    let some = |roots: [f64; 2]| (right >= 0.0).then_some(roots);
+    let [low, high] = roots(*query);
+    let single = query[1] * query[1] - 4.0 * query[0] * query[2];
+    named![
+        by(right, &|root| -0.5 * (b - root.copysign(b))) => OTHER_SIGN,
+        by(right, &|root| f64::from(-0.5 * (b as f32 - (root as f32).copysign(b as f32)))) => OTHER_SIGN,
+        by(right, &|root| -0.5 * (b.abs() + root)) => "you take the absolute value of b: q has the sign of -b",
+        by(right, &|root| 0.5 * (b + root.copysign(b))) => "q has the wrong sign: it is -(b + sign(b) √(b² - 4ac)) / 2",
+        by(b * b - 2.0 * a * c, &usual) => DISCRIMINANT,
+        by(b * b - a * c, &usual) => DISCRIMINANT,
+        by(b * b + 4.0 * a * c, &usual) => DISCRIMINANT,
+        by(f64::from(single), &usual) => "the discriminant is computed in single precision, where it loses its digits",
+        some(sorted(q / (2.0 * a), c / q)) => "one root is divided by 2 a, although q is halved already: it is q / a",
+        some(sorted(q / a, q / c)) => "the second root is turned over: it is c / q",
+        some(sorted(q / a, c * q)) => "the second root is a product: it is c / q",
+        some(if low < 0.0 { [high, high] } else { [low, high] }) => POSITIVE,
+        some([low.abs(), high.abs()]) => POSITIVE,
+        if b == 0.0 { some([0.0, 0.0]) } else { some([low, high]) } => OF_ZERO,
+        some([low, high]).filter(|_| b != 0.0) => OF_ZERO,
+    ]
+}
+
+const OTHER_SIGN: &str =
+    "the root of the discriminant has the sign that cancels: q = -(b + sign(b) √(b² - 4ac)) / 2";
+const DISCRIMINANT: &str = "the discriminant is another one: it is b² - 4ac";
+const POSITIVE: &str = "a negative root is replaced: the equation has no range, so both roots are returned";
+const OF_ZERO: &str = "b = 0 has an answer of its own: sign(0) must not be 0, and the roots are ±√(-c / a)";
+
 /// What two wrong roots show, and the wrong formulas, each with whether it gives these roots.
 fn mistakes(query: &Coefficients, yours: [f32; 2], expected: [f64; 2]) -> ([Named; 3], [Named; 4]) {
     const WITHOUT_SIGN: &str =
@@ -73,14 +112,10 @@ fn mistakes(query: &Coefficients, yours: [f32; 2], expected: [f64; 2]) -> ([Name
     let [in_double, in_single] = without_the_sign_of_b(*query).map(|roots| roots.map(f64::from));
     let shown = [
         (is([expected[1], expected[0]]), LARGER_FIRST),
-        (
-            lost && yours[small] == 0.0,
-            "one root has cancelled to 0: -b + √(b² - 4ac) subtracts two nearly equal numbers",
-        ),
-        (
-            lost,
-            "one root has lost its digits, because two nearly equal numbers are subtracted: where one root has cancelled, compute it as c / q",
-        ),
+        "one root has cancelled to 0: -b + √(b² - 4ac) subtracts two nearly equal numbers"
+            .when(lost && yours[small] == 0.0),
+        "one root has lost its digits, because two nearly equal numbers are subtracted: where one root has cancelled, compute it as c / q"
+            .when(lost),
     ];
     let [half, twice] = [0.5, 2.0].map(|factor| is(scaled(factor)) || is(sorted(scaled(factor))));
     let without_sign = [in_double, in_single].map(|roots| (is(roots), WITHOUT_SIGN));
@@ -96,20 +131,28 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> CheckResult {
         }
         let expected = (value > 0.0).then(|| roots(*query));
         let broken = || Broken::new(describe(query), yours, expected, "double precision");
-        match (yours, expected) {
-            (None, None) => Ok(().into()),
-            (Some(_), None) => {
-                Err(broken().explained_by([(true, "you return roots although the discriminant is below 0")]))
-            }
-            (None, Some(_)) => Err(broken().explained_by([(
-                true,
-                "you return None, but the discriminant is far above 0: there are two roots",
-            )])),
-            (Some(yours), Some(expected)) => {
-                let (shown, formulas) = mistakes(query, yours, expected);
-                unless(are_near(yours, expected), || broken().explained_by(shown)).formulas(formulas)
-            }
-        }
+        let gives = |given: Option<[f64; 2]>| match (yours, given) {
+            (Some(yours), Some(given)) => are_near(yours, given),
+            (yours, given) => yours.is_none() && given.is_none(),
+        };
+        let others = wrong_roots(query).map(|(given, text)| (gives(given), text));
+        let is_right = match (yours, expected) {
+            (Some(yours), Some(expected)) => are_near(yours, expected),
+            (yours, expected) => yours.is_none() && expected.is_none(),
+        };
+        let (shown, formulas) = match (yours, expected) {
+            (Some(yours), Some(expected)) => mistakes(query, yours, expected),
+            _ => mistakes(query, [f32::NAN; 2], [f64::NAN; 2]),
+        };
+        let verdicts = [
+            (expected.is_none(), "you return roots although the discriminant is below 0"),
+            (yours.is_none(), "you return None, but the discriminant is far above 0: there are two roots"),
+        ];
+        let broken = || broken().explained_by(verdicts.into_iter().chain(shown));
+        // Where both answers are None, each of these formulas has no roots either.
+        let none = expected.is_none() && yours.is_none();
+        let formulas = formulas.map(|(gives, text)| (gives || none, text));
+        unless(is_right, broken).formulas(formulas.into_iter().chain(others))
     };
     let drawn =
         [[1.0, -10_000.0, 1.0], [-2.0, 3e4, 0.5], [1.0, 10_000.0, 1.0], [2.0, -3.0, -4.0], [3.0, 0.0, -12.0]];
@@ -135,6 +178,10 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> CheckResult {
         // The double root of the parabola with the same axis that touches.
         let axis = -f64::from(query[1]) / (2.0 * f64::from(query[0]));
         let touches = yours.is_some_and(|yours| are_near(yours, [axis, axis]));
+        // A discriminant of 0 makes q = -b / 2, and q / a and c / q differ.
+        let (q, [a, c]) = (-0.5 * f64::from(query[1]), [query[0], query[2]].map(f64::from));
+        let of_band = if q == 0.0 { [0.0, 0.0] } else { [(q / a).min(c / q), (q / a).max(c / q)] };
+        let touches = touches || yours.is_some_and(|yours| are_near(yours, of_band));
         let band = (!double && touches, "you treat a discriminant near 0 as 0: it is not 0");
         let broken = |expected: String| {
             Broken::with_texts(describe(query), format!("{yours:?}"), expected, "whole numbers, exactly")

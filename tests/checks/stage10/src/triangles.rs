@@ -55,6 +55,38 @@ fn small(query: &TriangleQuery) -> bool {
     determinant.abs() < 1e-6
 }
 
+/// Wrong verdicts on a triangle in double precision, each with whether it is a hit.
+pub(super) fn wrong_verdicts(query: &TriangleQuery) -> [(bool, &'static str); 10] {
+    let ray = &query.ray;
+    let [o, d, a, b, c] =
+        [ray.origin, ray.direction, query.triangle.a, query.triangle.b, query.triangle.c].map(Vec3::as_dvec3);
+    let normal = (b - a).cross(c - a);
+    let (t, slope) = ((a - o).dot(normal) / d.dot(normal), d.dot(normal));
+    let weight = |p: DVec3, q: DVec3| (p - o).cross(q - o).dot(d) / slope;
+    let [alpha, beta, gamma] = [weight(b, c), weight(c, a), weight(a, b)].map(|weight| -weight);
+    let [alpha, beta, gamma] =
+        if alpha + beta + gamma < 0.0 { [-alpha, -beta, -gamma] } else { [alpha, beta, gamma] };
+    let [in_a, in_b, in_c] = [alpha, beta, gamma].map(|weight| weight >= 0.0);
+    let main = d[d.abs().max_position()];
+    let (inside, counts) = (in_a && in_b && in_c, |t: f64| ray.contains(t as f32));
+    named![
+        inside && counts(t) && slope < 0.0 => ONE_SIDE,
+        inside && counts(t) && slope > 0.0 => ONE_SIDE,
+        inside && counts(t) && slope * main > 0.0 => ONE_TURN,
+        inside && counts(t) && slope * main < 0.0 => ONE_TURN,
+        in_a && in_b && counts(t) => TWO_EDGES,
+        in_a && in_c && counts(t) => TWO_EDGES,
+        in_b && in_c && counts(t) => TWO_EDGES,
+        in_b && in_c && beta <= 1.0 && gamma <= 1.0 && counts(t) => "a point of the parallelogram is a hit: β + γ is at most 1",
+        inside && counts(-t) => "t has the wrong sign: it is the way from the origin to the plane",
+        inside => "you return a hit behind the origin or beyond the range: t counts only within the range of the ray",
+    ]
+}
+
+const ONE_TURN: &str = "a triangle is hit only if its corners turn one way in the coordinates of the ray: U, V and W may all be below 0";
+const ONE_SIDE: &str = "a triangle is hit from one side only: both sides count";
+const TWO_EDGES: &str = "only two of the three edges are tested: the point is inside of all three";
+
 // The margin is that of the nearest edge. Rays that are turned round or have another range miss by half their range or
 // more, which is far above all rounding errors.
 pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> CheckResult {
@@ -64,10 +96,12 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
         let answers = trial.kit.watertight(&queries);
         let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
             let body = Body::Triangle(query.triangle);
-            let Some(exact) = meet(&query.ray, body) else { return Ok(()) };
-            let Some(margin) = triangle::margin(&query.ray, &query.triangle) else { return Ok(()) };
+            let Some(exact) = meet(&query.ray, body) else { return Ok(().into()) };
+            let Some(margin) = triangle::margin(&query.ray, &query.triangle) else { return Ok(().into()) };
+            let verdicts = wrong_verdicts(query)
+                .map(|(is_hit, text)| (is_hit == yours.is_some() || margin <= STABLE, text));
             if yours.is_some() == exact.verdict.is_hit() || margin <= STABLE {
-                return Ok(());
+                return unless(true, Broken::default).formulas(verdicts);
             }
             let infinite = query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
             let on_the_line = meet(&infinite, body).is_some_and(|exact| exact.verdict.is_hit());
@@ -76,20 +110,15 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
             let underflows = normal == Vec3::ZERO || !normal.is_finite();
             let expected = format!("{:?}, {margin:.0} roundings from the opposite answer", exact.t);
             let yours_t = format!("{:?}", yours.map(|hit| hit.t));
-            Err(Broken::with_texts(query.call("watertight"), yours_t, expected, "exactly").explained_by([
-                (
-                    yours.is_some() && on_the_line,
-                    "you return a hit behind the origin or beyond the range: t counts only within the range of the ray",
-                ),
-                (
-                    yours.is_none() && underflows,
-                    "the normal over- or underflows in single precision, because it grows with the square of the size",
-                ),
-                (
-                    yours.is_none() && small(query),
-                    "you lose hits of small triangles: use no fixed limit for the determinant, and no products that lose their digits",
-                ),
-            ]))
+            let broken = Broken::with_texts(query.call("watertight"), yours_t, expected, "exactly").explained_by([
+                "you return a hit behind the origin or beyond the range: t counts only within the range of the ray"
+                    .when(yours.is_some() && on_the_line),
+                "the normal over- or underflows in single precision, because it grows with the square of the size"
+                    .when(yours.is_none() && underflows),
+                "you lose hits of small triangles: use no fixed limit for the determinant, and no products that lose their digits"
+                    .when(yours.is_none() && small(query)),
+            ]);
+            unless(false, || broken).formulas(verdicts)
         };
         all_hold(compare(&queries, answers, judge))?;
     }
@@ -120,23 +149,17 @@ fn reasons_of_leak(trial: &Trial<'_>, ray: &Ray, hits: &[Triangle]) -> [(bool, &
         !(volume as f32).is_normal()
     };
     [
-        (
-            line.iter().flatten().any(|hit| hit.t <= 0.0),
-            "t has the wrong sign: it is a quotient of two numbers whose digits cancel, on a needle or edge-on",
-        ),
-        (
-            hits.iter().all(edge_on),
-            "each triangle that the ray hits is seen edge-on: there t is a quotient of two rounding errors",
-        ),
+        "t has the wrong sign: it is a quotient of two numbers whose digits cancel, on a needle or edge-on"
+            .when(line.iter().flatten().any(|hit| hit.t <= 0.0)),
+        "each triangle that the ray hits is seen edge-on: there t is a quotient of two rounding errors"
+            .when(hits.iter().all(edge_on)),
         (
             middles_are_hit && hits.iter().all(|triangle| by_rounding(triangle) && !edge_on(triangle)),
             "the ray misses both neighbours of an edge: decide an edge by its two ends only, in the same way for both, \
              and count 0 as inside",
         ),
-        (
-            !middles_are_hit && hits.iter().all(overflows),
-            "products of three lengths over- or underflow in single precision here",
-        ),
+        "products of three lengths over- or underflow in single precision here"
+            .when(!middles_are_hit && hits.iter().all(overflows)),
     ]
 }
 
@@ -371,10 +394,8 @@ pub(super) fn finite_hits(trial: &Trial<'_>, (name, ask): TriangleTest) -> Check
         Some(_) if *query == beside => Err(Broken::new(query.call(name), yours, "None", "exactly")),
         Some(hit) if !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
             let broken = Broken::new(query.call(name), hit, "finite numbers, or None", "the definition");
-            Err(broken.explained_by([(
-                hit.t.is_nan() || hit.beta.is_nan() || hit.gamma.is_nan(),
-                "NaN is no hit: test the conditions of a hit, which are false for NaN",
-            )]))
+            Err(broken.explained_by(["NaN is no hit: test the conditions of a hit, which are false for NaN"
+                .when(hit.t.is_nan() || hit.beta.is_nan() || hit.gamma.is_nan())]))
         }
         _ => Ok(()),
     };

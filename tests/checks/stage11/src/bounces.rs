@@ -21,16 +21,12 @@ pub(super) fn cut_off_is_the_light_beyond_the_last_bounce(trial: &Trial<'_>) -> 
                 .explained_by([(overflow, "bounces + 1 overflows: add in a larger type")])
         };
         unless(near(yours, rest), broken).formulas([
-            (
-                near(yours, power(*albedo, n)),
-                "the power is bounces: it is bounces + 1, because light is also seen directly",
-            ),
+            "the power is bounces: it is bounces + 1, because light is also seen directly"
+                .when(near(yours, power(*albedo, n))),
             (near(yours, power(*albedo, n + 2.0)), "the power is bounces + 2: it is bounces + 1"),
             (near(yours, 1.0 - rest), "you return the fraction that is found, not the one that is missing"),
-            (
-                near(yours, rest * whole) || (*albedo == 1.0 && !yours.is_finite()),
-                "you return the missing light, not its fraction of all light",
-            ),
+            "you return the missing light, not its fraction of all light"
+                .when(near(yours, rest * whole) || (*albedo == 1.0 && !yours.is_finite())),
             (near(yours, f64::from(*albedo) * (n + 1.0)), "you multiply where a power is needed"),
         ])
     })
@@ -49,6 +45,8 @@ fn judge(query: &(f32, f32), yours: u32) -> Judged {
     // The number by the definition, for the message. At the end a step may be off by a rounding.
     let bounces = if albedo <= error { 0.0 } else { error.ln() / albedo.ln() - 1.0 };
     let estimate = bounces.ceil();
+    let quotient = if albedo <= error { 1.0 } else { error.ln() / albedo.ln() };
+    let of_last = if albedo <= error { 0.0 } else { (error / (1.0 - albedo)).ln() / albedo.ln() };
     let expected = format!("about {estimate}, the smallest n with albedo^(n + 1) <= error");
     let right = is_enough && is_smallest;
     let broken = || {
@@ -58,12 +56,17 @@ fn judge(query: &(f32, f32), yours: u32) -> Judged {
                 (yours == 0 && estimate > 0.0, "0 bounces are not enough here"),
             ])
     };
-    unless(right, broken).formulas([
-        (
-            n == estimate + 1.0 || (right && estimate < 1.0),
+    unless(right, broken).formulas(named![
+        n == estimate + 1.0 || (right && estimate < 1.0) =>
             "one bounce too many: the power is n + 1, because light is also seen directly",
-        ),
-        (n == (bounces.floor().max(0.0)), "one bounce too few: round up"),
+        n == (bounces.floor().max(0.0)) => "one bounce too few: round up",
+        n == (quotient.ceil() - 1.0).max(0.0) || n == estimate.max(0.0) =>
+            "the quotient of the logarithms is rounded: test the power for this number and the one before",
+        n == quotient.round().max(0.0) => "the quotient is rounded to the nearest number: round up",
+        n == bounces.round().max(0.0) => "the quotient is rounded to the nearest number: round up",
+        n == quotient.floor().max(0.0) => "the quotient of the logarithms is rounded down: it is n + 1, rounded up",
+        n == of_last.ceil().max(0.0) || n == (of_last - 1.0).ceil().max(0.0) =>
+            "the error is that of one bounce: all light after the last one is missing",
     ])
 }
 

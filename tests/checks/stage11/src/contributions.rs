@@ -33,6 +33,8 @@ fn queries(
     })
 }
 
+const LEAST: &str = "a small density is replaced by a larger one before you divide, so light is lost: divide by the density itself";
+
 /// The contribution without the weight of multiple importance sampling.
 fn unweighted(query: &LightContributionQuery) -> DVec3 {
     let cosine = query.normal.as_dvec3().dot(query.sample.direction.as_dvec3());
@@ -68,44 +70,32 @@ pub(super) fn light_contributions_have_their_closed_form(trial: &Trial<'_>) -> C
             let cosine = query.normal.as_dvec3().dot(query.sample.direction.as_dvec3());
             let (pdf, other) = (f64::from(query.sample.pdf), f64::from(query.bsdf_pdf));
             let is = |expected: DVec3, factor: f64| near(query, yours, expected, factor);
-            unless(near(query, yours, expected, factor), broken).formulas([
-                (yours.is_nan(), "you return NaN"),
-                (
-                    is(whole, 1.0),
-                    "the weight of multiple importance sampling is missing, so light counts twice",
-                ),
-                (
-                    is(f64::from(swapped) * whole, f64::from(swapped)),
+            let least = |least: f64| is(weight * whole * (pdf / pdf.max(least)), 1.0);
+            unless(near(query, yours, expected, factor), broken).formulas(named![
+                yours.is_nan() => "you return NaN",
+                is(whole, 1.0) => "the weight of multiple importance sampling is missing, so light counts twice",
+                is(f64::from(swapped) * whole, f64::from(swapped)) =>
                     "own and other are exchanged: own is the density of the light's sample",
-                ),
-                (is(PI * weight * whole, PI), "a diffuse surface sends kd / π on: the π is missing"),
-                (
-                    is(weight * whole / cosine.max(1e-9), 1.0 / cosine.max(1e-9)),
-                    "the cosine at the surface is missing",
-                ),
-                (is(weight * whole * cosine, 1.0), "you multiply by the cosine twice"),
-                (is(weight * whole * pdf, pdf), "you do not divide by the density of the sample"),
-                (
-                    is(weight * whole * pdf * pdf, pdf * pdf),
-                    "you multiply by the density of the sample: divide by it",
-                ),
-                (
-                    other == 0.0 || is(weight * whole * pdf / other, pdf / other),
+                is(PI * weight * whole, PI) => "a diffuse surface sends kd / π on: the π is missing",
+                is(weight * whole / cosine.max(1e-9), 1.0 / cosine.max(1e-9)) => "the cosine at the surface is missing",
+                is(weight * whole * cosine, 1.0) => "you multiply by the cosine twice",
+                is(weight * whole * pdf, pdf) => "you do not divide by the density of the sample",
+                is(weight * whole * pdf * pdf, pdf * pdf) => "you multiply by the density of the sample: divide by it",
+                other == 0.0 || is(weight * whole * pdf / other, pdf / other) =>
                     "you divide by the density of the surface, not by that of the light",
-                ),
-                (
-                    is(weight * query.sample.radiance.as_dvec3() * (cosine / PI / pdf), 1.0),
-                    "the diffuse reflectance is missing",
-                ),
-                (is(weight * whole / PI, 1.0), "you divide by π twice"),
-                (
-                    is(weight * whole / f64::from(query.sample.distance).powi(2), 1.0),
+                is(weight * query.sample.radiance.as_dvec3() * (cosine / PI / pdf), 1.0) => "the diffuse reflectance is missing",
+                is(weight * whole / PI, 1.0) => "you divide by π twice",
+                is(weight * whole * pdf, pdf) => "you do not divide by the density of the sample",
+                is(weight * whole / pdf, 1.0 / pdf) => "you divide by the density twice",
+                is(weight * weight * whole, 1.0) => "you multiply by the weight of mis_weight twice",
+                least(1e-4) => LEAST,
+                least(1e-3) => LEAST,
+                least(1e-2) => LEAST,
+                least(0.1) => LEAST,
+                least(1.0) => LEAST,
+                is(weight * whole / f64::from(query.sample.distance).powi(2), 1.0) =>
                     "you divide by the squared distance: it is in the density of the sample",
-                ),
-                (
-                    is(whole * (pdf / (pdf + other)), 1.0),
-                    "you divide by the sum of both densities and do not weight by mis_weight",
-                ),
+                is(whole * (pdf / (pdf + other)), 1.0) => "you divide by the sum of both densities and do not weight by mis_weight",
             ])
         })
     })
@@ -137,10 +127,8 @@ pub(super) fn light_from_below_adds_nothing(trial: &Trial<'_>) -> CheckResult {
             (!above && yours.min_element() < 0.0, "light from below the surface is negative: it must be 0"),
             (!above && adds, "light from below the surface counts: take no absolute value of the cosine"),
             (above && !adds, "light from above the surface counts"),
-            (
-                if above { !adds } else { yours.min_element() < 0.0 },
-                "your test is reversed: light from above the surface counts, not light from below",
-            ),
+            "your test is reversed: light from above the surface counts, not light from below"
+                .when(if above { !adds } else { yours.min_element() < 0.0 }),
         ]))
     })
 }
@@ -187,22 +175,14 @@ pub(super) fn emission_counts_by_its_weight(trial: &Trial<'_>) -> CheckResult {
             unless(right, broken).formulas([
                 (near(yours, whole), "all emission counts in full, so light that is sampled counts twice"),
                 (yours == Vec3::ZERO, "no emission counts, so mirrors show no lights"),
-                (
-                    near(yours, f64::from(swapped) * whole),
-                    "own and other are exchanged: own is the density of the ray",
-                ),
-                (
-                    near(yours, unless_certain(0.0)),
-                    "light that a diffuse ray finds counts by its weight, and in full if it is not sampled",
-                ),
-                (
-                    near(yours, if is_certain { DVec3::ZERO } else { weight * whole }),
-                    "light of camera rays and mirrors counts in full, because no sample finds it",
-                ),
-                (
-                    near(yours, if query.light_pdf == 0.0 { DVec3::ZERO } else { weight * whole }),
-                    "light of an emitter that is not sampled counts in full",
-                ),
+                "own and other are exchanged: own is the density of the ray"
+                    .when(near(yours, f64::from(swapped) * whole)),
+                "light that a diffuse ray finds counts by its weight, and in full if it is not sampled"
+                    .when(near(yours, unless_certain(0.0))),
+                "light of camera rays and mirrors counts in full, because no sample finds it"
+                    .when(near(yours, if is_certain { DVec3::ZERO } else { weight * whole })),
+                "light of an emitter that is not sampled counts in full"
+                    .when(near(yours, if query.light_pdf == 0.0 { DVec3::ZERO } else { weight * whole })),
             ])
         })
     })

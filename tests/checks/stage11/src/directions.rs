@@ -34,10 +34,8 @@ pub(super) fn cosine_directions_stay_above_the_surface(trial: &Trial<'_>) -> Che
             let (input, expected) = (query.call("cosine_direction"), "a unit direction above the surface");
             Err(Broken::new(input, yours, expected, "the definition").explained_by([
                 (constant, "you return the normal for every u"),
-                (
-                    yours.is_nan(),
-                    "you return NaN: your frame does not exist for this normal, or you normalize 0",
-                ),
+                "you return NaN: your frame does not exist for this normal, or you normalize 0"
+                    .when(yours.is_nan()),
                 (!unit && !yours.is_nan(), "your direction does not have unit length"),
                 (unit && above < 0.0, "your direction goes below the surface"),
             ]))
@@ -78,26 +76,18 @@ pub(super) fn cosine_directions_have_their_density(trial: &Trial<'_>) -> CheckRe
     };
     let mistakes = |counts: &[u64]| {
         vec![
-            (
-                is(|u| u),
-                "your directions are uniform over the hemisphere: cos θ is the root of a uniform number",
-            ),
+            "your directions are uniform over the hemisphere: cos θ is the root of a uniform number"
+                .when(is(|u| u)),
             (is(|u| (FRAC_PI_2 * u).cos()), "your θ is uniform: cos θ is the root of a uniform number"),
             (is(|u| 1.0 - 2.0 * u), "your directions fill the whole sphere"),
-            (
-                is(|u| (1.0 - u * u).sqrt()),
-                "the radius on the disk is uniform: it is the root of a uniform number",
-            ),
+            "the radius on the disk is uniform: it is the root of a uniform number"
+                .when(is(|u| (1.0 - u * u).sqrt())),
             (is(|u| u.powf(1.0 / 3.0)), "your density is proportional to cos² θ"),
-            (
-                is_other_power(&u, &cosines, 0.5) || is_other_power(&u, &sines, 0.5),
-                "cos θ or sin θ is another power of a random number than its root",
-            ),
+            "cos θ or sin θ is another power of a random number than its root"
+                .when(is_other_power(&u, &cosines, 0.5) || is_other_power(&u, &sines, 0.5)),
             // Of so many samples the lowest has a cosine of about 0.006, and above 0.018 less than once in a thousand times.
-            (
-                cosines.iter().all(|cosine| *cosine > 0.018),
-                "you never sample grazing directions: cos θ goes down to 0",
-            ),
+            "you never sample grazing directions: cos θ goes down to 0"
+                .when(cosines.iter().all(|cosine| *cosine > 0.018)),
             (columns(counts)[7] == 0, "you never sample grazing directions"),
         ]
     };
@@ -158,14 +148,10 @@ pub(super) fn cosine_pdf_below_the_surface_is_zero(trial: &Trial<'_>) -> CheckRe
         let input = query.call("cosine_pdf");
         Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
             (cosine < 0.0 && yours < 0.0, "your density is negative: return 0 below the surface"),
-            (
-                cosine < 0.0 && (f64::from(yours) + cosine / PI).abs() < 1e-5,
-                "you take the absolute value of the cosine: return 0 below the surface",
-            ),
-            (
-                (f64::from(yours) - (-cosine / PI).max(0.0)).abs() < 1e-5,
-                "your density is that of the other side: the cosine has the wrong sign",
-            ),
+            "you take the absolute value of the cosine: return 0 below the surface"
+                .when(cosine < 0.0 && (f64::from(yours) + cosine / PI).abs() < 1e-5),
+            "your density is that of the other side: the cosine has the wrong sign"
+                .when((f64::from(yours) - (-cosine / PI).max(0.0)).abs() < 1e-5),
         ]))
     })
 }

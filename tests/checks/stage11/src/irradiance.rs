@@ -51,13 +51,12 @@ fn irradiance(trial: &Trial<'_>, kind: usize, lit: &Lit) -> CheckResult {
                 (all(&|_, c| 1.0 / (area * c)), "the squared distance is missing in your density"),
                 (all(&|d, c| d / (area * c)), "your density has the distance in place of its square"),
                 (all(&|d, c| d * d / c), "the area of the emitter is missing in your density"),
-                (
+                "your solid angle is that of a flat disk: a sphere fills 2π (1 - cos θ), sin θ = R / d".when(
                     kind == 2
                         && samples.iter().flatten().all(|sample| {
                             let disk = lit.irradiance(lit.toward_center().normalize());
                             (f64::from(sample.pdf) * disk - 1.0).abs() < 1e-4
                         }),
-                    "your solid angle is that of a flat disk: a sphere fills 2π (1 - cos θ), sin θ = R / d",
                 ),
                 (is(mean / 2.0), "the irradiance is twice too large"),
                 (is(2.0 * mean), "the irradiance is half of what it must be"),

@@ -86,6 +86,32 @@ pub(super) fn light_samples_have_their_density(trial: &Trial<'_>) -> CheckResult
                 && [|u: f64, v: f64| (1.0 - (1.0 - u) * (1.0 - u), v), |u: f64, v: f64| (1.0 - u * u, v)]
                     .into_iter()
                     .any(is_place);
+            // A coordinate of a triangle is no random number itself: few points are near a corner.
+            let [s, t] = [
+                |p: &(f64, f64)| 1.0 - (1.0 - p.0).max(0.0).sqrt(),
+                |p: &(f64, f64)| p.1 * (1.0 - p.0).max(0.0).sqrt(),
+            ];
+            let coordinates = [s, t, |p: &(f64, f64)| (1.0 - p.1) * (1.0 - p.0).max(0.0).sqrt()];
+            let powers = [
+                |x: f64| x,
+                |x: f64| 1.0 - x,
+                |x: f64| x * x,
+                |x: f64| 1.0 - x * x,
+                |x: f64| (1.0 - x) * (1.0 - x),
+            ];
+            let is_number = |coordinate: fn(&(f64, f64)) -> f64, of: fn(f64) -> f64| {
+                let same = |number: fn(&Vec2) -> f32| {
+                    u.iter()
+                        .zip(&places)
+                        .all(|(u, place)| (coordinate(place) - of(f64::from(number(u)))).abs() < 1e-2)
+                };
+                same(|u| u.x) || same(|u| u.y)
+            };
+            let without_root = without_root
+                || kind == 1
+                    && coordinates
+                        .iter()
+                        .any(|&coordinate| powers.iter().any(|&of| is_number(coordinate, of)));
             let rim = lit.solid_angle((0.5, 0.5)) / TAU;
             let by_angle = |u: f64| (1.0 - (u * (1.0 - rim).acos()).cos()) / rim;
             let numbers = u.iter().zip(&places);
@@ -142,14 +168,10 @@ fn integrates_to_one(trial: &Trial<'_>, lits: &[Lit]) -> Vec<CheckResult> {
             (all, "your density is 0 for every direction to the emitter"),
             (gaps > 0 && !all, "your density is 0 for some directions that meet the emitter"),
             (flat && is_one(over_area), "your density is per area: multiply it by distance² / cos θ"),
-            (
-                densities.iter().all(|density| (f64::from(*density) * 4.0 * PI - 1.0).abs() < 1e-4),
-                "your density is that of all directions, 1 / 4π: divide by the solid angle of the emitter",
-            ),
-            (
-                !flat && densities.iter().all(|density| lit.is_rounded(*density)),
-                "your 1 - cos θ is rounded: compute it as sin² θ / (1 + cos θ)",
-            ),
+            "your density is that of all directions, 1 / 4π: divide by the solid angle of the emitter"
+                .when(densities.iter().all(|density| (f64::from(*density) * 4.0 * PI - 1.0).abs() < 1e-4)),
+            "your 1 - cos θ is rounded: compute it as sin² θ / (1 + cos θ)"
+                .when(!flat && densities.iter().all(|density| lit.is_rounded(*density))),
             (full, "your density is twice too large"),
             (half, "your density is half of what it must be"),
         ]))

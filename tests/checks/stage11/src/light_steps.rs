@@ -127,10 +127,8 @@ pub(super) fn steps_sample_the_light(trial: &Trial<'_>) -> CheckResult {
                 let endless = step.shadow.as_ref().is_some_and(|shadow| is_endless(shadow.distance));
                 Err(broken.explained_by([
                     (step.shadow.is_none(), "no shadow ray: the light is not sampled"),
-                    (
-                        endless && sample.distance.is_finite(),
-                        "the shadow ray has no end: it ends at the distance of the sample",
-                    ),
+                    "the shadow ray has no end: it ends at the distance of the sample"
+                        .when(endless && sample.distance.is_finite()),
                 ]))
             },
             |query, ((step, sample), weights)| {
@@ -143,41 +141,21 @@ pub(super) fn steps_sample_the_light(trial: &Trial<'_>) -> CheckResult {
                 let surface = &query.vertex.surface;
                 let [by_geometric, by_shading] = [surface.geometric_normal, surface.shading_normal]
                     .map(|normal| f64::from(normal.dot(sample.direction)).max(1e-9));
-                vec![
-                    (shadow.light.is_nan(), "you return NaN"),
-                    (
-                        near(shadow.light, choice * unscaled * whole),
+                named![
+                    shadow.light.is_nan() => "you return NaN",
+                    near(shadow.light, choice * unscaled * whole) =>
                         "the probability with which the emitter is chosen is missing in the density",
-                    ),
-                    (
-                        near(shadow.light, choice * choice * divided * whole),
+                    near(shadow.light, choice * choice * divided * whole) =>
                         "you divide the density by the probability of the emitter: multiply",
-                    ),
-                    (
-                        near(shadow.light, choice * weight * whole),
+                    near(shadow.light, choice * weight * whole) =>
                         "you do not divide by the probability with which the emitter is chosen",
-                    ),
-                    (
-                        near(shadow.light, whole),
-                        "the weight of multiple importance sampling is missing, so light counts twice",
-                    ),
-                    (
-                        near(shadow.light, weight * unweighted(query, sample, choice as f32)),
-                        "the weight of the path is missing",
-                    ),
-                    (
-                        near(shadow.light, PI * weight * whole),
-                        "a diffuse surface sends kd / π on: the π is missing",
-                    ),
-                    (
-                        near(shadow.light, by_geometric / by_shading * weight * whole),
+                    near(shadow.light, whole) => "the weight of multiple importance sampling is missing, so light counts twice",
+                    near(shadow.light, weight * unweighted(query, sample, choice as f32)) => "the weight of the path is missing",
+                    near(shadow.light, PI * weight * whole) => "a diffuse surface sends kd / π on: the π is missing",
+                    near(shadow.light, by_geometric / by_shading * weight * whole) =>
                         "the cosine is that of the geometric normal: use the shading normal",
-                    ),
-                    (
-                        (shadow.direction + sample.direction).length() < 1e-5,
-                        "your shadow ray points from the light to the surface",
-                    ),
-                ]
+                    (shadow.direction + sample.direction).length() < 1e-5 => "your shadow ray points from the light to the surface",
+                ].to_vec()
             },
         )
     })
@@ -270,10 +248,8 @@ pub(super) fn steps_ask_for_no_useless_shadow_ray(trial: &Trial<'_>) -> CheckRes
             Err(Broken::with_texts(describe(query), yours, expected, "the definition").explained_by(
                 USELESS.iter().enumerate().map(|(index, reason)| (index == *which, *reason)).chain([
                     (is_needed, "this light must be sampled"),
-                    (
-                        step.shadow.is_some_and(|shadow| shadow.light == Vec3::ZERO),
-                        "a shadow ray is traced although its light is 0: compare the light with 0 first",
-                    ),
+                    "a shadow ray is traced although its light is 0: compare the light with 0 first"
+                        .when(step.shadow.is_some_and(|shadow| shadow.light == Vec3::ZERO)),
                 ]),
             ))
         })

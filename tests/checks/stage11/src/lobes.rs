@@ -116,14 +116,10 @@ pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> Check
             .explained_by([
                 (reflectance == Vec3::ZERO, CHOOSES_BLACK),
                 (sample.weight.is_nan() || sample.direction.is_nan(), "you return NaN"),
-                (
-                    sample.lobe == Lobe::Diffuse && is_certain,
-                    "a diffuse direction is not certain: its density is finite",
-                ),
-                (
-                    sample.lobe != Lobe::Diffuse && !is_certain,
-                    "a reflected or refracted direction is certain: its density is infinite",
-                ),
+                "a diffuse direction is not certain: its density is finite"
+                    .when(sample.lobe == Lobe::Diffuse && is_certain),
+                "a reflected or refracted direction is certain: its density is infinite"
+                    .when(sample.lobe != Lobe::Diffuse && !is_certain),
                 (!keeps && sample.lobe == Lobe::Diffuse, "your diffuse direction goes below the surface"),
                 (!keeps, "a reflected or refracted ray keeps its direction"),
                 (!is_unit, "your direction does not have unit length"),
@@ -170,10 +166,8 @@ pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> 
         unless(reflectance.max_element() == 0.0 || judge_weight(query, &sample), broken).formulas([
             (near(share), "you multiply by the probability of the choice: divide by it"),
             (near(1.0 / largest), "you divide by the reflectance, not by the probability of the choice"),
-            (
-                near(1.0 / share / PI),
-                "the weight of a diffuse direction has no π: it cancels against the density",
-            ),
+            "the weight of a diffuse direction has no π: it cancels against the density"
+                .when(near(1.0 / share / PI)),
             (sample.weight.is_nan(), "you return NaN"),
         ])
     })
@@ -248,10 +242,8 @@ pub(super) fn bsdf_samples_keep_the_light(trial: &Trial<'_>) -> CheckResult {
                 [
                     (frequency == 0.0, "you never choose this lobe"),
                     (mean.is_nan(), "you return NaN"),
-                    (
-                        (mean - frequency).abs() < 1e-5,
-                        "your weight is not divided by the probability of the choice",
-                    ),
+                    "your weight is not divided by the probability of the choice"
+                        .when((mean - frequency).abs() < 1e-5),
                     (true, "the lobe is not chosen with the probability by which its weight is divided"),
                 ],
             ));
@@ -340,21 +332,13 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
                 let yours = format!("{yours:?}, and pdf {:?} of sample_bsdf", sample.pdf);
                 Broken::with_texts(input, yours, format!("{expected:?} for both"), "probability · cos θ / π")
             };
-            unless(both(expected), broken).formulas([
-                (both(cosine / PI), "the probability of the diffuse lobe is missing in both densities"),
-                (near(yours, cosine / PI), "the probability of the diffuse lobe is missing in bsdf_pdf"),
-                (
-                    near(sample.pdf, cosine / PI),
-                    "the probability of the diffuse lobe is missing in the pdf of sample_bsdf",
-                ),
-                (
-                    near(yours, by_mean) && near(sample.pdf, expected),
+            unless(both(expected), broken).formulas(named![
+                both(cosine / PI) => "the probability of the diffuse lobe is missing in both densities",
+                near(yours, cosine / PI) => "the probability of the diffuse lobe is missing in bsdf_pdf",
+                near(sample.pdf, cosine / PI) => "the probability of the diffuse lobe is missing in the pdf of sample_bsdf",
+                near(yours, by_mean) && near(sample.pdf, expected) =>
                     "bsdf_pdf chooses by the means of the channels, and sample_bsdf does not: use one q",
-                ),
-                (
-                    near(yours, cosine / PI / probability),
-                    "you divide by the probability of the diffuse lobe: multiply by it",
-                ),
+                near(yours, cosine / PI / probability) => "you divide by the probability of the diffuse lobe: multiply by it",
             ])
         })
     })
@@ -387,10 +371,8 @@ pub(super) fn bsdf_pdf_of_other_directions_is_zero(trial: &Trial<'_>) -> CheckRe
             (yours.is_nan(), "you return NaN: a black surface has no probabilities"),
             (!above && yours < 0.0, "your density is negative below the surface"),
             (!above && yours > 0.0, "a direction below the surface is never sampled: its density is 0"),
-            (
-                above && !reflects && yours > 0.0,
-                "a surface without diffuse reflection samples no diffuse direction",
-            ),
+            "a surface without diffuse reflection samples no diffuse direction"
+                .when(above && !reflects && yours > 0.0),
             (reflects && yours == 0.0, "this direction is sampled: its density is above 0"),
         ]))
     })

@@ -80,10 +80,8 @@ pub(super) fn paths_in_a_furnace_count_every_bounce(trial: &Trial<'_>) -> CheckR
             let broken = Broken::with_texts(what, yours, right, "Le (1 + ρ + … + ρⁿ)");
             outcomes.push(Err(broken.explained_by([
                 (light.is_nan(), "you return NaN"),
-                (
-                    near(sum(depth)),
-                    "the light of the last surface is missing: collect it before the path ends",
-                ),
+                "the light of the last surface is missing: collect it before the path ends"
+                    .when(near(sum(depth))),
                 (near(sum(depth + 2)), "your paths have one bounce more than max_depth"),
                 (near(emission.as_dvec3()), "only the first surface counts"),
                 (near(sum(depth + 1) - emission.as_dvec3()), "the light of the first surface is missing"),
@@ -118,10 +116,8 @@ pub(super) fn paths_in_a_furnace_find_all_light(trial: &Trial<'_>) -> CheckResul
         (expected, 0.0),
         |mean| {
             vec![
-                (
-                    is(mean, 1.0 + 2.0 * albedo / (1.0 - albedo)),
-                    "light that is sampled and light that is found both count in full",
-                ),
+                "light that is sampled and light that is found both count in full"
+                    .when(is(mean, 1.0 + 2.0 * albedo / (1.0 - albedo))),
                 (is(mean, 1.0), "only the light that the camera sees counts"),
             ]
         },
@@ -261,10 +257,8 @@ pub(super) fn steps_count_sampled_light_once(trial: &Trial<'_>) -> CheckResult {
         channel_has_mean(&format!("a room with {light}"), &found, channel, (expected, 0.0), |mean| {
             vec![
                 (is(mean, 2.0 * expected), "light counts twice: once by samples and once by chance"),
-                (
-                    is(mean, PI * expected),
-                    "your light is π times too bright: a diffuse surface sends kd / π on",
-                ),
+                "your light is π times too bright: a diffuse surface sends kd / π on"
+                    .when(is(mean, PI * expected)),
                 (is(mean, expected / kd), "the diffuse reflectance is missing"),
                 (mean == 0.0, "no light arrives"),
             ]
@@ -298,14 +292,10 @@ pub(super) fn steps_find_light_in_a_mirror(trial: &Trial<'_>) -> CheckResult {
         let of_mirror = weight * in_mirror;
         channel_has_mean("a room with a light and a mirror", &found, channel, (expected, 0.0), |mean| {
             vec![
-                (
-                    of_mirror > 0.05 * direct && is(mean, direct),
-                    "light that a mirror reflects is lost: no sample finds it, so it counts in full",
-                ),
-                (
-                    is(mean, 2.0 * direct + of_mirror),
-                    "light counts twice: once by samples and once by chance",
-                ),
+                "light that a mirror reflects is lost: no sample finds it, so it counts in full"
+                    .when(of_mirror > 0.05 * direct && is(mean, direct)),
+                "light counts twice: once by samples and once by chance"
+                    .when(is(mean, 2.0 * direct + of_mirror)),
                 (is(mean, direct + in_mirror) && weight != 1.0, "the weight of the mirror is missing"),
             ]
         })?;

@@ -60,51 +60,34 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[(f32, f64)], slack: f64) -> 
         let [in_least, in_most] = [least, most].map(|share| 100.0 * share);
         let expected =
             format!("{in_least:.2} % to {in_most:.2} %, mean 1, and one factor for all that survive");
-        Broken::with_texts(input, yours, expected, "the mean over u").explained_by([
-            (factors.iter().any(|(factor, _)| factor.is_nan()), "you return NaN"),
-            (
-                share == 1.0 && near(mean, 1.0) && bounce == 3,
-                "your roulette begins too late: it begins at bounce 3",
-            ),
-            (share == 0.0, "a path of this small weight always ends: it must survive with a probability above 0"),
-            (
-                is_one_factor && near(share, largest) && 1.0 < factor && factor < 0.99 / share,
+        Broken::with_texts(input, yours, expected, "the mean over u").explained_by(named![
+            factors.iter().any(|(factor, _)| factor.is_nan()) => "you return NaN",
+            share == 1.0 && near(mean, 1.0) && bounce == 3 => "your roulette begins too late: it begins at bounce 3",
+            share == 0.0 => "a path of this small weight always ends: it must survive with a probability above 0",
+            is_one_factor && near(share, largest) && 1.0 < factor && factor < 0.99 / share =>
                 "the factor is below 1 / q for this small weight: you limit it, so light is lost",
-            ),
-            (
-                is_one_factor && near(mean, 1.0) && 0.75 < share && share < least - slack,
+            is_one_factor && near(mean, 1.0) && 0.75 < share && share < least - slack =>
                 "too many bright paths end: of those whose weight is 0.95 or more, at most one in twenty may end",
-            ),
         ])
     };
     // The factor is rounded to single precision.
     let right = is_one_factor && (mean - 1.0).abs() <= slack * factor + 1e-6 && in_range;
     // A weight of 1 or more always survives.
     let open = right && largest >= 1.0;
-    let formulas = [
-        (share == 0.0, "no path survives"),
-        (share == 1.0 && near(mean, 1.0), "no path ever ends"),
-        (
-            near(share, 0.5) && near(mean, 1.0),
+    let formulas = named![
+        share == 0.0 => "no path survives",
+        share == 1.0 && near(mean, 1.0) => "no path ever ends",
+        near(share, 0.5) && near(mean, 1.0) =>
             "every path survives with probability 1/2, but the probability has to follow its weight",
-        ),
-        (
-            is_one_factor && factor == 1.0 && (share < 1.0 || right),
+        is_one_factor && factor == 1.0 && (share < 1.0 || right) =>
             "you do not divide by the probability to survive, so the picture is too dark",
-        ),
-        (
-            is_one_factor && near(1.0 - share, largest),
-            "the path ends with the probability with which it must survive",
-        ),
-        (
-            is_one_factor && near(share, largest) && near(1.0 - share, 1.0 / factor),
-            "you divide by the probability to end",
-        ),
-        (near(share, smallest), "you compare u with the smallest channel of the weight: take the largest"),
-        (near(share, average), "you compare u with the mean of the channels: take the largest"),
-        (near(share, green), "you compare u with the luminance of the weight: take the largest channel"),
-        (is_one_factor && near(factor * largest * largest, 1.0), "you divide by the probability twice"),
-        (is_one_factor && near(factor, largest), "you multiply by the probability to survive: divide by it"),
+        is_one_factor && near(1.0 - share, largest) => "the path ends with the probability with which it must survive",
+        is_one_factor && near(share, largest) && near(1.0 - share, 1.0 / factor) => "you divide by the probability to end",
+        near(share, smallest) => "you compare u with the smallest channel of the weight: take the largest",
+        near(share, average) => "you compare u with the mean of the channels: take the largest",
+        near(share, green) => "you compare u with the luminance of the weight: take the largest channel",
+        is_one_factor && near(factor * largest * largest, 1.0) => "you divide by the probability twice",
+        is_one_factor && near(factor, largest) => "you multiply by the probability to survive: divide by it",
     ];
     unless(right, broken).formulas(formulas.map(|(gives, text)| (gives || open, text)))
 }
@@ -133,10 +116,8 @@ pub(super) fn roulette_ends_no_young_path(trial: &Trial<'_>) -> CheckResult {
             let broken =
                 Broken::with_texts(query.call("survives"), format!("{yours:?}"), expected, "the definition");
             Err(broken.explained_by([
-                (
-                    lives && query.weight.max_element() < 1.0 / 64.0,
-                    "paths of small weight end: before bounce 3 each weight above 0 survives",
-                ),
+                "paths of small weight end: before bounce 3 each weight above 0 survives"
+                    .when(lives && query.weight.max_element() < 1.0 / 64.0),
                 (lives && query.bounce == 2, "your roulette begins too early: not before bounce 3"),
                 (lives, "your roulette begins at the first bounces: not before bounce 3"),
                 (!lives, "no path ends"),

@@ -138,35 +138,23 @@ pub(super) fn steps_collect_the_emission(trial: &Trial<'_>) -> CheckResult {
             let is_last = query.path.bounces == query.max_depth;
             unless(near(step.light, weight * whole), broken).formulas([
                 (step.light.is_nan(), "you return NaN"),
-                (
-                    near(step.light, if is_last { DVec3::ZERO } else { weight * whole }),
-                    "the light of the last surface is lost: collect it before the path ends",
-                ),
-                (
-                    near(step.light, whole),
-                    "light that is sampled as well counts in full here, so it counts twice",
-                ),
-                (
-                    near(step.light, unscaled * whole),
-                    "the probability with which the emitter is chosen is missing in its density",
-                ),
-                (
-                    near(step.light, from_hit * whole),
-                    "light_pdf is asked from the surface that the ray met: ask it from path.origin",
-                ),
-                (
-                    near(step.light, weight * query.vertex.emission.as_dvec3()),
-                    "the weight of the path is missing",
-                ),
+                "the light of the last surface is lost: collect it before the path ends"
+                    .when(near(step.light, if is_last { DVec3::ZERO } else { weight * whole })),
+                "light that is sampled as well counts in full here, so it counts twice"
+                    .when(near(step.light, whole)),
+                "the probability with which the emitter is chosen is missing in its density"
+                    .when(near(step.light, unscaled * whole)),
+                "light_pdf is asked from the surface that the ray met: ask it from path.origin"
+                    .when(near(step.light, from_hit * whole)),
+                "the weight of the path is missing"
+                    .when(near(step.light, weight * query.vertex.emission.as_dvec3())),
                 (step.light == Vec3::ZERO, "the emission of the surface is missing"),
-                (
-                    near(step.light, if query.path.bounces == 0 { weight * whole } else { DVec3::ZERO }),
-                    "emission counts only where the camera sees it",
-                ),
-                (
-                    near(step.light, if query.path.pdf == CERTAIN { whole } else { DVec3::ZERO }),
-                    "emission counts only for camera rays and mirrors: diffuse rays find light, too",
-                ),
+                "emission counts only where the camera sees it".when(near(
+                    step.light,
+                    if query.path.bounces == 0 { weight * whole } else { DVec3::ZERO },
+                )),
+                "emission counts only for camera rays and mirrors: diffuse rays find light, too"
+                    .when(near(step.light, if query.path.pdf == CERTAIN { whole } else { DVec3::ZERO })),
             ])
         })
     })
@@ -204,10 +192,8 @@ pub(super) fn steps_end_at_the_greatest_depth(trial: &Trial<'_>) -> CheckResult 
         Err(broken.explained_by([
             (bounces == max_depth, "one bounce too many: a path with max_depth bounces ends"),
             (!goes_on, "paths do not end at max_depth"),
-            (
-                bounces + 1 == max_depth,
-                "one bounce too few: a path with fewer than max_depth bounces continues",
-            ),
+            "one bounce too few: a path with fewer than max_depth bounces continues"
+                .when(bounces + 1 == max_depth),
             (goes_on, "a path whose weight is 1 continues"),
         ]))
     })
@@ -225,6 +211,33 @@ fn says(next: Option<NextRay>) -> String {
         format!("{lobe:?} along {direction} with weight {weight} and pdf {pdf:?}")
     })
 }
+
+/// What a step gives to Russian roulette: the right arguments first.
+#[derive(Clone, Copy)]
+enum Roulette {
+    Bounce(u32),
+    OfPath,
+    OfSample,
+    OfSurface,
+    Number(usize),
+}
+
+const ROULETTES: [(Roulette, &str); 11] = named![
+    Roulette::Bounce(1) => "",
+    Roulette::Bounce(0) => "the roulette counts surfaces: path.bounces + 1",
+    Roulette::Bounce(2) => "the roulette counts one surface too many: path.bounces + 1",
+    Roulette::OfPath => "the roulette gets the weight before the bounce: multiply by that of the sample first",
+    Roulette::OfSample => "the roulette gets the weight of the surface alone: multiply by that of the path first",
+    Roulette::OfSurface => "the roulette gets the reflectance of the surface: it gets the weight that the path would have",
+    Roulette::Number(0) => REUSED,
+    Roulette::Number(1) => REUSED,
+    Roulette::Number(2) => REUSED,
+    Roulette::Number(3) => REUSED,
+    Roulette::Number(4) => REUSED,
+];
+
+const REUSED: &str =
+    "the roulette uses a random number again that chose the direction or the light: use numbers.roulette";
 
 pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) -> CheckResult {
     let state = (path_weight(), 0..8u32, pdf());
@@ -247,20 +260,26 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
             u: query.numbers.bsdf,
         };
         let samples = trial.kit.sample_bsdf(&queries.iter().map(ask).collect::<Vec<_>>());
-        let roulette = |bounce: u32, query: &StepQuery, sample: &Option<BsdfSample>| {
-            // By the weight of the path alone if there is no bounce 3.
-            let of_sample = |sample: BsdfSample| if bounce == 3 { Vec3::ONE } else { sample.weight };
-            let weight = sample.map_or(Vec3::ZERO, |sample| query.path.weight * of_sample(sample));
-            let bounce = query.path.bounces + if bounce == 3 { 1 } else { bounce };
-            RouletteQuery { weight, bounce, u: query.numbers.roulette }
+        let roulette = |kind: Roulette, query: &StepQuery, sample: &Option<BsdfSample>| {
+            let (StepNumbers { bsdf, roulette, light, .. }, path) = (query.numbers, &query.path);
+            let of_sample = sample.map_or(Vec3::ZERO, |sample| sample.weight);
+            let weight = match kind {
+                Roulette::OfPath => sample.map_or(Vec3::ZERO, |_| path.weight),
+                Roulette::OfSample => of_sample,
+                Roulette::OfSurface => sample.map_or(Vec3::ZERO, |_| query.vertex.scattering.diffuse),
+                _ => path.weight * of_sample,
+            };
+            let more = if let Roulette::Bounce(more) = kind { more } else { 1 };
+            let u = if let Roulette::Number(n) = kind { [bsdf.x, bsdf.y, bsdf.z, light.x, light.y][n] } else { roulette };
+            RouletteQuery { weight, bounce: path.bounces + more, u }
         };
-        let factors = |bounce: u32| {
+        let factors = |kind: Roulette| {
             let queries: Vec<_> =
-                queries.iter().zip(&samples).map(|(query, sample)| roulette(bounce, query, sample)).collect();
+                queries.iter().zip(&samples).map(|(query, sample)| roulette(kind, query, sample)).collect();
             trial.kit.survives(&queries)
         };
-        let all = [1, 0, 2, 3].map(factors);
-        let factors: Vec<[f32; 4]> = (0..queries.len()).map(|n| all.each_ref().map(|of| of[n])).collect();
+        let all: Vec<Vec<f32>> = ROULETTES.iter().map(|(kind, _)| factors(*kind)).collect();
+        let factors: Vec<Vec<f32>> = (0..queries.len()).map(|n| all.iter().map(|of| of[n]).collect()).collect();
         let answers: Vec<_> = trial.kit.step(queries).into_iter().zip(samples).zip(factors).collect();
         // Whether a step continues along the sample with this weight, or ends if the weight is 0.
         let is = |step: &PathStep, sample: &BsdfSample, weight: DVec3| match &step.next {
@@ -277,7 +296,8 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
         let above = |query: &StepQuery, sample: &BsdfSample| {
             query.vertex.surface.geometric_normal.as_dvec3().dot(sample.direction.as_dvec3())
         };
-        compare(queries, answers, |query, ((step, sample), [factor, early, late, of_path])| {
+        compare(queries, answers, |query, ((step, sample), factors)| {
+            let factor = factors[0];
             let Some(sample) = sample else {
                 return match step.next {
                     None => missing(&ask(query)).map(Into::into),
@@ -300,59 +320,37 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
                 let expected = (weight != DVec3::ZERO).then_some(expected);
                 let source = "path.weight · weight of sample_bsdf · survives";
                 let ended = expected.is_some() && step.next.is_none();
-                Broken::with_texts(describe(query), says(step.next), says(expected), source).explained_by([(
-                    ended,
-                    "a path ends that survives its roulette, and is above the surface",
-                )])
+                Broken::with_texts(describe(query), says(step.next), says(expected), source).explained_by(["a path ends that survives its roulette, and is above the surface"
+                    .when(ended)])
             };
             let whole = (query.path.weight * sample.weight).as_dvec3();
             let is_next = |sample: &BsdfSample, weight: DVec3| is(&step, sample, weight);
             let unless_below = |weight: DVec3| if ends { DVec3::ZERO } else { weight };
             let by = |factor: f32| f64::from(factor);
             let alive = if factor == 0.0 { 0.0 } else { 1.0 };
-            unless(is_next(&sample, weight), broken).formulas([
+            let others = factors.iter().zip(ROULETTES).skip(1);
+            let others = others.map(|(other, (_, text))| (is_next(&sample, unless_below(by(*other) * whole)), text));
+            let formulas = [
                 (step.next.is_some_and(|next| next.weight.is_nan()), "you return NaN"),
-                (
-                    is_next(&sample, by(factor) * whole),
-                    "a diffuse ray below the geometric normal hits its own surface: end the path",
-                ),
-                (
-                    is_next(&sample, unless_below(alive * whole)),
-                    "the factor of survives is missing in the weight",
-                ),
+                "a diffuse ray below the geometric normal hits its own surface: end the path"
+                    .when(is_next(&sample, by(factor) * whole)),
+                "the factor of survives is missing in the weight"
+                    .when(is_next(&sample, unless_below(alive * whole))),
                 (is_next(&sample, unless_below(whole)), "there is no Russian roulette"),
-                (
-                    is_next(&sample, unless_below(by(early) * whole)),
-                    "the roulette counts surfaces: path.bounces + 1",
-                ),
-                (
-                    is_next(&sample, unless_below(by(late) * whole)),
-                    "the roulette counts one surface too many: path.bounces + 1",
-                ),
-                (
-                    is_next(&sample, unless_below(by(factor) * sample.weight.as_dvec3())),
-                    "the weight of the path is missing",
-                ),
-                (
-                    is_next(&sample, unless_below(by(of_path) * whole)),
-                    "the roulette gets the weight before the bounce: multiply by that of the sample first",
-                ),
-                (
-                    is_next(&sample, if height < 0.0 { DVec3::ZERO } else { by(factor) * whole }),
-                    "reflected and refracted rays end, too: only diffuse ones must stay above the geometric normal",
-                ),
-                (
-                    is_next(
+                "the weight of the path is missing"
+                    .when(is_next(&sample, unless_below(by(factor) * sample.weight.as_dvec3()))),
+                "reflected and refracted rays end, too: only diffuse ones must stay above the geometric normal"
+                    .when(is_next(&sample, if height < 0.0 { DVec3::ZERO } else { by(factor) * whole })),
+                "the density lacks the probability of the diffuse lobe: pass on that of sample_bsdf"
+                    .when(is_next(
                         &BsdfSample { pdf: cosine_pdf(query, &sample), ..sample },
                         unless_below(by(factor) * whole),
+                    )
                     ),
-                    "the density lacks the probability of the diffuse lobe: pass on that of sample_bsdf",
-                ),
-                (
-                    is_next(&BsdfSample { pdf: f32::INFINITY, ..sample }, unless_below(by(factor) * whole)),
-                    "the density of a diffuse ray is that of sample_bsdf",
-                ),
-            ])
+                "the density of a diffuse ray is that of sample_bsdf"
+                    .when(is_next(&BsdfSample { pdf: f32::INFINITY, ..sample }, unless_below(by(factor) * whole))),
+            ];
+            unless(is_next(&sample, weight), broken).formulas(formulas.into_iter().chain(others))
         })
     })
 }

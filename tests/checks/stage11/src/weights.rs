@@ -33,10 +33,8 @@ fn judge_sum(pair: &Pair, (own, other): Pair) -> Judged {
             ])
     };
     unless(is_share(own) && is_share(other) && (sum - 1.0).abs() <= 1e-6, broken).formulas([
-        (
-            is(|own, other| own * own / (own * own + other * other)),
-            "the squares of the densities overflow or underflow: divide first",
-        ),
+        "the squares of the densities overflow or underflow: divide first"
+            .when(is(|own, other| own * own / (own * own + other * other))),
         (is(|own, other| own / (own + other)), "the sum of the densities overflows: divide first"),
     ])
 }
@@ -54,10 +52,9 @@ pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
                 return Ok(refuted);
             }
             let expected = "the larger density has the larger weight";
-            Err(Broken::new(pair.call("mis_weight"), answers.0, expected, "the definition").explained_by([(
-                true,
-                "the smaller density gets the larger weight: own and other are exchanged",
-            )]))
+            Err(Broken::new(pair.call("mis_weight"), answers.0, expected, "the definition").explained_by([
+                "the smaller density gets the larger weight: own and other are exchanged".when(true),
+            ]))
         });
         // Weights that are always 1/2 pass so far, although they ignore the densities.
         let all_half = pairs.len() > 1 && answers.iter().all(|(own, _)| *own == 0.5);
@@ -83,10 +80,8 @@ pub(super) fn mis_weight_of_a_lone_density_is_one(trial: &Trial<'_>) -> CheckRes
         }
         Err(Broken::new(pair.call("mis_weight"), yours, expected, "the definition").explained_by([
             (yours.is_nan(), "you return NaN: ∞ / ∞"),
-            (
-                pair.0.is_infinite() || pair.1.is_infinite(),
-                "a technique with infinite density always takes this sample: it gets the whole weight",
-            ),
+            "a technique with infinite density always takes this sample: it gets the whole weight"
+                .when(pair.0.is_infinite() || pair.1.is_infinite()),
             (pair.1 == 0.0, "the other technique never takes this sample: its weight is 1"),
         ]))
     })?;
@@ -190,17 +185,23 @@ pub(super) fn mis_weights_keep_the_variance_low(trial: &Trial<'_>) -> CheckResul
             let all = |is: &dyn Fn(&Pair, &Pair) -> bool| {
                 pairs.iter().zip(&weights).all(|(pair, weights)| is(pair, weights))
             };
+            let share =
+                |power: f64, pair: &Pair| 1.0 / (1.0 + (f64::from(pair.1) / f64::from(pair.0)).powf(power));
+            let by = |weight: &dyn Fn(&Pair) -> f64| {
+                all(&|pair, weights| (f64::from(weights.0) - weight(pair)).abs() < 1e-3)
+            };
             return Err(broken.explained_by([
                 (weights.iter().any(|(p, q)| p.is_nan() || q.is_nan()), "you return NaN"),
+                "your weights are those of the roots of the densities, which differ too little"
+                    .when(by(&|pair| share(0.5, pair)) || by(&|pair| share(0.25, pair))),
+                "your weights are the mean of 1/2 and a heuristic, so a rare sample counts too much".when(
+                    by(&|pair| 0.25 + 0.5 * share(1.0, pair)) || by(&|pair| 0.25 + 0.5 * share(2.0, pair)),
+                ),
                 (all(&|_, weights| *weights == (0.5, 0.5)), "your weights are 1/2 for all densities"),
-                (
-                    all(&|pair, weights| (pair.0 > pair.1) == (weights.0 < weights.1)),
-                    "the smaller density gets the larger weight: own and other are exchanged",
-                ),
-                (
-                    all(&|_, weights| *weights == (1.0, 1.0)),
-                    "each technique counts in full, so light is counted twice",
-                ),
+                "the smaller density gets the larger weight: own and other are exchanged"
+                    .when(all(&|pair, weights| (pair.0 > pair.1) == (weights.0 < weights.1))),
+                "each technique counts in full, so light is counted twice"
+                    .when(all(&|_, weights| *weights == (1.0, 1.0))),
             ]));
         }
     }

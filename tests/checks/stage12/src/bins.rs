@@ -13,38 +13,46 @@ pub(super) enum Rounding {
     OfCentroid,
     OfLow,
     OfAxis(usize),
+    WithoutLow,
+    TwoProducts,
+    NegativeLast,
+    FloorLast,
+    MostBins,
 }
 
-pub(super) const ROUNDINGS: [(Rounding, &str); 5] = [
-    (Rounding::Nearest, "the bin is rounded to the nearest one: round down"),
-    (Rounding::Up, "the bin is rounded up: round down"),
-    (Rounding::OfCentroid, "the grid is that of twice the centroids: do not halve them"),
-    (Rounding::OfLow, "the bin is that of the low corner of the box: take twice the centroid"),
-    (Rounding::OfAxis(0), "the same coordinate is used on all axes"),
+pub(super) const ROUNDINGS: [(Rounding, &str); 10] = named![
+    Rounding::Nearest => "the bin is rounded to the nearest one: round down",
+    Rounding::Up => "the bin is rounded up: round down",
+    Rounding::OfCentroid => "the grid is that of twice the centroids: do not halve them",
+    Rounding::OfLow => "the bin is that of the low corner of the box: take twice the centroid",
+    Rounding::OfAxis(0) => "the same coordinate is used on all axes",
+    Rounding::WithoutLow => "grid.low is left out: the first bin begins there",
+    Rounding::TwoProducts => "the place is a difference of two products, which rounds otherwise: (c - low) · scale",
+    Rounding::NegativeLast => "a bin below 0 becomes the last one: it counts as bin 0",
+    Rounding::FloorLast => "a bin below 0 becomes the last one: it counts as bin 0",
+    Rounding::MostBins => "the last bin is that of MAX_BINS: only grid.n_bins are in use",
 ];
 
 /// The number of the bin along an axis, by the definition or by a wrong one.
 pub(super) fn bin_of(primitive: &PrimitiveBox, grid: &BinGrid, axis: usize, rounding: Rounding) -> usize {
-    let last = grid.n_bins as usize - 1;
     let from = if let Rounding::OfAxis(axis) = rounding { axis } else { axis };
+    let (low, scale) = (grid.low[from], grid.scale[from]);
     let at = match rounding {
         Rounding::OfCentroid => 0.5 * primitive.twice_centroid()[from],
         Rounding::OfLow => primitive.low()[from],
         _ => primitive.twice_centroid()[from],
     };
-    let place = (at - grid.low[from]) * grid.scale[from];
     let place = match rounding {
-        Rounding::Nearest => place.round(),
-        Rounding::Up => place.ceil(),
-        _ => place,
+        Rounding::Nearest => ((at - low) * scale).round(),
+        Rounding::Up => ((at - low) * scale).ceil(),
+        Rounding::WithoutLow => at * scale,
+        Rounding::TwoProducts => at * scale - low * scale,
+        Rounding::FloorLast => ((at - low) * scale).floor(),
+        _ => (at - low) * scale,
     };
-    if place >= last as f32 {
-        last
-    } else if place >= 1.0 {
-        place as usize
-    } else {
-        0
-    }
+    let last = if rounding == Rounding::MostBins { MAX_BINS } else { grid.n_bins as usize } - 1;
+    let is_wrapped = matches!(rounding, Rounding::NegativeLast | Rounding::FloorLast) && place <= -1.0;
+    if is_wrapped || place >= last as f32 { last } else { place.max(0.0) as usize }
 }
 
 /// Boxes: of whole eighths, with full mantissas, and empty.
@@ -157,10 +165,16 @@ fn wrong_numbers(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
         let inside = members.iter().filter(|primitive| is_inside(primitive, axis));
         yours.0[axis][bin].count as usize == inside.count()
     });
-    mistakes.push((
-        inside_only,
-        "centroids outside of the bins are left out: they count in the first or the last bin",
-    ));
+    let with_a_box = all_bins().all(|(axis, bin)| {
+        let members = members(query, axis, bin, Rounding::Right);
+        let with_a_box = members.iter().filter(|one| one.low().cmple(one.high()).all());
+        yours.0[axis][bin].count as usize == with_a_box.count()
+    });
+    mistakes.extend([
+        "centroids outside of the bins are left out: they count in the first or the last bin"
+            .when(inside_only),
+        "a primitive with the empty box is left out: it is counted all the same".when(with_a_box),
+    ]);
     mistakes
 }
 

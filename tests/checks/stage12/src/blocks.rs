@@ -43,21 +43,12 @@ fn causes(ray: &Ray, triangle: &Triangle, t: f32) -> [(bool, &'static str); 5] {
     let is_far = (*a - ray.origin).abs().max_element() > 1e3 * size;
     let clear = triangle::margin(ray, triangle).is_some_and(|margin| margin > STABLE);
     let at_end = t >= ray.t_max.next_down().next_down() || t <= ray.t_min.next_up().next_up();
-    [
-        (
-            edge_on,
-            "the triangle is seen edge-on: where d·n is smaller than its error, neither its sign nor that of t is known",
-        ),
-        (
-            at_end && clear,
-            "the hit is at an end of the range: reject it only if it is beyond the end by more than its error",
-        ),
-        (
-            is_far && !clear,
-            "rounding errors decide here, and they grow with the distance of the triangle, not with its size",
-        ),
-        (!clear, "rounding errors decide here: reject only if both numbers are larger than their errors"),
-        (clear, "no rounding decides here: the signs of U, V, W or t are wrong"),
+    named![
+        edge_on => "the triangle is seen edge-on: where d·n is smaller than its error, neither its sign nor that of t is known",
+        at_end && clear => "the hit is at an end of the range: reject it only if it is beyond the end by more than its error",
+        is_far && !clear => "rounding errors decide here, and they grow with the distance of the triangle, not with its size",
+        !clear => "rounding errors decide here: reject only if both numbers are larger than their errors",
+        clear => "no rounding decides here: the signs of U, V, W or t are wrong",
     ]
 }
 
@@ -119,10 +110,10 @@ fn judge_all(trial: &Trial<'_>, drawn: Vec<Lanes>) -> CheckResult {
             let query = lanes.query().filter(|_| scale != 1.0);
             let again = query.map(|query| trial.kit.may_hit(&[query])[0]);
             let is_right = again.is_some_and(|filtered| judge_hits(&lanes, filtered).is_ok());
-            broken.explained_by([(
-                is_right,
-                "the bound is right for a direction of length 1 only: the error of t grows as 1 / |d_z|",
-            )])
+            broken.explained_by([
+                "the bound is right for a direction of length 1 only: the error of t grows as 1 / |d_z|"
+                    .when(is_right),
+            ])
         })
     }))
 }
@@ -299,10 +290,9 @@ fn judge_share(trial: &Trial<'_>, what: &str, drawn: &[Lanes], cause: &'static s
     if 2 * certain < n_hits {
         let input = format!("may_hit of {} blocks: {what}", drawn.len());
         let yours = format!("{certain} of {n_hits} hits are certain");
-        return Err(Broken::with_texts(input, yours, "at least half", "exactly").explained_by([(
-            certain == 0,
-            "no lane is certain: it is if U, V, W and N have the same sign for certain",
-        )]));
+        return Err(Broken::with_texts(input, yours, "at least half", "exactly")
+            .explained_by(["no lane is certain: it is if U, V, W and N have the same sign for certain"
+                .when(certain == 0)]));
     }
     if rejected as f64 >= REJECTED * misses as f64 {
         return Ok(());

@@ -95,23 +95,15 @@ fn judge(flat: &Flat, yours: &FlatTree) -> CheckResult {
     let only_boxes_differ = yours.nodes.len() == n
         && yours.nodes.iter().zip(&flat.tree.nodes).all(|(p, q)| (p.first, p.count) == (q.first, q.count));
     let only_order_differs = yours.nodes == flat.tree.nodes;
-    Err(Broken::with_texts(input, yours_text, expected, "the layout of FlatTree").explained_by([
-        (
-            *yours == reordered(&flat.tree, Order::Breadth),
+    Err(Broken::with_texts(input, yours_text, expected, "the layout of FlatTree").explained_by(named![
+        *yours == reordered(&flat.tree, Order::Breadth) =>
             "the nodes are in breadth-first order: finish everything below the first child before the second",
-        ),
-        (
-            *yours == reordered(&flat.tree, Order::Right),
-            "the right child comes first: left and right are exchanged",
-        ),
-        (
-            *yours == reordered(&flat.tree, Order::SecondSide),
-            "the nodes below the second child come before those below the first",
-        ),
-        (n == 0 && !yours.nodes.is_empty(), "a hierarchy without nodes gives a tree without nodes"),
-        (is_as_given, "the nodes keep the order of the hierarchy, so children need not be neighbours"),
-        (only_order_differs, "the list of primitives was changed: copy `order` as it is"),
-        (only_boxes_differ, "only the boxes differ: copy the box of each node"),
+        *yours == reordered(&flat.tree, Order::Right) => "the right child comes first: left and right are exchanged",
+        *yours == reordered(&flat.tree, Order::SecondSide) => "the nodes below the second child come before those below the first",
+        n == 0 && !yours.nodes.is_empty() => "a hierarchy without nodes gives a tree without nodes",
+        is_as_given => "the nodes keep the order of the hierarchy, so children need not be neighbours",
+        only_order_differs => "the list of primitives was changed: copy `order` as it is",
+        only_boxes_differ => "only the boxes differ: copy the box of each node",
     ]))
 }
 

@@ -22,32 +22,40 @@ pub(super) fn build_parallel_gives_the_same_tree(trial: &Trial<'_>) -> CheckResu
     sets.extend(crowds(trial.varied(1.0, 0.25..8f32)));
     let alone = trial.kit.build_binned(&sets);
     let answers = trial.kit.build_parallel(&sets);
-    let judge =
-        |((boxes, alone), forked): ((&Vec<Aabb>, &FlatTree), &ForkedTree)| {
-            let yours = &forked.tree;
-            if yours == alone {
-                // The same empty tree twice is no tree.
-                return judge_tree(boxes, yours);
-            }
-            let kinds = |tree: &FlatTree| -> Vec<(Aabb, u32)> {
-                tree.nodes.iter().map(|node| (node.bounds(), node.count)).collect()
-            };
-            let only_indices = kinds(yours) == kinds(alone) && yours.order == alone.order;
-            let n = yours.nodes.len().max(alone.nodes.len());
-            let different = (0..n).find(|&i| yours.nodes.get(i) != alone.nodes.get(i));
-            let of = |tree: &FlatTree| match different {
-                Some(i) => format!("node {i} of {}: {:?}", tree.nodes.len(), tree.nodes.get(i)),
-                None => format!("order {:?}…", &tree.order[..tree.order.len().min(10)]),
-            };
-            let input = format!("build_parallel of {} boxes", boxes.len());
-            Err(Broken::with_texts(input, of(yours), of(alone), "your build_binned").explained_by([(
-            only_indices,
-            "only the indices of children differ: they shift when the arrays of both sides are joined",
-        ), (
-            different.is_some_and(|i| depths(alone).get(i).is_some_and(|depth| *depth > DEEPEST_SPLIT)),
-            "the trees differ only below DEEPEST_SPLIT: both sides of a fork are one level deeper",
-        )]))
+    let judge = |((boxes, alone), forked): ((&Vec<Aabb>, &FlatTree), &ForkedTree)| {
+        let yours = &forked.tree;
+        if yours == alone {
+            // The same empty tree twice is no tree.
+            return judge_tree(boxes, yours);
+        }
+        let kinds = |tree: &FlatTree| -> Vec<(Aabb, u32)> {
+            tree.nodes.iter().map(|node| (node.bounds(), node.count)).collect()
         };
+        let only_indices = kinds(yours) == kinds(alone) && yours.order == alone.order;
+        let n = yours.nodes.len().max(alone.nodes.len());
+        let different = (0..n).find(|&i| yours.nodes.get(i) != alone.nodes.get(i));
+        let of = |tree: &FlatTree| match different {
+            Some(i) => format!("node {i} of {}: {:?}", tree.nodes.len(), tree.nodes.get(i)),
+            None => format!("order {:?}…", &tree.order[..tree.order.len().min(10)]),
+        };
+        // The node whose first child differs, or its second one.
+        let is_parent = |i: usize| {
+            let first = alone.nodes[i].first as usize;
+            !alone.nodes[i].is_leaf() && different.is_some_and(|i| i == first || i == first + 1)
+        };
+        let parent = (0..alone.nodes.len()).find(|&i| is_parent(i)).map(|i| ranges(alone)[i]);
+        let is_in_pieces = forked.forks.iter().any(|fork| {
+            matches!(fork.kind, ForkKind::Binning { .. }) && parent == Some((fork.first, fork.count))
+        });
+        let input = format!("build_parallel of {} boxes", boxes.len());
+        Err(Broken::with_texts(input, of(yours), of(alone), "your build_binned").explained_by([
+            (only_indices, "only the indices of children differ: they shift when the arrays of both sides are joined"),
+            "the trees differ only below DEEPEST_SPLIT: both sides of a fork are one level deeper"
+                .when(different.is_some_and(|i| depths(alone).get(i).is_some_and(|depth| *depth > DEEPEST_SPLIT))),
+            "the trees differ first below a node that is sorted in pieces: add up the counts and the boxes of all pieces"
+                .when(is_in_pieces),
+        ]))
+    };
     all_hold(sets.iter().zip(&alone).zip(&answers).map(judge).collect())
 }
 
@@ -172,14 +180,17 @@ pub(super) fn judge_span(trial: &Trial<'_>, n: usize, share: u64) -> CheckResult
     let (_, possible) = work_and_span(&tree, &ranges, at);
     let yours = format!("work {work}, span {span}: a ratio of {:.2}", work as f64 / span as f64);
     let input = format!("build_parallel of {} boxes, with {} forks", tree.order.len(), forks.len());
-    Err(Broken::with_texts(input, yours, format!("a span of at most {}", work / share), "the tree and the log of forks")
-        .explained_by([
-            (forks.is_empty(), "nothing is forked: join both sides of a large node by `forks.join`"),
-            (
-                share * possible <= work,
-                "too few nodes are forked: with forks at all nodes above 2,000 primitives the span is short enough",
-            ),
-        ]))
+    Err(Broken::with_texts(
+        input,
+        yours,
+        format!("a span of at most {}", work / share),
+        "the tree and the log of forks",
+    )
+    .explained_by([
+        (forks.is_empty(), "nothing is forked: join both sides of a large node by `forks.join`"),
+        "too few nodes are forked: with forks at all nodes above 2,000 primitives the span is short enough"
+            .when(share * possible <= work),
+    ]))
 }
 
 /// The smallest number of primitives of a piece: smaller pieces take longer to hand over than to sort.
@@ -218,13 +229,9 @@ pub(super) fn build_parallel_has_an_eighth_of_the_span(trial: &Trial<'_>) -> Che
     let in_pieces = |index: usize| own_span(ranges[index].1, (ranges[index].1 / 2 / LEAST_PIECE).min(8));
     let possible = 8 * work_and_span_of(&tree, &ranges, in_pieces, forked).1 <= work;
     Err(Broken::with_texts(input, yours, expected, "the tree and the log of forks").explained_by([
-        (
-            binning.is_empty() && possible,
-            "no node sorts its primitives into bins in pieces: use `forks.each` at large nodes",
-        ),
-        (
-            !binning.is_empty() && possible,
-            "too few nodes sort their primitives in pieces, or in too few pieces",
-        ),
+        "no node sorts its primitives into bins in pieces: use `forks.each` at large nodes"
+            .when(binning.is_empty() && possible),
+        "too few nodes sort their primitives in pieces, or in too few pieces"
+            .when(!binning.is_empty() && possible),
     ]))
 }

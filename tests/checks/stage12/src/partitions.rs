@@ -79,24 +79,17 @@ fn mistakes(query: &PartitionQuery, yours: &SplitAnswer) -> Vec<(bool, &'static 
     let left = before_split(query, Rounding::Right);
     let plane = grid.low[axis] + split.bin as f32 / grid.scale[axis];
     let mut mistakes = vec![
-        (
-            is(left_side(query, |primitive| right(primitive) <= last_left)),
-            "the first bin of the right side goes to the left: bins before `bin` are left",
-        ),
+        "the first bin of the right side goes to the left: bins before `bin` are left"
+            .when(is(left_side(query, |primitive| right(primitive) <= last_left))),
         (is(left_side(query, |primitive| right(primitive) >= last_left)), "the sides are exchanged"),
-        (
-            is(left_side(query, |primitive| primitive.twice_centroid()[axis] < plane)),
-            "the centroid is compared with a plane, which rounds otherwise than the bin does: compute the bin as fill_bins does",
-        ),
-        (
-            yours.order.iter().copied().eq(primitives.iter().map(PrimitiveBox::id)) && middle == left.len(),
-            "the number of the left side is right, but the primitives stay as they come",
-        ),
-        (
-            yours.middle == Some(primitives.len() - left.len())
-                && yours.order.get(..left.len()).is_some_and(|first| sorted(first) == left),
-            "you return the number of the right side",
-        ),
+        "the centroid is compared with a plane, which rounds otherwise than the bin does: compute the bin as fill_bins does"
+            .when(is(left_side(query, |primitive| primitive.twice_centroid()[axis] < plane))),
+        "the number of the left side is right, but the primitives stay as they come"
+            .when(yours.order.iter().copied().eq(primitives.iter().map(PrimitiveBox::id)) && middle == left.len()),
+        "you return the number of the right side"
+            .when(yours.middle == Some(primitives.len() - left.len())
+                && yours.order.get(..left.len()).is_some_and(|first| sorted(first) == left)
+            ),
     ];
     mistakes.extend(ROUNDINGS.map(|(rounding, text)| (is(before_split(query, rounding)), text)));
     mistakes.into_iter().map(|(gives, text)| (gives && is_complete, text)).collect()

@@ -15,24 +15,21 @@ enum Flaw {
     StartsAtZero,
     Open,
     SidesNotSwapped,
+    EntryIsExit,
+    Exchanged,
 }
 
-const FLAWS: [(Flaw, &str); 6] = [
-    (
-        Flaw::NearForBoth,
+const FLAWS: [(Flaw, &str); 8] = named![
+    Flaw::EntryIsExit => "the exit is returned as the entry: `t` has the entries of the boxes",
+    Flaw::Exchanged => "the entry is the smallest t of the near planes: a ray is in a box when it has entered on all axes",
+    Flaw::NearForBoth =>
         "far planes have factors of their own, scale[1] and offset[1]: with those of near planes the exit is too early, and rounding loses boxes",
-    ),
-    (
-        Flaw::FarForBoth,
+    Flaw::FarForBoth =>
         "near planes have factors of their own, scale[0] and offset[0]: with those of far planes the entry is too late, and rounding loses boxes",
-    ),
-    (Flaw::EndsAtInfinity, "t_max is left out: a box beyond it is not entered"),
-    (Flaw::StartsAtZero, "t_min is left out: the entry is t_min or later"),
-    (Flaw::Open, "boxes without thickness are lost: near <= far, not near < far"),
-    (
-        Flaw::SidesNotSwapped,
-        "a ray in negative direction passes the largest coordinate first: near_side says which",
-    ),
+    Flaw::EndsAtInfinity => "t_max is left out: a box beyond it is not entered",
+    Flaw::StartsAtZero => "t_min is left out: the entry is t_min or later",
+    Flaw::Open => "boxes without thickness are lost: near <= far, not near < far",
+    Flaw::SidesNotSwapped => "a ray in negative direction passes the largest coordinate first: near_side says which",
 ];
 
 /// Whether the product and the sum of near planes are rounded once, and those of far planes: all are right.
@@ -57,10 +54,13 @@ fn entry(
         };
         let enter = t(side, usize::from(flaw == Flaw::FarForBoth), fused[0]);
         let leave = t(1 - side, usize::from(flaw != Flaw::NearForBoth), fused[1]);
-        (near, far) = (near.max(enter), far.min(leave));
+        (near, far) = match flaw {
+            Flaw::Exchanged if axis > 0 => (near.min(enter), far.max(leave)),
+            _ => (near.max(enter), far.min(leave)),
+        };
     }
     let enters = if flaw == Flaw::Open { near < far } else { near <= far };
-    enters.then_some(near)
+    enters.then_some(if flaw == Flaw::EntryIsExit { far } else { near })
 }
 
 fn entries(query: &WideBoxesQuery, flaw: Flaw, fused: [bool; 2]) -> [Option<f32>; 8] {

@@ -1,19 +1,17 @@
 //! `block_cost` and `cheapest_split`.
 
-use super::bins::{n_bins, union};
+use super::bins::{Rounding, bin_of, n_bins, union};
 use checks::prelude::*;
 use checks::tree::half_area;
 use glam::Vec3A;
-use raykata::wide::{BLOCK, BLOCK_COST, Bin, BinSplit, Bins, BoxA};
+use raykata::wide::{BLOCK, BLOCK_COST, Bin, BinGrid, BinSplit, Bins, BoxA, PrimitiveBox};
 
 /// The number of blocks, computed in a wrong way.
 fn wrong_blocks(n: u32) -> [(u32, &'static str); 3] {
     let block = BLOCK as u32;
     [
-        (
-            n / block,
-            "the number of blocks is rounded down: a block that is not full costs as much as a full one",
-        ),
+        "the number of blocks is rounded down: a block that is not full costs as much as a full one"
+            .when(n / block),
         (n / block + 1, "a full block is followed by an empty one: a leaf of eight has one block"),
         (n, "the cost is that of single primitives: eight are tested at once"),
     ]
@@ -107,21 +105,21 @@ fn right_cost(sides: &[(BoxA, u32); 2]) -> f64 {
     sides.iter().map(|side| area(&side.0) * blocks(side)).sum()
 }
 
-const WRONG_COSTS: [(Cost, &str); 5] = [
-    (
-        |sides| sides.iter().map(|(bounds, n)| area(bounds) * f64::from(*n)).sum(),
+const WRONG_COSTS: [(Cost, &str); 10] = named![
+    |sides| area(&sides[0].0) * blocks(&sides[0]) => "only the left side is counted in the cost",
+    |sides| area(&sides[1].0) * blocks(&sides[1]) => "only the right side is counted in the cost",
+    |sides| sides.iter().map(|(bounds, n)| area(bounds) * f64::from(n / BLOCK as u32)).sum() =>
+        "the number of blocks is rounded down: a block that is not full costs as much as a full one",
+    |sides| (area(&sides[0].0) + area(&sides[1].0)) * (blocks(&sides[0]) + blocks(&sides[1])) =>
+        "the sum of the areas is multiplied by the sum of the costs: each side has a product of its own",
+    |sides| 1.0 / right_cost(sides) => "the most expensive split is chosen",
+    |sides| sides.iter().map(|(bounds, n)| area(bounds) * f64::from(*n)).sum() =>
         "the sides count single primitives: a leaf pays for whole blocks, block_cost",
-    ),
-    (|sides| sides.iter().map(|(bounds, _)| area(bounds)).sum(), "the counts are left out of the cost"),
-    (|sides| sides.iter().map(blocks).sum(), "the areas are left out of the cost"),
-    (
-        |sides| sides.iter().map(|side| volume(&side.0) * blocks(side)).sum(),
-        "the cost has volumes in place of surface areas",
-    ),
-    (
-        |sides| area(&sides[0].0) * blocks(&sides[1]) + area(&sides[1].0) * blocks(&sides[0]),
+    |sides| sides.iter().map(|(bounds, _)| area(bounds)).sum() => "the counts are left out of the cost",
+    |sides| sides.iter().map(blocks).sum() => "the areas are left out of the cost",
+    |sides| sides.iter().map(|side| volume(&side.0) * blocks(side)).sum() => "the cost has volumes in place of surface areas",
+    |sides| area(&sides[0].0) * blocks(&sides[1]) + area(&sides[1].0) * blocks(&sides[0]) =>
         "each area is multiplied by the cost of the other side",
-    ),
 ];
 
 /// Two costs are the same if they differ by less than the rounding errors of sums of 16 areas.
@@ -134,6 +132,35 @@ fn is_cheapest(query: &BinSplitQuery, yours: &BinSplit, cost: Cost, may: impl Fn
     splits.iter().any(|(split, sides)| {
         (split.axis, split.bin) == (yours.axis, yours.bin) && cost(sides) <= least * (1.0 + SAME)
     })
+}
+
+/// The splits of each axis up to the first that costs more than the cheapest one before it, of all axes or of its own, or as much.
+/// Those that leave the left side without primitives are skipped, or end the axis as well.
+fn up_to_a_minimum(query: &BinSplitQuery, of_all: bool, skips: bool, at_equal: bool) -> Vec<(u32, u32)> {
+    let (mut tried, mut best) = (Vec::new(), f64::INFINITY);
+    let all = splits(query);
+    for axis in 0..3 {
+        best = if of_all { best } else { f64::INFINITY };
+        for bin in 1..query.n_bins {
+            let found = all.iter().find(|(split, _)| (split.axis, split.bin) == (axis, bin));
+            let cost = found.map_or(f64::INFINITY, |(_, sides)| right_cost(sides));
+            if cost > best || at_equal && cost == best && !(skips && cost == f64::INFINITY) {
+                break;
+            }
+            best = cost;
+            tried.push((axis, bin));
+        }
+    }
+    tried
+}
+
+/// The cost of the cheapest split of primitives between the bins of a grid.
+pub(super) fn least_between_bins(primitives: &[PrimitiveBox], grid: &BinGrid) -> f64 {
+    let bounds = |one: &PrimitiveBox| Aabb::new(one.low().into(), one.high().into());
+    let place = |one: &PrimitiveBox, axis| bin_of(one, grid, axis, Rounding::Right) as u8;
+    let placed = primitives.iter().map(|one| (bounds(one), [0, 1, 2].map(|axis| place(one, axis))));
+    let query = bins_of(&placed.collect::<Vec<_>>(), grid.n_bins);
+    splits(&query).iter().map(|(_, sides)| right_cost(sides)).fold(f64::INFINITY, f64::min)
 }
 
 fn mistakes(query: &BinSplitQuery, yours: &Option<BinSplit>) -> Vec<(bool, &'static str)> {
@@ -150,6 +177,12 @@ fn mistakes(query: &BinSplitQuery, yours: &Option<BinSplit>) -> Vec<(bool, &'sta
         (of_fewer(&|split| split.bin > 1), "the split behind the first bin is not tried"),
         (of_fewer(&|split| split.bin < last), "the split before the last bin is not tried"),
     ];
+    for n in 0..8 {
+        let [of_all, skips, at_equal] = [1, 2, 4].map(|bit| n & bit > 0);
+        let tried = up_to_a_minimum(query, of_all, skips, at_equal);
+        let text = "the search ends at the first split that costs more than the one before: a later one may cost less";
+        mistakes.push((of_fewer(&|split| tried.contains(&(split.axis, split.bin))), text));
+    }
     let next = yours.as_ref().map(|yours| BinSplit { bin: yours.bin + 1, ..*yours });
     mistakes.push((
         next.map_or_else(|| of_fewer(&|_| true), |next| is_cheapest(query, &next, right_cost, |_| true)),
@@ -189,10 +222,8 @@ fn judge_choice(query: &BinSplitQuery, yours: &Option<BinSplit>) -> CheckResult 
         |split: &BinSplit| all.iter().any(|(one, _)| (one.axis, one.bin) == (split.axis, split.bin));
     let is_free = best.is_some_and(|(_, sides)| right_cost(sides) == 0.0);
     let mistakes = [
-        (
-            yours.as_ref().is_some_and(|split| is_inside(split) && !has_sides(split)),
-            "a side without primitives is no side: leave such splits out",
-        ),
+        "a side without primitives is no side: leave such splits out"
+            .when(yours.as_ref().is_some_and(|split| is_inside(split) && !has_sides(split))),
         (is_free && yours.is_none(), "boxes without area have the cost 0, which is a cost like any other"),
     ];
     Err(Broken::with_texts(input(query), describe(yours), expected, "each split").explained_by(mistakes))

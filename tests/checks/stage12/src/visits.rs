@@ -108,23 +108,23 @@ fn needed(query: &WideQuery) -> usize {
 }
 
 /// The known mistakes that make exactly so many calls.
-fn mistakes(queries: &[WideQuery], n: usize) -> [(bool, &'static str); 3] {
+fn mistakes(queries: &[WideQuery], n: usize) -> Vec<(bool, &'static str)> {
     let calls = |flaw: Flaw, is_sorted| -> usize {
         queries.iter().map(|query| flawed_search(query, flaw, is_sorted).1).sum()
     };
     let by = |flaw: Flaw| [true, false].map(|is_sorted| calls(flaw, is_sorted)).contains(&n);
-    [
-        (
-            by(Flaw::Unsorted),
-            "the children are visited in the order of their places: visit the nearest first",
-        ),
-        (by(Flaw::FarthestFirst), "the farthest child is visited first: put the nearest on top of the stack"),
-        (
-            by(Flaw::NothingSkipped),
-            "a child beyond the best hit is visited: compare its entry again when it comes from the stack",
-        ),
-    ]
+    COSTLY.map(|(flaw, text)| (by(flaw), text)).to_vec()
 }
+
+const COSTLY: [(Flaw, &str); 6] = named![
+    Flaw::Unsorted => "the children are visited in the order of their places: visit the nearest first",
+    Flaw::FarthestFirst => "the farthest child is visited first: put the nearest on top of the stack",
+    Flaw::NothingSkipped => "a child beyond the best hit is visited: compare its entry again when it comes from the stack",
+    Flaw::NotShortened => "the ray is not shortened, so nothing is skipped: after a hit it ends there",
+    Flaw::EveryLane => "each lane of a block is tested exactly: only those of the mask of `candidates` may be hit",
+    Flaw::Everything =>
+        "each lane of a block is tested exactly, and children beyond the best hit are visited: use the masks, and compare again",
+];
 
 /// Judges the hits of searches, so that no search is cheap because it finds nothing.
 fn judge_hits(queries: &[WideQuery], answers: &[WideAnswer], what: &str) -> CheckResult {

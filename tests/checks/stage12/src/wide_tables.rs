@@ -161,6 +161,12 @@ pub(super) enum Flaw {
     SkippedAtTheBest,
     /// As it should be, but of two hits at the same `t` the first one stays.
     FirstOfEqual,
+    /// The ray keeps its range, so nothing is skipped.
+    NotShortened,
+    /// Each lane of a block is tested.
+    EveryLane,
+    /// Each lane of a block is tested, and nothing is skipped when it comes from the stack.
+    Everything,
 }
 
 /// What a flawed search returns, and its number of calls. Other children than the nearest wait on the stack in order, or as the
@@ -172,7 +178,7 @@ pub(super) fn flawed_search(query: &WideQuery, flaw: Flaw, is_sorted: bool) -> (
     while let Some((child, t)) = stack.pop() {
         let limit =
             if flaw == Flaw::SkippedAtTheBest { best.map_or(ray.t_max, |best| best.t) } else { ray.t_max };
-        if flaw != Flaw::NothingSkipped && t >= limit {
+        if !matches!(flaw, Flaw::NothingSkipped | Flaw::Everything) && t >= limit {
             continue;
         }
         match child.contents() {
@@ -205,14 +211,16 @@ pub(super) fn flawed_search(query: &WideQuery, flaw: Flaw, is_sorted: bool) -> (
                     // A hit in this block leaves its other candidates as they are.
                     let t_max = ray.t_max;
                     let candidates = lanes.iter().map(|&id| (id, query.hits[id as usize]));
-                    for (id, t) in candidates.filter(|(_, t)| *t < t_max) {
+                    let is_all = matches!(flaw, Flaw::EveryLane | Flaw::Everything);
+                    for (id, t) in candidates.filter(|(_, t)| is_all || *t < t_max) {
                         n_calls += 1;
                         let wins = |best: PrimitiveHit| {
                             t < best.t || flaw != Flaw::FirstOfEqual && t == best.t && id < best.primitive
                         };
                         if ray.contains(t) && best.is_none_or(wins) {
                             best = Some(PrimitiveHit { t, primitive: id });
-                            ray.t_max = t.next_up();
+                            ray.t_max =
+                                if flaw == Flaw::NotShortened { query.ray.t_max } else { t.next_up() };
                         }
                     }
                 }

@@ -4,8 +4,11 @@ use super::trees::{Fault, broken_by, drawn_tree, drawn_trees, from_leaves, range
 use checks::prelude::*;
 use checks::tree::half_area;
 use oracle::splitmix::Random;
-use raykata::wide::{BLOCK, Child, ChildContents, FlatNode, FlatTree, MAX_LEAF, NO_PRIMITIVE, WideTree};
+use raykata::wide::{
+    BLOCK, Child, ChildContents, FlatNode, FlatTree, MAX_LEAF, NO_PRIMITIVE, WideNode, WideTree,
+};
 use std::collections::HashMap;
+use std::ops::RangeInclusive;
 
 /// For each node of a flat tree its parent; the root is its own.
 fn parents(tree: &FlatTree) -> Vec<usize> {
@@ -25,6 +28,24 @@ struct Meaning {
 }
 
 const SPLIT_LEAF: &str = "a leaf of the binary tree must not be divided, also if it is large";
+const FREE_LANES: &str = "the free lanes of a block hold numbers of primitives: they have NO_PRIMITIVE";
+const MISSING_BLOCK: &str =
+    "the last block of a leaf, which is not full, is missing: a leaf has ⌈count / BLOCK⌉ blocks";
+const SAME_BLOCKS: &str =
+    "each block of a leaf begins with its first primitive: go on where the block before ended";
+const GAP_FIRST: &str = "an empty place stands before a child: fill the places from 0 on";
+const CHILD_FIRST: &str = "a node gets its index after the nodes below it: a parent has the smaller index";
+
+/// Whether only the full blocks of leaves exist, and some leaf has one that is not full.
+fn lacks_blocks(wide: &WideTree) -> bool {
+    let counts = wide.nodes.iter().flat_map(|node| node.children).map(|child| match child.contents() {
+        ChildContents::Leaf { count, .. } => count as usize,
+        ChildContents::Inner(_) => 0,
+    });
+    let counts: Vec<usize> = counts.collect();
+    counts.iter().map(|count| count / BLOCK).sum::<usize>() == wide.blocks.len()
+        && counts.iter().any(|count| !count.is_multiple_of(BLOCK))
+}
 
 /// The leaves and places of a wide tree over `tree`, or the first fault.
 fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
@@ -50,7 +71,8 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
         let n = node.children.iter().position(|child| *child == Child::EMPTY).unwrap_or(8);
         if node.children[n..].iter().any(|child| *child != Child::EMPTY) || n == 0 {
             let yours = format!("node {index} has the children {:?}", node.children);
-            return wrong(yours, "the children first, then the empty places");
+            let cause = node.children[n..].iter().any(|child| *child != Child::EMPTY).then_some(GAP_FIRST);
+            return Err((yours, "the children first, then the empty places".into(), cause));
         }
         for place in 0..n {
             let (stands_for, bounds) = match node.children[place].contents() {
@@ -59,7 +81,8 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
                     if below <= index || below >= wide.nodes.len() {
                         let yours =
                             format!("a child of node {index} is node {below} of {}", wide.nodes.len());
-                        return wrong(yours, "a parent has a smaller index than its children");
+                        let expected = "a parent has a smaller index than its children".to_owned();
+                        return Err((yours, expected, (below < index).then_some(CHILD_FIRST)));
                     }
                     reached[below] += 1;
                     let Some(top) = common(&parents, &children[below]) else { continue };
@@ -74,7 +97,8 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
                     let blocks = block as usize..block as usize + (count as usize).div_ceil(BLOCK);
                     let Some(lanes) = wide.blocks.get(blocks.clone()) else {
                         let yours = format!("a leaf with the blocks {blocks:?} of {}", wide.blocks.len());
-                        return wrong(yours, "blocks that exist");
+                        let cause = lacks_blocks(wide).then_some(MISSING_BLOCK);
+                        return Err((yours, "blocks that exist".into(), cause));
                     };
                     used[blocks].iter_mut().for_each(|used| *used += 1);
                     let lanes: Vec<u32> = lanes.iter().flatten().copied().collect();
@@ -87,10 +111,19 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
                     let Some(&leaf) = leaf.filter(|_| free.iter().all(|&id| id == NO_PRIMITIVE)) else {
                         let is_part = |node: &FlatNode| node.first == first as u32 && count < node.count;
                         let is_part = is_in_order && tree.nodes.iter().any(is_part);
+                        let is_again =
+                            lanes.len() > BLOCK && lanes.chunks(BLOCK).all(|block| block[0] == lanes[0]);
+                        let causes = [
+                            (lacks_blocks(wide), MISSING_BLOCK),
+                            (leaf.is_some(), FREE_LANES),
+                            (is_part, SPLIT_LEAF),
+                            (is_again, SAME_BLOCKS),
+                        ];
                         let expected =
                             "the primitives of one binary node in order, and NO_PRIMITIVE in the free lanes";
                         let yours = format!("a leaf with the lanes {lanes:?}");
-                        return Err((yours, expected.into(), is_part.then_some(SPLIT_LEAF)));
+                        let cause = causes.into_iter().find(|(is_so, _)| *is_so).map(|(_, text)| text);
+                        return Err((yours, expected.into(), cause));
                     };
                     times[first..first + count as usize].iter_mut().for_each(|times| *times += 1);
                     meaning.leaves.push(leaf);
@@ -171,23 +204,36 @@ pub(super) fn collapse_of_one_leaf_and_of_nothing(trial: &Trial<'_>) -> CheckRes
 #[derive(Clone, Copy, PartialEq)]
 enum Rule {
     Right,
-    FourChildren,
+    /// A node has at most so many children.
+    Most(usize),
     LeavesStay,
     Primitives,
     NodesAreFree,
     Greedy,
+    /// The left and the right child of a binary node get half of its places each; of an odd number the left one more, or less.
+    Halves(bool),
+    /// The left child gets the places of the right one.
+    Exchanged,
+    /// A node in one place costs as much as its two children in one place each.
+    Pairs,
 }
 
-const WRONG_RULES: [(Rule, &str); 5] = [
-    (
-        Rule::Greedy,
+const WRONG_RULES: [(Rule, &str); 11] = named![
+    Rule::Greedy =>
         "the inner child with the largest surface area is opened until there are eight: this is not always the cheapest",
-    ),
-    (Rule::FourChildren, "a node gets at most four children, not eight"),
-    (Rule::LeavesStay, "every leaf stays a leaf: everything below an inner node may become one leaf as well"),
-    (Rule::Primitives, "the costs count single primitives: a leaf pays for whole blocks, block_cost"),
-    (Rule::NodesAreFree, "the cost of a node is left out: visiting it costs something, too"),
+    Rule::Most(2) => "a node gets at most two children, not eight",
+    Rule::Most(4) => "a node gets at most four children, not eight",
+    Rule::Most(7) => "a node gets at most seven children, not eight",
+    Rule::LeavesStay => "every leaf stays a leaf: everything below an inner node may become one leaf as well",
+    Rule::Primitives => "the costs count single primitives: a leaf pays for whole blocks, block_cost",
+    Rule::NodesAreFree => "the cost of a node is left out: visiting it costs something, too",
+    Rule::Halves(false) => HALVES,
+    Rule::Halves(true) => HALVES,
+    Rule::Exchanged => "both children get each other's places: the left one gets those that were counted for it",
+    Rule::Pairs => "a node costs as much as two children in one place each: its two children share eight places",
 ];
+
+const HALVES: &str = "both children get half of the places: try each number of places for the left one";
 
 /// The cost of everything below a node of `count` primitives as one leaf.
 fn leaf_cost(node: &FlatNode, count: u32, rule: Rule) -> f64 {
@@ -200,28 +246,64 @@ fn inner_cost(node: &FlatNode, node_cost: f32, rule: Rule) -> f64 {
     if rule == Rule::NodesAreFree { 0.0 } else { half_area(&node.bounds()) * f64::from(node_cost) }
 }
 
-/// The least cost of a wide tree by a rule, without its root.
-fn least((tree, node_cost): &Collapsed, rule: Rule) -> f64 {
+/// The numbers of places that the left child of a binary node may get of `n`.
+fn shares(n: usize, rule: Rule) -> RangeInclusive<usize> {
+    match rule {
+        Rule::Halves(more) if n > 1 => (n + usize::from(more)) / 2..=(n + usize::from(more)) / 2,
+        _ => 1..=n - 1,
+    }
+}
+
+/// For each node of a binary tree its least cost by a rule in one place and in up to eight; the last number is that of a division.
+fn table((tree, node_cost): &Collapsed, rule: Rule) -> Vec<[f64; 9]> {
     let ranges = ranges(tree);
-    let most = if rule == Rule::FourChildren { 4 } else { 8 };
+    let most = if let Rule::Most(most) = rule { most } else { 8 };
     let leaf = |index: usize| leaf_cost(&tree.nodes[index], ranges[index].1, rule);
-    // For each node its least cost in one place and in up to `most` places; the last number is that of a division.
-    let costs = from_leaves(
-        tree,
-        |index, _| [leaf(index); 9],
-        |index, left: [f64; 9], right| {
-            let mut costs = [f64::INFINITY; 9];
-            for n in 2..=most {
-                costs[n - 1] = (1..n).map(|i| left[i - 1] + right[n - i - 1]).fold(f64::INFINITY, f64::min);
+    let join = |index: usize, left: [f64; 9], right: [f64; 9]| {
+        let mut costs = [f64::INFINITY; 9];
+        for (cost, n) in costs[1..most].iter_mut().zip(2..) {
+            let n = if rule == Rule::Pairs { 2 } else { n };
+            let sums = shares(n, rule).map(|i| left[i - 1] + right[n - i - 1]);
+            *cost = sums.fold(f64::INFINITY, f64::min);
+        }
+        let divided = costs[most - 1];
+        let one = leaf(index).min(inner_cost(&tree.nodes[index], *node_cost, rule) + divided);
+        let mut costs = costs.map(|cost| cost.min(one));
+        costs[8] = divided.min(leaf(index));
+        costs
+    };
+    from_leaves(tree, |index, _| [leaf(index); 9], join)
+}
+
+/// The least cost of a wide tree by a rule, without its root.
+fn least(asked: &Collapsed, rule: Rule) -> f64 {
+    table(asked, rule).first().map_or(0.0, |root| root[8])
+}
+
+/// The cost of the tree that is built by costs that are counted by one rule, and where children get places by another one.
+fn built(asked: &Collapsed, counted: Rule, placed: Rule) -> f64 {
+    let (tree, table) = (&asked.0, table(asked, counted));
+    let ranges = ranges(tree);
+    let leaf = |node: usize| leaf_cost(&tree.nodes[node], ranges[node].1, Rule::Right);
+    let (mut sum, mut waiting) = (0.0, vec![(0, 8, true)]);
+    while let Some((node, n, is_top)) = waiting.pop() {
+        let first = tree.nodes[node].first as usize;
+        // A leaf and a single place have no division.
+        let places = shares(if tree.nodes[node].is_leaf() { 1 } else { n }, placed);
+        let divided = places.map(|i| (table[first][i - 1] + table[first + 1][n - i - 1], i));
+        match divided.min_by(|p, q| p.0.total_cmp(&q.0)) {
+            Some((cost, i)) if cost < leaf(node) && (is_top || cost <= table[node][0]) => {
+                let i = if placed == Rule::Exchanged { n - i } else { i };
+                waiting.extend([(first, i, false), (first + 1, n - i, false)]);
             }
-            let divided = costs[most - 1];
-            let one = leaf(index).min(inner_cost(&tree.nodes[index], *node_cost, rule) + divided);
-            let mut costs = costs.map(|cost| cost.min(one));
-            costs[8] = divided.min(leaf(index));
-            costs
-        },
-    );
-    costs.first().map_or(0.0, |root| root[8])
+            _ if is_top || leaf(node) <= table[node][0] => sum += leaf(node),
+            _ => {
+                sum += inner_cost(&tree.nodes[node], asked.1, Rule::Right);
+                waiting.push((node, 8, true));
+            }
+        }
+    }
+    sum
 }
 
 /// The cost of a wide tree by a rule, without its root.
@@ -269,16 +351,21 @@ fn judge_costs(trial: &Trial<'_>, trees: &[Collapsed]) -> Vec<CheckResult> {
     let formulas = |asked: &Collapsed, wide: &WideTree| {
         let tree = &asked.0;
         let meaning = meaning(tree, wide).ok();
-        let is_narrow = wide.nodes.iter().all(|node| node.n_children() <= 4);
-        let gives = |rule, meaning: &Meaning| match rule {
-            Rule::Greedy => {
-                let mut inner = meaning.inner.clone();
-                inner.sort_unstable();
-                inner == kept_by_greed(tree)
-            }
-            rule => {
-                (rule != Rule::FourChildren || is_narrow)
-                    && cost(asked, meaning, rule) <= least(asked, rule) * (1.0 + 1e-4)
+        let most = wide.nodes.iter().map(WideNode::n_children).max().unwrap_or(0) as usize;
+        let gives = |rule, meaning: &Meaning| {
+            let (cost, right) = (cost(asked, meaning, rule), cost(asked, meaning, Rule::Right));
+            let is_built = |by: Rule| (built(asked, by, rule) - right).abs() <= 1e-4 * right;
+            match rule {
+                Rule::Greedy => {
+                    let mut inner = meaning.inner.clone();
+                    inner.sort_unstable();
+                    inner == kept_by_greed(tree)
+                }
+                Rule::Exchanged => is_built(Rule::Right),
+                Rule::Pairs => is_built(rule),
+                Rule::Halves(_) => is_built(rule) || is_built(Rule::Right),
+                Rule::Most(n) if most > n => false,
+                rule => cost <= least(asked, rule) * (1.0 + 1e-4),
             }
         };
         WRONG_RULES

@@ -81,24 +81,44 @@ fn judge_face_normal(triangle: &Triangle, yours: Option<Vec3>) -> Judged {
     let input = || call("face_normal", &[triangle]);
     let broken = || {
         Broken::new(input(), yours, expected, "double precision").explained_by([
-            (
-                yours.is_some() && expected.is_none(),
-                "a triangle without area has no normal: 0/0 is NaN, so return None",
-            ),
+            "a triangle without area has no normal: 0/0 is NaN, so return None"
+                .when(yours.is_some() && expected.is_none()),
             (backwards, "your normal points the other way: compute u × v, not v × u"),
-            (
+            "|u × v|² underflows for tiny edges and overflows for huge ones: scale u and v first".when(
                 underflows
                     && (yours.is_none()
                         || near(yours.unwrap_or_default())
                         || yours.is_some_and(|n| n.is_nan() || n == Vec3::ZERO)),
-                "|u × v|² underflows for tiny edges and overflows for huge ones: scale u and v first",
             ),
         ])
     };
-    unless(right, broken).formulas([(
-        is_unnormalized || (yours.is_none() && cross == DVec3::ZERO),
-        "you return u × v, which is not of length 1: normalize it",
-    )])
+    // Edges that are divided by a coordinate of their own, which may be negative or 0.
+    let divided = |by: fn(DVec3) -> f64| {
+        let scale = by(u) * by(v);
+        match (yours, expected) {
+            (Some(yours), Some(expected)) if scale != 0.0 => {
+                f64::from((yours - scale.signum() as f32 * expected).length()) < slack
+            }
+            (Some(yours), _) => yours.is_nan(),
+            (None, expected) => scale == 0.0 || expected.is_none(),
+        }
+    };
+    let limits = [1e-12, 1e-10, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2].map(|limit| {
+        let is_small =
+            [cross.length(), 0.5 * cross.length(), cross.length_squared()].map(|area| area < limit);
+        let text =
+            "a triangle of a small area has no normal in your answer: only one without any area has none";
+        [0, 1, 2].map(|n| (if is_small[n] { yours.is_none() } else { right }, text))
+    });
+    let one = |text: &'static str, gives: bool| (gives, text);
+    let signed = "an edge is divided by its largest coordinate with its sign, which turns it round: divide by the largest absolute value";
+    unless(right, broken).formulas(limits.into_iter().flatten().chain([
+        one(signed, divided(|edge| edge.max_element())),
+        one(signed, divided(|edge| edge.min_element())),
+        one("an edge is divided by its x, which may be negative or 0: divide by the largest absolute value", divided(|edge| edge.x)),
+        "you return u × v, which is not of length 1: normalize it"
+            .when(is_unnormalized || (yours.is_none() && cross == DVec3::ZERO)),
+    ]))
 }
 
 pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> CheckResult {

@@ -27,24 +27,13 @@ fn formulas(query: &TriangleQuery, yours: bool) -> Vec<(bool, &'static str)> {
     // Where rounding decides, each formula may give each answer.
     let is_open = exact != 0.0 && exact.abs() <= error;
     let gives = |predicted: bool| is_open || yours == predicted;
-    let mut all = vec![
-        (
-            gives(exact < 0.0),
-            "the sign is reversed: n points to the front, so a ray along n comes from behind",
-        ),
-        (
-            gives(exact >= 0.0),
-            "n·d = 0 (edge-on, or no area) does not turn its back: compare with > and not with >=",
-        ),
-        (
-            yours == (in_single > 0.0),
+    let mut all = named![
+        gives(exact < 0.0) => "the sign is reversed: n points to the front, so a ray along n comes from behind",
+        gives(exact >= 0.0) => "n·d = 0 (edge-on, or no area) does not turn its back: compare with > and not with >=",
+        yours == (in_single > 0.0) =>
             "your product n·d underflows or overflows: compute it in double precision, or scale the edges first",
-        ),
-        (
-            yours == (to_plane > 0.0),
-            "you ask on which side of the plane the ray starts; ask to which side it goes",
-        ),
-    ];
+        yours == (to_plane > 0.0) => "you ask on which side of the plane the ray starts; ask to which side it goes",
+    ].to_vec();
     let limited = LIMITS.into_iter().flat_map(|limit| [exact > limit, exact > 0.0 && cosine > limit]);
     all.extend(limited.map(|predicted| (gives(predicted), TEXT_OF_LIMITS)));
     all

@@ -23,26 +23,16 @@ fn mistakes(query: &SearchQuery, yours: Hit, tests: u64) -> [(bool, &'static str
     let stopped = tests < all.len() as u64;
     [
         (is_tie, "of two hits at the same t the primitive with the smaller number wins"),
-        (
-            is(best(&hits(without_last))) && (!is(best(&counting)) || tests + 1 == all.len() as u64),
-            "the last primitive is left out: their numbers are 0..n_primitives",
-        ),
-        (
-            is(best(&hits(without_first))) && (!is(best(&counting)) || tests + 1 == all.len() as u64),
-            "the first primitive is left out: their numbers are 0..n_primitives",
-        ),
-        (
-            is(counting.first().copied()) && stopped,
-            "the closest hit is not kept: the first hit ends the search, but a later primitive may be nearer",
-        ),
-        (
-            is(counting.first().copied()),
-            "the closest hit is not kept: the first hit stays, but a later primitive may be nearer",
-        ),
-        (
-            is(counting.last().copied()),
-            "the closest hit is not kept: each hit replaces the one before (do you assign it to another variable?)",
-        ),
+        "the last primitive is left out: their numbers are 0..n_primitives"
+            .when(is(best(&hits(without_last))) && (!is(best(&counting)) || tests + 1 == all.len() as u64)),
+        "the first primitive is left out: their numbers are 0..n_primitives"
+            .when(is(best(&hits(without_first))) && (!is(best(&counting)) || tests + 1 == all.len() as u64)),
+        "the closest hit is not kept: the first hit ends the search, but a later primitive may be nearer"
+            .when(is(counting.first().copied()) && stopped),
+        "the closest hit is not kept: the first hit stays, but a later primitive may be nearer"
+            .when(is(counting.first().copied())),
+        "the closest hit is not kept: each hit replaces the one before (do you assign it to another variable?)"
+            .when(is(counting.last().copied())),
         (is(farthest), "you keep the farther one of two hits"),
         (is(best(&counting).map(|(_, t)| (0, t))), "you return primitive 0 in any case"),
     ]

@@ -59,14 +59,10 @@ fn judge(triangle: &Triangle, yours: GramScalars) -> Judged {
         (products(exact.uv, exact.uu, exact.vv), "u·u and v·v look swapped"),
         (products(exact.uu, exact.vv, exact.uv), SWAPPED_WITH_UV),
         (products(exact.vv, exact.uv, exact.uu), SWAPPED_WITH_UV),
-        (
-            products_are_right && near(yours.d, -exact.d, exact.d_slack) && yours.d >= 0.0,
-            "the sign of D is wrong: it is UV² - UU·VV = -|u × v|²",
-        ),
-        (
-            products_are_right && near(yours.d, -root, 16.0 * U * root + exact.d_slack.sqrt()),
-            "D is -|u × v|², not squared in your answer",
-        ),
+        "the sign of D is wrong: it is UV² - UU·VV = -|u × v|²"
+            .when(products_are_right && near(yours.d, -exact.d, exact.d_slack) && yours.d >= 0.0),
+        "D is -|u × v|², not squared in your answer"
+            .when(products_are_right && near(yours.d, -root, 16.0 * U * root + exact.d_slack.sqrt())),
         (products_are_right && cancels, "UV² - UU·VV cancels for a thin triangle: compute D as -|u × v|²"),
     ])
 }

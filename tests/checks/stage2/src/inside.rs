@@ -96,14 +96,10 @@ fn mistakes(case @ (query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'
     // Where rounding decides, each test may give each answer.
     let Some(right) = clearly_inside(case) else { return vec![(true, ""); 13] };
     vec![
-        (
-            yours == right || (on_the_line && !yours && inside),
-            "the ray's origin is on the line of a side: accept its 0, and do not normalize (0/0)",
-        ),
-        (
-            yours == of_normalized,
-            "do not normalize: that rounds points off an edge, and is 0/0 if the ray's origin is on the line of a side",
-        ),
+        "the ray's origin is on the line of a side: accept its 0, and do not normalize (0/0)"
+            .when(yours == right || (on_the_line && !yours && inside)),
+        "do not normalize: that rounds points off an edge, and is 0/0 if the ray's origin is on the line of a side"
+            .when(yours == of_normalized),
         (
             // The normal of the slide is (T₂ - P₀) × (T₁ - P₀), which is the other way round.
             yours == normalized.iter().all(|&s| !(-s < 0.0)),
@@ -118,10 +114,8 @@ fn mistakes(case @ (query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'
         (gives(&[-bc, ca, ab]), "the side b c is turned around: go from a to b, from b to c and from c to a"),
         (gives(&[bc, -ca, ab]), "the side c a is turned around: go from a to b, from b to c and from c to a"),
         (gives(&[bc, ca, -ab]), "the side a b is turned around: go from a to b, from b to c and from c to a"),
-        (
-            yours == all(&[twice(a, b), twice(b, c), twice(c, a)], 0.0),
-            "is P0 subtracted twice? the plane goes through P0 = o, so the distance is n·(P - o)",
-        ),
+        "is P0 subtracted twice? the plane goes through P0 = o, so the distance is n·(P - o)"
+            .when(yours == all(&[twice(a, b), twice(b, c), twice(c, a)], 0.0)),
     ]
 }
 
@@ -183,15 +177,11 @@ fn area_mistakes(case @ (_, weights, _): &Case, yours: Option<Vec3>) -> Vec<(boo
         (is([a / sum, b / sum, c / sum], 1.0), UNSIGNED_AREAS),
         (is([a, b, 1.0 - a - b], 1.0 - a - b), UNSIGNED_AREAS),
         (is([1.0 - b - c, b, c], 1.0 - b - c), UNSIGNED_AREAS),
-        (
-            is([c, b, 1.0 - c - b], 1.0 - b - c),
-            "this is the slide: its areas have no sign, so points outside pass, and its α belongs to corner c",
-        ),
+        "this is the slide: its areas have no sign, so points outside pass, and its α belongs to corner c"
+            .when(is([c, b, 1.0 - c - b], 1.0 - b - c)),
         (is(*weights, 1.0), "you return coordinates for a point outside: None if one of them is negative"),
-        (
-            is(*weights, if least > 0.0 { 1.0 } else { -1.0 }),
-            "points on an edge are inside: compare with ≥, not with >",
-        ),
+        "points on an edge are inside: compare with ≥, not with >"
+            .when(is(*weights, if least > 0.0 { 1.0 } else { -1.0 })),
         (is(*weights, beta.min(gamma)), "one of the three coordinates is not tested: α"),
         (is(*weights, alpha.min(gamma)), "one of the three coordinates is not tested: β"),
         (is(*weights, alpha.min(beta)), "one of the three coordinates is not tested: γ"),
@@ -254,12 +244,16 @@ pub(super) fn inside_by_areas_gives_barycentric_coordinates(trial: &Trial<'_>) -
         let expected = if *has_area { "coordinates of at least 0" } else { "None" };
         let is_outside = query.point == outside.point;
         Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
-            (is_outside && yours.is_some(), "you accept points just outside of an edge: test the signs, without a tolerance"),
-            (!has_area && !is_outside && yours.is_some(), "a triangle without area gives None: 0 / 0 is NaN, so compare so that NaN fails"),
-            (
-                *has_area && yours.is_some_and(|yours| yours.min_element() < 0.0 && yours.min_element() > -1e-6),
-                "1 - β - γ may be slightly negative, although β + γ is rounded to 1: test it or clamp it to 0",
-            ),
+            "you accept points just outside of an edge: test the signs, without a tolerance"
+                .when(is_outside && yours.is_some()),
+            "a triangle without area gives None: 0 / 0 is NaN, so compare so that NaN fails"
+                .when(!has_area && !is_outside && yours.is_some()),
+            "1 - β - γ may be slightly negative, although β + γ is rounded to 1: test it or clamp it to 0"
+                .when(
+                    *has_area
+                        && yours
+                            .is_some_and(|yours| yours.min_element() < 0.0 && yours.min_element() > -1e-6),
+                ),
         ]))
     });
     all_hold(judged.collect())

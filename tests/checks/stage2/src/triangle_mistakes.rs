@@ -108,28 +108,19 @@ pub(super) fn observations(query: &TriangleQuery, yours: Option<TriangleHit>) ->
     let line = Line::of(query);
     let on_an_edge = line.alpha.min(line.beta).min(line.gamma) == 0.0;
     [
-        (
-            yours.is_some() && line.determinant == 0.0,
-            "a triangle without area, or a ray along its plane, divides by 0: that is a miss, and so is a NaN",
-        ),
-        (
-            yours.is_some_and(|hit| ![hit.t, hit.beta, hit.gamma].into_iter().all(f32::is_finite)),
-            "you return NaN or infinity: compare so that NaN fails",
-        ),
-        (
-            yours.is_none() && on_an_edge && line.determinant != 0.0,
-            "points on an edge belong to the triangle: compare with ≥ and ≤, not with > and <",
-        ),
-        (
-            yours.is_some_and(|hit| hit.t == ray.t_min || hit.t == ray.t_max),
-            "the range is open: a hit at t_min or t_max does not count (t = 0 for a ray that starts in the triangle)",
-        ),
-        (
-            yours.is_some_and(|TriangleHit { beta, gamma, .. }| {
+        "a triangle without area, or a ray along its plane, divides by 0: that is a miss, and so is a NaN"
+            .when(yours.is_some() && line.determinant == 0.0),
+        "you return NaN or infinity: compare so that NaN fails"
+            .when(yours.is_some_and(|hit| ![hit.t, hit.beta, hit.gamma].into_iter().all(f32::is_finite))),
+        "points on an edge belong to the triangle: compare with ≥ and ≤, not with > and <"
+            .when(yours.is_none() && on_an_edge && line.determinant != 0.0),
+        "the range is open: a hit at t_min or t_max does not count (t = 0 for a ray that starts in the triangle)"
+            .when(yours.is_some_and(|hit| hit.t == ray.t_min || hit.t == ray.t_max)),
+        "you accept a point slightly outside: test β ≥ 0, γ ≥ 0 and β + γ ≤ 1 without a tolerance"
+            .when(yours.is_some_and(|TriangleHit { beta, gamma, .. }| {
                 (-0.01..0.0).contains(&beta.min(gamma).min(1.0 - beta - gamma))
-            }),
-            "you accept a point slightly outside: test β ≥ 0, γ ≥ 0 and β + γ ≤ 1 without a tolerance",
-        ),
+            })
+            ),
     ]
 }
 
@@ -144,32 +135,22 @@ fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
     let lost_if = |lost: bool| if lost { !is_hit } else { is_right };
     let tests = |least: f64| answer.is_inside(hit, least);
     let within = |counts: bool| answer.is(hit, counts && inside);
-    let mut all = vec![
-        (within(t_min < t), "you return a hit beyond t_max: ask ray.contains(t)"),
-        (within(t < t_max), "you return a hit behind the ray or before t_min: ask ray.contains(t)"),
-        (within(0.0 < t), "you ask t > 0 and not ray.contains(t): t_min and t_max count"),
-        (within(true), "you do not ask ray.contains(t)"),
-        (
-            tests(beta.min(gamma).min(1.0 - beta).min(1.0 - gamma)),
+    let mut all = named![
+        within(t_min < t) => "you return a hit beyond t_max: ask ray.contains(t)",
+        within(t < t_max) => "you return a hit behind the ray or before t_min: ask ray.contains(t)",
+        within(0.0 < t) => "you ask t > 0 and not ray.contains(t): t_min and t_max count",
+        within(true) => "you do not ask ray.contains(t)",
+        tests(beta.min(gamma).min(1.0 - beta).min(1.0 - gamma)) =>
             "you test β ≤ 1 and γ ≤ 1, which makes a parallelogram: β + γ ≤ 1 is not tested",
-        ),
-        (tests(beta.min(gamma)), "you accept a point beyond the side b c: β + γ ≤ 1 is not tested"),
-        (tests(beta.min(alpha)), "you accept a γ below 0: γ ≥ 0 is not tested"),
-        (tests(gamma.min(alpha)), "you accept a β below 0: β ≥ 0 is not tested"),
-        (
-            tests((beta + gamma).min(alpha)),
+        tests(beta.min(gamma)) => "you accept a point beyond the side b c: β + γ ≤ 1 is not tested",
+        tests(beta.min(alpha)) => "you accept a γ below 0: γ ≥ 0 is not tested",
+        tests(gamma.min(alpha)) => "you accept a β below 0: β ≥ 0 is not tested",
+        tests((beta + gamma).min(alpha)) =>
             "you accept a β or γ below 0: 0 ≤ β + γ ≤ 1 is not enough, test β ≥ 0 and γ ≥ 0 as well",
-        ),
-        (tests(1.0), "you do not test whether the point is inside the triangle"),
-        (
-            lost_if(determinant < 0.0),
-            "you test the triangle from one side only: it is hit from the back as well",
-        ),
-        (
-            lost_if(determinant > 0.0),
-            "you test the triangle from one side only: it is hit from the front as well",
-        ),
-    ];
+        tests(1.0) => "you do not test whether the point is inside the triangle",
+        lost_if(determinant < 0.0) => "you test the triangle from one side only: it is hit from the back as well",
+        lost_if(determinant > 0.0) => "you test the triangle from one side only: it is hit from the front as well",
+    ].to_vec();
     // Rounding decides about a determinant next to the limit.
     let is_next_to = |limit: f64| (determinant.abs() / limit - 1.0).abs() < 1e-3;
     all.extend(LIMITS.map(|limit| {
@@ -207,49 +188,32 @@ fn of_values(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
     };
     let is_in_sum = |hit: &TriangleHit| (0.0..=1.0).contains(&(hit.beta + hit.gamma));
     vec![
-        (
-            slide_determinant(answer.query).map_or(answer.is_right, |factor| {
+        "you use the determinant as the slide prints it; it must be a(fk - gj) + b(gi - ek) + c(ej - fi)"
+            .when(slide_determinant(answer.query).map_or(answer.is_right, |factor| {
                 let hit = [t, beta, gamma].map(|value| factor * value);
                 answer.is_inside(hit, hit[1].min(hit[2]).min(1.0 - hit[1] - hit[2]))
-            }),
-            "you use the determinant as the slide prints it; it must be a(fk - gj) + b(gi - ek) + c(ej - fi)",
-        ),
+            })
+            ),
         (answer.is_inside([t, gamma, beta], least), "β and γ look swapped"),
-        (
-            answer.is_inside([t, alpha, gamma], least),
-            "you return (α, γ) with α, a weight of corner a: β belongs to b and γ to c",
-        ),
-        (
-            answer.is_inside([t, beta, alpha], least),
-            "you return (β, α) with α, a weight of corner a: β belongs to b and γ to c",
-        ),
-        (
-            answer.is_inside([t, alpha, beta], least),
-            "you return (α, β) with α, a weight of corner a: β belongs to b and γ to c",
-        ),
-        (
-            answer.is_inside([t, gamma, alpha], least),
-            "you return (γ, α) with α, a weight of corner a: β belongs to b and γ to c",
-        ),
-        (
-            answer.is_inside([-t, -beta, -gamma], (-beta).min(-gamma).min(1.0 + beta + gamma)),
-            "the right side a - o is turned around: t, β and γ have the wrong sign",
-        ),
+        "you return (α, γ) with α, a weight of corner a: β belongs to b and γ to c"
+            .when(answer.is_inside([t, alpha, gamma], least)),
+        "you return (β, α) with α, a weight of corner a: β belongs to b and γ to c"
+            .when(answer.is_inside([t, beta, alpha], least)),
+        "you return (α, β) with α, a weight of corner a: β belongs to b and γ to c"
+            .when(answer.is_inside([t, alpha, beta], least)),
+        "you return (γ, α) with α, a weight of corner a: β belongs to b and γ to c"
+            .when(answer.is_inside([t, gamma, alpha], least)),
+        "the right side a - o is turned around: t, β and γ have the wrong sign"
+            .when(answer.is_inside([-t, -beta, -gamma], (-beta).min(-gamma).min(1.0 + beta + gamma))),
         (answer.is_inside([-t, beta, gamma], least), "the sign of t is wrong"),
-        (
-            answer.is_inside([t * length, beta, gamma], least),
-            "your t counts world units; it must count lengths of direction",
-        ),
+        "your t counts world units; it must count lengths of direction"
+            .when(answer.is_inside([t * length, beta, gamma], least)),
         (answer.is_inside([t, beta.abs() / sum, gamma.abs() / sum], 1.0), UNSIGNED_AREAS),
         (answer.is_inside([t, beta.abs(), gamma.abs()], 1.0 - beta.abs() - gamma.abs()), UNSIGNED_AREAS),
-        (
-            answer.is_right || of_a_point(&|hit| hit.beta.min(hit.gamma) >= 0.0),
-            "your answer is off by the rounding of o + t d or of n·o, far from the origin: subtract o first",
-        ),
-        (
-            answer.is_right || of_a_point(&is_in_sum),
-            "you accept a β or γ below 0: 0 ≤ β + γ ≤ 1 is not enough, test β ≥ 0 and γ ≥ 0 as well\nand: your answer is off by the rounding of o + t d or of n·o, far from the origin: subtract o first",
-        ),
+        "your answer is off by the rounding of o + t d or of n·o, far from the origin: subtract o first"
+            .when(answer.is_right || of_a_point(&|hit| hit.beta.min(hit.gamma) >= 0.0)),
+        "you accept a β or γ below 0: 0 ≤ β + γ ≤ 1 is not enough, test β ≥ 0 and γ ≥ 0 as well\nand: your answer is off by the rounding of o + t d or of n·o, far from the origin: subtract o first"
+            .when(answer.is_right || of_a_point(&is_in_sum)),
     ]
 }
 

@@ -76,27 +76,33 @@ fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> Judged {
     let source = if cancels { "a face, because the sum is 0" } else { "double precision" };
     let broken = || {
         Broken::new(input(), yours, expected, source).explained_by([
-        (
-            cancels && (yours.is_nan() || yours.length() < 1e-3),
-            "a sum of 0 has no direction (0/0 is NaN): take the normal of one face, or any unit vector if there is none",
-        ),
+        "a sum of 0 has no direction (0/0 is NaN): take the normal of one face, or any unit vector if there is none"
+            .when(cancels && (yours.is_nan() || yours.length() < 1e-3)),
         (yours.is_nan(), "you return NaN: a triangle without area has no normal and does not count"),
         (has_faces && !unit && near(sums.plain), NOT_NORMALIZED),
         (has_faces && !unit && near(sums.plain / sums.faces.len() as f64), NOT_NORMALIZED),
+        (cancels && has_faces && unit, "the normals cancel, and you return none of them: take the normal of one of the triangles"),
         (is(-sums.plain), "your normal points inwards: is the face normal u × v?"),
     ])
     };
     // Where any direction passes, each formula may give each answer.
     let is_open = right && (cancels || !has_faces);
-    unless(right, broken).formulas([
-        (
-            is_open || is(sums.by_area),
-            "you weight each face by its area: normalize the face normals before you add them",
-        ),
-        (is_open || is(sums.by_angle), "you weight each face by its angle: each triangle counts once"),
-        (is_open || sums.faces.first().is_some_and(|&face| near(face)), ONE_FACE),
-        (is_open || sums.faces.last().is_some_and(|&face| near(face)), ONE_FACE),
-    ])
+    // The normal of one face in place of a sum that is shorter than a limit.
+    let too_early = [0.05, 0.1, 0.2, 0.25, 0.5, 0.75, 1.0].map(|limit| {
+        let gives =
+            if sums.plain.length() < limit { sums.faces.iter().any(|&face| near(face)) } else { right };
+        "a short sum is taken for one that cancels: normalize it, unless it consists of roundings"
+            .when(is_open || gives)
+    });
+    unless(right, broken).formulas(
+        too_early.into_iter().chain([
+            "you weight each face by its area: normalize the face normals before you add them"
+                .when(is_open || is(sums.by_area)),
+            (is_open || is(sums.by_angle), "you weight each face by its angle: each triangle counts once"),
+            (is_open || sums.faces.first().is_some_and(|&face| near(face)), ONE_FACE),
+            (is_open || sums.faces.last().is_some_and(|&face| near(face)), ONE_FACE),
+        ]),
+    )
 }
 
 fn judge_all(trial: &Trial<'_>, what: &str, meshes: &[Mesh]) -> Vec<CheckResult> {

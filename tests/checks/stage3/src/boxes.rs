@@ -4,6 +4,10 @@ use checks::generate::{sphere, triangle};
 use checks::prelude::*;
 use checks::{double, tree};
 
+const TOO_SMALL: &str = "your box is too small: go one whole radius from the centre to each side";
+
+const ONE_AXIS: &str = "you go one radius from the centre along one axis only: go along each axis";
+
 const CORNERS: &str = "min and max are corners of the triangle in your box: take the smallest and the largest coordinate on each axis";
 
 pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
@@ -19,18 +23,16 @@ pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
         let two = |p: Vec3, q: Vec3| tree::around(&[corner(p), corner(q)]);
         let Triangle { a, b, c } = *triangle;
         let pairs = [two(a, b), two(b, c), two(c, a)];
+        let absolute = tree::around(&[two(a.abs(), b.abs()), corner(c.abs())]);
         let mut mistakes = Vec::from(
             pairs.map(|pair| (yours == pair, "your box leaves out a corner: it contains only two of them")),
         );
         mistakes.extend([
-            (
-                yours.contains_box(&expected) && !yours.is_empty(),
-                "you return a padded box: boxes are closed, so even a flat box needs no padding",
-            ),
-            (
-                yours == Aabb::new(expected.max, expected.min),
-                "min and max are exchanged: min is the smaller one on each axis",
-            ),
+            "you return a padded box: boxes are closed, so even a flat box needs no padding"
+                .when(yours.contains_box(&expected) && !yours.is_empty()),
+            "min and max are exchanged: min is the smaller one on each axis"
+                .when(yours == Aabb::new(expected.max, expected.min)),
+            (yours == absolute, "you take coordinates without their signs"),
             (yours == Aabb::new(a, b), CORNERS),
             (yours == Aabb::new(a, c), CORNERS),
         ]);
@@ -48,29 +50,34 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
         let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
         // Allow half a float for the rounding and two floats outwards; a float is two roundings at most.
         let slack = (center.abs() + radius) * 5.0 * double::U;
-        let near = |yours: Vec3, exact: glam::DVec3| (yours.as_dvec3() - exact).abs().cmple(slack).all();
+        let near = |yours: Vec3, exact: DVec3| (yours.as_dvec3() - exact).abs().cmple(slack).all();
         let right = near(yours.min, center - radius) && near(yours.max, center + radius);
         let expected = Aabb::new((center - radius).as_vec3(), (center + radius).as_vec3());
         let input = || call("sphere_bounds", &[sphere]);
-        let is = |low: glam::DVec3, high: glam::DVec3| near(yours.min, low) && near(yours.max, high);
-        unless(right, || Broken::new(input(), yours, expected, "closed form")).formulas([
-            (
-                is(glam::DVec3::splat(-radius), glam::DVec3::splat(radius)),
-                "your box has the right size but the wrong place: go one radius from the centre",
-            ),
-            (
-                is(center - 0.5 * radius, center + 0.5 * radius),
-                "your box is too small: go one whole radius from the centre to each side",
-            ),
+        let is = |low: DVec3, high: DVec3| near(yours.min, low) && near(yours.max, high);
+        // A box that is larger on each side by the same length, or by the same part of the radius.
+        let (low, high) = (center - radius - yours.min.as_dvec3(), yours.max.as_dvec3() - center - radius);
+        let pad = DVec3::splat(low.max(high).max_element());
+        let is_padded =
+            (low - pad).abs().max((high - pad).abs()).cmple(slack.max_element() + 1e-3 * pad).all();
+        let broken = || {
+            Broken::new(input(), yours, expected, "closed form").explained_by([
+                "you pad the box: one radius from the centre is enough, up to rounding".when(is_padded),
+            ])
+        };
+        unless(right, broken).formulas([
+            "your box has the right size but the wrong place: go one radius from the centre"
+                .when(is(DVec3::splat(-radius), DVec3::splat(radius))),
+            (is(center - 0.5 * radius, center + 0.5 * radius), TOO_SMALL),
+            (is(center - radius / 3f64.sqrt(), center + radius / 3f64.sqrt()), TOO_SMALL),
+            (is(center - radius * DVec3::X, center + radius * DVec3::X), ONE_AXIS),
+            (is(center - radius * DVec3::Y, center + radius * DVec3::Y), ONE_AXIS),
+            (is(center - radius * DVec3::Z, center + radius * DVec3::Z), ONE_AXIS),
             (is(center, center + radius), "your box begins at the centre: go one radius to each side"),
-            (
-                is(center, center + 2.0 * radius),
-                "your box begins at the centre: go one radius to each side of it",
-            ),
-            (
-                is(center - 2.0 * radius, center + 2.0 * radius),
-                "your box is too large: go one radius from the centre to each side, not the diameter",
-            ),
+            "your box begins at the centre: go one radius to each side of it"
+                .when(is(center, center + 2.0 * radius)),
+            "your box is too large: go one radius from the centre to each side, not the diameter"
+                .when(is(center - 2.0 * radius, center + 2.0 * radius)),
         ])
     })
 }
@@ -99,19 +106,17 @@ pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> CheckResult {
                     .explained_by([(empty, "the empty box (inf, -inf) must change nothing")])
             };
             let shared = Aabb::new(first.min.max(second.min), first.max.min(second.max));
+            let least = Aabb::new(expected.min, first.max.min(second.max));
+            let most = Aabb::new(first.min.max(second.min), expected.max);
             let origin = Aabb::new(Vec3::ZERO, Vec3::ZERO);
             let or_origin = |b: &Aabb| if b.is_empty() { origin } else { *b };
-            unless(yours == expected, broken).formulas([
-                (
-                    yours == tree::around([&or_origin(first), &or_origin(second)]),
+            unless(yours == expected, broken).formulas(named![
+                yours == tree::around([&or_origin(first), &or_origin(second)]) =>
                     "the empty box (inf, -inf) must change nothing: you take it for a box at the origin",
-                ),
-                (
-                    open || yours == shared,
-                    "you return what both boxes share: take the smaller min and the larger max",
-                ),
-                (yours == *first || open, "you return the first box"),
-                (yours == *second || open, "you return the second box"),
+                open || yours == shared => "you return what both boxes share: take the smaller min and the larger max",
+                open || yours == least || yours == most => "you take the smaller, or the larger, corner for both sides",
+                yours == *first || open => "you return the first box",
+                yours == *second || open => "you return the second box",
             ])
         },
     )
@@ -133,6 +138,11 @@ pub(super) fn centroid_is_the_middle(trial: &Trial<'_>) -> CheckResult {
     })
 }
 
+const FLAT: &str =
+    "a flat box has no area in your answer: only the empty box has none, and a flat one has two faces";
+
+const FOUR_FACES: &str = "two of the six faces are left out: a box has two of each pair of axes";
+
 pub(super) fn surface_area_counts_six_faces(trial: &Trial<'_>) -> CheckResult {
     let sized = (aabb(), nasty::scale(-50..=50)).prop_map(|(b, size)| Aabb::new(size * b.min, size * b.max));
     let cube = Aabb::new(Vec3::ZERO, Vec3::new(2.0, 3.0, 5.0));
@@ -153,6 +163,13 @@ pub(super) fn surface_area_counts_six_faces(trial: &Trial<'_>) -> CheckResult {
             (near(0.5 * expected), "you return half of the area: each face counts twice"),
             (near(2.0 * expected), "you return twice the area: each face counts twice, not four times"),
             (near(size.length_squared()), "you return the squared diagonal, not the area"),
+            (near(if size.min_element() == 0.0 { 0.0 } else { expected }), FLAT),
+            (near(expected - 2.0 * size.x * size.y), FOUR_FACES),
+            (near(expected - 2.0 * size.y * size.z), FOUR_FACES),
+            (near(expected - 2.0 * size.z * size.x), FOUR_FACES),
+            "you return the area of a cube with the longest edge"
+                .when(near(6.0 * size.max_element() * size.max_element())),
+            (near(4.0 * size.element_sum()), "you return the length of the edges, not the area"),
         ])
     })
 }

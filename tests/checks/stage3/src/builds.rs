@@ -52,10 +52,8 @@ fn build_mistakes(fault: &str) -> [(bool, &'static str); 5] {
     let missing = fault.ends_with("in 0 leaves");
     [
         (missing, "a primitive was left out: both halves together must hold all of them"),
-        (
-            fault.ends_with("leaves") && !missing,
-            "a primitive is in both halves: the right half begins where the left half ends",
-        ),
+        "a primitive is in both halves: the right half begins where the left half ends"
+            .when(fault.ends_with("leaves") && !missing),
         (fault.contains(" holds "), "a leaf must hold 1 to leaf_size primitives: stop only at n ≤ leaf_size"),
         (fault.contains("sticks out"), "the box of a node must contain everything below it"),
         (fault.ends_with("nodes"), "without primitives there is nothing to build: add no node"),
@@ -142,10 +140,9 @@ pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> CheckResult {
             let describe = |n: usize| format!("{n} nodes");
             let yours = describe(nodes);
             return Err(Broken::with_texts(query.call("build"), yours, "1 node, a leaf", "the definition")
-                .explained_by([(
-                    nodes > 1,
-                    "exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size",
-                )]));
+                .explained_by([
+                    "exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size".when(nodes > 1)
+                ]));
         }
     }
     Ok(())

@@ -113,6 +113,7 @@ fn wrong_costs(ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static s
         (bounds.max - bounds.min).as_dvec3().element_product()
     };
     let n = |part: &[PrimitiveRef]| part.len() as f64;
+    let size = |part: &[PrimitiveRef]| f64::from((bounds(part).max - bounds(part).min).element_sum());
     let (traversal, intersection) = (f64::from(TRAVERSAL_COST), f64::from(INTERSECTION_COST));
     let gives = |cost: Cost<'_>| {
         let least = tree::least_cost(ordered, &AXES, &cost);
@@ -123,24 +124,22 @@ fn wrong_costs(ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static s
             _ => as_cut <= as_leaf * 1.0001 && cost(&ordered[..middle], &ordered[middle..]) <= least * 1.0001,
         }
     };
-    vec![
-        (
-            gives(&|left, right| area(left) + area(right)),
-            "your cut is the best by areas alone: the counts are left out",
-        ),
-        (
-            gives(&|left, right| n(left).max(n(right))),
-            "your cut is the best by counts alone: the areas are left out",
-        ),
-        (
-            gives(&|left, right| volume(left) * n(left) + volume(right) * n(right)),
+    named![
+        gives(&|left, right| area(left) + area(right)) => "your cut is the best by areas alone: the counts are left out",
+        gives(&|left, right| n(left).max(n(right))) => "your cut is the best by counts alone: the areas are left out",
+        gives(&|left, right| volume(left) * n(left) + volume(right) * n(right)) =>
             "your cut is the best by volumes: take the surface areas",
-        ),
-        (
-            gives(&|left, right| area(left) * n(right) + area(right) * n(left)),
+        gives(&|left, right| area(left) * n(left).powi(2) + area(right) * n(right).powi(2)) =>
+            "the counts are squared: each area is multiplied by its count once",
+        gives(&|left, right| (area(left) + area(right)) * n(left).max(n(right))) =>
+            "both areas have the larger count: each side has a product of its own",
+        gives(&|left, _| area(left) * n(left)) => "only the left side is counted in the cost",
+        gives(&|_, right| area(right) * n(right)) => "only the right side is counted in the cost",
+        gives(&|left, right| size(left) * n(left) + size(right) * n(right)) =>
+            "your cut is the best by the edges of the boxes: take the surface areas",
+        gives(&|left, right| area(left) * n(right) + area(right) * n(left)) =>
             "each area is multiplied by the count of the other side",
-        ),
-    ]
+    ].to_vec()
 }
 
 /// Wrong rules, each with whether it gives this cut, or a leaf if `middle` is 0.
@@ -154,18 +153,14 @@ fn formulas(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> 
     let as_leaf = f64::from(INTERSECTION_COST) * area * ordered.len() as f64;
     let mut mistakes = match middle {
         0 => vec![
-            (
-                2.0 * f64::from(TRAVERSAL_COST) * area + f64::from(INTERSECTION_COST) * best >= as_leaf,
-                "the leaf is taken too soon: compare C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) with C_i A(P) n(P)",
-            ),
-            (
-                is_leaf_without(ordered, [2, 1]),
-                "not every cut is tried: the one behind the first primitive is left out",
-            ),
-            (
-                is_leaf_without(ordered, [1, 2]),
-                "not every cut is tried: the one before the last primitive is left out",
-            ),
+            "the leaf is taken too soon: compare C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) with C_i A(P) n(P)"
+                .when(
+                    2.0 * f64::from(TRAVERSAL_COST) * area + f64::from(INTERSECTION_COST) * best >= as_leaf,
+                ),
+            "not every cut is tried: the one behind the first primitive is left out"
+                .when(is_leaf_without(ordered, [2, 1])),
+            "not every cut is tried: the one before the last primitive is left out"
+                .when(is_leaf_without(ordered, [1, 2])),
             (is_leaf_along(&[0]), ONLY_ONE),
             (is_leaf_along(&[1]), ONLY_Y),
             (is_leaf_along(&[2]), ONLY_Z),
@@ -221,10 +216,8 @@ fn cut_mistakes(
     };
     let yours = tree::cut_cost(&ordered[..middle], &ordered[middle..]);
     let of_bins = [8.0, 12.0, 16.0, 32.0].map(|n| {
-        (
-            (yours / binned(n) - 1.0).abs() < 1e-4,
-            "you try the cuts between some equal bins only: try each cut",
-        )
+        "you try the cuts between some equal bins only: try each cut"
+            .when((yours / binned(n) - 1.0).abs() < 1e-4)
     });
     let others = [
         (as_given, "the primitives are not sorted: you cut them as they come"),
@@ -232,14 +225,16 @@ fn cut_mistakes(
         (is_best_along(1), ONLY_Y),
         (is_best_along(2), ONLY_Z),
         (longest.into_iter().any(is_best_along), ONLY_LONGEST),
-        (
-            is_least_of(&AXES, right_cost, [2, 1]),
-            "not every cut is tried: the one behind the first primitive is left out",
-        ),
-        (
-            is_least_of(&AXES, right_cost, [1, 2]),
-            "not every cut is tried: the one before the last primitive is left out",
-        ),
+        "not every cut is tried: the one behind the first primitive is left out".when(is_least_of(
+            &AXES,
+            right_cost,
+            [2, 1],
+        )),
+        "not every cut is tried: the one before the last primitive is left out".when(is_least_of(
+            &AXES,
+            right_cost,
+            [1, 2],
+        )),
     ];
     others.into_iter().chain(of_bins).collect()
 }

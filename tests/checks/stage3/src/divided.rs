@@ -79,10 +79,9 @@ pub(super) fn judge_splits(
                 query.primitives.iter().all(|p| p.centroid[axis] <= cut + slack)
                     || query.primitives.iter().all(|p| p.centroid[axis] >= cut - slack)
             });
-            return Err(broken.explained_by([(
-                one_side,
-                "all centroids are on one side of the cut: fall back on another split",
-            )]));
+            return Err(broken.explained_by([
+                "all centroids are on one side of the cut: fall back on another split".when(one_side),
+            ]));
         }
         match law(&query.primitives, &in_order(query, &order), middle) {
             None => Ok(()),
@@ -104,8 +103,17 @@ pub(super) fn judge_splits(
 
 /// Whether `middle` divides the centroids along `axis`: none before it is beyond one behind it, in either direction.
 pub(super) fn divided(ordered: &[PrimitiveRef], middle: usize, axis: usize) -> bool {
+    divided_by(ordered, middle, &|p| p.centroid[axis])
+}
+
+/// The same with another number of each primitive.
+pub(super) fn divided_by(
+    ordered: &[PrimitiveRef],
+    middle: usize,
+    key: &dyn Fn(&PrimitiveRef) -> f32,
+) -> bool {
     let range = |part: &[PrimitiveRef]| {
-        let at = part.iter().map(|p| p.centroid[axis]);
+        let at = part.iter().map(key);
         at.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
     };
     let (left, right) = (range(&ordered[..middle]), range(&ordered[middle..]));

@@ -32,42 +32,33 @@ enum Wrong {
     LeftOnly,
     RightOnly,
     NearOnly,
+    /// All primitives of a leaf must be hit.
+    AllOfLeaf,
+    /// A box in which the ray begins is not entered, from this node on.
+    InsideLeftOut(u32),
 }
 
-const MISTAKES: [(Wrong, &str); 15] = [
-    (
-        Wrong::TieToTheLast,
-        "of two hits at the same t the smaller primitive number wins: you keep the later one",
-    ),
-    (
-        Wrong::TieToTheFirst,
-        "of two hits at the same t the smaller primitive number wins: you keep the first one",
-    ),
-    (Wrong::Farther, "the farther of two hits is kept"),
-    (
-        Wrong::FartherOrLarger,
-        "the farther of two hits is kept, and of equal ones the one with the larger number",
-    ),
-    (Wrong::OneOfLeaf, "you take the first primitive only: ask all of a leaf's primitives"),
-    (Wrong::LeafStops, "you take the first hit of a leaf: ask all of a leaf's primitives"),
-    (Wrong::LastOfLeafLeftOut, "part of a leaf was left out: its last primitive"),
-    (Wrong::FirstOfLeafLeftOut, "part of a leaf was left out: its first primitive"),
-    (
-        Wrong::LeftIfAny,
-        "boxes overlap: the search stopped before it had seen the nearer hit, which is in the right child",
-    ),
-    (
-        Wrong::NearIfAny,
-        "boxes overlap: the search stopped before it had seen the nearer hit, which is in the farther child",
-    ),
-    (
-        Wrong::NothingIfOneHasNone,
-        "a subtree was left out: if one child has no hit, the other may still have one",
-    ),
-    (Wrong::NothingIfOneIsMissed, "a subtree was left out: if one box is missed, the other may still be met"),
-    (Wrong::LeftOnly, "a subtree was left out: the right child"),
-    (Wrong::RightOnly, "a subtree was left out: the left child"),
-    (Wrong::NearOnly, "a subtree was left out: the farther child"),
+const INSIDE: &str = "a box in which the ray begins is left out: its entry is at t_min, which counts";
+
+const MISTAKES: [(Wrong, &str); 18] = named![
+    Wrong::AllOfLeaf => "a leaf counts only if all of its primitives are hit: one is enough",
+    Wrong::InsideLeftOut(0) => INSIDE,
+    Wrong::InsideLeftOut(1) => INSIDE,
+    Wrong::TieToTheLast => "of two hits at the same t the smaller primitive number wins: you keep the later one",
+    Wrong::TieToTheFirst => "of two hits at the same t the smaller primitive number wins: you keep the first one",
+    Wrong::Farther => "the farther of two hits is kept",
+    Wrong::FartherOrLarger => "the farther of two hits is kept, and of equal ones the one with the larger number",
+    Wrong::OneOfLeaf => "you take the first primitive only: ask all of a leaf's primitives",
+    Wrong::LeafStops => "you take the first hit of a leaf: ask all of a leaf's primitives",
+    Wrong::LastOfLeafLeftOut => "part of a leaf was left out: its last primitive",
+    Wrong::FirstOfLeafLeftOut => "part of a leaf was left out: its first primitive",
+    Wrong::LeftIfAny => "boxes overlap: the search stopped before it had seen the nearer hit, which is in the right child",
+    Wrong::NearIfAny => "boxes overlap: the search stopped before it had seen the nearer hit, which is in the farther child",
+    Wrong::NothingIfOneHasNone => "a subtree was left out: if one child has no hit, the other may still have one",
+    Wrong::NothingIfOneIsMissed => "a subtree was left out: if one box is missed, the other may still be met",
+    Wrong::LeftOnly => "a subtree was left out: the right child",
+    Wrong::RightOnly => "a subtree was left out: the left child",
+    Wrong::NearOnly => "a subtree was left out: the farther child",
 ];
 
 struct Search<'a> {
@@ -79,7 +70,9 @@ impl Search<'_> {
     fn enter(&self, node: u32) -> Option<f32> {
         let (near, far) = self.query.table.boxes[node as usize];
         let near = near.max(self.query.ray.t_min);
-        (near <= far && near < self.query.ray.t_max).then_some(near)
+        let from = if let Wrong::InsideLeftOut(from) = self.wrong { from } else { u32::MAX };
+        let is_left_out = node >= from && near <= self.query.ray.t_min;
+        (near <= far && near < self.query.ray.t_max && !is_left_out).then_some(near)
     }
 
     fn nearer(&self, first: Hit, second: Hit) -> Hit {
@@ -103,6 +96,9 @@ impl Search<'_> {
         };
         let hits = ids.iter().map(|&id| (id, self.query.table.primitives[id as usize]));
         let mut hits = hits.filter(|(_, t)| self.query.ray.contains(*t));
+        if self.wrong == Wrong::AllOfLeaf && hits.clone().count() < ids.len() {
+            return None;
+        }
         if self.wrong == Wrong::LeafStops {
             return hits.next();
         }
@@ -147,10 +143,8 @@ pub(super) fn observations(query: &SearchQuery, yours: Hit, counts: &Counts) -> 
     let nothing_is_opened = yours.is_none() && counts.node_visits == 0;
     [
         (yours.is_some_and(|(_, t)| !query.ray.contains(t)), "you return a hit outside the ray's range"),
-        (
-            yours.is_some_and(|hit| !is_in_table(hit)),
-            "the t of your hit is not that of its primitive: keep both together",
-        ),
+        "the t of your hit is not that of its primitive: keep both together"
+            .when(yours.is_some_and(|hit| !is_in_table(hit))),
         (nothing_is_opened, "you open no node, although the ray enters the box of the root"),
     ]
 }
@@ -176,17 +170,27 @@ pub(super) fn any_mistakes(query: &SearchQuery, yours: bool) -> Vec<(bool, &'sta
     all_hit.table.primitives.fill(query.ray.t_max.min(1e30).next_down());
     let enters_a_leaf = found_by(Wrong::Nothing, &all_hit).is_some();
     let is = |wrong: Wrong| yours == found_by(wrong, query).is_some();
-    vec![
-        (yours == enters_a_leaf, "you take a box for a hit: to enter a box is not yet a hit"),
-        (yours == with_range(query.ray.t_min, f32::INFINITY), "you count a hit beyond t_max"),
-        (yours == with_range(0.0, query.ray.t_max), "you count a hit before t_min"),
-        (yours == with_range(0.0, f32::INFINITY), "you count a hit before t_min or beyond t_max"),
-        (is(Wrong::LeftOnly), "a hit was overlooked: the right child is left out"),
-        (is(Wrong::RightOnly), "a hit was overlooked: the left child is left out"),
-        (is(Wrong::OneOfLeaf), "a hit was overlooked: ask all of a leaf's primitives"),
-        (is(Wrong::LastOfLeafLeftOut), "a hit was overlooked: the last primitive of a leaf is left out"),
-        (is(Wrong::NothingIfOneHasNone), "a hit was overlooked: one child is enough"),
-    ]
+    let right = found_by(Wrong::Nothing, query).is_some();
+    let inside = |&(near, far): &(f32, f32)| near <= query.ray.t_min && query.ray.t_min <= far;
+    let around_start = query.table.boxes.iter().any(inside);
+    named![
+        yours == enters_a_leaf => "you take a box for a hit: to enter a box is not yet a hit",
+        yours == with_range(query.ray.t_min, f32::INFINITY) => "you count a hit beyond t_max",
+        yours == with_range(0.0, query.ray.t_max) => "you count a hit before t_min",
+        yours == with_range(0.0, f32::INFINITY) => "you count a hit before t_min or beyond t_max",
+        is(Wrong::LeftOnly) => "a hit was overlooked: the right child is left out",
+        is(Wrong::RightOnly) => "a hit was overlooked: the left child is left out",
+        is(Wrong::OneOfLeaf) => "a hit was overlooked: ask all of a leaf's primitives",
+        is(Wrong::LastOfLeafLeftOut) => "a hit was overlooked: the last primitive of a leaf is left out",
+        is(Wrong::NearOnly) => "a hit was overlooked: the farther child is left out",
+        is(Wrong::FirstOfLeafLeftOut) => "a hit was overlooked: the first primitive of a leaf is left out",
+        is(Wrong::NothingIfOneIsMissed) => "a hit was overlooked: if one box is missed, the other may still be met",
+        is(Wrong::AllOfLeaf) => "a hit was overlooked: one primitive of a leaf is enough",
+        is(Wrong::InsideLeftOut(0)) || is(Wrong::InsideLeftOut(1)) =>
+            "a hit was overlooked: the ray begins in a box, whose entry is at t_min",
+        yours == (right || around_start) => "you take a box around the start of the ray for a hit: ask its primitives",
+        is(Wrong::NothingIfOneHasNone) => "a hit was overlooked: one child is enough",
+    ].to_vec()
 }
 
 /// The nodes and primitives that a search with a mistake visits, if it goes to the nearer child first.
@@ -260,16 +264,12 @@ pub(super) fn order_mistakes(queries: &[SearchQuery], yours: u64) -> [(bool, &'s
         yours.abs_diff(count) <= count / 50
     };
     [
-        (
-            is(Order::NeverPrunes),
-            "no node is skipped: let ray.t_max shrink with each hit, and enter the nearer child first",
-        ),
+        "no node is skipped: let ray.t_max shrink with each hit, and enter the nearer child first"
+            .when(is(Order::NeverPrunes)),
         (is(Order::NotAgain), "the farther box is not tested again after a nearer hit was found"),
         (is(Order::FartherFirst), "the farther child is searched first: enter the nearer child first"),
-        (
-            is(Order::FartherFirstNotAgain),
-            "the farther child is searched first, and no box is tested again: enter the nearer child first",
-        ),
+        "the farther child is searched first, and no box is tested again: enter the nearer child first"
+            .when(is(Order::FartherFirstNotAgain)),
         (is(Order::LeftFirst), "the left child is always searched first: enter the nearer child first"),
     ]
 }

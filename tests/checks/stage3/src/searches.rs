@@ -144,10 +144,9 @@ pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> 
             return Ok(());
         }
         let (yours, expected) = (describe(visits), format!("at most {met}: the ray meets no more boxes"));
-        Err(Broken::with_texts(describe_search(query), yours, expected, "counted").explained_by([(
-            visits == every_node(query),
-            "you open nodes whose box the ray misses: ask probe.enter first",
-        )]))
+        Err(Broken::with_texts(describe_search(query), yours, expected, "counted")
+            .explained_by(["you open nodes whose box the ray misses: ask probe.enter first"
+                .when(visits == every_node(query))]))
     })
 }
 

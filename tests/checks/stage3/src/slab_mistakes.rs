@@ -36,6 +36,11 @@ enum Mistake {
     NotFromInside,
     /// The exit must lie behind `t_min`.
     ExitBehindStart,
+    /// The entry must lie before `t_max`, and both at once.
+    EntryBeforeEnd,
+    OpenRange,
+    /// The range begins at 0.
+    FromZero,
     /// Entry or exit is not limited by the range.
     StartIgnored,
     EndIgnored,
@@ -57,54 +62,41 @@ const LEFT_OUT: &str = "an axis is left out: the ray must be between the planes 
 
 const PADDED_DIRECTION: &str = "you replace a direction near 0 by an epsilon, so the ray bends: 1/d may be infinite, and 0 · ∞ is NaN and dropped";
 
-const MISTAKES: [(Mistake, &str); 19] = [
-    (Mistake::NotSwapped, "for a negative direction component the ray enters at max: swap the two planes"),
-    (Mistake::SwappedByLess, "-0.0 ≥ 0 is true, but 1 / -0.0 is -∞: swap the two planes by the sign of 1/d"),
-    (
-        Mistake::FastForm,
-        "1/d is ∞ for d = 0, and ∞ - ∞ is NaN: subtract first, (b - o) · 1/d and not b/d - o/d",
-    ),
-    (Mistake::MinMax, "0 · ∞ is NaN, and min and max drop NaN: a ray within a face hits the closed box"),
-    (Mistake::SwappedIfGreater, SORTED),
-    (Mistake::SwappedUnlessLess, SORTED),
-    (
-        Mistake::Vectors,
-        "0 · ∞ is NaN, and Vec3::min and max may return NaN or drop it: a ray within a face hits",
-    ),
-    (
-        Mistake::FirstAxis,
-        "0 · ∞ is NaN, and your interval begins with that of x: begin with the range of the ray",
-    ),
-    (
-        Mistake::NanTakenOver,
-        "0 · ∞ is NaN, and it becomes your entry or exit: order the comparison so that it drops NaN",
-    ),
-    (
-        Mistake::NanEntry,
-        "0 · ∞ is NaN, and it takes the place of your entry: order the comparison so that it drops NaN",
-    ),
-    (Mistake::Overflow, "1/d overflows to ∞ for a tiny d: divide by d there"),
-    (Mistake::ExitBehindStart, "the box is closed: an exit exactly at t_min is a hit"),
-    (Mistake::Open, "entry equals exit in a flat box or at an edge: compare with ≤, not with <"),
-    (
-        Mistake::NotFromInside,
-        "you return None if the ray starts inside, where the entry is behind it: test the exit, not t_b⁻ ≥ 0",
-    ),
-    (
-        Mistake::StartIgnored,
-        "your entry or your exit is before t_min: only the part within t_min..t_max counts",
-    ),
-    (
-        Mistake::EndIgnored,
-        "your entry or your exit is beyond t_max: only the part within t_min..t_max counts",
-    ),
-    (Mistake::Widest, "you unite the intervals of the axes: intersect them"),
-    (Mistake::RangeIgnored, "you do not limit the interval to t_min..t_max"),
-    (Mistake::OfTheLine, "you do not limit the interval to t_min..t_max"),
+const MISTAKES: [(Mistake, &str); 22] = named![
+    Mistake::FromZero => "your range begins at 0: only the part within t_min..t_max counts",
+    Mistake::EntryBeforeEnd => "the ends of the range count: an entry exactly at t_max is a hit",
+    Mistake::OpenRange => "the ends of the range count: an exit exactly at t_min is a hit, and so is an entry at t_max",
+    Mistake::NotSwapped => "for a negative direction component the ray enters at max: swap the two planes",
+    Mistake::SwappedByLess => "-0.0 ≥ 0 is true, but 1 / -0.0 is -∞: swap the two planes by the sign of 1/d",
+    Mistake::FastForm => "1/d is ∞ for d = 0, and ∞ - ∞ is NaN: subtract first, (b - o) · 1/d and not b/d - o/d",
+    Mistake::MinMax => "0 · ∞ is NaN, and min and max drop NaN: a ray within a face hits the closed box",
+    Mistake::SwappedIfGreater => SORTED,
+    Mistake::SwappedUnlessLess => SORTED,
+    Mistake::Vectors => "0 · ∞ is NaN, and Vec3::min and max may return NaN or drop it: a ray within a face hits",
+    Mistake::FirstAxis => "0 · ∞ is NaN, and your interval begins with that of x: begin with the range of the ray",
+    Mistake::NanTakenOver => "0 · ∞ is NaN, and it becomes your entry or exit: order the comparison so that it drops NaN",
+    Mistake::NanEntry => "0 · ∞ is NaN, and it takes the place of your entry: order the comparison so that it drops NaN",
+    Mistake::Overflow => "1/d overflows to ∞ for a tiny d: divide by d there",
+    Mistake::ExitBehindStart => "the box is closed: an exit exactly at t_min is a hit",
+    Mistake::Open => "entry equals exit in a flat box or at an edge: compare with ≤, not with <",
+    Mistake::NotFromInside => "you return None if the ray starts inside, where the entry is behind it: test the exit, not t_b⁻ ≥ 0",
+    Mistake::StartIgnored => "your entry or your exit is before t_min: only the part within t_min..t_max counts",
+    Mistake::EndIgnored => "your entry or your exit is beyond t_max: only the part within t_min..t_max counts",
+    Mistake::Widest => "you unite the intervals of the axes: intersect them",
+    Mistake::RangeIgnored => "you do not limit the interval to t_min..t_max",
+    Mistake::OfTheLine => "you do not limit the interval to t_min..t_max",
 ];
 
+/// How far a slab test widens its interval.
+#[derive(Clone, Copy, PartialEq)]
+enum Widened {
+    Not,
+    Exit,
+    Both,
+}
+
 /// The interval that the box of a wrong test has in common with the ray.
-fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &SlabQuery) -> Option<(f32, f32)> {
+fn slab(mistake: Mistake, widened: Widened, SlabQuery { ray, bounds, .. }: &SlabQuery) -> Option<(f32, f32)> {
     if bounds.is_empty() {
         return None;
     }
@@ -163,18 +155,21 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
     {
         return None;
     }
-    if is_widened {
-        let (less, more) = (1.0 - 2.0 * gamma(3), 1.0 + 2.0 * gamma(3));
-        (near, far) = ((near * less).min(near * more), (far * less).max(far * more));
-    }
-    if mistake == Mistake::ExitBehindStart && far <= ray.t_min {
+    let (less, more) = (1.0 - 2.0 * gamma(3), 1.0 + 2.0 * gamma(3));
+    near = if widened == Widened::Both { (near * less).min(near * more) } else { near };
+    far = if widened == Widened::Not { far } else { (far * less).max(far * more) };
+    let (at_start, at_end) = (far <= ray.t_min, near >= ray.t_max);
+    if matches!(mistake, Mistake::ExitBehindStart | Mistake::OpenRange) && at_start
+        || matches!(mistake, Mistake::EntryBeforeEnd | Mistake::OpenRange) && at_end
+    {
         return None;
     }
+    let t_min = if mistake == Mistake::FromZero { 0.0 } else { ray.t_min };
     let line = (near, far);
     let is_open = matches!(mistake, Mistake::Open | Mistake::Padded(_));
     if !matches!(mistake, Mistake::StartIgnored | Mistake::RangeIgnored) {
         let is_dropped = near.is_nan() && mistake == Mistake::NanEntry;
-        near = if near < ray.t_min || is_dropped { ray.t_min } else { near };
+        near = if near < t_min || is_dropped { t_min } else { near };
     }
     if !matches!(mistake, Mistake::EndIgnored | Mistake::RangeIgnored) {
         far = if far > ray.t_max { ray.t_max } else { far };
@@ -189,7 +184,7 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
 /// Whether a test with this mistake gives this answer, up to a few roundings, or this verdict.
 fn gives(
     mistake: Mistake,
-    is_widened: bool,
+    widened: Widened,
     query: &SlabQuery,
     yours: Option<(f32, f32)>,
     only_verdict: bool,
@@ -198,7 +193,7 @@ fn gives(
         let (yours, t) = (f64::from(yours), f64::from(t));
         yours == t || (yours - t).abs() <= 32.0 * U * t.abs() || (yours.is_nan() && t.is_nan())
     };
-    match (yours, slab(mistake, is_widened, query)) {
+    match (yours, slab(mistake, widened, query)) {
         (Some((enter, leave)), Some((near, far))) if !only_verdict => same(enter, near) && same(leave, far),
         (yours, other) => yours.is_some() == other.is_some(),
     }
@@ -207,21 +202,15 @@ fn gives(
 /// Mistakes that a wrong answer alone shows.
 pub(super) fn observations(query: &SlabQuery, yours: Option<(f32, f32)>) -> [(bool, &'static str); 3] {
     let is_lost_by_rounding = yours.is_none()
-        && slab(Mistake::None, false, query).is_none()
-        && slab(Mistake::None, true, query).is_some();
+        && slab(Mistake::None, Widened::Not, query).is_none()
+        && slab(Mistake::None, Widened::Both, query).is_some();
     [
-        (
-            query.bounds.is_empty() && yours.is_some(),
-            "the empty box (inf, -inf) has no point, but sorted planes make it infinite: test is_empty()",
-        ),
-        (
-            is_lost_by_rounding,
-            "1/d, the difference and the product are rounded, so far may be slightly below near: multiply far by 1 + 2 γ₃",
-        ),
-        (
-            yours.is_some_and(|(enter, leave)| enter.is_nan() || leave.is_nan()),
-            "you return NaN: 0 · ∞ is NaN, so order the comparison so that it drops NaN",
-        ),
+        "the empty box (inf, -inf) has no point, but sorted planes make it infinite: test is_empty()"
+            .when(query.bounds.is_empty() && yours.is_some()),
+        "1/d, the difference and the product are rounded, so far may be slightly below near: multiply far by 1 + 2 γ₃"
+            .when(is_lost_by_rounding),
+        "you return NaN: 0 · ∞ is NaN, so order the comparison so that it drops NaN"
+            .when(yours.is_some_and(|(enter, leave)| enter.is_nan() || leave.is_nan())),
     ]
 }
 
@@ -238,7 +227,8 @@ pub(super) fn mistakes(
         .chain([0, 1, 2].map(|axis| (Mistake::LeftOut(axis), LEFT_OUT)));
     // A wrong test may widen the interval or not.
     let variants = |(mistake, text)| {
-        [false, true].map(|is_widened| (gives(mistake, is_widened, query, yours, only_verdict), text))
+        [Widened::Not, Widened::Exit, Widened::Both]
+            .map(|widened| (gives(mistake, widened, query, yours, only_verdict), text))
     };
     all.flat_map(variants).collect()
 }

@@ -1,6 +1,6 @@
 //! The two median splits, and boxes with which every split must work.
 
-use super::divided::{Fault, boxes, divided, judge_splits, split_axes};
+use super::divided::{Fault, boxes, divided, divided_by, judge_splits, split_axes};
 use super::slabs::UNIT_BOX;
 use checks::prelude::*;
 use checks::tree;
@@ -12,6 +12,10 @@ fn no_cut() -> Fault {
     let always = "a median split always returns a cut";
     (String::new(), format!("a cut: {always}"), vec![])
 }
+
+const ELSEWHERE: &str = "you cut at another part of the axis: cut in the middle of the box";
+const BY_LOW: &str = "you take the low sides of the boxes: take the centroids";
+const BY_HIGH: &str = "you take the high sides of the boxes: take the centroids";
 
 /// No list of wrong rules.
 fn none(_: &[PrimitiveRef], _: &[PrimitiveRef], _: usize) -> Vec<(bool, &'static str)> {
@@ -32,10 +36,8 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
             }
             let mistakes = vec![
                 (!equal, "the halves must hold equally many primitives"),
-                (
-                    (0..3).any(|axis| divided(ordered, middle, axis)),
-                    "you sort along an axis that is not the longest axis",
-                ),
+                "you sort along an axis that is not the longest axis"
+                    .when((0..3).any(|axis| divided(ordered, middle, axis))),
             ];
             let yours = match equal {
                 true => "the centroids of the halves overlap".into(),
@@ -51,16 +53,21 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
                 (all.max - all.min)[axis] <= (all.max - all.min).min_element()
             };
             let along = |axis: usize| divided(ordered, middle, axis);
-            vec![
-                (as_given, "the primitives are not sorted: you cut them as they come"),
-                (along(0), "you always sort along x, not along the longest axis"),
-                (along(1), "you always sort along y, not along the longest axis"),
-                (along(2), "you always sort along z, not along the longest axis"),
-                (
-                    (0..3).any(|axis| shortest(axis) && along(axis)),
-                    "you sort along the shortest axis, not along the longest axis",
-                ),
-            ]
+            let axes = split_axes(ordered);
+            let by = |key: fn(&PrimitiveRef, usize) -> f32| {
+                axes.iter().any(|&axis| divided_by(ordered, middle, &|p| key(p, axis)))
+            };
+            named![
+                by(|p, axis| p.bounds.min[axis]) => BY_LOW,
+                by(|p, axis| p.bounds.max[axis]) => BY_HIGH,
+                by(|p, _| p.centroid.length()) => "you sort by the distance from the origin: sort by the centroid along the axis",
+                by(|p, axis| (p.bounds.max - p.bounds.min)[axis]) => "you sort by the size of the boxes: sort by the centroid",
+                as_given => "the primitives are not sorted: you cut them as they come",
+                along(0) => "you always sort along x, not along the longest axis",
+                along(1) => "you always sort along y, not along the longest axis",
+                along(2) => "you always sort along z, not along the longest axis",
+                (0..3).any(|axis| shortest(axis) && along(axis)) => "you sort along the shortest axis, not along the longest axis",
+            ].to_vec()
         };
         judge_splits(trial, Split::ObjectMedian, sets, law, formulas)
     })
@@ -115,15 +122,31 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
                 is_cut_at(ordered, middle, axis, mean, all.max[axis] - all.min[axis])
             };
             let halves = middle == n / 2 || middle == n.div_ceil(2);
+            // A cut elsewhere, by the sides or the centroids of the boxes. If all are on one side of it, any split is right.
+            let cut = |key: fn(&PrimitiveRef, usize) -> f32, cut: &dyn Fn(f32, f32) -> f32| {
+                axes.iter().any(|&axis| {
+                    let (low, size) = (all.min[axis], all.max[axis] - all.min[axis]);
+                    let is_left = |p: &PrimitiveRef| key(p, axis) < cut(low, size);
+                    let left = ordered[..middle].iter().filter(|p| is_left(p)).count();
+                    let n_left = ordered.iter().filter(|p| is_left(p)).count();
+                    n_left == 0 || n_left == n || (left, n_left) == (middle, middle)
+                })
+            };
+            let centroid = |p: &PrimitiveRef, axis: usize| p.centroid[axis];
+            let at = |part: f32| cut(centroid, &|low, size| low + part * size);
             vec![
-                (
-                    axes.iter().any(|&axis| at_the_mean(axis)),
-                    "you cut at the mean of the centroids, which is not in the middle of the box",
-                ),
-                (
-                    halves && axes.iter().any(|&axis| divided(ordered, middle, axis)),
-                    "you put half of the primitives on each side: your cut is not in the middle of the box",
-                ),
+                (cut(|p, axis| p.bounds.min[axis], &|low, size| low + 0.5 * size), BY_LOW),
+                (cut(|p, axis| p.bounds.max[axis], &|low, size| low + 0.5 * size), BY_HIGH),
+                "you cut at half of the size of the box: the middle is half of min + max"
+                    .when(cut(centroid, &|_, size| 0.5 * size)),
+                (at(1.0 / 3.0), ELSEWHERE),
+                (at(2.0 / 3.0), ELSEWHERE),
+                (at(0.25), ELSEWHERE),
+                (at(0.75), ELSEWHERE),
+                "you cut at the mean of the centroids, which is not in the middle of the box"
+                    .when(axes.iter().any(|&axis| at_the_mean(axis))),
+                "you put half of the primitives on each side: your cut is not in the middle of the box"
+                    .when(halves && axes.iter().any(|&axis| divided(ordered, middle, axis))),
                 (fits(0), "you always cut along x, not along the longest axis"),
                 (fits(1), "you always cut along y, not along the longest axis"),
                 (fits(2), "you always cut along z, not along the longest axis"),

@@ -26,10 +26,8 @@ fn judge_decoded(byte: u8, yours: f32) -> Judged {
         (near(f64::from(byte).powi(2)), "you square the byte itself: divide it by 255 first"),
         (near(share.sqrt()), "you take the root: encoding takes the root, decoding squares"),
         (near(share.powf(2.2)), "you use gamma 2.2: the lecture uses gamma 2, which is the square"),
-        (
-            near(if share <= 0.040_45 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }),
-            "you use the transfer function of sRGB: the lecture uses gamma 2, which is the square",
-        ),
+        "you use the transfer function of sRGB: the lecture uses gamma 2, which is the square"
+            .when(near(if share <= 0.040_45 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) })),
         (near((f64::from(byte) / 256.0).powi(2)), "you divide by 256: the largest byte is 255"),
     ])
 }
@@ -43,20 +41,22 @@ fn judge_encoded(linear: f32, yours: u8) -> Judged {
     let down = |value: f64| (-0.001..1.001).contains(&(value - f64::from(yours)));
     let mut mistakes = vec![
         (down(right), "you round down: add 0.5 before the cast"),
-        (
-            down((256.0 * exact.sqrt()).min(255.9)),
-            "you round 256 √linear down: round 255 √linear to the nearest byte",
-        ),
         (down(right + 1.0), "you round up: round to the nearest byte"),
     ];
+    // As in One Weekend: a factor that no byte reaches, rounded down.
+    let text = "you round 256 √linear, or a little less, down: round 255 √linear to the nearest byte";
+    let factors = [256.0, 255.999, 255.99, 255.9];
+    mistakes.extend(factors.map(|factor| (down((factor * exact.sqrt()).min(255.9)), text)));
     let formulas = [
         (255.0 * exact, "the square root is missing: the byte is 255 times the root"),
         (right.sqrt() * 255f64.sqrt(), "you take the root twice: take it once"),
+        (255.0 * exact.cbrt(), "you take the cube root: gamma 2 is the square root"),
+        (255.0 * exact.powf(1.0 / 1.8), "you use gamma 1.8: the lecture uses gamma 2, the square root"),
+        (255.0 * exact.powf(1.0 / 2.4), "you use gamma 2.4: the lecture uses gamma 2, the square root"),
         (255.0 * exact * exact, "you square: encoding takes the root, decoding squares"),
         (255.0 * exact.powf(1.0 / 2.2), "you use gamma 2.2: the lecture uses gamma 2, the square root"),
-        (
+        "you use the transfer function of sRGB: the lecture uses gamma 2, the square root".when(
             255.0 * if exact <= 0.003_130_8 { 12.92 * exact } else { 1.055 * exact.powf(1.0 / 2.4) - 0.055 },
-            "you use the transfer function of sRGB: the lecture uses gamma 2, the square root",
         ),
     ];
     // A wrong formula may be rounded down, or to the nearest byte.

@@ -41,17 +41,18 @@ fn judge_normal(query: &Query, yours: Vec3) -> Judged {
         Broken::new(paste_normal_query(query), yours, expected, "closed form").explained_by([
             (same(-expected), "your normal points away from the viewer: negate it"),
             (is(unnormalized), "your normal does not have unit length: normalize the interpolated normal"),
+            "you leave out an interpolated normal because it is short: only one of length 0 has no direction"
+                .when(same(facing) && interpolated.is_some_and(|normal| normal.length() < 0.1)),
+            "you leave out an interpolated normal because it is long: only one of length 0 has no direction"
+                .when(same(facing) && interpolated.is_some_and(|normal| normal.length() > 10.0)),
         ])
     };
-    unless(right, broken).formulas([
-        (
-            smooth.map_or(right, |smooth| same(turned(smooth, direction))),
+    let mean = smooth.map_or(facing, |smooth| (turned(smooth, -facing) + facing).normalize());
+    unless(right, broken).formulas(named![
+        same(mean) => "you return the mean of both normals: the interpolated one alone shades a smooth surface",
+        smooth.map_or(right, |smooth| same(turned(smooth, direction))) =>
             "you turn the interpolated normal by `direction`: turn it to the side of the geometric normal",
-        ),
-        (
-            same(facing) || (grazing && same(-facing)),
-            "you return the geometric normal where there is an interpolated one",
-        ),
+        same(facing) || (grazing && same(-facing)) => "you return the geometric normal where there is an interpolated one",
     ])
 }
 
@@ -86,10 +87,8 @@ pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> CheckResul
             }
             let source = "the geometric normal, turned to the viewer";
             Err(Broken::new(paste_normal_query(query), yours, expected, source).explained_by([
-                (
-                    yours.is_nan() || yours == Vec3::ZERO,
-                    "a normal of length 0 has no direction: return the geometric normal",
-                ),
+                "a normal of length 0 has no direction: return the geometric normal"
+                    .when(yours.is_nan() || yours == Vec3::ZERO),
                 (yours == -expected, "your geometric normal points away from the viewer: negate it"),
             ]))
         },

@@ -1,7 +1,7 @@
 //! The whole Phong model: the ambient term, and per light the diffuse and the specular term.
 
 use super::shadows::lowest;
-use super::terms::{cos_phi, specular};
+use super::terms::{WHOLE, cos_phi, specular};
 use checks::prelude::*;
 use raykata::material::Material;
 
@@ -107,6 +107,7 @@ pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Che
     proven(judged.iter().zip(answers).map(|(query, answer)| judge_shade(query, &answer)))
 }
 
+const FALLOFF: &str = "you divide by the distance to the light: its radiance has the distance in it";
 const LIGHT_BEHIND: &str =
     "you add a light behind the surface: skip lights for which shadow_ray returns None";
 
@@ -158,9 +159,51 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
         let term = TermQuery { normal, ..term(query, light) };
         parts(query, light, cosine(query, light, normal), specular(&term)).iter().sum::<DVec3>()
     };
+    let ks = query.material.specular.as_dvec3();
+    let unlit = |light: usize| kd * diffuse(light) + ks * right(light);
     let white = |light: usize| {
-        let ks = query.material.specular.as_dvec3();
-        if radiance(light) == DVec3::ZERO { DVec3::ZERO } else { kd * diffuse(light) + ks * right(light) }
+        if radiance(light) == DVec3::ZERO { DVec3::ZERO } else { unlit(light) }
+    };
+    let mean = |color: DVec3| DVec3::splat(color.element_sum() / 3.0);
+    let whole = |round: fn(f32) -> f32| {
+        let of = |light: usize| {
+            let term = TermQuery { exponent: round(query.material.exponent), ..term(query, light) };
+            parts(query, light, diffuse(light), specular(&term)).iter().sum::<DVec3>()
+        };
+        same(ambient + of_visible(&of))
+    };
+    // The lights for which a shadow ray is asked for, in order, and those that count if the number of the ray is passed.
+    let asked = lights
+        .iter()
+        .copied()
+        .filter(|&light| share(query, light, diffuse(light), right(light)) != DVec3::ZERO);
+    let by_number: Vec<usize> =
+        asked.enumerate().filter(|(n, _)| query.visible[*n]).map(|(_, light)| light).collect();
+    let distance = |light: usize| f64::from(query.lights[light].distance);
+    let kinds = [
+        FALLOFF,
+        FALLOFF,
+        "the radiance is squared: it is a factor of the sum once",
+        "the light is grey: multiply by its radiance channel by channel",
+        "the highlight is not multiplied by the radiance",
+        "the diffuse term is not multiplied by the radiance",
+        "the highlight is multiplied by cos θ: it is I·ks·cosⁿφ",
+        "kd and ks are exchanged",
+        "ks is left out",
+    ];
+    let of_kind = |kind: usize, light: usize| {
+        let ([of_kd, of_ks], radiance) = (split(light), radiance(light));
+        match kind {
+            0 => (of_kd + of_ks) / distance(light),
+            1 => (of_kd + of_ks) / distance(light).powi(2),
+            2 => unlit(light) * radiance * radiance,
+            3 => unlit(light) * mean(radiance),
+            4 => of_kd + ks * right(light),
+            5 => of_ks + kd * diffuse(light),
+            6 => of_kd + of_ks * diffuse(light),
+            7 => radiance * (ks * diffuse(light) + kd * right(light)),
+            _ => of_kd + radiance * right(light),
+        }
     };
     let flat = |light: usize| parts(query, light, 1.0, right(light)).iter().sum::<DVec3>();
     // A sum over all visible lights, also over those behind the surface.
@@ -172,6 +215,10 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
     let n_lights = query.lights.len().max(1) as f64;
     let of_lights = |lights: &[usize], text: &'static str| gives(lights).map(|gives| (gives, text));
     let mut mistakes = vec![(same(expected - ambient), "the ambient term A·ka is missing")];
+    let gives_kind = |kind| same(ambient + of_visible(&|light| of_kind(kind, light)));
+    mistakes.extend(kinds.into_iter().enumerate().map(|(kind, text)| (gives_kind(kind), text)));
+    let text = "you pass the number of the shadow ray to visible: pass the index of the light";
+    mistakes.extend(of_lights(&by_number, text));
     if !occluded.is_empty() {
         mistakes.extend(of_lights(&lights, "you add lights that are occluded: multiply by V_i"));
         mistakes.extend(of_lights(&occluded, "you add the occluded lights and leave out the visible ones"));
@@ -193,6 +240,16 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
         (same(ambient + of_visible(&flat)), "you leave out the cosine of the diffuse term"),
         (same(ambient + (expected - ambient) * kd), "you multiply the light by kd twice"),
         (same(expected + (n_lights - 1.0) * ambient), "you add the ambient term once per light: add it once"),
+        "you divide by the number of lights: the light of all adds up"
+            .when(same(ambient + (expected - ambient) / n_lights)),
+        (same(expected / n_lights), "you divide by the number of lights: the light of all adds up"),
+        "without lights you return black: the ambient term remains".when(same(if query.lights.is_empty() {
+            DVec3::ZERO
+        } else {
+            expected
+        })),
+        (same(expected - ambient + ambient * kd), "the ambient term has kd: it is A·ka"),
+        (whole(f32::floor) || whole(f32::round) || whole(f32::ceil), WHOLE),
         (same(unclamped(0.0)), LIGHT_BEHIND),
         (same(unclamped(-1.0)), LIGHT_BEHIND),
     ]);
@@ -236,10 +293,9 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
                 let (yours, own) = (format!("visible({light}, &{ray:?})"), rays[*light]);
                 let expected = format!("the ray {own:?}");
                 return Err(Broken::with_texts(query.call("shade"), yours, expected, "shadow_ray")
-                    .explained_by([(
-                        true,
-                        "you ask about another ray: pass the ray of shadow_ray to visible",
-                    )]));
+                    .explained_by([
+                        "you ask about another ray: pass the ray of shadow_ray to visible".when(true)
+                    ]));
             }
             let has_ray: Vec<bool> = rays.iter().map(Option::is_some).collect();
             judge_traced(query, &has_ray, &yours.traced)
@@ -286,15 +342,15 @@ fn judge_traced(query: &ShadeQuery, has_ray: &[bool], traced: &[usize]) -> Check
         return Ok(());
     }
     let describe = |lights: &[usize]| format!("shadow rays to lights {lights:?}");
-    Err(Broken::with_texts(query.call("shade"), describe(&sorted), describe(&needed), "counted").explained_by([
+    Err(Broken::with_texts(query.call("shade"), describe(&sorted), describe(&needed), "counted")
+        .explained_by([
         (twice, "you trace two rays to one light: trace one and keep the answer"),
         (vain(&dark), "you trace a ray to a light that is switched off"),
         (vain(&behind), "you trace a ray to a light that is behind the surface"),
-        (vain(&black), "you trace a ray to a light that adds 0 to the surface, for example to a black surface"),
-        (
-            vain(&behind) || vain(&dark) || vain(&black),
-            "you trace rays to lights that add nothing: behind the surface, switched off, or on a black surface",
-        ),
+        "you trace a ray to a light that adds 0 to the surface, for example to a black surface"
+            .when(vain(&black)),
+        "you trace rays to lights that add nothing: behind the surface, switched off, or on a black surface"
+            .when(vain(&behind) || vain(&dark) || vain(&black)),
         (missed, "you count a light without asking whether it is visible"),
     ]))
 }

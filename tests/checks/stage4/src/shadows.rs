@@ -82,29 +82,16 @@ fn judge_end(query: &ShadowQuery, ray: &Ray) -> Judged {
         () => end * length,
     };
     let subtracted = (1..=7).map(|digits| {
-        (
-            ray.t_max == light.distance - 10f32.powi(-digits),
-            "you subtract the same length at every scale: end at a fraction of the distance",
-        )
+        "you subtract the same length at every scale: end at a fraction of the distance"
+            .when(ray.t_max == light.distance - 10f32.powi(-digits))
     });
     let broken = || {
-        broken(query, format!("ends after {reach:?}"), format!("just below {distance:?}")).explained_by([
-            (
-                (length - 1.0).abs() > 1e-3 && (0.99 * distance..=distance).contains(&end),
+        broken(query, format!("ends after {reach:?}"), format!("just below {distance:?}")).explained_by(named![
+            (length - 1.0).abs() > 1e-3 && (0.99 * distance..=distance).contains(&end) =>
                 "t counts lengths of the direction: if the direction ends at the light, t is 1 there",
-            ),
-            (
-                reach == f64::INFINITY,
-                "your ray goes on behind the light, where no object can occlude the light: set t_max",
-            ),
-            (
-                reach >= distance,
-                "your ray reaches the light, so the light would occlude itself: end slightly before it",
-            ),
-            (
-                reach < 0.99 * distance,
-                "your ray ends too early: it misses objects just in front of the light",
-            ),
+            reach == f64::INFINITY => "your ray goes on behind the light, where no object can occlude the light: set t_max",
+            reach >= distance => "your ray reaches the light, so the light would occlude itself: end slightly before it",
+            reach < 0.99 * distance => "your ray ends too early: it misses objects just in front of the light",
         ])
     };
     unless(reach < distance && reach >= 0.99 * distance, broken).formulas(subtracted)
@@ -181,32 +168,17 @@ fn judge_effect(query: &ShadowQuery, yours: Option<Ray>) -> CheckResult {
         let single = light.radiance.min_element() == 0.0;
         let expected = "a ray: the light is in front of the surface, and not switched off";
         return Err(Broken::with_texts(query.call("shadow_ray"), "None", expected, "the definition")
-            .explained_by([(
-                single,
-                "you return None for a light that is black in one channel: return None if all are 0",
-            )]));
+            .explained_by([
+                "you return None for a light that is black in one channel: return None if all are 0"
+                    .when(single),
+            ]));
     };
     let yours = format!("a ray along {}", ray.direction);
-    Err(Broken::with_texts(query.call("shadow_ray"), yours, "None", "the definition").explained_by([
-        (
-            dark && geometric > 0.0 && shading > 0.0,
-            "you trace a ray to a light of radiance 0, which adds nothing: return None",
-        ),
-        (
-            geometric.min(shading) == 0.0 && !dark,
-            "you trace a ray to a light whose cosine with a normal is 0: return None",
-        ),
-        (
-            geometric > 0.0 && shading <= 0.0,
-            "you trace a ray to a light behind the shading normal: test both normals",
-        ),
-        (
-            geometric <= 0.0 && shading > 0.0,
-            "you trace a ray to a light behind the geometric normal: test both normals",
-        ),
-        (
-            geometric.min(shading) <= 0.0,
-            "you trace a ray to a light behind the surface, which adds nothing: return None",
-        ),
+    Err(Broken::with_texts(query.call("shadow_ray"), yours, "None", "the definition").explained_by(named![
+        dark && geometric > 0.0 && shading > 0.0 => "you trace a ray to a light of radiance 0, which adds nothing: return None",
+        geometric.min(shading) == 0.0 && !dark => "you trace a ray to a light whose cosine with a normal is 0: return None",
+        geometric > 0.0 && shading <= 0.0 => "you trace a ray to a light behind the shading normal: test both normals",
+        geometric <= 0.0 && shading > 0.0 => "you trace a ray to a light behind the geometric normal: test both normals",
+        geometric.min(shading) <= 0.0 => "you trace a ray to a light behind the surface, which adds nothing: return None",
     ]))
 }

@@ -1,6 +1,7 @@
 //! The diffuse and the specular term.
 
 use checks::prelude::*;
+use std::f64::consts::PI;
 
 /// Normals, lights and viewers in all directions. Half of the viewers are near the reflected light, so that there are
 /// highlights to judge.
@@ -21,6 +22,8 @@ pub(super) fn paste_term(name: &str, query: &TermQuery) -> String {
     }
 }
 
+const HALF: &str = "you move the cosine to 0..=1 (half Lambert): a light behind the surface gives 0, and cos θ is not scaled";
+
 pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> CheckResult {
     // The tolerance covers three products and two sums of numbers up to 1.
     let near = |yours: f32, value: f64| (f64::from(yours) - value).abs() < 1e-6;
@@ -29,10 +32,8 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> CheckResult {
         let expected = cosine.max(0.0);
         let broken = || Broken::new(paste_term("diffuse_term", query), yours, expected as f32, "closed form");
         unless(near(yours, expected), broken).formulas([
-            (
-                near(yours, cosine),
-                "you return a negative cosine for a light behind the surface: return at least 0",
-            ),
+            "you return a negative cosine for a light behind the surface: return at least 0"
+                .when(near(yours, cosine)),
             (near(yours, cosine.abs()), "you return the absolute value: a light behind the surface gives 0"),
             (yours == 1.0 || near(yours, 0.0) && cosine <= 0.0, "you return 1: the cosine is missing"),
             (
@@ -41,6 +42,13 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> CheckResult {
                  negated?",
             ),
             (yours == 0.0, "you return 0 for a light in front of the surface"),
+            (near(yours, expected.powi(2)), "you square the cosine: the diffuse term is the cosine itself"),
+            (near(yours, expected.powi(3)), "you cube the cosine: the diffuse term is the cosine itself"),
+            (near(yours, expected.sqrt()), "you take the root of the cosine: the diffuse term is the cosine itself"),
+            (near(yours, expected / PI), "you divide by π: the diffuse term of the Phong model is the cosine alone"),
+            (near(yours, 0.5 + 0.5 * cosine), HALF),
+            (near(yours, (0.5 + 0.5 * cosine).powi(2)), HALF),
+            (near(yours, (1.0 - expected.powi(2)).sqrt()), "you return the sine: the diffuse term is the cosine"),
         ])
     };
     let judge = |queries: &[TermQuery]| compare(queries, trial.kit.diffuse_term(queries), judge);
@@ -90,6 +98,9 @@ fn is_on_edge(query: &TermQuery) -> bool {
     cos_theta(query).abs() <= EDGE || cos_phi(query).abs() <= EDGE
 }
 
+pub(super) const WHOLE: &str = "the exponent is rounded to a whole number: it may be any, so use `powf`";
+const SCALED: &str =
+    "you scale the highlight by its exponent, as a normalized lobe is: the specular term is cosⁿ φ alone";
 const BLINN: &str = "you use the half vector (Blinn-Phong): the lecture reflects the light (Phong)";
 
 fn judge_highlight(query: &TermQuery, yours: f32) -> Judged {
@@ -103,17 +114,39 @@ fn judge_highlight(query: &TermQuery, yours: f32) -> Judged {
     let power = |cosine: f64| cosine.max(0.0).powf(exponent);
     let half = (l + v).normalize().dot(n);
     let broken = || Broken::new(paste_term("specular_term", query), yours, expected as f32, "closed form");
+    let raised = |exponent: f64| near(cos_phi.max(0.0).powf(exponent));
+    // The angle of a cosine near 1 has half of its digits.
+    let by_angle = |of_zero: f64| {
+        let value = power(1.0 - cos_phi.clamp(-1.0, 1.0).acos() / of_zero);
+        (f64::from(yours) - value).abs() < 5e-4 * (1.0 + exponent) || is_on_edge(query)
+    };
+    let n_plus = |n: f64, d: f64| near((exponent + n) / d * expected);
     unless(right, broken).formulas([
+        (raised(exponent.floor()), WHOLE),
+        (raised(exponent.round()), WHOLE),
+        (raised(exponent.ceil()), WHOLE),
+        (raised(0.5 * exponent), "you halve the exponent: the specular term is cosⁿ φ"),
+        (raised(2.0 * exponent), "you double the exponent: the specular term is cosⁿ φ"),
+        (raised(exponent + 1.0), "the exponent is one too large: the specular term is cosⁿ φ"),
+        (raised(exponent - 1.0), "the exponent is one too small: the specular term is cosⁿ φ"),
+        (n_plus(1.0, 1.0), SCALED),
+        (n_plus(2.0, 1.0), SCALED),
+        (n_plus(1.0, 2.0), SCALED),
+        (n_plus(2.0, 2.0), SCALED),
+        (n_plus(1.0, 2.0 * PI), SCALED),
+        (n_plus(2.0, 2.0 * PI), SCALED),
+        (n_plus(8.0, 8.0 * PI), SCALED),
+        (by_angle(1.0), "you raise one minus the angle: raise the cosine of the angle"),
+        "you raise one minus the angle: raise the cosine of the angle".when(by_angle(0.5 * PI)),
+        (near(exponent * cos_phi), "you multiply by the exponent: the cosine is raised to it"),
         (near(power(half)), BLINN),
         (near(half.powf(exponent)) || !(half >= 1e-2), BLINN),
         (near(power(n.dot(l))), "you use θ: φ is the angle between the reflected light and the viewer"),
         (near(cos_phi), "you leave out the exponent"),
         (near(power((n.dot(l) * n - l).dot(v))), "you leave out the factor 2 of 2 (n·l) n - l"),
         (near(expected * n.dot(l)), "you multiply by cos θ: the specular term is cosⁿ φ alone"),
-        (
-            near(power(-cos_phi)),
-            "you return 0 where there is a highlight: the reflected light is 2 (n·l) n - l",
-        ),
+        "you return 0 where there is a highlight: the reflected light is 2 (n·l) n - l"
+            .when(near(power(-cos_phi))),
     ])
 }
 
@@ -147,14 +180,10 @@ fn judge_sign(query: &TermQuery, yours: f32) -> CheckResult {
     let power = cos_phi.powf(f64::from(query.exponent));
     let is = |value: f64| (f64::from(yours) - value).abs() < 1e-4 || (yours.is_nan() && value.is_nan());
     Err(Broken::new(input, yours, 0.0, "closed form").explained_by([
-        (
-            cos_phi > 0.0 && is(power),
-            "you return a highlight for a light behind the surface: return 0 if n·l is negative",
-        ),
-        (
-            cos_theta > 0.0 && is(power),
-            "you raise a negative cos φ to the exponent, which gives a positive number or NaN: return 0 first",
-        ),
+        "you return a highlight for a light behind the surface: return 0 if n·l is negative"
+            .when(cos_phi > 0.0 && is(power)),
+        "you raise a negative cos φ to the exponent, which gives a positive number or NaN: return 0 first"
+            .when(cos_theta > 0.0 && is(power)),
         (is(power), "you raise cos φ to the exponent for any light: return 0 if n·l or cos φ is negative"),
     ]))
 }

@@ -35,6 +35,8 @@ fn judge_reflection(query: &(Vec3, Vec3), yours: Vec3) -> Judged {
         (is(d), "you return the direction unchanged"),
         (is(-d), "you reverse the whole direction: reverse only its part along n"),
         (is(-expected), "your result is negated: it points into the surface"),
+        (is(d - 3.0 * d.dot(n) * n), "you subtract n (d·n) three times: subtract it twice"),
+        (is((d - 3.0 * d.dot(n) * n).normalize()), "you subtract n (d·n) three times: subtract it twice"),
         (is(added), ADDED),
         (is(added.normalize_or_zero()), ADDED),
         (is(along), SUBTRACTED_ONCE),
@@ -110,10 +112,8 @@ fn mistakes_near_normal(query: &RefractQuery, yours: Option<Vec3>) -> [(bool, &'
     let sine_2 = yours.map_or(0.0, |yours| yours.reject_from(normal).length());
     let is_from_cosine = sine_squared < 1e-3 && (sine_2 - n1 / n2 * sine_squared.sqrt()).abs() < 1e-5;
     [
-        (
-            is_from_cosine || (is_nan && sine_squared < 0.0),
-            "you compute sin θ1 as √(1 - cos² θ1): near the normal that is inexact, or NaN where cos² θ1 is rounded up",
-        ),
+        "you compute sin θ1 as √(1 - cos² θ1): near the normal that is inexact, or NaN where cos² θ1 is rounded up"
+            .when(is_from_cosine || (is_nan && sine_squared < 0.0)),
         (is_nan && is_along, "you return NaN along the normal: do not divide by sin θ1, which gives 0 / 0"),
     ]
 }
@@ -135,20 +135,12 @@ fn judge_refraction(query: &RefractQuery, yours: Option<Vec3>, error: f64) -> Ch
     let expected = expected.map(|v| v.as_vec3());
     let is_nan = yours.is_some_and(Vec3::is_nan);
     Err(Broken::new(query.call("refract"), yours, expected, "Snell's law in double precision")
-        .explained_by([
-            (is_nan && expected.is_none(), "you return NaN beyond the critical angle: return None"),
-            (
-                yours.is_some_and(|yours| off_reflection(query.direction, query.normal, yours) < 1e-4),
+        .explained_by(named![
+            is_nan && expected.is_none() => "you return NaN beyond the critical angle: return None",
+            yours.is_some_and(|yours| off_reflection(query.direction, query.normal, yours) < 1e-4) =>
                 "you return the reflected direction",
-            ),
-            (
-                expected.is_none() && margin < 0.0 && yours.is_some(),
-                "you return a ray beyond the critical angle: return None",
-            ),
-            (
-                yours.is_some_and(|yours| yours.dot(query.normal) > 1e-3),
-                "your refracted ray stays on the side that it came from",
-            ),
+            expected.is_none() && margin < 0.0 && yours.is_some() => "you return a ray beyond the critical angle: return None",
+            yours.is_some_and(|yours| yours.dot(query.normal) > 1e-3) => "your refracted ray stays on the side that it came from",
         ])
         .explained_by(mistakes_near_normal(query, yours)))
 }
@@ -168,21 +160,16 @@ fn refractions(query: &RefractQuery, yours: &Option<Vec3>) -> Vec<(bool, &'stati
         (gives(swapped), "you exchange n1 and n2: sin θ2 = n1 / n2 · sin θ1"),
         (gives(Some(query.direction.as_dvec3())), "you return the direction unchanged"),
         (gives(expected.map(|v| -v)), "your refracted ray is negated"),
-        (
-            gives(turned(query, |sine, ratio| -ratio * sine)),
-            "you negate the part along the surface: keep its sign",
-        ),
+        "you negate the part along the surface: keep its sign"
+            .when(gives(turned(query, |sine, ratio| -ratio * sine))),
         // Near a right angle the arc sine enlarges a rounding error of 1e-7 to 4e-4.
-        (
-            gives_within(
-                turned(query, |sine, ratio| match ratio * sine.min(1.0).asin() {
-                    angle if angle > std::f64::consts::FRAC_PI_2 => f64::INFINITY,
-                    angle => angle.sin(),
-                }),
-                5e-3,
-            ),
-            ANGLE,
-        ),
+        ANGLE.when(gives_within(
+            turned(query, |sine, ratio| match ratio * sine.min(1.0).asin() {
+                angle if angle > std::f64::consts::FRAC_PI_2 => f64::INFINITY,
+                angle => angle.sin(),
+            }),
+            5e-3,
+        )),
         (gives_within(turned(query, |sine, ratio| (ratio * sine.min(1.0).asin()).sin()), 5e-3), ANGLE),
         (
             gives(turned(query, |sine, ratio| {
@@ -264,10 +251,8 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> CheckRes
         let along = query.direction == -query.normal;
         let broken = broken.explained_by([
             (along, "a ray along the normal keeps its direction, and sin θ1 is 0 there"),
-            (
-                query.n1 == query.n2 && !along && yours.is_none(),
-                "with equal indices every ray goes straight on",
-            ),
+            "with equal indices every ray goes straight on"
+                .when(query.n1 == query.n2 && !along && yours.is_none()),
         ]);
         Err(broken.explained_by(mistakes_near_normal(query, yours)))
     })

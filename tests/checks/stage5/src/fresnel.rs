@@ -81,10 +81,11 @@ fn judge(
         let known = [
             (swapped, "you exchange n1 and n2"),
             (1.0 - expected, "you return the transmitted fraction: return the reflected one"),
-            (
-                if beyond { 1.0 } else { 1.0 - expected },
-                "you return the transmitted fraction: return the reflected one",
-            ),
+            "you return the transmitted fraction: return the reflected one".when(if beyond {
+                1.0
+            } else {
+                1.0 - expected
+            }),
         ];
         let known = known.into_iter().chain(mistakes(query));
         unless(right || (critical && (0.0..=1.0).contains(&yours)), broken)
@@ -102,30 +103,23 @@ fn schlick_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
     let formula = |r0: f64, cosine: f64, power: i32| r0 + (1.0 - r0) * (1.0 - cosine).powi(power);
     // Beyond the critical angle a formula may be asked first or not at all.
     let total = |value: f64| if beyond { 1.0 } else { value };
-    vec![
-        (
-            total(formula(r0, behind, 5)),
-            "you use the cosine of the wrong side: behind the surface, also if n1 < n2",
-        ),
-        (
-            total(formula(r0, cosine, 5)),
-            "you use cos θ1 on both sides: if n1 > n2, use that of the refracted ray",
-        ),
-        (
-            total(formula(r0, wrong, 5)),
-            "you use the cosine of the wrong side: use that in the less dense medium",
-        ),
-        (formula(r0, cosine, 5), "you use cos θ1 on both sides: if n1 > n2, use that of the refracted ray"),
-        (total(formula(r0, right, 4)), "you take the fourth power: Schlick takes the fifth"),
-        (total(formula(r0.sqrt(), right, 5)), "you do not square R0"),
-        (total(r0), "you return R0 for every angle: the reflectance rises to 1 at grazing angles"),
-        (
-            r0,
-            "you return R0 for every angle: the reflectance rises to 1 at grazing angles, and is 1 beyond the critical one",
-        ),
-        (total((1.0 - right).powi(5)), "you leave out R0"),
-        (total(r0 + (1.0 - right).powi(5)), "you leave out the factor 1 - R0"),
-    ]
+    named![
+        total(formula(r0, behind, 5)) => "you use the cosine of the wrong side: behind the surface, also if n1 < n2",
+        total(formula(r0, cosine, 5)) => "you use cos θ1 on both sides: if n1 > n2, use that of the refracted ray",
+        total(formula(r0, wrong, 5)) => "you use the cosine of the wrong side: use that in the less dense medium",
+        formula(r0, cosine, 5) => "you use cos θ1 on both sides: if n1 > n2, use that of the refracted ray",
+        total(formula(r0, right, 4)) => "you take the fourth power: Schlick takes the fifth",
+        total(formula(r0, right, 3)) => "you take the third power: Schlick takes the fifth",
+        total(formula(r0, right, 6)) => "you take the sixth power: Schlick takes the fifth",
+        total(r0 + (1.0 - r0) * (1.0 - right.powi(5))) => "you take 1 - cos⁵ θ: it is (1 - cos θ)⁵",
+        total(formula(r0, right, 5).powi(2)) => "you square the reflectance: R0 is a square already",
+        total(formula(r0, right, 5).sqrt()) => "you take the root of the reflectance",
+        total(formula(r0.sqrt(), right, 5)) => "you do not square R0",
+        total(r0) => "you return R0 for every angle: the reflectance rises to 1 at grazing angles",
+        r0 => "you return R0 for every angle: the reflectance rises to 1 at grazing angles, and is 1 beyond the critical one",
+        total((1.0 - right).powi(5)) => "you leave out R0",
+        total(r0 + (1.0 - right).powi(5)) => "you leave out the factor 1 - R0",
+    ].to_vec()
 }
 
 /// What Fresnel's equations give with one mistake.
@@ -143,6 +137,8 @@ fn exact_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
         (both(s * s, p * p), "you return the sum of both polarisations: return their mean"),
         (0.5 * (s.abs() + p.abs()), "you do not square the ratios"),
         (0.5 * (s + p), "you do not square the ratios"),
+        ((s * p).abs(), "you return the geometric mean of both polarisations: return half of their sum"),
+        ((0.5 * (s + p)).clamp(0.0, 1.0), "you do not square the ratios"),
     ]
 }
 

@@ -187,40 +187,23 @@ fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Ju
         Broken::with_texts(paste(query), describe(&yours), expected, "the formula in double precision")
             .explained_by([(is(coloured), text)])
     };
-    let rest = [
-        (
-            is([mirror + share * transmission, (1.0 - share) * transmission]),
+    let rest = named![
+        is([mirror + share * transmission, (1.0 - share) * transmission]) =>
             "you leave out the weight of the incoming ray: multiply by `weight`",
-        ),
-        (is([weight * reflected, weight * through]), WEIGHT_TWICE),
-        (is([weight * reflected, through]), WEIGHT_TWICE),
-        (is([reflected, weight * through]), WEIGHT_TWICE),
-        (
-            is([if mirror == DVec3::ZERO { mirror } else { reflected }, through]),
+        is([weight * reflected, weight * through]) => WEIGHT_TWICE,
+        is([weight * reflected, through]) => WEIGHT_TWICE,
+        is([reflected, weight * through]) => WEIGHT_TWICE,
+        is([if mirror == DVec3::ZERO { mirror } else { reflected }, through]) =>
             "clear glass reflects by Fresnel: test the reflected weight, not material.mirror",
-        ),
-        (
-            is([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror]),
+        is([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror]) =>
             "you exchange material.mirror and material.transmission",
-        ),
-        (is([weight * mirror, weight * transmission]), "you leave out material.fresnel"),
-        (
-            is([reflected, weight * transmission]),
+        is([weight * mirror, weight * transmission]) => "you leave out material.fresnel",
+        is([reflected, weight * transmission]) =>
             "you add F transmission to the reflected ray, but do not take it off the refracted one: (1 - F) transmission",
-        ),
-        (
-            is([weight * mirror, through]),
-            "you take F off the refracted ray, but do not add F transmission to the reflected one",
-        ),
-        (
-            is([weight * share * mirror, through]),
-            "you multiply the mirror by F: the reflected ray has mirror + F transmission",
-        ),
-        (
-            is([weight * (mirror + (1.0 - share) * transmission), weight * share * transmission]),
-            "you exchange F and 1 - F",
-        ),
-        (is(weights(exchanged)), "you exchange n1 and n2 in the Fresnel reflectance"),
+        is([weight * mirror, through]) => "you take F off the refracted ray, but do not add F transmission to the reflected one",
+        is([weight * share * mirror, through]) => "you multiply the mirror by F: the reflected ray has mirror + F transmission",
+        is([weight * (mirror + (1.0 - share) * transmission), weight * share * transmission]) => "you exchange F and 1 - F",
+        is(weights(exchanged)) => "you exchange n1 and n2 in the Fresnel reflectance",
     ];
     unless(right, broken).formulas(rest.into_iter().chain(of_fresnel))
 }
@@ -271,14 +254,10 @@ fn judge_directions(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) ->
         let broken = || Broken::new(paste(query), refracted, expected, "Snell's law in double precision");
         let is = |v: Option<Vec3>| refracted.is_some() && near(refracted, v);
         unless(refracts, broken).formulas([
-            (
-                if query.entering { is(right(&backward)) } else { refracts },
-                "entering: n1 = 1 (air), n2 = index_of_refraction (glass); you exchange them",
-            ),
-            (
-                if query.entering { refracts } else { is(right(&backward)) },
-                "leaving: n1 = index_of_refraction (glass), n2 = 1 (air); you exchange them",
-            ),
+            "entering: n1 = 1 (air), n2 = index_of_refraction (glass); you exchange them"
+                .when(if query.entering { is(right(&backward)) } else { refracts }),
+            "leaving: n1 = index_of_refraction (glass), n2 = 1 (air); you exchange them"
+                .when(if query.entering { refracts } else { is(right(&backward)) }),
             (is(right(&backward)), "you exchange n1 and n2, on the way in and on the way out"),
             (is(right(&turned)), TURNED),
             (if query.entering { refracts } else { is(right(&turned)) }, TURNED),
@@ -337,22 +316,16 @@ fn judge_total_reflection(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRa
     let right = refracted.is_none() && sound && (is(expected) || is(own_share) || own_share.is_nan());
     let broken = || {
         Broken::with_texts(paste(query), describe(&yours), text, "total internal reflection").explained_by([
-            (
-                refracted.is_some(),
-                "beyond the critical angle there is no refracted ray: add it only if refract returns Some",
-            ),
+            "beyond the critical angle there is no refracted ray: add it only if refract returns Some"
+                .when(refracted.is_some()),
             (!sound, "a weight or direction is NaN: beyond the critical angle the Fresnel reflectance is 1"),
         ])
     };
     unless(right, broken).formulas([
-            (
-                is(weight * mirror),
-                "beyond the critical angle the Fresnel reflectance is 1: the reflected ray gets mirror + transmission",
-            ),
-            (
-                is(weight * (mirror + transmission)),
-                "without Fresnel the reflected weight is weight · mirror, also beyond the critical angle",
-            ),
+            "beyond the critical angle the Fresnel reflectance is 1: the reflected ray gets mirror + transmission"
+                .when(is(weight * mirror)),
+            "without Fresnel the reflected weight is weight · mirror, also beyond the critical angle"
+                .when(is(weight * (mirror + transmission))),
         ])
 }
 
@@ -381,10 +354,8 @@ pub(super) fn scatter_skips_rays_without_weight(trial: &Trial<'_>) -> CheckResul
             let parent = query.weight != Vec3::ZERO;
             let material = query.material.mirror != Vec3::ZERO || query.material.transmission != Vec3::ZERO;
             Err(broken.explained_by([
-                (
-                    !shines && parent && material,
-                    "you trace a ray of weight 0 where a ray of one colour meets a mirror of another: test the product",
-                ),
+                "you trace a ray of weight 0 where a ray of one colour meets a mirror of another: test the product"
+                    .when(!shines && parent && material),
                 (!shines, "you trace a secondary ray of weight 0: test its own weight"),
             ]))
         })

@@ -63,13 +63,20 @@ fn judge(query: &Leaving, ray: Ray) -> Judged {
     };
     let wrong = || match start.is_too_low() {
         true => {
+            let by_shading = surface.geometric_normal.dot(child.direction)
+                * surface.shading_normal.dot(child.direction)
+                < 0.0;
             // A start on the wrong side that would be right on the other one.
             let other = Start::new(surface, -side, child.direction, &ray);
-            broken(starts(), format!("{:.3e} or more", start.least())).explained_by([(
-                !other.is_too_low() && other.height() <= other.most(),
-                "your ray starts on the wrong side: a reflected ray starts on the side of the normal, a refracted ray on \
-                 the other side",
-            )])
+            broken(starts(), format!("{:.3e} or more", start.least())).explained_by([
+                "the side is that of the shading normal: the geometric normal tells on which side the ray goes"
+                    .when(by_shading && !other.is_too_low() && other.height() <= other.most()),
+                (
+                    !other.is_too_low() && other.height() <= other.most(),
+                    "your ray starts on the wrong side: a reflected ray starts on the side of the normal, a refracted ray on \
+                     the other side",
+                ),
+            ])
         }
         false => broken(starts(), format!("at most {:.3e}", start.most())),
     };

@@ -75,48 +75,24 @@ fn formulas(query: &ScatterQuery, yours: &[SecondaryRay]) -> Vec<(bool, &'static
     };
     let counts = |weight: Vec3| largest(weight) > 0.0 && largest(weight) >= least;
     const PARENT: &str = "you test the weight of the incoming ray: test the secondary ray's own weight";
-    vec![
-        (
-            above(&|own, _| largest(own) > least),
-            "you leave out a ray whose weight is equal to min_contribution: trace it",
-        ),
-        (above(&|_, _| true), "you leave out min_contribution"),
-        (plain(&|own, _| largest(own) >= least), "you trace a secondary ray of weight 0, which adds nothing"),
-        (plain(&|_, _| counts(parent)), PARENT),
-        (above(&|_, _| largest(parent) >= least), PARENT),
-        (above(&|_, _| largest(parent) > least), PARENT),
-        (
-            plain(&|own, other| counts(own) || counts(other)),
+    named![
+        above(&|own, _| largest(own) > least) => "you leave out a ray whose weight is equal to min_contribution: trace it",
+        above(&|_, _| true) => "you leave out min_contribution",
+        plain(&|own, _| largest(own) >= least) => "you trace a secondary ray of weight 0, which adds nothing",
+        plain(&|_, _| counts(parent)) => PARENT,
+        above(&|_, _| largest(parent) >= least) => PARENT,
+        above(&|_, _| largest(parent) > least) => PARENT,
+        plain(&|own, other| counts(own) || counts(other)) =>
             "you trace both rays if one is large enough: test each ray's own weight",
-        ),
-        (
-            above(&|own, other| counts(own) || counts(other)),
+        above(&|own, other| counts(own) || counts(other)) =>
             "you trace both rays if one is large enough: test each ray's own weight",
-        ),
-        (
-            plain(&|own, other| counts(own) && counts(other)),
-            "you trace both rays or none: test each ray's own weight",
-        ),
-        (
-            above(&|own, other| largest(own + other) >= least),
-            "you test the sum of both weights: test each ray's own weight",
-        ),
-        (above(&|own, _| own.min_element() >= least), "you test the smallest channel: test the largest one"),
-        (
-            plain(&|own, _| own.min_element() > 0.0 && own.min_element() >= least),
+        plain(&|own, other| counts(own) && counts(other)) => "you trace both rays or none: test each ray's own weight",
+        above(&|own, other| largest(own + other) >= least) => "you test the sum of both weights: test each ray's own weight",
+        above(&|own, _| own.min_element() >= least) => "you test the smallest channel: test the largest one",
+        plain(&|own, _| own.min_element() > 0.0 && own.min_element() >= least) =>
             "you test the smallest channel: test the largest one",
-        ),
-        (
-            above(&|own, _| own.element_sum() / 3.0 >= least),
-            "you test the mean of the channels: test the largest one",
-        ),
-        (
-            above(&|own, _| own.element_sum() >= least),
-            "you test the sum of the channels: test the largest one",
-        ),
-        (
-            above(&|own, _| own.length() >= least),
-            "you test the length of the weight: test the largest channel",
-        ),
-    ]
+        above(&|own, _| own.element_sum() / 3.0 >= least) => "you test the mean of the channels: test the largest one",
+        above(&|own, _| own.element_sum() >= least) => "you test the sum of the channels: test the largest one",
+        above(&|own, _| own.length() >= least) => "you test the length of the weight: test the largest channel",
+    ].to_vec()
 }

@@ -78,10 +78,8 @@ fn judge_rectangle_point(query: &RectangleQuery, point: Vec3, shares: &mut Vec<(
     let (x, y) = (f64::from(query.u.x), f64::from(query.u.y));
     let input = || call("sample_rectangle", &[&query.corner, &query.edges, &query.u]);
     unless(right, || Broken::new(input(), point, "a point of the rectangle", "the definition")).formulas([
-        (
-            is((1.0 - x - y) * corner + x * first + y * second),
-            "you use the edges as positions of corners: they are vectors from the corner",
-        ),
+        "you use the edges as positions of corners: they are vectors from the corner"
+            .when(is((1.0 - x - y) * corner + x * first + y * second)),
         (is(corner + (x - 0.5) * first + (y - 0.5) * second), CORNER_AS_CENTER),
         (is(corner + (2.0 * x - 1.0) * first + (2.0 * y - 1.0) * second), CORNER_AS_CENTER),
         (is(x * first + y * second), "you leave out the corner"),
@@ -142,10 +140,8 @@ fn judge_disk_point((disk, u): &(Disk, Vec2), point: Vec3, places: &mut Vec<Vec2
     Err(Broken::new(input, point, "a point of the disk", "the definition").explained_by([
         (point.is_nan(), "you return NaN: your two axes do not exist for this normal"),
         (beside && flat, "you leave out the normal: your disk is parallel to a coordinate plane"),
-        (
-            beside && !flat && (disk.normal.length() - 1.0).abs() > 1e-3,
-            "your point is outside the plane of the disk where disk.normal is not a unit vector: normalize it",
-        ),
+        "your point is outside the plane of the disk where disk.normal is not a unit vector: normalize it"
+            .when(beside && !flat && (disk.normal.length() - 1.0).abs() > 1e-3),
         (far, "your point is farther from the centre than the radius"),
         (beside, "your point is outside the plane of the disk"),
     ]))
@@ -267,14 +263,10 @@ pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> CheckResult 
     covers_each_part("sample_sphere from 1.25 radii away", AXES, trial.seed, None, shares, |counts| {
         let rings = columns(counts);
         vec![
-            (
-                all.is(|u, rim| 1.0 - (u * (1.0 - rim).acos()).cos()),
-                "too many directions near the centre: your θ is uniform; make cos θ uniform",
-            ),
-            (
-                all.is(|u, rim| 1.0 - (1.0 - u * (1.0 - (1.0 - rim).powi(2))).sqrt()),
-                "too many directions near the centre: your sin² θ is uniform; make cos θ uniform",
-            ),
+            "too many directions near the centre: your θ is uniform; make cos θ uniform"
+                .when(all.is(|u, rim| 1.0 - (u * (1.0 - rim).acos()).cos())),
+            "too many directions near the centre: your sin² θ is uniform; make cos θ uniform"
+                .when(all.is(|u, rim| 1.0 - (1.0 - u * (1.0 - (1.0 - rim).powi(2))).sqrt())),
             (rings[7] == 0, "you never sample the rim of the sphere, where sin θ = radius / distance"),
             (2 * rings[0] > 3 * rings[7], "too many directions near the centre"),
             (2 * rings[7] > 3 * rings[0], "too many directions near the rim"),
@@ -319,10 +311,9 @@ pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> CheckR
             return Ok(());
         }
         let input = format!("sample_sphere from the centre of the sphere, {}", call("u =", &[&query.u]));
-        Err(Broken::new(input, direction, "any unit direction", "the definition").explained_by([(
-            direction.is_nan(),
-            "from the centre the vector to the centre is 0: use any axis",
-        )]))
+        Err(Broken::new(input, direction, "any unit direction", "the definition").explained_by([
+            "from the centre the vector to the centre is 0: use any axis".when(direction.is_nan()),
+        ]))
     };
     all_hold(queries.iter().zip(trial.kit.sample_sphere(&queries)).map(judge).collect())
 }

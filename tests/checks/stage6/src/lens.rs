@@ -20,17 +20,20 @@ pub(super) fn is_polar(u: &[Vec2], places: &[Vec2]) -> Mistakes {
         })
     };
     vec![
-        (
-            radius_is(|u| u),
-            "too many points near the centre: your radius is u; use √u, because area grows with its square",
-        ),
+        "too many points near the centre: your radius is u; use √u, because area grows with its square"
+            .when(radius_is(|u| u)),
+        "your points keep their angle in the square: the concentric map turns them, φ = π/4 · b/a in each quarter"
+            .when(u.iter().zip(places).all(|(u, place)| {
+                let at = 2.0 * *u - 1.0;
+                let by_angle = at.abs().max_element() * at.normalize_or_zero();
+                let elliptic = at * (Vec2::ONE - 0.5 * vec2(at.y, at.x).powf(2.0)).map(f32::sqrt);
+                (*place - by_angle).length() < 1e-3 || (*place - elliptic).length() < 1e-3
+            })),
         (radius_is(|u| u * u), "too many points near the centre: your radius is u²; use √u"),
         (radius_is(f32::cbrt), "too many points near the rim: your radius is ∛u, as in a sphere; use √u"),
         (radius_is(|_| 1.0), "too many points near the rim: all of your points are on it"),
-        (
-            is_other_power(u, &places.iter().map(|place| f64::from(place.length())).collect::<Vec<_>>(), 0.5),
-            "your radius is another power of a random number: use √u",
-        ),
+        "your radius is another power of a random number: use √u"
+            .when(is_other_power(u, &places.iter().map(|place| f64::from(place.length())).collect::<Vec<_>>(), 0.5)),
     ]
 }
 
@@ -89,10 +92,8 @@ pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> CheckResult {
         let middle = *u == Vec2::splat(0.5);
         Err(Broken::new(call("sample_disk", &[u]), yours, "a length of 1 at most", "the definition")
             .explained_by([
-                (
-                    middle && yours.is_nan(),
-                    "you divide 0 by 0 for the middle of the square: return (0, 0) there",
-                ),
+                "you divide 0 by 0 for the middle of the square: return (0, 0) there"
+                    .when(middle && yours.is_nan()),
                 (yours.is_nan(), "you return NaN"),
                 (!yours.is_nan(), "your point is outside the disk"),
             ]))
@@ -213,18 +214,12 @@ fn judge_focus(query: &LensQuery, yours: Ray) -> Judged {
         ])
     };
     unless(off < 2e-5 && !pinhole, broken).formulas([
-        (
-            aims(distance * direction - start),
-            "you go focal_distance along the ray: divide it by the cosine with camera.towards",
-        ),
-        (
-            aims(distance * direction.dot(towards) * direction - start),
-            "you multiply focal_distance by the cosine with camera.towards: divide by it",
-        ),
-        (
-            aims(distance * towards - start),
-            "you aim every ray at the centre of the focal plane: aim where its pinhole ray meets it",
-        ),
+        "you go focal_distance along the ray: divide it by the cosine with camera.towards"
+            .when(aims(distance * direction - start)),
+        "you multiply focal_distance by the cosine with camera.towards: divide by it"
+            .when(aims(distance * direction.dot(towards) * direction - start)),
+        "you aim every ray at the centre of the focal plane: aim where its pinhole ray meets it"
+            .when(aims(distance * towards - start)),
         (aims(expected + start), "you add the offset to the focus: subtract it"),
         (aims(direction), "your ray is parallel to the pinhole ray: aim where that meets the focal plane"),
     ])
@@ -262,29 +257,14 @@ fn judge_start(query: &LensQuery, yours: Ray) -> Judged {
         Broken::new(paste(query), yours, expected.as_vec3(), source)
             .explained_by([(near(expected) && !unit, "your direction does not have unit length")])
     };
-    unless(near(expected) && unit, broken).formulas([
-        (
-            is(position + 2.0 * offset(query)),
-            "you use aperture as the radius of the lens: it is the diameter",
-        ),
-        (is(position), "you start every ray at the centre of the lens: use on_lens"),
-        (
-            is(position + place.x * right),
-            "your lens is a line: it extends along camera.right and along camera.up",
-        ),
-        (
-            is(position + place.y * up),
-            "your lens is a line: it extends along camera.right and along camera.up",
-        ),
-        (
-            is(position + place.extend(0.0)),
-            "you use the world's x and y axes: use camera.right and camera.up",
-        ),
-        (
-            is(position + place.y * right + place.x * up),
-            "you exchange x and y of on_lens: x is along camera.right",
-        ),
-        (is(offset(query)), "you leave out camera.position"),
+    unless(near(expected) && unit, broken).formulas(named![
+        is(position + 2.0 * offset(query)) => "you use aperture as the radius of the lens: it is the diameter",
+        is(position) => "you start every ray at the centre of the lens: use on_lens",
+        is(position + place.x * right) => "your lens is a line: it extends along camera.right and along camera.up",
+        is(position + place.y * up) => "your lens is a line: it extends along camera.right and along camera.up",
+        is(position + place.extend(0.0)) => "you use the world's x and y axes: use camera.right and camera.up",
+        is(position + place.y * right + place.x * up) => "you exchange x and y of on_lens: x is along camera.right",
+        is(offset(query)) => "you leave out camera.position",
     ])
 }
 
@@ -308,10 +288,9 @@ pub(super) fn lens_is_as_sharp_a_million_units_away(trial: &Trial<'_>) -> CheckR
                 return Ok(());
             }
             let broken = Broken::new(paste(query), yours.direction, expected.as_vec3(), "double precision");
-            Err(broken.explained_by([(
-                is_right(*near),
-                "your direction is imprecise: compute it relative to camera.position",
-            )]))
+            Err(broken
+                .explained_by(["your direction is imprecise: compute it relative to camera.position"
+                    .when(is_right(*near))]))
         })
     })
 }

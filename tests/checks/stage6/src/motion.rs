@@ -54,10 +54,8 @@ fn judge_slot((x, y): (u32, u32), slot: u32, twice: bool) -> Judged {
         (slot == TABLE[x as usize % 4][y as usize % 4], "you exchange rows and columns: y is the row"),
         (slot == 1 + 4 * (y % 4) + x % 4, "you number the slots in order: use the table"),
         (slot + 1 == expected, "slots are counted from 1"),
-        (
-            slot == TABLE[3 - y as usize % 4][x as usize % 4],
-            "your rows are upside down: row 0 is the first line",
-        ),
+        "your rows are upside down: row 0 is the first line"
+            .when(slot == TABLE[3 - y as usize % 4][x as usize % 4]),
     ])
 }
 
@@ -111,14 +109,10 @@ fn judge_time(query: &TimeQuery, yours: f32) -> Judged {
         (near(open + here * close), TIMES_CLOSE),
         (near((open + here * close).clamp(open, close)), TIMES_CLOSE),
         (near(at(u)), "you leave out the slot: u is the position in the slot"),
-        (
-            near(at((f64::from(query.slot) - 1.0) / f64::from(query.slots))),
-            "you do not use u: every time is the beginning of its slot",
-        ),
-        (
-            near(at(share(query.slot) - (u - 0.5) / f64::from(query.slots))),
-            "you do not use u: every time is the middle of its slot",
-        ),
+        "you do not use u: every time is the beginning of its slot"
+            .when(near(at((f64::from(query.slot) - 1.0) / f64::from(query.slots)))),
+        "you do not use u: every time is the middle of its slot"
+            .when(near(at(share(query.slot) - (u - 0.5) / f64::from(query.slots)))),
         (near(close + here * (open - close)), "you go from close to open"),
     ])
 }
@@ -175,10 +169,8 @@ pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> CheckResult {
         unless(yours == expected, || Broken::new(describe(query), yours, expected, source)).formulas([
             (yours == start + time * (end - start), ROUNDED_END),
             (yours == (start + time * (end - start)).max(start.min(end)).min(start.max(end)), ROUNDED_END),
-            (
-                is((1.0 - time) * start + time * end),
-                "(1 - t) a + t a has a rounding error: clamp between start and end",
-            ),
+            "(1 - t) a + t a has a rounding error: clamp between start and end"
+                .when(is((1.0 - time) * start + time * end)),
             (yours == ((1.0 - time) * start + time * end).min(end).max(start), CLAMPED_IN_ORDER),
             (yours == ((1.0 - time) * start + time * end).max(start).min(end), CLAMPED_IN_ORDER),
             (yours == if time == 1.0 { start } else { end }, "you exchange start and end"),
@@ -247,18 +239,12 @@ fn judge_bounds((start, end): &(Aabb, Aabb), yours: Aabb) -> Judged {
     unless(yours == expected, broken).formulas([
         (yours == *start, "you return the start box: include the end box"),
         (yours == *end, "you return the end box: include the start box"),
-        (
-            yours == Aabb::new(0.5 * (start.min + end.min), 0.5 * (start.max + end.max)),
-            "you return the box at half time: include both ends",
-        ),
-        (
-            yours == Aabb::new(start.min.max(end.min), start.max.min(end.max)),
-            "you return the intersection of both boxes: return the box around them",
-        ),
-        (
-            yours == Aabb::new(start.min, end.max),
-            "you take min from start and max from end: use both boxes for each",
-        ),
+        "you return the box at half time: include both ends"
+            .when(yours == Aabb::new(0.5 * (start.min + end.min), 0.5 * (start.max + end.max))),
+        "you return the intersection of both boxes: return the box around them"
+            .when(yours == Aabb::new(start.min.max(end.min), start.max.min(end.max))),
+        "you take min from start and max from end: use both boxes for each"
+            .when(yours == Aabb::new(start.min, end.max)),
         (yours == moved, "you move the start box: the end box may have another size"),
     ])
 }

@@ -34,6 +34,11 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckRe
         let expected = (cell + u) / grid;
         // The tolerance covers two roundings of a number below 1.
         let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 2e-7;
+        // A mistake may be kept below 1 like the right place.
+        let is = |place: DVec2| near(place) || near(place.min(DVec2::ONE));
+        let side = (grid.x * grid.y).sqrt();
+        let square =
+            "your grid has as many columns as rows: divide x by the columns of the grid and y by its rows";
         let rounded =
             "you return 1, which is in the next pixel (3 + 0.99999994 is rounded to 4): stay below 1";
         let broken = || {
@@ -42,12 +47,17 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckRe
         };
         unless(near(expected) && yours.max_element() < 1.0, broken).formulas([
             (near(u), "you return u: add the cell and divide by the grid"),
+            (is((cell + u) / side) || is((cell + u) / side.ceil()) || is((cell + u) / side.round()), square),
+            (is((cell + u) / grid.max_element()) || is((cell + u) / grid.min_element()), square),
+            (is((cell + u * u) / grid), "you square the random numbers: use them as they are"),
+            "you use the middle half of each cell: samples reach its borders"
+                .when(is((cell + 0.25 + 0.5 * u) / grid)),
             (near(u / grid), "you leave out the cell: all samples are in the first cell"),
             (near((cell + 0.5) / grid), "you do not use u: the sample is not jittered"),
             (near(cell / grid), "you do not use u: the sample is not jittered"),
-            (near((cell + u) / grid.yx()), "divide x by the columns of the grid and y by its rows"),
-            (near((cell + u) / grid.x), "divide x by the columns of the grid and y by its rows"),
-            (near((cell + u) / grid.y), "divide x by the columns of the grid and y by its rows"),
+            (is((cell + u) / grid.yx()), "divide x by the columns of the grid and y by its rows"),
+            (is((cell + u) / grid.x), "divide x by the columns of the grid and y by its rows"),
+            (is((cell + u) / grid.y), "divide x by the columns of the grid and y by its rows"),
             (near((cell + u.xx()) / grid), "you use one random number for both axes: use u.x and u.y"),
             (near((cell + u.yy()) / grid), "you use one random number for both axes: use u.x and u.y"),
             (near(((cell.yx() + u) / grid).min(DVec2::ONE)), "you exchange column and row of the cell"),
@@ -180,6 +190,9 @@ fn judge_weight(offset: Vec2, yours: f32) -> Judged {
         (near(infinite), STEP_AT_R),
         (near(if outside { 0.0 } else { infinite }), STEP_AT_R),
         (near(bell(x.hypot(y))), "your filter is round: multiply a weight along x by a weight along y"),
+        (near(with(|x| -3.0 * x * x)), "your bell is too narrow: it is e^(-2x²), not e^(-3x²)"),
+        "your filter is a tent: it is a bell, e^(-2x²)"
+            .when(near((1.0 - x.abs() / radius).max(0.0) * (1.0 - y.abs() / radius).max(0.0))),
         (near(with(|x| -x * x)), "your bell is too wide: it is e^(-2x²), not e^(-x²)"),
         (near(with(|x| -2.0 * x.abs())), "you do not square x: e^(-2x²)"),
         (near(bell(x) + bell(y)), "you add the two weights: multiply them"),
@@ -188,10 +201,8 @@ fn judge_weight(offset: Vec2, yours: f32) -> Judged {
         // The area of e^(-2x²) is √(π / 2), along one axis; students divide by it once or twice.
         (near(expected * FRAC_2_PI), NORMALIZED),
         (near(expected * FRAC_2_PI.sqrt()), NORMALIZED),
-        (
-            near((raw(x) * raw(y)).max(0.0)),
-            "two negative factors give a positive weight: each is 0 beyond FILTER_RADIUS",
-        ),
+        "two negative factors give a positive weight: each is 0 beyond FILTER_RADIUS"
+            .when(near((raw(x) * raw(y)).max(0.0))),
         (near(raw(x) * raw(y)), "your weight is negative: each factor is 0 beyond FILTER_RADIUS"),
     ])
 }

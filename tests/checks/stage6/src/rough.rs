@@ -27,15 +27,11 @@ pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
         }
         Err(Broken::new(query.call("sample_phong_lobe"), yours, query.ideal, "roughness 0").explained_by([
             (yours.is_nan(), "you return NaN: 2 / 0² is infinite"),
-            (
-                (yours - query.ideal).length() < 1e-5,
-                "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself",
-            ),
+            "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself"
+                .when((yours - query.ideal).length() < 1e-5),
             (!yours.is_nan(), "you change the direction: with roughness 0 return ideal itself"),
-            (
-                !rough,
-                "your result is not ideal, and some results are NaN: with roughness 0 return ideal itself",
-            ),
+            "your result is not ideal, and some results are NaN: with roughness 0 return ideal itself"
+                .when(!rough),
         ]))
     })
 }
@@ -108,19 +104,16 @@ fn mistakes(lobe: &Lobe, roughness: f32) -> Mistakes {
     vec![
         (n > 0.0 && power(1.0 / n), "your lobe is too wide: you use u^(1 / n); it is u^(1 / (n + 1))"),
         (power(1.0 / (n + 2.0)), "your lobe is too narrow: you use u^(1 / (n + 2)); it is u^(1 / (n + 1))"),
-        (
-            power(1.0 / (n + 3.0)),
-            "your lobe is too narrow: you use n = 2 / roughness²; it is n = 2 / roughness² - 2",
-        ),
-        (
-            r < 1.0 && power(1.0 / (2.0 / r - 1.0)),
-            "your lobe is too wide: you do not square roughness; n = 2 / roughness² - 2",
-        ),
+        "your lobe is too narrow: you use n = 2 / roughness²; it is n = 2 / roughness² - 2"
+            .when(power(1.0 / (n + 3.0))),
+        "your lobe is too wide: you do not square roughness; n = 2 / roughness² - 2"
+            .when(r < 1.0 && power(1.0 / (2.0 / r - 1.0))),
         (power(1.0 / (r + 1.0)), "you use roughness as n: n = 2 / roughness² - 2"),
-        (
-            is_other_power(&lobe.u, &lobe.cosines, 1.0 / (n + 1.0)),
-            "your cos θ is another power of a random number: it is u^(1 / (n + 1))",
-        ),
+        "your cos θ is another power of a random number: it is u^(1 / (n + 1))".when(is_other_power(
+            &lobe.u,
+            &lobe.cosines,
+            1.0 / (n + 1.0),
+        )),
     ]
 }
 
@@ -202,30 +195,18 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
             // puts below it, too. They are at a right angle to ideal.
             let replaced = *drawn == query.ideal && yours.dot(query.ideal).abs() < 1e-5;
             let mirrored = unreflected - 2.0 * unreflected.dot(query.normal) * query.normal;
-            Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, source).explained_by([
-                (yours.is_nan(), "you return NaN: ln 0 is -∞, and 0 · ∞ is NaN"),
-                (
-                    through && near(-*drawn),
-                    "you reverse the whole direction: reverse only its part along the normal",
-                ),
-                (
-                    through && near((*drawn - above * query.normal).normalize_or_zero()),
+            Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, source).explained_by(named![
+                yours.is_nan() => "you return NaN: ln 0 is -∞, and 0 · ∞ is NaN",
+                through && near(-*drawn) => "you reverse the whole direction: reverse only its part along the normal",
+                through && near((*drawn - above * query.normal).normalize_or_zero()) =>
                     "you subtract the part along the normal once: subtract it twice",
-                ),
-                (
-                    (through && near(query.ideal)) || replaced,
+                (through && near(query.ideal)) || replaced =>
                     "you return ideal, which changes the distribution: reflect the ray back by the normal",
-                ),
-                (through && near(*drawn), "your ray goes through the surface: reflect it back by the normal"),
-                (
-                    !through && near(*drawn - 2.0 * above * query.normal),
+                through && near(*drawn) => "your ray goes through the surface: reflect it back by the normal",
+                !through && near(*drawn - 2.0 * above * query.normal) =>
                     "you reflect rays that are on the right side: reflect only those below the surface",
-                ),
-                (near(mirrored), "you reflect every ray: reflect only those below the surface"),
-                (
-                    yours.dot(query.normal) < 0.0,
-                    "your ray goes through the surface: reflect it back by the normal",
-                ),
+                near(mirrored) => "you reflect every ray: reflect only those below the surface",
+                yours.dot(query.normal) < 0.0 => "your ray goes through the surface: reflect it back by the normal",
             ]))
         })
     })

@@ -57,28 +57,28 @@ impl Dark {
             material.emission != Vec3::ZERO || self.scene.ambient * material.ambient != Vec3::ZERO
         });
         let without_indirect = of_any_light && !self.scene.indirect_light;
-        vec![
-            (
-                *yours == self.effects(self.shines, shown_colour),
+        let without_sky = self.scene.background.is_black()
+            || self.listed()
+            || self.scene.ambient * material.ambient != Vec3::ZERO;
+        let without_emitters = !self.scene.background.is_black() || self.listed();
+        named![
+            *yours == self.effects(self.shines, shown_colour) =>
                 "an image shows only where light reaches its material: a light, ambient light, or indirect light",
-            ),
-            (
-                *yours == self.effects(self.shines, of_any_light),
+            *yours == self.effects(self.shines, of_any_light) =>
                 "light of one channel shows nothing of a colour in another: multiply channel by channel",
-            ),
-            (
-                *yours == self.effects(self.shines, self.lit && without_indirect),
-                "indirect light reaches images too",
-            ),
-            (
-                *yours == self.effects(self.shines || any_bright, self.lit),
-                "a material that no shape has does not shine",
-            ),
-            (
-                *yours == self.effects(true, self.lit),
-                "nothing shines in this scene, so its picture is black and needs nothing",
-            ),
-        ]
+            *yours == self.effects(self.shines, self.lit && without_indirect) => "indirect light reaches images too",
+            *yours == self.effects(self.shines || any_bright, self.lit) => "a material that no shape has does not shine",
+            *yours == self.effects(self.shines, self.lit || self.scene.indirect_light) =>
+                "indirect light shows no image of a material without a diffuse colour",
+            *yours == self.effects(self.shines, self.lit || self.scene.ambient != Vec3::ZERO) =>
+                "ambient light shows no image of a material that has none of its channels",
+            *yours == self.effects(self.shines && without_sky, self.lit) =>
+                "what is before a bright background is seen: the background shines, too",
+            *yours == self.effects(self.shines && !self.scene.lights.is_empty(), self.lit)
+                || *yours == self.effects(self.shines && without_emitters, self.lit) =>
+                "a scene without lights is not dark: emitters, ambient light and the background shine, too",
+            *yours == self.effects(true, self.lit) => "nothing shines in this scene, so its picture is black and needs nothing",
+        ].to_vec()
     }
 }
 

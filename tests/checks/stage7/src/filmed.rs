@@ -96,46 +96,27 @@ impl Filmed {
         let opens = self.shutter.is_some_and(|(open, close)| close > open);
         let moves = self.sphere == Moving::Yes;
         let two_transforms = moves || self.sphere == Moving::InPlace;
-        vec![
-            (is(has_lens, motion), "an aperture of 0 is a pinhole: you test only whether there is a lens"),
-            (
-                is(self.lens.is_some_and(|aperture| aperture > 1e-5), motion),
+        named![
+            is(has_lens, motion) => "an aperture of 0 is a pinhole: you test only whether there is a lens",
+            is(self.lens.is_some_and(|aperture| aperture > 1e-5), motion) =>
                 "you compare the aperture with a fixed limit: every aperture above 0 blurs",
-            ),
-            (is(lens && has_shutter, motion), "an aperture above 0 blurs, with or without a shutter"),
-            (is(false, motion), "lens stays false, but every aperture above 0 blurs"),
-            (
-                is(lens, motion && has_lens),
-                "a shape that moves while the shutter is open is blurred, with or without a lens",
-            ),
-            (
-                is(lens, has_shutter && moves),
+            is(lens && has_shutter, motion) => "an aperture above 0 blurs, with or without a shutter",
+            is(false, motion) => "lens stays false, but every aperture above 0 blurs",
+            is(lens, motion && has_lens) => "a shape that moves while the shutter is open is blurred, with or without a lens",
+            is(lens, has_shutter && moves) =>
                 "you ignore when the shutter closes: all rays have the same time if it closes as it opens",
-            ),
-            (
-                is(lens, self.shutter.is_some_and(|(open, close)| close >= open) && moves),
+            is(lens, self.shutter.is_some_and(|(open, close)| close >= open) && moves) =>
                 "all rays have the same time if the shutter closes as it opens: compare both times by >",
-            ),
-            (
-                is(lens, self.shutter.is_some_and(|(open, close)| close != open) && moves),
+            is(lens, self.shutter.is_some_and(|(open, close)| close != open) && moves) =>
                 "a shutter that closes before it opens takes no time: compare both times by >",
-            ),
-            (is(lens, opens), "you ignore the shapes: no shape moves in some of the scenes"),
-            (is(lens, moves), "without a shutter all rays have time 0: you test only whether a shape moves"),
-            (
-                is(lens, opens && self.sphere != Moving::No),
+            is(lens, opens) => "you ignore the shapes: no shape moves in some of the scenes",
+            is(lens, moves) => "without a shutter all rays have time 0: you test only whether a shape moves",
+            is(lens, opens && self.sphere != Moving::No) =>
                 "you count nodes: a shape that no root reaches does not count, so use shape.moves of scene.shown()",
-            ),
-            (
-                is(lens, opens && two_transforms),
-                "equal transforms at both times are no motion: use shape.moves of scene.shown()",
-            ),
-            (is(lens, opens && (moves || self.sphere == Moving::Elsewhere)), ELSEWHERE),
-            (
-                is(lens, false),
-                "you never set motion: a shape that moves while the shutter is open is blurred",
-            ),
-        ]
+            is(lens, opens && two_transforms) => "equal transforms at both times are no motion: use shape.moves of scene.shown()",
+            is(lens, opens && (moves || self.sphere == Moving::Elsewhere)) => ELSEWHERE,
+            is(lens, false) => "you never set motion: a shape that moves while the shutter is open is blurred",
+        ].to_vec()
     }
 }
 

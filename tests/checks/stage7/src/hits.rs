@@ -55,7 +55,7 @@ fn hits_query() -> impl Strategy<Value = HitsQuery> + Clone {
     })
 }
 
-/// A table for which each known mistake gives different counts.
+/// A table for which most known mistakes give different counts.
 fn drawn() -> HitsQuery {
     let plain = material(&KINDS[0], vec![0, 2]);
     let glass = material(&KINDS[6], vec![0, 1]);
@@ -67,50 +67,87 @@ fn drawn() -> HitsQuery {
 /// (4); light 2 casts no shadows. Each of the 10 hits of rough glass spawns 3 reflected and 3 refracted rays.
 const DRAWN: RayCounts = RayCounts { primary: 17, shadow: 27, reflection: 30, transmission: 30 };
 
-/// The counts that mistakes give for [`drawn`], counted by hand in the same way, each with its diagnosis.
-const MISTAKES: [(RayCounts, &str); 10] = [
-    // 3 + 20, 4 + 31; and light 2 casts no shadows.
-    (RayCounts { shadow: 58, ..DRAWN }, "you count lights that do not matter to the material"),
-    // 3 + 20, 4 + 6.
-    (RayCounts { shadow: 33, ..DRAWN }, "you count lights that cast no shadows"),
-    // 10 hits times 1 + 4 samples, and 7 times 1.
-    (
-        RayCounts { shadow: 57, ..DRAWN },
-        "you count hits times light samples: in_front says how many samples lie in front of the surface",
-    ),
-    // 3 + 4 · 20 + 4.
-    (
-        RayCounts { shadow: 87, ..DRAWN },
-        "you multiply in_front by the samples of the light: it already counts samples, over all hits",
-    ),
-    (
-        RayCounts { reflection: 10, transmission: 10, ..DRAWN },
-        "you count one ray of each kind per hit of a rough surface: it spawns glossy_samples",
-    ),
-    (
-        RayCounts { transmission: 10, ..DRAWN },
-        "you count one refracted ray per hit of a rough surface: it spawns glossy_samples refracted rays, \
-         too",
-    ),
-    // 3 · 10 + 7.
-    (
-        RayCounts { reflection: 37, transmission: 37, ..DRAWN },
-        "you count secondary rays for a material whose mirror and transmission are false",
-    ),
-    (
-        RayCounts { primary: 7, shadow: 4, reflection: 0, transmission: 0 },
-        "you return the counts of the last row: add up all rows",
-    ),
-    // The plain material needs light 0 (3), the glass lights 0 and 1 (4 + 31); the glass spawns 3 · 7 rays of each kind.
-    (
-        RayCounts { primary: 17, shadow: 38, reflection: 21, transmission: 21 },
-        "you use the number of the row as its material: take effects.materials[row.material]",
-    ),
-    (
-        RayCounts { primary: 2, ..DRAWN },
-        "you count rows: one ray made each hit, so primary is the sum of hits",
-    ),
-];
+const PER_HIT: &str = "you count a shadow ray per hit, or per hit and light: in_front says how many samples lie in front of the surface";
+const PER_SAMPLE: &str =
+    "you count hits times light samples: in_front says how many samples lie in front of the surface";
+const ROUGH: &str = "you count one ray of each kind per hit of a rough surface: it spawns glossy_samples";
+const SMOOTH: &str = "you count glossy_samples rays per hit of a smooth surface: it spawns one";
+
+/// Wrong counts, each with its diagnosis.
+fn wrong_counts(HitsQuery { hits, effects, quality }: &HitsQuery) -> Vec<(RayCounts, &'static str)> {
+    type OfRow<'a> = &'a dyn Fn(&MaterialHits, &MaterialEffects) -> u64;
+    let parts = |takes: &MaterialEffects| if takes.glossy { u64::from(quality.glossy_samples) } else { 1 };
+    let n = |_: &MaterialEffects| u64::from(quality.glossy_samples);
+    // The sum over rows of shadow rays per row, and of reflected and refracted rays per hit with these numbers of parts.
+    let count = |rows: &[MaterialHits], shadow: OfRow<'_>, reflected: OfRow<'_>, refracted: OfRow<'_>| {
+        rows.iter().fold(RayCounts::default(), |sum, row| {
+            let takes = &effects.materials[row.material];
+            RayCounts {
+                primary: sum.primary + row.hits,
+                shadow: sum.shadow + shadow(row, takes),
+                reflection: sum.reflection + row.hits * reflected(row, takes),
+                transmission: sum.transmission + row.hits * refracted(row, takes),
+            }
+        })
+    };
+    let casts = |light: &usize| effects.lights[*light].shadows;
+    let in_front = |row: &MaterialHits, takes: &MaterialEffects| {
+        takes.lights.iter().filter(|light| casts(light)).map(|&light| row.in_front[light]).sum::<u64>()
+    };
+    let mirror = |_: &MaterialHits, takes: &MaterialEffects| u64::from(takes.mirror) * parts(takes);
+    let refracted = |_: &MaterialHits, takes: &MaterialEffects| u64::from(takes.transmission) * parts(takes);
+    let right = count(hits, &in_front, &mirror, &refracted);
+    let of_shadow = |shadow: OfRow<'_>| count(hits, shadow, &mirror, &refracted);
+    // Per light that is listed, and casts shadows or not.
+    let lights = |casting: bool, rays: &dyn Fn(&MaterialHits, usize) -> u64| {
+        let counts = |light: &&usize| !casting || casts(light);
+        of_shadow(&|row, takes| takes.lights.iter().filter(counts).map(|&light| rays(row, light)).sum())
+    };
+    let samples = |light: usize| u64::from(effects.lights[light].samples);
+    let is_lit = |takes: &MaterialEffects| u64::from(takes.lights.iter().any(casts));
+    let first = |row: &MaterialHits, takes: &MaterialEffects| {
+        takes.lights.iter().find(|light| casts(light)).map_or(0, |&light| row.in_front[light])
+    };
+    let secondary = |of_mirror: &dyn Fn(&MaterialEffects) -> u64,
+                     of_glass: &dyn Fn(&MaterialEffects) -> u64| {
+        count(hits, &in_front, &|_, takes| u64::from(takes.mirror) * of_mirror(takes), &|_, takes| {
+            u64::from(takes.transmission) * of_glass(takes)
+        })
+    };
+    let any =
+        |row: &MaterialHits| (0..row.in_front.len()).filter(casts).map(|light| row.in_front[light]).sum();
+    let last = hits.last().cloned().into_iter().collect::<Vec<_>>();
+    let numbered = (0..effects.materials.len()).zip(hits);
+    let numbered =
+        numbered.map(|(material, row)| MaterialHits { material, ..row.clone() }).collect::<Vec<_>>();
+    named![
+        of_shadow(&|row, _| any(row)) => "you count lights that do not matter to the material",
+        lights(false, &|row, light| row.in_front[light]) => "you count lights that cast no shadows",
+        lights(true, &|row, light| row.hits * samples(light)) => PER_SAMPLE,
+        lights(false, &|row, light| row.hits * samples(light)) => PER_SAMPLE,
+        lights(true, &|row, _| row.hits) => PER_HIT,
+        lights(false, &|row, _| row.hits) => PER_HIT,
+        of_shadow(&|row, takes| row.hits * is_lit(takes)) => PER_HIT,
+        of_shadow(&|row, _| row.hits) => PER_HIT,
+        of_shadow(&first) => "you count only the first light of each row",
+        lights(true, &|row, light| row.in_front[light] * samples(light)) =>
+            "you multiply in_front by the samples of the light: it already counts samples, over all hits",
+        secondary(&|_| 1, &|_| 1) => ROUGH,
+        secondary(&parts, &|_| 1) =>
+            "you count one refracted ray per hit of a rough surface: it spawns glossy_samples refracted rays, too",
+        secondary(&|_| 1, &parts) =>
+            "you count one reflected ray per hit of a rough surface: it spawns glossy_samples reflected rays, too",
+        secondary(&n, &n) => SMOOTH,
+        count(hits, &in_front, &|_, takes| parts(takes), &|_, takes| parts(takes)) =>
+            "you count secondary rays for a material whose mirror and transmission are false",
+        RayCounts { primary: hits.len() as u64, ..right } =>
+            "you count rows: one ray made each hit, so primary is the sum of hits",
+        count(&last, &in_front, &mirror, &refracted) => "you return the counts of the last row: add up all rows",
+        count(&numbered, &in_front, &mirror, &refracted) =>
+            "you use the number of the row as its material: take effects.materials[row.material]",
+    ]
+    .to_vec()
+}
 
 fn broken(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'static str) -> Broken {
     let input = format!(
@@ -166,19 +203,16 @@ fn parts(query: &HitsQuery) -> Parts {
 
 /// Checks known counts: the fixed table, single hits and single light samples. All other tables must be sums of those.
 pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> CheckResult {
-    let query = drawn();
-    let yours = trial.kit.rays_of_hits(std::slice::from_ref(&query)).remove(0);
-    if yours != DRAWN {
-        let mistakes = MISTAKES.iter().map(|(counts, text)| (*counts == yours, *text));
-        return Err(broken(&query, yours, DRAWN, "counted by hand").explained_by(mistakes));
-    }
-    let singles = single_hits_and_places(trial.varied(1, 2..50u64));
-    let queries: Vec<HitsQuery> = singles.iter().map(|(query, _)| query.clone()).collect();
-    for ((query, expected), yours) in singles.iter().zip(trial.kit.rays_of_hits(&queries)) {
-        if yours != *expected {
-            return Err(broken(query, yours, *expected, "a single hit, or a single light sample"));
-        }
-    }
+    let mut known = vec![(drawn(), DRAWN)];
+    known.extend(single_hits_and_places(trial.varied(1, 2..50u64)));
+    let queries: Vec<HitsQuery> = known.iter().map(|(query, _)| query.clone()).collect();
+    let judge = |(query, expected): &(HitsQuery, RayCounts), yours| match yours == *expected {
+        true => Ok(()),
+        false => Err(broken(query, yours, *expected, "counted by hand, or a single hit or light sample")),
+    };
+    all_hold(compare_formulas(&known, trial.kit.rays_of_hits(&queries), judge, |(query, _), yours| {
+        wrong_counts(query).into_iter().map(|(counts, text)| (counts == *yours, text)).collect()
+    }))?;
     trial.forall(2000, hits_query(), |queries| {
         let parts: Vec<Parts> = queries.iter().map(parts).collect();
         let all: Vec<HitsQuery> = parts.iter().flatten().map(|(part, _)| part.clone()).collect();
@@ -260,27 +294,19 @@ fn judge_samples(query: &(f32, f32), yours: u32) -> Judged {
     unless(yours >= 1 && (enough || yours == most) && !fewer, broken).formulas([
         (yours == whole(square.ceil()), "you return 0 if the deviation is 0: one sample is the minimum"),
         (is(whole(square.recip().ceil())), "you divide the error by the deviation: it is deviation / error"),
-        (
-            is(whole(square.floor() + 1.0)),
-            "you return one sample too many: if (deviation / error)² is whole, it is the answer",
-        ),
+        "you return one sample too many: if (deviation / error)² is whole, it is the answer"
+            .when(is(whole(square.floor() + 1.0))),
         (is(whole(ratio.ceil())), "you do not square deviation / error: the error falls with √n, not with n"),
-        (
-            is(whole(ratio.sqrt().ceil())),
-            "you take the root of deviation / error: the error falls with √n, so solve for n by squaring",
-        ),
+        "you take the root of deviation / error: the error falls with √n, so solve for n by squaring"
+            .when(is(whole(ratio.sqrt().ceil()))),
         (is(whole(square.floor())), "you round down, so the error is still too large: round up"),
         (is(whole(square.round())), "you round to nearest, so the error can be too large: round up"),
         (is(((single * single).ceil() as u32).max(1)), IN_SINGLE),
         (is((of_single.ceil() as u32).max(1)), IN_SINGLE),
-        (
-            is(if error == 0.0 { 1 } else { whole(square.ceil()).max(1) }),
-            "you return 1 for an error of 0: no number of samples is enough, so return u32::MAX",
-        ),
-        (
-            is(if error == 0.0 { u32::MAX } else { whole(square.ceil()).max(1) }),
-            "you return u32::MAX for an error of 0 also if the deviation is 0: one sample is enough then",
-        ),
+        "you return 1 for an error of 0: no number of samples is enough, so return u32::MAX"
+            .when(is(if error == 0.0 { 1 } else { whole(square.ceil()).max(1) })),
+        "you return u32::MAX for an error of 0 also if the deviation is 0: one sample is enough then"
+            .when(is(if error == 0.0 { u32::MAX } else { whole(square.ceil()).max(1) })),
     ])
 }
 

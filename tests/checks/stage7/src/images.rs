@@ -82,30 +82,23 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> CheckResult
     let broken = broken(&queries[wrong], yours[wrong], color(pixels[wrong]), "the pixel's colour");
     // Each mistake is compared with all twelve colours.
     Err(broken.explained_by([
-        (
-            all(&|[column, row]| color([column, 2 - row])),
-            "your image is upside down: v points up, and rows are stored from the top",
-        ),
+        "your image is upside down: v points up, and rows are stored from the top".when(all(&|[
+            column,
+            row,
+        ]| {
+            color([column, 2 - row])
+        })),
         (all(&|[column, row]| color([3 - column, row])), "your image is reversed: u points to the right"),
-        (
-            all(&|[column, row]| {
-                let number = 3 * column + row;
-                color([number % 4, number / 4])
-            }),
-            "you read the pixels column by column: they are stored row by row",
-        ),
-        (
-            [2.0, 2.2, 0.5, 1.0 / 2.2].into_iter().any(is_power),
-            "you apply gamma: the pixels are linear light already",
-        ),
-        (
-            signs.iter().any(|&x| signs.iter().any(|&y| shifted(x, y))),
-            "you are half a pixel off: the colour of a pixel belongs to its centre",
-        ),
-        (
-            signs.iter().any(|&one| shifted(one, 0) || shifted(0, one)),
-            "you are half a pixel off along one axis: the colour of a pixel belongs to its centre",
-        ),
+        "you read the pixels column by column: they are stored row by row".when(all(&|[column, row]| {
+            let number = 3 * column + row;
+            color([number % 4, number / 4])
+        })),
+        "you apply gamma: the pixels are linear light already"
+            .when([2.0, 2.2, 0.5, 1.0 / 2.2].into_iter().any(is_power)),
+        "you are half a pixel off: the colour of a pixel belongs to its centre"
+            .when(signs.iter().any(|&x| signs.iter().any(|&y| shifted(x, y)))),
+        "you are half a pixel off along one axis: the colour of a pixel belongs to its centre"
+            .when(signs.iter().any(|&one| shifted(one, 0) || shifted(0, one))),
         (
             stretched,
             "you stretch uv from the first to the last pixel centre: (0, 0) and (1, 1) are corners of the \
@@ -118,53 +111,113 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> CheckResult
 /// Points on an image of 4 by 3 pixels with [`Wrap::Mirror`]: between four pixels, at the upper left corner, and outside.
 const DRAWN: [(f32, f32); 3] = [(0.55, 0.7), (0.05, 0.95), (1.3, -0.2)];
 
-/// The colours there. These and the colours of the mistakes were computed once in double precision and rounded to 6
-/// digits.
+/// The colours there, which were computed once in double precision and rounded to 6 digits.
 const COLORS: [[f64; 3]; 3] =
     [[0.405_333, 0.653_333, 0.286_667], [0.0; 3], [0.361_333, 0.833_333, 0.226_667]];
 
-/// The colours that mistakes give at the three points, each with its diagnosis.
-const MISTAKES: [([[f64; 3]; 3], &str); 12] = [
-    (
-        [[0.365_333, 0.553_333, 0.186_667], [0.0; 3], [0.481_333, 0.393_333, 0.466_667]],
-        "you exchange the weights of columns and rows",
-    ),
-    (
-        [[0.352, 0.613_333, 0.18], [0.0; 3], [0.468, 0.3, 0.44]],
-        "you exchange the weights w and 1 - w: the nearer a pixel, the larger its weight",
-    ),
-    (
-        [[0.32, 0.84, 0.34], [0.0; 3], [0.333_333, 0.893_333, 0.213_333]],
-        "you interpolate along x only: interpolate between the two rows, too",
-    ),
-    (
-        [[0.386_667, 0.746_667, 0.146_667], [0.0; 3], [0.753_333, 0.74, 0.413_333]],
-        "you interpolate along y only: interpolate between the two columns, too",
-    ),
-    (
-        [COLORS[0], [-0.448_333, -0.571_667, -0.468_333], COLORS[2]],
-        "you round towards 0: left of the first pixel's centre x is negative, so use floor",
-    ),
-    ([COLORS[0], COLORS[1], [0.8, 0.8, 0.4]], ANOTHER_WRAP),
-    ([COLORS[0], COLORS[1], [0.396_667, 0.636_667, 0.156_667]], ANOTHER_WRAP),
-    ([COLORS[0], [0.498, 0.230_333, 0.351_667], [0.396_667, 0.636_667, 0.156_667]], ANOTHER_WRAP),
-    (
-        [COLORS[0], COLORS[1], [0.753_333, 0.74, 0.413_333]],
-        "you do not wrap the pixel next to the last one: get the column and row of all four from texel",
-    ),
-    (
-        [[0.6, 0.933_333, 0.2], [0.0; 3], [0.8, 0.8, 0.4]],
-        "you return the upper left of the four pixels: interpolate all four",
-    ),
-    (
-        [[0.2, 0.8, 0.4], [0.0; 3], [0.133_333, 0.933_333, 0.133_333]],
-        "you return the nearest pixel: interpolate the four around the point",
-    ),
-    (
-        [[0.365_333, 0.721_333, 0.318_667], [1.0, 0.066_667, 0.733_333], [0.421_333, 0.713_333, 0.466_667]],
-        "your image is upside down: v points up, and rows are stored from the top",
-    ),
+/// How a wrong function reads an image.
+#[derive(Clone, Copy, PartialEq)]
+enum Reads {
+    /// The weights of columns and rows are exchanged, or w and 1 - w; or a weight is 0, or rounded, or smoothed.
+    ExchangedAxes,
+    ExchangedWeights,
+    AlongX,
+    AlongY,
+    UpperLeft,
+    Nearest,
+    Smooth,
+    TowardsZero,
+    /// The image is repeated before its wrap mode is asked.
+    Repeated,
+    Another(Wrap),
+    /// The second column and row are those behind the first ones in the image: the last one, or the first one again.
+    NextStays,
+    NextStartsAgain,
+    /// The second column and row are limited to the image, and not wrapped.
+    NextClamped,
+    /// The second column (0), row (1), or both (2), is at most the last one.
+    NextLimited(usize),
+    /// The second column, or row, is that before the first one.
+    NextBefore(usize),
+    UpsideDown,
+}
+
+const MISTAKES: [(Reads, &str); 21] = named![
+    Reads::ExchangedAxes => "you exchange the weights of columns and rows",
+    Reads::ExchangedWeights => "you exchange the weights w and 1 - w: the nearer a pixel, the larger its weight",
+    Reads::AlongX => "you interpolate along x only: interpolate between the two rows, too",
+    Reads::AlongY => "you interpolate along y only: interpolate between the two columns, too",
+    Reads::TowardsZero => "you round towards 0: left of the first pixel's centre x is negative, so use floor",
+    Reads::Repeated => ANOTHER_WRAP,
+    Reads::Another(Wrap::Repeat) => ANOTHER_WRAP,
+    Reads::Another(Wrap::Clamp) => ANOTHER_WRAP,
+    Reads::Another(Wrap::Mirror) => ANOTHER_WRAP,
+    Reads::NextStays => NEXT,
+    Reads::NextStartsAgain => NEXT,
+    Reads::NextClamped => NEXT,
+    Reads::NextLimited(0) => NEXT,
+    Reads::NextLimited(1) => NEXT,
+    Reads::NextLimited(2) => NEXT,
+    Reads::NextBefore(0) => BEFORE,
+    Reads::NextBefore(1) => BEFORE,
+    Reads::Smooth => "you smooth the weights: they are the distances themselves",
+    Reads::UpperLeft => "you return the upper left of the four pixels: interpolate all four",
+    Reads::Nearest => "you return the nearest pixel: interpolate the four around the point",
+    Reads::UpsideDown => "your image is upside down: v points up, and rows are stored from the top",
 ];
+
+const BEFORE: &str = "the second column and row are those before the first: they are those behind it";
+const NEXT: &str =
+    "you do not wrap the pixel next to the last one: get the column and row of all four from texel";
+
+impl Reads {
+    /// Whether this colour is that of the mistake. A point at the centre of a pixel may belong to the pixel before.
+    fn gives(self, query: &TextureQuery, yours: Vec3) -> bool {
+        let near = |x: f64, y: f64| apart(yours, self.color(query, x, y)) < NEAR_A_MISTAKE;
+        let shifts = [-1e-5, 0.0, 1e-5];
+        shifts.into_iter().any(|x| shifts.into_iter().any(|y| near(x, y)))
+    }
+
+    fn color(self, TextureQuery { texture, uv }: &TextureQuery, right: f64, down: f64) -> DVec3 {
+        let [u, v] = [uv.x, uv.y].map(f64::from);
+        let [u, v] = if self == Reads::Repeated { [u.rem_euclid(1.0), v.rem_euclid(1.0)] } else { [u, v] };
+        let v = if self == Reads::UpsideDown { v } else { 1.0 - v };
+        let (x, y) = (u * f64::from(texture.width) - 0.5 + right, v * f64::from(texture.height) - 0.5 + down);
+        let first = [x, y].map(|x| if self == Reads::TowardsZero { x.trunc() } else { x.floor() });
+        let (dx, dy) = (x - first[0], y - first[1]);
+        let smooth = |w: f64| w * w * (3.0 - 2.0 * w);
+        let (dx, dy) = match self {
+            Reads::ExchangedAxes => (dy, dx),
+            Reads::ExchangedWeights => (1.0 - dx, 1.0 - dy),
+            Reads::AlongX => (dx, 0.0),
+            Reads::AlongY => (0.0, dy),
+            Reads::UpperLeft => (0.0, 0.0),
+            Reads::Nearest => (dx.round(), dy.round()),
+            Reads::Smooth => (smooth(dx), smooth(dy)),
+            _ => (dx, dy),
+        };
+        let wrap = if let Reads::Another(wrap) = self { wrap } else { texture.wrap };
+        let index = |at: i64, size: u32| row(size, wrap, at.abs())[(at + at.abs()) as usize];
+        let both = |axis: usize, size: u32| {
+            let at = first[axis] as i64;
+            let next = match self {
+                Reads::NextStays => (index(at, size) + 1).min(size - 1),
+                Reads::NextStartsAgain => (index(at, size) + 1) % size,
+                Reads::NextClamped => (at + 1).clamp(0, i64::from(size) - 1) as u32,
+                Reads::NextLimited(other) if other == axis || other == 2 => {
+                    index((at + 1).min(i64::from(size) - 1), size)
+                }
+                Reads::NextBefore(other) if other == axis => index(at - 1, size),
+                _ => index(at + 1, size),
+            };
+            [index(at, size), next]
+        };
+        let ([left, right], [top, bottom]) = (both(0, texture.width), both(1, texture.height));
+        let pixel = |x: u32, y: u32| texture.pixels[(y * texture.width + x) as usize].as_dvec3();
+        let along = |y: u32| pixel(left, y).lerp(pixel(right, y), dx);
+        along(top).lerp(along(bottom), dy)
+    }
+}
 
 const ANOTHER_WRAP: &str =
     "you use another wrap mode than the image: call texel with texture.wrap for all four";
@@ -247,20 +300,26 @@ pub(super) fn images_are_blended(trial: &Trial<'_>) -> CheckResult {
     let image = texture(4, 3, Wrap::Mirror);
     let drawn = DRAWN.map(|(u, v)| TextureQuery { texture: image.clone(), uv: vec2(u, v) });
     let yours = trial.kit.texture_color(&drawn);
-    let unlike = |colors: &[[f64; 3]; 3], near: f64| {
-        (0..3).find(|&i| !(apart(yours[i], DVec3::from_array(colors[i])) < near))
+    let judge = |(query, right): &(TextureQuery, [f64; 3]), yours: Vec3| {
+        let expected = DVec3::from_array(*right);
+        let broken = || broken(query, yours, expected, "double precision");
+        if apart(yours, expected) < NEAR { Ok(()) } else { Err(broken()) }
     };
-    if let Some(wrong) = unlike(&COLORS, NEAR) {
-        let mistakes =
-            MISTAKES.iter().map(|(colors, text)| (unlike(colors, NEAR_A_MISTAKE).is_none(), *text));
-        let expected = DVec3::from_array(COLORS[wrong]);
-        let broken = broken(&drawn[wrong], yours[wrong], expected, "double precision");
-        return Err(broken.explained_by(mistakes));
-    }
+    let cases: Vec<(TextureQuery, [f64; 3])> = drawn.iter().cloned().zip(COLORS).collect();
+    all_hold(compare_formulas(&cases, yours, judge, |(query, _), yours| {
+        MISTAKES.map(|(reads, text)| (reads.gives(query, *yours), text)).to_vec()
+    }))?;
     trial.forall(2000, stretches(), |stretches| {
         let queries: Vec<TextureQuery> = stretches.iter().flat_map(Stretch::queries).collect();
         let yours = trial.kit.texture_color(&queries);
-        let each = stretches.iter().zip(queries.chunks(7)).zip(yours.chunks(7));
-        each.map(|((stretch, queries), yours)| judge_stretch(stretch, queries, yours)).collect()
+        let cases: Vec<(&Stretch, &[TextureQuery])> = stretches.iter().zip(queries.chunks(7)).collect();
+        let judge = |(stretch, queries): &(&Stretch, &[TextureQuery]), yours: &[Vec3]| {
+            judge_stretch(stretch, queries, yours)
+        };
+        compare_formulas(&cases, yours.chunks(7).collect(), judge, |(_, queries), yours| {
+            let all =
+                |reads: Reads| queries.iter().zip(*yours).all(|(query, yours)| reads.gives(query, *yours));
+            MISTAKES.map(|(reads, text)| (all(reads), text)).to_vec()
+        })
     })
 }

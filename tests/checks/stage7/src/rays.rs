@@ -70,10 +70,9 @@ fn judge(trial: &Trial<'_>, BoundedScene { what, query, expected, wrong }: Bound
         Err(KitError::Panicked { message, place }) => {
             let yours = format!("a panic at {place}: {message}");
             let broken = Broken::with_texts(input, yours, format!("{expected:?}"), "counted by hand");
-            Err(broken.explained_by([(
-                message.contains("overflow"),
-                "a number overflows: count in u64, with saturating_add and saturating_mul",
-            )]))
+            Err(broken
+                .explained_by(["a number overflows: count in u64, with saturating_add and saturating_mul"
+                    .when(message.contains("overflow"))]))
         }
         Err(error) => kit_error::unwind(error),
     }
@@ -231,19 +230,15 @@ impl Spread {
             (lit(1), "you count shadow rays of the first hits only: every hit needs them"),
             (lit(self.hits(self.bounces)), "you leave out the shadow rays of the last bounce's hits"),
             (after(max_depth), "you leave out min_contribution: only max_depth ends your loop"),
-            (
-                one_way.counts(),
-                "you follow one ray per hit: each hit spawns two rays, so their number doubles at each level",
-            ),
+            "you follow one ray per hit: each hit spawns two rays, so their number doubles at each level"
+                .when(one_way.counts()),
         ]);
         // A wrong number of bounces shows only where max_depth ends them.
         if self.bounces == max_depth {
             wrong.extend([
                 (after(max_depth + 1), "you count a bounce too many: there are max_depth bounces"),
-                (
-                    after(max_depth.saturating_sub(1)),
-                    "you count a bounce too few: there are max_depth bounces",
-                ),
+                "you count a bounce too few: there are max_depth bounces"
+                    .when(after(max_depth.saturating_sub(1))),
             ]);
         }
         BoundedScene { what: format!("one pixel, {what}"), query, expected, wrong }

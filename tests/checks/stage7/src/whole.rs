@@ -69,7 +69,18 @@ pub(super) fn judge(what: &str, yours: &Effects, expected: &Effects) -> CheckRes
             effects.lens, effects.motion, effects.indirect_light
         ),
     };
-    Err(Broken::with_texts(format!("effects of {what}"), part(yours), part(expected), "the definition"))
+    // If a single effect is wrong, its name and what it depends on.
+    let is_wrong = |effect: &Effect| yours.calls_for(*effect) != expected.calls_for(*effect);
+    let wrong: Vec<Effect> = BUILT.into_iter().filter(is_wrong).collect();
+    let samples = |effects: &Effects| effects.lights.iter().map(|light| light.samples).collect::<Vec<_>>();
+    let clue = match wrong[..] {
+        [only] if only == Effect::AreaLights || samples(yours) == samples(expected) => {
+            clue(only, expected.calls_for(only))
+        }
+        _ => "",
+    };
+    Err(Broken::with_texts(format!("effects of {what}"), part(yours), part(expected), "the definition")
+        .explained_by([(!clue.is_empty(), clue)]))
 }
 
 const DROPPED: &str =
@@ -154,16 +165,12 @@ fn of_hidden_parts(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static s
     };
     let smooth = yours.smooth_meshes.iter().zip(&expected.smooth_meshes).any(|(one, other)| *one && !*other);
     vec![
-        (
-            is_same && same_length && only_extra && (extra || smooth),
-            "you analyse what is not shown: only shapes that a root reaches are shown, so use scene.shown()",
-        ),
+        "you analyse what is not shown: only shapes that a root reaches are shown, so use scene.shown()"
+            .when(is_same && same_length && only_extra && (extra || smooth)),
         (one_material(2), ONE_MATERIAL),
         (one_material(expected.materials.len() - 1), ONE_MATERIAL),
-        (
-            !same_length,
-            "you leave out entries: there is one per material and one per mesh of the scene, in order",
-        ),
+        "you leave out entries: there is one per material and one per mesh of the scene, in order"
+            .when(!same_length),
     ]
 }
 

@@ -66,24 +66,17 @@ fn judge_cover(points: &Vec<Vec3>, sphere: Sphere, allowed: f64) -> Judged {
     // One point needs no radius.
     let open = points.len() < 2 && outside.is_none();
     let formulas = [
-        (
-            near(0.5 * (max - min).max_element()),
-            "your radius is half the longest side of the box: its corners lie outside",
-        ),
-        (
-            near(0.5 * (max - min).min_element()),
-            "your radius is half the shortest side of the box: its corners lie outside",
-        ),
+        "your radius is half the longest side of the box: its corners lie outside"
+            .when(near(0.5 * (max - min).max_element())),
+        "your radius is half the shortest side of the box: its corners lie outside"
+            .when(near(0.5 * (max - min).min_element())),
         (near(mean), "your radius is the mean distance from the centre: take the largest"),
-        (
+        "your sphere contains the first and the last point only".when(
             near(0.5 * ends[0].distance(ends[1]))
                 && (center - 0.5 * (ends[0] + ends[1])).length() <= 16.0 * U * reach(points),
-            "your sphere contains the first and the last point only",
         ),
-        (
-            near(distances().fold(f64::INFINITY, f64::min)),
-            "your radius is the smallest distance from the centre",
-        ),
+        "your radius is the smallest distance from the centre"
+            .when(near(distances().fold(f64::INFINITY, f64::min))),
         (near(distances().next().unwrap_or(0.0)), "your radius is the distance of the first point"),
         (near(0.5 * farthest), "your radius is half the largest distance from the centre"),
         (near(farthest * farthest), "your radius is the square of the largest distance"),
@@ -123,14 +116,10 @@ fn judge_size(points: &Vec<Vec3>, sphere: Sphere) -> Judged {
         )])
     };
     unless(0.25 * widest <= radius && !is_large, broken).formulas([
-        (
-            center <= 16.0 * U * reach,
-            "your sphere is too large, because its centre is the origin: use the centre of the points' box",
-        ),
-        (
-            (sphere.center.as_dvec3() - 0.5 * (min + max)).length() <= 16.0 * U * reach,
-            "your sphere is too large, because your box includes the origin: start the minimum at infinity",
-        ),
+        "your sphere is too large, because its centre is the origin: use the centre of the points' box"
+            .when(center <= 16.0 * U * reach),
+        "your sphere is too large, because your box includes the origin: start the minimum at infinity"
+            .when((sphere.center.as_dvec3() - 0.5 * (min + max)).length() <= 16.0 * U * reach),
     ])
 }
 
@@ -235,18 +224,15 @@ fn formulas(entry: &Entry, yours: Option<f32>) -> Vec<(bool, &'static str)> {
     let ends = roots(&ray, &sphere, radius * radius);
     let length = f64::from(entry.speed) * ray.direction.as_dvec3().length();
     vec![
-        (
-            is(entered(ends.map(|ends| ends.map(|end| length * end)))),
-            "your t has another unit, that of the world: it counts lengths of direction",
-        ),
-        (
-            is(entered(roots(&ray, &sphere, radius / f64::from(entry.size)))),
-            "you use the radius in place of its square: the distance from the centre is squared, too",
-        ),
-        (
-            is(entered(roots(&ray, &sphere, 4.0 * radius * radius))),
-            "your sphere is too large: you compare with twice the radius",
-        ),
+        "your t has another unit, that of the world: it counts lengths of direction"
+            .when(is(entered(ends.map(|ends| ends.map(|end| length * end))))),
+        "you use the radius in place of its square: the distance from the centre is squared, too"
+            .when(is(entered(roots(&ray, &sphere, radius / f64::from(entry.size))))),
+        "your sphere is too large: you compare with twice the radius".when(is(entered(roots(
+            &ray,
+            &sphere,
+            4.0 * radius * radius,
+        )))),
     ]
 }
 
@@ -268,34 +254,20 @@ fn observations(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(b
             "you are late by a rounding error, and a search would skip a hit at this t: return a slightly \
              earlier t",
         ),
-        (
-            starts_inside && yours == Some(0.0) && ray.t_min != 0.0,
-            "you return 0 for a ray that starts inside: it enters the sphere at t_min",
-        ),
-        (
-            yours.is_some_and(|t| near(t.into(), closest.max(ray.t_min.into()))) && right.is_some(),
-            "you return where the ray is closest to the centre: it enters the sphere before",
-        ),
-        (
-            starts_inside && is(0),
-            "you return a t before t_min: a ray that starts inside the sphere enters it at t_min",
-        ),
-        (
-            starts_inside && is(1),
-            "you return where the ray leaves: a ray that starts inside the sphere enters it at t_min",
-        ),
-        (
-            starts_inside && yours.is_none(),
-            "you return None for a ray that starts inside: a ray that starts inside the sphere enters it at t_min",
-        ),
-        (
-            found && ends.is_some_and(|ends| ends[1] < ray.t_min.into()),
-            "you return an entry for a sphere that lies behind the ray: the ray leaves it before t_min",
-        ),
-        (
-            found && ends.is_some_and(|ends| ends[0] > ray.t_max.into()),
-            "you return an entry for a sphere that lies beyond t_max",
-        ),
+        "you return 0 for a ray that starts inside: it enters the sphere at t_min"
+            .when(starts_inside && yours == Some(0.0) && ray.t_min != 0.0),
+        "you return where the ray is closest to the centre: it enters the sphere before"
+            .when(yours.is_some_and(|t| near(t.into(), closest.max(ray.t_min.into()))) && right.is_some()),
+        "you return a t before t_min: a ray that starts inside the sphere enters it at t_min"
+            .when(starts_inside && is(0)),
+        "you return where the ray leaves: a ray that starts inside the sphere enters it at t_min"
+            .when(starts_inside && is(1)),
+        "you return None for a ray that starts inside: a ray that starts inside the sphere enters it at t_min"
+            .when(starts_inside && yours.is_none()),
+        "you return an entry for a sphere that lies behind the ray: the ray leaves it before t_min"
+            .when(found && ends.is_some_and(|ends| ends[1] < ray.t_min.into())),
+        "you return an entry for a sphere that lies beyond t_max"
+            .when(found && ends.is_some_and(|ends| ends[0] > ray.t_max.into())),
         (found && ends.is_none(), "you return an entry for a sphere that lies beside the ray"),
         (is(1), "your t is later than the entry, which is the nearer root"),
     ]

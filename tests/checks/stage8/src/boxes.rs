@@ -147,10 +147,10 @@ fn judge_room(query: &BoundsQuery, yours: Aabb) -> CheckResult {
         let yours = format!("{yours_low} to {yours_high} along {axis}");
         let expected = format!("{low} to {high}, and {room:.1e} on either side at most");
         let broken = Broken::with_texts(query.call("bounds_to_world"), yours, expected, "double precision");
-        return Err(broken.explained_by([(
-            yours_low <= low + room && yours_high >= high - room,
-            "your box is larger than the rounding errors require, so rays enter it without need",
-        )]));
+        return Err(broken.explained_by([
+            "your box is larger than the rounding errors require, so rays enter it without need"
+                .when(yours_low <= low + room && yours_high >= high - room),
+        ]));
     }
     Ok(())
 }

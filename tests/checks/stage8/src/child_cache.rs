@@ -87,15 +87,11 @@ pub(super) fn child_cache_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
         let is_cached_only = is_of(&|node, child| query.cache.get(node).is_none_or(|cached| cached == child));
         let is_left_out = is_of(&|node, child| query.cache.get(node) != Some(child));
         Err(Broken::with_texts(describe_cached(query), yours, expected_text, "brute force").explained_by([
-            (
-                is_cached_only,
-                "you visit only the cached child of a node: the others may have a nearer hit, and must be visited, too",
-            ),
+            "you visit only the cached child of a node: the others may have a nearer hit, and must be visited, too"
+                .when(is_cached_only),
             (is_left_out, "you do not visit the cached child: visit it first, and then the others"),
-            (
-                is_again || n_boxes > most_boxes && search.savings.volumes,
-                "the cached child takes part twice: leave it out of the other children",
-            ),
+            "the cached child takes part twice: leave it out of the other children"
+                .when(is_again || n_boxes > most_boxes && search.savings.volumes),
         ]))
     };
     all_hold(compare(&queries, trial.kit.closest_hit_with_child_cache(&queries), judge))
@@ -107,6 +103,7 @@ pub(super) fn child_cache_goes_first(trial: &Trial<'_>) -> CheckResult {
     let cached_only = "you visit the cached child only";
     let own_later = "you visit the cached child before the node's own primitives";
     let as_listed = "you do not sort the other children although `sort` is on";
+    let unasked = "you visit the cached child without asking for its volume";
     let never = "you do not skip a child that begins beyond the closest hit";
     // A root with four children at the places 0 to 3 along the ray, as listed; the place in the cache; the tests expected.
     type Case<'a> = (
@@ -141,7 +138,13 @@ pub(super) fn child_cache_goes_first(trial: &Trial<'_>) -> CheckResult {
             &[(&[0], ignored), (&[2], cached_only), (&[2, 1, 0], as_listed), (&[2, 0, 1, 3], never)],
         ),
         (&[3, 2, 1, 0], Some(0), SKIP, &[0], &[(&[3, 2, 1, 0], ignored), (&[0, 3, 2, 1], never)]),
-        (&[3, 1, 0, 2], Some(2), SKIP, &[4], &[(&[2, 4], own_later), (&[4, 2, 3, 1, 0], never)]),
+        (
+            &[3, 1, 0, 2],
+            Some(2),
+            SKIP,
+            &[4],
+            &[(&[2, 4], own_later), (&[4, 2], unasked), (&[4, 2, 3, 1, 0], never)],
+        ),
         (&[3, 1, 0, 2], None, ALL, &[0], &[(&[0, 1, 2, 3], never)]),
     ];
     let query = |(order, cached, savings, expected, _): &Case<'_>| {
@@ -203,10 +206,8 @@ pub(super) fn child_cache_stores_the_way_to_the_hit(trial: &Trial<'_>) -> CheckR
         Err(Broken::with_texts(describe_cached(query), text, expected, "the definition").explained_by([
             (unchanged, "you do not change the cache: store the child with the closest hit"),
             (root_only, "you store the child of the root only: each node on the path has an entry"),
-            (
-                stray.is_none() && wrong.is_some_and(|(node, _)| yours.cache.get(node).is_some()),
-                "you store another child of the node than the one with the closest hit",
-            ),
+            "you store another child of the node than the one with the closest hit"
+                .when(stray.is_none() && wrong.is_some_and(|(node, _)| yours.cache.get(node).is_some())),
         ]))
     };
     all_hold(compare(&queries, trial.kit.closest_hit_with_child_cache(&queries), judge))

@@ -120,10 +120,8 @@ fn judge_leaving<S: Solid>(
         let broken = Broken::with_texts(input(query), format!("{t:?}"), expected, "the ray starts inside");
         Err(broken.explained_by([
             (!ordinary && t.is_none(), lost),
-            (
-                t.is_none(),
-                "you return None for a ray that starts inside: it hits the surface where it leaves",
-            ),
+            "you return None for a ray that starts inside: it hits the surface where it leaves"
+                .when(t.is_none()),
         ]))
     })
 }

@@ -172,12 +172,12 @@ impl<'a> Step<'a> {
             (around.is_empty(), "you move a vertex that belongs to no triangle: it stays"),
             (!around.is_empty() && own_only, "you do not move the old vertices: they move, too"),
             (uses_moved, FROM_BEFORE),
-            (
+            (border && !own_only && around.len() > 2 && is_even(&around), BORDER),
+            BORDER.when(
                 border
                     && inner_shares(around.len())
                         .iter()
                         .any(|share| self.takes(index, &shared(vertex, &around, *share))),
-                BORDER,
             ),
             (
                 border && !own_only && is_even(&along),
@@ -189,10 +189,8 @@ impl<'a> Step<'a> {
                 "your weights do not add up to 1: they are β for each of the n neighbours and 1 - n β for \
                  the vertex",
             ),
-            (
-                !border && adds_up && !own_only && is_even(&around),
-                "your weights are wrong: β is 3/16 for n = 3 neighbours, and 3/(8 n) otherwise",
-            ),
+            "your weights are wrong: β is 3/16 for n = 3 neighbours, and 3/(8 n) otherwise"
+                .when(!border && adds_up && !own_only && is_even(&around)),
         ];
         Err(Unlike::new(self.describe(index), describe(&shares), mistakes))
     }
@@ -228,10 +226,8 @@ impl<'a> Step<'a> {
         let mistakes = vec![
             (border && of_these, BORDER),
             (!border && !mixed && of_these, "the weights are 3/8 for each end and 1/8 for each third corner"),
-            (
-                !border && fresh.clone().any(|vertex| self.takes(vertex, &ends)),
-                "you use the midpoint for an inner edge: there the two third corners have weights, too",
-            ),
+            "you use the midpoint for an inner edge: there the two third corners have weights, too"
+                .when(!border && fresh.clone().any(|vertex| self.takes(vertex, &ends))),
             (!border && from_moved, FROM_BEFORE),
         ];
         Err(Unlike::new(

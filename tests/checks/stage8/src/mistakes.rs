@@ -54,14 +54,10 @@ pub(super) fn normals_of_cuboid(cuboid: &Cuboid, at: DVec3) -> WrongNormals {
     let farthest = from_middle.abs().max_position();
     let axis = DVec3::AXES[farthest] * from_middle[farthest];
     vec![
-        (
-            from_middle,
-            "you return the direction from the centre of the box to the hit: that is the normal of a sphere",
-        ),
-        (
-            axis,
-            "you return the axis along which the hit is farthest from the centre, which is right for a cube only",
-        ),
+        "you return the direction from the centre of the box to the hit: that is the normal of a sphere"
+            .when(from_middle),
+        "you return the axis along which the hit is farthest from the centre, which is right for a cube only"
+            .when(axis),
     ]
 }
 
@@ -138,6 +134,15 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>, scal
     let ends_of_root = [0.0, 1.0].map(|height| line.at_height(height));
     let ends_of_root = ends_of_root.into_iter().filter(|t| line.distance(*t) <= radius.sqrt());
     let of_root = is(ray, yours, first(ray, side_of_root.chain(ends_of_root)));
+    // A cylinder with another radius, or with ends at other heights.
+    let other = |radius: f64, low: f64, high: f64| {
+        let squared = radius * radius * line.axis.length_squared();
+        let side = roots(m.dot(m), n.dot(m), n.dot(n) - squared).into_iter();
+        let side = side.filter(|t| (low - 1e-9..=high + 1e-9).contains(&line.height(*t)));
+        let ends = [low, high].map(|height| line.at_height(height)).into_iter();
+        is(ray, yours, first(ray, side.chain(ends.filter(|t| line.distance(*t) <= radius))))
+    };
+    let unit = 1.0 / line.axis.length();
     let is_between = (0.0..=1.0).contains(&line.height(0.0));
     let rate = scale * line.direction.dot(line.axis).abs();
     let limited = LIMITS.map(|limit| match rate < limit {
@@ -149,6 +154,12 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>, scal
         (only(&[base], &side), "you leave out the end at `top`: a ray can enter or leave through it"),
         (only(&[top], &side), "you leave out the end at `base`: a ray can enter or leave through it"),
         (only(&[base, top], &[]), "you leave out the side: only the ends are hit"),
+        (other(radius, 0.0, unit), "your cylinder has the height 1: its axis goes from `base` to `top`"),
+        "your cylinder goes from `base` both ways: its axis goes from `base` to `top`"
+            .when(other(radius, -1.0, 1.0)),
+        (other(radius, 0.0, 0.5), "your cylinder ends halfway: its axis goes from `base` to `top`"),
+        "you take the radius for the diameter, or twice the radius for the radius"
+            .when(other(2.0 * radius, 0.0, 1.0) || other(0.5 * radius, 0.0, 1.0)),
         (of_root, "you use the radius in place of its square: the distance from the axis is squared, too"),
         (
             match endless.first().is_none_or(|enter| *enter <= f64::from(ray.t_min)) {
@@ -158,10 +169,8 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>, scal
             "you give up because the ray enters the infinite cylinder before t_min: it can still enter through an end, or \
              leave",
         ),
-        (
-            only(&[], &endless) || (endless.is_empty() && yours.is_none_or(|t| t > 1e3)),
-            "your cylinder has no ends: it goes on beyond `base` and `top`",
-        ),
+        "your cylinder has no ends: it goes on beyond `base` and `top`"
+            .when(only(&[], &endless) || (endless.is_empty() && yours.is_none_or(|t| t > 1e3))),
     ];
     all.extend(limited.map(|gives| (gives, LIMITED)));
     all
@@ -186,46 +195,41 @@ pub(super) fn of_cone(query: &SolidQuery<Cone>, yours: Option<f32>, _: f64) -> M
     let within = |slope: f64, low: f64, high: f64| {
         line.cone(slope).into_iter().filter(move |t| (low - 1e-9..=high + 1e-9).contains(&line.height(*t)))
     };
-    let base = |radius: f64| Some(line.at_height(1.0)).filter(|t| line.distance(*t) <= radius);
+    let end = |at: f64, radius: f64| Some(line.at_height(at)).filter(|t| line.distance(*t) <= radius);
+    let base = |radius: f64| end(1.0, radius);
+    let unit = 1.0 / height;
     let slope = radius / height;
     let endless = within(slope, 0.0, f64::INFINITY);
     let double = within(slope, f64::NEG_INFINITY, 1.0).chain(base(radius));
     let exchanged = within(height / radius, 0.0, 1.0).chain(base(height * height / radius));
     let not_squared = within(slope.sqrt(), 0.0, 1.0).chain(base(slope.sqrt() * height));
     let no_end = endless.clone().next().is_none();
-    vec![
-        (
-            is(ray, yours, first(ray, within(slope, 0.0, 1.0))),
-            "you leave out the base: a ray can enter or leave through it",
-        ),
-        (is(ray, yours, first(ray, base(radius))), "you leave out the side: only the base is hit"),
-        (
-            is(ray, yours, first(ray, endless)) || (no_end && yours.is_none_or(|t| t > 1e3)),
+    let hits = |ts: &mut dyn Iterator<Item = f64>| is(ray, yours, first(ray, ts));
+    let side = |high: f64| within(slope, 0.0, high);
+    named![
+        hits(&mut side(1.0)) => "you leave out the base: a ray can enter or leave through it",
+        hits(&mut base(radius).into_iter()) => "you leave out the side: only the base is hit",
+        hits(&mut side(0.5).chain(end(0.5, 0.5 * radius))) => "your base lies halfway to the apex: it is at `base`",
+        hits(&mut side(unit).chain(end(unit, radius * unit))) =>
+            "your cone has the height 1: its axis goes from `apex` to `base`",
+        hits(&mut endless.clone()) || (no_end && yours.is_none_or(|t| t > 1e3)) =>
             "your cone has no base: it goes on beyond `base`",
-        ),
-        (is(ray, yours, first(ray, not_squared)), "you do not square the slope of the side, radius / height"),
-        (
-            is(ray, yours, first(ray, double)),
+        hits(&mut not_squared.clone()) => "you do not square the slope of the side, radius / height",
+        hits(&mut double.clone()) =>
             "you return a point of the second cone, above the apex, which is not part of the solid",
-        ),
-        (
-            is(ray, yours, first(ray, exchanged)),
+        hits(&mut exchanged.clone()) =>
             "you exchange radius and height in the slope of the surface: it is radius / height",
-        ),
     ]
+    .to_vec()
 }
 
 pub(super) fn normals_of_cone(cone: &Cone, at: DVec3) -> WrongNormals {
     let (apex, axis) = (cone.apex.as_dvec3(), (cone.base - cone.apex).as_dvec3());
     vec![
-        (
-            (at - apex).reject_from(axis),
-            "you return the normal of a cylinder, perpendicular to the axis: the side of a cone is inclined",
-        ),
-        (
-            at - cone.base.as_dvec3(),
-            "you return the direction from `base` to the hit: that is the normal of a sphere",
-        ),
+        "you return the normal of a cylinder, perpendicular to the axis: the side of a cone is inclined"
+            .when((at - apex).reject_from(axis)),
+        "you return the direction from `base` to the hit: that is the normal of a sphere"
+            .when(at - cone.base.as_dvec3()),
     ]
 }
 
@@ -236,14 +240,10 @@ fn of_flat(ray: &Ray, yours: Option<f32>, t: f64, slope: f64, inside: bool) -> M
     let found_if = |is_found: bool| is(ray, yours, first(ray, [t]).filter(|_| is_found));
     vec![
         (found_if(true), OUTSIDE),
-        (
-            found_if(inside && slope > 0.0),
-            "you lose one of its two sides, the one to which its normal points: a ray can hit it from both",
-        ),
-        (
-            found_if(inside && slope < 0.0),
-            "you lose one of its two sides, the one behind its normal: a ray can hit it from both",
-        ),
+        "you lose one of its two sides, the one to which its normal points: a ray can hit it from both"
+            .when(found_if(inside && slope > 0.0)),
+        "you lose one of its two sides, the one behind its normal: a ray can hit it from both"
+            .when(found_if(inside && slope < 0.0)),
     ]
 }
 
@@ -257,10 +257,8 @@ pub(super) fn of_disk(query: &SolidQuery<Disk>, yours: Option<f32>, scale: f64) 
     let wrong = |inside: bool| is(ray, yours, first(ray, [t]).filter(|_| inside));
     let mut all = vec![
         (wrong(squared <= radius), "you compare the square of the distance with the radius: square both"),
-        (
-            wrong(squared.sqrt() <= radius * radius),
-            "you compare the distance with the square of the radius: square both or none",
-        ),
+        "you compare the distance with the square of the radius: square both or none"
+            .when(wrong(squared.sqrt() <= radius * radius)),
     ];
     all.extend(of_flat(ray, yours, t, slope, squared <= radius * radius));
     let is_kept = |limit: f64| squared <= radius * radius && scale * slope.abs() >= limit;
@@ -292,18 +290,12 @@ pub(super) fn of_polygon(query: &SolidQuery<Polygon>, yours: Option<f32>, _: f64
         .collect();
     let mut all = vec![
         (wrong(fan(1)), "you test the first triangle of the fan only"),
-        (
-            wrong((1..3.min(corners.len() - 1)).any(fan)),
-            "you test the first two triangles of the fan only: n corners make n - 2 triangles",
-        ),
-        (
-            wrong(same_sign(&twice)),
-            "you subtract a corner twice: the plane of an edge passes through the ray's origin",
-        ),
-        (
-            wrong(inside) || (yours.is_none() && normal.z.abs() < 0.1 * normal.length()),
-            "you lose upright polygons: drop the axis along which the normal is longest, not always z",
-        ),
+        "you test the first two triangles of the fan only: n corners make n - 2 triangles"
+            .when(wrong((1..3.min(corners.len() - 1)).any(fan))),
+        "you subtract a corner twice: the plane of an edge passes through the ray's origin"
+            .when(wrong(same_sign(&twice))),
+        "you lose upright polygons: drop the axis along which the normal is longest, not always z"
+            .when(wrong(inside) || (yours.is_none() && normal.z.abs() < 0.1 * normal.length())),
     ];
     all.extend(of_flat(ray, yours, t, slope, inside));
     all

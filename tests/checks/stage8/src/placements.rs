@@ -77,21 +77,15 @@ fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> Judged {
         (is(&own, &own), OWN_ONLY),
         (is(&root, &exact), ROOT_ONLY),
         (is(&root, &root), ROOT_ONLY),
-        (
-            is(&added, &added) || is(&added, &exact),
-            "you add the translations: each is turned and scaled by the transforms before it",
-        ),
+        "you add the translations: each is turned and scaled by the transforms before it"
+            .when(is(&added, &added) || is(&added, &exact)),
         (is(&ends, &ends), "you use the first and the last transform of the path only: multiply all of them"),
         (is(&turned, &exact), FROM_THE_NODE),
         (is(&turned, &turned), FROM_THE_NODE),
-        (
-            up && near(&yours.to_object, &turned.inverse()),
-            "you multiply the inverses in the order of the transforms: the order must be reversed",
-        ),
-        (
-            near(&yours.to_world, &exact.inverse()) && near(&yours.to_object, &exact),
-            "you exchange to_world and to_object",
-        ),
+        "you multiply the inverses in the order of the transforms: the order must be reversed"
+            .when(up && near(&yours.to_object, &turned.inverse())),
+        "you exchange to_world and to_object"
+            .when(near(&yours.to_world, &exact.inverse()) && near(&yours.to_object, &exact)),
     ])
 }
 
@@ -146,10 +140,8 @@ fn judge_refusal(path: &Vec<Affine3A>, yours: Option<Placement>) -> CheckResult 
     let flat = path.iter().filter(is_finite).any(|one| determinant(one) == 0.0);
     match (yours, has_inverse) {
         (Some(_), false) => Err(Broken::with_texts(input, "Some", "None", "a transform has no inverse").explained_by([
-            (
-                flat,
-                "you accept a path with a singular transform: if one factor has no inverse, the product has none",
-            ),
+            "you accept a path with a singular transform: if one factor has no inverse, the product has none"
+                .when(flat),
             (!flat, "you accept a transform with NaN or infinite numbers: its inverse is not finite"),
             (true, "you accept a path with a transform that has no inverse: if one has none, the product has none"),
         ])),

@@ -1,6 +1,7 @@
 //! Checks the triangles of a subdivision step by their connections, not by their positions.
 
 use super::subdivision::{Unlike, unlike};
+use checks::broken::Words as _;
 use raykata::mesh::Mesh;
 use std::collections::BTreeSet;
 
@@ -65,10 +66,8 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
                 "triangles with corners in the opposite order",
                 "corners in the order of the old triangle",
                 vec![
-                    (
-                        true,
-                        "you reverse the corners of some triangles: all four keep the order of the old triangle",
-                    ),
+                    "you reverse the corners of some triangles: all four keep the order of the old triangle"
+                        .when(true),
                     (true, wiring),
                 ],
             ),

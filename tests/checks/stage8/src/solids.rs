@@ -205,41 +205,31 @@ fn mistakes<S: Solid>(scaled: &Scaled<S>, yours: Option<f32>, exact: Option<f32>
     let is_small = exact.is_some_and(|t| t > 0.0 && is_dropped(t.into()));
     let is_last_dropped = S::FLAT || last().is_none_or(|t| is_dropped(t) || t >= f64::from(ray.t_max));
     vec![
-        (
-            yours.is_some_and(f32::is_nan),
-            "you return NaN: write the comparisons so that they are false for NaN",
-        ),
+        "you return NaN: write the comparisons so that they are false for NaN"
+            .when(yours.is_some_and(f32::is_nan)),
         (counts_from(length), "your t has another unit, that of the world: it counts lengths of direction"),
         (counts_from(length.recip()), "your t has another unit: you divide by the length of direction twice"),
         // Some return None for a small t, and others go on to the far side, which may be dropped, too.
         (is_small && lost, FIXED_EPSILON),
         (is_small && (is_far || (lost && is_last_dropped)), FIXED_EPSILON),
-        (
-            ray.t_min != 0.0 && is_range(0.0, ray.t_max),
-            "you use 0 in place of t_min: a hit outside of the ray's range does not count, so test ray.contains(t)",
-        ),
-        (
-            ray.t_max != f32::INFINITY && is_range(ray.t_min, f32::INFINITY),
-            "you do not test t_max: a hit outside of the ray's range does not count, so test ray.contains(t)",
-        ),
+        "you use 0 in place of t_min: a hit outside of the ray's range does not count, so test ray.contains(t)"
+            .when(ray.t_min != 0.0 && is_range(0.0, ray.t_max)),
+        "you do not test t_max: a hit outside of the ray's range does not count, so test ray.contains(t)"
+            .when(ray.t_max != f32::INFINITY && is_range(ray.t_min, f32::INFINITY)),
         (
             lost && inside && !S::FLAT,
             "you return None for a ray that starts inside: it hits the surface where it leaves, on a side or \
              on an end",
         ),
-        (
-            lost && !S::FLAT && first.is_some_and(|t| t <= ray.t_min),
-            "you give up because the entry lies before t_min: the exit still counts",
-        ),
+        "you give up because the entry lies before t_min: the exit still counts"
+            .when(lost && !S::FLAT && first.is_some_and(|t| t <= ray.t_min)),
         (
             is_far && exact.is_some(),
             "you return the far side: the hit is the nearest point of the surface in the ray's range, on a \
              side or on an end",
         ),
-        (
-            yours.is_some_and(|t| !ray.contains(t)),
-            "you return a t outside of the ray's range: test ray.contains(t)",
-        ),
+        "you return a t outside of the ray's range: test ray.contains(t)"
+            .when(yours.is_some_and(|t| !ray.contains(t))),
         (S::FLAT && yours.is_some() && exact.is_none(), OUTSIDE),
     ]
 }
@@ -305,14 +295,10 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> CheckResult {
             let mut mistakes = vec![
                 (normal.is_nan(), "your normal is NaN: you normalized a vector of length 0"),
                 (normal == DVec3::ZERO, "your normal is 0, which has no direction"),
-                (
-                    turned && faces_viewer && unit,
-                    "you turn the normal to the viewer: it does not depend on where the ray comes from",
-                ),
-                (
-                    turned && unit,
-                    "you return the normal of the other side, from which the corners run clockwise",
-                ),
+                "you turn the normal to the viewer: it does not depend on where the ray comes from"
+                    .when(turned && faces_viewer && unit),
+                "you return the normal of the other side, from which the corners run clockwise"
+                    .when(turned && unit),
                 (!turned && !unit && beyond(direction) <= 2e-3, "your normal does not have unit length"),
             ];
             // The tolerance covers the error of the hit point over half a unit, the smallest radius.
@@ -379,10 +365,8 @@ fn judge_ranges<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> Vec<C
             let expected = if counts { format!("Some at t = {t:?}") } else { format!("no hit at t = {t:?}") };
             let source = "your t without these ends of the range";
             Err(Broken::with_texts(input(query), format!("{yours:?}"), expected, source).explained_by([
-                (
-                    !counts && (t == query.ray.t_min || t == query.ray.t_max),
-                    "the range is open: a hit exactly at t_min or t_max does not count, so test ray.contains(t)",
-                ),
+                "the range is open: a hit exactly at t_min or t_max does not count, so test ray.contains(t)"
+                    .when(!counts && (t == query.ray.t_min || t == query.ray.t_max)),
                 (
                     counts && yours.is_none(),
                     "you lose a hit that is one float inside the range: compare t with t_min and t_max, without an \

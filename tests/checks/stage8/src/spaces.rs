@@ -83,31 +83,21 @@ fn judge_points(query: &ObjectRayQuery, yours: Ray) -> Judged {
             "you multiply the direction by the transpose of to_object, the inverse transpose of \
                  to_world, as the slide does: this is for normals only",
         ),
-        (
-            turned(along(exact.matrix3.inverse().transpose())),
-            "you multiply the direction by the inverse transpose of to_object: this is for normals only",
-        ),
-        (
-            turned(along(exact.matrix3.inverse())),
-            "you multiply the direction by the inverse of to_object, which leads to the world",
-        ),
+        "you multiply the direction by the inverse transpose of to_object: this is for normals only"
+            .when(turned(along(exact.matrix3.inverse().transpose()))),
+        "you multiply the direction by the inverse of to_object, which leads to the world"
+            .when(turned(along(exact.matrix3.inverse()))),
         (turned(is_along(yours.direction, ray.direction.as_dvec3())), "you do not transform the direction"),
         (turned(is_along(yours.direction, -direction)), "you reverse the direction"),
         (moved(there(origin + direction)), "you start at origin + direction: start at the origin"),
-        (
-            turned(is_along(yours.direction, direction + exact.translation)),
-            "you translate the direction: only points are translated",
-        ),
+        "you translate the direction: only points are translated"
+            .when(turned(is_along(yours.direction, direction + exact.translation))),
         (moved(there(origin - exact.translation)), "you do not translate the origin: it is a point"),
         (moved(there(from)), "you do not transform the origin"),
-        (
-            moved(there(back.transform_point3(from))),
-            "you transform the origin by the inverse of to_object, which leads to the world",
-        ),
-        (
-            along(exact.matrix3.inverse()) && there(back.transform_point3(from)),
-            "you transform the ray by the inverse of to_object, which leads to the world",
-        ),
+        "you transform the origin by the inverse of to_object, which leads to the world"
+            .when(moved(there(back.transform_point3(from)))),
+        "you transform the ray by the inverse of to_object, which leads to the world"
+            .when(along(exact.matrix3.inverse()) && there(back.transform_point3(from))),
     ])
 }
 
@@ -171,24 +161,16 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
     unless(same_length && same_range && same_time, || {
             let (got, right) = (describe(length, &yours), describe(exact, ray));
             Broken::with_texts(query.call("ray_to_object"), got, right, "the definition")
-            .explained_by([(
-                same_length && same_time && yours.t_max == ray.t_max && yours.t_min > ray.t_min,
-                "you raise t_min: the range stays, and an offset of the origin belongs to other rays",
-            )])
+            .explained_by(["you raise t_min: the range stays, and an offset of the origin belongs to other rays"
+                .when(same_length && same_time && yours.t_max == ray.t_max && yours.t_min > ray.t_min)])
         }).formulas([
-            (
-                only_length && near(1.0),
-                "you normalize the direction: t then has another unit than in the world and cannot be compared",
-            ),
-            (
-                only_length && near(world.length()),
-                "you give the direction the length that it has in the world: then the same t is another point",
-            ),
+            "you normalize the direction: t then has another unit than in the world and cannot be compared"
+                .when(only_length && near(1.0)),
+            "you give the direction the length that it has in the world: then the same t is another point"
+                .when(only_length && near(world.length())),
             (same_range && same_length && yours.time == 0.0, "you do not copy the time of the ray"),
-            (
-                (yours.t_min, yours.t_max) == (0.0, f32::INFINITY),
-                "you start with a new range: copy t_min and t_max from the ray",
-            ),
+            "you start with a new range: copy t_min and t_max from the ray"
+                .when((yours.t_min, yours.t_max) == (0.0, f32::INFINITY)),
             (
                 is(yours.t_min, low * factor) && is(yours.t_max, high * factor),
                 "you change the range of the ray by the length of the direction: t is the same number in both spaces, so t_min \
@@ -199,10 +181,8 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
                 "you multiply the range by the length of the direction: t is the same number in both spaces, so t_min and \
                  t_max stay",
             ),
-            (
-                near(1.0) && is(yours.t_max, high * exact) && (is(yours.t_min, low) || is(yours.t_min, low * exact)),
-                "you normalize the direction and scale the range: t is then another number than in the world",
-            ),
+            "you normalize the direction and scale the range: t is then another number than in the world"
+                .when(near(1.0) && is(yours.t_max, high * exact) && (is(yours.t_min, low) || is(yours.t_min, low * exact))),
             (
                 is(yours.t_min, low / factor) && is(yours.t_max, high / factor),
                 "you divide the range of the ray by the change of the direction's length: t is the same number in both spaces, \

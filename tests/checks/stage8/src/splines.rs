@@ -71,21 +71,15 @@ const CLOSED: &str = "your spans contain both ends: at a knot inside, two functi
 const NOT_A_NUMBER: &str = "you divide 0 by 0 where knots are equal: leave out a term whose denominator is 0";
 
 /// The wrong recursions with what to say about them.
-const WRONG: [(Rule, &str); 8] = [
-    (Rule::HalfOpenAtTheEnd, HALF_OPEN),
-    (Rule::ClosedSpans, CLOSED),
-    (Rule::ZeroOverZero, NOT_A_NUMBER),
-    (Rule::FirstTermOnly, "you leave out the second term, with N(i+1, p-1)"),
-    (
-        Rule::OneDenominator,
-        "you divide both terms by k_{i+p} - k_i: the second denominator is k_{i+p+1} - k_{i+1}",
-    ),
-    (
-        Rule::FactorsExchanged,
-        "you exchange the two factors: that of N(i, p-1) rises, and that of N(i+1, p-1) falls",
-    ),
-    (Rule::SameFunctionTwice, "you use N(i, p-1) in both terms: the second one has N(i+1, p-1)"),
-    (Rule::OneDegreeLess, "you return the function of one degree less"),
+const WRONG: [(Rule, &str); 8] = named![
+    Rule::HalfOpenAtTheEnd => HALF_OPEN,
+    Rule::ClosedSpans => CLOSED,
+    Rule::ZeroOverZero => NOT_A_NUMBER,
+    Rule::FirstTermOnly => "you leave out the second term, with N(i+1, p-1)",
+    Rule::OneDenominator => "you divide both terms by k_{i+p} - k_i: the second denominator is k_{i+p+1} - k_{i+1}",
+    Rule::FactorsExchanged => "you exchange the two factors: that of N(i, p-1) rises, and that of N(i+1, p-1) falls",
+    Rule::SameFunctionTwice => "you use N(i, p-1) in both terms: the second one has N(i+1, p-1)",
+    Rule::OneDegreeLess => "you return the function of one degree less",
 ];
 
 impl Rule {
@@ -233,21 +227,24 @@ enum Mean {
     WeightsBelowOnly,
     ParametersExchanged,
     OneParameterTwice,
+    OneDegree(usize),
+    OneListOfKnots(usize),
+    WeightsOfFirstRow,
 }
 
-const WRONG_MEANS: [(Mean, &str); 6] = [
-    (Mean::WithoutWeights, "you leave out the weights"),
-    (
-        Mean::NotDivided,
+const WRONG_MEANS: [(Mean, &str); 11] = named![
+    Mean::WithoutWeights => "you leave out the weights",
+    Mean::NotDivided =>
         "you do not divide by the sum of the factors: with weights it is not 1, although the basis functions add up to 1",
-    ),
-    (
-        Mean::DividedByTheNumber,
-        "you divide by the sum of all weights: weight each by its basis functions, too",
-    ),
-    (Mean::WeightsBelowOnly, "you use the weights in the denominator only: the points have the same factors"),
-    (Mean::ParametersExchanged, "you exchange u and v: u runs along the rows, v from row to row"),
-    (Mean::OneParameterTwice, "you use u in both directions: v runs from row to row"),
+    Mean::DividedByTheNumber => "you divide by the sum of all weights: weight each by its basis functions, too",
+    Mean::WeightsBelowOnly => "you use the weights in the denominator only: the points have the same factors",
+    Mean::ParametersExchanged => "you exchange u and v: u runs along the rows, v from row to row",
+    Mean::OneParameterTwice => "you use u in both directions: v runs from row to row",
+    Mean::OneDegree(0) => "you use one degree in both directions: u has degrees[0], and v has degrees[1]",
+    Mean::OneDegree(1) => "you use one degree in both directions: u has degrees[0], and v has degrees[1]",
+    Mean::OneListOfKnots(0) => "you use the same knots in both directions: u has knots[0], and v has knots[1]",
+    Mean::OneListOfKnots(1) => "you use the same knots in both directions: u has knots[0], and v has knots[1]",
+    Mean::WeightsOfFirstRow => "you use the weights of the first row for all rows: each point has its own",
 ];
 
 impl Mean {
@@ -260,14 +257,19 @@ impl Mean {
             _ => query.uv.to_array(),
         };
         let basis = |axis: usize, index: usize, u: f32| {
-            Rule::Right.basis(&patch.knots[axis], patch.degrees[axis], index, f64::from(u))
+            let degree = patch.degrees[if let Mean::OneDegree(axis) = self { axis } else { axis }];
+            let knots = &patch.knots[if let Mean::OneListOfKnots(axis) = self { axis } else { axis }];
+            // Code that reads beyond the knots panics.
+            let is_there = index + degree + 1 < knots.len();
+            if is_there { Rule::Right.basis(knots, degree, index, f64::from(u)) } else { f64::INFINITY }
         };
         let across: Vec<f64> = (0..patch.rows[0].len()).map(|i| basis(0, i, u)).collect();
         let along: Vec<f64> = (0..patch.rows.len()).map(|j| basis(1, j, v)).collect();
+        let row_of_weights = |j: usize| if self == Mean::WeightsOfFirstRow { 0 } else { j };
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
         for (j, row) in patch.rows.iter().enumerate() {
             for (i, point) in row.iter().enumerate() {
-                let (factor, weight) = (across[i] * along[j], f64::from(patch.weights[j][i]));
+                let (factor, weight) = (across[i] * along[j], f64::from(patch.weights[row_of_weights(j)][i]));
                 let with = factor * weight;
                 let of_point =
                     if matches!(self, Mean::WithoutWeights | Mean::WeightsBelowOnly) { factor } else { with };

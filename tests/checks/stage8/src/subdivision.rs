@@ -204,14 +204,10 @@ fn judge_counts(mesh: &Mesh, yours: &Mesh) -> Result<(), Unlike> {
     let (n, n_triangles) = (yours.positions.len(), yours.triangles.len());
     if (n, n_triangles) != (vertices, triangles) {
         let mistakes = vec![
-            (
-                n == n_old + 3 * mesh.triangles.len() && n > vertices,
-                "you make more than one new vertex per edge: the triangles on both sides share it",
-            ),
-            (
-                n_triangles != triangles,
-                "you do not make four triangles of each: three at its corners and one in the middle",
-            ),
+            "you make more than one new vertex per edge: the triangles on both sides share it"
+                .when(n == n_old + 3 * mesh.triangles.len() && n > vertices),
+            "you do not make four triangles of each: three at its corners and one in the middle"
+                .when(n_triangles != triangles),
             (n < vertices, "you make too few new vertices: there is one per edge, after the old ones"),
         ];
         return Err(Unlike::new(

@@ -53,10 +53,8 @@ pub(super) fn bezier_starts_and_ends_at_its_corners(trial: &Trial<'_>) -> CheckR
                 Broken::new(describe(query), yours, corner, "the corner of the control net")
             })
             .formulas([
-                (
-                    yours == query.patch.rows[column][row],
-                    "you exchange u and v: u runs along the rows, v along the columns",
-                ),
+                "you exchange u and v: u runs along the rows, v along the columns"
+                    .when(yours == query.patch.rows[column][row]),
                 (yours == opposite, "you exchange t and 1 - t"),
                 (is(rows_first), BY_DIFFERENCES),
                 (is(columns_first), BY_DIFFERENCES),
@@ -98,26 +96,16 @@ fn judge_points(query: &PatchQuery, yours: Vec3) -> Judged {
         (near(at([1.0 - u, 1.0 - v], bernstein)), "you exchange t and 1 - t"),
         (near(at([1.0 - u, v], bernstein)), "you exchange u and 1 - u"),
         (near(at([u, 1.0 - v], bernstein)), "you exchange v and 1 - v"),
-        (
-            near(at([u, u], bernstein)),
-            "you use one parameter twice, u: u runs along the rows, v along the columns",
-        ),
-        (
-            near(at([v, v], bernstein)),
-            "you use one parameter twice, v: u runs along the rows, v along the columns",
-        ),
-        (
-            near(at([u, v], |t| [1.0 - t, 0.0, 0.0, t])),
-            "you use only the corners: the control points between them have weights, too",
-        ),
-        (
-            near(at([u, v], once)),
-            "you interpolate twice along a curve: four points need three rounds, 4, 3, 2, 1",
-        ),
-        (
-            near(at([u, v], without_factors)),
-            "your weights do not add up to 1: their factors are 1, 3, 3 and 1",
-        ),
+        "you use one parameter twice, u: u runs along the rows, v along the columns"
+            .when(near(at([u, u], bernstein))),
+        "you use one parameter twice, v: u runs along the rows, v along the columns"
+            .when(near(at([v, v], bernstein))),
+        "you use only the corners: the control points between them have weights, too"
+            .when(near(at([u, v], |t| [1.0 - t, 0.0, 0.0, t]))),
+        "you interpolate twice along a curve: four points need three rounds, 4, 3, 2, 1"
+            .when(near(at([u, v], once))),
+        "your weights do not add up to 1: their factors are 1, 3, 3 and 1"
+            .when(near(at([u, v], without_factors))),
         (
             near(at([u, v], interpolating)),
             "your surface passes through all control points: a Bézier patch passes only through its \

@@ -3,7 +3,7 @@
 use super::hulls::{self, usable};
 use super::lists::{Fault, ended, fact, judge_references};
 use checks::prelude::*;
-use raykata::partition::{Bsp, CutPlane, MOST_REFERENCES, TreeNode, corners};
+use raykata::partition::{Bsp, BspNode, CutPlane, MOST_REFERENCES, TreeNode, corners};
 
 /// A leaf: its number, the planes above it with the side on which it lies, and the primitives that it lists.
 type Leaf = (u32, Vec<(CutPlane, f64)>, Vec<u32>);
@@ -21,7 +21,20 @@ fn leaves(bsp: &Bsp) -> Vec<Leaf> {
 const WHAT_MAKES_IT: &str = "the definition of a BSP tree";
 
 fn judge_tree(query: &BspQuery, yours: &Bsp) -> CheckResult {
-    hulls::judge_tree(query, WHAT_MAKES_IT, (yours.nodes.len(), yours.depth()), || fault(query, yours))
+    let mut exchanged = yours.clone();
+    for node in &mut exchanged.nodes {
+        if let BspNode::Inner { back, front, .. } = node {
+            std::mem::swap(back, front);
+        }
+    }
+    let is_exchanged = |(yours, expected, mistakes): Fault| match fault(query, &exchanged) {
+        None => {
+            fact(yours, expected, "the children are exchanged: `front` is on the side of the plane's normal")
+        }
+        Some(_) => (yours, expected, mistakes),
+    };
+    let faults = || fault(query, yours).map(is_exchanged);
+    hulls::judge_tree(query, WHAT_MAKES_IT, (yours.nodes.len(), yours.depth()), faults)
 }
 
 fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
@@ -55,14 +68,10 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
                     count(times),
                     count(1),
                     vec![
-                        (
-                            missing && elsewhere && on_plane,
-                            "a primitive that touches a plane, or lies in it, belongs to both sides",
-                        ),
-                        (
-                            missing && elsewhere,
-                            "a primitive that crosses or touches a plane belongs to both sides",
-                        ),
+                        "a primitive that touches a plane, or lies in it, belongs to both sides"
+                            .when(missing && elsewhere && on_plane),
+                        "a primitive that crosses or touches a plane belongs to both sides"
+                            .when(missing && elsewhere),
                         (missing && !elsewhere, "you leave out a primitive: no leaf lists it"),
                         (!missing, "you list a primitive twice in one leaf"),
                     ],
@@ -167,20 +176,11 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     if fullest <= 2 && references <= 2 * n && depth <= 8 {
         return judge_straddlers(trial);
     }
-    let mistakes = [
-        (yours.nodes.len() == 1, "you make no cut: the planes of the polygons are the candidates"),
-        (
-            fullest > 2,
-            "you do not divide the parallel sheets down to leaf_size: the planes of the polygons are the candidates",
-        ),
-        (
-            references > 2 * n,
-            "your planes have many sheets on both sides: the planes of the polygons are the candidates",
-        ),
-        (
-            depth > 8,
-            "your planes leave most sheets on one side: choose those that leave few primitives on the fuller side",
-        ),
+    let mistakes = named![
+        yours.nodes.len() == 1 => "you make no cut: the planes of the polygons are the candidates",
+        fullest > 2 => "you do not divide the parallel sheets down to leaf_size: the planes of the polygons are the candidates",
+        references > 2 * n => "your planes have many sheets on both sides: the planes of the polygons are the candidates",
+        depth > 8 => "your planes leave most sheets on one side: choose those that leave few primitives on the fuller side",
     ];
     let yours = format!("up to {fullest} sheets per leaf, {references} references, {depth} levels");
     let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 32");

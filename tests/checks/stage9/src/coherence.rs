@@ -34,26 +34,18 @@ pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
             let known = query.last.map(|last| query.hits[last as usize]).filter(|t| query.ray.contains(*t));
             let is_last = |primitive: u32| Some(primitive) == query.last;
             let mistakes = [
-                (
-                    found.is_some_and(|(_, t)| !query.ray.contains(t)),
-                    "you return a hit outside the ray's range: test the last primitive with this ray",
-                ),
-                (
-                    found.zip(expected).is_some_and(|((_, t), (_, best))| t == best),
-                    "of two hits at the same t the smaller number wins: end the ray one float above the known hit",
-                ),
-                (
-                    found.is_some_and(|(primitive, _)| is_last(primitive)) && yours.tests.len() == 1,
-                    "you return the hit with the last primitive, but a nearer one exists: search on",
-                ),
-                (
-                    found.is_none() && known.is_some(),
-                    "you forget the hit with the last primitive: the search with the shortened ray may find nothing",
-                ),
-                (
-                    found.is_some() && expected.is_some(),
-                    "you return the farther of the known hit and the found one: keep the nearer",
-                ),
+                "you return a hit outside the ray's range: test the last primitive with this ray"
+                    .when(found.is_some_and(|(_, t)| !query.ray.contains(t))),
+                "of two hits at the same t the smaller number wins: end the ray one float above the known hit"
+                    .when(found.zip(expected).is_some_and(|((_, t), (_, best))| t == best)),
+                "you return the hit with the last primitive, but a nearer one exists: search on"
+                    .when(found.is_some_and(|(primitive, _)| is_last(primitive)) && yours.tests.len() == 1),
+                "you search nothing if the ray misses the last primitive: search with the whole ray"
+                    .when(found.is_none() && known.is_none() && query.last.is_some() && yours.tests.len() == 1),
+                "you forget the hit with the last primitive: the search with the shortened ray may find nothing"
+                    .when(found.is_none() && known.is_some()),
+                "you return the farther of the known hit and the found one: keep the nearer"
+                    .when(found.is_some() && expected.is_some()),
             ];
             let input =
                 format!("{n} primitives, of which {:?} was the last hit\n{}", query.last, query.ray.paste());
@@ -121,11 +113,20 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> CheckResu
             if yours_count != query.rays.len() {
                 let (yours, expected) = (format!("{} hits", yours.hits.len()), format!("{}", query.rays.len()));
                 let broken = Broken::with_texts(input, yours, expected, "one per ray");
-                return Err(broken.explained_by([(
-                    yours_count == query.rays.len().min(8),
-                    "a packet has eight rays at most: put the other rays into further packets",
-                )]));
+                return Err(broken.explained_by([
+                    "an empty tree has no hit: return None for each ray"
+                        .when(yours_count == 0 && query.bvh.nodes.is_empty()),
+                    "a packet has eight rays at most: put the other rays into further packets"
+                        .when(yours_count == query.rays.len().min(8)),
+                    "rays that do not fill a packet get no answer: the last packet may be smaller"
+                        .when(yours_count == query.rays.len() / 8 * 8),
+                ]));
             }
+            let right: Vec<_> = singles.iter().map(closest_in_table).collect();
+            let found: Vec<_> = yours.hits.iter().map(|hit| hit.map(|hit| (hit.primitive, hit.t))).collect();
+            // All in reverse order, or each packet.
+            let packets = found.chunks(8).flat_map(|packet| packet.iter().rev());
+            let in_reverse = packets.eq(&right) || found.iter().rev().eq(&right);
             let yours_opened = &yours.opened;
             for (index, (single, yours)) in singles.iter().zip(&yours.hits).enumerate() {
                 let expected = closest_in_table(single);
@@ -135,18 +136,15 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> CheckResu
                     let (needed, _) = tree::needed(single);
                     let is_left = needed.iter().any(|node| !yours_opened.contains(&(*node as u32)));
                     let mistakes = [
-                        (
-                            found.is_some_and(|(_, t)| !single.ray.contains(t)),
-                            "you return a hit outside the range of this ray: each ray has its own range",
-                        ),
-                        (
-                            found.is_some_and(|(primitive, t)| single.table.primitives.get(primitive as usize) != Some(&t)),
-                            "you return the hit of another ray: each ray keeps its own",
-                        ),
-                        (
-                            is_left,
-                            "the packet left a node that this ray enters: skip a node only if no ray of the packet enters it",
-                        ),
+                        "you return a hit outside the range of this ray: each ray has its own range"
+                            .when(found.is_some_and(|(_, t)| !single.ray.contains(t))),
+                        "you return the hit of another ray: each ray keeps its own"
+                            .when(found.is_some_and(|(primitive, t)| single.table.primitives.get(primitive as usize) != Some(&t))),
+                        (in_reverse, "the hits are in reverse order: return them in the order of the rays"),
+                        "the packet left a node that this ray enters: skip a node only if no ray of the packet enters it"
+                            .when(is_left),
+                        "each node that this ray needs is opened, but its nearest primitive is not tested with it, or the hit is lost"
+                            .when(found.is_none_or(|(_, t)| expected.is_some_and(|(_, best)| t > best))),
                     ];
                     let input = format!("{input}; ray {index}: {}", single.ray.paste());
                     let broken = Broken::new(input, found, expected, "brute force, (primitive, t)");

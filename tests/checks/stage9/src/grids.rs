@@ -1,6 +1,6 @@
 //! The laws of the uniform grid: which primitives each cell lists, and the search.
 
-use super::lists::{Fault, listing_fault, some_boxes};
+use super::lists::{Fault, fact, listing_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scales, Scene, Thing, along, lattice, rays, scales, sphere, straight, wall};
 use super::searches::{Described, GRID, grid_queries};
@@ -37,8 +37,24 @@ fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<Fault> {
         let expected = format!("{n} cells, ascending starts, and the number of items as the last one");
         return Some((yours, expected, Vec::new()));
     }
-    let listed = |(number, at, cell): (u32, UVec3, Cell)| (at, cell, grid.primitives(number).to_vec());
-    listing_fault("cell", &grid.bounds, &query.bounds, &parts::numbered(grid).map(listed).collect::<Vec<_>>())
+    // The lists if cells are numbered along x first, or along z first.
+    let fault = |z_first: bool| {
+        let listed = |(number, at, cell): (u32, UVec3, Cell)| {
+            let other = (at.x * grid.resolution.y + at.y) * grid.resolution.z + at.z;
+            (at, cell, grid.primitives(if z_first { other } else { number }).to_vec())
+        };
+        listing_fault(
+            "cell",
+            &grid.bounds,
+            &query.bounds,
+            &parts::numbered(grid).map(listed).collect::<Vec<_>>(),
+        )
+    };
+    let is_turned = |(yours, expected, mistakes): Fault| match fault(true) {
+        None => fact(yours, expected, "the cells are numbered along z first: x counts fastest"),
+        Some(_) => (yours, expected, mistakes),
+    };
+    fault(false).map(is_turned)
 }
 
 /// A large sphere of the first cell is hit in the third cell, and a small one in the second cell is nearer.
@@ -157,10 +173,8 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
     };
     let input = format!("grid of {} cells without primitives\n{}", query.cells.resolution, query.ray.paste());
     Err(Broken::with_texts(input, yours, expected, "every cell tested in double precision").explained_by([
-        (
-            left_out.is_some() && visits.is_empty(),
-            "you do not find the first cell: clip the ray to the grid's bounds, and start there",
-        ),
+        "you do not find the first cell: clip the ray to the grid's bounds, and start there"
+            .when(left_out.is_some() && visits.is_empty()),
         (visits == across_the_farthest(query, 0.0), FARTHEST_FACE),
         (visits == across_the_farthest(query, 1e-6), FARTHEST_FACE),
         (missed.is_some(), "you visit a cell that the ray does not enter"),

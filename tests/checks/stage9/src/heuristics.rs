@@ -229,10 +229,9 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> CheckResult {
     if share < 0.9 {
         let input = format!("build of {what}, cut_off_empty_space alone, leaf_size 2");
         let broken = Broken::with_texts(input, describe(share), "at least 90 %", "the heuristic");
-        return Err(broken.explained_by([(
-            share == empty_share(&off, 4),
-            "empty margins of a cell are not cut off: do it before any other cut",
-        )]));
+        return Err(broken
+            .explained_by(["empty margins of a cell are not cut off: do it before any other cut"
+                .when(share == empty_share(&off, 4))]));
     }
     // The first cut is at x = 20. The boxes to its left leave margins of 9.0 and 9.5 % of their cell along y.
     let left =
@@ -266,10 +265,9 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> CheckResult {
         let input = format!("build of {what}, with cut_off_empty_space and without, leaf_size 2");
         let yours = format!("with {:.0} %, without {:.0} % empty at depth 2", 100.0 * early, 100.0 * off);
         return Err(Broken::with_texts(input, yours, "more with it than without", "the heuristic")
-            .explained_by([(
-                off == early,
-                "you cut off the margins although cut_off_empty_space is switched off",
-            )]));
+            .explained_by([
+                "you cut off the margins although cut_off_empty_space is switched off".when(off == early)
+            ]));
     }
     Ok(())
 }

@@ -18,12 +18,18 @@ const WHAT_MAKES_IT: &str = "the definition of a kd-tree";
 
 fn judge_tree(query: &KdQuery, yours: &KdTree) -> CheckResult {
     let nothing = query.bounds.iter().all(Aabb::is_empty);
-    super::lists::judge_tree(
-        || describe(query),
-        WHAT_MAKES_IT,
-        (nothing, yours.nodes.len()),
-        || fault(query, yours),
-    )
+    let mut exchanged = yours.clone();
+    for node in &mut exchanged.nodes {
+        if let KdNode::Inner { left, right, .. } = node {
+            std::mem::swap(left, right);
+        }
+    }
+    let is_exchanged = |(yours, expected, mistakes): Fault| match fault(query, &exchanged) {
+        None => fact(yours, expected, "the children are exchanged: the left one has the smaller coordinates"),
+        Some(_) => (yours, expected, mistakes),
+    };
+    let faults = || fault(query, yours).map(is_exchanged);
+    super::lists::judge_tree(|| describe(query), WHAT_MAKES_IT, (nothing, yours.nodes.len()), faults)
 }
 
 fn fault(query: &KdQuery, yours: &KdTree) -> Option<Fault> {

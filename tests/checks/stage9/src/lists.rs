@@ -117,10 +117,8 @@ pub(super) fn listing_fault<N: std::fmt::Display>(
                     describe(1),
                     vec![
                         (elsewhere && touches, "a primitive that touches a plane belongs to both sides"),
-                        (
-                            elsewhere,
-                            "a primitive that overlaps or touches several cells belongs to all of them",
-                        ),
+                        "a primitive that overlaps or touches several cells belongs to all of them"
+                            .when(elsewhere),
                         (nowhere, "you leave out a primitive: no cell lists it"),
                         (!missing, "you list a primitive twice in one cell"),
                     ],

@@ -34,58 +34,30 @@ enum AtPlane {
     PolygonsLeftOut,
 }
 
-const AT_PLANES: [(AtPlane, &str); 15] = [
-    (
-        AtPlane::InPlaneBelow,
+const AT_PLANES: [(AtPlane, &str); 15] = named![
+    AtPlane::InPlaneBelow =>
         "a ray in the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side below only",
-    ),
-    (
-        AtPlane::InPlaneAbove,
+    AtPlane::InPlaneAbove =>
         "a ray in the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side above only",
-    ),
-    (
-        AtPlane::StartAhead,
+    AtPlane::StartAhead =>
         "a ray that starts on the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side ahead only",
-    ),
-    (
-        AtPlane::StartBehind,
-        "a ray that starts on the plane is on both sides: you search only the side from which it comes",
-    ),
-    (
-        AtPlane::BelowAndAhead,
+    AtPlane::StartBehind => "a ray that starts on the plane is on both sides: you search only the side from which it comes",
+    AtPlane::BelowAndAhead =>
         "a ray in the plane, or that starts on it, is on both sides: you search the side below only, or the side ahead only",
-    ),
-    (
-        AtPlane::AboveAndAhead,
+    AtPlane::AboveAndAhead =>
         "a ray in the plane, or that starts on it, is on both sides: you search the side above only, or the side ahead only",
-    ),
-    (
-        AtPlane::OnPlaneBelow,
-        "a ray in the plane, or that starts on it, is on both sides: you search the side below only",
-    ),
-    (
-        AtPlane::OnPlaneAbove,
-        "a ray in the plane, or that starts on it, is on both sides: you search the side above only",
-    ),
-    (
-        AtPlane::NotCrossedNone,
+    AtPlane::OnPlaneBelow => "a ray in the plane, or that starts on it, is on both sides: you search the side below only",
+    AtPlane::OnPlaneAbove => "a ray in the plane, or that starts on it, is on both sides: you search the side above only",
+    AtPlane::NotCrossedNone =>
         "if the plane is behind the ray or beyond its end, the whole ray is on one side, and you must search that side",
-    ),
-    (
-        AtPlane::NotCrossedBelow,
+    AtPlane::NotCrossedBelow =>
         "if the plane is behind the ray or beyond its end, the ray is on the side of its origin: you always take the side below",
-    ),
-    (
-        AtPlane::NotCrossedAbove,
+    AtPlane::NotCrossedAbove =>
         "if the plane is behind the ray or beyond its end, the ray is on the side of its origin: you always take the side above",
-    ),
-    (AtPlane::ParallelNone, "a ray parallel to the plane is on the side of its origin: you search no side"),
-    (AtPlane::NearOnly, "you search only the side of the origin: the ray goes on to the other side"),
-    (
-        AtPlane::ByDirection,
-        "you choose the side by the direction alone: the ray is first on the side of its origin",
-    ),
-    (AtPlane::PolygonsLeftOut, "step 2 of the slide is missing: you do not test the polygons on the plane"),
+    AtPlane::ParallelNone => "a ray parallel to the plane is on the side of its origin: you search no side",
+    AtPlane::NearOnly => "you search only the side of the origin: the ray goes on to the other side",
+    AtPlane::ByDirection => "you choose the side by the direction alone: the ray is first on the side of its origin",
+    AtPlane::PolygonsLeftOut => "step 2 of the slide is missing: you do not test the polygons on the plane",
 ];
 
 /// A ray in a binary tree, with the hits of all primitives.

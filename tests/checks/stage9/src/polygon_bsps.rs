@@ -123,10 +123,8 @@ fn listing_fault(
                 says(", of which no part is there"),
                 "not listed".into(),
                 vec![
-                    (
-                        kind == Kind::Polygon && above.iter().all(within),
-                        "split a polygon that crosses a plane, and pass only its parts on: you pass the whole polygon to both sides",
-                    ),
+                    "split a polygon that crosses a plane, and pass only its parts on: you pass the whole polygon to both sides"
+                        .when(kind == Kind::Polygon && above.iter().all(within)),
                     (true, "you list a primitive in a node that it does not reach"),
                 ],
             ));
@@ -150,10 +148,8 @@ fn gap(query: &BspQuery, yours: &PolygonBsp, size: f64) -> Option<Fault> {
                     "one node".into(),
                     vec![
                         (nowhere, "you leave out a polygon: no node lists it"),
-                        (
-                            !nowhere,
-                            "a part of a polygon is lost: a polygon that crosses a plane has a part on each side",
-                        ),
+                        "a part of a polygon is lost: a polygon that crosses a plane has a part on each side"
+                            .when(!nowhere),
                     ],
                 ));
             }
@@ -253,13 +249,8 @@ pub(super) fn polygon_bsp_splits_few_polygons(trial: &Trial<'_>) -> CheckResult 
     let expected = format!("at most {} references, 16 levels", n + n / 2);
     let yours = format!("{references} references, {depth} levels");
     Err(Broken::with_texts(input, yours, expected, "counted").explained_by([
-        (
-            references > n + n / 2,
-            "your planes split many sheets: prefer a plane that splits few polygons",
-        ),
-        (
-            depth > 16,
-            "your planes leave most sheets on one side: prefer a plane that leaves few primitives on its fuller side",
-        ),
+        "your planes split many sheets: prefer a plane that splits few polygons".when(references > n + n / 2),
+        "your planes leave most sheets on one side: prefer a plane that leaves few primitives on its fuller side"
+            .when(depth > 16),
     ]))
 }

@@ -93,10 +93,8 @@ fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
         let parallel = query.ray.direction.to_array().contains(&0.0);
         let is_none = yours.is_none();
         let mistakes = [
-            (
-                yours.is_some_and(|(t, t_end)| t.is_nan() || t_end.is_nan()),
-                "you return NaN: 0 / 0 for a ray in the plane of a face",
-            ),
+            "you return NaN: 0 / 0 for a ray in the plane of a face"
+                .when(yours.is_some_and(|(t, t_end)| t.is_nan() || t_end.is_nan())),
             (!is_none && query.bounds.is_empty(), "you return a span for an empty cell"),
             (
                 // A span behind the origin is lost by a range that begins there.
@@ -105,26 +103,16 @@ fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
                 }),
                 "you ignore the range of the ray",
             ),
-            (
-                parallel && unasked,
-                "a ray along a face is between the two planes for every t or for no t: you do not compare its origin with them",
-            ),
-            (
-                is_none && along_a_face,
-                "you return None for a ray along a face, in its plane: the cell is closed",
-            ),
-            (
-                is_none && parallel,
-                "you return None for a ray along a face: between the two planes it is inside for every t",
-            ),
-            (
-                parallel,
-                "your answer is wrong for a ray along a face: its direction is 0 there, so compare its origin with both planes",
-            ),
-            (
-                yours.map_or(expected.0 > expected.1, |span| has_span && is_close(span)),
-                "you leave out the room for rounding: the range of the ray and the faces have ROUNDING as room",
-            ),
+            "a ray along a face is between the two planes for every t or for no t: you do not compare its origin with them"
+                .when(parallel && unasked),
+            "you return None for a ray along a face, in its plane: the cell is closed"
+                .when(is_none && along_a_face),
+            "you return None for a ray along a face: between the two planes it is inside for every t"
+                .when(is_none && parallel),
+            "your answer is wrong for a ray along a face: its direction is 0 there, so compare its origin with both planes"
+                .when(parallel),
+            "you leave out the room for rounding: the range of the ray and the faces have ROUNDING as room"
+                .when(yours.map_or(expected.0 > expected.1, |span| has_span && is_close(span))),
             (is_none && near == far, "you return None for a ray that touches the cell: the cell is closed"),
         ];
         let expected = match expected {
@@ -162,23 +150,15 @@ pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> CheckResult {
         let broken = || {
             let expected = format!("about {wanted} cells that are nearly cubes");
             let yours = format!("{yours}, {n} cells");
-            Broken::with_texts(describe(query), yours, expected, "the definition").explained_by([
-                (!cubes, "your cells are not nearly cubes"),
-                (
-                    n < wanted,
-                    "you make too few cells: the product over the three axes must be about density · n",
-                ),
-                (
-                    n > wanted,
-                    "you make too many cells: the product over the three axes must be about density · n",
-                ),
+            Broken::with_texts(describe(query), yours, expected, "the definition").explained_by(named![
+                !cubes => "your cells are not nearly cubes",
+                n < wanted => "you make too few cells: the product over the three axes must be about density · n",
+                n > wanted => "you make too many cells: the product over the three axes must be about density · n",
             ])
         };
         unless(is_right, broken).formulas([
-            (
-                yours.x == yours.y && yours.y == yours.z,
-                "you make as many cells on every axis: a longer side needs more",
-            ),
+            "you make as many cells on every axis: a longer side needs more"
+                .when(yours.x == yours.y && yours.y == yours.z),
             (cubes && (n * f64::from(query.density) / wanted - 1.0).abs() < 0.6, "you leave out the density"),
         ])
     })
@@ -220,14 +200,10 @@ pub(super) fn grid_resolution_of_flat_and_empty_boxes(trial: &Trial<'_>) -> Chec
         let flat = size.min_element() < 1e-4 * size.max_element();
         Err(Broken::new(describe(query), yours, expected, "by hand").explained_by([
             (yours.max_element() > 256, "you return more cells along an axis than MOST_CELLS_ALONG"),
-            (
-                flat && !query.bounds.is_empty() && yours.max_element() <= 256,
-                "a flat box has no volume: use only the thick axes, whose product is an area or a length",
-            ),
-            (
-                query.bounds.is_empty() || query.n_primitives == 0,
-                "an empty box, or one without primitives, gets one cell",
-            ),
+            "a flat box has no volume: use only the thick axes, whose product is an area or a length"
+                .when(flat && !query.bounds.is_empty() && yours.max_element() <= 256),
+            "an empty box, or one without primitives, gets one cell"
+                .when(query.bounds.is_empty() || query.n_primitives == 0),
             (yours.min_element() == 0, "you return an axis without a cell: at least 1"),
         ]))
     };

@@ -100,39 +100,21 @@ impl Wrong {
 /// The text of the mistake of a search that ends after the first cell.
 pub(super) const FIRST_CELL_ONLY: &str = "you search only the first cell that the ray enters";
 
-const MISTAKES: [(Wrong, &str); 11] = [
-    (
-        Wrong::TieToTheFirst,
-        "of two hits at the same t the smaller primitive number wins: you keep the first one",
-    ),
-    (
-        Wrong::TieToTheLast,
-        "of two hits at the same t the smaller primitive number wins: you keep the last one",
-    ),
-    (Wrong::FirstOfCell, "you take the first hit in the list of a cell: keep the nearest of all"),
-    (Wrong::LastOfCell, "you take the last hit in the list of a cell: keep the nearest of all"),
-    (Wrong::Farthest, "you keep the farther of two hits"),
-    (
-        Wrong::BeforeTheEnd,
+const MISTAKES: [(Wrong, &str); 11] = named![
+    Wrong::TieToTheFirst => "of two hits at the same t the smaller primitive number wins: you keep the first one",
+    Wrong::TieToTheLast => "of two hits at the same t the smaller primitive number wins: you keep the last one",
+    Wrong::FirstOfCell => "you take the first hit in the list of a cell: keep the nearest of all",
+    Wrong::LastOfCell => "you take the last hit in the list of a cell: keep the nearest of all",
+    Wrong::Farthest => "you keep the farther of two hits",
+    Wrong::BeforeTheEnd =>
         "`hit.distance < t'` loses a hit on the far face of its cell, and behind it: a hit counts wherever its cell ends",
-    ),
-    (
-        Wrong::BeforeTheEndOrAt,
-        "`hit.distance <= t'` loses a hit behind the end of its cell: a hit counts wherever its cell ends",
-    ),
-    (
-        Wrong::FirstCellWithAHit,
+    Wrong::BeforeTheEndOrAt => "`hit.distance <= t'` loses a hit behind the end of its cell: a hit counts wherever its cell ends",
+    Wrong::FirstCellWithAHit =>
         "`Some hit → Some hit` stops at the first cell with a hit, and a later cell has a nearer hit: go on until the next cell begins behind the best hit",
-    ),
-    (Wrong::FirstCellOnly, FIRST_CELL_ONLY),
-    (
-        Wrong::NoRoom,
+    Wrong::FirstCellOnly => FIRST_CELL_ONLY,
+    Wrong::NoRoom =>
         "t of a hit and t of a cell are rounded differently; stop only if the hit is before the cell by more than the rounding error",
-    ),
-    (
-        Wrong::NoRoomOrAt,
-        "you stop at a cell that begins exactly at the best hit, but another primitive there may have the same t",
-    ),
+    Wrong::NoRoomOrAt => "you stop at a cell that begins exactly at the best hit, but another primitive there may have the same t",
 ];
 
 /// The known mistakes of a search that goes through these cells, each with whether it finds this hit.
@@ -153,24 +135,16 @@ pub(super) fn facts<'a>(
     let is_visited = visits.iter().any(|&node| listed(node).contains(&best));
     vec![
         out_of_range(found, ray),
-        (
-            found.is_some() && is_tested,
-            "you keep the farther of two hits: you test the primitive with the nearer hit, but return another one",
-        ),
-        (
-            found.is_none() && visits.is_empty(),
-            "you visit no cell although the ray enters the structure's bounds",
-        ),
+        "you keep the farther of two hits: you test the primitive with the nearer hit, but return another one"
+            .when(found.is_some() && is_tested),
+        "you visit no cell although the ray enters the structure's bounds"
+            .when(found.is_none() && visits.is_empty()),
         (found.is_none() && is_tested, "you find a hit and reject it: it counts wherever its cell ends"),
         (is_visited && !is_tested, "you visit a cell, but do not test all of its primitives"),
-        (
-            found.is_some() && !is_visited,
-            "you stop before a cell with a nearer hit, or leave it out: you never visit a cell that lists the primitive",
-        ),
-        (
-            found.is_none() && !is_visited,
-            "you leave out a cell that the ray passes through: you never visit a cell that lists the primitive",
-        ),
+        "you stop before a cell with a nearer hit, or leave it out: you never visit a cell that lists the primitive"
+            .when(found.is_some() && !is_visited),
+        "you leave out a cell that the ray passes through: you never visit a cell that lists the primitive"
+            .when(found.is_none() && !is_visited),
         (!is_visited, "you never visit a cell that lists the primitive with the nearest hit"),
     ]
 }

@@ -55,28 +55,23 @@ impl<S> Search<S> {
         let unlisted = tests.find(|primitive| !is_listed(primitive));
         // Each fault as `(yours, expected, source)` with its mistake; the message shows the first.
         let faults = [
-            (
+            "you visit a cell that the ray does not enter".when(
                 missed.map(|visit| (format!("a visit to {visit}"), "none".to_owned(), "the ray misses it")),
-                "you visit a cell that the ray does not enter",
             ),
-            (
-                behind.map(|(visit, t)| {
+            "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit"
+                .when(behind.map(|(visit, t)| {
                     let begins = format!("a visit to {visit}, which begins at t = {t:.4}");
                     (begins, format!("none beyond the hit at t = {end}"), "counted")
-                }),
-                "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
-            ),
-            (
-                twice.map(|visit| (format!("{visit} is visited again"), "once".to_owned(), "counted")),
-                "you visit a cell several times",
-            ),
-            (
-                unlisted.map(|primitive| {
+                })
+                ),
+            "you visit a cell several times"
+                .when(twice.map(|visit| (format!("{visit} is visited again"), "once".to_owned(), "counted"))),
+            "you test a primitive that no visited cell lists: call `visit` for each cell that the search comes to"
+                .when(unlisted.map(|primitive| {
                     let test = format!("a test of primitive {primitive}");
                     (test, "a visit to a cell that lists it".to_owned(), "counted")
-                }),
-                "you test a primitive that no visited cell lists: call `visit` for each cell that the search comes to",
-            ),
+                })
+                ),
         ];
         let mistakes = faults.each_ref().map(|(fault, mistake)| (fault.is_some(), *mistake));
         match faults.into_iter().find_map(|(fault, _)| fault) {
