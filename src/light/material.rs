@@ -258,7 +258,6 @@ impl Light {
     /// `intensity * color`, in linear light. With [`Falloff::InverseSquare`] that is the light that arrives
     /// at a distance of one world unit (for a point light its radiant intensity); otherwise it arrives at any
     /// distance.
-    #[inline]
     pub fn radiance(&self) -> Vec3 {
         self.intensity * self.color
     }

@@ -94,7 +94,6 @@ impl CameraSample {
     }
 
     /// The number of random numbers that were looked up.
-    #[inline]
     fn random_numbers(&self) -> usize {
         2 * usize::from(self.pixel.is_some())
             + 2 * usize::from(self.lens.is_some())

@@ -98,7 +98,6 @@ impl ReportedHits {
     }
 
     /// No reported hits, for a ray for which any hit is enough, such as a shadow ray.
-    #[inline]
     pub fn for_any_hit() -> ReportedHits {
         ReportedHits { any_will_do: true, ..ReportedHits::for_closest_hit() }
     }

@@ -166,8 +166,7 @@ impl Structure {
     }
 
     /// The closest hit of `ray` with the primitives of `probe` within its range, or `None`; for
-    /// [`Structure::Painter`] the hit with the last primitive. `savings` are the shortcuts of a search of the
-    /// scene graph; other structures ignore it.
+    /// [`Structure::Painter`] the hit with the last primitive. Only scene graphs have shortcuts (`savings`).
     // Not inlined, because each caller would compile all searches again: a third of the time of a build.
     #[inline(never)]
     pub fn closest_hit<F: StudentFunctions, P: Primitives>(
@@ -234,7 +233,6 @@ impl Structure {
     }
 
     /// The nodes of a bounding volume hierarchy; empty for any other structure.
-    #[inline]
     pub fn nodes(&self) -> &[Node] {
         match self {
             Structure::Hierarchy(bvh) | Structure::BothChildren(bvh) => &bvh.nodes,
