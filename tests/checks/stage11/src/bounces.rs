@@ -86,7 +86,7 @@ pub(super) fn bounces_for_error_at_the_limits(trial: &Trial<'_>) -> CheckResult 
     // All light stays in the room (albedo 1), none is reflected (0), no error is allowed (0), and any error is (1).
     let cases = (0..5i32, share()).prop_map(|(which, share)| match which {
         0 => (1.0, (share - 1.0 / 64.0).min(0.98)),
-        1 => (0.0, share - 1.0 / 64.0),
+        1 => (0.0, (share - 0.5).max(0.0)),
         2 => (share, 0.0),
         3 => (share, 1.0),
         _ => (0.5, 0.5f32.powi(3)),
