@@ -166,7 +166,8 @@ impl Structure {
     }
 
     /// The closest hit of `ray` with the primitives of `probe` within its range, or `None`; for
-    /// [`Structure::Painter`] the hit with the last primitive. Only scene graphs have shortcuts (`savings`).
+    /// [`Structure::Painter`] the hit with the last primitive. `savings` are the shortcuts of a search of the
+    /// scene graph; other structures ignore it.
     // Not inlined, because each caller would compile all searches again: a third of the time of a build.
     #[inline(never)]
     pub fn closest_hit<F: StudentFunctions, P: Primitives>(

@@ -136,10 +136,6 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> CheckResult {
             (yours, given) => yours.is_none() && given.is_none(),
         };
         let others = wrong_roots(query).map(|(given, text)| (gives(given), text));
-        let is_right = match (yours, expected) {
-            (Some(yours), Some(expected)) => are_near(yours, expected),
-            (yours, expected) => yours.is_none() && expected.is_none(),
-        };
         let (shown, formulas) = match (yours, expected) {
             (Some(yours), Some(expected)) => mistakes(query, yours, expected),
             _ => mistakes(query, [f32::NAN; 2], [f64::NAN; 2]),
@@ -152,7 +148,7 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> CheckResult {
         // Where both answers are None, each of these formulas has no roots either.
         let none = expected.is_none() && yours.is_none();
         let formulas = formulas.map(|(gives, text)| (gives || none, text));
-        unless(is_right, broken).formulas(formulas.into_iter().chain(others))
+        unless(gives(expected), broken).formulas(formulas.into_iter().chain(others))
     };
     let drawn =
         [[1.0, -10_000.0, 1.0], [-2.0, 3e4, 0.5], [1.0, 10_000.0, 1.0], [2.0, -3.0, -4.0], [3.0, 0.0, -12.0]];

@@ -65,7 +65,7 @@ pub(super) fn build_binned_boxes_are_tight(trial: &Trial<'_>) -> CheckResult {
 
 /// A name, a set of boxes, the sizes of the leaves that its tree must have, and those that each of [`KNOWN`] gives: the same (`=`),
 /// more (`+`), fewer (`-`), or one leaf per half (`2`).
-type Choice = (&'static str, Vec<Aabb>, Vec<u32>, &'static str);
+type Choice = (&'static str, Vec<Aabb>, Vec<u32>, [u8; KNOWN.len()]);
 
 /// The known mistakes, the most specific one first.
 const KNOWN: [&str; 8] = [
@@ -102,21 +102,21 @@ fn choices(random: &mut Random) -> Vec<Choice> {
     let eight = (0..8).map(|i| apart(i as f32)).collect();
     // Half the surface area of a bar is 1 + 2 · length, and that of all is 3.
     vec![
-        ("two groups of eight that are far apart", pair(8, 8, 0.2), vec![8, 8], "===+===-"),
-        ("eight boxes at one end and one at the other", pair(8, 1, 0.1), vec![1, 8], "===+===-"),
+        ("two groups of eight that are far apart", pair(8, 8, 0.2), vec![8, 8], *b"===+===-"),
+        ("eight boxes at one end and one at the other", pair(8, 1, 0.1), vec![1, 8], *b"===+===-"),
         // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.75. By primitives 12 · 3 and 0.25 · 3 + 12 · 2.75.
-        ("two groups of six that overlap by three quarters", pair(6, 6, 0.875), vec![12], "222+==+="),
+        ("two groups of six that overlap by three quarters", pair(6, 6, 0.875), vec![12], *b"222+==+="),
         // As a leaf 2 · 16; split 0.25 · 16 + 2 · 14: equal, and all of these numbers are exact.
-        ("two groups of six flat boxes that overlap by six sevenths", ties, vec![12], "222+==+="),
+        ("two groups of six flat boxes that overlap by six sevenths", ties, vec![12], *b"222+==+="),
         // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.85. By primitives 16 · 3 and 0.25 · 3 + 16 · 2.85.
-        ("two groups of eight that overlap nearly", pair(8, 8, 0.925), vec![16], "222===+="),
+        ("two groups of eight that overlap nearly", pair(8, 8, 0.925), vec![16], *b"222===+="),
         // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.93, or 0.25 + 2 · 2.93.
-        ("two groups of eight that overlap even more", pair(8, 8, 0.965), vec![16], "22====+="),
+        ("two groups of eight that overlap even more", pair(8, 8, 0.965), vec![16], *b"22====+="),
         // As a leaf 4 · 3; split 0.25 · 3 + 4 · 2.99 at best.
-        ("two groups of 16 that overlap but for a hundredth", pair(16, 16, 0.995), vec![32], "=+===++="),
+        ("two groups of 16 that overlap but for a hundredth", pair(16, 16, 0.995), vec![32], *b"=+===++="),
         // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.91 + 3, because bins do not separate the nine.
-        ("nine equal boxes in a larger one", nine, vec![10], "======+="),
-        ("eight boxes that are far apart", eight, vec![8], "===++==="),
+        ("nine equal boxes in a larger one", nine, vec![10], *b"======+="),
+        ("eight boxes that are far apart", eight, vec![8], *b"===++==="),
     ]
 }
 
@@ -134,10 +134,11 @@ pub(super) fn build_binned_makes_leaves_that_pay(trial: &Trial<'_>) -> CheckResu
             b'+' => sizes.len() > leaves.len(),
             b'-' => sizes.len() < leaves.len(),
             b'2' => sizes == [boxes.len() as u32 / 2; 2],
-            _ => sizes == *leaves,
+            b'=' => sizes == *leaves,
+            other => unreachable!("`{}` stands for no leaves", char::from(other)),
         };
         let [yours, expected] = [&sizes, leaves].map(|sizes| format!("leaves of {sizes:?}"));
-        let given: Vec<_> = mistakes.bytes().map(gives).zip(KNOWN).collect();
+        let given: Vec<_> = mistakes.map(gives).into_iter().zip(KNOWN).collect();
         let (formulas, shown) = given.split_at(FORMULAS);
         let input = format!("build_binned of {what}");
         let broken = || {
