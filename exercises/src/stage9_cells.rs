@@ -24,24 +24,21 @@ use raykata::rounding::UNIT_ROUNDOFF;
 /// reference counts.
 pub const ROUNDING: f64 = 16.0 * UNIT_ROUNDOFF as f64;
 
-/// Boxes for builders, each padded with some room for rounding.
-pub struct PaddedBoxes {
-    /// The box around all padded boxes.
-    pub around: Aabb,
-    /// The number and the padded box of each primitive that a ray can hit.
-    pub boxes: Vec<(u32, Aabb)>,
-}
-
 /// Widens every box a little on all sides, so that a hit that rounding moves just outside its box
-/// is still in a cell that lists it.
+/// is still in a cell that lists it. Returns the number and the wider box of each primitive.
 ///
 /// The room is 2⁻¹⁸ of the largest extent, and at least 2⁻²² of the largest coordinate.
 ///
 /// Exactly:
 ///
 /// 1. Empty boxes are left out.
-pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
+pub fn padded_boxes(bounds: &[Aabb]) -> Vec<(u32, Aabb)> {
     todo!("leave out empty boxes, and widen every other box a little")
+}
+
+/// The box around boxes with numbers.
+pub fn around(boxes: &[(u32, Aabb)]) -> Aabb {
+    boxes.iter().fold(Aabb::EMPTY, |all, (_, one)| Aabb::new(all.min.min(one.min), all.max.max(one.max)))
 }
 
 /// The height of a ray above a plane is `height + rate · t`. It is at least `-room` from some `t`

@@ -12,7 +12,7 @@
 //! primitive number wins. A hit may lie outside the leaf that lists its primitive. Without a hit or
 //! a node, or if the ray misses the bounds, the result is `None`.
 
-use crate::stage9_cells::{ROUNDING, may_stop_before, padded_boxes, part_above, span, test_cell};
+use crate::stage9_cells::{ROUNDING, around, may_stop_before, padded_boxes, part_above, span, test_cell};
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, KdHeuristics, KdNode, KdTree, ListGrowth};

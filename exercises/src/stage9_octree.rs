@@ -12,7 +12,7 @@
 //! primitive number wins. A hit may lie outside the leaf that lists its primitive. Without a hit or
 //! a node, or if the ray misses the bounds, the result is `None`.
 
-use crate::stage9_cells::{may_stop_before, padded_boxes, span, test_cell};
+use crate::stage9_cells::{around, may_stop_before, padded_boxes, span, test_cell};
 use glam::DVec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;

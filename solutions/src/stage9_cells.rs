@@ -30,23 +30,15 @@ use raykata::partition::CutPlane;
 /// reference counts.
 pub const ROUNDING: f64 = 16.0 * UNIT_ROUNDOFF as f64;
 
-/// Boxes for builders, each padded with some room for rounding.
-pub struct PaddedBoxes {
-    /// The box around all padded boxes.
-    pub around: Aabb,
-    /// The number and the padded box of each primitive that a ray can hit.
-    pub boxes: Vec<(u32, Aabb)>,
-}
-
 /// Widens every box a little on all sides, so that a hit that rounding moves just outside its box
-/// is still in a cell that lists it.
+/// is still in a cell that lists it. Returns the number and the wider box of each primitive.
 ///
 /// The room is 2⁻¹⁸ of the largest extent, and at least 2⁻²² of the largest coordinate.
 ///
 /// Exactly:
 ///
 /// 1. Empty boxes are left out.
-pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
+pub fn padded_boxes(bounds: &[Aabb]) -> Vec<(u32, Aabb)> {
     // <solution>
     // Keep the boxes that a ray can hit.
     let usable = (0..).zip(bounds).filter(|(_, one)| !one.is_empty());
@@ -64,17 +56,15 @@ pub fn padded_boxes(bounds: &[Aabb]) -> PaddedBoxes {
     for (_, one) in &mut boxes {
         *one = Aabb::new((one.min - room).max(Vec3::MIN), (one.max + room).min(Vec3::MAX));
     }
-    PaddedBoxes { around: around(&boxes), boxes }
+    boxes
     // <stub> todo!("leave out empty boxes, and widen every other box a little")
     // </solution>
 }
 
-// <solution>
 /// The box around boxes with numbers.
 pub fn around(boxes: &[(u32, Aabb)]) -> Aabb {
     boxes.iter().fold(Aabb::EMPTY, |all, (_, one)| Aabb::new(all.min.min(one.min), all.max.max(one.max)))
 }
-// </solution>
 
 /// The height of a ray above a plane is `height + rate · t`. It is at least `-room` from some `t`
 /// on, up to some `t`, always or never. On which side is a ray that runs in the plane, or starts in

@@ -9,7 +9,7 @@
 //! primitive number wins. A hit may lie outside the cell that lists its primitive. Without a hit,
 //! or if the ray misses the grid, the result is `None`.
 
-use crate::stage9_cells::{may_stop_before, padded_boxes, span, test_cell};
+use crate::stage9_cells::{around, may_stop_before, padded_boxes, span, test_cell};
 use glam::{DVec3, UVec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
@@ -80,11 +80,11 @@ pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
 /// Source: "Uniform Grid" (index primitives according to overlaps).
 pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
     // <solution>
-    let padded = padded_boxes(bounds);
+    let boxes = padded_boxes(bounds);
     let resolution = resolution.max(UVec3::ONE);
     let n_cells: usize = resolution.to_array().into_iter().map(|n| n as usize).product();
     let mut grid =
-        Grid { bounds: padded.around, resolution, starts: vec![0; n_cells + 1], items: Vec::new() };
+        Grid { bounds: around(&boxes), resolution, starts: vec![0; n_cells + 1], items: Vec::new() };
 
     let each_cell = |grid: &Grid, one: &Aabb| -> Vec<u32> {
         let low = UVec3::from_array([0, 1, 2].map(|axis| index(grid, axis, f64::from(one.min[axis]))));
@@ -93,7 +93,7 @@ pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
         rows.flat_map(|(y, z)| (low.x..=high.x).map(move |x| grid.number(UVec3::new(x, y, z)))).collect()
     };
     // Count the entries of each cell.
-    for (_, one) in &padded.boxes {
+    for (_, one) in &boxes {
         each_cell(&grid, one).into_iter().for_each(|cell| grid.starts[cell as usize] += 1);
     }
     // Turn the counts into the ends of the lists.
@@ -104,7 +104,7 @@ pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
     }
     // Fill the lists from their ends.
     grid.items = vec![0; sum as usize];
-    for (id, one) in padded.boxes.iter().rev() {
+    for (id, one) in boxes.iter().rev() {
         for cell in each_cell(&grid, one) {
             grid.starts[cell as usize] -= 1;
             let start = grid.starts[cell as usize];

@@ -12,7 +12,7 @@
 //! primitive number wins. A hit may lie outside the leaf that lists its primitive. Without a hit or
 //! a node, or if the ray misses the bounds, the result is `None`.
 
-use crate::stage9_cells::{ROUNDING, may_stop_before, padded_boxes, part_above, span, test_cell};
+use crate::stage9_cells::{ROUNDING, around, may_stop_before, padded_boxes, part_above, span, test_cell};
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, KdHeuristics, KdNode, KdTree, ListGrowth};
@@ -39,12 +39,13 @@ use raykata::ray::Ray;
 /// Source: "Heuristics" 1 to 5.
 pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree {
     // <solution>
-    let padded = padded_boxes(bounds);
-    let mut tree = KdTree::new(padded.around);
-    if !padded.boxes.is_empty() {
-        let max_depth = KdTree::most_depth(padded.boxes.len());
+    let boxes = padded_boxes(bounds);
+    let around = around(&boxes);
+    let mut tree = KdTree::new(around);
+    if !boxes.is_empty() {
+        let max_depth = KdTree::most_depth(boxes.len());
         let rules = Rules { heuristics: *heuristics, leaf_size, max_depth };
-        divide(&mut tree, &padded.boxes, padded.around, (0, ListGrowth::ROOT), &rules);
+        divide(&mut tree, &boxes, around, (0, ListGrowth::ROOT), &rules);
     }
     tree
     // <stub> todo!("make a leaf if the primitives are few; else choose a plane and build both sides")
@@ -52,8 +53,6 @@ pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> Kd
 }
 
 // <solution>
-use crate::stage9_cells::around;
-
 struct Rules {
     heuristics: KdHeuristics,
     leaf_size: usize,

@@ -12,7 +12,7 @@
 //! primitive number wins. A hit may lie outside the leaf that lists its primitive. Without a hit or
 //! a node, or if the ray misses the bounds, the result is `None`.
 
-use crate::stage9_cells::{may_stop_before, padded_boxes, span, test_cell};
+use crate::stage9_cells::{around, may_stop_before, padded_boxes, span, test_cell};
 use glam::DVec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
@@ -38,20 +38,20 @@ use crate::stage9_cells::{ROUNDING, crossing, first_axis, part_above};
 /// Source: "Octree" (recursively subdivide box-shaped cells into 8 octants).
 pub fn build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree {
     // <solution>
-    let padded = padded_boxes(bounds);
-    if padded.boxes.is_empty() {
+    let boxes = padded_boxes(bounds);
+    if boxes.is_empty() {
         return Octree::empty();
     }
     // Extend the box to a cube from its lower corner: around its middle, a flat box would lie
     // between the octants.
-    let around = padded.around;
+    let around = around(&boxes);
     let side = (around.max - around.min).max_element().min(f32::MAX);
     let mut cube = Aabb::new(around.min, (around.min + side).max(around.max));
     cube.max = cube.max.map(|x| x.min(f32::MAX));
 
     let mut octree = Octree::new(cube);
     let limits = LeafRule { leaf_size, max_depth };
-    divide(&mut octree, 0, &padded.boxes, Cell::new(&cube), (0, ListGrowth::ROOT), &limits);
+    divide(&mut octree, 0, &boxes, Cell::new(&cube), (0, ListGrowth::ROOT), &limits);
     octree
     // <stub> todo!("make a leaf if the primitives are few; else divide the cell and build all eight octants")
     // </solution>

@@ -149,7 +149,7 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
     let mut random = Random::new(seed, 0);
     let things = soup(&mut random, n, size, at);
     let (boxes, hulls) = (things.boxes(), things.hulls());
-    let around = stage9_cells::padded_boxes(&boxes).around;
+    let around = stage9_cells::around(&stage9_cells::padded_boxes(&boxes));
     let grid = stage9_grid::build(&boxes, stage9_grid::resolution(&around, boxes.len(), 2.0));
     let octree = stage9_octree::build(&boxes, 4, 8);
     let trees = [KdHeuristics::default(), KdHeuristics::NONE];

@@ -133,6 +133,11 @@ impl Broken {
         self.with_mistakes(mistakes.into_iter().collect(), false)
     }
 
+    /// The same with a mistake that this wrong answer proves.
+    pub fn because(self, mistake: &'static str) -> Self {
+        self.explained_by([(true, mistake)])
+    }
+
     /// The same with wrong formulas.
     pub(crate) fn computed_by(self, formulas: Vec<(bool, &'static str)>) -> Self {
         self.with_mistakes(formulas, true)

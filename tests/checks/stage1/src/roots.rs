@@ -11,6 +11,8 @@ const LARGER: &str = "you return the larger root, also if the smaller one counts
 const SORTED_WITH_NAN: &str =
     "comparisons with NaN are false, so NaN takes the place of the other root: use f32::min and f32::max";
 
+const NAN_HIDES_THE_OTHER: &str = "one root is NaN, but the other one may still count";
+
 fn judge(query: &RootQuery, yours: Option<f32>) -> Judged {
     let ([first, second], ray) = (query.roots, query.ray);
     let counting = |t: f32| ray.contains(t);
@@ -28,7 +30,9 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> Judged {
     let first_that_counts = |roots: [f32; 2]| yours == roots.into_iter().find(|&t| counting(t));
     let first_if_it_counts = |roots: [f32; 2]| yours == Some(roots[0]).filter(|&t| counting(t));
     // Each comparison with NaN is false, so a sort by an if-else always swaps the roots, or never.
+    let positive = if near > 0.0 { near } else { far };
     let with_nan = |gives: bool| if first.is_nan() || second.is_nan() { gives } else { is_right };
+    let none_if = |condition: bool| if condition { yours.is_none() } else { is_right };
     unless(is_right, broken).formulas([
         "you return an end of the range; the range is open: t_min and t_max do not count"
             .when(yours == among(&|t| ray.t_min <= t && t <= ray.t_max)),
@@ -41,6 +45,8 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> Judged {
         (yours == Some(near), "you return the smaller root, also if ray.contains(t) refuses it"),
         "you return None if the smaller root does not count, but the larger one may"
             .when(yours == Some(near).filter(|&t| counting(t))),
+        "you choose the first positive root and then ask ray.contains(t), but the larger root may count if it refuses the smaller one"
+            .when(yours == Some(positive).filter(|&t| counting(t))),
         (first_if_it_counts([first, second]), "you only look at the first root, but they come in any order"),
         "you take the first root that counts for the smaller one, but they come in any order"
             .when(first_that_counts([first, second])),
@@ -52,17 +58,11 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> Judged {
         (with_nan(first_that_counts([first, second])), SORTED_WITH_NAN),
         (with_nan(first_if_it_counts([second, first])), SORTED_WITH_NAN),
         (with_nan(first_that_counts([second, first])), SORTED_WITH_NAN),
-        "one root is NaN, but the other one may still count".when(if first.is_nan() {
-            yours.is_none()
-        } else {
-            is_right
-        }),
-        "one root is NaN, but the other one may still count".when(if second.is_nan() {
-            yours.is_none()
-        } else {
-            is_right
-        }),
-        (with_nan(yours.is_none()), "one root is NaN, but the other one may still count"),
+        (none_if(first.is_nan()), NAN_HIDES_THE_OTHER),
+        (none_if(second.is_nan()), NAN_HIDES_THE_OTHER),
+        (none_if(first.is_nan() || second.is_nan()), NAN_HIDES_THE_OTHER),
+        "one root is NaN or infinite, but the other one may still count"
+            .when(none_if(!first.is_finite() || !second.is_finite())),
     ])
 }
 

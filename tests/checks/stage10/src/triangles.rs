@@ -172,7 +172,7 @@ pub(super) fn judge_hit_point(query: &TriangleQuery, yours: Option<TriangleHit>)
     }
     let expected = "None, or β >= 0, γ >= 0 and β + γ <= 1";
     Err(Broken::with_texts(query.call("watertight"), format!("{yours:?}"), expected, "the definition")
-        .explained_by([(true, "you return a hit outside of the triangle: β, γ or 1 - β - γ is negative")]))
+        .because("you return a hit outside of the triangle: β, γ or 1 - β - γ is negative"))
 }
 
 fn mesh_does_not_leak(trial: &Trial<'_>, mesh: &Closed) -> CheckResult {

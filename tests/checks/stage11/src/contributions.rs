@@ -70,7 +70,7 @@ pub(super) fn light_contributions_have_their_closed_form(trial: &Trial<'_>) -> C
             let cosine = query.normal.as_dvec3().dot(query.sample.direction.as_dvec3());
             let (pdf, other) = (f64::from(query.sample.pdf), f64::from(query.bsdf_pdf));
             let is = |expected: DVec3, factor: f64| near(query, yours, expected, factor);
-            let least = |least: f64| is(weight * whole * (pdf / pdf.max(least)), 1.0);
+            let least = |least: f64| is(factor * whole * (pdf / pdf.max(least)), 1.0);
             unless(near(query, yours, expected, factor), broken).formulas(named![
                 yours.is_nan() => "you return NaN",
                 is(whole, 1.0) => "the weight of multiple importance sampling is missing, so light counts twice",

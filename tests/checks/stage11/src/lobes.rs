@@ -77,8 +77,7 @@ pub(super) fn missing(query: &BsdfQuery) -> CheckResult {
         return Ok(());
     }
     let broken = Broken::new(query.call("sample_bsdf"), None::<BsdfSample>, "a sample", "the definition");
-    Err(broken
-        .explained_by([(true, "None only if all lobes are black: choose again, or scale the random number")]))
+    Err(broken.because("None only if all lobes are black: choose again, or scale the random number"))
 }
 
 const CHOOSES_BLACK: &str = "you choose a lobe whose reflectance is 0";

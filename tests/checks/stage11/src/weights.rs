@@ -52,16 +52,15 @@ pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
                 return Ok(refuted);
             }
             let expected = "the larger density has the larger weight";
-            Err(Broken::new(pair.call("mis_weight"), answers.0, expected, "the definition").explained_by([
-                "the smaller density gets the larger weight: own and other are exchanged".when(true),
-            ]))
+            Err(Broken::new(pair.call("mis_weight"), answers.0, expected, "the definition")
+                .because("the smaller density gets the larger weight: own and other are exchanged"))
         });
         // Weights that are always 1/2 pass so far, although they ignore the densities.
         let all_half = pairs.len() > 1 && answers.iter().all(|(own, _)| *own == 0.5);
         if all_half {
             let (yours, expected) = ("0.5 for all densities", "a weight that depends on the densities");
             let broken = Broken::with_texts(pairs[0].call("mis_weight"), yours, expected, "the definition");
-            return vec![Err(broken.explained_by([(true, "your weights are 1/2 for all densities")]))];
+            return vec![Err(broken.because("your weights are 1/2 for all densities"))];
         }
         outcomes
     })

@@ -96,7 +96,7 @@ fn judge_all(trial: &Trial<'_>, drawn: Vec<Lanes>) -> CheckResult {
     if beside.query().is_some_and(|query| trial.kit.may_hit(&[query])[0].possible == 255) {
         let broken =
             Broken::new("may_hit of a block beside the ray", "all kept", "misses rejected", "exactly");
-        return Err(broken.explained_by([(true, NONE_REJECTED)]));
+        return Err(broken.because(NONE_REJECTED));
     }
     let (drawn, queries) = queries(drawn);
     all_hold(compare(&drawn, trial.kit.may_hit(&queries), |lanes, filtered| {
@@ -261,7 +261,7 @@ pub(super) fn may_hit_keeps_lanes_without_a_triangle(trial: &Trial<'_>) -> Check
     if rejected == 0 {
         let broken =
             Broken::new("may_hit of 300 blocks", "all triangles kept", "misses rejected", "the definition");
-        return Err(broken.explained_by([(true, NONE_REJECTED)]));
+        return Err(broken.because(NONE_REJECTED));
     }
     Ok(())
 }

@@ -226,10 +226,9 @@ fn build_of(trial: &Trial<'_>, what: &str, boxes: Vec<Aabb>) -> CheckResult {
             let yours =
                 format!("{} and {} primitives below a node at depth {depth}", sizes[left], sizes[left + 1]);
             let broken = Broken::with_texts(input, yours, "halves".to_owned(), "counted");
-            return Err(broken.explained_by([
-                "each level splits off few primitives: from depth DEEPEST_SPLIT on divide them in half"
-                    .when(true),
-            ]));
+            return Err(broken.because(
+                "each level splits off few primitives: from depth DEEPEST_SPLIT on divide them in half",
+            ));
         }
     }
     Ok(())

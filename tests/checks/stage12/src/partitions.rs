@@ -59,7 +59,7 @@ fn judge(query: &PartitionQuery, yours: &SplitAnswer) -> CheckResult {
     let text = format!("{first:?} and {second:?}");
     if sorted(&yours.order) != left_side(query, |_| true) {
         let broken = Broken::with_texts(input, text, "each primitive once", "the given primitives");
-        return Err(broken.explained_by([(true, "a primitive is lost or copied: only swap")]));
+        return Err(broken.because("a primitive is lost or copied: only swap"));
     }
     if sorted(first) == left && yours.middle == Some(left.len()) {
         return Ok(());

@@ -219,7 +219,7 @@ pub(super) fn wide_any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult 
         let [yours, none] = [yours.calls_after_hit, 0].map(|n| format!("{n} calls after the first hit"));
         let broken =
             Broken::with_texts(format!("wide_any_hit in {}", describe(query)), yours, none, "counted");
-        Err(broken.explained_by([(true, "the search goes on after a hit: return true at once")]))
+        Err(broken.because("the search goes on after a hit: return true at once"))
     })
 }
 

@@ -135,8 +135,7 @@ pub(super) fn fault(tree: &FlatTree, boxes: &[Aabb]) -> Option<Fault> {
         if first != next || first + 1 >= tree.nodes.len() {
             let yours = format!("the children of node {index} are nodes {first} and {}", first + 1);
             let expected = format!("nodes {next} and {} of {}", next + 1, tree.nodes.len());
-            let is_tree = first > index && first + 1 < tree.nodes.len();
-            return Some((yours, expected, is_tree.then_some(NOT_DEPTH_FIRST)));
+            return Some((yours, expected, holds_each_once(tree, boxes).then_some(NOT_DEPTH_FIRST)));
         }
         next += 2;
         for child in [first, first + 1] {
@@ -151,6 +150,26 @@ pub(super) fn fault(tree: &FlatTree, boxes: &[Aabb]) -> Option<Fault> {
         return wrong(yours, &format!("all nodes, {} primitives", boxes.len()));
     }
     None
+}
+
+/// Whether a tree is right except for the order of its nodes: all of them are below the root, and the leaves hold all primitives.
+fn holds_each_once(tree: &FlatTree, boxes: &[Aabb]) -> bool {
+    let (mut waiting, mut used, mut listed) = (vec![0], 0, 0);
+    while let Some(index) = waiting.pop() {
+        let Some(node) = tree.nodes.get(index).filter(|_| used < tree.nodes.len()) else { return false };
+        used += 1;
+        let first = node.first as usize;
+        if !node.is_leaf() {
+            waiting.extend([first, first + 1]);
+            continue;
+        }
+        listed += node.count as usize;
+        let ids = tree.order.get(first..first + node.count as usize).unwrap_or_default();
+        if ids.is_empty() || ids.iter().any(|&id| !node.bounds().contains_box(&boxes[id as usize])) {
+            return false;
+        }
+    }
+    (used, listed) == (tree.nodes.len(), boxes.len())
 }
 
 /// A value for each node of a tree without faults, from the leaves up. `join` computes it from the values of both children.

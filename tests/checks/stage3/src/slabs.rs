@@ -216,13 +216,13 @@ pub(super) fn slab_respects_the_range(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> CheckResult {
-    // All numbers are multiples of 1/8, so o + 1 d is exactly the corner. The closed box must be hit, without
-    // tolerance.
-    let inputs = (aabb(), point(8), 0..8usize).prop_map(|(bounds, origin, corner)| {
+    // All numbers are multiples of 1/8, so o + t d is exactly the corner for t from 1 to 7. The closed box must be hit,
+    // without tolerance.
+    let inputs = (aabb(), point(8), 0..8usize, 1..=7i32).prop_map(|(bounds, origin, corner, t)| {
         let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
         let corner = vec3(pick(0), pick(1), pick(2));
         let direction = nasty::slanted(corner - origin);
-        SlabQuery { ray: Ray::new(corner - direction, direction), bounds }
+        SlabQuery { ray: Ray::new(corner - t as f32 * direction, direction), bounds }
     });
     trial.forall(3000, inputs, |queries| {
         judge_verdicts(

@@ -108,6 +108,7 @@ pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Che
 }
 
 const FALLOFF: &str = "you divide by the distance to the light: its radiance has the distance in it";
+const PER_LIGHT: &str = "you divide by the number of lights: the light of all adds up";
 const LIGHT_BEHIND: &str =
     "you add a light behind the surface: skip lights for which shadow_ray returns None";
 
@@ -145,109 +146,89 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
     let of_visible = |share: &dyn Fn(usize) -> DVec3| {
         visible.iter().filter(|&&light| is_in_front(query, light)).map(|&light| share(light)).sum::<DVec3>()
     };
-    let split = |light: usize| parts(query, light, diffuse(light), right(light));
-    let kd = query.material.diffuse.as_dvec3();
-    // The lights that add something.
-    let counted: Vec<usize> = visible
-        .iter()
-        .copied()
-        .filter(|&light| share(query, light, diffuse(light), right(light)) != DVec3::ZERO)
-        .collect();
+    let (kd, ks) = (query.material.diffuse.as_dvec3(), query.material.specular.as_dvec3());
     let radiance = |light: usize| query.lights[light].radiance.as_dvec3();
+    let distance = |light: usize| f64::from(query.lights[light].distance);
+    let of_kd = |light: usize| radiance(light) * kd * diffuse(light);
+    let of_ks = |light: usize| radiance(light) * ks * right(light);
+    let unlit = |light: usize| kd * diffuse(light) + ks * right(light);
+    let mean = |color: DVec3| DVec3::splat(color.element_sum() / 3.0);
     let geometric = |light: usize| {
         let normal = query.surface.geometric_normal;
         let term = TermQuery { normal, ..term(query, light) };
         parts(query, light, cosine(query, light, normal), specular(&term)).iter().sum::<DVec3>()
     };
-    let ks = query.material.specular.as_dvec3();
-    let unlit = |light: usize| kd * diffuse(light) + ks * right(light);
-    let white = |light: usize| {
-        if radiance(light) == DVec3::ZERO { DVec3::ZERO } else { unlit(light) }
-    };
-    let mean = |color: DVec3| DVec3::splat(color.element_sum() / 3.0);
     let whole = |round: fn(f32) -> f32| {
         let of = |light: usize| {
-            let term = TermQuery { exponent: round(query.material.exponent), ..term(query, light) };
-            parts(query, light, diffuse(light), specular(&term)).iter().sum::<DVec3>()
+            let exponent = round(query.material.exponent);
+            of_kd(light) + radiance(light) * ks * specular(&TermQuery { exponent, ..term(query, light) })
         };
         same(ambient + of_visible(&of))
     };
-    // The lights for which a shadow ray is asked for, in order, and those that count if the number of the ray is passed.
-    let asked = lights
-        .iter()
-        .copied()
-        .filter(|&light| share(query, light, diffuse(light), right(light)) != DVec3::ZERO);
+    // What each visible light adds by mistake.
+    let shares: [(&dyn Fn(usize) -> DVec3, &str); 14] = [
+        (&|light| (of_kd(light) + of_ks(light)) / distance(light), FALLOFF),
+        (&|light| (of_kd(light) + of_ks(light)) / distance(light).powi(2), FALLOFF),
+        (
+            &|light| unlit(light) * radiance(light) * radiance(light),
+            "the radiance is squared: it is a factor of the sum once",
+        ),
+        (
+            &|light| unlit(light) * mean(radiance(light)),
+            "the light is grey: multiply by its radiance channel by channel",
+        ),
+        (&|light| of_kd(light) + ks * right(light), "the highlight is not multiplied by the radiance"),
+        (&|light| of_ks(light) + kd * diffuse(light), "the diffuse term is not multiplied by the radiance"),
+        (
+            &|light| of_kd(light) + of_ks(light) * diffuse(light),
+            "the highlight is multiplied by cos θ: it is I·ks·cosⁿφ",
+        ),
+        (&|light| radiance(light) * (ks * diffuse(light) + kd * right(light)), "kd and ks are exchanged"),
+        (&|light| of_kd(light) + radiance(light) * right(light), "ks is left out"),
+        (&of_ks, "the diffuse term is missing"),
+        (&of_kd, "the specular term is missing"),
+        (
+            &|light| if radiance(light) == DVec3::ZERO { DVec3::ZERO } else { unlit(light) },
+            "you leave out the radiance of the light",
+        ),
+        (&geometric, "you use the geometric normal: use surface.shading_normal"),
+        (&|light| radiance(light) * kd + of_ks(light), "you leave out the cosine of the diffuse term"),
+    ];
+    // The lights that add something: they are asked for a shadow ray, in order. Those that count if the number of the ray is passed.
+    let adds = |light: &usize| share(query, *light, diffuse(*light), right(*light)) != DVec3::ZERO;
+    let counted: Vec<usize> = visible.iter().copied().filter(adds).collect();
+    let asked = lights.iter().copied().filter(adds);
     let by_number: Vec<usize> =
         asked.enumerate().filter(|(n, _)| query.visible[*n]).map(|(_, light)| light).collect();
-    let distance = |light: usize| f64::from(query.lights[light].distance);
-    let kinds = [
-        FALLOFF,
-        FALLOFF,
-        "the radiance is squared: it is a factor of the sum once",
-        "the light is grey: multiply by its radiance channel by channel",
-        "the highlight is not multiplied by the radiance",
-        "the diffuse term is not multiplied by the radiance",
-        "the highlight is multiplied by cos θ: it is I·ks·cosⁿφ",
-        "kd and ks are exchanged",
-        "ks is left out",
-    ];
-    let of_kind = |kind: usize, light: usize| {
-        let ([of_kd, of_ks], radiance) = (split(light), radiance(light));
-        match kind {
-            0 => (of_kd + of_ks) / distance(light),
-            1 => (of_kd + of_ks) / distance(light).powi(2),
-            2 => unlit(light) * radiance * radiance,
-            3 => unlit(light) * mean(radiance),
-            4 => of_kd + ks * right(light),
-            5 => of_ks + kd * diffuse(light),
-            6 => of_kd + of_ks * diffuse(light),
-            7 => radiance * (ks * diffuse(light) + kd * right(light)),
-            _ => of_kd + radiance * right(light),
-        }
-    };
-    let flat = |light: usize| parts(query, light, 1.0, right(light)).iter().sum::<DVec3>();
     // A sum over all visible lights, also over those behind the surface.
     let unclamped = |least: f64| {
-        let of =
-            |light: usize| parts(query, light, diffuse(light).max(least), right(light)).iter().sum::<DVec3>();
-        ambient + visible.iter().map(|&light| of(light)).sum::<DVec3>()
+        let of = |light: &usize| radiance(*light) * kd * diffuse(*light).max(least) + of_ks(*light);
+        ambient + visible.iter().map(of).sum::<DVec3>()
     };
     let n_lights = query.lights.len().max(1) as f64;
     let of_lights = |lights: &[usize], text: &'static str| gives(lights).map(|gives| (gives, text));
     let mut mistakes = vec![(same(expected - ambient), "the ambient term A·ka is missing")];
-    let gives_kind = |kind| same(ambient + of_visible(&|light| of_kind(kind, light)));
-    mistakes.extend(kinds.into_iter().enumerate().map(|(kind, text)| (gives_kind(kind), text)));
+    mistakes.extend(shares.map(|(of, text)| (same(ambient + of_visible(of)), text)));
     let text = "you pass the number of the shadow ray to visible: pass the index of the light";
     mistakes.extend(of_lights(&by_number, text));
     if !occluded.is_empty() {
         mistakes.extend(of_lights(&lights, "you add lights that are occluded: multiply by V_i"));
         mistakes.extend(of_lights(&occluded, "you add the occluded lights and leave out the visible ones"));
     }
-    mistakes.extend([
-        (same(expected.min(DVec3::ONE)), "you clamp the colour to 1: return it without a clamp"),
-        (same(ambient + of_visible(&|light| split(light)[1])), "the diffuse term is missing"),
-        (same(ambient + of_visible(&|light| split(light)[0])), "the specular term is missing"),
-    ]);
     for lights in [&visible, &counted] {
         let (first, last) = (&lights[..lights.len().min(1)], &lights[lights.len().max(1) - 1..]);
         mistakes
             .extend(of_lights(first, "you count one light, the first that is visible: add up all lights"));
         mistakes.extend(of_lights(last, "you count one light, the last that is visible: add up all lights"));
     }
+    let or_black = if query.lights.is_empty() { DVec3::ZERO } else { expected };
     mistakes.extend([
-        (same(ambient + of_visible(&white)), "you leave out the radiance of the light"),
-        (same(ambient + of_visible(&geometric)), "you use the geometric normal: use surface.shading_normal"),
-        (same(ambient + of_visible(&flat)), "you leave out the cosine of the diffuse term"),
+        (same(expected.min(DVec3::ONE)), "you clamp the colour to 1: return it without a clamp"),
         (same(ambient + (expected - ambient) * kd), "you multiply the light by kd twice"),
         (same(expected + (n_lights - 1.0) * ambient), "you add the ambient term once per light: add it once"),
-        "you divide by the number of lights: the light of all adds up"
-            .when(same(ambient + (expected - ambient) / n_lights)),
-        (same(expected / n_lights), "you divide by the number of lights: the light of all adds up"),
-        "without lights you return black: the ambient term remains".when(same(if query.lights.is_empty() {
-            DVec3::ZERO
-        } else {
-            expected
-        })),
+        (same(ambient + (expected - ambient) / n_lights), PER_LIGHT),
+        (same(expected / n_lights), PER_LIGHT),
+        (same(or_black), "without lights you return black: the ambient term remains"),
         (same(expected - ambient + ambient * kd), "the ambient term has kd: it is A·ka"),
         (whole(f32::floor) || whole(f32::round) || whole(f32::ceil), WHOLE),
         (same(unclamped(0.0)), LIGHT_BEHIND),
@@ -293,9 +274,7 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
                 let (yours, own) = (format!("visible({light}, &{ray:?})"), rays[*light]);
                 let expected = format!("the ray {own:?}");
                 return Err(Broken::with_texts(query.call("shade"), yours, expected, "shadow_ray")
-                    .explained_by([
-                        "you ask about another ray: pass the ray of shadow_ray to visible".when(true)
-                    ]));
+                    .because("you ask about another ray: pass the ray of shadow_ray to visible"));
             }
             let has_ray: Vec<bool> = rays.iter().map(Option::is_some).collect();
             judge_traced(query, &has_ray, &yours.traced)

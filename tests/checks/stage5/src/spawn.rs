@@ -54,7 +54,7 @@ fn judge(query: &Leaving, ray: Ray) -> Judged {
     }
     if ray.t_max != f32::INFINITY {
         return Err(broken(format!("t_max = {}", ray.t_max), "t_max = inf".into())
-            .explained_by([(true, "a secondary ray is infinite: leave t_max infinite")]));
+            .because("a secondary ray is infinite: leave t_max infinite"));
     }
     let start = Start::new(surface, side, child.direction, &ray);
     let starts = || {

@@ -162,7 +162,7 @@ pub(super) fn lens_without_width_is_a_pinhole(trial: &Trial<'_>) -> CheckResult 
         if wide {
             let expected = "a ray that starts on the lens";
             return Err(Broken::new(paste(query), yours, expected, "the definition")
-                .explained_by([(true, "you return the pinhole ray for a lens that has a width")]));
+                .because("you return the pinhole ray for a lens that has a width"));
         }
         let near = (yours.direction - query.pinhole.direction).length() < 1e-5
             && yours.origin == query.pinhole.origin;

@@ -23,7 +23,7 @@ pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
         if rough {
             let expected = "a direction at an angle to ideal";
             return Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, "roughness above 0")
-                .explained_by([(true, "you return ideal for a rough surface")]));
+                .because("you return ideal for a rough surface"));
         }
         Err(Broken::new(query.call("sample_phong_lobe"), yours, query.ideal, "roughness 0").explained_by([
             (yours.is_nan(), "you return NaN: 2 / 0² is infinite"),

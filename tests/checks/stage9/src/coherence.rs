@@ -177,7 +177,7 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> CheckResult {
             let input = "8 rays that miss all of 64 spheres and the box around them";
             let yours = format!("{} nodes opened", opened.len());
             let says = "you open a node that no ray enters: ask about the root, too";
-            return Err(Broken::with_texts(input, yours, "none", "counted").explained_by([(true, says)]));
+            return Err(Broken::with_texts(input, yours, "none", "counted").because(says));
         }
     }
     let spheres: Vec<Sphere> = (0..64)

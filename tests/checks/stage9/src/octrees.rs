@@ -47,8 +47,8 @@ pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckR
 
 pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResult {
     // Two boxes in opposite corners are apart at depth 1.
-    let two = vec![Aabb::new(Vec3::ZERO, Vec3::ONE), Aabb::new(Vec3::splat(9.0), Vec3::splat(10.0))];
-    let of_depth = |max_depth| OctreeQuery { bounds: two.clone(), leaf_size: 1, max_depth };
+    let apart = vec![Aabb::new(Vec3::ZERO, Vec3::ONE), Aabb::new(Vec3::splat(9.0), Vec3::splat(10.0))];
+    let of_depth = |max_depth| OctreeQuery { bounds: apart.clone(), leaf_size: 1, max_depth };
     let [two, one] = [2, 1].map(|depth| trial.kit.octree_build(&[of_depth(depth)]).remove(0).nodes.len());
     if one == 1 {
         let says = "your tree ends one level above max_depth: the root is at depth 0";
@@ -56,6 +56,23 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResu
         return Err(
             Broken::with_texts(input, "a leaf", "eight octants", "counted").explained_by([(two > 1, says)])
         );
+    }
+    // Eight boxes across the middle are in all octants: 66 of ten together.
+    let across = (0..8).map(|i| Aabb::new(Vec3::splat(4.0 - i as f32 / 16.0), Vec3::splat(6.0)));
+    let bounds: Vec<Aabb> = apart.iter().copied().chain(across).collect();
+    let n =
+        trial.kit.octree_build(&[OctreeQuery { bounds, leaf_size: 2, max_depth: 8 }]).remove(0).nodes.len();
+    if n > 1 {
+        let says = "you divide a cell whose octants together hold more than three times as many primitives";
+        let input =
+            "build of two boxes in opposite corners and eight across the middle, leaf_size 2, max_depth 8";
+        return Err(Broken::with_texts(
+            input,
+            format!("{n} nodes"),
+            "a leaf: octants would hold 66 of 10",
+            "counted",
+        )
+        .because(says));
     }
     // 64 small boxes, one per cell of the third level, and 8 more in one of these cells.
     let at = |i: usize| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32) * 2.0;

@@ -32,9 +32,11 @@ enum AtPlane {
     ByDirection,
     /// The polygons on the planes are not tested.
     PolygonsLeftOut,
+    /// A ray is in the plane only if its height is exactly 0, or at most the room of the tree.
+    WithoutError,
 }
 
-const AT_PLANES: [(AtPlane, &str); 15] = named![
+const AT_PLANES: [(AtPlane, &str); 16] = named![
     AtPlane::InPlaneBelow =>
         "a ray in the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side below only",
     AtPlane::InPlaneAbove =>
@@ -57,6 +59,8 @@ const AT_PLANES: [(AtPlane, &str); 15] = named![
     AtPlane::ParallelNone => "a ray parallel to the plane is on the side of its origin: you search no side",
     AtPlane::NearOnly => "you search only the side of the origin: the ray goes on to the other side",
     AtPlane::ByDirection => "you choose the side by the direction alone: the ray is first on the side of its origin",
+    AtPlane::WithoutError =>
+        "a ray in the plane is on both sides, and its computed height may be a rounding error in place of 0",
     AtPlane::PolygonsLeftOut => "step 2 of the slide is missing: you do not test the polygons on the plane",
 ];
 
@@ -86,25 +90,28 @@ impl<N: TreeNode> Binary<'_, N> {
         // A tree without nodes lists nothing.
         let Some(inner) = tree.nodes.get(node as usize) else { return };
         let keep_listed = |best: &mut Hit| {
-            let kept = Wrong::NoRoom;
+            let kept = Wrong::Right;
             kept.keep(best, kept.of_cell(tree.listed(node), self.hits, self.ray));
         };
         let mut children = inner.children();
         let (Some(plane), Some(below), Some(above)) = (plane(inner), children.next(), children.next()) else {
             return keep_listed(best);
         };
+        use AtPlane::*;
         let (height, rate) =
             (plane.distance(self.ray.origin), plane.normal.dot(self.ray.direction.as_dvec3()));
         let crossing = -height / rate;
         let is_crossed = rate != 0.0 && t <= crossing && crossing <= t_end;
-        let in_plane = height.abs() <= room && rate == 0.0;
+        // The height is rounded up to four times, each time by at most 2^-53 of a sum of these sizes.
+        let sizes = plane.normal.abs().dot(self.ray.origin.as_dvec3().abs()) + plane.offset.abs();
+        let error = if self.wrong == WithoutError { 0.0 } else { (-50f64).exp2() * sizes };
+        let in_plane = height.abs() <= room + error && rate == 0.0;
         let starts = height == 0.0 && rate != 0.0;
         let (ahead, behind) = if rate > 0.0 { (above, below) } else { (below, above) };
         // The side of the ray at the middle of its part.
         let middle = if t_end.is_finite() { 0.5 * (t + t_end) } else { 2.0 * t + 1.0 };
         let here = if height + rate * middle > 0.0 { above } else { below };
         let whole = (t, t_end);
-        use AtPlane::*;
         let sides: Vec<(u32, (f64, f64))> = match self.wrong {
             InPlaneBelow | BelowAndAhead | OnPlaneBelow if in_plane => vec![(below, whole)],
             InPlaneAbove | AboveAndAhead | OnPlaneAbove if in_plane => vec![(above, whole)],

@@ -111,9 +111,6 @@ fn judge_tests(query: &CellsQuery<PolygonBsp>, yours: &CellsAnswer) -> CheckResu
             "none: the ray does not come to its plane within the node",
             "counted",
         )
-        .explained_by([(
-            true,
-            "you test polygons on planes that the ray does not reach within the node: test them between the near side and the far side",
-        )])),
+        .because("you test polygons on planes that the ray does not reach within the node: test them between the near side and the far side")),
     }
 }
