@@ -55,7 +55,8 @@ pub fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32> {
 ///
 /// 1. A tangent ray (discriminant exactly 0) hits.
 /// 2. A root `t = 0`, of a ray that starts on the sphere, does not count.
-/// 3. Hits of near, distant and tiny spheres (sizes 1e-6 to 1e6) are right up to a few roundings.
+/// 3. Hits of near, distant and tiny spheres (sizes 1e-6 to 1e6) are right up to a few roundings of
+///    the input.
 #[inline]
 pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // <solution>

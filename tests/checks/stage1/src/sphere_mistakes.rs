@@ -189,6 +189,11 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
         let away = b / a + (root / a.sqrt()).copysign(b);
         [c / a / away, away]
     };
+    // One root by the product of both, in which the power of the point is divided by |d| alone.
+    let by_length = |root: f64| {
+        let away = (b + root.copysign(b)) / a;
+        [c / a.sqrt() / away, away]
+    };
     let radius = f64::from(query.sphere.radius);
     vec![
         "your t counts world units; it must count lengths of direction (which is no unit vector here)"
@@ -196,6 +201,8 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
         (of(quadratic, a), "direction is not a unit vector here: divide by a = d·d"),
         (gives(yours, quadratic, |root| [(b - root * a.sqrt()) / a, (b + root * a.sqrt()) / a], first), CHORD),
         (gives(yours, quadratic, by_power, first), CHORD),
+        "|o - center|² - r² is divided by |d|: the product of both roots has d·d"
+            .when(gives(yours, quadratic, by_length, first)),
         (gives(yours, quadratic, |root| [(b * a.sqrt() - root) / a, (b * a.sqrt() + root) / a], first), CHORD),
         (of(quadratic, 0.5), "both roots are halved: with b = -f·d they are divided by a alone"),
         (of(quadratic, 2.0), "both roots are doubled: they are divided by a"),

@@ -107,6 +107,8 @@ pub(super) fn bounces_for_error_at_the_limits(trial: &Trial<'_>) -> CheckResult 
             (albedo == 0.0, "at an albedo of 0 nothing is reflected: 0 bounces are enough"),
             (error == 0.0, "with an error of 0 no number is enough"),
             (error == 1.0, "an error of 1 allows 0 bounces"),
+            "an error that is reached exactly is small enough: albedo^(n + 1) <= error"
+                .when(error == 0.125 && yours == expected + 1),
         ]))
     })
 }

@@ -84,6 +84,7 @@ pub(super) fn broken_by((yours, expected, cause): Fault, input: String, source: 
 
 const LEFT_OUT: &str = "a primitive was left out, or is in two leaves: both sides of a split together \
                                    must hold each exactly once";
+const LISTED_TWICE: &str = "a leaf begins before the previous one ends: the right side's primitives begin behind those of the left side";
 const NOT_DEPTH_FIRST: &str = "the nodes are not depth first: append both children of a node, then all \
                                           nodes below the first, then all below the second";
 const TOO_LARGE: &str =
@@ -121,7 +122,8 @@ pub(super) fn fault(tree: &FlatTree, boxes: &[Aabb]) -> Option<Fault> {
             let range = node.first as usize..node.first as usize + node.count as usize;
             if range.start != listed || range.end > tree.order.len() {
                 let yours = format!("leaf {index} lists order[{range:?}]");
-                return wrong(yours, &format!("order[{listed}..]: the leaves follow each other"));
+                let expected = format!("order[{listed}..]: the leaves follow each other");
+                return Some((yours, expected, (range.start < listed).then_some(LISTED_TWICE)));
             }
             listed = range.end;
             let outside = |&&id: &&u32| !node.bounds().contains_box(&boxes[id as usize]);

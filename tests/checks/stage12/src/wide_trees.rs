@@ -207,6 +207,8 @@ enum Rule {
     /// A node has at most so many children.
     Most(usize),
     LeavesStay,
+    /// A leaf of MAX_LEAF primitives is too large.
+    SmallLeaves,
     Primitives,
     PartsOfBlocks,
     NodesAreFree,
@@ -219,7 +221,7 @@ enum Rule {
     Pairs,
 }
 
-const WRONG_RULES: [(Rule, &str); 12] = named![
+const WRONG_RULES: [(Rule, &str); 13] = named![
     Rule::Greedy =>
         "the inner child with the largest surface area is opened until there are eight: this is not always the cheapest",
     Rule::Most(2) => "a node gets at most two children, not eight",
@@ -227,6 +229,7 @@ const WRONG_RULES: [(Rule, &str); 12] = named![
     Rule::Most(7) => "a node gets at most seven children, not eight",
     Rule::LeavesStay => "every leaf stays a leaf: everything below an inner node may become one leaf as well",
     Rule::Primitives => "the costs count single primitives: a leaf pays for whole blocks, block_cost",
+    Rule::SmallLeaves => "a leaf holds fewer than MAX_LEAF primitives: it may hold MAX_LEAF",
     Rule::PartsOfBlocks =>
         "a block that is not full costs less than a full one: a leaf pays for whole blocks, block_cost",
     Rule::NodesAreFree => "the cost of a node is left out: visiting it costs something, too",
@@ -245,7 +248,8 @@ fn leaf_cost(node: &FlatNode, count: u32, rule: Rule) -> f64 {
         Rule::PartsOfBlocks => f64::from(count) / BLOCK as f64,
         _ => f64::from(count.div_ceil(BLOCK as u32)),
     };
-    let may_be = count as usize <= MAX_LEAF && (node.is_leaf() || rule != Rule::LeavesStay);
+    let most = if rule == Rule::SmallLeaves { MAX_LEAF - 1 } else { MAX_LEAF };
+    let may_be = count as usize <= most && (node.is_leaf() || rule != Rule::LeavesStay);
     if may_be { half_area(&node.bounds()) * blocks } else { f64::INFINITY }
 }
 

@@ -104,11 +104,11 @@ fn judge_face_normal(triangle: &Triangle, yours: Option<Vec3>) -> Judged {
         }
     };
     let limits = [1e-12, 1e-10, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2].map(|limit| {
-        let is_small =
-            [cross.length(), 0.5 * cross.length(), cross.length_squared()].map(|area| area < limit);
+        let (area, sine) = (cross.length(), cross.length() / (u.length() * v.length()));
+        let is_small = [area, 0.5 * area, area * area, sine, sine * sine].map(|area| !(area >= limit));
         let text =
             "a triangle of a small area has no normal in your answer: only one without any area has none";
-        [0, 1, 2].map(|n| (if is_small[n] { yours.is_none() } else { right }, text))
+        is_small.map(|is_small| (if is_small { yours.is_none() } else { right }, text))
     });
     let one = |text: &'static str, gives: bool| (gives, text);
     let signed = "an edge is divided by its largest coordinate with its sign, which turns it round: divide by the largest absolute value";
@@ -129,6 +129,7 @@ pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Chec
         (Vec3::X, Vec3::ZERO),
         (Vec3::ZERO, Vec3::ZERO),
         (vec3(4.0, 0.0, 0.0), vec3(0.0, 0.0, 2.0)),
+        (Vec3::X, vec3(0.5, 1e-4, 0.0)),
     ];
     let drawn = corners.map(|(b, c)| Triangle { a: Vec3::ZERO, b, c });
     trial.each_and(&drawn, 2000, prop_oneof![triangle(), sized()], <dyn Kit>::face_normal, judge_face_normal)

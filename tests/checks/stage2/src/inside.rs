@@ -64,6 +64,9 @@ fn clearly_inside((query, weights, exact): &Case) -> Option<bool> {
 const ONE_ORDER: &str = "for a point inside, all three signs are equal, but they depend on the order of the corners: accept all ≥ 0 or all ≤ 0";
 
 /// Known mistakes in inside tests I and II, each with whether it gives this answer.
+const PRODUCTS: &str =
+    "the product with a 0 in it says nothing about the sign of the other side: compare all three sides";
+
 fn mistakes(case @ (query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'static str)> {
     // The side opposite of corner a is b c, so the signs of α, β and γ are those of the sides bc, ca and ab.
     let &[bc, ca, ab] = weights;
@@ -94,7 +97,7 @@ fn mistakes(case @ (query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'
     let is_line = |from: Vec3, to: Vec3| (from.as_dvec3() - o).cross(to.as_dvec3() - o) == DVec3::ZERO;
     let on_the_line = is_line(a, b) || is_line(b, c) || is_line(c, a);
     // Where rounding decides, each test may give each answer.
-    let Some(right) = clearly_inside(case) else { return vec![(true, ""); 13] };
+    let Some(right) = clearly_inside(case) else { return vec![(true, ""); 16] };
     vec![
         "the ray's origin is on the line of a side: accept its 0, and do not normalize (0/0)"
             .when(yours == right || (on_the_line && !yours && inside)),
@@ -108,6 +111,9 @@ fn mistakes(case @ (query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'
         (yours == strictly, "points on an edge are inside: compare with ≥ and ≤, not with > and <"),
         (yours == (inside && faces <= 0.0), ONE_ORDER),
         (yours == (inside && faces >= 0.0), ONE_ORDER),
+        (yours == (ab * bc >= 0.0 && bc * ca >= 0.0), PRODUCTS),
+        (yours == (bc * ca >= 0.0 && ca * ab >= 0.0), PRODUCTS),
+        (yours == (ca * ab >= 0.0 && ab * bc >= 0.0), PRODUCTS),
         (gives(&[bc, ca]), "a side left out, a b: test all three sides"),
         (gives(&[ca, ab]), "a side left out, b c: test all three sides"),
         (gives(&[bc, ab]), "a side left out, c a: test all three sides"),

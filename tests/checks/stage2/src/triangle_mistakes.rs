@@ -5,6 +5,8 @@ use checks::prelude::*;
 
 /// The intersection of the line along a ray with the plane of a triangle, in double precision.
 struct Line {
+    u: DVec3,
+    v: DVec3,
     t: f64,
     alpha: f64,
     beta: f64,
@@ -37,6 +39,8 @@ impl Line {
         let far = [a, b, c, o].map(|p| p.length()).into_iter().fold(0.0, f64::max);
         let relative = |reach: f64| 64.0 * U * thin * thin * steep * (1.0 + reach / size);
         Line {
+            u,
+            v,
             t,
             alpha: 1.0 - beta - gamma,
             beta,
@@ -151,11 +155,13 @@ fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
         lost_if(determinant < 0.0) => "you test the triangle from one side only: it is hit from the back as well",
         lost_if(determinant > 0.0) => "you test the triangle from one side only: it is hit from the front as well",
     ].to_vec();
-    // Rounding decides about a determinant next to the limit.
-    let is_next_to = |limit: f64| (determinant.abs() / limit - 1.0).abs() < 1e-3;
-    all.extend(LIMITS.map(|limit| {
-        let is_lost = is_next_to(limit) || lost_if(determinant.abs() < limit);
-        (is_lost, "you take a small |det| for 0, but a fixed limit rejects small triangles")
+    // Rounding decides about a determinant next to the limit. That of Gram is |u × v|².
+    let gram = line.u.cross(line.v).length_squared();
+    all.extend([determinant.abs(), gram].into_iter().flat_map(|size| {
+        LIMITS.map(|limit| {
+            let is_lost = (size / limit - 1.0).abs() < 1e-3 || lost_if(size < limit);
+            (is_lost, "you take a small |det| for 0, but a fixed limit rejects small triangles")
+        })
     }));
     // With the range of the ray, with its end, or with neither.
     let ranges = |epsilon: f64| [(t_min.max(epsilon), t_max), (epsilon, t_max), (epsilon, f64::INFINITY)];
@@ -186,6 +192,15 @@ fn of_values(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
                 && accepts(&hit)
         })
     };
+    // Gram's numerators, with u·u and v·v exchanged.
+    let (uu, uv, vv) = (line.u.length_squared(), line.u.dot(line.v), line.v.length_squared());
+    let (point_u, point_v) = (beta * uu + gamma * uv, beta * uv + gamma * vv);
+    let exchanged =
+        [uv * point_v - uu * point_u, uv * point_u - vv * point_v].map(|x| x / (uv * uv - uu * vv));
+    let squares = |beta: f64, gamma: f64| {
+        let text = "u·u and v·v are exchanged: β has v·v, and γ has u·u";
+        (answer.is_inside([t, beta, gamma], beta.min(gamma).min(1.0 - beta - gamma)), text)
+    };
     let is_in_sum = |hit: &TriangleHit| (0.0..=1.0).contains(&(hit.beta + hit.gamma));
     vec![
         "you use the determinant as the slide prints it; it must be a(fk - gj) + b(gi - ek) + c(ej - fi)"
@@ -194,6 +209,9 @@ fn of_values(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
                 answer.is_inside(hit, hit[1].min(hit[2]).min(1.0 - hit[1] - hit[2]))
             })
             ),
+        squares(exchanged[0], exchanged[1]),
+        squares(exchanged[0], gamma),
+        squares(beta, exchanged[1]),
         (answer.is_inside([t, gamma, beta], least), "β and γ look swapped"),
         "you return (α, γ) with α, a weight of corner a: β belongs to b and γ to c"
             .when(answer.is_inside([t, alpha, gamma], least)),

@@ -115,6 +115,9 @@ fn schlick_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
         total(formula(r0, right, 5).powi(2)) => "you square the reflectance: R0 is a square already",
         total(formula(r0, right, 5).sqrt()) => "you take the root of the reflectance",
         total(formula(r0.sqrt(), right, 5)) => "you do not square R0",
+        total(formula((n1 - n2) / (n1 + n2), right, 5)) => "you do not square R0",
+        total(formula(((n1.max(n2) - 1.0) / (n1.max(n2) + 1.0)).powi(2), right, 5)) =>
+            "you take the other side for air: R0 is ((n1 - n2) / (n1 + n2))²",
         total(r0) => "you return R0 for every angle: the reflectance rises to 1 at grazing angles",
         r0 => "you return R0 for every angle: the reflectance rises to 1 at grazing angles, and is 1 beyond the critical one",
         total((1.0 - right).powi(5)) => "you leave out R0",
@@ -131,6 +134,9 @@ fn exact_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
     let of_angle = |cos_2: f64| (ratio(n1 * cos_1, n2 * cos_2), ratio(n1 * cos_2, n2 * cos_1));
     let (s, p) = cos_2.map_or((1.0, 1.0), of_angle);
     let both = |s: f64, p: f64| if cos_2.is_none() { 1.0 } else { s + p };
+    // Snell's law without the square of the ratio.
+    let bent = 1.0 - n1 / n2 * (1.0 - cos_1 * cos_1);
+    let (bent_s, bent_p) = if bent < 0.0 { (1.0, 1.0) } else { of_angle(bent.sqrt()) };
     vec![
         (s * s, "you return one polarisation, the one perpendicular to the plane: return the mean of both"),
         (p * p, "you return one polarisation, the one parallel to the plane: return the mean of both"),
@@ -139,6 +145,14 @@ fn exact_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
         (0.5 * (s + p), "you do not square the ratios"),
         ((s * p).abs(), "you return the geometric mean of both polarisations: return half of their sum"),
         ((0.5 * (s + p)).clamp(0.0, 1.0), "you do not square the ratios"),
+        (
+            (0.5 * (s.abs() + p.abs())).powi(2),
+            "you square the mean of the ratios: return the mean of their squares",
+        ),
+        (
+            0.5 * (bent_s * bent_s + bent_p * bent_p),
+            "Snell's law has the square of n1 / n2: sin² θ2 = (n1 / n2)² sin² θ1",
+        ),
     ]
 }
 

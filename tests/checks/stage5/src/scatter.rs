@@ -202,6 +202,8 @@ fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Ju
             "you add F transmission to the reflected ray, but do not take it off the refracted one: (1 - F) transmission",
         is([weight * mirror, through]) => "you take F off the refracted ray, but do not add F transmission to the reflected one",
         is([weight * share * mirror, through]) => "you multiply the mirror by F: the reflected ray has mirror + F transmission",
+        is([weight * share * (mirror + transmission), through]) =>
+            "you multiply the mirror by F: the reflected ray has mirror + F transmission",
         is([weight * (mirror + (1.0 - share) * transmission), weight * share * transmission]) => "you exchange F and 1 - F",
         is(weights(exchanged)) => "you exchange n1 and n2 in the Fresnel reflectance",
     ];

@@ -34,7 +34,28 @@ pub(super) fn scatter_tests_the_weight_of_each_ray(trial: &Trial<'_>) -> CheckRe
         compare_formulas(queries, trial.kit.scatter(queries), judge_own_weight, |query, yours| {
             formulas(query, yours)
         })
-    })
+    })?;
+    // Along the normal Schlick's F is 0.04 for an index of 1.5. The reflected ray has mirror + F transmission.
+    let along = [(0.3, 0.5, 0.31), (0.0, 0.5, 0.49), (0.0, 1.0, 0.97), (0.0, 0.5, 0.45), (0.1, 0.5, 0.11)];
+    let queries = along.map(|(mirror, transmission, least)| {
+        let query = at(mirror, transmission, least);
+        let material = Material { index_of_refraction: 1.5, fresnel: Fresnel::Schlick, ..query.material };
+        ScatterQuery { direction: -normal, material, ..query }
+    });
+    all_hold(compare(&queries, trial.kit.scatter(&queries), |query, yours| {
+        let [mirror, transmission] = [query.material.mirror.x, query.material.transmission.x];
+        let least = query.limits.min_contribution;
+        let traced =
+            |f: [f32; 2]| [mirror + f[0] * transmission >= least, (1.0 - f[1]) * transmission >= least];
+        let [yours, expected] = [found(&yours), traced([0.04; 2])];
+        let words =
+            |[reflected, refracted]: [bool; 2]| format!("reflected: {reflected}, refracted: {refracted}");
+        let source = "mirror + F transmission, (1 - F) transmission, and the limit";
+        let broken = || Broken::with_texts(paste(query), words(yours), words(expected), source);
+        let says = "you test a weight without F: the reflected ray gains F · transmission, and the refracted one loses it";
+        let without = [[0.0, 0.0], [0.0, 0.04], [0.04, 0.0]].map(|f| (yours == traced(f), says));
+        unless(yours == expected, broken).formulas(without)
+    }))
 }
 
 /// The weights of the reflected and of the refracted ray.
@@ -80,6 +101,8 @@ fn formulas(query: &ScatterQuery, yours: &[SecondaryRay]) -> Vec<(bool, &'static
         above(&|_, _| true) => "you leave out min_contribution",
         plain(&|own, _| largest(own) >= least) => "you trace a secondary ray of weight 0, which adds nothing",
         plain(&|_, _| counts(parent)) => PARENT,
+        found == [counts(parent) && largest(own[0]) > 0.0, counts(own[1])] => PARENT,
+        found == [counts(own[0]), counts(parent) && largest(own[1]) > 0.0] => PARENT,
         above(&|_, _| largest(parent) >= least) => PARENT,
         above(&|_, _| largest(parent) > least) => PARENT,
         plain(&|own, other| counts(own) || counts(other)) =>

@@ -177,7 +177,7 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
              and t_max stay",
             ),
             (
-                is(yours.t_min, low * exact) && is(yours.t_max, high * exact),
+                (is(yours.t_min, low) || is(yours.t_min, low * exact)) && is(yours.t_max, high * exact),
                 "you multiply the range by the length of the direction: t is the same number in both spaces, so t_min and \
                  t_max stay",
             ),

@@ -237,31 +237,34 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> CheckResult {
             .explained_by(["empty margins of a cell are not cut off: do it before any other cut"
                 .when(share == empty_share(&off, 4))]));
     }
-    // The first cut is at x = 20. The boxes to its left leave margins of 9.0 and 9.5 % of their cell along y.
-    let left =
-        (0..4).map(|i| 1.8 + 4.1 * i as f32).map(|y| Aabb::new(vec3(0.0, y, 0.0), vec3(19.5, y + 4.0, 20.0)));
-    let right =
-        (0..4).map(|i| 5.0 * i as f32).map(|y| Aabb::new(vec3(20.5, y, 0.0), vec3(40.0, y + 5.0, 20.0)));
-    let narrow = build(
-        trial,
-        "two stacks of 4 boxes, cut_off_empty_space alone",
-        &left.chain(right).collect::<Vec<_>>(),
-        alone,
-    );
-    let mut below_the_first = None;
-    narrow.tree.walk(1, |node, cell, depth| {
-        if let KdNode::Inner { axis, at, .. } = narrow.tree.nodes[node as usize]
-            && depth == 1
-            && cell.max.x < 21.0
-        {
-            below_the_first = Some((axis, at));
+    // The first cut is at x = 20. The boxes to its left leave margins of 9 and 9.5 %, or 15 and 15.5 %, of their cell along y.
+    let text = "you cut off a margin that is no more than a tenth of the cell";
+    let too_late = "you leave a margin that is more than a tenth of the cell";
+    for (low, height, is_wide, says) in [(1.8, 4.0, false, text), (3.0, 3.4, true, too_late)] {
+        let step = height + 0.1;
+        let left = (0..4).map(|i| low + step * i as f32);
+        let left = left.map(|y| Aabb::new(vec3(0.0, y, 0.0), vec3(19.5, y + height, 20.0)));
+        let right = (0..4).map(|i| 5.0 * i as f32);
+        let right = right.map(|y| Aabb::new(vec3(20.5, y, 0.0), vec3(40.0, y + 5.0, 20.0)));
+        let what = format!("two stacks of 4 boxes of height {height} and 5, cut_off_empty_space alone");
+        let built = build(trial, what, &left.chain(right).collect::<Vec<_>>(), alone);
+        let mut below_the_first = None;
+        built.tree.walk(1, |node, cell, depth| {
+            if let KdNode::Inner { axis, at, .. } = built.tree.nodes[node as usize]
+                && depth == 1
+                && cell.max.x < 21.0
+            {
+                below_the_first = Some((axis, at));
+            }
+        });
+        let across_y =
+            below_the_first.filter(|(axis, _)| *axis == 1).map(|(_, at)| (3.1..16.9).contains(&at));
+        if across_y != Some(!is_wide) {
+            let yours = format!("a cut (axis, at) = {below_the_first:?} left of the first one");
+            let expected =
+                if is_wide { "a cut across y at a margin" } else { "a cut across y in the middle" };
+            return built.refuse(yours, expected, (across_y == Some(is_wide), says));
         }
-    });
-    if !below_the_first.is_some_and(|(axis, at)| axis == 1 && (2.0..18.0).contains(&at)) {
-        let yours = format!("a cut (axis, at) = {below_the_first:?} left of the first one");
-        let is_margin = below_the_first.is_some_and(|(axis, at)| axis == 1 && !(2.0..18.0).contains(&at));
-        let says = "you cut off a margin that is no more than a tenth of the cell";
-        return narrow.refuse(yours, "a cut across y in the middle", (is_margin, says));
     }
     // Cuts in the middle leave less of the volume in empty leaves at depth 2.
     let [early, off] = [on, off].map(|tree| empty_share(&tree, 2));

@@ -19,16 +19,30 @@ pub(super) fn some_boxes() -> impl Strategy<Value = Vec<Aabb>> + Clone {
         1 => Aabb::new(corner, corner + vec3(size.x.abs(), -1.0, size.z.abs())),
         _ => Aabb::new(corner, corner + size.abs()),
     });
-    (prop::collection::vec(one, 1..24), nasty::scale(-30..=30)).prop_map(|(boxes, scale)| {
-        boxes.into_iter().map(|one| Aabb::new(scale * one.min, scale * one.max)).collect()
+    // One scene of four is 2^16 units from the origin, whose coordinates decide about the room.
+    (prop::collection::vec(one, 1..24), nasty::scale(-30..=30), 0..4i32).prop_map(|(boxes, scale, far)| {
+        let away = if far == 0 { Vec3::splat(65536.0) } else { Vec3::ZERO };
+        boxes.into_iter().map(|one| Aabb::new(scale * (one.min + away), scale * (one.max + away))).collect()
     })
 }
 
-/// `(yours, expected)` if the bounds of a structure do not contain all boxes that are not empty.
-pub(super) fn bounds_fault(bounds: &Aabb, boxes: &[Aabb]) -> Option<(String, String)> {
+/// A fault if the bounds of a structure do not contain all boxes that are not empty, with at least half of the room that
+/// `padded_boxes` leaves. The other half is for its roundings.
+fn bounds_fault(bounds: &Aabb, boxes: &[Aabb]) -> Option<Fault> {
     let all = checks::tree::around(boxes.iter().filter(|one| !one.is_empty()));
-    (!bounds.contains_box(&all))
-        .then(|| (format!("the bounds {}", bounds.paste()), format!("bounds that contain {}", all.paste())))
+    let (low, high) = (all.min.as_dvec3(), all.max.as_dvec3());
+    let extent = (high - low).max_element() * (-19f64).exp2();
+    let room = extent.max(low.abs().max(high.abs()).max_element() * (-23f64).exp2());
+    let most = DVec3::splat(f32::MAX.into());
+    let has_room = bounds.min.as_dvec3().cmple((low - room).max(-most)).all()
+        && bounds.max.as_dvec3().cmpge((high + room).min(most)).all();
+    let (yours, expected) = (format!("the bounds {}", bounds.paste()), format!("around {}", all.paste()));
+    if !bounds.contains_box(&all) {
+        return Some(fact(yours, expected, "bounds must contain all boxes that are not empty"));
+    }
+    let mistake = "the bounds leave no room for rounding: build over padded_boxes, whose room also grows with the coordinates";
+    (!has_room && !all.is_empty())
+        .then(|| fact(yours, format!("{expected}, and {room:.1e} or more on each side"), mistake))
 }
 
 /// Whether a box is too far from a cell that lists it: farther than a 64th of the whole extent, and farther than 2⁻²⁰
@@ -82,8 +96,8 @@ pub(super) fn listing_fault<N: std::fmt::Display>(
     boxes: &[Aabb],
     leaves: &[Listed<N>],
 ) -> Option<Fault> {
-    if let Some((yours, expected)) = bounds_fault(bounds, boxes) {
-        return Some(fact(yours, expected, "bounds must contain all boxes that are not empty"));
+    if let Some(fault) = bounds_fault(bounds, boxes) {
+        return Some(fault);
     }
     for (node, cell, listed) in leaves {
         for (id, one) in boxes.iter().enumerate() {

@@ -271,8 +271,12 @@ pub(super) fn agrees<S: Clone>(trial: &Trial<'_>, search: &Search<S>) -> CheckRe
         checks::nasty::directions().into_iter().map(checks::nasty::slanted).map(look).collect::<Vec<Ray>>()
     };
     let (at_row, at_small) = (around(vec3(2.0, 0.1, 0.2)), around(vec3(7.0, 0.9, 0.4)));
+    // Directions whose length is 2^-40, so that the planes are crossed at very large t.
+    let slow: Vec<Ray> =
+        at_row.iter().map(|ray| Ray::new(ray.origin, (-40f32).exp2() * ray.direction)).collect();
     let others = [
         Searched::new("three spheres in a row", &row, &at_row),
+        Searched::new("three spheres in a row, by very short directions", &row, &slow),
         Searched::new("nine spheres", &through, &at_small),
     ];
     let cases: Vec<Searched<'_>> = [in_a_row, passing].into_iter().chain(others).collect();
