@@ -210,7 +210,7 @@ pub fn scatter(
 /// Exactly:
 ///
 /// 1. A reflected ray starts on the side of `surface.geometric_normal`, a refracted ray on the
-///    other side.
+///    other side: the side to which it goes.
 /// 2. Its distance from the point along the normal is as for
 ///    [`shadow_ray`](crate::stage4_shading::shadow_ray).
 ///
