@@ -172,14 +172,7 @@ macro_rules! precision {
             fn sheared(ray: &Ray, triangle: &Triangle) -> ([$Float; 3], [$Float; 3], $Float) {
                 // Choose the direction's largest component as the z axis.
                 let [o, d, a, b, c] = numbers(ray, triangle);
-                let size = d.abs();
-                let z = if size.x >= size.y && size.x >= size.z {
-                    0
-                } else if size.y >= size.z {
-                    1
-                } else {
-                    2
-                };
+                let z = d.abs().max_position();
                 // Shear the corners so that the ray runs along z.
                 let (x, y) = ((z + 1) % 3, (z + 2) % 3);
                 let shear = [d[x] / d[z], d[y] / d[z]];
