@@ -1,6 +1,6 @@
 //! Pictures of what is counted per ray: leaks of a closed mesh, shadow rays per pixel, and ways to find light.
 
-use crate::pictures::{crop, job, load, magnified, panels, render, shown};
+use crate::pictures::{crop, film_of, job, load, magnified, panels, render, shown};
 use anyhow::Result;
 use glam::{Vec3, vec3};
 use oracle::gauntlet::meshes::icosahedron;
@@ -124,13 +124,8 @@ pub fn shadow_ray_map(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let picture = shown(kit, &scene)?;
     (scene.film.width, scene.film.height) = (SIZE, SIZE);
     let job = job(&scene);
-    let mut map = Film::new(SIZE, SIZE);
-    for (index, pixel) in (0..).zip(&mut map.pixels) {
-        let rays = kit.trace(&job, index % SIZE, index / SIZE);
-        let shadows = rays.iter().filter(|ray| ray.kind == RayKind::Shadow).count();
-        *pixel = grey(shadows as f32);
-    }
-    let mut map = magnified(&map, 4);
+    let shadows = |x, y| kit.trace(&job, x, y).iter().filter(|ray| ray.kind == RayKind::Shadow).count();
+    let mut map = magnified(&film_of([SIZE; 2], |x, y| grey(shadows(x, y) as f32)), 4);
     // A scale of eleven greys at the lower edge.
     for x in 0..map.width {
         for y in map.height - 24..map.height {

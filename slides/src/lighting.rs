@@ -33,7 +33,7 @@ pub fn face_forward(kit: &dyn Kit) -> Result<String> {
         drawing.text(offset(at(Vec3::Y), [12.0, 16.0]), Start, TEXT, Ink::Text, "n");
         drawing.arrow(at(-1.15 * direction), center, Ink::Color(0).pen(4.0));
         drawing.text(offset(at(-1.15 * direction), [-10.0, 6.0]), End, TEXT, Ink::Color(0), "d");
-        drawing.arrow(offset(center, [0.0, 0.0]), at(0.85 * forward), Ink::Color(1).pen(6.0));
+        drawing.arrow(center, at(0.85 * forward), Ink::Color(1).pen(6.0));
         let result = if forward.y > 0.0 { "n" } else { "-n" };
         drawing.text([x, 450.0], Middle, TEXT, Ink::Color(1), &format!("face_forward returns {result}"));
         let dot = Vec3::Y.dot(direction);

@@ -108,7 +108,7 @@ pub fn reflection(kit: &dyn Kit) -> Result<String> {
     for (end, ink) in [(-direction, before), (reflected, after)] {
         let foot = vec3(end.x, 0.0, 0.0);
         drawing.line(at(end), at(foot), ink.pen(2.0).dashed());
-        drawing.line(offset(at(foot), [0.0, 0.0]), center, ink.pen(5.0));
+        drawing.line(at(foot), center, ink.pen(5.0));
     }
     drawing.arrow(at(-direction), center, before.pen(4.0));
     drawing.arrow(center, at(reflected), after.pen(4.0));

@@ -14,6 +14,7 @@ use raykata::world::camera_for;
 use raykata_cli::caption;
 use raykata_cli::compare::{heat_color, with_edges};
 use raykata_cli::report;
+use raykata_cli::strip::paste;
 use std::path::Path;
 
 /// Pixels between two panels.
@@ -57,26 +58,20 @@ pub fn rays_of(camera: &Camera, [width, height]: [u32; 2]) -> Vec<Ray> {
     (0..width * height).map(ray).collect()
 }
 
+/// A picture of this size whose pixel in column x and row y is `pixel(x, y)`.
+pub fn film_of([width, height]: [u32; 2], pixel: impl Fn(u32, u32) -> Vec3) -> Film {
+    let pixels = (0..width * height).map(|i| pixel(i % width, i / width)).collect();
+    Film { width, height, pixels }
+}
+
 /// The part of a picture from column and row `corner`, `size` pixels wide and high.
 pub fn crop(film: &Film, corner: [u32; 2], size: [u32; 2]) -> Film {
-    let mut part = Film::new(size[0], size[1]);
-    for y in 0..size[1] {
-        for x in 0..size[0] {
-            part.pixels[(y * size[0] + x) as usize] = film.at(corner[0] + x, corner[1] + y);
-        }
-    }
-    part
+    film_of(size, |x, y| film.at(corner[0] + x, corner[1] + y))
 }
 
 /// The picture with each pixel repeated `times` along both axes.
 pub fn magnified(film: &Film, times: u32) -> Film {
-    let mut large = Film::new(times * film.width, times * film.height);
-    for y in 0..large.height {
-        for x in 0..large.width {
-            large.pixels[(y * large.width + x) as usize] = film.at(x / times, y / times);
-        }
-    }
-    large
+    film_of([times * film.width, times * film.height], |x, y| film.at(x / times, y / times))
 }
 
 /// Panels of equal size in rows of `columns`, each with its caption below, as a PNG file.
@@ -87,11 +82,7 @@ pub fn panels(parts: &[(Film, String)], columns: u32) -> Result<Vec<u8>> {
     let mut sheet = Film::new(columns * width + (columns - 1) * GAP, rows * height + (rows - 1) * GAP);
     for (index, (film, text)) in (0..).zip(parts) {
         let [left, top] = [index % columns * (width + GAP), index / columns * (height + GAP)];
-        for y in 0..film.height {
-            let start = ((top + y) * sheet.width + left) as usize;
-            let row = &film.pixels[(y * film.width) as usize..][..film.width as usize];
-            sheet.pixels[start..start + row.len()].copy_from_slice(row);
-        }
+        paste(film, &mut sheet, [left, top]);
         caption::write(&mut sheet, text, [left, top + film.height], width);
     }
     png(&sheet)
@@ -251,11 +242,9 @@ pub fn gamma_steps(kit: &dyn Kit, _root: &Path) -> Result<Vec<u8>> {
 pub fn three_scales(_kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
     let picture = image::open(root.join("tests/golden/stage10_three_scales.png"))?.into_rgb8();
     let (width, height) = (picture.width(), picture.height());
-    let mut film = Film::new(width, height);
     // Decode what `panels` encodes.
-    for (pixel, bytes) in film.pixels.iter_mut().zip(picture.pixels()) {
-        *pixel = (Vec3::from(bytes.0.map(f32::from)) / 255.0).map(decode_srgb);
-    }
+    let color = |x, y| (Vec3::from(picture.get_pixel(x, y).0.map(f32::from)) / 255.0).map(decode_srgb);
+    let film = film_of([width, height], color);
     let third = width / 3;
     let part = |index: u32, name: &str| {
         (magnified(&crop(&film, [index * third, 0], [third, height]), 8), name.to_owned())

@@ -109,6 +109,9 @@ fn errors_name_the_place_and_what_to_do() {
         ("title = \"\"\n", "course.toml:1:9: `title` must be one line of text"),
         ("\nstages = \"1-13\"\n", "course.toml:2:10: there is no stage 13; there are stages 1 to 12"),
         ("stages = \"a\"\n", "course.toml:1:10: `a` is not a stage number"),
+        ("stages = \"1,\"\n", "course.toml:1:10: `` is not a stage number"),
+        ("stages = \"0\"\n", "course.toml:1:10: there is no stage 0"),
+        ("stages = \"4-2\"\n", "course.toml:1:10: `4-2` names no stage"),
         (
             "[stage1]\ndue = \"monday\"\n",
             "course.toml:2:7: `due` must be a date without quotes, such as 2026-11-02",

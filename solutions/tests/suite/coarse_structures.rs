@@ -2,8 +2,7 @@
 //! structure is coarser than the scene asks for.
 
 use super::adversarial::hard_lists;
-use crate::scene::{render, scene};
-use raykata::kit::Rendering;
+use crate::scene::{render_by, scene};
 use raykata::mesh::Mesh;
 use raykata::partition::MOST_REFERENCES;
 use raykata::scene::{Accelerator, Scene};
@@ -31,12 +30,6 @@ shape = { mesh = "hard" }
         ..Mesh::default()
     });
     scene
-}
-
-fn render_by(scene: &Scene, accelerator: Accelerator) -> Rendering {
-    let mut scene = scene.clone();
-    scene.quality.accelerator = accelerator;
-    render(&scene)
 }
 
 #[test]

@@ -1,25 +1,19 @@
 //! Shapes in object spaces of their own, in whole frames: instances look like copies, there is no shadow
 //! acne, transforms that reflect keep the outside outside, and every accelerator makes the same picture.
 
-use crate::scene::{differing, job, render, rendered, scene, small};
+use crate::scene::{differing, job, render, render_by, rendered, scene, small};
 use glam::Vec3;
 use raykata::count::Counts;
 use raykata::kit::{RenderJob, Rendering, View};
 use raykata::scene::{Accelerator, Scene};
 
-fn by(scene: &Scene, accelerator: Accelerator) -> Rendering {
-    let mut scene = scene.clone();
-    scene.quality.accelerator = accelerator;
-    render(&scene)
-}
-
 #[test]
 fn every_accelerator_makes_the_same_picture() {
     for (name, width, height) in [("stage8", 64, 36), ("effects", 32, 20), ("graph", 48, 32)] {
         let scene = small(name, width, height);
-        let expected = by(&scene, Accelerator::BruteForce);
+        let expected = render_by(&scene, Accelerator::BruteForce);
         for accelerator in Accelerator::ALL {
-            let frame = by(&scene, accelerator);
+            let frame = render_by(&scene, accelerator);
             assert_eq!(frame.film, expected.film, "{name}, {accelerator:?}");
             assert_eq!(rays(&frame.counts), rays(&expected.counts), "{name}, {accelerator:?}");
             // Instances and round shapes are no polygons, so this tree may list them all in large leaves.

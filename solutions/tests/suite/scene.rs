@@ -3,7 +3,7 @@
 use raykata::film::Film;
 use raykata::frame::Unwatched;
 use raykata::kit::{RenderJob, Rendering, View};
-use raykata::scene::{Scene, load};
+use raykata::scene::{Accelerator, Scene, load};
 use std::path::{Path, PathBuf};
 
 /// The path of a scene in `scenes`.
@@ -39,6 +39,12 @@ pub fn rendered(job: &RenderJob) -> Rendering {
 
 pub fn render(scene: &Scene) -> Rendering {
     rendered(&job(scene))
+}
+
+pub fn render_by(scene: &Scene, accelerator: Accelerator) -> Rendering {
+    let mut scene = scene.clone();
+    scene.quality.accelerator = accelerator;
+    render(&scene)
 }
 
 /// How many pixels differ by more than `most` in a channel.

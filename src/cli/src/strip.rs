@@ -179,7 +179,8 @@ fn pictures(given: &Given, scene: &Scene) -> Result<Vec<Picture>, Misuse> {
     Ok(depths.into_iter().map(of_depth).collect())
 }
 
-fn paste(picture: &Film, strip: &mut Film, [x, y]: [u32; 2]) {
+/// Copies a picture into a strip, with its upper left corner at column `x` and row `y`.
+pub fn paste(picture: &Film, strip: &mut Film, [x, y]: [u32; 2]) {
     for (row, pixels) in (y..).zip(picture.pixels.chunks(picture.width as usize)) {
         let start = (row * strip.width + x) as usize;
         strip.pixels[start..start + pixels.len()].copy_from_slice(pixels);

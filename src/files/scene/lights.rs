@@ -41,16 +41,11 @@ pub(super) fn show(scene: &mut Scene, lights: &Lights) {
         let (ambient, diffuse) = (Vec3::ZERO, Vec3::ZERO);
         let material =
             Material { ambient, diffuse, emission: light.visible_radiance(), ..Material::default() };
-        scene.visible_lights.push(VisibleLight { light: index, material: scene.materials.len() });
-        let material_index = scene.materials.len();
+        let number = scene.materials.len();
         let shape = Some(shape.to_shape());
+        scene.visible_lights.push(VisibleLight { light: index, material: number });
         scene.roots.push(scene.nodes.len());
-        scene.nodes.push(Node {
-            name: name.clone(),
-            shape,
-            material: Some(material_index),
-            ..Node::default()
-        });
+        scene.nodes.push(Node { name: name.clone(), shape, material: Some(number), ..Node::default() });
         scene.materials.push(material);
         scene.material_names.push(name);
     }

@@ -177,18 +177,15 @@ fn background<'a>(value: Value<'a>, images: &mut Images<'a>) -> Result<Backgroun
     let Ok(table) = value.any_table() else {
         return Ok(Background::Color(value.color(ColorPlace::Background)?));
     };
-    if table.one_of(&["horizon", "file"])?.key == "horizon" {
+    let given = table.one_of(&["horizon", "file"])?;
+    if given.key == "horizon" {
         let table = table.with_keys(&["zenith", "horizon", "nadir"])?;
-        let color = |key: &str, place| {
-            table.get(key).map(|value| value.color(ColorPlace::Gradient(place))).transpose()
-        };
-        let horizon = color("horizon", GradientColor::Horizon)?.unwrap_or_default();
-        let zenith = table.need("zenith", "[0.2, 0.4, 0.8]")?;
-        let zenith = zenith.color(ColorPlace::Gradient(GradientColor::Zenith))?;
+        let color = |value: Value, place| value.color(ColorPlace::Gradient(place));
+        let horizon = color(given, GradientColor::Horizon)?;
+        let zenith = color(table.need("zenith", "[0.2, 0.4, 0.8]")?, GradientColor::Zenith)?;
         // Without a colour of its own the ground is that of the horizon, whose encoded bytes are kept for it as well.
-        let nadir = table.get("nadir").or(table.get("horizon"));
-        let nadir = nadir.map(|value| value.color(ColorPlace::Gradient(GradientColor::Nadir))).transpose()?;
-        return Ok(Background::Gradient(Gradient { zenith, horizon, nadir: nadir.unwrap_or(horizon) }));
+        let nadir = color(table.get("nadir").unwrap_or(given), GradientColor::Nadir)?;
+        return Ok(Background::Gradient(Gradient { zenith, horizon, nadir }));
     }
     let table = table.with_keys(&["file", "rotation", "scale"])?;
     let file = table.need("file", "\"sky.hdr\"")?;

@@ -21,15 +21,19 @@ pub const NAMES: [&str; 5] = ["icosphere", "stadium", "hair", "soup", "terrain"]
 
 /// The scene of this name.
 pub fn by_name(name: &str) -> Option<Scene> {
+    // Around the origin, seen from the front.
+    let in_front = |name, triangles| Scene {
+        name,
+        triangles,
+        eye: Vec3::new(0.0, 0.0, 3.0),
+        target: Vec3::ZERO,
+        field: 45.0,
+        light: Vec3::new(3.0, 4.0, 2.0),
+    };
     Some(match name {
-        "icosphere" => Scene {
-            name: "icosphere",
-            triangles: icosphere(59, Vec3::ZERO, 1.0),
-            eye: Vec3::new(0.0, 0.6, 2.6),
-            target: Vec3::ZERO,
-            field: 45.0,
-            light: Vec3::new(3.0, 4.0, 2.0),
-        },
+        "icosphere" => {
+            Scene { eye: Vec3::new(0.0, 0.6, 2.6), ..in_front("icosphere", icosphere(59, Vec3::ZERO, 1.0)) }
+        }
         "stadium" => Scene {
             name: "stadium",
             triangles: [icosphere(59, Vec3::new(0.0, -99.8, 0.0), 0.1), bowl(157, 79, 100.0)].concat(),
@@ -38,22 +42,8 @@ pub fn by_name(name: &str) -> Option<Scene> {
             field: 60.0,
             light: Vec3::new(20.0, 60.0, 10.0),
         },
-        "hair" => Scene {
-            name: "hair",
-            triangles: hair(100_000),
-            eye: Vec3::new(0.0, 0.0, 3.0),
-            target: Vec3::ZERO,
-            field: 45.0,
-            light: Vec3::new(3.0, 4.0, 2.0),
-        },
-        "soup" => Scene {
-            name: "soup",
-            triangles: soup(1_000_000),
-            eye: Vec3::new(0.0, 0.0, 3.0),
-            target: Vec3::ZERO,
-            field: 45.0,
-            light: Vec3::new(3.0, 4.0, 2.0),
-        },
+        "hair" => in_front("hair", hair(100_000)),
+        "soup" => in_front("soup", soup(1_000_000)),
         "terrain" => terrain("terrain", 707),
         "terrain-12m" => terrain("terrain-12m", 2449),
         _ => return None,

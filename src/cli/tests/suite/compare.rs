@@ -52,17 +52,14 @@ fn structures_are_compared_side_by_side() {
 
 #[test]
 fn savings_heuristics_grids_methods_and_instances_have_tables() {
-    for (of, row) in [
-        ("savings", "graph, boxes, skip and sort"),
-        ("heuristics", "without stop at 60 %"),
-        ("heuristics", "easy, few straddlers"),
-        ("savings", "graph, boxes, skip, cached child"),
-        ("grids", "grid, 256 along"),
-        ("methods", "triangles, inside by direction"),
-        ("methods", "spheres, stable roots"),
-        ("instances", "copies"),
+    for (of, rows) in [
+        ("savings", &["graph, boxes, skip and sort", "graph, boxes, skip, cached child"][..]),
+        ("heuristics", &["without stop at 60 %", "easy, few straddlers"]),
+        ("grids", &["grid, 256 along"]),
+        ("methods", &["triangles, inside by direction", "spheres, stable roots"]),
+        ("instances", &["copies"]),
     ] {
         let said = said(&format!("compare scenes/graph.toml --size 16x10 --rounds 1 --of {of} --table"));
-        assert!(said.contains(row), "{of}: {said}");
+        assert!(rows.iter().all(|row| said.contains(row)), "{of}: {said}");
     }
 }

@@ -156,14 +156,6 @@ fn memory_is_bounded_before_it_is_allocated() {
     assert_eq!(place.map(|(line, _)| line), Some(5));
 }
 
-#[test]
-fn a_mesh_has_triangles() {
-    let folder = Folder::new("empty");
-    folder.write("m.ply", PLY.replace("element face 1", "element face 0").replace("3 0 1 2\n", ""));
-    let error = parse_in(&folder, "[meshes.p]\nfile = 'm.ply'\n").expect_err("an empty mesh");
-    assert!(error.message.contains("no triangles"), "{error}");
-}
-
 /// A PNG file may say how its numbers are encoded, and the scene knows better.
 #[test]
 fn an_image_is_decoded_by_the_curve_that_it_states() {

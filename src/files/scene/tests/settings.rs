@@ -176,11 +176,6 @@ fn a_command_line_sets_what_a_scene_sets() {
 }
 
 #[test]
-fn a_film_has_a_tone_curve() {
-    assert_eq!(scene_with("[film]\ntone = 'reinhard'").film.tone.curve, ToneCurve::Reinhard);
-}
-
-#[test]
 fn a_background_can_be_a_gradient() {
     let scene = scene_with("[environment]\nbackground = { zenith = [0, 0, 1], horizon = 0.5, nadir = 0.25 }");
     let gradient = Gradient { zenith: Vec3::Z, horizon: Vec3::splat(0.5), nadir: Vec3::splat(0.25) };

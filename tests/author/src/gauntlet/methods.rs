@@ -9,41 +9,36 @@ use single::{
     edge_forms, gram_weights, in_range, moeller_trumbore, numbers, on_plane, plane_sides, t_of_plane,
 };
 
-/// An intersection method.
-pub struct TriangleTest {
-    /// The name, for the head of a row.
-    pub name: &'static str,
-    /// Returns the `t` of the hit.
-    pub hit: fn(&Ray, &Triangle) -> Option<f32>,
-}
+/// An intersection method: its name, for the head of a row, and what returns the `t` of the hit.
+type TriangleTest = (&'static str, fn(&Ray, &Triangle) -> Option<f32>);
 
 /// All methods.
 pub const METHODS: [TriangleTest; 25] = [
-    TriangleTest { name: "Möller–Trumbore", hit: single::moeller_trumbore },
-    TriangleTest { name: "  cut off at |det| < 1e-6", hit: moeller_trumbore_cut_off },
-    TriangleTest { name: "  in double", hit: double::moeller_trumbore },
-    TriangleTest { name: "Cramer", hit: single::cramer },
-    TriangleTest { name: "  as printed in 002", hit: cramer_as_printed },
-    TriangleTest { name: "  in double", hit: double::cramer },
-    TriangleTest { name: "plane and Gram", hit: single::gram },
-    TriangleTest { name: "  0 <= s + t <= 1 as printed in 001", hit: gram_sum_only },
-    TriangleTest { name: "  in double", hit: double::gram },
-    TriangleTest { name: "inside test I, planes", hit: single::by_planes },
-    TriangleTest { name: "  one winding, as printed", hit: by_planes_of_one_winding },
-    TriangleTest { name: "  in double", hit: double::by_planes },
-    TriangleTest { name: "inside test II, directions", hit: single::by_direction },
-    TriangleTest { name: "  in double", hit: double::by_direction },
-    TriangleTest { name: "inside test III, areas", hit: single::by_areas },
-    TriangleTest { name: "  in double", hit: double::by_areas },
-    TriangleTest { name: "  without signs, as printed", hit: by_unsigned_areas },
-    TriangleTest { name: "Plücker", hit: single::pluecker },
-    TriangleTest { name: "  with a band of one step", hit: pluecker_with_a_band },
-    TriangleTest { name: "  in double", hit: double::pluecker },
-    TriangleTest { name: "Woop", hit: single::woop },
-    TriangleTest { name: "  t from the plane", hit: single::woop_with_plane },
-    TriangleTest { name: "  in double", hit: double::woop },
-    TriangleTest { name: "  in double, t from the plane", hit: double::woop_with_plane },
-    TriangleTest { name: "exact", hit: exactly },
+    ("Möller–Trumbore", single::moeller_trumbore),
+    ("  cut off at |det| < 1e-6", moeller_trumbore_cut_off),
+    ("  in double", double::moeller_trumbore),
+    ("Cramer", single::cramer),
+    ("  as printed in 002", cramer_as_printed),
+    ("  in double", double::cramer),
+    ("plane and Gram", single::gram),
+    ("  0 <= s + t <= 1 as printed in 001", gram_sum_only),
+    ("  in double", double::gram),
+    ("inside test I, planes", single::by_planes),
+    ("  one winding, as printed", by_planes_of_one_winding),
+    ("  in double", double::by_planes),
+    ("inside test II, directions", single::by_direction),
+    ("  in double", double::by_direction),
+    ("inside test III, areas", single::by_areas),
+    ("  in double", double::by_areas),
+    ("  without signs, as printed", by_unsigned_areas),
+    ("Plücker", single::pluecker),
+    ("  with a band of one step", pluecker_with_a_band),
+    ("  in double", double::pluecker),
+    ("Woop", single::woop),
+    ("  t from the plane", single::woop_with_plane),
+    ("  in double", double::woop),
+    ("  in double, t from the plane", double::woop_with_plane),
+    ("exact", exactly),
 ];
 
 fn exactly(ray: &Ray, triangle: &Triangle) -> Option<f32> {
@@ -177,14 +172,7 @@ macro_rules! precision {
             fn sheared(ray: &Ray, triangle: &Triangle) -> ([$Float; 3], [$Float; 3], $Float) {
                 // Choose the direction's largest component as the z axis.
                 let [o, d, a, b, c] = numbers(ray, triangle);
-                let size = d.abs();
-                let z = if size.x >= size.y && size.x >= size.z {
-                    0
-                } else if size.y >= size.z {
-                    1
-                } else {
-                    2
-                };
+                let z = d.abs().max_position();
                 // Shear the corners so that the ray runs along z.
                 let (x, y) = ((z + 1) % 3, (z + 2) % 3);
                 let shear = [d[x] / d[z], d[y] / d[z]];

@@ -71,11 +71,10 @@ pub fn run(given: &Given) -> Result<bool> {
 
 /// Returns the rows of all methods and of the kit's functions.
 fn rows(kit: &dyn Kit) -> Vec<Row<'_>> {
-    let methods = METHODS.iter().map(|method| {
-        let hit = method.hit;
+    let methods = METHODS.into_iter().map(|(name, hit)| {
         let answer =
             move |inputs: &[Input]| inputs.iter().map(|(ray, triangle)| hit(ray, triangle)).collect();
-        Row { name: method.name.into(), answer: Box::new(answer), method: Some(hit), seconds: None }
+        Row { name: name.into(), answer: Box::new(answer), method: Some(hit), seconds: None }
     });
     methods.chain(rows_of_kit(kit)).collect()
 }

@@ -6,11 +6,11 @@ mod call;
 mod collect;
 mod copy;
 
-use super::program_runs::leaves_out_what_takes_long;
+use super::program_runs::{leaves_out_what_takes_long, root};
 use collect::{Function, bundles, candidates, functions, functions_of};
 use grader::exercises;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Functions that may answer an exercise, each with the reason.
 const EXCEPTIONS: [&str; 9] = [
@@ -33,10 +33,6 @@ const EXCEPTIONS: [&str; 9] = [
     // The slide's one-line formula in double precision.
     "stage8_checks::spaces::normal in stage8_scene_graph::normal_to_world",
 ];
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the kit")
-}
 
 /// The crates that students receive: where their sources are, and what other crates call them.
 fn crates() -> Vec<(String, String)> {

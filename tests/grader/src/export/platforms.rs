@@ -8,10 +8,10 @@ use crate::grade::result::{Graded, score};
 use crate::platform::{Column, PlatformTable, number_of, numbered};
 use anyhow::{Context, Result, bail, ensure};
 use raykata::course::stages_of;
-use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use raykata_cli::args::{Argument, Given, Opt, Spec};
 use std::fs;
 use std::io::{Cursor, Write};
-use std::path::PathBuf;
+use std::path::Path;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
@@ -51,30 +51,6 @@ pub static CANVAS: Spec = Spec {
     options: OPTIONS,
 };
 
-/// The options of both commands.
-struct PlatformOptions {
-    table: PathBuf,
-    grades: PathBuf,
-    out: PathBuf,
-    column: Option<String>,
-    stages: Option<Vec<u8>>,
-    scale: bool,
-}
-
-impl PlatformOptions {
-    /// Reads the options from the command line.
-    fn read(given: &Given) -> Result<PlatformOptions, Misuse> {
-        Ok(PlatformOptions {
-            table: given.required(0)?.into(),
-            grades: given.required(1)?.into(),
-            out: given.required_path("--out")?,
-            column: given.parsed("--column", |name| Ok::<_, String>(name.to_owned()))?,
-            stages: given.parsed("--stages", stages_of)?,
-            scale: given.has("--scale"),
-        })
-    }
-}
-
 /// A student's part of the result.
 struct Entry {
     student: String,
@@ -86,10 +62,13 @@ struct Entry {
 
 /// Fills a table and writes it with the feedback files.
 pub fn platform(given: &Given, is_canvas: bool) -> Result<bool> {
-    let options = PlatformOptions::read(given)?;
-    let mut table = PlatformTable::read(&options.table)?;
-    let (entries, of) = entries(&options)?;
-    let (points, most) = columns(&table, &options, is_canvas)?;
+    let (file, grades) = (Path::new(given.required(0)?), Path::new(given.required(1)?));
+    let (out, scale) = (given.required_path("--out")?, given.has("--scale"));
+    let column = given.parsed("--column", |name| Ok::<_, String>(name.to_owned()))?;
+    let stages = given.parsed("--stages", stages_of)?;
+    let mut table = PlatformTable::read(file)?;
+    let (entries, of) = entries(grades, stages.as_deref())?;
+    let (points, most) = columns(&table, file, column.as_deref(), is_canvas)?;
 
     // Canvas has rows that are no students: the most points, and a test student.
     let [name, identifier] = [Column::Name, Column::Identifier].map(|kind| table.column(kind));
@@ -110,13 +89,13 @@ pub fn platform(given: &Given, is_canvas: bool) -> Result<bool> {
     let with_comma = |cell: String| cell.contains(',') && cell.replace(',', ".").parse::<f64>().is_ok();
     let has_comma = with_comma(limit.clone()) || table.rows().any(|row| with_comma(table.cell(row, points)));
     let limit: Option<f64> = limit.replace(',', ".").parse().ok();
-    if let Some(limit) = limit.filter(|limit| *limit != f64::from(of) && !options.scale) {
+    if let Some(limit) = limit.filter(|limit| *limit != f64::from(of) && !scale) {
         bail!(
             "the assignment has {limit} points at most, and the graded stages have {of}: set it to {of} on the platform and \
              download the table again, choose other --stages, or convert the points with --scale"
         );
     }
-    let factor = limit.filter(|_| options.scale).map_or(1.0, |limit| limit / f64::from(of.max(1)));
+    let factor = limit.filter(|_| scale).map_or(1.0, |limit| limit / f64::from(of.max(1)));
     let feedback = table.column(Column::Feedback).filter(|_| !is_canvas);
 
     // Fill the rows, and pack the reports under the names by which the platform knows them.
@@ -128,27 +107,27 @@ pub fn platform(given: &Given, is_canvas: bool) -> Result<bool> {
         let shown = if has_comma { shown.to_string().replace('.', ",") } else { shown.to_string() };
         table.set(row, points, &shown);
         feedback.into_iter().for_each(|column| table.set(row, column, &entry.feedback));
-        let file = if is_canvas {
+        let name = if is_canvas {
             numbered(&entry.student).then(|| format!("{}.html", entry.student))
         } else {
             moodle_file(&table, row)
         };
-        let Some(file) = file else {
+        let Some(name) = name else {
             without_file += 1;
             continue;
         };
-        zip.start_file(file, SimpleFileOptions::default())?;
-        let page = options.grades.join(&entry.page);
+        zip.start_file(name, SimpleFileOptions::default())?;
+        let page = grades.join(&entry.page);
         zip.write_all(&fs::read(&page).with_context(|| format!("cannot read {}", page.display()))?)?;
     }
-    let filled = options.out.join(options.table.file_name().context("the table has no file name")?);
+    let filled = out.join(file.file_name().context("the table has no file name")?);
     ensure!(
-        fs::canonicalize(&filled).ok() != fs::canonicalize(&options.table).ok() || !filled.exists(),
+        fs::canonicalize(&filled).ok() != fs::canonicalize(file).ok() || !filled.exists(),
         "{} is the downloaded table: choose another --out",
         filled.display()
     );
     super::write(&filled, &table.bytes())?;
-    super::write(&options.out.join("feedback.zip"), &zip.finish()?.into_inner())?;
+    super::write(&out.join("feedback.zip"), &zip.finish()?.into_inner())?;
 
     for line in found.students.iter().chain(&found.others) {
         eprintln!("not matched: {}", clean_line(line, 200));
@@ -163,19 +142,19 @@ pub fn platform(given: &Given, is_canvas: bool) -> Result<bool> {
 }
 
 /// What the class has earned in the chosen stages, and the possible points.
-fn entries(options: &PlatformOptions) -> Result<(Vec<Entry>, u32)> {
+fn entries(grades: &Path, stages: Option<&[u8]>) -> Result<(Vec<Entry>, u32)> {
     ensure!(
-        options.grades.join(crate::grade::STORE).is_file(),
+        grades.join(crate::grade::STORE).is_file(),
         "{} contains no grades: give the folder of `grader grade --out`",
-        options.grades.display()
+        grades.display()
     );
-    let store = Store::open(&options.grades)?;
+    let store = Store::open(grades)?;
     store.course()?.as_ref().map_or(Ok(()), CourseFiles::apply)?;
     let (mut entries, mut of, mut names) = (Vec::new(), 0, FileNames::default());
     store.each(&mut |graded| {
         let page = format!("students/{}.html", names.name(&graded.student));
         // The instructor's points are for the whole course.
-        let graded = match &options.stages {
+        let graded = match stages {
             Some(stages) => Graded { note: None, ..graded.valued(stages) },
             None => graded,
         };
@@ -184,14 +163,15 @@ fn entries(options: &PlatformOptions) -> Result<(Vec<Entry>, u32)> {
         entries.push(Entry { points: graded.earned(), feedback, page, student: graded.student });
         Ok(())
     })?;
-    ensure!(!entries.is_empty(), "{} contains no grades", options.grades.display());
+    ensure!(!entries.is_empty(), "{} contains no grades", grades.display());
     Ok((entries, of))
 }
 
 /// The columns of the points and of the most points.
 fn columns(
     table: &PlatformTable,
-    options: &PlatformOptions,
+    file: &Path,
+    column: Option<&str>,
     is_canvas: bool,
 ) -> Result<(usize, Option<usize>)> {
     let headers = table.headers();
@@ -201,7 +181,7 @@ fn columns(
         let number = header.strip_suffix(')').and_then(|header| header.rsplit_once('('));
         number.is_some_and(|(_, number)| number.parse::<u64>().is_ok())
     };
-    let candidates: Vec<usize> = match &options.column {
+    let candidates: Vec<usize> = match column {
         Some(name) => {
             let exact = headers.iter().position(|header| header == name);
             let starts = |i: &usize| headers[*i].starts_with(&format!("{name} ("));
@@ -214,7 +194,7 @@ fn columns(
         [column] => Ok((column, most)),
         _ => bail!(
             "{}: choose the column of the points with --column; the table has {}",
-            options.table.display(),
+            file.display(),
             headers.iter().map(|header| format!("`{header}`")).collect::<Vec<_>>().join(", ")
         ),
     }

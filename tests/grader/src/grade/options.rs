@@ -144,17 +144,3 @@ fn kit(root: &Path, allow: &[String], builder: &WorkerBuilder) -> Result<String>
     }
     Ok(format!("{} ({})", env!("CARGO_PKG_VERSION"), &worker_builder::hex(&hash.finalize())[..12]))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn stages_are_read_as_people_write_them() {
-        assert_eq!(stages_of("1-4,10").unwrap(), [1, 2, 3, 4, 10]);
-        assert_eq!(stages_of("3").unwrap(), [3]);
-        for wrong in ["", "x", "0", "4-2", "1-99"] {
-            assert!(stages_of(wrong).is_err(), "{wrong}");
-        }
-    }
-}

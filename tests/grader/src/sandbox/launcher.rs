@@ -1,7 +1,7 @@
 //! Restricts this process and then replaces it by the program. The process has one thread and runs no code between a fork
 //! and an exec, so safe code is enough.
 
-use super::{Confinement, Purpose, ResourceLimits, files, filter};
+use super::{Confinement, Purpose, ResourceLimits, Restrictions, files, filter};
 use anyhow::{Context, Result, bail, ensure};
 use nix::sys::prctl;
 use nix::sys::resource::{Resource, setrlimit};
@@ -21,62 +21,34 @@ const STACK_ROOM: u64 = 8 << 20;
 /// kills the process like a lack of memory does, so it must come later.
 const CPU_GRACE_SECONDS: u64 = 2;
 
-/// Becomes the program. It returns only if there is an error.
+/// Becomes the program. It gets the arguments that [`super::Sandbox::command`] writes, and returns only if there is an error.
 pub(super) fn launch(mut arguments: impl Iterator<Item = OsString>) -> Result<Infallible> {
-    let asked = LaunchRequest::from(&mut arguments)?;
+    let mut next = || arguments.next().context("an argument is missing");
+    let judge: i32 = text(&next()?)?.parse().context("the judge has no number")?;
+    let (purpose, confinement, limits, n_readable, n_writable): Restrictions =
+        serde_json::from_str(text(&next()?)?).context("unknown restrictions")?;
+    let mut paths = |n| (0..n).map(|_| Ok(PathBuf::from(next()?))).collect::<Result<Vec<_>>>();
+    let (readable, writable, program) = (paths(n_readable)?, paths(n_writable)?, paths(1)?.remove(0));
+    let who = format!("{purpose:?}").to_lowercase();
+    ensure!(writable.is_empty() || purpose.writes(), "a {who} must not write");
     close_inherited()?;
     // Make the kernel end this process together with the judge.
     prctl::set_pdeathsig(Signal::SIGKILL).context("the process cannot be made to end with its judge")?;
     // The judge may have ended before this took effect.
-    ensure!(nix::unistd::getppid().as_raw() == asked.judge, "the judge has ended");
+    ensure!(nix::unistd::getppid().as_raw() == judge, "the judge has ended");
     // Set all restrictions, then become the program.
-    restrict_resources(asked.purpose, &asked.limits)?;
+    restrict_resources(purpose, &limits)?;
     prctl::set_no_new_privs().context("privileges cannot be dropped")?;
-    if asked.confinement == Confinement::Full {
-        files::restrict(asked.purpose, &asked.program, &asked.readable, &asked.writable)?;
-        filter::install(asked.purpose).context("system calls cannot be filtered")?;
+    if confinement == Confinement::Full {
+        files::restrict(purpose, &program, &readable, &writable)?;
+        filter::install(purpose).context("system calls cannot be filtered")?;
     }
-    let error = Command::new(&asked.program).args(arguments).exec();
-    bail!("{} cannot be started: {error}", asked.program.display())
+    let error = Command::new(&program).args(arguments).exec();
+    bail!("{} cannot be started: {error}", program.display())
 }
 
-struct LaunchRequest {
-    confinement: Confinement,
-    purpose: Purpose,
-    judge: i32,
-    limits: ResourceLimits,
-    readable: Vec<PathBuf>,
-    writable: Vec<PathBuf>,
-    program: PathBuf,
-}
-
-impl LaunchRequest {
-    /// Parses the arguments that [`super::Sandbox::command`] writes.
-    fn from(arguments: &mut impl Iterator<Item = OsString>) -> Result<LaunchRequest> {
-        let mut next = || arguments.next().context("an argument is missing");
-        let confinement = Confinement::of_word(&next()?).context("unknown confinement")?;
-        let purpose = Purpose::of_word(&next()?).context("unknown purpose")?;
-        let judge = number(&next()?)? as i32;
-        let limits = ResourceLimits {
-            cpu_seconds: number(&next()?)?,
-            memory_bytes: number(&next()?)?,
-            file_bytes: number(&next()?)?,
-            open_files: number(&next()?)?,
-            processes: number(&next()?)?,
-        };
-        let mut paths = || -> Result<Vec<PathBuf>> {
-            let count = number(&next()?)?;
-            (0..count).map(|_| Ok(PathBuf::from(next()?))).collect()
-        };
-        let (readable, writable) = (paths()?, paths()?);
-        ensure!(writable.is_empty() || purpose.writes(), "a {} must not write", purpose.word());
-        Ok(LaunchRequest { confinement, purpose, judge, limits, readable, writable, program: next()?.into() })
-    }
-}
-
-fn number(word: &OsStr) -> Result<u64> {
-    let word = word.to_str().context("not a number")?;
-    word.parse().with_context(|| format!("{word} is not a number"))
+fn text(word: &OsStr) -> Result<&str> {
+    word.to_str().context("an argument is not UTF-8")
 }
 
 /// Closes all open files of the judge and its parents, except the standard streams.

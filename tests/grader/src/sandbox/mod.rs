@@ -19,6 +19,7 @@ pub use probes::{got_through, self_test};
 pub use run::{run, spawn_guarded};
 
 use crate::worker::{Death, Launcher, last_words};
+use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus};
@@ -38,7 +39,7 @@ pub const NOT_LAUNCHED: i32 = 126;
 pub const NOT_LAUNCHED_BECAUSE: &str = "the sandbox: ";
 
 /// The purpose of a sandboxed program, which decides its rights.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Purpose {
     /// A worker: answers calls over the socket that is its standard input. It may not write files, start threads or
     /// processes, or open sockets. It may read only itself and the system's shared libraries.
@@ -52,7 +53,7 @@ pub enum Purpose {
 }
 
 /// The resource limits of a sandboxed process.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ResourceLimits {
     /// Most address space, in bytes.
     pub memory_bytes: u64,
@@ -98,45 +99,16 @@ impl Purpose {
     fn writes(self) -> bool {
         matches!(self, Purpose::Compiler | Purpose::Linker)
     }
-
-    fn word(self) -> &'static str {
-        match self {
-            Purpose::Worker => "worker",
-            Purpose::Reader => "reader",
-            Purpose::Compiler => "compiler",
-            Purpose::Linker => "linker",
-        }
-    }
-
-    fn of_word(word: &std::ffi::OsStr) -> Option<Purpose> {
-        let all = [Purpose::Worker, Purpose::Reader, Purpose::Compiler, Purpose::Linker];
-        all.into_iter().find(|purpose| word == purpose.word())
-    }
 }
 
 /// The strictness of a sandbox.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Confinement {
     /// All restrictions hold. If one of them cannot be set up, nothing runs.
     Full,
     /// Only resource limits hold; files, network and other processes are accessible. The instructor may choose this for
     /// kernels without Landlock or seccomp.
     LimitsOnly,
-}
-
-impl Confinement {
-    fn word(self) -> &'static str {
-        match self {
-            Confinement::Full => "closed",
-            Confinement::LimitsOnly => "open",
-        }
-    }
-
-    fn of_word(word: &std::ffi::OsStr) -> Option<Confinement> {
-        [Confinement::Full, Confinement::LimitsOnly]
-            .into_iter()
-            .find(|confinement| word == confinement.word())
-    }
 }
 
 /// A sandbox for a program.
@@ -168,21 +140,15 @@ impl Sandbox {
     /// Returns the command that runs `program` in this sandbox. Its environment contains only the search path of a linker
     /// and the folder for temporary files. You may add arguments; do not change the environment.
     pub fn command(&self, program: &Path) -> Command {
-        // Pass strictness, purpose, parent, limits, paths and program to the launcher.
-        let limits = &self.limits;
+        // Pass the parent, the restrictions, the paths and the program to the launcher.
+        let paths = self.readable.iter().chain(&self.writable).map(PathBuf::as_path).chain([program]);
+        let restrictions: Restrictions =
+            (self.purpose, self.confinement, self.limits, self.readable.len(), self.writable.len());
+        // A launcher without restrictions ends.
+        let restrictions = serde_json::to_string(&restrictions).unwrap_or_default();
         let mut command = Command::new(launcher());
-        command
-            .args([LAUNCH, self.confinement.word(), self.purpose.word()])
-            .arg(std::process::id().to_string());
-        for limit in
-            [limits.cpu_seconds, limits.memory_bytes, limits.file_bytes, limits.open_files, limits.processes]
-        {
-            command.arg(limit.to_string());
-        }
-        for paths in [&self.readable, &self.writable] {
-            command.arg(paths.len().to_string()).args(paths.iter().map(|path| absolute(path)));
-        }
-        command.arg(absolute(program)).env_clear();
+        command.args([LAUNCH, &std::process::id().to_string(), &restrictions]);
+        command.args(paths.map(absolute)).env_clear();
         // Set the working folder and the environment.
         let start = self.writable.first().map_or_else(|| PathBuf::from("/"), |folder| absolute(folder));
         if self.purpose.writes() {
@@ -223,8 +189,9 @@ fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// The index of the processor time among the arguments of a launcher, after confinement, purpose and parent.
-const CPU_SECONDS_AT: usize = 4;
+/// What a launcher is told by one argument, as JSON, with the numbers of readable and writable paths. The paths follow as arguments
+/// of their own, because they may not be UTF-8.
+type Restrictions = (Purpose, Confinement, ResourceLimits, usize, usize);
 
 static LAUNCHER: OnceLock<PathBuf> = OnceLock::new();
 

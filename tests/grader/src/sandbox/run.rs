@@ -99,7 +99,9 @@ fn cpu_limit(command: &Command) -> Option<Duration> {
     if arguments.next()? != super::LAUNCH {
         return None;
     }
-    Some(Duration::from_secs(arguments.nth(super::CPU_SECONDS_AT - 1)?.to_str()?.parse().ok()?))
+    // The number of the judge comes first.
+    let (_, _, limits, ..): super::Restrictions = serde_json::from_str(arguments.nth(1)?.to_str()?).ok()?;
+    Some(Duration::from_secs(limits.cpu_seconds))
 }
 
 /// Reads to the end, or up to `cap` bytes.

@@ -67,17 +67,9 @@ impl<'a> Search<'a> {
             *around == EVERYWHERE
                 || aabb::overlap(&ray, around).is_none_or(|overlap| overlap.verdict.is_hit())
         };
-        let mut best: Option<(f32, u32)> = None;
-        for (_, group) in self.groups.iter().filter(|(around, _)| is_met(around)) {
-            for &index in group {
-                let t = meet(&ray, self.bodies[index as usize]).and_then(|meeting| meeting.t);
-                if let Some(t) = t
-                    && best.is_none_or(|(first, _)| t < first)
-                {
-                    best = Some((t, index));
-                }
-            }
-        }
+        let met = self.groups.iter().filter(|(around, _)| is_met(around)).flat_map(|(_, group)| group);
+        let hit = |&index: &u32| Some((meet(&ray, self.bodies[index as usize])?.t?, index));
+        let best = met.filter_map(hit).min_by(|(p, _), (q, _)| p.total_cmp(q));
         // Count the surface as closed well inside a triangle only: near the rim of a sphere rounding decides,
         // and the distance from the rim is not measured.
         let closed = best.is_some_and(|(_, index)| match self.bodies[index as usize] {

@@ -1,7 +1,7 @@
 //! Closed meshes of many families: walls in planes through the ray's origin, facets of one plane, corners at distances of very
 //! different sizes, rounded scans, extreme sizes.
 
-use super::meshes::{Closed, closed, icosphere, lattice_cube};
+use super::meshes::{Builder, Closed, closed, icosphere, lattice_cube};
 use crate::splitmix::Random;
 use glam::{Vec3, vec3};
 use std::collections::{HashMap, HashSet};
@@ -34,38 +34,6 @@ pub fn families() -> Vec<Closed> {
         icosphere(2).placed("size 2^100", |p| p * 2f32.powi(100)),
     ];
     closed().into_iter().chain(own).collect()
-}
-
-/// Collects triangles whose corners are given by their positions.
-#[derive(Default)]
-struct Builder {
-    positions: Vec<Vec3>,
-    numbers: HashMap<[u32; 3], u32>,
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Builder {
-    fn vertex(&mut self, p: Vec3) -> u32 {
-        // Add 0 to make -0 equal to 0.
-        *self.numbers.entry((p + 0.0).to_array().map(f32::to_bits)).or_insert_with(|| {
-            self.positions.push(p);
-            self.positions.len() as u32 - 1
-        })
-    }
-
-    fn triangle(&mut self, corners: [Vec3; 3]) {
-        let corners = corners.map(|corner| self.vertex(corner));
-        self.triangles.push(corners);
-    }
-
-    fn quad(&mut self, [a, b, c, d]: [Vec3; 4]) {
-        self.triangle([a, b, c]);
-        self.triangle([a, c, d]);
-    }
-
-    fn build(self, name: &'static str, inside: Vec3, room: Vec3) -> Closed {
-        Closed::new(name, self.positions, self.triangles, inside, room)
-    }
 }
 
 /// A room with winding tunnels on a lattice: rays from lattice points lie in the planes of many walls.
@@ -128,12 +96,7 @@ fn star_prism() -> Closed {
         .collect();
     let (low, high) = (vec3(0.0, 0.0, -2.0), vec3(0.0, 0.0, 3.0));
     let mut builder = Builder::default();
-    for (index, &p) in corners.iter().enumerate() {
-        let q = corners[(index + 1) % corners.len()];
-        builder.quad([p + low, q + low, q + high, p + high]);
-        builder.triangle([low, q + low, p + low]);
-        builder.triangle([high, p + high, q + high]);
-    }
+    builder.prism(&corners, low, high);
     builder.build("star prism", Vec3::ZERO, vec3(0.0, 0.0, 1.4)).with_lattice(0.5)
 }
 
@@ -186,20 +149,13 @@ fn scan() -> Closed {
 
 /// A pipe of radius 1 that is a billion times as long as wide.
 fn tunnel() -> Closed {
-    const SIDES: u32 = 32;
-    let ends = [vec3(0.0, 0.0, -(2f32.powi(30))), vec3(0.0, 0.0, 2f32.powi(31))];
-    let rim = |i: u32| {
-        let (sin, cos) = (TAU * (i % SIDES) as f32 / SIDES as f32).sin_cos();
+    let rim = |i: usize| {
+        let (sin, cos) = (TAU * i as f32 / 32.0).sin_cos();
         vec3(cos, sin, 0.0)
     };
+    let rim: [Vec3; 32] = std::array::from_fn(rim);
     let mut builder = Builder::default();
-    for i in 0..SIDES {
-        let (p, q) = (rim(i), rim(i + 1));
-        let [low, high] = ends;
-        builder.quad([p + low, q + low, q + high, p + high]);
-        builder.triangle([low, q + low, p + low]);
-        builder.triangle([high, p + high, q + high]);
-    }
+    builder.prism(&rim, vec3(0.0, 0.0, -(2f32.powi(30))), vec3(0.0, 0.0, 2f32.powi(31)));
     builder.build("tunnel", Vec3::ZERO, vec3(0.5, 0.5, 1e9))
 }
 

@@ -73,6 +73,48 @@ impl Closed {
     }
 }
 
+/// Collects triangles whose corners are given by their positions.
+#[derive(Default)]
+pub(super) struct Builder {
+    positions: Vec<Vec3>,
+    numbers: HashMap<[u32; 3], u32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Builder {
+    fn vertex(&mut self, p: Vec3) -> u32 {
+        // Add 0 to make -0 equal to 0.
+        *self.numbers.entry((p + 0.0).to_array().map(f32::to_bits)).or_insert_with(|| {
+            self.positions.push(p);
+            self.positions.len() as u32 - 1
+        })
+    }
+
+    pub fn triangle(&mut self, corners: [Vec3; 3]) {
+        let corners = corners.map(|corner| self.vertex(corner));
+        self.triangles.push(corners);
+    }
+
+    pub fn quad(&mut self, [a, b, c, d]: [Vec3; 4]) {
+        self.triangle([a, b, c]);
+        self.triangle([a, c, d]);
+    }
+
+    /// A closed prism around the axis between two points, with this outline.
+    pub fn prism(&mut self, corners: &[Vec3], low: Vec3, high: Vec3) {
+        for (index, &p) in corners.iter().enumerate() {
+            let q = corners[(index + 1) % corners.len()];
+            self.quad([p + low, q + low, q + high, p + high]);
+            self.triangle([low, q + low, p + low]);
+            self.triangle([high, p + high, q + high]);
+        }
+    }
+
+    pub fn build(self, name: &'static str, inside: Vec3, room: Vec3) -> Closed {
+        Closed::new(name, self.positions, self.triangles, inside, room)
+    }
+}
+
 /// Closed meshes that are quick to test.
 pub fn closed() -> Vec<Closed> {
     let far = vec3(148_376.0, 1234.0, -223_423.0);
@@ -195,33 +237,23 @@ fn rough_sphere() -> Closed {
 
 /// A cube whose faces are divided into squares of whole coordinates.
 pub(super) fn lattice_cube() -> Closed {
-    const N: i32 = 8;
-    let mut positions = Vec::new();
-    let mut numbers = HashMap::new();
-    let mut number = |p: [i32; 3]| {
-        *numbers.entry(p).or_insert_with(|| {
-            positions.push(vec3(p[0] as f32, p[1] as f32, p[2] as f32) - N as f32 / 2.0);
-            positions.len() as u32 - 1
-        })
-    };
-    let mut triangles = Vec::new();
+    const N: u8 = 8;
+    let mut builder = Builder::default();
     for axis in 0..3 {
         for side in [0, N] {
             for i in 0..N {
                 for j in 0..N {
-                    let at = |i: i32, j: i32| {
-                        let mut p = [0; 3];
-                        (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) = (side, i, j);
-                        p
+                    let at = |i: u8, j: u8| {
+                        let mut p = Vec3::ZERO;
+                        (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) = (side.into(), i.into(), j.into());
+                        p - f32::from(N) / 2.0
                     };
-                    let [a, b, c, d] =
-                        [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)].map(&mut number);
-                    triangles.extend([[a, b, c], [a, c, d]]);
+                    builder.quad([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
                 }
             }
         }
     }
-    Closed::new("lattice cube", positions, triangles, Vec3::ZERO, Vec3::splat(2.0))
+    builder.build("lattice cube", Vec3::ZERO, Vec3::splat(2.0))
 }
 
 /// A prism that is a million times as long as wide.

@@ -8,28 +8,10 @@ use crate::kits::{self, Program};
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-/// A hostile worker and the points that it may get.
-struct Row {
-    name: &'static str,
-    what: &'static str,
-    /// Whether it keeps the judge waiting at every call. Such a worker gets two checks, and runs with `CI_LONG=1` only.
-    is_slow: bool,
-    allowed: Allowed,
-}
-
-/// The checks that a hostile worker may pass.
-enum Allowed {
-    /// None.
-    None,
-    /// All but those that judge a cost.
-    AllButCosts,
-    /// All: it lies about nothing that matters.
-    All,
-    /// Some; the judge only has to end, without a panic.
-    Some,
-}
-
 /// The workers: which checks each may pass, whether it is slow, its name, and what it does.
+///
+/// `All` lies about nothing that matters; after `Some` the judge only has to end, without a panic. A `slow` one keeps the judge
+/// waiting at every call: it gets two checks, and runs with `CI_LONG=1` only.
 const ROWS: &str = r#"
 All quick honest control: the reference, by its own protocol code
 AllButCosts quick learns-all-and-forges-counts learns all tables by questions, then answers as the reference with the reference's costs
@@ -61,20 +43,10 @@ None slow answers-nothing reads requests and answers nothing
 None slow progress-forever reports progress without end
 None quick fewer-answers no answers to a request with many queries"#;
 
-fn rows() -> Vec<Row> {
-    let row = |line: &'static str| {
-        let [allowed, pace, name, what] = line.splitn(4, ' ').collect::<Vec<_>>()[..] else {
-            panic!("{line}")
-        };
-        let allowed = match allowed {
-            "None" => Allowed::None,
-            "AllButCosts" => Allowed::AllButCosts,
-            "All" => Allowed::All,
-            _ => Allowed::Some,
-        };
-        Row { name, what, is_slow: pace == "slow", allowed }
-    };
-    ROWS.trim().lines().map(row).collect()
+/// The words of [`ROWS`].
+fn rows() -> impl Iterator<Item = [&'static str; 4]> {
+    let row = |line: &'static str| line.splitn(4, ' ').collect::<Vec<_>>().try_into().expect("four words");
+    ROWS.trim().lines().map(row)
 }
 
 fn hostile() -> &'static PathBuf {
@@ -111,14 +83,14 @@ fn hostile_workers_that_speak_the_protocol_forge_no_point() {
     two_checks.checks.retain(|put| put.counts || put.check.stage == 1);
     two_checks.checks.drain(1..two_checks.checks.len() - 1);
     let without_sandbox = Judge { confinement: Confinement::LimitsOnly, ..of_stage_1.only(|_, _| true) };
-    let try_one = |row: &Row| match row.allowed {
-        _ if row.name == "public-then-marks" => try_row(row, &without_sandbox),
-        _ if row.is_slow => try_row(row, &two_checks),
-        Allowed::None => try_row(row, &of_stage_1),
+    let try_one = |row: &[&str; 4]| match row {
+        [_, _, "public-then-marks", _] => try_row(row, &without_sandbox),
+        [_, "slow", ..] => try_row(row, &two_checks),
+        ["None", ..] => try_row(row, &of_stage_1),
         _ => try_row(row, &with_costs),
     };
     let is_long = std::env::var_os("CI_LONG").is_some();
-    let rows: Vec<Row> = rows().into_iter().filter(|row| is_long || !row.is_slow).collect();
+    let rows: Vec<[&str; 4]> = rows().filter(|[_, pace, ..]| is_long || *pace != "slow").collect();
     // Most slow workers only wait, so judge all at the same time.
     let lines: Vec<String> = std::thread::scope(|scope| {
         let tried: Vec<_> = rows.iter().map(|row| scope.spawn(|| try_one(row))).collect();
@@ -135,29 +107,28 @@ const SEED: u64 = 0x5eed_0f7e_57ab_1e00;
 
 /// Judges a hostile worker and tests that it passes no check that it must not pass, and that nothing that it says about hidden
 /// inputs gets into a message. Returns its line of the table.
-fn try_row(row: &Row, judge: &Judge) -> String {
-    let results = judged(judge, row.name, CALL_PATIENCE);
+fn try_row([allowed, _, worker, what]: &[&str; 4], judge: &Judge) -> String {
+    let results = judged(judge, worker, CALL_PATIENCE);
     for (prepared, result) in judge.checks.iter().zip(&results) {
         let passed = result.outcome == Outcome::Passed;
-        let may_pass = match row.allowed {
-            Allowed::None => false,
-            Allowed::AllButCosts => !prepared.counts,
-            Allowed::All | Allowed::Some => true,
+        let may_pass = match *allowed {
+            "None" => false,
+            "AllButCosts" => !prepared.counts,
+            _ => true,
         };
-        assert!(may_pass || !passed, "{} passes {}", row.name, result.name);
-        let must_pass = matches!(row.allowed, Allowed::All);
-        assert!(passed || !must_pass, "{}: {}: {}", row.name, result.name, result.message);
+        assert!(may_pass || !passed, "{worker} passes {}", result.name);
+        assert!(passed || *allowed != "All", "{worker}: {}: {}", result.name, result.message);
     }
     let earned: u32 = results.iter().map(|result| result.earned).sum();
     let possible: u32 = results.iter().map(|result| result.points).sum();
-    let graded = Graded { student: row.name.into(), checks: results, ..Graded::default() };
+    let graded = Graded { student: (*worker).into(), checks: results, ..Graded::default() };
     let session = Session { stages: vec![1, 3, 9], seed: SEED, ..Session::default() };
     let outputs = [report::gradescope(&graded, &session).to_string(), report::classroom(&graded).to_string()];
     let messages = graded.checks.iter().map(|result| &result.message);
     for text in messages.chain(&outputs) {
-        assert!(!text.contains("SECRET") && !text.contains("123456"), "{}: {text}", row.name);
+        assert!(!text.contains("SECRET") && !text.contains("123456"), "{worker}: {text}");
     }
-    format!("| `{}` | {} | {earned} of {possible} |", row.name, row.what)
+    format!("| `{worker}` | {what} | {earned} of {possible} |")
 }
 
 #[test]

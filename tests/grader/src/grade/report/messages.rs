@@ -10,15 +10,10 @@ pub fn entry(check: &CheckResult) -> CheckEntry {
 
 /// Returns why a check failed, without any hidden input. The text is empty for a passed check.
 pub fn message(check: &CheckResult) -> String {
-    if check.outcome == Outcome::Passed {
-        return String::new();
-    }
-    if check.outcome == Outcome::WrongOnHidden {
-        return "wrong on hidden inputs: right on the inputs that you have, wrong on others".to_owned();
-    }
-    match check.message.trim() {
-        "" => in_a_sentence(check.outcome).to_owned(),
-        _ => check.message.trim_end().to_owned(),
+    let has_own = !matches!(check.outcome, Outcome::Passed | Outcome::WrongOnHidden);
+    match check.message.trim_end() {
+        message if has_own && !message.is_empty() => message.to_owned(),
+        _ => in_a_sentence(check.outcome).to_owned(),
     }
 }
 
@@ -41,7 +36,9 @@ fn in_a_sentence(outcome: Outcome) -> &'static str {
         Outcome::Passed => "",
         Outcome::NotWritten => "not written yet: the function still contains `todo!`",
         Outcome::Wrong => "the answer is wrong",
-        Outcome::WrongOnHidden => "wrong on hidden inputs",
+        Outcome::WrongOnHidden => {
+            "wrong on hidden inputs: right on the inputs that you have, wrong on others"
+        }
         Outcome::Unproven => "right on known inputs; it counts when a check with hidden inputs passes",
         Outcome::TooLong => "no answer in time: look for a loop or a recursion that never ends",
         Outcome::Crashed => {

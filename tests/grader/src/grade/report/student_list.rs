@@ -77,7 +77,7 @@ fn table(lines: &[Line], tallies: &[Tally], to_class: &str) -> Markup {
                 tbody {
                     @for line in lines {
                         tr {
-                            td.student { (link_from(to_class, line)) @if !line.trouble.is_empty() { " " span.badge.crashed { "not gradable" } } }
+                            td.student { (link(to_class, line)) @if !line.trouble.is_empty() { " " span.badge.crashed { "not gradable" } } }
                             td.number {
                                 b { (line.points) }
                                 div.note { (tally::percent(line.points, tally::of(tallies))) " %" }
@@ -96,12 +96,8 @@ fn table(lines: &[Line], tallies: &[Tally], to_class: &str) -> Markup {
     }
 }
 
-/// Returns a link from the overview of the class to the page of a student.
-pub(super) fn link(line: &Line) -> Markup {
-    link_from("", line)
-}
-
-fn link_from(to_class: &str, line: &Line) -> Markup {
+/// Returns a link to the page of a student. `to_class` leads to the folder of the class; it is empty in the overview.
+pub(super) fn link(to_class: &str, line: &Line) -> Markup {
     html! { a href={ (to_class) "students/" (line.page) ".html" } { (shown(line)) } }
 }
 

@@ -143,7 +143,7 @@ fn card(group: &[&CheckResult]) -> Markup {
             }
             @for check in group { (failed(check, group.len() == 1)) }
             pre { (messages::message_without_header(first)) }
-            @if let Some(picture) = first.picture.as_ref().filter(|_| shows_pictures(first)) { (figure(picture)) }
+            @if let Some(picture) = first.picture.as_ref().filter(|_| first.outcome != Outcome::WrongOnHidden) { (figure(picture)) }
         }
     }
 }
@@ -163,10 +163,6 @@ fn heading(check: &CheckResult) -> Markup {
         span.worth { (check.earned) " of " (check.points) " " (check.level.word()) }
         (with_code(&messages::entry(check).title)) " " span.name { (check.name) }
     }
-}
-
-fn shows_pictures(check: &CheckResult) -> bool {
-    check.outcome != Outcome::WrongOnHidden
 }
 
 /// Embeds a picture in the page if its data is valid.

@@ -32,20 +32,9 @@ impl Time {
                     (-1, true) => Ordering::Greater,
                     (1, _) if side < 0 => Ordering::Greater,
                     (1, _) => Ordering::Less,
-                    (_, false) => {
-                        if side <= 0 {
-                            Ordering::Equal
-                        } else {
-                            Ordering::Less
-                        }
-                    }
-                    (_, true) => {
-                        if side >= 0 {
-                            Ordering::Equal
-                        } else {
-                            Ordering::Greater
-                        }
-                    }
+                    // The fraction is one of the two roots: this one, unless it lies on the side of the other.
+                    (_, false) => 0.cmp(&side.max(0)),
+                    (_, true) => 0.cmp(&side.min(0)),
                 }
             }
         }
