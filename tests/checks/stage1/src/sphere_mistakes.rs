@@ -199,6 +199,7 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
         "your t counts world units; it must count lengths of direction (which is no unit vector here)"
             .when(of(quadratic, a.sqrt())),
         (of(quadratic, a), "direction is not a unit vector here: divide by a = d·d"),
+        (gives(yours, quadratic, by_product, first), "one of the roots is not divided by a = d·d"),
         (gives(yours, quadratic, |root| [(b - root * a.sqrt()) / a, (b + root * a.sqrt()) / a], first), CHORD),
         (gives(yours, quadratic, by_power, first), CHORD),
         "|o - center|² - r² is divided by |d|: the product of both roots has d·d"

@@ -181,7 +181,7 @@ pub(super) fn sphere_tangent(trial: &Trial<'_>, method: SphereFunction) -> Check
             (at_height(1.0), Some(5.0)),
             (at_height(-1.0), Some(5.0)),
             (query((0.0, -5.0, 2.0), Vec3::Y, 2.0), Some(5.0)),
-            (query((0.5, 0.0, 8.0), 2.0 * Vec3::NEG_Z, 0.5), Some(4.0)),
+            (query((0.5, 0.0, 8.0), Vec3::NEG_Z, 0.5), Some(8.0)),
             (at_height(0.0), Some(4.0)),
             (at_height(1.5), None),
         ],

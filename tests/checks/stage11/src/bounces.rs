@@ -59,6 +59,8 @@ fn judge(query: &(f32, f32), yours: u32) -> Judged {
     unless(right, broken).formulas(named![
         n == estimate + 1.0 || (right && estimate < 1.0) =>
             "one bounce too many: the power is n + 1, because light is also seen directly",
+        n == if power(estimate + 1.0) == error { estimate + 1.0 } else { estimate.max(0.0) } =>
+            "an error that is reached exactly is small enough: albedo^(n + 1) <= error",
         n == (bounces.floor().max(0.0)) => "one bounce too few: round up",
         n == (quotient.ceil() - 1.0).max(0.0) || n == estimate.max(0.0) =>
             "the quotient of the logarithms is rounded: test the power for this number and the one before",
@@ -107,8 +109,6 @@ pub(super) fn bounces_for_error_at_the_limits(trial: &Trial<'_>) -> CheckResult 
             (albedo == 0.0, "at an albedo of 0 nothing is reflected: 0 bounces are enough"),
             (error == 0.0, "with an error of 0 no number is enough"),
             (error == 1.0, "an error of 1 allows 0 bounces"),
-            "an error that is reached exactly is small enough: albedo^(n + 1) <= error"
-                .when(error == 0.125 && yours == expected + 1),
         ]))
     })
 }

@@ -100,6 +100,13 @@ fn judge_all(trial: &Trial<'_>, cases: Vec<SceneForPaths>) -> CheckResult {
     };
     let cases: Vec<SceneForPaths> = cases.into_iter().map(vary).collect();
     let scenes: Vec<Scene> = cases.iter().map(|case| case.scene.clone()).collect();
+    // A text is a mistake of all cases, whose wrong answers differ.
+    let mut texts: Vec<&str> = Vec::new();
+    for (_, text) in cases.iter().flat_map(|case| &case.mistakes) {
+        if !texts.contains(text) {
+            texts.push(text);
+        }
+    }
     let judge = |(case, yours): (&SceneForPaths, PathEffects)| {
         let n = case.scene.materials.len();
         let flags = |indices: &[usize]| (0..n).map(|index| indices.contains(&index)).collect::<Vec<bool>>();
@@ -121,7 +128,8 @@ fn judge_all(trial: &Trial<'_>, cases: Vec<SceneForPaths>) -> CheckResult {
         let input = format!("paths_called_for of {}", case.what);
         let entries =
             (!has_length, "there is one entry per material of the scene, also for those without effects");
-        let mistakes = case.mistakes.iter().map(|(wrong, text)| (yours == effects(*wrong), *text));
+        let gives = |says: &str| case.mistakes.iter().any(|(wrong, text)| *text == says && yours == effects(*wrong));
+        let mistakes = texts.iter().map(|text| (gives(text), *text));
         Err(Broken::with_texts(input, part(&yours), part(&expected), "the definition")
             .explained_by(std::iter::once(entries).chain(mistakes)))
     };

@@ -99,6 +99,8 @@ pub(super) fn judge_sample(query: &EmitterQuery, yours: &EmitterSample) -> Check
         (!on_it && far, "your point is on the far side of the sphere: the near one hides it"),
         (!on_it && squared, "your distance is squared"),
         (unit && distance < 0.0, "your distance is negative: seen from inside, the farther root is the hit"),
+        "you exchange the two roots of a sphere: the nearer one is the hit, or seen from inside the farther one"
+            .when(!on_it && (far || unit && distance < 0.0)),
         "your distance is that of the centre: return that of the first hit"
             .when(is_sphere && (distance / lit.toward_center().length() - 1.0).abs() < 1e-5),
         "your direction misses the sphere".when(

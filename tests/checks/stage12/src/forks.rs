@@ -6,7 +6,7 @@ use super::trees::{broken_by, fault, from_leaves, ranges};
 use checks::prelude::*;
 use oracle::splitmix::Random;
 use raykata::bvh::DEEPEST_SPLIT;
-use raykata::wide::{FlatTree, Fork, ForkKind, ForkedTree};
+use raykata::wide::{FlatNode, FlatTree, Fork, ForkKind, ForkedTree};
 use std::collections::{HashMap, HashSet};
 
 /// An even cloud of small boxes.
@@ -28,8 +28,10 @@ pub(super) fn build_parallel_gives_the_same_tree(trial: &Trial<'_>) -> CheckResu
             // The same empty tree twice is no tree.
             return judge_tree(boxes, yours);
         }
-        let kinds = |tree: &FlatTree| -> Vec<(Aabb, u32)> {
-            tree.nodes.iter().map(|node| (node.bounds(), node.count)).collect()
+        // The nodes without the indices of children.
+        let kinds = |tree: &FlatTree| -> Vec<(Aabb, u32, u32)> {
+            let first = |node: &FlatNode| if node.is_leaf() { node.first } else { 0 };
+            tree.nodes.iter().map(|node| (node.bounds(), node.count, first(node))).collect()
         };
         let only_indices = kinds(yours) == kinds(alone) && yours.order == alone.order;
         let n = yours.nodes.len().max(alone.nodes.len());

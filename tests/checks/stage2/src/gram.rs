@@ -57,6 +57,10 @@ fn judge(triangle: &Triangle, yours: GramScalars) -> Judged {
     let root = exact.d.abs().sqrt();
     unless(products_are_right && d_is_right, broken).formulas([
         (products(exact.uv, exact.uu, exact.vv), "u·u and v·v look swapped"),
+        "v is the edge from a to c: you take the one from b to c"
+            .when(products(exact.uv - exact.uu, exact.vv - 2.0 * exact.uv + exact.uu, exact.uu)),
+        "u is the edge from a to b: you take the one from c to b"
+            .when(products(exact.uv - exact.vv, exact.vv, exact.uu - 2.0 * exact.uv + exact.vv)),
         (products(exact.uu, exact.vv, exact.uv), SWAPPED_WITH_UV),
         (products(exact.vv, exact.uv, exact.uu), SWAPPED_WITH_UV),
         "the sign of D is wrong: it is UV² - UU·VV = -|u × v|²"
@@ -65,6 +69,12 @@ fn judge(triangle: &Triangle, yours: GramScalars) -> Judged {
             .when(products_are_right && near(yours.d, -root, 16.0 * U * root + exact.d_slack.sqrt())),
         (products_are_right && cancels, "UV² - UU·VV cancels for a thin triangle: compute D as -|u × v|²"),
     ])
+}
+
+/// Whether the student's own scalars of all triangles are right, which another check judges.
+pub(super) fn own_scalars_are_right(trial: &Trial<'_>, triangles: &[Triangle]) -> bool {
+    let answers = trial.kit.gram_scalars(triangles);
+    compare(triangles, answers, judge).iter().all(Result::is_ok)
 }
 
 pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) -> CheckResult {

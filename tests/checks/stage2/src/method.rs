@@ -1,5 +1,6 @@
 //! The three methods of intersecting a triangle, and how the checks judge their answers.
 
+use crate::gram::own_scalars_are_right;
 use crate::triangle_mistakes::{mistakes, observations};
 use checks::double::{self, TriangleExpected, compare_tolerant};
 use checks::prelude::*;
@@ -44,7 +45,15 @@ impl TriangleFunction {
         let broken = |query: &TriangleQuery, yours, expected| {
             Broken::with_texts(query.call(self.name), describe(yours), expected, source)
         };
-        compare_tolerant(cases, (self.ask)(trial.kit, &queries), broken, observations, mistakes)
+        // With wrong scalars of a triangle no answer proves a mistake in the intersection.
+        let triangles: Vec<Triangle> = queries.iter().map(|query| query.triangle).collect();
+        let proves = self.name != "triangle_gram" || own_scalars_are_right(trial, &triangles);
+        let observed = |query: &TriangleQuery, yours| observations(query, yours).map(|(is, text)| (is && proves, text));
+        let computed = |query: &TriangleQuery, yours, is_right| {
+            let refuted = |(gives, text)| (gives && (proves || is_right), text);
+            mistakes(query, yours, is_right).into_iter().map(refuted).collect()
+        };
+        compare_tolerant(cases, (self.ask)(trial.kit, &queries), broken, observed, computed)
     }
 }
 

@@ -211,6 +211,9 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
     mistakes.extend(shares.map(|(of, text)| (same(ambient + of_visible(of)), text)));
     let text = "you pass the number of the shadow ray to visible: pass the index of the light";
     mistakes.extend(of_lights(&by_number, text));
+    let shining = lights.iter().filter(|&&light| radiance(light) != DVec3::ZERO);
+    let by_shining: Vec<usize> = shining.enumerate().filter(|(n, _)| query.visible[*n]).map(|(_, &light)| light).collect();
+    mistakes.extend(of_lights(&by_shining, text));
     if !occluded.is_empty() {
         mistakes.extend(of_lights(&lights, "you add lights that are occluded: multiply by V_i"));
         mistakes.extend(of_lights(&occluded, "you add the occluded lights and leave out the visible ones"));
@@ -230,6 +233,7 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
         (same(expected / n_lights), PER_LIGHT),
         (same(or_black), "without lights you return black: the ambient term remains"),
         (same(expected - ambient + ambient * kd), "the ambient term has kd: it is A·ka"),
+        (same(expected - ambient + query.ambient.as_dvec3() * kd), "the ambient term has kd: it is A·ka"),
         (whole(f32::floor) || whole(f32::round) || whole(f32::ceil), WHOLE),
         (same(unclamped(0.0)), LIGHT_BEHIND),
         (same(unclamped(-1.0)), LIGHT_BEHIND),
@@ -316,7 +320,14 @@ fn judge_traced(query: &ShadeQuery, has_ray: &[bool], traced: &[usize]) -> Check
     sorted.sort_unstable();
     let twice = sorted.windows(2).any(|pair| pair[0] == pair[1]);
     let vain = |of: &dyn Fn(usize) -> bool| traced.iter().any(|&light| of(light));
-    let missed = needed.iter().any(|light| !traced.contains(light));
+    let is_missed = |light: &&usize| !traced.contains(light);
+    let missed = needed.iter().any(|light| is_missed(&light));
+    // Its own `shadow_ray` and specular term may be wrong: another check judges them.
+    let adds_diffuse = |light: usize| {
+        let [diffuse, _] = parts(query, light, cosine(query, light, query.surface.shading_normal), 0.0);
+        has_ray[light] && diffuse.max_element() > tolerance(DVec3::ZERO)
+    };
+    let is_not_asked = needed.iter().filter(is_missed).all(|&light| adds_diffuse(light));
     if !(twice || missed || vain(&behind) || vain(&dark) || vain(&black)) {
         return Ok(());
     }
@@ -330,6 +341,6 @@ fn judge_traced(query: &ShadeQuery, has_ray: &[bool], traced: &[usize]) -> Check
             .when(vain(&black)),
         "you trace rays to lights that add nothing: behind the surface, switched off, or on a black surface"
             .when(vain(&behind) || vain(&dark) || vain(&black)),
-        (missed, "you count a light without asking whether it is visible"),
+        (missed && is_not_asked, "you count a light without asking whether it is visible"),
     ]))
 }

@@ -311,6 +311,12 @@ fn judge_total_reflection(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRa
     // functions, which may be NaN.
     let refracted = find(&yours, Bounce::Transmission).filter(|_| own.refracted.is_none());
     let is_own = own.refracted.is_some() || !own.reflectance.is_finite();
+    // The direction of refraction with exchanged indices, which is never beyond the critical angle.
+    let asked = refract_query(query);
+    let exchanged = snell(&RefractQuery { n1: asked.n2, n2: asked.n1, ..asked }).0;
+    let is_exchanged = |ray: &SecondaryRay| {
+        exchanged.is_some_and(|direction| (ray.direction.as_dvec3() - direction).length() < 1e-3)
+    };
     let sound = is_own || yours.iter().all(|child| child.weight.is_finite() && child.direction.is_finite());
     let is = |v: Vec3| (reflected - v).abs().max_element() <= 1e-5;
     let own_share = weight * (mirror + own.reflectance as f32 * transmission);
@@ -319,7 +325,9 @@ fn judge_total_reflection(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRa
     let broken = || {
         Broken::with_texts(paste(query), describe(&yours), text, "total internal reflection").explained_by([
             "beyond the critical angle there is no refracted ray: add it only if refract returns Some"
-                .when(refracted.is_some()),
+                .when(refracted.is_some_and(|ray| !is_exchanged(ray))),
+            "leaving: n1 = index_of_refraction (glass), n2 = 1 (air); you exchange them"
+                .when(refracted.is_some_and(is_exchanged)),
             (!sound, "a weight or direction is NaN: beyond the critical angle the Fresnel reflectance is 1"),
         ])
     };

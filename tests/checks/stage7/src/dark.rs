@@ -61,7 +61,14 @@ impl Dark {
             || self.listed()
             || self.scene.ambient * material.ambient != Vec3::ZERO;
         let without_emitters = !self.scene.background.is_black() || self.listed();
+        let (sky, by_ambient) = (!self.scene.background.is_black(), self.scene.ambient * material.ambient != Vec3::ZERO);
+        let without_emission = sky || self.listed() || by_ambient;
+        let without_ambient = sky || self.listed() || !without_emission;
         named![
+            *yours == self.effects(self.shines && without_emission, self.lit) =>
+                "a material that emits light shines, also in a scene without lights",
+            *yours == self.effects(self.shines && without_ambient, self.lit) =>
+                "ambient light shines, too, where a material reflects it",
             *yours == self.effects(self.shines, shown_colour) =>
                 "an image shows only where light reaches its material: a light, ambient light, or indirect light",
             *yours == self.effects(self.shines, of_any_light) =>

@@ -323,6 +323,21 @@ fn ranges_that_begin_at_the_exit(trial: &Trial<'_>) -> CheckResult {
         let BoundingSphereQuery { ray, sphere } = along_x(from).plain;
         BoundingSphereQuery { ray: ray.with_range(1.0 - from, f32::INFINITY), sphere }
     };
+    // Rays along the tangent at y = 1, which touch the sphere at t = -x.
+    let touching = [-7.0, -2.0].map(|x| {
+        let ray = Ray::new(vec3(x, 1.0, 0.0), Vec3::X);
+        BoundingSphereQuery { ray, ..along_x(x).plain }
+    });
+    let touched = compare(&touching, trial.kit.enter_bounding_sphere(&touching), |query, yours| {
+        let (exact, slack) = (-query.ray.origin.x, 1e-5 * (query.ray.origin.length() + 1.0));
+        if yours.is_some_and(|t| (exact - slack..=exact).contains(&t)) {
+            return Ok(());
+        }
+        let says = "you return None for a ray that touches the sphere: the surface belongs to the sphere";
+        Err(Broken::new(query.call("enter_bounding_sphere"), yours, Some(exact), "closed form")
+            .explained_by([(yours.is_none(), says)]))
+    });
+    all_hold(touched)?;
     let queries: Vec<BoundingSphereQuery> = [-7.0, -3.0, -2.0, -1.0, 0.0, 0.5].map(query).into();
     all_hold(compare(&queries, trial.kit.enter_bounding_sphere(&queries), |query, yours| {
         let ray = &query.ray;
