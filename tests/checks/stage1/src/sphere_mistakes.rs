@@ -189,6 +189,11 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
         let away = b / a + (root / a.sqrt()).copysign(b);
         [c / a / away, away]
     };
+    // t_ca = L·d, and all else with a.
+    let by_length_of_one = |root: f64| {
+        let away = b + (root / a.sqrt()).copysign(b);
+        [c / a / away, away]
+    };
     // One root by the product of both, in which the power of the point is divided by |d| alone.
     let by_length = |root: f64| {
         let away = (b + root.copysign(b)) / a;
@@ -212,6 +217,7 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
         (of(&Quadratic::with_radius(query, 0.0), 1.0), "the radius is left out: c = f·f - r²"),
         (of(&a_is_one, 1.0), A_IS_ONE),
         (gives(yours, &chord, by_product, first), A_IS_ONE),
+        (gives(yours, &chord, by_length_of_one, first), A_IS_ONE),
         "t_ca < 0 is not a miss: a ray that starts inside still hits the far side\nand: direction is not a unit vector here: you take a = d·d for 1"
             .when(gives(yours, &a_is_one, |root| [b - root, b + root], |roots| first(roots).filter(|_| b >= 0.0))),
         (of(&Quadratic::with_radius(query, radius.sqrt()), 1.0), "r stands where r² belongs"),

@@ -112,7 +112,6 @@ fn wrong_costs(ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static s
         let bounds = bounds(part);
         (bounds.max - bounds.min).as_dvec3().element_product()
     };
-    let joined = |part: &[PrimitiveRef], other: &[PrimitiveRef]| area(&[part, other].concat());
     let n = |part: &[PrimitiveRef]| part.len() as f64;
     let size = |part: &[PrimitiveRef]| f64::from((bounds(part).max - bounds(part).min).element_sum());
     let (traversal, intersection) = (f64::from(TRAVERSAL_COST), f64::from(INTERSECTION_COST));
@@ -134,10 +133,6 @@ fn wrong_costs(ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static s
             "the counts are squared: each area is multiplied by its count once",
         gives(&|left, right| (area(left) + area(right)) * n(left).max(n(right))) =>
             "both areas have the larger count: each side has a product of its own",
-        gives(&|left, right| area(left) * n(left) + joined(&left[left.len() - 1..], right) * n(right)) =>
-            "the area of the right side is that of one primitive more",
-        gives(&|left, right| joined(left, &right[..1]) * n(left) + area(right) * n(right)) =>
-            "the area of the left side is that of one primitive more",
         gives(&|left, _| area(left) * n(left)) => "only the left side is counted in the cost",
         gives(&|_, right| area(right) * n(right)) => "only the right side is counted in the cost",
         gives(&|left, right| size(left) * n(left) + size(right) * n(right)) =>

@@ -96,6 +96,24 @@ pub(super) fn listing_fault<N: std::fmt::Display>(
     boxes: &[Aabb],
     leaves: &[Listed<N>],
 ) -> Option<Fault> {
+    let (yours, expected, mut mistakes) = first_fault(kind, bounds, boxes, leaves)?;
+    // The numbers that primitives have once the empty boxes are left out.
+    let usable: Vec<&Aabb> = boxes.iter().filter(|one| !one.is_empty()).collect();
+    let is_right = |cell: &Cell, id: u32| {
+        usable.get(id as usize).is_some_and(|one| !is_far_off(bounds, &cell.to_box(), one))
+    };
+    let renumbered = leaves.iter().all(|(_, cell, listed)| listed.iter().all(|id| is_right(cell, *id)));
+    let text = "your numbers are those of the boxes that are not empty: a primitive keeps its number";
+    mistakes.insert(0, (usable.len() < boxes.len() && renumbered, text));
+    Some((yours, expected, mistakes))
+}
+
+fn first_fault<N: std::fmt::Display>(
+    kind: &str,
+    bounds: &Aabb,
+    boxes: &[Aabb],
+    leaves: &[Listed<N>],
+) -> Option<Fault> {
     if let Some(fault) = bounds_fault(bounds, boxes) {
         return Some(fault);
     }
@@ -126,17 +144,10 @@ pub(super) fn listing_fault<N: std::fmt::Display>(
                 };
                 let right = |(_, cell, listed): &Listed<N>| listed.iter().all(|id| is_right(cell, id));
                 let elsewhere = missing && !nowhere && leaves.iter().all(right);
-                // The numbers that primitives have once the empty boxes are left out.
-                let usable: Vec<u32> = (0..).zip(boxes).filter(|(_, one)| !one.is_empty()).map(|(id, _)| id).collect();
-                let renumbered = |(_, cell, listed): &Listed<N>| {
-                    listed.iter().all(|&id| usable.get(id as usize).is_some_and(|id| is_right(cell, id)))
-                };
                 return Some((
                     describe(times),
                     describe(1),
                     vec![
-                        "your numbers are those of the boxes that are not empty: a primitive keeps its number"
-                            .when(usable.len() < boxes.len() && leaves.iter().all(renumbered)),
                         (elsewhere && touches, "a primitive that touches a plane belongs to both sides"),
                         "a primitive that overlaps or touches several cells belongs to all of them"
                             .when(elsewhere),
