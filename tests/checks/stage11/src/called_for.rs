@@ -107,6 +107,11 @@ fn judge_all(trial: &Trial<'_>, cases: Vec<SceneForPaths>) -> CheckResult {
             texts.push(text);
         }
     }
+    // The most specific one is named first.
+    let n_cases = |text: &str| {
+        cases.iter().filter(|case| case.mistakes.iter().any(|(_, other)| *other == text)).count()
+    };
+    texts.sort_by_key(|text| n_cases(text));
     let judge = |(case, yours): (&SceneForPaths, PathEffects)| {
         let n = case.scene.materials.len();
         let flags = |indices: &[usize]| (0..n).map(|index| indices.contains(&index)).collect::<Vec<bool>>();
@@ -128,7 +133,8 @@ fn judge_all(trial: &Trial<'_>, cases: Vec<SceneForPaths>) -> CheckResult {
         let input = format!("paths_called_for of {}", case.what);
         let entries =
             (!has_length, "there is one entry per material of the scene, also for those without effects");
-        let gives = |says: &str| case.mistakes.iter().any(|(wrong, text)| *text == says && yours == effects(*wrong));
+        let gives =
+            |says: &str| case.mistakes.iter().any(|(wrong, text)| *text == says && yours == effects(*wrong));
         let mistakes = texts.iter().map(|text| (gives(text), *text));
         Err(Broken::with_texts(input, part(&yours), part(&expected), "the definition")
             .explained_by(std::iter::once(entries).chain(mistakes)))

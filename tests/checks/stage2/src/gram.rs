@@ -57,10 +57,16 @@ fn judge(triangle: &Triangle, yours: GramScalars) -> Judged {
     let root = exact.d.abs().sqrt();
     unless(products_are_right && d_is_right, broken).formulas([
         (products(exact.uv, exact.uu, exact.vv), "u·u and v·v look swapped"),
-        "v is the edge from a to c: you take the one from b to c"
-            .when(products(exact.uv - exact.uu, exact.vv - 2.0 * exact.uv + exact.uu, exact.uu)),
-        "u is the edge from a to b: you take the one from c to b"
-            .when(products(exact.uv - exact.vv, exact.vv, exact.uu - 2.0 * exact.uv + exact.vv)),
+        "v is the edge from a to c: you take the one from b to c".when(products(
+            exact.uv - exact.uu,
+            exact.vv - 2.0 * exact.uv + exact.uu,
+            exact.uu,
+        )),
+        "u is the edge from a to b: you take the one from c to b".when(products(
+            exact.uv - exact.vv,
+            exact.vv,
+            exact.uu - 2.0 * exact.uv + exact.vv,
+        )),
         (products(exact.uu, exact.vv, exact.uv), SWAPPED_WITH_UV),
         (products(exact.vv, exact.uv, exact.uu), SWAPPED_WITH_UV),
         "the sign of D is wrong: it is UV² - UU·VV = -|u × v|²"

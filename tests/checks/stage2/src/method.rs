@@ -48,7 +48,8 @@ impl TriangleFunction {
         // With wrong scalars of a triangle no answer proves a mistake in the intersection.
         let triangles: Vec<Triangle> = queries.iter().map(|query| query.triangle).collect();
         let proves = self.name != "triangle_gram" || own_scalars_are_right(trial, &triangles);
-        let observed = |query: &TriangleQuery, yours| observations(query, yours).map(|(is, text)| (is && proves, text));
+        let observed =
+            |query: &TriangleQuery, yours| observations(query, yours).map(|(is, text)| (is && proves, text));
         let computed = |query: &TriangleQuery, yours, is_right| {
             let refuted = |(gives, text)| (gives && (proves || is_right), text);
             mistakes(query, yours, is_right).into_iter().map(refuted).collect()

@@ -103,7 +103,11 @@ pub(super) fn build_ends_where_all_centroids_are_one(trial: &Trial<'_>) -> Check
     build_all_ways(trial, &halving)?;
     // To the left of 0 the other boxes are the right side of each split.
     let mirrored: Vec<Aabb> = halving.iter().map(|one| Aabb::new(-one.max, -one.min)).collect();
-    judge_depth(trial, &mirrored, "100 points, each at half the distance of the one before to the left of 0")?;
+    judge_depth(
+        trial,
+        &mirrored,
+        "100 points, each at half the distance of the one before to the left of 0",
+    )?;
     // All boxes have a common corner, and a spatial median would split off the largest box at each of 400 levels.
     let nested: Vec<Aabb> = (1..=400).map(|i| Aabb::new(Vec3::ZERO, Vec3::splat(i as f32))).collect();
     judge_depth(trial, &nested, "400 boxes with a common corner, the box i with the sides i")

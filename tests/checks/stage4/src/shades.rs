@@ -212,7 +212,8 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
     let text = "you pass the number of the shadow ray to visible: pass the index of the light";
     mistakes.extend(of_lights(&by_number, text));
     let shining = lights.iter().filter(|&&light| radiance(light) != DVec3::ZERO);
-    let by_shining: Vec<usize> = shining.enumerate().filter(|(n, _)| query.visible[*n]).map(|(_, &light)| light).collect();
+    let by_shining: Vec<usize> =
+        shining.enumerate().filter(|(n, _)| query.visible[*n]).map(|(_, &light)| light).collect();
     mistakes.extend(of_lights(&by_shining, text));
     if !occluded.is_empty() {
         mistakes.extend(of_lights(&lights, "you add lights that are occluded: multiply by V_i"));
@@ -267,8 +268,10 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
     trial.forall(1000, queries, |queries| {
         // The rays that must be traced are those of the student's own `shadow_ray`, which other checks judge.
         let mut rays = trial.kit.shadow_ray(&shadow_queries(queries)).into_iter();
+        let judged = with_own_terms(trial, queries);
         let answers = trial.kit.shade(queries);
-        let judge = |(query, yours): (&ShadeQuery, ShadeAnswer)| {
+        let judge = |(judged, yours): (&WithOwnTerms, ShadeAnswer)| {
+            let query = &judged.0;
             let rays: Vec<_> = rays.by_ref().take(query.lights.len()).collect();
             let astray = yours.traced.iter().zip(&yours.rays).find(|(light, ray)| {
                 // A student may compute the ray in `shade` again, with other roundings.
@@ -280,10 +283,9 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
                 return Err(Broken::with_texts(query.call("shade"), yours, expected, "shadow_ray")
                     .because("you ask about another ray: pass the ray of shadow_ray to visible"));
             }
-            let has_ray: Vec<bool> = rays.iter().map(Option::is_some).collect();
-            judge_traced(query, &has_ray, &yours.traced)
+            judge_traced(judged, &yours.traced)
         };
-        queries.iter().zip(answers).map(judge).collect()
+        judged.iter().zip(answers).map(judge).collect()
     })
 }
 
@@ -295,8 +297,9 @@ fn is_like(own: &raykata::ray::Ray, ray: &raykata::ray::Ray) -> bool {
     (own.origin - ray.origin).abs().max_element() <= step && own.direction == ray.direction && near_range
 }
 
-fn judge_traced(query: &ShadeQuery, has_ray: &[bool], traced: &[usize]) -> CheckResult {
+fn judge_traced((query, own): &WithOwnTerms, traced: &[usize]) -> CheckResult {
     let count = query.lights.len();
+    let has_ray: Vec<bool> = own.iter().map(|(_, has_ray)| *has_ray).collect();
     let right = |light: usize| {
         share(query, light, cosine(query, light, query.surface.shading_normal), specular(&term(query, light)))
     };
@@ -322,12 +325,14 @@ fn judge_traced(query: &ShadeQuery, has_ray: &[bool], traced: &[usize]) -> Check
     let vain = |of: &dyn Fn(usize) -> bool| traced.iter().any(|&light| of(light));
     let is_missed = |light: &&usize| !traced.contains(light);
     let missed = needed.iter().any(|light| is_missed(&light));
-    // Its own `shadow_ray` and specular term may be wrong: another check judges them.
-    let adds_diffuse = |light: usize| {
-        let [diffuse, _] = parts(query, light, cosine(query, light, query.surface.shading_normal), 0.0);
-        has_ray[light] && diffuse.max_element() > tolerance(DVec3::ZERO)
+    // The student's own `shadow_ray` and specular term may be wrong, which other checks judge.
+    let adds = |light: usize| {
+        let (specular, has_ray) = own[light];
+        let cosine = cosine(query, light, query.surface.shading_normal);
+        let shares = parts(query, light, cosine, specular.into());
+        has_ray && shares.iter().sum::<DVec3>().max_element() > tolerance(DVec3::ZERO)
     };
-    let is_not_asked = needed.iter().filter(is_missed).all(|&light| adds_diffuse(light));
+    let is_not_asked = needed.iter().filter(is_missed).all(|&light| adds(light));
     if !(twice || missed || vain(&behind) || vain(&dark) || vain(&black)) {
         return Ok(());
     }

@@ -54,7 +54,10 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckRe
             (near(u / grid), "you leave out the cell: all samples are in the first cell"),
             (near((cell + 0.5) / grid), "you do not use u: the sample is not jittered"),
             (near(cell / grid), "you do not use u: the sample is not jittered"),
-            (near((cell / grid + u).min(DVec2::ONE)), "u is not divided by grid: it is the position in the cell"),
+            (
+                near((cell / grid + u).min(DVec2::ONE)),
+                "u is not divided by grid: it is the position in the cell",
+            ),
             (is((cell + u) / grid.yx()), "divide x by the columns of the grid and y by its rows"),
             (is((cell + u) / grid.x), "divide x by the columns of the grid and y by its rows"),
             (is((cell + u) / grid.y), "divide x by the columns of the grid and y by its rows"),

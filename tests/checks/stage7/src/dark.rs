@@ -61,7 +61,8 @@ impl Dark {
             || self.listed()
             || self.scene.ambient * material.ambient != Vec3::ZERO;
         let without_emitters = !self.scene.background.is_black() || self.listed();
-        let (sky, by_ambient) = (!self.scene.background.is_black(), self.scene.ambient * material.ambient != Vec3::ZERO);
+        let (sky, by_ambient) =
+            (!self.scene.background.is_black(), self.scene.ambient * material.ambient != Vec3::ZERO);
         let without_emission = sky || self.listed() || by_ambient;
         let without_ambient = sky || self.listed() || !without_emission;
         named![

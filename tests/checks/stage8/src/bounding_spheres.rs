@@ -323,13 +323,13 @@ fn ranges_that_begin_at_the_exit(trial: &Trial<'_>) -> CheckResult {
         let BoundingSphereQuery { ray, sphere } = along_x(from).plain;
         BoundingSphereQuery { ray: ray.with_range(1.0 - from, f32::INFINITY), sphere }
     };
-    // Rays along the tangent at y = 1, which touch the sphere at t = -x.
-    let touching = [-7.0, -2.0].map(|x| {
-        let ray = Ray::new(vec3(x, 1.0, 0.0), Vec3::X);
-        BoundingSphereQuery { ray, ..along_x(x).plain }
+    // Rays that touch the sphere at t = -x. The distance from the centre is 5 or 13, so no formula rounds.
+    let touching = [(-4.0, 3.0), (-12.0, 5.0)].map(|(x, radius)| BoundingSphereQuery {
+        ray: Ray::new(vec3(x, radius, 0.0), Vec3::X),
+        sphere: Sphere { center: Vec3::ZERO, radius },
     });
     let touched = compare(&touching, trial.kit.enter_bounding_sphere(&touching), |query, yours| {
-        let (exact, slack) = (-query.ray.origin.x, 1e-5 * (query.ray.origin.length() + 1.0));
+        let (exact, slack) = (-query.ray.origin.x, 1e-5 * (query.ray.origin.length() + query.sphere.radius));
         if yours.is_some_and(|t| (exact - slack..=exact).contains(&t)) {
             return Ok(());
         }

@@ -79,7 +79,18 @@ fn heuristics() -> impl Strategy<Value = KdHeuristics> + Clone {
 pub(super) fn kd_tree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
     let inputs = (some_boxes(), heuristics(), 1..=4usize)
         .prop_map(|(bounds, heuristics, leaf_size)| KdQuery { bounds, heuristics, leaf_size });
-    trial.each(200, inputs, <dyn Kit>::kd_build, |query, yours| judge_tree(query, &yours))
+    // Planes at the ends of long boxes, which reach beyond the cells of short ones.
+    let bounds = [
+        (vec3(4.0, -2.0, 0.0), vec3(6.0, -2.0, 2.0)),
+        (vec3(3.0, -2.0, 0.0), vec3(4.5, -2.0, 0.0)),
+        (vec3(3.0, 3.0, 0.0), vec3(3.0, 3.0, 0.0)),
+        (vec3(3.0, 0.0, 0.0), vec3(3.0, 0.0, 0.0)),
+        (vec3(0.0, 2.0, 0.0), vec3(0.0, 4.0, 0.0)),
+    ];
+    let bounds = bounds.map(|(min, max)| Aabb::new(min, max)).to_vec();
+    let heuristics = KdHeuristics { few_straddlers: true, ..KdHeuristics::NONE };
+    let long = KdQuery { bounds, heuristics, leaf_size: 1 };
+    trial.each_and(&[long], 200, inputs, <dyn Kit>::kd_build, |query, yours| judge_tree(query, &yours))
 }
 
 pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> CheckResult {
