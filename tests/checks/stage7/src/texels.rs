@@ -56,7 +56,6 @@ fn judge_texel(query: &TexelQuery, yours: u32) -> Judged {
         "you return an index of size or more: the last one is size - 1"
             .when(only(Wrap::Clamp, index.clamp(0, size))),
         (only(Wrap::Repeat, index % size), remainder),
-        (only(Wrap::Repeat, (index % size).abs()), remainder),
         (
             only(Wrap::Repeat, index.abs() % size),
             "you are wrong for negative indices: the remainder of a negative number, without its sign, counts from the other \
