@@ -30,9 +30,9 @@ pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
     todo!("find the side of a cube of which density · n fill the box; flat boxes have fewer axes")
 }
 
-/// A grid of `resolution` cells over the box around all primitives. Each primitive is listed once
-/// in all cells that its box overlaps: per axis, from that of its lower to that of its upper
-/// corner. What if the quotient that gives the index is rounded?
+/// A grid of `resolution` cells over the box around all padded boxes ([`padded_boxes`]). Each
+/// primitive is listed once in all cells that its box overlaps: per axis, from that of its lower to
+/// that of its upper corner. What if the quotient that gives the index is rounded?
 ///
 /// Exactly:
 ///

@@ -19,9 +19,9 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, ListGrowth, Octree, OctreeNode};
 use raykata::ray::Ray;
 
-/// Makes a cube of the box around all primitives, and divides every cell with too many of them into
-/// eight octants. A thousand copies of one box are in the same octants at every level. When does
-/// the build end?
+/// Makes a cube of the box around all padded boxes, and divides every cell with too many primitives
+/// into eight octants. A thousand copies of one box are in the same octants at every level. When
+/// does the build end?
 ///
 /// Exactly:
 ///

@@ -26,7 +26,7 @@ use raykata::ray::Ray;
 /// 1. Divide a node of more than `leaf_size` primitives, unless it is at depth
 ///    [`KdTree::most_depth`] (root: 0), all would be on both sides, or
 ///    [`ListGrowth::divide`] returns `None`.
-/// 2. A plane lies within its cell. The bounds contain all boxes.
+/// 2. A plane lies within its cell. The bounds contain all padded boxes.
 /// 3. List a primitive once in every leaf that its box touches, on both sides of a touched plane.
 /// 4. Leave out empty boxes. Without a usable box there are no nodes.
 /// 5. `longest_axis`: cut across the cell's longest side. Off: x, y, z in turn, x first.

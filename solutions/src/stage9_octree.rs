@@ -23,9 +23,9 @@ use raykata::ray::Ray;
 use crate::stage9_cells::{ROUNDING, crossing, first_axis, part_above};
 // </solution>
 
-/// Makes a cube of the box around all primitives, and divides every cell with too many of them into
-/// eight octants. A thousand copies of one box are in the same octants at every level. When does
-/// the build end?
+/// Makes a cube of the box around all padded boxes, and divides every cell with too many primitives
+/// into eight octants. A thousand copies of one box are in the same octants at every level. When
+/// does the build end?
 ///
 /// Exactly:
 ///

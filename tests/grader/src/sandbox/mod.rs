@@ -189,7 +189,7 @@ fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// What a launcher is told by one argument, as JSON, with the numbers of readable and writable paths. The paths follow as arguments
+/// What a launcher gets by one argument, as JSON, with the numbers of readable and writable paths. The paths follow as arguments
 /// of their own, because they may not be UTF-8.
 type Restrictions = (Purpose, Confinement, ResourceLimits, usize, usize);
 
