@@ -45,7 +45,7 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> Judged {
         (yours == Some(near), "you return the smaller root, also if ray.contains(t) refuses it"),
         "you return None if the smaller root does not count, but the larger one may"
             .when(yours == Some(near).filter(|&t| counting(t))),
-        "you choose the first positive root and then ask ray.contains(t), but the larger root may count if it refuses the smaller one"
+        "you choose the first positive root and ask ray.contains(t) about it alone: the larger root may count"
             .when(yours == Some(positive).filter(|&t| counting(t))),
         (first_if_it_counts([first, second]), "you only look at the first root, but they come in any order"),
         "you take the first root that counts for the smaller one, but they come in any order"
