@@ -29,8 +29,8 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> Judged {
     // Whether the answer is the first root that counts, and whether it is the first root if that one counts.
     let first_that_counts = |roots: [f32; 2]| yours == roots.into_iter().find(|&t| counting(t));
     let first_if_it_counts = |roots: [f32; 2]| yours == Some(roots[0]).filter(|&t| counting(t));
-    // Each comparison with NaN is false, so a sort by an if-else always swaps the roots, or never.
     let positive = if near > 0.0 { near } else { far };
+    // Each comparison with NaN is false, so a sort by an if-else always swaps the roots, or never.
     let with_nan = |gives: bool| if first.is_nan() || second.is_nan() { gives } else { is_right };
     let none_if = |condition: bool| if condition { yours.is_none() } else { is_right };
     unless(is_right, broken).formulas([

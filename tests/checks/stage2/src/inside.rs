@@ -63,10 +63,10 @@ fn clearly_inside((query, weights, exact): &Case) -> Option<bool> {
 
 const ONE_ORDER: &str = "for a point inside, all three signs are equal, but they depend on the order of the corners: accept all ≥ 0 or all ≤ 0";
 
-/// Known mistakes in inside tests I and II, each with whether it gives this answer.
 const PRODUCTS: &str =
-    "the product with a 0 in it says nothing about the sign of the other side: compare all three sides";
+    "a product of two sides is also 0 if one of them is 0: compare the signs of all three sides";
 
+/// Known mistakes in inside tests I and II, each with whether it gives this answer.
 fn mistakes(case @ (query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'static str)> {
     // The side opposite of corner a is b c, so the signs of α, β and γ are those of the sides bc, ca and ab.
     let &[bc, ca, ab] = weights;

@@ -4,6 +4,7 @@ use crate::gram::own_scalars_are_right;
 use crate::triangle_mistakes::{mistakes, observations};
 use checks::double::{self, TriangleExpected, compare_tolerant};
 use checks::prelude::*;
+use std::cell::LazyCell;
 
 /// One of the three methods of intersecting a triangle.
 #[derive(Clone, Copy)]
@@ -45,13 +46,16 @@ impl TriangleFunction {
         let broken = |query: &TriangleQuery, yours, expected| {
             Broken::with_texts(query.call(self.name), describe(yours), expected, source)
         };
-        // With wrong scalars of a triangle no answer proves a mistake in the intersection.
-        let triangles: Vec<Triangle> = queries.iter().map(|query| query.triangle).collect();
-        let proves = self.name != "triangle_gram" || own_scalars_are_right(trial, &triangles);
+        // With wrong scalars of a triangle no answer proves a mistake in the intersection. They are asked for after a wrong answer
+        // only.
+        let proves = LazyCell::new(|| {
+            let triangles: Vec<Triangle> = queries.iter().map(|query| query.triangle).collect();
+            self.name != "triangle_gram" || own_scalars_are_right(trial, &triangles)
+        });
         let observed =
-            |query: &TriangleQuery, yours| observations(query, yours).map(|(is, text)| (is && proves, text));
+            |query: &TriangleQuery, yours| observations(query, yours).map(|(is, text)| (is && *proves, text));
         let computed = |query: &TriangleQuery, yours, is_right| {
-            let refuted = |(gives, text)| (gives && (proves || is_right), text);
+            let refuted = |(gives, text)| (gives && (is_right || *proves), text);
             mistakes(query, yours, is_right).into_iter().map(refuted).collect()
         };
         compare_tolerant(cases, (self.ask)(trial.kit, &queries), broken, observed, computed)

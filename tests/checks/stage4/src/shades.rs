@@ -79,8 +79,8 @@ fn tolerance(right: DVec3) -> f64 {
     1e-4 * (1.0 + right.abs().max_element())
 }
 
-/// A point with the student's own specular term per light, and whether the student's own `shadow_ray` returns a ray.
-type WithOwnTerms = (ShadeQuery, Vec<(f32, bool)>);
+/// A point with the student's own specular term and shadow ray per light.
+type WithOwnTerms = (ShadeQuery, Vec<(f32, Option<Ray>)>);
 
 fn shadow_queries(queries: &[ShadeQuery]) -> Vec<ShadowQuery> {
     let of_lights = |query: &ShadeQuery| {
@@ -95,7 +95,7 @@ fn shadow_queries(queries: &[ShadeQuery]) -> Vec<ShadowQuery> {
 fn with_own_terms(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<WithOwnTerms> {
     let terms: Vec<TermQuery> =
         queries.iter().flat_map(|query| (0..query.lights.len()).map(|light| term(query, light))).collect();
-    let rays = trial.kit.shadow_ray(&shadow_queries(queries)).into_iter().map(|ray| ray.is_some());
+    let rays = trial.kit.shadow_ray(&shadow_queries(queries));
     let mut own = trial.kit.specular_term(&terms).into_iter().zip(rays);
     let mut of_query = |query: &ShadeQuery| own.by_ref().take(query.lights.len()).collect();
     queries.iter().map(|query| (query.clone(), of_query(query))).collect()
@@ -134,8 +134,8 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
     // The same with the student's own specular terms, and the lights to which the student's own `shadow_ray` returns a ray.
     let own_sum = |lights: &[usize]| {
         let of = |&light: &usize| match own[light] {
-            (term, true) => parts(query, light, diffuse(light).max(0.0), term.into()).iter().sum(),
-            (_, false) => DVec3::ZERO,
+            (term, Some(_)) => parts(query, light, diffuse(light).max(0.0), term.into()).iter().sum(),
+            (_, None) => DVec3::ZERO,
         };
         ambient + lights.iter().map(of).sum::<DVec3>()
     };
@@ -267,18 +267,16 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
     });
     trial.forall(1000, queries, |queries| {
         // The rays that must be traced are those of the student's own `shadow_ray`, which other checks judge.
-        let mut rays = trial.kit.shadow_ray(&shadow_queries(queries)).into_iter();
         let judged = with_own_terms(trial, queries);
         let answers = trial.kit.shade(queries);
         let judge = |(judged, yours): (&WithOwnTerms, ShadeAnswer)| {
-            let query = &judged.0;
-            let rays: Vec<_> = rays.by_ref().take(query.lights.len()).collect();
+            let (query, own) = judged;
             let astray = yours.traced.iter().zip(&yours.rays).find(|(light, ray)| {
                 // A student may compute the ray in `shade` again, with other roundings.
-                rays[**light].is_some_and(|own| own != **ray && !is_like(&own, ray))
+                own[**light].1.is_some_and(|own| own != **ray && !is_like(&own, ray))
             });
             if let Some((light, ray)) = astray {
-                let (yours, own) = (format!("visible({light}, &{ray:?})"), rays[*light]);
+                let (yours, own) = (format!("visible({light}, &{ray:?})"), own[*light].1);
                 let expected = format!("the ray {own:?}");
                 return Err(Broken::with_texts(query.call("shade"), yours, expected, "shadow_ray")
                     .because("you ask about another ray: pass the ray of shadow_ray to visible"));
@@ -291,7 +289,7 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
 
 /// Whether two rays differ only by roundings of the start. It is measured by the error of the point, which the offset of
 /// the start exceeds, so a ray from the point itself is not like one from a start off the surface.
-fn is_like(own: &raykata::ray::Ray, ray: &raykata::ray::Ray) -> bool {
+fn is_like(own: &Ray, ray: &Ray) -> bool {
     let step = 1e-6 * own.origin.abs().max_element();
     let near_range = (own.t_max - ray.t_max).abs() <= 0.01 * own.t_max || own.t_max == ray.t_max;
     (own.origin - ray.origin).abs().max_element() <= step && own.direction == ray.direction && near_range
@@ -299,7 +297,7 @@ fn is_like(own: &raykata::ray::Ray, ray: &raykata::ray::Ray) -> bool {
 
 fn judge_traced((query, own): &WithOwnTerms, traced: &[usize]) -> CheckResult {
     let count = query.lights.len();
-    let has_ray: Vec<bool> = own.iter().map(|(_, has_ray)| *has_ray).collect();
+    let has_ray: Vec<bool> = own.iter().map(|(_, ray)| ray.is_some()).collect();
     let right = |light: usize| {
         share(query, light, cosine(query, light, query.surface.shading_normal), specular(&term(query, light)))
     };
@@ -327,10 +325,10 @@ fn judge_traced((query, own): &WithOwnTerms, traced: &[usize]) -> CheckResult {
     let missed = needed.iter().any(|light| is_missed(&light));
     // The student's own `shadow_ray` and specular term may be wrong, which other checks judge.
     let adds = |light: usize| {
-        let (specular, has_ray) = own[light];
+        let (specular, ray) = own[light];
         let cosine = cosine(query, light, query.surface.shading_normal);
         let shares = parts(query, light, cosine, specular.into());
-        has_ray && shares.iter().sum::<DVec3>().max_element() > tolerance(DVec3::ZERO)
+        ray.is_some() && shares.iter().sum::<DVec3>().max_element() > tolerance(DVec3::ZERO)
     };
     let is_not_asked = needed.iter().filter(is_missed).all(|&light| adds(light));
     if !(twice || missed || vain(&behind) || vain(&dark) || vain(&black)) {

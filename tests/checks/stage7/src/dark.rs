@@ -57,14 +57,12 @@ impl Dark {
             material.emission != Vec3::ZERO || self.scene.ambient * material.ambient != Vec3::ZERO
         });
         let without_indirect = of_any_light && !self.scene.indirect_light;
-        let without_sky = self.scene.background.is_black()
-            || self.listed()
-            || self.scene.ambient * material.ambient != Vec3::ZERO;
-        let without_emitters = !self.scene.background.is_black() || self.listed();
-        let (sky, by_ambient) =
-            (!self.scene.background.is_black(), self.scene.ambient * material.ambient != Vec3::ZERO);
-        let without_emission = sky || self.listed() || by_ambient;
-        let without_ambient = sky || self.listed() || !without_emission;
+        let sky = !self.scene.background.is_black();
+        let by_ambient = self.scene.ambient * material.ambient != Vec3::ZERO;
+        let without_sky = !sky || self.listed() || by_ambient;
+        let without_emitters = sky || self.listed();
+        let without_emission = without_emitters || by_ambient;
+        let without_ambient = without_emitters || !without_emission;
         named![
             *yours == self.effects(self.shines && without_emission, self.lit) =>
                 "a material that emits light shines, also in a scene without lights",
