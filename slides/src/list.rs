@@ -21,9 +21,6 @@ pub struct Figure {
     pub take: Option<String>,
     /// What of it is the same on every machine.
     pub exact: Exact,
-    /// Whether the figure is not drawn yet. A deck then shows its description in its place.
-    #[serde(default)]
-    pub planned: bool,
 }
 
 /// What `raykata figures --check` compares.

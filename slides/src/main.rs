@@ -137,9 +137,9 @@ fn choose<'a>(all: &'a [Figure], deck: &str, names: &[String]) -> Result<Vec<&'a
             bail!("there is no figure `{name}` in slides/figures.toml{}", did_you_mean(name, &known));
         }
     }
-    // Figures that are not drawn yet, or that hold times, are made only by their names.
+    // Figures that hold times are made only by their names.
     let named = |figure: &&Figure| match names {
-        [] => !figure.planned && figure.exact != Exact::Nothing,
+        [] => figure.exact != Exact::Nothing,
         names => names.iter().any(|name| name == figure.name()),
     };
     let of_deck = |figure: &&Figure| deck.is_empty() || *deck == figure.deck;
@@ -227,18 +227,15 @@ mod tests {
     fn what_is_listed_can_be_drawn_and_what_can_be_drawn_is_listed() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("slides/ is in a folder");
         let listed = list::read(root).unwrap();
-        let names = listed.iter().filter_map(|figure| {
-            let name = figure.command.strip_prefix("raykata figures ")?.replace('-', "_");
-            Some((name, figure.planned))
-        });
-        let names: Vec<(String, bool)> = names.collect();
+        let name = |figure: &Figure| Some(figure.command.strip_prefix("raykata figures ")?.replace('-', "_"));
+        let names: Vec<String> = listed.iter().filter_map(name).collect();
         let drawn = || DIAGRAMS.iter().map(|one| one.0).chain(FROM_SCENES.iter().map(|one| one.0));
         for name in drawn() {
-            assert!(names.iter().any(|(listed, _)| listed == name), "{name} is not listed");
+            assert!(names.iter().any(|listed| listed == name), "{name} is not listed");
         }
         let touched = |name: &str| touch::FIGURES.iter().any(|figure| figure.name.replace('-', "_") == name);
-        for (name, _) in names.iter().filter(|(_, planned)| !planned) {
-            assert!(drawn().any(|known| known == name) || touched(name), "there is no drawing {name}");
+        for name in names {
+            assert!(drawn().any(|known| known == name) || touched(&name), "there is no drawing {name}");
         }
     }
 }

@@ -2,7 +2,7 @@
 //! may reject once in 10 million tests, and on wrong distributions, each of which it must reject with 99 % of
 //! the seeds.
 //!
-//! It uses 8 seeds by default and 1,000 with `CI_LONG=1`. To print the table: `CI_LONG=1 cargo test -p
+//! It uses 2 seeds by default and 1,000 with `CI_LONG=1`. To print the table: `CI_LONG=1 cargo test -p
 //! solutions --test suite -- calibration --nocapture`.
 
 mod wrong;
@@ -16,7 +16,7 @@ use wrong::WRONG;
 
 /// The number of seeds.
 fn seeds() -> u64 {
-    if std::env::var_os("CI_LONG").is_some() { 1000 } else { 8 }
+    if std::env::var_os("CI_LONG").is_some() { 1000 } else { 2 }
 }
 
 /// The percentage of seeds with which a wrong distribution must be rejected.

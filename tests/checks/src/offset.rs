@@ -6,6 +6,8 @@ use glam::{DVec3, Vec3, Vec3Swizzles as _};
 use raykata::kit::Surface;
 use raykata::ray::Ray;
 
+/// The mistake of [`Start::is_along_shading`].
+pub const ALONG_SHADING: &str = "you move along the shading normal: move along the geometric normal";
 const PER_AXIS: &str = "you move each axis by its own error: move along the normal, by error·|n|";
 
 /// The start of a ray that leaves a surface on one side.
@@ -78,12 +80,15 @@ impl Start {
         along >= -slack && (self.moved - along * way).abs().max_element() <= slack
     }
 
+    /// Whether the start is somewhere along the shading normal on the same side.
+    pub fn is_along_shading(&self) -> bool {
+        let shading = self.surface.shading_normal.as_dvec3();
+        self.is_along(shading * self.side.dot(shading).signum())
+    }
+
     /// Wrong formulas, each with whether it gives this start.
     pub fn mistakes(&self) -> Vec<(bool, &'static str)> {
         let error = self.surface.error.as_dvec3();
-        // The shading normal on the same side.
-        let shading = self.surface.shading_normal.as_dvec3();
-        let shading = shading * self.side.dot(shading).signum();
         let along_the_side = |distance: f64| self.is(distance * self.side);
         let mut all = vec![
             "your ray starts on the rounded point, so it may hit its own surface (shadow acne)"
@@ -104,8 +109,7 @@ impl Start {
                 .when(along_the_side(error.element_sum())),
         ];
         if self.surface.shading_normal != self.surface.geometric_normal {
-            let text = "you move along the shading normal: move along the geometric normal";
-            all.push((self.is_along(shading), text));
+            all.push((self.is_along_shading(), ALONG_SHADING));
         }
         let turned = [error.yzx(), error.zxy(), error.yxz(), error.xzy(), error.zyx()];
         let text = "the errors belong to other axes: multiply each by the same axis of |n|";

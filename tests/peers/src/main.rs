@@ -79,13 +79,17 @@ struct Speed {
     microseconds: [f64; 3],
 }
 
-/// The date and the processor.
+/// The date and the processor, whose name alone may hide its generation.
 fn date_and_machine() -> String {
     let date =
         std::process::Command::new("date").arg("-I").output().map(|date| date.stdout).unwrap_or_default();
     let machine = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let machine = machine.lines().find_map(|line| line.strip_prefix("model name\t: ")).unwrap_or("unknown");
-    format!("{}, {machine}", String::from_utf8_lossy(&date).trim())
+    let mut fields = machine.lines().filter_map(|line| line.split_once(':'));
+    let mut field =
+        |name| fields.find(|(field, _)| field.trim() == name).map_or("unknown", |(_, value)| value.trim());
+    // In the order of the file.
+    let [family, model, name] = ["cpu family", "model", "model name"].map(&mut field);
+    format!("{}, {name} (family {family}, model {model})", String::from_utf8_lossy(&date).trim())
 }
 
 fn print_row(cells: Vec<String>) {

@@ -201,7 +201,13 @@ pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Che
         let axis = if behind { normal } else { -normal };
         (of_normal * normal, length * nasty::tilted(axis, angle, turn))
     });
-    let drawn = [(2.0 * Vec3::Z, vec3(1.0, 0.0, 0.5)), (Vec3::Y, vec3(1.0, -3.0, 0.0))];
+    let drawn = [
+        (2.0 * Vec3::Z, vec3(1.0, 0.0, 0.5)),
+        (Vec3::Y, vec3(1.0, -3.0, 0.0)),
+        // Nearly a right angle.
+        (Vec3::Z, vec3(1.0, 0.0, 1e-5)),
+        (Vec3::X, vec3(1e-3, 2.0, 0.0)),
+    ];
     trial.each_and(
         &drawn,
         1500,
@@ -221,9 +227,19 @@ pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Che
                     (along, "the length of the normal must not change: do not normalize it"),
                 ])
             };
+            let limit = |cosine: f64| {
+                let turns = n.dot(d) > cosine * n.length() * d.length();
+                yours == if turns { -*normal } else { *normal } || open
+            };
+            let limits = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+            let names = limits.map(|cosine| {
+                "you do not turn a normal that is nearly at a right angle to the ray: compare n·d with 0"
+                    .when(limit(cosine))
+            });
+            let as_it_is = "you return the normal as it is, also if it points away from the viewer"
+                .when(yours == *normal || (open && yours == -*normal));
             unless(yours == expected || (open && yours == -expected), broken)
-                .formulas(["you return the normal as it is, also if it points away from the viewer"
-                    .when(yours == *normal || (open && yours == -*normal))])
+                .formulas([as_it_is].into_iter().chain(names))
         },
     )
 }

@@ -184,6 +184,7 @@ pub(super) fn sphere_tangent(trial: &Trial<'_>, method: SphereFunction) -> Check
             (query((0.5, 0.0, 8.0), Vec3::NEG_Z, 0.5), Some(8.0)),
             (at_height(0.0), Some(4.0)),
             (at_height(1.5), None),
+            (query((-1.0, 0.0, 0.0), Vec3::X, 2.0), Some(3.0)),
         ],
     )?;
     // One float higher the ray misses, one float lower it hits. Neither answer may be NaN.

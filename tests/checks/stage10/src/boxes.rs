@@ -50,7 +50,7 @@ const OVERFLOW: &str = "1/d is infinite although d is not 0: divide by d there";
 
 /// The mistakes with the words of the diagnosis, those that lose the fewest boxes first: the first one that explains all lost
 /// boxes is named.
-const MISTAKES: [(Mistake, Widened, &str); 17] = {
+const MISTAKES: [(Mistake, Widened, &str); 18] = {
     use Mistake::*;
     use Widened::*;
     [
@@ -59,6 +59,7 @@ const MISTAKES: [(Mistake, Widened, &str); 17] = {
             Both,
             "a factor of 1 + 2 γ₃ moves a negative exit the wrong way: move it later by 2 γ₃ |t|",
         ),
+        (FactorOnly, Exit, "a factor moves a negative exit the wrong way: move it later by 2 γ₃ |t|"),
         (Overflow, Both, OVERFLOW),
         (FromZero, Both, "the range begins at 0 in your test: it begins at t_min, which may be negative"),
         (StartIgnored, Both, "a box before t_min is met: the interval is that of the ray's range"),
@@ -124,7 +125,8 @@ impl Mistake {
         }
         let (less, more) = (1.0 - 2.0 * gamma(3), 1.0 + 2.0 * gamma(3));
         if self == Mistake::FactorOnly {
-            (near, far) = (near * less, far * more);
+            near = if widened == Widened::Both { near * less } else { (near * less).min(near * more) };
+            far *= more;
         } else {
             near = if widened == Widened::Both { (near * less).min(near * more) } else { near };
             far = if widened == Widened::Not { far } else { (far * less).max(far * more) };
@@ -248,10 +250,7 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> CheckResult
         }
         let roundings = format!("None: the ray passes by {:.0} roundings", exact.margin);
         Err(Broken::with_texts(query.call("conservative_slab"), format!("{yours:?}"), roundings, "exactly")
-            .explained_by([(
-                yours.is_some_and(|yours| is_too_wide(query, yours)),
-                "your interval is wider than the exact one by more than 64 roundings, and each wrong hit costs a visit",
-            )]))
+            .explained_by(["your interval is wider than the exact one by more than 64 roundings, and each wrong hit costs a visit".when(yours.is_some_and(|yours| is_too_wide(query, yours)))]))
     };
     all_hold(compare(&queries, trial.kit.conservative_slab(&queries), judge))
 }
@@ -299,10 +298,7 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckRe
                 format!("at {t} or before: there the ray hits a triangle in the box"),
                 "exactly",
             )
-            .explained_by([(
-                Mistake::None.slab(Widened::Exit, query).is_some_and(|(rounded, _)| rounded == enter),
-                "the entry is rounded up, so a search that has a hit at this t skips the box: move it earlier by 2 γ₃ |t|",
-            )])),
+            .explained_by(["the entry is rounded up, so a search that has a hit at this t skips the box: move it earlier by 2 γ₃ |t|".when(Mistake::None.slab(Widened::Exit, query).is_some_and(|(rounded, _)| rounded == enter))])),
             _ => Ok(()),
         }
     };

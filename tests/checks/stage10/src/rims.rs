@@ -162,10 +162,11 @@ fn rays_from_the_surface_hit_the_far_side(trial: &Trial<'_>) -> CheckResult {
         if yours.is_some_and(|t| (t - exact).abs() <= 1e-6 * exact) {
             return Ok(());
         }
-        Err(Broken::new(query.call("sphere_in_double"), yours, Some(*exact), "integers, exactly").explained_by([(
-            yours.is_none(),
-            "you return None for a ray that starts on the sphere and goes through it: it hits the far side",
-        )]))
+        Err(Broken::new(query.call("sphere_in_double"), yours, Some(*exact), "integers, exactly")
+            .explained_by(
+            ["you return None for a ray that starts on the sphere and goes through it: it hits the far side"
+                .when(yours.is_none())],
+        ))
     }))
 }
 

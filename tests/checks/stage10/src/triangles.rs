@@ -153,11 +153,8 @@ fn reasons_of_leak(trial: &Trial<'_>, ray: &Ray, hits: &[Triangle]) -> [(bool, &
             .when(line.iter().flatten().any(|hit| hit.t <= 0.0)),
         "each triangle that the ray hits is seen edge-on: there t is a quotient of two rounding errors"
             .when(hits.iter().all(edge_on)),
-        (
-            middles_are_hit && hits.iter().all(|triangle| by_rounding(triangle) && !edge_on(triangle)),
-            "the ray misses both neighbours of an edge: decide an edge by its two ends only, in the same way for both, \
-             and count 0 as inside",
-        ),
+        "the ray misses both neighbours of an edge: decide an edge by its two ends only, in the same way for both, and count 0 as inside"
+            .when(middles_are_hit && hits.iter().all(|triangle| by_rounding(triangle) && !edge_on(triangle))),
         "products of three lengths over- or underflow in single precision here"
             .when(!middles_are_hit && hits.iter().all(overflows)),
     ]
@@ -364,10 +361,7 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
                 format!("{plain:?}, as without the factor 2^{exponent}"),
                 "a power of two changes no rounding",
             )
-            .explained_by([(
-                yours.is_none() && plain.is_some() && small(query) && !small(unscaled),
-                "a determinant below a fixed epsilon counts as 0: scaling by a power of two must change no answer",
-            )]))
+            .explained_by(["a determinant below a fixed epsilon counts as 0: scaling by a power of two must change no answer".when(yours.is_none() && plain.is_some() && small(query) && !small(unscaled))]))
         };
         all_hold(compare(&pairs, trial.kit.watertight(&scaled), judge))?;
     }

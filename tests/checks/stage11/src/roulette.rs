@@ -118,6 +118,8 @@ pub(super) fn roulette_ends_no_young_path(trial: &Trial<'_>) -> CheckResult {
             Err(broken.explained_by([
                 "paths of small weight end: before bounce 3 each weight above 0 survives"
                     .when(lives && query.weight.max_element() < 1.0 / 64.0),
+                "a young path ends because one of its channels is 0: it ends if all are 0"
+                    .when(lives && query.weight.min_element() == 0.0),
                 (lives && query.bounce == 2, "your roulette begins too early: not before bounce 3"),
                 (lives, "your roulette begins at the first bounces: not before bounce 3"),
                 (!lives, "no path ends"),

@@ -18,9 +18,10 @@ pub(super) enum Rounding {
     NegativeLast,
     FloorLast,
     MostBins,
+    Again,
 }
 
-pub(super) const ROUNDINGS: [(Rounding, &str); 10] = named![
+pub(super) const ROUNDINGS: [(Rounding, &str); 11] = named![
     Rounding::Nearest => "the bin is rounded to the nearest one: round down",
     Rounding::Up => "the bin is rounded up: round down",
     Rounding::OfCentroid => "the grid is that of twice the centroids: do not halve them",
@@ -31,6 +32,7 @@ pub(super) const ROUNDINGS: [(Rounding, &str); 10] = named![
     Rounding::NegativeLast => "a bin below 0 becomes the last one: it counts as bin 0",
     Rounding::FloorLast => "a bin below 0 becomes the last one: it counts as bin 0",
     Rounding::MostBins => "the last bin is that of MAX_BINS: only grid.n_bins are in use",
+    Rounding::Again => "beyond the last bin you begin again at bin 0: it counts as the last one",
 ];
 
 /// The number of the bin along an axis, by the definition or by a wrong one.
@@ -52,6 +54,9 @@ pub(super) fn bin_of(primitive: &PrimitiveBox, grid: &BinGrid, axis: usize, roun
     };
     let last = if rounding == Rounding::MostBins { MAX_BINS } else { grid.n_bins as usize } - 1;
     let is_wrapped = matches!(rounding, Rounding::NegativeLast | Rounding::FloorLast) && place <= -1.0;
+    if rounding == Rounding::Again && place > last as f32 {
+        return place as usize % (last + 1);
+    }
     if is_wrapped || place >= last as f32 { last } else { place.max(0.0) as usize }
 }
 

@@ -28,6 +28,7 @@ pub(super) fn build_parallel_gives_the_same_tree(trial: &Trial<'_>) -> CheckResu
             // The same empty tree twice is no tree.
             return judge_tree(boxes, yours);
         }
+        judge_tree(boxes, alone)?;
         // The nodes without the indices of children.
         let kinds = |tree: &FlatTree| -> Vec<(Aabb, u32, u32)> {
             let first = |node: &FlatNode| if node.is_leaf() { node.first } else { 0 };

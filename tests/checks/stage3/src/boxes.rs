@@ -36,6 +36,9 @@ pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
             (yours == Aabb::new(a, b), CORNERS),
             (yours == Aabb::new(a, c), CORNERS),
         ]);
+        let one_side = "your box leaves out a corner on one side: min and max need all three";
+        mistakes.extend(pairs.map(|pair| (yours == Aabb::new(expected.min, pair.max), one_side)));
+        mistakes.extend(pairs.map(|pair| (yours == Aabb::new(pair.min, expected.max), one_side)));
         unless(yours == expected, || Broken::new(input(), yours, expected, "closed form")).formulas(mistakes)
     })
 }
@@ -51,7 +54,11 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
         // Allow half a float for the rounding and two floats outwards; a float is two roundings at most.
         let slack = (center.abs() + radius) * 5.0 * double::U;
         let near = |yours: Vec3, exact: DVec3| (yours.as_dvec3() - exact).abs().cmple(slack).all();
-        let right = near(yours.min, center - radius) && near(yours.max, center + radius);
+        // Rounding alone may put a side inside: a float further is too far.
+        let [low, high] = [-1.0, 1.0].map(|side| sphere.center + side * sphere.radius);
+        let least = Aabb::new(low.max((center - radius).as_vec3()), high.min((center + radius).as_vec3()));
+        let is_near = near(yours.min, center - radius) && near(yours.max, center + radius);
+        let right = is_near && yours.contains_box(&least);
         let expected = Aabb::new((center - radius).as_vec3(), (center + radius).as_vec3());
         let input = || call("sphere_bounds", &[sphere]);
         let is = |low: DVec3, high: DVec3| near(yours.min, low) && near(yours.max, high);
@@ -62,6 +69,7 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
             (low - pad).abs().max((high - pad).abs()).cmple(slack.max_element() + 1e-3 * pad).all();
         let broken = || {
             Broken::new(input(), yours, expected, "closed form").explained_by([
+                "your sides are rounded towards the centre: move them outwards, or not at all".when(is_near),
                 "you pad the box: one radius from the centre is enough, up to rounding".when(is_padded),
             ])
         };

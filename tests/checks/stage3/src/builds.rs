@@ -24,10 +24,7 @@ fn built(trial: &Trial<'_>, query: &BuildQuery) -> Result<Bvh, Broken> {
                     |node: &Node| matches!(node.contents, Contents::Leaf { count, .. } if count > 1);
                 !bvh.nodes.iter().any(is_larger)
             };
-            Err(broken.explained_by([(
-                query.leaf_size == 1 && build(two).is_ok_and(holds_one),
-                "this is the slide, e - s < N: exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size",
-            )]))
+            Err(broken.explained_by(["this is the slide, e - s < N: exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size".when(query.leaf_size == 1 && build(two).is_ok_and(holds_one))]))
         }
         Err(error) => kit_error::unwind(error),
     }
@@ -123,10 +120,10 @@ fn judge_depth(trial: &Trial<'_>, bounds: &[Aabb], what: &str) -> CheckResult {
             let input = format!("build of {what}, {split:?}, leaf_size 1");
             let [yours, expected] = [depth, most].map(|n| format!("{n} levels"));
             let broken = Broken::with_texts(input, yours, format!("at most {expected}"), "counted");
-            return Err(broken.explained_by([(
-                depth > most,
-                "each level splits off few primitives: from depth DEEPEST_SPLIT on use the object median",
-            )]));
+            return Err(broken.explained_by([
+                "each level splits off few primitives: from depth DEEPEST_SPLIT on use the object median"
+                    .when(depth > most),
+            ]));
         }
     }
     Ok(())

@@ -50,10 +50,10 @@ pub(super) fn judge_splits(
             let all = format!("the primitives 0..{n} in some order");
             let broken = Broken::with_texts(input, format!("{order:?}"), all, "each primitive once");
             let twice = ids.windows(2).any(|pair| pair[0] == pair[1]);
-            return Err(broken.explained_by([(
-                twice && ids.len() == n,
-                "a primitive was overwritten, and another one is there twice: swap two primitives instead",
-            )]));
+            return Err(broken.explained_by([
+                "a primitive was overwritten, and another one is there twice: swap two primitives instead"
+                    .when(twice && ids.len() == n),
+            ]));
         }
         let Some(middle) = middle else {
             return match law(&query.primitives, &query.primitives, 0) {

@@ -344,6 +344,6 @@ fn judge_traced((query, own): &WithOwnTerms, traced: &[usize]) -> CheckResult {
             .when(vain(&black)),
         "you trace rays to lights that add nothing: behind the surface, switched off, or on a black surface"
             .when(vain(&behind) || vain(&dark) || vain(&black)),
-        (missed && is_not_asked, "you count a light without asking whether it is visible"),
+        (missed && is_not_asked, "a light that adds to the surface gets no shadow ray"),
     ]))
 }

@@ -54,7 +54,8 @@ fn judge_shadow_rays(
 pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> CheckResult {
     let suns = [vec3(0.6, 0.8, 0.0), Vec3::Y]
         .map(|direction| ShadowQuery { surface: flat(Vec3::Y), light: light(direction, f32::INFINITY) });
-    trial.forall_and(&suns, 500, lit(), |queries| judge_shadow_rays(trial, queries, judge_end))
+    all_hold(judge_shadow_rays(trial, &suns, judge_end))?;
+    trial.forall(500, lit(), |queries| judge_shadow_rays(trial, queries, judge_end))
 }
 
 /// The surface of the light itself must not occlude it. An object close to the light must.
@@ -70,8 +71,10 @@ fn judge_end(query: &ShadowQuery, ray: &Ray) -> Judged {
             .explained_by([(away, "your ray goes away from the light: use light.direction")]));
     }
     if light.distance == f32::INFINITY {
-        let broken = || broken(query, format!("t_max = {}", ray.t_max), "t_max = inf");
-        return unless(ray.t_max == f32::INFINITY, broken).formulas([]);
+        let says =
+            "a directional light is infinitely far away: t_max stays infinite".when(ray.t_max.is_finite());
+        let broken = broken(query, format!("t_max = {}", ray.t_max), "t_max = inf").explained_by([says]);
+        return if ray.t_max == f32::INFINITY { Ok(().into()) } else { Err(broken) };
     }
     // Compare t_max itself if t counts world units, because the length of a unit vector is rounded as well, and likewise if
     // t is 1 at the light.

@@ -36,11 +36,8 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> CheckResult {
                 .when(near(yours, cosine)),
             (near(yours, cosine.abs()), "you return the absolute value: a light behind the surface gives 0"),
             (yours == 1.0 || near(yours, 0.0) && cosine <= 0.0, "you return 1: the cosine is missing"),
-            (
-                near(yours, (-cosine).max(0.0)),
-                "you return 0 for a light in front of the surface, and a cosine for one behind: is a direction \
-                 negated?",
-            ),
+            "you return 0 for a light in front of the surface, and a cosine for one behind: is a direction negated?"
+                .when(near(yours, (-cosine).max(0.0))),
             (yours == 0.0, "you return 0 for a light in front of the surface"),
             (near(yours, expected.powi(2)), "you square the cosine: the diffuse term is the cosine itself"),
             (near(yours, expected.powi(3)), "you cube the cosine: the diffuse term is the cosine itself"),

@@ -145,14 +145,10 @@ fn exact_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
         (0.5 * (s + p), "you do not square the ratios"),
         ((s * p).abs(), "you return the geometric mean of both polarisations: return half of their sum"),
         ((0.5 * (s + p)).clamp(0.0, 1.0), "you do not square the ratios"),
-        (
-            (0.5 * (s.abs() + p.abs())).powi(2),
-            "you square the mean of the ratios: return the mean of their squares",
-        ),
-        (
-            0.5 * (bent_s * bent_s + bent_p * bent_p),
-            "Snell's law has the square of n1 / n2: sin² θ2 = (n1 / n2)² sin² θ1",
-        ),
+        "you square the mean of the ratios: return the mean of their squares"
+            .when((0.5 * (s.abs() + p.abs())).powi(2)),
+        "Snell's law has the square of n1 / n2: sin² θ2 = (n1 / n2)² sin² θ1"
+            .when(0.5 * (bent_s * bent_s + bent_p * bent_p)),
     ]
 }
 

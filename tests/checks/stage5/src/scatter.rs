@@ -363,10 +363,11 @@ pub(super) fn scatter_skips_rays_without_weight(trial: &Trial<'_>) -> CheckResul
             let broken = Broken::with_texts(paste(query), describe(&yours), expected, "weight 0 adds nothing");
             let parent = query.weight != Vec3::ZERO;
             let material = query.material.mirror != Vec3::ZERO || query.material.transmission != Vec3::ZERO;
+            let adds_nothing = !shines && yours.iter().all(|ray| ray.weight == Vec3::ZERO);
             Err(broken.explained_by([
                 "you trace a ray of weight 0 where a ray of one colour meets a mirror of another: test the product"
-                    .when(!shines && parent && material),
-                (!shines, "you trace a secondary ray of weight 0: test its own weight"),
+                    .when(adds_nothing && parent && material),
+                (adds_nothing, "you trace a secondary ray of weight 0: test its own weight"),
             ]))
         })
 }

@@ -1,6 +1,6 @@
 //! The origins of secondary rays.
 
-use checks::offset::Start;
+use checks::offset::{ALONG_SHADING, Start};
 use checks::prelude::*;
 
 /// A surface and a secondary ray that leaves it.
@@ -71,14 +71,16 @@ fn judge(query: &Leaving, ray: Ray) -> Judged {
             broken(starts(), format!("{:.3e} or more", start.least())).explained_by([
                 "the side is that of the shading normal: the geometric normal tells on which side the ray goes"
                     .when(by_shading && !other.is_too_low() && other.height() <= other.most()),
-                (
-                    !other.is_too_low() && other.height() <= other.most(),
-                    "your ray starts on the wrong side: a reflected ray starts on the side of the normal, a refracted ray on \
-                     the other side",
-                ),
+                "your ray starts on the wrong side: a reflected ray starts on the side of the normal, a refracted ray on the other side"
+                    .when(!other.is_too_low() && other.height() <= other.most()),
             ])
         }
         false => broken(starts(), format!("at most {:.3e}", start.most())),
     };
-    unless(!start.is_too_low() && !start.is_too_high(), wrong).formulas(start.mistakes())
+    let is_right = !start.is_too_low() && !start.is_too_high();
+    // The same for rays of one kind only.
+    let of_one_kind = [Bounce::Reflection, Bounce::Transmission].map(|bounce| {
+        ALONG_SHADING.when(if child.bounce == bounce { start.is_along_shading() } else { is_right })
+    });
+    unless(is_right, wrong).formulas(start.mistakes().into_iter().chain(of_one_kind))
 }

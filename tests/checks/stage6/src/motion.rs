@@ -119,18 +119,20 @@ fn judge_time(query: &TimeQuery, yours: f32) -> Judged {
 
 pub(super) fn times_are_even(trial: &Trial<'_>) -> CheckResult {
     let shutter = Shutter { open: 0.25, close: 0.75 };
+    let are_in_slot = std::cell::Cell::new(true);
     // A time depends on one number. The other one spreads the times over the square.
     let places = |u: &[Vec2]| {
         let query = |u: &Vec2| TimeQuery { shutter, slot: 7, slots: 16, u: u.x };
         let times = trial.kit.time_in_shutter(&u.iter().map(query).collect::<Vec<_>>());
         let share = |time: &f32| 32.0 * (f64::from(*time) - 0.25) - 6.0;
+        are_in_slot.set(times.iter().all(|time| (-1e-3..=1.001).contains(&share(time))));
         Ok(times.iter().map(share).zip(u.iter().map(|u| f64::from(u.y))).collect())
     };
     let axes = ["the time in its slot", "another number"];
     covers_each_part("time_in_shutter in slot 7 of 16", axes, trial.seed, None, places, |counts| {
         let of_slot = columns(counts);
         vec![(
-            of_slot.contains(&0) && of_slot.iter().any(|n| *n > 0),
+            are_in_slot.get() && of_slot.contains(&0) && of_slot.iter().any(|n| *n > 0),
             "you do not use the whole slot: u is the position in the slot",
         )]
     })

@@ -54,10 +54,8 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckRe
             (near(u / grid), "you leave out the cell: all samples are in the first cell"),
             (near((cell + 0.5) / grid), "you do not use u: the sample is not jittered"),
             (near(cell / grid), "you do not use u: the sample is not jittered"),
-            (
-                near((cell / grid + u).min(DVec2::ONE)),
-                "u is not divided by grid: it is the position in the cell",
-            ),
+            "u is not divided by grid: it is the position in the cell"
+                .when(near((cell / grid + u).min(DVec2::ONE))),
             (is((cell + u) / grid.yx()), "divide x by the columns of the grid and y by its rows"),
             (is((cell + u) / grid.x), "divide x by the columns of the grid and y by its rows"),
             (is((cell + u) / grid.y), "divide x by the columns of the grid and y by its rows"),
@@ -182,6 +180,8 @@ fn judge_weight(offset: Vec2, yours: f32) -> Judged {
         let factor = |x: f64| (power(x).exp() - power(radius).exp()).max(0.0);
         factor(x) * factor(y)
     };
+    // A wide bell that ends by the right subtraction, which does not make it 0 at R.
+    let wide = |x: f64| ((-x * x).exp() - (-2.0 * radius * radius).exp()).max(0.0);
     // The weight of a bell that does not end.
     let infinite = (-2.0 * (x * x + y * y)).exp();
     // The difference of the two powers without a clamp.
@@ -197,6 +197,7 @@ fn judge_weight(offset: Vec2, yours: f32) -> Judged {
         "your filter is a tent: it is a bell, e^(-2x²)"
             .when(near((1.0 - x.abs() / radius).max(0.0) * (1.0 - y.abs() / radius).max(0.0))),
         (near(with(|x| -x * x)), "your bell is too wide: it is e^(-2x²), not e^(-x²)"),
+        (near(wide(x) * wide(y)), "your bell is too wide: it is e^(-2x²), not e^(-x²)"),
         (near(with(|x| -2.0 * x.abs())), "you do not square x: e^(-2x²)"),
         (near(bell(x) + bell(y)), "you add the two weights: multiply them"),
         (near(bell(x)), "you do not use y: multiply the weight along x by that along y"),

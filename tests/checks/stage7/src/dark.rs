@@ -58,6 +58,7 @@ impl Dark {
         });
         let without_indirect = of_any_light && !self.scene.indirect_light;
         let sky = !self.scene.background.is_black();
+        let by_any_ambient = self.scene.ambient != Vec3::ZERO && material.ambient != Vec3::ZERO;
         let by_ambient = self.scene.ambient * material.ambient != Vec3::ZERO;
         let without_sky = !sky || self.listed() || by_ambient;
         let without_emitters = sky || self.listed();
@@ -76,7 +77,9 @@ impl Dark {
             *yours == self.effects(self.shines || any_bright, self.lit) => "a material that no shape has does not shine",
             *yours == self.effects(self.shines, self.lit || self.scene.indirect_light) =>
                 "indirect light shows no image of a material without a diffuse colour",
-            *yours == self.effects(self.shines, self.lit || self.scene.ambient != Vec3::ZERO) =>
+            *yours == self.effects(self.shines, self.lit || self.scene.ambient * material.diffuse != Vec3::ZERO) =>
+                "ambient light shows an image by the `ambient` of its material, not by its `diffuse`",
+            *yours == self.effects(self.shines, self.lit || by_any_ambient) =>
                 "ambient light shows no image of a material that has none of its channels",
             *yours == self.effects(self.shines && without_sky, self.lit) =>
                 "what is before a bright background is seen: the background shines, too",
@@ -119,6 +122,16 @@ pub(super) fn what_nothing_lights_needs_nothing(trial: &Trial<'_>) -> CheckResul
         case("the same, and red ambient light on green", false, false, &|scene| {
             scene.ambient = brightness * Vec3::X;
         }),
+        case(
+            "the same before a bright background, in ambient light that no material reflects",
+            true,
+            false,
+            &|scene| {
+                sky(scene);
+                scene.ambient = brightness * grey;
+                scene.materials.iter_mut().for_each(|material| material.ambient = Vec3::ZERO);
+            },
+        ),
         case("the same, and a red light on green", false, false, &|scene| {
             scene.lights.push(light(Vec3::X, brightness));
         }),

@@ -99,11 +99,8 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> CheckResult
             .when(signs.iter().any(|&x| signs.iter().any(|&y| shifted(x, y)))),
         "you are half a pixel off along one axis: the colour of a pixel belongs to its centre"
             .when(signs.iter().any(|&one| shifted(one, 0) || shifted(0, one))),
-        (
-            stretched,
-            "you stretch uv from the first to the last pixel centre: (0, 0) and (1, 1) are corners of the \
-             image",
-        ),
+        "you stretch uv from the first to the last pixel centre: (0, 0) and (1, 1) are corners of the image"
+            .when(stretched),
         ((0..12).all(|i| yours[i].is_nan()), "you return NaN"),
     ]))
 }

@@ -81,21 +81,17 @@ fn light_mistakes(case: &LightCase, yours: &LightEffects) -> Vec<(bool, &'static
             .when(is(with(!is_area, n, false))),
         "you set shadows for every light: a light without shadows still needs 1 sample, and shadows = light.shadows"
             .when(is(changed(true, LightEffects { shadows: true, ..*expected }))),
-        (
-            is(changed(!light.shadows, nothing)),
-            "you return the default for a light without shadows: a light without shadows still needs 1 sample, and shadows \
-             = light.shadows",
-        ),
+        "you return the default for a light without shadows: a light without shadows still needs 1 sample, and shadows = light.shadows"
+            .when(is(changed(!light.shadows, nothing))),
         (is(dark_if(false)), "a light that emits nothing needs nothing: LightEffects::default()"),
+        "a light that emits nothing needs no shadows either: LightEffects::default()"
+            .when(is(if is_lit { *expected } else { LightEffects { shadows: light.shadows, ..nothing } })),
         "you test the colour only, but a light of intensity 0 is dark, too: a light that emits nothing needs nothing"
             .when(is(dark_if(light.color == Vec3::ZERO))),
         "you test the intensity only: a black light emits nothing, so it needs nothing"
             .when(is(dark_if(light.intensity == 0.0))),
-        (
-            is(dark_if(radiance.min_element() == 0.0)),
-            "you return the default for a light that is black in one channel: a faint red light still emits, so test \
-             whether all channels are 0",
-        ),
+        "you return the default for a light that is black in one channel: a faint red light still emits, so test whether all channels are 0"
+            .when(is(dark_if(radiance.min_element() == 0.0))),
         "you return the default for dim lights: a faint red light still emits, so compare with 0"
             .when(is(dark_if(radiance.max_element() < 1e-2))),
         (is(with(many, 1, true)), TOO_FEW),

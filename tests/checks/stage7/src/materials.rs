@@ -205,11 +205,8 @@ fn material_mistakes(
     vec![
         "you list a light that adds nothing: in each channel, its radiance or diffuse and specular are 0"
             .when(lights_differ && more && yours.lights.len() > expected.lights.len()),
-        (
-            lights_differ && fewer && yours.lights.len() < expected.lights.len(),
-            "you leave out a light that matters: one channel of diffuse or specular is enough, and so is \
-             faint light",
-        ),
+        "you leave out a light that matters: one channel of diffuse or specular is enough, and so is faint light"
+            .when(lights_differ && fewer && yours.lights.len() < expected.lights.len()),
         (!shown && (mirror || transmission), "with max_depth 0 a surface spawns no secondary rays"),
         (mirror_alone && material.coat != 1.0, "a coat, which is not 1, reflects rays"),
         "with fresnel, a material reflects if its transmission is not 0, and only then"
@@ -220,11 +217,8 @@ fn material_mistakes(
             .when(transmission && through && shown),
         "glossy is true if roughness is above 0 and the material reflects or refracts rays"
             .when(same_rays && yours.glossy != expected.glossy),
-        (
-            same_rays && yours.texture != expected.texture,
-            "an image matters if diffuse or ambient, which it multiplies, is not 0: otherwise texture is \
-             false",
-        ),
+        "an image matters if diffuse or ambient, which it multiplies, is not 0: otherwise texture is false"
+            .when(same_rays && yours.texture != expected.texture),
     ]
 }
 

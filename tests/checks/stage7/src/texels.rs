@@ -50,25 +50,27 @@ fn judge_texel(query: &TexelQuery, yours: u32) -> Judged {
     let once = index.rem_euclid(period);
     let twice = index.rem_euclid(2 * size);
     let remainder = "you are wrong for negative indices: the remainder of a negative number is negative, so use rem_euclid";
+    let without_sign = "you are wrong for negative indices: the remainder of a negative number, without its sign, counts from the other end, so use rem_euclid";
     let input = || format!("texel({index}, {size}, Wrap::{wrap:?})");
     let broken = || Broken::new(input(), yours, expected, "counted step by step");
     unless(i64::from(yours) == expected, broken).formulas([
         "you return an index of size or more: the last one is size - 1"
             .when(only(Wrap::Clamp, index.clamp(0, size))),
         (only(Wrap::Repeat, index % size), remainder),
+        (only(Wrap::Repeat, index.abs() % size), without_sign),
+        // The lowest bits are right for a power of two.
         (
-            only(Wrap::Repeat, index.abs() % size),
-            "you are wrong for negative indices: the remainder of a negative number, without its sign, counts from the other \
-             end, so use rem_euclid",
+            only(Wrap::Repeat, if size & (size - 1) == 0 { expected } else { index.abs() % size }),
+            without_sign,
         ),
         "you are off by one: Wrap::Mirror shows each border pixel twice in a row, and you show it once"
             .when(only(Wrap::Mirror, once.min(period - once))),
-        "you are off by one for negative indices: Wrap::Mirror shows each border pixel twice in a row"
-            .when(only(Wrap::Mirror, {
+        "you are off by one for negative indices: Wrap::Mirror shows each border pixel twice in a row".when(
+            only(Wrap::Mirror, {
                 let there = index.abs() % (2 * size);
                 there.min(2 * size - 1 - there)
-            })
-            ),
+            }),
+        ),
         "you are off by one on the way back: Wrap::Mirror shows each border pixel twice in a row"
             .when(only(Wrap::Mirror, twice.min(2 * size - twice))),
         "you continue the border for Wrap::Repeat, as Wrap::Clamp does"
@@ -80,12 +82,12 @@ fn judge_texel(query: &TexelQuery, yours: u32) -> Judged {
         (is(of(Wrap::Clamp)), "you continue the border for each wrap mode, as Wrap::Clamp does"),
         (is(of(Wrap::Repeat)), "you repeat the image for each wrap mode, as Wrap::Repeat does"),
         (is(of(Wrap::Mirror)), "you mirror the image for each wrap mode, as Wrap::Mirror does"),
-        "you exchange two modes: for Wrap::Repeat you continue the border, as Wrap::Clamp does"
-            .when(is(match wrap {
+        "you exchange two modes: for Wrap::Repeat you continue the border, as Wrap::Clamp does".when(is(
+            match wrap {
                 Wrap::Repeat => of(Wrap::Clamp),
                 Wrap::Clamp => of(Wrap::Repeat),
                 Wrap::Mirror => expected,
-            })
-            ),
+            },
+        )),
     ])
 }

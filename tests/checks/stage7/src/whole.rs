@@ -97,28 +97,18 @@ fn of_plain_scenes(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static s
     let renumbered = Effects { materials: vec![MaterialEffects::default(), moved_up], ..dropped.clone() };
     let has_fewer = yours.lights.len() < expected.lights.len();
     vec![
-        (
-            *yours == all_materials,
-            "materials[0] needs nothing, because no shape of the scene has it: analyse only materials of shown shapes",
-        ),
-        (
-            *yours == Effects { indirect_light: false, ..expected.clone() },
-            "copy indirect_light from the scene: you return false",
-        ),
-        (
-            *yours == Effects { indirect_light: true, ..expected.clone() },
-            "copy indirect_light from the scene: you return true",
-        ),
+        "materials[0] needs nothing, because no shape of the scene has it: analyse only materials of shown shapes"
+            .when(*yours == all_materials),
+        "copy indirect_light from the scene: you return false"
+            .when(*yours == Effects { indirect_light: false, ..expected.clone() }),
+        "copy indirect_light from the scene: you return true"
+            .when(*yours == Effects { indirect_light: true, ..expected.clone() }),
         (has_fewer && *yours == dropped, DROPPED),
         (has_fewer && *yours == renumbered, DROPPED),
-        (
-            *yours == Effects { lights: Vec::new(), ..expected.clone() },
-            "you leave out the lights: there is one entry per light of the scene",
-        ),
-        (
-            *yours == Effects { materials: Vec::new(), ..expected.clone() },
-            "you leave out the materials: there is one entry per material of the scene",
-        ),
+        "you leave out the lights: there is one entry per light of the scene"
+            .when(*yours == Effects { lights: Vec::new(), ..expected.clone() }),
+        "you leave out the materials: there is one entry per material of the scene"
+            .when(*yours == Effects { materials: Vec::new(), ..expected.clone() }),
     ]
 }
 

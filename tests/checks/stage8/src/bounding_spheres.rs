@@ -110,10 +110,7 @@ fn judge_size(points: &Vec<Vec3>, sphere: Sphere) -> Judged {
             format!("{:?} to {most:?}, twice the radius of the smallest sphere", 0.25 * widest),
             "Jung's theorem",
         )
-        .explained_by([(
-            is_large && radius > 1.5 * farthest,
-            "your sphere is too large: its radius is far above the largest distance of a point from its centre",
-        )])
+        .explained_by(["your sphere is too large: its radius is far above the largest distance of a point from its centre".when(is_large && radius > 1.5 * farthest)])
     };
     unless(0.25 * widest <= radius && !is_large, broken).formulas([
         "your sphere is too large, because its centre is the origin: use the centre of the points' box"
@@ -228,6 +225,8 @@ fn formulas(entry: &Entry, yours: Option<f32>) -> Vec<(bool, &'static str)> {
             .when(is(entered(ends.map(|ends| ends.map(|end| length * end))))),
         "you use the radius in place of its square: the distance from the centre is squared, too"
             .when(is(entered(roots(&ray, &sphere, radius / f64::from(entry.size))))),
+        "direction is not a unit vector here: a = d·d belongs to the discriminant, too"
+            .when(is(entered(roots(&ray, &sphere, radius * radius / (length * length))))),
         "your sphere is too large: you compare with twice the radius".when(is(entered(roots(
             &ray,
             &sphere,
@@ -249,11 +248,8 @@ fn observations(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(b
     let closest = to_center.dot(direction) / direction.length_squared();
     let late = matches!((yours, right), (Some(yours), Some(right)) if yours > right && near(yours.into(), right.into()));
     vec![
-        (
-            late,
-            "you are late by a rounding error, and a search would skip a hit at this t: return a slightly \
-             earlier t",
-        ),
+        "you are late by a rounding error, and a search would skip a hit at this t: return a slightly earlier t"
+            .when(late),
         "you return 0 for a ray that starts inside: it enters the sphere at t_min"
             .when(starts_inside && yours == Some(0.0) && ray.t_min != 0.0),
         "you return where the ray is closest to the centre: it enters the sphere before"
@@ -345,10 +341,7 @@ fn ranges_that_begin_at_the_exit(trial: &Trial<'_>) -> CheckResult {
             return Ok(());
         }
         let input = query.call("enter_bounding_sphere");
-        Err(Broken::new(input, yours, Some(ray.t_min), "closed form").explained_by([(
-            yours.is_none(),
-            "you return None for a ray whose range begins where it leaves the sphere: the surface belongs to the sphere",
-        )]))
+        Err(Broken::new(input, yours, Some(ray.t_min), "closed form").explained_by(["you return None for a ray whose range begins where it leaves the sphere: the surface belongs to the sphere".when(yours.is_none())]))
     }))
 }
 

@@ -95,16 +95,10 @@ pub(super) fn judge_contents(trial: &Trial<'_>, allowed: f64) -> CheckResult {
         let [least, most] = [corners[0].min(corners[1]), corners[0].max(corners[1])];
         unless(too_small.is_none(), broken).formulas([
             (is(yours.min, low - start) && is(yours.max, high - start), "you do not translate the box"),
-            (
-                is(yours.min, least) && is(yours.max, most),
-                "your box is much too small, because you transform two corners only: after a rotation any of the eight \
-                 can be the farthest",
-            ),
-            (
-                is(yours.min, corners[0]) && is(yours.max, corners[1]),
-                "your box is inside out, because you transform two corners only: after a rotation any of the eight can \
-                 be the farthest",
-            ),
+            "your box is much too small, because you transform two corners only: after a rotation any of the eight can be the farthest"
+                .when(is(yours.min, least) && is(yours.max, most)),
+            "your box is inside out, because you transform two corners only: after a rotation any of the eight can be the farthest"
+                .when(is(yours.min, corners[0]) && is(yours.max, corners[1])),
         ])
     };
     all_hold(compare(&queries, trial.kit.bounds_to_world(&queries), judge))

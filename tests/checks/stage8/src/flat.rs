@@ -110,11 +110,8 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> CheckResult {
     let by_rounding = n_lost < outcomes.len() * 9 / 10;
     all_hold(outcomes).map_err(|broken| {
         broken.explained_by([
-            (
-                by_rounding,
-                "you lose some rays at an edge that two polygons share: a rounded point on the plane can lie between \
-                 the two, so test on which side of each edge the ray passes",
-            ),
+            "you lose some rays at an edge that two polygons share: a rounded point on the plane can lie between the two, so test on which side of each edge the ray passes"
+                .when(by_rounding),
             (!by_rounding, "you lose rays at an edge that two polygons share: edges belong to both"),
         ])
     })

@@ -234,6 +234,8 @@ pub(super) fn cylinder_seen_along_its_axis(trial: &Trial<'_>) -> CheckResult {
     let cases = [
         (ask(vec3(1.0, -3.0, 0.0), Vec3::Y), Some(3.0), IN_THE_SIDE),
         (ask(vec3(0.0, 4.0, -1.0), vec3(0.0, -2.0, 0.0)), Some(1.0), IN_THE_SIDE),
+        // Ends and radius are right.
+        (ask(vec3(0.75, -3.0, 0.0), Vec3::Y), Some(3.0), ""),
     ];
     judge_cases(trial, &cases)
 }

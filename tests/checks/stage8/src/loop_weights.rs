@@ -179,16 +179,10 @@ impl<'a> Step<'a> {
                         .iter()
                         .any(|share| self.takes(index, &shared(vertex, &around, *share))),
             ),
-            (
-                border && !own_only && is_even(&along),
-                "the weights on a border are 3/4 for the vertex and 1/8 for each of its two neighbours along \
-                 the border",
-            ),
-            (
-                !adds_up && !around.is_empty() && is_even(others),
-                "your weights do not add up to 1: they are β for each of the n neighbours and 1 - n β for \
-                 the vertex",
-            ),
+            "the weights on a border are 3/4 for the vertex and 1/8 for each of its two neighbours along the border"
+                .when(border && !own_only && is_even(&along)),
+            "your weights do not add up to 1: they are β for each of the n neighbours and 1 - n β for the vertex"
+                .when(!adds_up && !around.is_empty() && is_even(others)),
             "your weights are wrong: β is 3/16 for n = 3 neighbours, and 3/(8 n) otherwise"
                 .when(!border && adds_up && !own_only && is_even(&around)),
         ];

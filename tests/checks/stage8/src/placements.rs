@@ -38,10 +38,8 @@ fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> Judged {
         let broken = Broken::with_texts(input(), "None", "Some", "each transform has an inverse");
         return Err(broken.explained_by([
             (path.is_empty(), "you return None for an empty path: it is the identity"),
-            (
-                path.iter().any(|one| determinant(one) < 0.0),
-                "you return None, but no determinant is 0: a negative one belongs to a reflection",
-            ),
+            "you return None, but no determinant is 0: a negative one belongs to a reflection"
+                .when(path.iter().any(|one| determinant(one) < 0.0)),
         ]));
     };
     // A few rounding errors, which an inverse of the product multiplies by its condition number.

@@ -216,18 +216,12 @@ fn mistakes<S: Solid>(scaled: &Scaled<S>, yours: Option<f32>, exact: Option<f32>
             .when(ray.t_min != 0.0 && is_range(0.0, ray.t_max)),
         "you do not test t_max: a hit outside of the ray's range does not count, so test ray.contains(t)"
             .when(ray.t_max != f32::INFINITY && is_range(ray.t_min, f32::INFINITY)),
-        (
-            lost && inside && !S::FLAT,
-            "you return None for a ray that starts inside: it hits the surface where it leaves, on a side or \
-             on an end",
-        ),
+        "you return None for a ray that starts inside: it hits the surface where it leaves, on a side or on an end"
+            .when(lost && inside && !S::FLAT),
         "you give up because the entry lies before t_min: the exit still counts"
             .when(lost && !S::FLAT && first.is_some_and(|t| t <= ray.t_min)),
-        (
-            is_far && exact.is_some(),
-            "you return the far side: the hit is the nearest point of the surface in the ray's range, on a \
-             side or on an end",
-        ),
+        "you return the far side: the hit is the nearest point of the surface in the ray's range, on a side or on an end"
+            .when(is_far && exact.is_some()),
         "you return a t outside of the ray's range: test ray.contains(t)"
             .when(yours.is_some_and(|t| !ray.contains(t))),
         (S::FLAT && yours.is_some() && exact.is_none(), OUTSIDE),
@@ -367,11 +361,8 @@ fn judge_ranges<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> Vec<C
             Err(Broken::with_texts(input(query), format!("{yours:?}"), expected, source).explained_by([
                 "the range is open: a hit exactly at t_min or t_max does not count, so test ray.contains(t)"
                     .when(!counts && (t == query.ray.t_min || t == query.ray.t_max)),
-                (
-                    counts && yours.is_none(),
-                    "you lose a hit that is one float inside the range: compare t with t_min and t_max, without an \
-                     epsilon",
-                ),
+                "you lose a hit that is one float inside the range: compare t with t_min and t_max, without an epsilon"
+                    .when(counts && yours.is_none()),
             ]))
         });
         all_hold(judged.collect())

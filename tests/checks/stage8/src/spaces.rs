@@ -78,11 +78,8 @@ fn judge_points(query: &ObjectRayQuery, yours: Ray) -> Judged {
         Broken::with_texts(query.call("ray_to_object"), yours, expected, "double precision")
     })
     .formulas([
-        (
-            turned(along(exact.matrix3.transpose())),
-            "you multiply the direction by the transpose of to_object, the inverse transpose of \
-                 to_world, as the slide does: this is for normals only",
-        ),
+        "you multiply the direction by the transpose of to_object, the inverse transpose of to_world, as the slide does: this is for normals only"
+            .when(turned(along(exact.matrix3.transpose()))),
         "you multiply the direction by the inverse transpose of to_object: this is for normals only"
             .when(turned(along(exact.matrix3.inverse().transpose()))),
         "you multiply the direction by the inverse of to_object, which leads to the world"
@@ -171,23 +168,14 @@ fn judge_range(query: &ObjectRayQuery, yours: Ray) -> Judged {
             (same_range && same_length && yours.time == 0.0, "you do not copy the time of the ray"),
             "you start with a new range: copy t_min and t_max from the ray"
                 .when((yours.t_min, yours.t_max) == (0.0, f32::INFINITY)),
-            (
-                is(yours.t_min, low * factor) && is(yours.t_max, high * factor),
-                "you change the range of the ray by the length of the direction: t is the same number in both spaces, so t_min \
-             and t_max stay",
-            ),
-            (
-                (is(yours.t_min, low) || is(yours.t_min, low * exact)) && is(yours.t_max, high * exact),
-                "you multiply the range by the length of the direction: t is the same number in both spaces, so t_min and \
-                 t_max stay",
-            ),
+            "you change the range of the ray by the length of the direction: t is the same number in both spaces, so t_min and t_max stay"
+                .when(is(yours.t_min, low * factor) && is(yours.t_max, high * factor)),
+            "you multiply the range by the length of the direction: t is the same number in both spaces, so t_min and t_max stay"
+                .when((is(yours.t_min, low) || is(yours.t_min, low * exact)) && is(yours.t_max, high * exact)),
             "you normalize the direction and scale the range: t is then another number than in the world"
                 .when(near(1.0) && is(yours.t_max, high * exact) && (is(yours.t_min, low) || is(yours.t_min, low * exact))),
-            (
-                is(yours.t_min, low / factor) && is(yours.t_max, high / factor),
-                "you divide the range of the ray by the change of the direction's length: t is the same number in both spaces, \
-             so t_min and t_max stay",
-            ),
+            "you divide the range of the ray by the change of the direction's length: t is the same number in both spaces, so t_min and t_max stay"
+                .when(is(yours.t_min, low / factor) && is(yours.t_max, high / factor)),
         ])
 }
 
@@ -210,25 +198,16 @@ fn judge_normals(query: &NormalQuery, yours: Vec3) -> Judged {
         Broken::new(input, yours, right.as_vec3(), "double precision").explained_by([
             (yours == Vec3::ZERO, "your normal is 0: a short product has a direction, too, so normalize it"),
             (like(right) && !unit, "your normal does not have unit length"),
-            (
-                like(-right) && unit,
-                "your normal points inwards: the inverse transpose needs no change of sign, also for a \
-                     reflection",
-            ),
+            "your normal points inwards: the inverse transpose needs no change of sign, also for a reflection"
+                .when(like(-right) && unit),
         ])
     };
     unless((yours.as_dvec3() - right).length() <= near, broken).formulas([
-        (
-            like(exact.inverse() * own),
-            "you transform the normal like a point, by to_world: it is then not perpendicular to the \
-                 surface",
-        ),
+        "you transform the normal like a point, by to_world: it is then not perpendicular to the surface"
+            .when(like(exact.inverse() * own)),
         (like(exact * own), "you multiply by to_object without the transpose"),
-        (
-            like(exact.inverse().transpose() * own),
-            "you multiply by the transpose of to_world: use the transpose of to_object, which is the \
-                 inverse",
-        ),
+        "you multiply by the transpose of to_world: use the transpose of to_object, which is the inverse"
+            .when(like(exact.inverse().transpose() * own)),
         (like(own), "you do not transform the normal"),
     ])
 }

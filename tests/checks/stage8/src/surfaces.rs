@@ -106,11 +106,8 @@ fn judge_points(query: &PatchQuery, yours: Vec3) -> Judged {
             .when(near(at([u, v], once))),
         "your weights do not add up to 1: their factors are 1, 3, 3 and 1"
             .when(near(at([u, v], without_factors))),
-        (
-            near(at([u, v], interpolating)),
-            "your surface passes through all control points: a Bézier patch passes only through its \
-                 corners in general",
-        ),
+        "your surface passes through all control points: a Bézier patch passes only through its corners in general"
+            .when(near(at([u, v], interpolating))),
     ])
 }
 

@@ -4,6 +4,7 @@ use super::scenes::{Scene, Thing, along, room, sphere};
 use super::searches::{BSP, Described, agrees, queries, spheres_and_rays};
 use super::structures::{bsp, diagonal, tile, two_leaves};
 use checks::prelude::*;
+use checks::tree::closest_of;
 use raykata::partition::CutPlane;
 
 pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
@@ -110,5 +111,11 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
 pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
     let (scene, rays) = spheres_and_rays(64, 5, (8, 1.5));
     let cells = bsp(&scene.hulls(), 8);
-    BSP.visits(trial.kit, "BSP tree over 64 spheres", &queries(&cells, &scene, &rays))
+    let all = queries(&cells, &scene, &rays);
+    // The same rays, which begin a little before the hit.
+    let late = all.iter().map(|query| {
+        let (_, t) = closest_of(&query.hits, &query.ray).expect("each ray hits");
+        CellsQuery { ray: query.ray.with_range(0.9 * t, f32::INFINITY), ..query.clone() }
+    });
+    BSP.visits(trial.kit, "BSP tree over 64 spheres", &all.iter().cloned().chain(late).collect::<Vec<_>>())
 }

@@ -166,6 +166,13 @@ fn judge_straddlers(trial: &Trial<'_>) -> CheckResult {
 
 /// Parallel sheets across a diagonal: planes across an axis do not divide them, but their own planes do.
 pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
+    // As many primitives as a leaf may have.
+    let few = BspQuery { hulls: hulls::sheets(4), leaf_size: 4, max_depth: 32 };
+    let n_nodes = trial.kit.bsp_build(std::slice::from_ref(&few))[0].nodes.len();
+    if n_nodes != 1 {
+        let broken = Broken::new("build of 4 sheets, leaf_size 4", n_nodes, 1, "the number of nodes");
+        return Err(broken.because("you divide a node of leaf_size primitives: that is a leaf"));
+    }
     let n = 31;
     let query = BspQuery { hulls: hulls::sheets(n), leaf_size: 2, max_depth: 32 };
     let yours = trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);

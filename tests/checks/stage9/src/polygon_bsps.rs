@@ -219,10 +219,10 @@ pub(super) fn polygon_bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
         if most == 1 && depth > 8 {
             let levels = format!("{depth} levels");
             let broken = Broken::with_texts(input, levels, "at most 8 levels", "counted");
-            return Err(broken.explained_by([(
-                depth > n / 2,
-                "list all polygons that lie in the plane at the node: you list one, and pass the others on",
-            )]));
+            return Err(broken.explained_by([
+                "list all polygons that lie in the plane at the node: you list one, and pass the others on"
+                    .when(depth > n / 2),
+            ]));
         }
     }
     Ok(())
