@@ -50,19 +50,16 @@ fn judge_texel(query: &TexelQuery, yours: u32) -> Judged {
     let once = index.rem_euclid(period);
     let twice = index.rem_euclid(2 * size);
     let remainder = "you are wrong for negative indices: the remainder of a negative number is negative, so use rem_euclid";
-    let without_sign = "you are wrong for negative indices: the remainder of a negative number, without its sign, counts from the other end, so use rem_euclid";
+    let unsigned = "you are wrong for negative indices: the remainder of a negative number, without its sign, counts from the other end, so use rem_euclid";
     let input = || format!("texel({index}, {size}, Wrap::{wrap:?})");
     let broken = || Broken::new(input(), yours, expected, "counted step by step");
     unless(i64::from(yours) == expected, broken).formulas([
         "you return an index of size or more: the last one is size - 1"
             .when(only(Wrap::Clamp, index.clamp(0, size))),
         (only(Wrap::Repeat, index % size), remainder),
-        (only(Wrap::Repeat, index.abs() % size), without_sign),
+        (only(Wrap::Repeat, index.abs() % size), unsigned),
         // The lowest bits are right for a power of two.
-        (
-            only(Wrap::Repeat, if size & (size - 1) == 0 { expected } else { index.abs() % size }),
-            without_sign,
-        ),
+        (only(Wrap::Repeat, if size & (size - 1) == 0 { expected } else { index.abs() % size }), unsigned),
         "you are off by one: Wrap::Mirror shows each border pixel twice in a row, and you show it once"
             .when(only(Wrap::Mirror, once.min(period - once))),
         "you are off by one for negative indices: Wrap::Mirror shows each border pixel twice in a row".when(
