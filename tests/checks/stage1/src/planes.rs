@@ -227,14 +227,10 @@ pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Che
                     (along, "the length of the normal must not change: do not normalize it"),
                 ])
             };
-            let limit = |cosine: f64| {
-                let turns = n.dot(d) > cosine * n.length() * d.length();
-                yours == if turns { -*normal } else { *normal } || open
-            };
-            let limits = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
-            let names = limits.map(|cosine| {
+            let names = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2].map(|cosine| {
+                let given = if n.dot(d) > cosine * n.length() * d.length() { -*normal } else { *normal };
                 "you do not turn a normal that is nearly at a right angle to the ray: compare n·d with 0"
-                    .when(limit(cosine))
+                    .when(open || yours == given)
             });
             let as_it_is = "you return the normal as it is, also if it points away from the viewer"
                 .when(yours == *normal || (open && yours == -*normal));

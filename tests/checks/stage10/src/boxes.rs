@@ -250,7 +250,8 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> CheckResult
         }
         let roundings = format!("None: the ray passes by {:.0} roundings", exact.margin);
         Err(Broken::with_texts(query.call("conservative_slab"), format!("{yours:?}"), roundings, "exactly")
-            .explained_by(["your interval is wider than the exact one by more than 64 roundings, and each wrong hit costs a visit".when(yours.is_some_and(|yours| is_too_wide(query, yours)))]))
+            .explained_by(["your interval is wider than the exact one by more than 64 roundings, and each wrong hit costs a visit"
+                .when(yours.is_some_and(|yours| is_too_wide(query, yours)))]))
     };
     all_hold(compare(&queries, trial.kit.conservative_slab(&queries), judge))
 }
@@ -298,7 +299,8 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckRe
                 format!("at {t} or before: there the ray hits a triangle in the box"),
                 "exactly",
             )
-            .explained_by(["the entry is rounded up, so a search that has a hit at this t skips the box: move it earlier by 2 γ₃ |t|".when(Mistake::None.slab(Widened::Exit, query).is_some_and(|(rounded, _)| rounded == enter))])),
+            .explained_by(["the entry is rounded up, so a search that has a hit at this t skips the box: move it earlier by 2 γ₃ |t|"
+                .when(Mistake::None.slab(Widened::Exit, query).is_some_and(|(rounded, _)| rounded == enter))])),
             _ => Ok(()),
         }
     };

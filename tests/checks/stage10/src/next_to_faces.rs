@@ -109,7 +109,9 @@ pub(super) fn starts_next_to_a_face(trial: &Trial<'_>) -> CheckResult {
         let (hit, about) =
             (query(ray, &faces[0]), "a face of a tetrahedron, from inside; no other face is hit");
         let input = format!("{}\n{about}", hit.call("watertight"));
-        let broken = Broken::with_texts(input, "no hit", "a hit", "the mesh is closed").explained_by(["t has the wrong sign: the ray starts so near to the triangle that rounding errors decide on which side it starts. Compute the determinants exactly there".when(line.is_some_and(|hit| hit.t <= 0.0))]);
+        let broken = Broken::with_texts(input, "no hit", "a hit", "the mesh is closed")
+            .explained_by(["t has the wrong sign: the ray starts so near to the triangle that rounding errors decide on which side it starts. Compute the determinants exactly there"
+                .when(line.is_some_and(|hit| hit.t <= 0.0))]);
         Err(broken.in_call(Request::Watertight(vec![hit])))
     };
     all_hold(cases.iter().zip(answers.chunks(4)).map(judge).collect())

@@ -361,7 +361,8 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
                 format!("{plain:?}, as without the factor 2^{exponent}"),
                 "a power of two changes no rounding",
             )
-            .explained_by(["a determinant below a fixed epsilon counts as 0: scaling by a power of two must change no answer".when(yours.is_none() && plain.is_some() && small(query) && !small(unscaled))]))
+            .explained_by(["a determinant below a fixed epsilon counts as 0: scaling by a power of two must change no answer"
+                .when(yours.is_none() && plain.is_some() && small(query) && !small(unscaled))]))
         };
         all_hold(compare(&pairs, trial.kit.watertight(&scaled), judge))?;
     }

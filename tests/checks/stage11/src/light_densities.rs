@@ -268,7 +268,6 @@ pub(super) fn light_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult 
             }
             let area = of(query).area();
             let is_area = area.is_some_and(|area| (f64::from(density) * area - 1.0).abs() < 1e-3);
-            // The other one is right, and this one that of an emitter at a distance of 1.
             let squared = f64::from(sample.distance).powi(2);
             let is_off = |ratio: f64| (squared - 1.0).abs() > 1e-2 && (ratio * squared - 1.0).abs() < 1e-3;
             let own_is_area = area.is_some_and(|area| (f64::from(sample.pdf) * area - 1.0).abs() < 1e-3);
@@ -279,9 +278,8 @@ pub(super) fn light_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult 
                 (is_area, "your light_pdf is per area, and the pdf of your sample is per steradian"),
                 (own_is_area, "the pdf of your sample is per area, and your light_pdf is per steradian"),
                 (density.is_nan(), "your light_pdf is NaN"),
-                (area.is_some() && is_off(ratio), "your light_pdf leaves out the distance: r² / (cos θ A)"),
-                "the pdf of your sample leaves out the distance: r² / (cos θ A)"
-                    .when(area.is_some() && is_off(1.0 / ratio)),
+                "your two densities differ by the square of the distance: both are r² / (cos θ A)"
+                    .when(area.is_some() && (is_off(ratio) || is_off(1.0 / ratio))),
             ]))
         };
         queries.iter().zip(&samples).zip(directions.iter().zip(densities)).map(judge).collect()

@@ -320,8 +320,9 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
                 let expected = (weight != DVec3::ZERO).then_some(expected);
                 let source = "path.weight · weight of sample_bsdf · survives";
                 let ended = expected.is_some() && step.next.is_none();
-                Broken::with_texts(describe(query), says(step.next), says(expected), source).explained_by(["a path ends that survives its roulette, and is above the surface"
-                    .when(ended)])
+                Broken::with_texts(describe(query), says(step.next), says(expected), source)
+                    .explained_by(["a path ends that survives its roulette, and is above the surface"
+                        .when(ended)])
             };
             let whole = (query.path.weight * sample.weight).as_dvec3();
             let is_next = |sample: &BsdfSample, weight: DVec3| is(&step, sample, weight);

@@ -64,7 +64,7 @@ fn judge_hits(lanes: &Lanes, filtered: Filtered) -> CheckResult {
             let input = format!("may_hit of {}, lane {lane}: {}", lanes.ray.paste(), triangle.paste());
             let broken =
                 Broken::with_texts(input, "certain", "not certain: its line passes beside it", "exactly");
-            return Err(broken.explained_by(["a lane is certain only if U, V and W are all above their error, or all below minus their error, and N is larger than its own".when(true)]));
+            return Err(broken.because("a lane is certain only if U, V and W are all above their error, or all below minus their error, and N is larger than its own"));
         }
         let Some(t) = exact(&lanes.ray, triangle) else { continue };
         if possible >> lane & 1 == 0 {

@@ -24,7 +24,8 @@ fn built(trial: &Trial<'_>, query: &BuildQuery) -> Result<Bvh, Broken> {
                     |node: &Node| matches!(node.contents, Contents::Leaf { count, .. } if count > 1);
                 !bvh.nodes.iter().any(is_larger)
             };
-            Err(broken.explained_by(["this is the slide, e - s < N: exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size".when(query.leaf_size == 1 && build(two).is_ok_and(holds_one))]))
+            Err(broken.explained_by(["this is the slide, e - s < N: exactly leaf_size primitives fit into a leaf, so stop at n ≤ leaf_size"
+                .when(query.leaf_size == 1 && build(two).is_ok_and(holds_one))]))
         }
         Err(error) => kit_error::unwind(error),
     }

@@ -45,7 +45,9 @@ pub(super) fn surface_area_heuristic_joins_no_side_again(trial: &Trial<'_>) -> C
     }
     let [yours, expected] = [format!("{} calls of union", all.unions), format!("at most {most}")];
     // Twice as many primitives make four times as many calls if each cut takes a number of calls that grows with them.
-    Err(Broken::with_texts(input, yours, expected, "counted").explained_by(["the calls grow with the square of the number of primitives: your loop over the cuts joins a side again for each cut".when(10 * all.unions >= 35 * half.unions)]))
+    Err(Broken::with_texts(input, yours, expected, "counted")
+        .explained_by(["the calls grow with the square of the number of primitives: your loop over the cuts joins a side again for each cut"
+            .when(10 * all.unions >= 35 * half.unions)]))
 }
 
 const AXES: [usize; 3] = [0, 1, 2];

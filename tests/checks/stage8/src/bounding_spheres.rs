@@ -110,7 +110,8 @@ fn judge_size(points: &Vec<Vec3>, sphere: Sphere) -> Judged {
             format!("{:?} to {most:?}, twice the radius of the smallest sphere", 0.25 * widest),
             "Jung's theorem",
         )
-        .explained_by(["your sphere is too large: its radius is far above the largest distance of a point from its centre".when(is_large && radius > 1.5 * farthest)])
+        .explained_by(["your sphere is too large: its radius is far above the largest distance of a point from its centre"
+            .when(is_large && radius > 1.5 * farthest)])
     };
     unless(0.25 * widest <= radius && !is_large, broken).formulas([
         "your sphere is too large, because its centre is the origin: use the centre of the points' box"
@@ -341,7 +342,9 @@ fn ranges_that_begin_at_the_exit(trial: &Trial<'_>) -> CheckResult {
             return Ok(());
         }
         let input = query.call("enter_bounding_sphere");
-        Err(Broken::new(input, yours, Some(ray.t_min), "closed form").explained_by(["you return None for a ray whose range begins where it leaves the sphere: the surface belongs to the sphere".when(yours.is_none())]))
+        Err(Broken::new(input, yours, Some(ray.t_min), "closed form")
+            .explained_by(["you return None for a ray whose range begins where it leaves the sphere: the surface belongs to the sphere"
+                .when(yours.is_none())]))
     }))
 }
 

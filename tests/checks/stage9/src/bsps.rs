@@ -171,7 +171,8 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     let n_nodes = trial.kit.bsp_build(std::slice::from_ref(&few))[0].nodes.len();
     if n_nodes != 1 {
         let broken = Broken::new("build of 4 sheets, leaf_size 4", n_nodes, 1, "the number of nodes");
-        return Err(broken.because("you divide a node of leaf_size primitives: that is a leaf"));
+        let says = "you divide a node of leaf_size primitives: that is a leaf".when(n_nodes > 1);
+        return Err(broken.explained_by([says]));
     }
     let n = 31;
     let query = BspQuery { hulls: hulls::sheets(n), leaf_size: 2, max_depth: 32 };

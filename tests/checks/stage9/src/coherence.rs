@@ -249,7 +249,9 @@ fn judge_opened(what: &str, yours: &PacketAnswer, singles: &[SearchQuery], most:
         // Of children that are entered at the same t, either may come first.
         let alone: u64 = singles.iter().map(opened_alone).sum();
         let one_by_one = (opened.len() as u64).abs_diff(alone) <= alone / 4;
-        return Err(broken.explained_by(["you open as many nodes as rays that are searched one after the other: open a node once for all rays that enter it".when(one_by_one)]));
+        return Err(broken
+            .explained_by(["you open as many nodes as rays that are searched one after the other: open a node once for all rays that enter it"
+                .when(one_by_one)]));
     }
     if yours.opened.len() as u64 > most {
         let (got, right) = (describe(yours.opened.len() as u64), format!("at most {}", describe(most)));

@@ -144,7 +144,9 @@ pub(super) fn along_edges(trial: &Trial<'_>, search: &Search<Octree>) -> CheckRe
         Err(kit_error::KitError::Panicked { message, .. }) => {
             let endless = message.contains("does not end");
             let input = search.over(&name);
-            Err(Broken::with_texts(input, message, "an answer", "brute force").explained_by(["your search goes on without an end: a step leads back into the cell that the ray has left, or stays in it".when(endless)]))
+            Err(Broken::with_texts(input, message, "an answer", "brute force")
+                .explained_by(["your search goes on without an end: a step leads back into the cell that the ray has left, or stays in it"
+                    .when(endless)]))
         }
         Err(error) => kit_error::unwind(error),
     }

@@ -66,7 +66,7 @@ impl Body {
 
     /// The frame of a question about this shape alone.
     #[inline(always)]
-    fn frame(&self, ray: &Ray, fine: bool) -> Frame {
+    pub(super) fn frame(&self, ray: &Ray, fine: bool) -> Frame {
         // The polynomials of a triangle have degree three, so they neither overflow nor underflow in doubles.
         if !fine && matches!(self, Body::Triangle(_)) {
             return Frame::UNSCALED;
@@ -171,14 +171,27 @@ fn flat<R: Ring>(ray: &Ray, plane: &Plane, radius: Option<f32>, frame: &Frame) -
     Some((outside <= 0).then_some(Hit { root, touches: outside == 0 }))
 }
 
-/// Asks for the verdict only.
-pub(super) struct First<'a> {
+/// A question about the first hit of a ray.
+pub(super) struct Asked<'a, A> {
     pub ray: &'a Ray,
     pub body: Body,
+    pub of: A,
 }
 
-impl Question for First<'_> {
-    type Answer = Contact;
+/// What a question asks of the first hit.
+pub(super) trait OfFirst {
+    type Answer;
+
+    /// The bits that the answer takes, from those of the root and those that the hit takes.
+    fn bits(&self, _: &Frame, (_, most): (RootBits, u32)) -> u32 {
+        most
+    }
+
+    fn of<R: Ring>(&self, hit: Option<Hit<R>>, frame: &Frame) -> Option<Self::Answer>;
+}
+
+impl<A: OfFirst> Question for Asked<'_, A> {
+    type Answer = A::Answer;
 
     #[inline(always)]
     fn frame(&self, fine: bool) -> Frame {
@@ -186,90 +199,63 @@ impl Question for First<'_> {
     }
 
     fn bits(&self, frame: &Frame) -> u32 {
-        self.body.first_bits(self.ray, frame).1
+        self.of.bits(frame, self.body.first_bits(self.ray, frame))
     }
 
     #[inline(always)]
-    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Contact> {
-        Some(self.body.first::<R>(self.ray, frame)?.map_or(Contact::Out, |hit| hit.verdict()))
+    fn ask<R: Ring>(&self, frame: &Frame) -> Option<A::Answer> {
+        self.of.of(self.body.first::<R>(self.ray, frame)?, frame)
+    }
+}
+
+/// Asks for the verdict only.
+pub(super) struct First;
+
+impl OfFirst for First {
+    type Answer = Contact;
+
+    fn of<R: Ring>(&self, hit: Option<Hit<R>>, _: &Frame) -> Option<Contact> {
+        Some(hit.map_or(Contact::Out, |hit| hit.verdict()))
     }
 }
 
 /// Asks for verdict and `t`.
-pub(super) struct Meet<'a> {
-    pub ray: &'a Ray,
-    pub body: Body,
-}
+pub(super) struct Meet;
 
-impl Question for Meet<'_> {
+impl OfFirst for Meet {
     type Answer = Option<(Contact, Rounded)>;
 
-    #[inline(always)]
-    fn frame(&self, fine: bool) -> Frame {
-        self.body.frame(self.ray, fine)
-    }
-
-    fn bits(&self, frame: &Frame) -> u32 {
-        self.body.first_bits(self.ray, frame).1
-    }
-
-    #[inline(always)]
-    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Self::Answer> {
-        let Some(hit) = self.body.first::<R>(self.ray, frame)? else {
-            return Some(None);
-        };
+    fn of<R: Ring>(&self, hit: Option<Hit<R>>, frame: &Frame) -> Option<Self::Answer> {
+        let Some(hit) = hit else { return Some(None) };
         Some(Some((hit.verdict(), Rounded::new(hit.root.approx()?, frame.unit::<R>())?)))
     }
 }
 
 /// Asks for the first `t` as a double.
-pub(super) struct InDouble<'a> {
-    pub ray: &'a Ray,
-    pub body: Body,
-}
+pub(super) struct InDouble;
 
-impl Question for InDouble<'_> {
+impl OfFirst for InDouble {
     type Answer = Option<f64>;
 
-    fn frame(&self, fine: bool) -> Frame {
-        self.body.frame(self.ray, fine)
-    }
-
-    fn bits(&self, frame: &Frame) -> u32 {
-        self.body.first_bits(self.ray, frame).1
-    }
-
-    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Option<f64>> {
-        let Some(hit) = self.body.first::<R>(self.ray, frame)? else {
-            return Some(None);
-        };
+    fn of<R: Ring>(&self, hit: Option<Hit<R>>, frame: &Frame) -> Option<Option<f64>> {
+        let Some(hit) = hit else { return Some(None) };
         let t = hit.root.approx()?;
         (t.error < 1e-13).then_some(Some(t.value(frame.unit::<R>())))
     }
 }
 
 /// Compares the first `t` of a ray that hits with a number.
-pub(super) struct Against<'a> {
-    pub ray: &'a Ray,
-    pub body: Body,
-    pub t: f64,
-}
+pub(super) struct Against(pub f64);
 
-impl Question for Against<'_> {
+impl OfFirst for Against {
     type Answer = Ordering;
 
-    fn frame(&self, fine: bool) -> Frame {
-        self.body.frame(self.ray, fine)
+    fn bits(&self, frame: &Frame, (root, most): (RootBits, u32)) -> u32 {
+        most.max(root.against(frame.fraction_bits(self.0)))
     }
 
-    fn bits(&self, frame: &Frame) -> u32 {
-        let (root, most) = self.body.first_bits(self.ray, frame);
-        most.max(root.against(frame.fraction_bits(self.t)))
-    }
-
-    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Ordering> {
-        let hit = self.body.first::<R>(self.ray, frame)??;
-        Some(hit.root.compare_to(R::fraction(self.t, frame.unit::<R>()))?.cmp(&0))
+    fn of<R: Ring>(&self, hit: Option<Hit<R>>, frame: &Frame) -> Option<Ordering> {
+        Some(hit?.root.compare_to(R::fraction(self.0, frame.unit::<R>()))?.cmp(&0))
     }
 }
 

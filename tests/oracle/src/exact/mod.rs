@@ -24,7 +24,7 @@ mod wide;
 pub use body::Body;
 pub use wide::Wide;
 
-use body::{Against, First, Meet, Order};
+use body::{Against, Asked, First, InDouble, Meet, Order};
 use raykata::ray::Ray;
 use ring::{Estimate, Ring};
 use root::Rounded;
@@ -147,14 +147,14 @@ pub fn meet_with(tier: Tier, ray: &Ray, body: Body) -> Option<Meeting> {
     if !is_finite(ray, &body) {
         return None;
     }
-    let Some((verdict, rounded)) = decide(&Meet { ray, body }, tier)? else {
+    let Some((verdict, rounded)) = decide(&Asked { ray, body, of: Meet }, tier)? else {
         return Some(Meeting { verdict: Contact::Out, t: None });
     };
     let t = match rounded {
         Rounded::Known(t) => t,
         Rounded::Lerp(low, high) => {
             let half_way = root::half_way(low, high);
-            root::nearest(low, high, decide(&Against { ray, body, t: half_way }, tier)?)
+            root::nearest(low, high, decide(&Asked { ray, body, of: Against(half_way) }, tier)?)
         }
     };
     Some(Meeting { verdict, t: Some(t) })
@@ -170,7 +170,7 @@ pub fn verdict_with(tier: Tier, ray: &Ray, body: Body) -> Option<Contact> {
     if !is_finite(ray, &body) {
         return None;
     }
-    decide(&First { ray, body }, tier)
+    decide(&Asked { ray, body, of: First }, tier)
 }
 
 /// The first `t` as a double with a relative error below `2^-40`: `Some(None)` if missed.
@@ -178,7 +178,7 @@ pub fn t_in_double(ray: &Ray, body: Body) -> Option<Option<f64>> {
     if !is_finite(ray, &body) {
         return None;
     }
-    decide(&body::InDouble { ray, body }, Tier::Auto)
+    decide(&Asked { ray, body, of: InDouble }, Tier::Auto)
 }
 
 /// How far a computed `t` lies above the exact one, in ulps of the correctly rounded `t` (good to `1e-4` ulps where

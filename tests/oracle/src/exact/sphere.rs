@@ -50,13 +50,16 @@ pub fn roots(ray: &Ray, sphere: &Sphere) -> Option<Roots> {
     if !is_finite(ray, &body) {
         return None;
     }
-    super::decide(&Both { ray, sphere, first: super::First { ray, body } }, super::Tier::Auto)
+    super::decide(
+        &Both { ray, sphere, first: super::Asked { ray, body, of: super::First } },
+        super::Tier::Auto,
+    )
 }
 
 struct Both<'a> {
     ray: &'a Ray,
     sphere: &'a Sphere,
-    first: super::First<'a>,
+    first: super::Asked<'a, super::First>,
 }
 
 impl Question for Both<'_> {

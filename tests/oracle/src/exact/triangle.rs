@@ -72,7 +72,7 @@ impl Question for Weights<'_> {
     type Answer = Option<[f64; 2]>;
 
     fn frame(&self, fine: bool) -> Frame {
-        super::First { ray: self.ray, body: Body::Triangle(*self.triangle) }.frame(fine)
+        Body::Triangle(*self.triangle).frame(self.ray, fine)
     }
 
     fn bits(&self, frame: &Frame) -> u32 {

@@ -1,7 +1,7 @@
 //! Verifies the counts on which the tiers rely: roundings of the filter, and bits of the integers.
 
 use super::cases;
-use crate::exact::body::{Against, First, Meet, Order};
+use crate::exact::body::{Against, Asked, First, Meet, Order};
 use crate::exact::ring::{Approx, Ring};
 use crate::exact::scale::{Frame, Scale};
 use crate::exact::{Question, WIDEST, Wide};
@@ -104,9 +104,9 @@ fn bits_and_roundings_are_as_counted() {
         let ray = &case.ray;
         let bodies = super::bodies(&case).map(|(body, _)| body);
         for body in bodies {
-            count(&First { ray, body }, 60);
-            count(&Meet { ray, body }, 60);
-            count(&Against { ray, body, t: 1.000_000_059_604_644_8 }, 60);
+            count(&Asked { ray, body, of: First }, 60);
+            count(&Asked { ray, body, of: Meet }, 60);
+            count(&Asked { ray, body, of: Against(1.000_000_059_604_644_8) }, 60);
             for other in bodies {
                 count(&Order { ray, one: body, other }, 250);
             }
