@@ -1,6 +1,6 @@
-//! Answers without knowledge of the task: a program that knows the rubric and all public questions with their answers, and
-//! answers hidden questions by their place in the check, as the nearest public question was answered, or by a constant, earns at
-//! most 5 % of the points of any stage. Functions that do not look at their arguments pass no check.
+//! Answers without knowledge of the task: a program that knows the rubric and all public questions with their answers (unless
+//! `CI_LONG=1`, the first 2,000 of a batch), and answers hidden questions by their place in the check, as the nearest one, or by a
+//! constant, earns at most 5 % of the points of any stage. Functions that do not look at their arguments pass no check.
 
 use all_checks::STAGES;
 use checks::calls::swaps;
