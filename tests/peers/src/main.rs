@@ -84,11 +84,11 @@ fn date_and_machine() -> String {
     let date =
         std::process::Command::new("date").arg("-I").output().map(|date| date.stdout).unwrap_or_default();
     let machine = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let mut fields = machine.lines().filter_map(|line| line.split_once(':'));
-    let mut field =
-        |name| fields.find(|(field, _)| field.trim() == name).map_or("unknown", |(_, value)| value.trim());
-    // In the order of the file.
-    let [family, model, name] = ["cpu family", "model", "model name"].map(&mut field);
+    let field = |name| {
+        let mut fields = machine.lines().filter_map(|line| line.split_once(':'));
+        fields.find(|(field, _)| field.trim() == name).map_or("unknown", |(_, value)| value.trim())
+    };
+    let [family, model, name] = ["cpu family", "model", "model name"].map(field);
     format!("{}, {name} (family {family}, model {model})", String::from_utf8_lossy(&date).trim())
 }
 

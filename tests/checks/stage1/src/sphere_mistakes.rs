@@ -23,9 +23,11 @@ fn gives(
     roots: impl Fn(f64) -> [f64; 2],
     choose: impl Fn([f64; 2]) -> Option<f64>,
 ) -> bool {
-    let tolerance = quadratic.tolerance();
     // The discriminant and each root may be off by their rounding errors. A discriminant of exactly 0 is exact.
-    let slack = if quadratic.discriminant == 0.0 { 0.0 } else { quadratic.slack };
+    let (slack, tolerance) = match quadratic.discriminant == 0.0 {
+        true => (0.0, 16.0 * U * quadratic.b.abs() / quadratic.a),
+        false => (quadratic.slack, quadratic.tolerance()),
+    };
     let discriminants = [0.0, -slack, slack].map(|error| quadratic.discriminant + error);
     let answers = discriminants.into_iter().flat_map(|discriminant| {
         let at = (discriminant >= 0.0).then(|| roots(discriminant.sqrt()));
@@ -175,7 +177,8 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
     };
     // Without a = d·d: in the quadratic, or in the vector from the centre to the ray's nearest point.
     let f = query.ray.origin.as_dvec3() - query.sphere.center.as_dvec3();
-    let squared = f64::from(query.sphere.radius).powi(2);
+    let radius = f64::from(query.sphere.radius);
+    let squared = radius * radius;
     let c = f.length_squared() - squared;
     let a_is_one = Quadratic { a: 1.0, discriminant: b * b - c, ..*quadratic };
     let nearest = (f + b * query.ray.direction.as_dvec3()).length_squared();
@@ -183,6 +186,10 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
     let by_product = |root: f64| {
         let q = b + root.copysign(b);
         [c / q, q]
+    };
+    let by_product_of_radius = |root: f64| {
+        let q = b + root.copysign(b);
+        [(f.length_squared() - radius) / q, q / a]
     };
     // One root with half of the chord in world units, and the other one by the product of both.
     let by_power = |root: f64| {
@@ -199,7 +206,6 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
         let away = (b + root.copysign(b)) / a;
         [c / a.sqrt() / away, away]
     };
-    let radius = f64::from(query.sphere.radius);
     vec![
         "your t counts world units; it must count lengths of direction (which is no unit vector here)"
             .when(of(quadratic, a.sqrt())),
@@ -221,5 +227,6 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
         "t_ca < 0 is not a miss: a ray that starts inside still hits the far side\nand: direction is not a unit vector here: you take a = d·d for 1"
             .when(gives(yours, &a_is_one, |root| [b - root, b + root], |roots| first(roots).filter(|_| b >= 0.0))),
         (of(&Quadratic::with_radius(query, radius.sqrt()), 1.0), "r stands where r² belongs"),
+        (gives(yours, quadratic, by_product_of_radius, first), "r stands where r² belongs"),
     ]
 }

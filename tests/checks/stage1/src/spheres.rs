@@ -184,7 +184,7 @@ pub(super) fn sphere_tangent(trial: &Trial<'_>, method: SphereFunction) -> Check
             (query((0.5, 0.0, 8.0), Vec3::NEG_Z, 0.5), Some(8.0)),
             (at_height(0.0), Some(4.0)),
             (at_height(1.5), None),
-            (query((-1.0, 0.0, 0.0), Vec3::X, 2.0), Some(3.0)),
+            (query((-0.5, 0.0, 0.0), Vec3::X, 2.0), Some(2.5)),
         ],
     )?;
     // One float higher the ray misses, one float lower it hits. Neither answer may be NaN.
@@ -211,6 +211,8 @@ pub(super) fn sphere_on_surface(trial: &Trial<'_>, method: SphereFunction) -> Ch
             (from(Vec3::X, Vec3::Y), None),
             (from(Vec3::X, Vec3::NEG_X), Some(2.0)),
             (from(Vec3::NEG_Z, Vec3::Z), Some(2.0)),
+            // An ordinary ray, which no mistake about the surface loses.
+            (from(5.0 * Vec3::X, Vec3::NEG_X), Some(4.0)),
         ],
     )
 }

@@ -166,33 +166,25 @@ fn judge_shade((query, own): &WithOwnTerms, yours: &ShadeAnswer) -> Judged {
         same(ambient + of_visible(&of))
     };
     // What each visible light adds by mistake.
-    let shares: [(&dyn Fn(usize) -> DVec3, &str); 14] = [
-        (&|light| (of_kd(light) + of_ks(light)) / distance(light), FALLOFF),
-        (&|light| (of_kd(light) + of_ks(light)) / distance(light).powi(2), FALLOFF),
-        (
-            &|light| unlit(light) * radiance(light) * radiance(light),
+    let shares: [(&dyn Fn(usize) -> DVec3, &str); 14] = named![
+        &|light| (of_kd(light) + of_ks(light)) / distance(light) => FALLOFF,
+        &|light| (of_kd(light) + of_ks(light)) / distance(light).powi(2) => FALLOFF,
+        &|light| unlit(light) * radiance(light) * radiance(light) =>
             "the radiance is squared: it is a factor of the sum once",
-        ),
-        (
-            &|light| unlit(light) * mean(radiance(light)),
+        &|light| unlit(light) * mean(radiance(light)) =>
             "the light is grey: multiply by its radiance channel by channel",
-        ),
-        (&|light| of_kd(light) + ks * right(light), "the highlight is not multiplied by the radiance"),
-        (&|light| of_ks(light) + kd * diffuse(light), "the diffuse term is not multiplied by the radiance"),
-        (
-            &|light| of_kd(light) + of_ks(light) * diffuse(light),
+        &|light| of_kd(light) + ks * right(light) => "the highlight is not multiplied by the radiance",
+        &|light| of_ks(light) + kd * diffuse(light) => "the diffuse term is not multiplied by the radiance",
+        &|light| of_kd(light) + of_ks(light) * diffuse(light) =>
             "the highlight is multiplied by cos θ: it is I·ks·cosⁿφ",
-        ),
-        (&|light| radiance(light) * (ks * diffuse(light) + kd * right(light)), "kd and ks are exchanged"),
-        (&|light| of_kd(light) + radiance(light) * right(light), "ks is left out"),
-        (&of_ks, "the diffuse term is missing"),
-        (&of_kd, "the specular term is missing"),
-        (
-            &|light| if radiance(light) == DVec3::ZERO { DVec3::ZERO } else { unlit(light) },
+        &|light| radiance(light) * (ks * diffuse(light) + kd * right(light)) => "kd and ks are exchanged",
+        &|light| of_kd(light) + radiance(light) * right(light) => "ks is left out",
+        &of_ks => "the diffuse term is missing",
+        &of_kd => "the specular term is missing",
+        &|light| if radiance(light) == DVec3::ZERO { DVec3::ZERO } else { unlit(light) } =>
             "you leave out the radiance of the light",
-        ),
-        (&geometric, "you use the geometric normal: use surface.shading_normal"),
-        (&|light| radiance(light) * kd + of_ks(light), "you leave out the cosine of the diffuse term"),
+        &geometric => "you use the geometric normal: use surface.shading_normal",
+        &|light| radiance(light) * kd + of_ks(light) => "you leave out the cosine of the diffuse term",
     ];
     // The lights that add something: they are asked for a shadow ray, in order. Those that count if the number of the ray is passed.
     let adds = |light: &usize| share(query, *light, diffuse(*light), right(*light)) != DVec3::ZERO;

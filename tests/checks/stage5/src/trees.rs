@@ -48,40 +48,26 @@ type Rule = fn(depth: u32, parent: f32, own: f32, limits: &Limits) -> bool;
 const RIGHT: Rule =
     |depth, _, own, limits| depth <= limits.max_depth && own > 0.0 && own >= limits.min_contribution;
 /// Rules with a known mistake each.
-const MISTAKES: [(Rule, &str); 8] = [
-    (
-        |depth, _, own, limits| depth <= limits.max_depth + 1 && own > 0.0 && own >= limits.min_contribution,
+const MISTAKES: [(Rule, &str); 8] = named![
+    |depth, _, own, limits| depth <= limits.max_depth + 1 && own > 0.0 && own >= limits.min_contribution =>
         "a ray of depth max_depth has no secondary rays: compare depth with limits.max_depth",
-    ),
-    (
-        |depth, _, own, limits| depth < limits.max_depth && own > 0.0 && own >= limits.min_contribution,
+    |depth, _, own, limits| depth < limits.max_depth && own > 0.0 && own >= limits.min_contribution =>
         "you end the tree one ray too early: a ray of depth max_depth - 1 has secondary rays",
-    ),
-    (|_, _, own, limits| own > 0.0 && own >= limits.min_contribution, "you leave out limits.max_depth"),
-    (
-        |depth, _, own, limits| own > 0.0 && (depth <= limits.max_depth || own >= limits.min_contribution),
+    |_, _, own, limits| own > 0.0 && own >= limits.min_contribution => "you leave out limits.max_depth",
+    |depth, _, own, limits| own > 0.0 && (depth <= limits.max_depth || own >= limits.min_contribution) =>
         "you trace a ray if one limit allows it: both must allow it",
-    ),
-    (
-        |depth, _, own, limits| depth <= limits.max_depth && own >= limits.min_contribution,
+    |depth, _, own, limits| depth <= limits.max_depth && own >= limits.min_contribution =>
         "you trace rays of weight 0",
-    ),
-    (
-        |depth, parent, _, limits| {
-            depth <= limits.max_depth && parent > 0.0 && parent >= limits.min_contribution
-        },
+    |depth, parent, _, limits| {
+        depth <= limits.max_depth && parent > 0.0 && parent >= limits.min_contribution
+    } =>
         "you test the weight of the incoming ray: test the secondary ray's own weight",
-    ),
-    (
-        |depth, parent, own, limits| {
-            depth <= limits.max_depth && own > 0.0 && parent >= limits.min_contribution
-        },
+    |depth, parent, own, limits| {
+        depth <= limits.max_depth && own > 0.0 && parent >= limits.min_contribution
+    } =>
         "you test the weight of the incoming ray: test the secondary ray's own weight",
-    ),
-    (
-        |depth, _, own, limits| depth <= limits.max_depth && own > 0.0,
+    |depth, _, own, limits| depth <= limits.max_depth && own > 0.0 =>
         "you leave out limits.min_contribution: only the depth ends the tree",
-    ),
 ];
 
 /// The number of rays in a room by a rule, up to [`TOO_MANY`].

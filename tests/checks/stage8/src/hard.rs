@@ -222,6 +222,7 @@ pub(super) fn cylinder_seen_along_its_axis(trial: &Trial<'_>) -> CheckResult {
         (ask(vec3(1.5, -3.0, 0.0), Vec3::Y), None, BESIDE_CYLINDER),
         (ask(vec3(0.0, 3.0, -1.25), vec3(0.0, -1.0, -0.0)), None, BESIDE_CYLINDER),
         (ask(vec3(0.5, 1.0, 0.0), Vec3::Y), Some(1.0), along),
+        (ask(vec3(0.5, 1.0, 0.0), Vec3::X), Some(0.5), ""),
         (of(&leaning)(vec3(-1.0, -1.0, 0.5), vec3(1.0, 1.0, 0.0)), Some(1.0), along),
         (ask(vec3(-3.0, 1.0, 0.0), Vec3::X), Some(2.0), ""),
         (ask(vec3(-3.0, 1.0, 0.25), vec3(2.0, 0.25, 0.0)), Some((3.0 - 0.9375f32.sqrt()) / 2.0), ""),

@@ -158,8 +158,8 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>, scal
         "your cylinder goes from `base` both ways: its axis goes from `base` to `top`"
             .when(other(radius, -1.0, 1.0)),
         (other(radius, 0.0, 0.5), "your cylinder ends halfway: its axis goes from `base` to `top`"),
-        "you take the radius for the diameter, or twice the radius for the radius"
-            .when(other(2.0 * radius, 0.0, 1.0) || other(0.5 * radius, 0.0, 1.0)),
+        (other(2.0 * radius, 0.0, 1.0), "you take the diameter for the radius"),
+        (other(0.5 * radius, 0.0, 1.0), "you take the radius for the diameter"),
         (of_root, "you use the radius in place of its square: the distance from the axis is squared, too"),
         (
             match endless.first().is_none_or(|enter| *enter <= f64::from(ray.t_min)) {

@@ -317,6 +317,14 @@ pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Ch
         for query in grid_queries(&scene, &rays, (all, around_loosely(&boxes).1), resolution) {
             asked.add(format!("grid of {resolution} cells over {name}"), query);
         }
+        // A hit on the far face of a cell that is not the last one: it shows why a hit on the last face is lost.
+        let bounds = Aabb::new(Vec3::NEG_ONE, vec3(3.0, 1.0, 1.0));
+        let cells = filled(bounds, uvec3(2, 1, 1), &[vec![0], vec![]]);
+        let ray = Ray::new(vec3(-2.0, 0.0, 0.0), Vec3::X);
+        asked.add(
+            "grid of 2 cells in a row, and a hit on the face between them",
+            CellsQuery { cells, ray, hits: vec![3.0] },
+        );
         asked.judge(trial.kit, &GRID)?;
     }
     beside_faces(trial)

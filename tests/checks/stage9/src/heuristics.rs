@@ -327,5 +327,6 @@ pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> CheckResult {
     let divided = build(trial, what, &row, KdHeuristics { longest_axis: true, ..stop });
     let is_full = |node: &KdNode| matches!(node, KdNode::Leaf { count, .. } if *count >= 8);
     let says = "you make a leaf where one side has no primitives: then no primitive is on both sides";
-    divided.must(!divided.tree.nodes.iter().any(is_full), "the 8 boxes in several leaves", (true, says))
+    let is_cut = divided.tree.nodes.len() > 1;
+    divided.must(!divided.tree.nodes.iter().any(is_full), "the 8 boxes in several leaves", (is_cut, says))
 }
