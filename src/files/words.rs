@@ -31,10 +31,7 @@ pub(crate) fn one_line(text: &str) -> String {
     let cut = text.char_indices().nth(LONGEST).map_or(text.len(), |(end, _)| end);
     let mut line = String::new();
     for character in text[..cut].chars() {
-        match character.is_control() {
-            true => line.extend(character.escape_default()),
-            false => line.push(character),
-        }
+        if character.is_control() { line.extend(character.escape_default()) } else { line.push(character) }
     }
     if cut < text.len() {
         line.push('…');

@@ -70,10 +70,7 @@ impl SurfaceInteraction {
     /// The radiance that the surface emits towards the ray.
     #[inline(always)]
     pub fn emission(&self, material: &Material) -> Vec3 {
-        match material.one_sided_emission && !self.entering {
-            true => Vec3::ZERO,
-            false => material.emission,
-        }
+        if material.one_sided_emission && !self.entering { Vec3::ZERO } else { material.emission }
     }
 
     /// The interaction of `ray` with the surface that it hits at `hit`. Panics if `hit` does not belong to

@@ -124,10 +124,7 @@ fn counted_light<F: StudentFunctions>(
 ) -> CountedLight {
     let is_seen = !(indirect.is_light[at.material] && start.is_diffuse);
     let emission = if is_seen { at.emission(material) } else { Vec3::ZERO };
-    let own = match emission == Vec3::ZERO {
-        true => None,
-        false => indirect.emitter_at(hit, at.surface.point),
-    };
+    let own = if emission == Vec3::ZERO { None } else { indirect.emitter_at(hit, at.surface.point) };
     let weighed = own.filter(|own| start.emitter != Some(*own));
     let is_certain = start.pdf == f32::INFINITY;
     let is_left_to_samples = |chosen: ChosenEmitter| {
@@ -412,10 +409,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         };
         let sample = LightSample { direction, distance, radiance };
         let Some(ray) = F::shadow_ray(&at.surface, &sample) else { return Vec3::ZERO };
-        match self.is_blocked(&ray, path, at, &mut scratch.tally, &mut record) {
-            true => Vec3::ZERO,
-            false => radiance,
-        }
+        if self.is_blocked(&ray, path, at, &mut scratch.tally, &mut record) { Vec3::ZERO } else { radiance }
     }
 
     /// The path along the ray `next`, which the student's `step` has chosen, and where this ray starts.

@@ -61,10 +61,7 @@ impl Pyramids {
         };
         let levels = |(index, image): (usize, &Texture)| {
             let smaller = |image: &Texture| (image.width.max(image.height) > 1).then(|| halved(image));
-            match needed(index) {
-                true => std::iter::successors(smaller(image), smaller).collect(),
-                false => Vec::new(),
-            }
+            if needed(index) { std::iter::successors(smaller(image), smaller).collect() } else { Vec::new() }
         };
         Pyramids(world.textures.iter().enumerate().map(levels).collect())
     }

@@ -96,11 +96,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         scratch.note(Event::TextureRead);
         let image = &self.intersector.scene.world.textures[map.texture];
         let uv = map.texture_coordinates(direction, image.height);
-        map.scale
-            * match self.plan.images {
-                true => F::texture_color(image, uv),
-                false => image.pixel_at(uv),
-            }
+        map.scale * if self.plan.images { F::texture_color(image, uv) } else { image.pixel_at(uv) }
     }
 
     /// The closest hit of `ray` within its range, or `None`; counted in `scratch`.

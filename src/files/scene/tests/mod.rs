@@ -57,8 +57,5 @@ fn showing_all(text: &str) -> String {
             "\n[[nodes]]\nmaterial = 'showing-{name}'\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n"
         );
     }
-    match shown.len() == text.len() {
-        true => shown,
-        false => shown + "\n[[lights]]\npoint.position = [0, 5, 0]\n",
-    }
+    if shown.len() == text.len() { shown } else { shown + "\n[[lights]]\npoint.position = [0, 5, 0]\n" }
 }

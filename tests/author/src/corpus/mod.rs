@@ -202,10 +202,7 @@ fn try_all(
     entries: &[Entry],
     options: &CorpusOptions,
 ) -> Result<Vec<TriedEntry>> {
-    let plan = match options.bless {
-        true => None,
-        false => Some(Plan::of(program, matrix, entries, options.jobs)?),
-    };
+    let plan = if options.bless { None } else { Some(Plan::of(program, matrix, entries, options.jobs)?) };
     // With a seed, texts and pictures are drawn, and the expected ones come from the reference.
     let reference = match options.seed {
         Some(_) => Some(Source::prepare(root, Which::Solutions, Need::Checks)?.fresh()),

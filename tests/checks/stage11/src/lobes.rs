@@ -269,7 +269,7 @@ pub(super) fn diffuse_samples_use_fresh_numbers(trial: &Trial<'_>) -> CheckResul
     for (axis, shares) in AXES.iter().zip([rings, turns]) {
         has_mean(&format!("the diffuse directions of sample_bsdf, {axis}"), &shares, 0.5, |_| {
             let is_empty = |eighth: i32| !shares.iter().any(|share| (8.0 * share) as i32 == eighth);
-            vec![((0..8).any(is_empty), "your directions cover only a part of the range: use fresh numbers")]
+            vec![((0..8).any(is_empty), "your directions cover only a part: is a number used twice?")]
         })?;
     }
     // Without other lobes every sample is diffuse. A direction depends on two of the three numbers: judge each pair of which it does.

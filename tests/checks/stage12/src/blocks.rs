@@ -50,7 +50,7 @@ fn causes(ray: &Ray, triangle: &Triangle, t: f32) -> [(bool, &'static str); 6] {
         at_end && clear => "the hit is at an end of the range: reject it only if it is beyond the end by more than its error",
         is_far && !clear => "rounding errors decide here, and they grow with the distance of the triangle, not with its size",
         !clear => "rounding errors decide here: reject only if both numbers are larger than their errors",
-        clear => "no rounding decides here: the signs of U, V, W or t are wrong",
+        clear => "no rounding decides here: a sign of U, V, W, N or t is wrong, or what follows from it",
     ]
 }
 

@@ -17,7 +17,10 @@ fn cloud(seed: u64, n: usize) -> Vec<Aabb> {
 
 pub(super) fn build_parallel_gives_the_same_tree(trial: &Trial<'_>) -> CheckResult {
     let mut sets = vec![cloud(trial.seed, 6), Vec::new(), cloud(trial.seed, 1)];
-    sets.push(cloud(trial.seed, trial.varied(10_000, 9000..11_000usize)));
+    // So many, and in such an order, that each piece of a large node shows.
+    let mut many = cloud(trial.seed, trial.varied(100_000, 90_000..110_000usize));
+    many.sort_by(|p, q| p.min.x.total_cmp(&q.min.x));
+    sets.push(many);
     sets.push(scenes().swap_remove(2).1);
     sets.extend(crowds(trial.varied(1.0, 0.25..8f32)));
     let alone = trial.kit.build_binned(&sets);

@@ -38,13 +38,18 @@ const CHILD_FIRST: &str = "a node gets its index after the nodes below it: a par
 
 /// Whether only the full blocks of leaves exist, and some leaf has one that is not full.
 fn lacks_blocks(wide: &WideTree) -> bool {
-    let counts = wide.nodes.iter().flat_map(|node| node.children).map(|child| match child.contents() {
-        ChildContents::Leaf { count, .. } => count as usize,
-        ChildContents::Inner(_) => 0,
-    });
-    let counts: Vec<usize> = counts.collect();
+    let counts = leaf_counts(wide);
     counts.iter().map(|count| count / BLOCK).sum::<usize>() == wide.blocks.len()
         && counts.iter().any(|count| !count.is_multiple_of(BLOCK))
+}
+
+/// The number of primitives of each child; 0 for nodes.
+fn leaf_counts(wide: &WideTree) -> Vec<usize> {
+    let count = |child: Child| match child.contents() {
+        ChildContents::Leaf { count, .. } => count as usize,
+        ChildContents::Inner(_) => 0,
+    };
+    wide.nodes.iter().flat_map(|node| node.children).map(count).collect()
 }
 
 /// The leaves and places of a wide tree over `tree`, or the first fault.
@@ -110,7 +115,8 @@ fn meaning(tree: &FlatTree, wide: &WideTree) -> Result<Meaning, Fault> {
                     let leaf = node_of.get(&(first as u32, count)).filter(|_| is_in_order);
                     let Some(&leaf) = leaf.filter(|_| free.iter().all(|&id| id == NO_PRIMITIVE)) else {
                         let is_part = |node: &FlatNode| node.first == first as u32 && count < node.count;
-                        let is_part = is_in_order && tree.nodes.iter().any(is_part);
+                        let is_whole = leaf_counts(wide).iter().sum::<usize>() == tree.order.len();
+                        let is_part = is_in_order && is_whole && tree.nodes.iter().any(is_part);
                         let is_again =
                             lanes.len() > BLOCK && lanes.chunks(BLOCK).all(|block| block[0] == lanes[0]);
                         let causes = [

@@ -57,7 +57,8 @@ fn judge(query: &SearchQuery, yours: &SearchAnswer) -> CheckResult {
     let describe = |n: u64| format!("{n} primitive tests");
     let broken = Broken::with_texts(input, describe(tests), describe(n), "each primitive once");
     // The hit is right here, but the same search may return a wrong one for another input.
-    Err(broken.explained_by(mistakes(query, found, tests)))
+    let twice = (tests > n, "you ask for a primitive twice");
+    Err(broken.explained_by(mistakes(query, found, tests)).explained_by([twice]))
 }
 
 /// A search in a table of hits.

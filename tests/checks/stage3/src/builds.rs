@@ -123,7 +123,7 @@ fn judge_depth(trial: &Trial<'_>, bounds: &[Aabb], what: &str) -> CheckResult {
             let broken = Broken::with_texts(input, yours, format!("at most {expected}"), "counted");
             return Err(broken.explained_by([
                 "each level splits off few primitives: from depth DEEPEST_SPLIT on use the object median"
-                    .when(depth > most),
+                    .when(split != Split::ObjectMedian),
             ]));
         }
     }

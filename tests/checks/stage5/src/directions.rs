@@ -110,7 +110,8 @@ fn mistakes_near_normal(query: &RefractQuery, yours: Option<Vec3>) -> [(bool, &'
     let sine_squared = 1.0 - cosine * cosine;
     let is_along = sine_squared == 0.0 || direction - cosine * normal == Vec3::ZERO;
     let sine_2 = yours.map_or(0.0, |yours| yours.reject_from(normal).length());
-    let is_from_cosine = sine_squared < 1e-3 && (sine_2 - n1 / n2 * sine_squared.sqrt()).abs() < 1e-5;
+    let by_cosine = (sine_2 - n1 / n2 * sine_squared.sqrt()).abs() < 1e-5;
+    let is_from_cosine = yours.is_some() && sine_squared < 1e-3 && by_cosine;
     [
         "you compute sin θ1 as √(1 - cos² θ1): near the normal that is inexact, or NaN where cos² θ1 is rounded up"
             .when(is_from_cosine || (is_nan && sine_squared < 0.0)),

@@ -60,12 +60,10 @@ const MISTAKES: [(Rule, &str); 8] = named![
         "you trace rays of weight 0",
     |depth, parent, _, limits| {
         depth <= limits.max_depth && parent > 0.0 && parent >= limits.min_contribution
-    } =>
-        "you test the weight of the incoming ray: test the secondary ray's own weight",
+    } => "you test the weight of the incoming ray: test the secondary ray's own weight",
     |depth, parent, own, limits| {
         depth <= limits.max_depth && own > 0.0 && parent >= limits.min_contribution
-    } =>
-        "you test the weight of the incoming ray: test the secondary ray's own weight",
+    } => "you test the weight of the incoming ray: test the secondary ray's own weight",
     |depth, _, own, limits| depth <= limits.max_depth && own > 0.0 =>
         "you leave out limits.min_contribution: only the depth ends the tree",
 ];

@@ -254,12 +254,8 @@ fn clue(effect: Effect, missed: bool) -> &'static str {
     macro_rules! clues {
         ($($effect:ident: $name:literal, $depends_on:literal;)*) => {
             match (effect, missed) {
-                $((Effect::$effect, true) => {
-                    concat!($name, ": missing; this effect depends only on ", $depends_on)
-                }
-                (Effect::$effect, false) => {
-                    concat!($name, ": not needed here; this effect depends only on ", $depends_on)
-                })*
+                $((Effect::$effect, true) => concat!($name, ": missing; this effect depends only on ", $depends_on),
+                (Effect::$effect, false) => concat!($name, ": not needed here; this effect depends only on ", $depends_on),)*
             }
         };
     }
@@ -272,7 +268,7 @@ fn clue(effect: Effect, missed: bool) -> &'static str {
         Lens: "lens", "the aperture of the lens";
         Motion: "motion", "shapes that move while the shutter is open";
         SmoothNormals: "smooth normals", "smooth meshes that are shown";
-        Textures: "textures", "images of materials that are shown";
+        Textures: "textures", "images of materials that are shown, and lit";
         IndirectLight: "indirect light", "scene.indirect_light";
     }
 }

@@ -189,10 +189,7 @@ fn judge_entries(trial: &Trial<'_>, queries: &[Entry], never_late: bool) -> Vec<
                 // Accept any answer for a ray whose range ends between the two spheres.
                 let is_late = t > exact && (never_late || !near(t, exact));
                 let is_early = t < ray.t_min || !(t >= early || near(t, early) || starts_inside(larger));
-                match is_late || is_early {
-                    true => broken(Some(exact), ", or a little less"),
-                    false => Ok(()),
-                }
+                if is_late || is_early { broken(Some(exact), ", or a little less") } else { Ok(()) }
             }
             (None, None, Some(_)) if !starts_inside(larger) => broken(None, ""),
             _ => Ok(()),

@@ -59,6 +59,8 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> CheckResult {
         (down(&square, 0.5, 1.5), Some(3.0), ""),
         (down(&square, 0.0, 0.0), Some(3.0), closed),
         (down(&square, 2.0, 1.0), Some(3.0), closed),
+        (down(&turned, 0.0, 0.0), Some(3.0), closed),
+        (down(&turned, 2.0, 1.0), Some(3.0), closed),
         (down(&square, 2.25, 1.0), None, ""),
         (
             down(&square, 2.0 + 2f32.powi(-13), 1.0),

@@ -147,17 +147,12 @@ fn judge_refusal(path: &Vec<Affine3A>, yours: Option<Placement>) -> CheckResult 
             let small = path.iter().any(|one| determinant(one).abs() < 1e-2);
             let signed = path.iter().any(|one| determinant(one) < 1e-2);
             let negative = path.iter().any(|one| determinant(one) < 0.0);
-            Err(Broken::with_texts(input, "None", "Some", "the definition").explained_by([(
-                negative,
-                "you refuse a negative determinant: it belongs to a reflection",
-            ), (
-                small,
-                "you refuse a small determinant: do not compare the determinant with a fixed limit, because it is small \
-                 when the object is small",
-            ), (
-                signed,
-                "you refuse determinants below a limit, also negative ones: do not compare the determinant with a fixed limit",
-            )]))
+            Err(Broken::with_texts(input, "None", "Some", "the definition").explained_by([
+                (negative, "you refuse a negative determinant: it belongs to a reflection"),
+                (small, "you refuse a small determinant: do not compare the determinant with a fixed limit, because it is small \
+                         when the object is small"),
+                (signed, "you refuse determinants below a limit, also negative ones: do not compare the determinant with a fixed limit"),
+            ]))
         }
         _ => Ok(()),
     }

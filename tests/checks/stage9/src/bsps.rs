@@ -164,6 +164,21 @@ fn judge_straddlers(trial: &Trial<'_>) -> CheckResult {
     judge_references(input, &yours.items, query.hulls.len() + 1, many)
 }
 
+/// The sides of a prism: the plane of each has all others on one side, and a plane across the prism divides them.
+fn judge_convex(trial: &Trial<'_>) -> CheckResult {
+    let corner = |(i, z)| Vec2::from_angle(std::f32::consts::TAU * (i % 16) as f32 / 16.0).extend(z);
+    let side = |i| [(i, 0.0), (i + 1, 0.0), (i + 1, 1.0), (i, 1.0)].map(corner).to_vec();
+    let query = BspQuery { hulls: (0..16).map(side).collect(), leaf_size: 2, max_depth: 4 };
+    let yours = trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
+    judge_tree(&query, &yours)?;
+    if yours.nodes.len() > 1 {
+        return Ok(());
+    }
+    let broken =
+        Broken::new("build of the 16 sides of a prism, leaf_size 2", "a leaf", "a cut", "the definition");
+    Err(broken.because("you make no cut at a convex body: try a plane across its longest extent, too"))
+}
+
 /// Parallel sheets across a diagonal: planes across an axis do not divide them, but their own planes do.
 pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     // As many primitives as a leaf may have.
@@ -182,6 +197,7 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     // A cut along a sheet lists the sheet on both sides, which makes one more reference per cut.
     let (references, depth) = (yours.items.len(), yours.depth());
     if fullest <= 2 && references <= 2 * n && depth <= 8 {
+        judge_convex(trial)?;
         return judge_straddlers(trial);
     }
     let mistakes = named![

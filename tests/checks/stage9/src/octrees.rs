@@ -206,6 +206,11 @@ pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>
         // Judge the visits to leaves only: each way down to a leaf visits the nodes above it again.
         let visits = to_leaves(query, &yours.visits);
         let what = "octree over 128 spheres, cell by cell";
+        let n_ways = yours.visits.iter().filter(|visit| **visit == 0).count();
+        if n_ways < visits.len() {
+            let broken = Broken::new(what, n_ways, visits.len(), "one visit of the root per leaf");
+            return Err(broken.because("the way down to a leaf begins at the root: visit every node on it"));
+        }
         OCTREE_BY_CELLS.judge_visits(what, query, &CellsAnswer { visits, ..yours })
     })
 }
