@@ -168,10 +168,7 @@ impl<'a> Value<'a> {
     /// The name of the value in messages: its key between backticks or, in a list, also its number, counted
     /// from 1.
     pub fn name(&self) -> String {
-        match self.place {
-            Some(place) => format!("entry {} of {}", place + 1, quoted(self.key)),
-            None => quoted(self.key),
-        }
+        self.place.map_or(quoted(self.key), |place| format!("entry {} of {}", place + 1, quoted(self.key)))
     }
 
     /// The byte range of the value in the file.

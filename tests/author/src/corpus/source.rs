@@ -175,10 +175,7 @@ fn of_function(text: &str, of: Option<&str>, owner: Owner, (attrs, vis, sig, blo
         syn::GenericParam::Const(parameter) => Some(parameter.ident.to_string()),
         syn::GenericParam::Lifetime(_) => None,
     });
-    let name = match of {
-        Some(of) => format!("{of}::{}", sig.ident),
-        None => sig.ident.to_string(),
-    };
+    let name = of.map_or(sig.ident.to_string(), |of| format!("{of}::{}", sig.ident));
     let line_start = text[..start].rfind('\n').map_or(0, |end| end + 1);
     Function {
         name,

@@ -28,10 +28,7 @@ pub fn write(out: &Path, name: &str, tables: &[Table]) -> Result<()> {
         let mut family = "";
         for (row, cells) in &table.rows {
             // An indented row is a variant of the last row that is not.
-            let name = match row.strip_prefix("  ") {
-                Some(variant) => format!("{family}: {variant}"),
-                None => row.clone(),
-            };
+            let name = row.strip_prefix("  ").map_or(row.clone(), |variant| format!("{family}: {variant}"));
             family = if row.starts_with(' ') { family } else { row };
             for (head, cell) in table.heads.iter().zip(cells) {
                 csv += &csv_line(&[&table.title, &name, head, cell].map(String::clone));

@@ -62,6 +62,10 @@ fn mistakes(query: &PlaneQuery, yours: Option<f32>, is_right: bool) -> Vec<(bool
         "you return |t| for a plane behind the ray: keep the signs of (p0 - o)·n and of n·d"
             .when(gives(t.abs(), range)),
         (gives(-t, range), "the sign of t is wrong: compute p0 - o, not o - p0"),
+        (
+            gives(t / n.length(), range),
+            "you normalize the normal in (p0 - o)·n alone: its length cancels in t",
+        ),
     ]);
     all
 }

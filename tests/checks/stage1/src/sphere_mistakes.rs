@@ -164,6 +164,7 @@ fn of_choices(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) ->
 
 const CHORD: &str =
     "half of the chord and t_ca have different units: divide both by the length of direction, or none";
+const UNSQUARED: &str = "the distance of the ray's line stands where its square belongs";
 const A_IS_ONE: &str = "direction is not a unit vector here: you take a = d·d for 1";
 
 /// Wrong roots.
@@ -183,14 +184,12 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
     let a_is_one = Quadratic { a: 1.0, discriminant: b * b - c, ..*quadratic };
     let nearest = (f + b * query.ray.direction.as_dvec3()).length_squared();
     let chord = Quadratic { a: 1.0, discriminant: squared - nearest, ..*quadratic };
-    let by_product = |root: f64| {
-        let q = b + root.copysign(b);
-        [c / q, q]
-    };
-    let by_product_of_radius = |root: f64| {
-        let q = b + root.copysign(b);
-        [(f.length_squared() - radius) / q, q / a]
-    };
+    let q = |root: f64| b + root.copysign(b);
+    let by_product = |root: f64| [c / q(root), q(root)];
+    let by_power_alone = |root: f64| [a * c / q(root), q(root) / a];
+    let distance = (f + b / a * query.ray.direction.as_dvec3()).length();
+    let unsquared = Quadratic { discriminant: a * (squared - distance), ..*quadratic };
+    let by_product_of_radius = |root: f64| [(f.length_squared() - radius) / q(root), q(root) / a];
     // One root with half of the chord in world units, and the other one by the product of both.
     let by_power = |root: f64| {
         let away = b / a + (root / a.sqrt()).copysign(b);
@@ -202,10 +201,7 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
         [c / a / away, away]
     };
     // One root by the product of both, in which the power of the point is divided by |d| alone.
-    let by_length = |root: f64| {
-        let away = (b + root.copysign(b)) / a;
-        [c / a.sqrt() / away, away]
-    };
+    let by_length = |root: f64| [a.sqrt() * c / q(root), q(root) / a];
     vec![
         "your t counts world units; it must count lengths of direction (which is no unit vector here)"
             .when(of(quadratic, a.sqrt())),
@@ -228,5 +224,8 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
             .when(gives(yours, &a_is_one, |root| [b - root, b + root], |roots| first(roots).filter(|_| b >= 0.0))),
         (of(&Quadratic::with_radius(query, radius.sqrt()), 1.0), "r stands where r² belongs"),
         (gives(yours, quadratic, by_product_of_radius, first), "r stands where r² belongs"),
+        (gives(yours, quadratic, by_power_alone, first), "|o - center|² - r² is not divided by d·d"),
+        (of(&unsquared, 1.0), UNSQUARED),
+        (gives(yours, &unsquared, |root| [c / q(root), q(root) / a], first), UNSQUARED),
     ]
 }

@@ -232,10 +232,7 @@ pub(super) fn steps_ask_for_no_useless_shadow_ray(trial: &Trial<'_>) -> CheckRes
                     && surface.shading_normal.dot(sample.direction) > 1e-3
             };
             let is_needed = *which == USELESS.len();
-            let right = match step.shadow {
-                Some(_) => is_needed,
-                None => !is_needed || !sample.is_some_and(above),
-            };
+            let right = step.shadow.map_or(!is_needed || !sample.is_some_and(above), |_| is_needed);
             if right {
                 return Ok(());
             }

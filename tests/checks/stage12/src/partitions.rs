@@ -82,6 +82,8 @@ fn mistakes(query: &PartitionQuery, yours: &SplitAnswer) -> Vec<(bool, &'static 
         "the first bin of the right side goes to the left: bins before `bin` are left"
             .when(is(left_side(query, |primitive| right(primitive) <= last_left))),
         (is(left_side(query, |primitive| right(primitive) >= last_left)), "the sides are exchanged"),
+        "you return one more than the number of the left side"
+            .when(yours.middle == Some((left.len() + 1).min(primitives.len()))),
         "the centroid is compared with a plane, which rounds otherwise than the bin does: compute the bin as fill_bins does"
             .when(is(left_side(query, |primitive| primitive.twice_centroid()[axis] < plane))),
         "the number of the left side is right, but the primitives stay as they come"

@@ -17,15 +17,21 @@ enum Flaw {
     SidesNotSwapped,
     EntryIsExit,
     Exchanged,
+    Without(usize),
 }
 
-const FLAWS: [(Flaw, &str); 8] = named![
+const WITHOUT: &str = "an axis is left out: intersect the intervals of all three";
+
+const FLAWS: [(Flaw, &str); 11] = named![
     Flaw::EntryIsExit => "the exit is returned as the entry: `t` has the entries of the boxes",
     Flaw::Exchanged => "the entry is the smallest t of the near planes: a ray is in a box when it has entered on all axes",
     Flaw::NearForBoth =>
         "far planes have factors of their own, scale[1] and offset[1]: with those of near planes the exit is too early, and rounding loses boxes",
     Flaw::FarForBoth =>
         "near planes have factors of their own, scale[0] and offset[0]: with those of far planes the entry is too late, and rounding loses boxes",
+    Flaw::Without(0) => WITHOUT,
+    Flaw::Without(1) => WITHOUT,
+    Flaw::Without(2) => WITHOUT,
     Flaw::EndsAtInfinity => "t_max is left out: a box beyond it is not entered",
     Flaw::StartsAtZero => "t_min is left out: the entry is t_min or later",
     Flaw::Open => "boxes without thickness are lost: near <= far, not near < far",
@@ -45,7 +51,7 @@ fn entry(
 ) -> Option<f32> {
     let mut near = if flaw == Flaw::StartsAtZero { 0.0 } else { ray.t_min };
     let mut far = if flaw == Flaw::EndsAtInfinity { f32::INFINITY } else { t_max };
-    for axis in 0..3 {
+    for axis in (0..3).filter(|axis| flaw != Flaw::Without(*axis)) {
         let side = if flaw == Flaw::SidesNotSwapped { 0 } else { ray.near_side[axis] };
         let t = |side: usize, end: usize, fused: bool| {
             let (plane, scale, offset) =

@@ -7,11 +7,13 @@ use glam::Vec3A;
 use raykata::wide::{BLOCK, BLOCK_COST, Bin, BinGrid, BinSplit, Bins, BoxA, PrimitiveBox};
 
 /// The number of blocks, computed in a wrong way.
-fn wrong_blocks(n: u32) -> [(u32, &'static str); 3] {
+fn wrong_blocks(n: u32) -> [(u32, &'static str); 4] {
     let block = BLOCK as u32;
+    let rounded_down =
+        "the number of blocks is rounded down: a block that is not full costs as much as a full one";
     [
-        "the number of blocks is rounded down: a block that is not full costs as much as a full one"
-            .when(n / block),
+        (n / block, rounded_down),
+        ((n / block).max(1), rounded_down),
         (n / block + 1, "a full block is followed by an empty one: a leaf of eight has one block"),
         (n, "the cost is that of single primitives: eight are tested at once"),
     ]

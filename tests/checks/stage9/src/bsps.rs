@@ -171,12 +171,10 @@ fn judge_convex(trial: &Trial<'_>) -> CheckResult {
     let query = BspQuery { hulls: (0..16).map(side).collect(), leaf_size: 2, max_depth: 4 };
     let yours = trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
     judge_tree(&query, &yours)?;
-    if yours.nodes.len() > 1 {
-        return Ok(());
-    }
     let broken =
         Broken::new("build of the 16 sides of a prism, leaf_size 2", "a leaf", "a cut", "the definition");
-    Err(broken.because("you make no cut at a convex body: try a plane across its longest extent, too"))
+    let says = "you make no cut at a convex body: try a plane across its longest extent, too";
+    if yours.nodes.len() > 1 { Ok(()) } else { Err(broken.because(says)) }
 }
 
 /// Parallel sheets across a diagonal: planes across an axis do not divide them, but their own planes do.
