@@ -133,9 +133,9 @@ fn every_command_names_the_file_on_a_full_disk_and_continues_with_room() {
     ]);
 }
 
-/// These take minutes, so they run only with `CI_LONG=1`.
+/// It takes minutes, so it runs only with `CI_LONG=1`.
 #[test]
-fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
+fn a_measurement_continues_after_a_full_disk() {
     if leaves_out_what_takes_long() {
         return;
     }
@@ -144,12 +144,7 @@ fn a_measurement_and_a_rehearsal_continue_after_a_full_disk() {
         "cost {} --full --size 16x12 --rounds 1 --reference 128 --parameter samples_per_pixel --out DISK/cost",
         shadows.display()
     );
-    let program = |name: &str| Path::new(env!("CARGO_BIN_EXE_grader")).with_file_name(name);
-    let rehearse = "rehearse --honest --students 4 --jobs 1 --out DISK/grades";
-    let rehearsal = case(&program("author"), rehearse, "200k", "grades/grades.csv");
-    try_all(&[
-        // All files contain measured times.
-        FullDiskRun { keeps: Some("cost/unfinished.jsonl"), ..case(&program("raykata"), &cost, "16k", "") },
-        FullDiskRun { resume: "--resume", keeps: Some("grades/grades.sqlite"), ..rehearsal },
-    ]);
+    let program = Path::new(env!("CARGO_BIN_EXE_grader")).with_file_name("raykata");
+    // All files contain measured times.
+    try_all(&[FullDiskRun { keeps: Some("cost/unfinished.jsonl"), ..case(&program, &cost, "16k", "") }]);
 }
