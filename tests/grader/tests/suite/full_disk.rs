@@ -133,12 +133,8 @@ fn every_command_names_the_file_on_a_full_disk_and_continues_with_room() {
     ]);
 }
 
-/// It takes minutes, so it runs only with `CI_LONG=1`.
 #[test]
 fn a_measurement_continues_after_a_full_disk() {
-    if leaves_out_what_takes_long() {
-        return;
-    }
     let shadows = root().join("scenes/soft_shadows.toml");
     let cost = format!(
         "cost {} --full --size 16x12 --rounds 1 --reference 128 --parameter samples_per_pixel --out DISK/cost",
