@@ -24,10 +24,8 @@ fn gives(
     choose: impl Fn([f64; 2]) -> Option<f64>,
 ) -> bool {
     // The discriminant and each root may be off by their rounding errors. A discriminant of exactly 0 is exact.
-    let (slack, tolerance) = match quadratic.discriminant == 0.0 {
-        true => (0.0, 16.0 * U * quadratic.b.abs() / quadratic.a),
-        false => (quadratic.slack, quadratic.tolerance()),
-    };
+    let slack = if quadratic.discriminant == 0.0 { 0.0 } else { quadratic.slack };
+    let tolerance = Quadratic { slack, ..*quadratic }.tolerance();
     let discriminants = [0.0, -slack, slack].map(|error| quadratic.discriminant + error);
     let answers = discriminants.into_iter().flat_map(|discriminant| {
         let at = (discriminant >= 0.0).then(|| roots(discriminant.sqrt()));

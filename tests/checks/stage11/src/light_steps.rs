@@ -232,7 +232,8 @@ pub(super) fn steps_ask_for_no_useless_shadow_ray(trial: &Trial<'_>) -> CheckRes
                     && surface.shading_normal.dot(sample.direction) > 1e-3
             };
             let is_needed = *which == USELESS.len();
-            let right = step.shadow.map_or(!is_needed || !sample.is_some_and(above), |_| is_needed);
+            let is_free = !is_needed || !sample.is_some_and(above);
+            let right = if step.shadow.is_some() { is_needed } else { is_free };
             if right {
                 return Ok(());
             }
