@@ -304,7 +304,7 @@ pub(super) fn follow(
                     direction: next.direction,
                     weight: next.weight,
                     bounces: path.state.bounces + 1,
-                    pdf: next.pdf.min(CERTAIN),
+                    pdf: next.pdf,
                 };
                 paths.push(Path { index: path.index, origin: point, direction, state });
             }

@@ -63,9 +63,9 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult
                 by(|p, _| p.centroid.length()) => "you sort by the distance from the origin: sort by the centroid along the axis",
                 by(|p, axis| (p.bounds.max - p.bounds.min)[axis]) => "you sort by the size of the boxes: sort by the centroid",
                 as_given => "the primitives are not sorted: you cut them as they come",
-                along(0) => "you always sort along x, not along the longest axis",
-                along(1) => "you always sort along y, not along the longest axis",
-                along(2) => "you always sort along z, not along the longest axis",
+                along(0) => "you sort along x also where another axis is longer",
+                along(1) => "you sort along y also where another axis is longer",
+                along(2) => "you sort along z also where another axis is longer",
                 (0..3).any(|axis| shortest(axis) && along(axis)) => "you sort along the shortest axis, not along the longest axis",
             ].to_vec()
         };

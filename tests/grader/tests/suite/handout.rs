@@ -14,17 +14,19 @@ use std::sync::LazyLock;
 
 /// A hand-out that all tests read and none changes: the folder `kit`, alone in a folder.
 fn handed_out() -> &'static Path {
-    static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
-        let around = Path::new(env!("CARGO_TARGET_TMPDIR")).join("handout");
-        if around.exists() {
-            fs::remove_dir_all(&around).expect("the hand-out of the last run can be removed");
-        }
-        fs::create_dir_all(&around).expect("a folder");
-        let folder = around.join("kit");
-        grader_succeeds(["handout", &folder.to_string_lossy()]);
-        folder
-    });
+    static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| handed_out_in("handout"));
     &FOLDER
+}
+
+/// A kit that is handed out again, alone in this folder.
+fn handed_out_in(around: &str) -> PathBuf {
+    let around = Path::new(env!("CARGO_TARGET_TMPDIR")).join(around);
+    // The first run has nothing to remove. What cannot be removed makes `handout` fail, because it does not overwrite.
+    let _ = fs::remove_dir_all(&around);
+    fs::create_dir_all(&around).expect("a folder");
+    let folder = around.join("kit");
+    grader_succeeds(["handout", &folder.to_string_lossy()]);
+    folder
 }
 
 /// The paths of all files of a folder.
@@ -220,7 +222,8 @@ fn a_student_can_begin() {
     if leaves_out_what_takes_long() {
         return;
     }
-    let folder = handed_out();
+    // A kit of its own, because it writes pictures where another test lists the files.
+    let folder = &handed_out_in("begun");
     let target = root().join("target/handout");
     let cargo = |arguments: &[&str]| cargo_in(folder, &target, arguments);
     let lock = fs::read(folder.join("Cargo.lock")).expect("a lock");
