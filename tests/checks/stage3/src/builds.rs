@@ -122,10 +122,9 @@ fn judge_depth(trial: &Trial<'_>, bounds: &[Aabb], what: &str) -> CheckResult {
             let [yours, expected] = [depth, most].map(|n| format!("{n} levels"));
             let broken = Broken::with_texts(input, yours, format!("at most {expected}"), "counted");
             // An object median that does not halve explains it as well.
-            let halved = BuildQuery { split: Split::ObjectMedian, ..query };
             return Err(broken.explained_by([
                 "each level splits off few primitives: from depth DEEPEST_SPLIT on use the object median"
-                    .when(built(trial, &halved)?.depth() <= most),
+                    .when(built(trial, &BuildQuery { split: Split::ObjectMedian, ..query })?.depth() <= most),
             ]));
         }
     }
