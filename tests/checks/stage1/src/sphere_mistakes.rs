@@ -163,6 +163,7 @@ fn of_choices(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) ->
 const CHORD: &str =
     "half of the chord and t_ca have different units: divide both by the length of direction, or none";
 const UNSQUARED: &str = "the distance of the ray's line stands where its square belongs";
+const ADDED: &str = "r² is added and not taken away: it is |o - center|² - r²";
 const A_IS_ONE: &str = "direction is not a unit vector here: you take a = d·d for 1";
 
 /// Wrong roots.
@@ -180,14 +181,20 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
     let squared = radius * radius;
     let c = f.length_squared() - squared;
     let a_is_one = Quadratic { a: 1.0, discriminant: b * b - c, ..*quadratic };
-    let nearest = (f + b * query.ray.direction.as_dvec3()).length_squared();
-    let chord = Quadratic { a: 1.0, discriminant: squared - nearest, ..*quadratic };
+    // The square of the vector from the centre to the ray's nearest point, with this in place of t_ca.
+    let away = |t_ca: f64| (f + t_ca * query.ray.direction.as_dvec3()).length_squared();
+    let chord = Quadratic { a: 1.0, discriminant: squared - away(b), ..*quadratic };
     let q = |root: f64| b + root.copysign(b);
     let by_product = |root: f64| [c / q(root), q(root)];
-    let by_power_alone = |root: f64| [a * c / q(root), q(root) / a];
-    let distance = (f + b / a * query.ray.direction.as_dvec3()).length();
-    let unsquared = Quadratic { discriminant: a * (squared - distance), ..*quadratic };
-    let by_product_of_radius = |root: f64| [(f.length_squared() - radius) / q(root), q(root) / a];
+    // One root by the product of both, with a wrong c.
+    let by_root_and = |c: f64| gives(yours, quadratic, |root| [c / q(root), q(root) / a], first);
+    // Both roots by the formula, or one of them by the product of both, from a wrong discriminant.
+    let by = |discriminant: f64, c: f64| {
+        let wrong = Quadratic { discriminant, ..*quadratic };
+        of(&wrong, 1.0) || gives(yours, &wrong, |root| [c / q(root), q(root) / a], first)
+    };
+    let right = quadratic.discriminant;
+    let added = f.length_squared() + squared;
     // One root with half of the chord in world units, and the other one by the product of both.
     let by_power = |root: f64| {
         let away = b / a + (root / a.sqrt()).copysign(b);
@@ -200,30 +207,42 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
     };
     // One root by the product of both, in which the power of the point is divided by |d| alone.
     let by_length = |root: f64| [a.sqrt() * c / q(root), q(root) / a];
-    vec![
-        "your t counts world units; it must count lengths of direction (which is no unit vector here)"
-            .when(of(quadratic, a.sqrt())),
-        (of(quadratic, a), "direction is not a unit vector here: divide by a = d·d"),
-        (gives(yours, quadratic, by_product, first), "one of the roots is not divided by a = d·d"),
-        (gives(yours, quadratic, |root| [(b - root * a.sqrt()) / a, (b + root * a.sqrt()) / a], first), CHORD),
-        (gives(yours, quadratic, by_power, first), CHORD),
-        "|o - center|² - r² is divided by |d|: the product of both roots has d·d"
-            .when(gives(yours, quadratic, by_length, first)),
-        (gives(yours, quadratic, |root| [(b * a.sqrt() - root) / a, (b * a.sqrt() + root) / a], first), CHORD),
-        (of(quadratic, 0.5), "both roots are halved: with b = -f·d they are divided by a alone"),
-        (of(quadratic, 2.0), "both roots are doubled: they are divided by a"),
-        (of(&Quadratic::with_radius(query, 0.5 * radius), 1.0), "you take the radius for a diameter"),
-        (of(&Quadratic::with_radius(query, 2.0 * radius), 1.0), "you take the diameter for the radius"),
-        (of(&Quadratic::with_radius(query, 0.0), 1.0), "the radius is left out: c = f·f - r²"),
-        (of(&a_is_one, 1.0), A_IS_ONE),
-        (gives(yours, &chord, by_product, first), A_IS_ONE),
-        (gives(yours, &chord, by_length_of_one, first), A_IS_ONE),
-        "t_ca < 0 is not a miss: a ray that starts inside still hits the far side\nand: direction is not a unit vector here: you take a = d·d for 1"
-            .when(gives(yours, &a_is_one, |root| [b - root, b + root], |roots| first(roots).filter(|_| b >= 0.0))),
-        (of(&Quadratic::with_radius(query, radius.sqrt()), 1.0), "r stands where r² belongs"),
-        (gives(yours, quadratic, by_product_of_radius, first), "r stands where r² belongs"),
-        (gives(yours, quadratic, by_power_alone, first), "|o - center|² - r² is not divided by d·d"),
-        (of(&unsquared, 1.0), UNSQUARED),
-        (gives(yours, &unsquared, |root| [c / q(root), q(root) / a], first), UNSQUARED),
+    named![
+        of(quadratic, a.sqrt()) =>
+            "your t counts world units; it must count lengths of direction (which is no unit vector here)",
+        of(quadratic, a) => "direction is not a unit vector here: divide by a = d·d",
+        gives(yours, quadratic, by_product, first) => "one of the roots is not divided by a = d·d",
+        gives(yours, quadratic, |root| [(b - root * a.sqrt()) / a, (b + root * a.sqrt()) / a], first) => CHORD,
+        gives(yours, quadratic, by_power, first) => CHORD,
+        by(right / a, c) => CHORD,
+        gives(yours, quadratic, by_length, first) =>
+            "|o - center|² - r² is divided by |d|: the product of both roots has d·d",
+        gives(yours, quadratic, |root| [(b * a.sqrt() - root) / a, (b * a.sqrt() + root) / a], first) => CHORD,
+        of(quadratic, 0.5) => "both roots are halved: with b = -f·d they are divided by a alone",
+        of(quadratic, 2.0) => "both roots are doubled: they are divided by a",
+        of(&Quadratic::with_radius(query, 0.5 * radius), 1.0) => "you take the radius for a diameter",
+        of(&Quadratic::with_radius(query, 2.0 * radius), 1.0) => "you take the diameter for the radius",
+        of(&Quadratic::with_radius(query, 0.0), 1.0) => "the radius is left out: c = f·f - r²",
+        of(&a_is_one, 1.0) => A_IS_ONE,
+        gives(yours, &chord, by_product, first) => A_IS_ONE,
+        by(a * (squared - away(b)), c) => A_IS_ONE,
+        gives(yours, &chord, by_length_of_one, first) => A_IS_ONE,
+        gives(yours, &a_is_one, |root| [b - root, b + root], |roots| first(roots).filter(|_| b >= 0.0)) =>
+            "t_ca < 0 is not a miss: a ray that starts inside still hits the far side\nand: direction is not a unit vector here: you take a = d·d for 1",
+        of(&Quadratic::with_radius(query, radius.sqrt()), 1.0) => "r stands where r² belongs",
+        by_root_and(f.length_squared() - radius) => "r stands where r² belongs",
+        by(a * (radius - away(b / a)), c) => "r stands where r² belongs",
+        by_root_and(a * c) => "|o - center|² - r² is not divided by d·d",
+        by(a * (squared - away(b / a).sqrt()), c) => UNSQUARED,
+        by_root_and(added) => ADDED,
+        by(b * b - a * added, c) => ADDED,
+        by(b * b - a * added, added) => ADDED,
+        by(a * (squared + away(b / a)), c) => "half of the chord is a leg: r² minus the square of the distance, not plus",
+        by(4.0 * right, c) => "the root is doubled: 4 a c belongs to b = -2 f·d, and a c to half of it",
+        by(a * (squared - away(-b / a)), c) =>
+            "the vector from the centre to the nearest point has a wrong sign: it is o + t_ca d - center",
+        by(a * (squared - away(b / a / a.sqrt())), c) =>
+            "t_ca counts lengths of direction: multiply it by direction, not by a unit vector",
     ]
+    .to_vec()
 }

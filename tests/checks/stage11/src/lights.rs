@@ -93,30 +93,28 @@ pub(super) fn judge_sample(query: &EmitterQuery, yours: &EmitterSample) -> Check
     let by_pdf = is_even && (radiance.x * f64::from(yours.pdf) - 1.0).abs() < 1e-3;
     let broken =
         Broken::with_texts(query.call("sample_light"), format!("{yours:?}"), expected, "the definition");
-    Err(broken.explained_by([
-        (yours.direction.is_nan() || yours.distance.is_nan() || yours.pdf.is_nan(), "you return NaN"),
-        (!unit && !yours.direction.is_nan(), "your direction does not have unit length"),
-        (!on_it && far, "your point is on the far side of the sphere: the near one hides it"),
-        (!on_it && squared, "your distance is squared"),
-        (unit && distance < 0.0, "your distance is negative: seen from inside, the farther root is the hit"),
-        "you exchange the two roots of a sphere: the nearer one is the hit, or seen from inside the farther one"
-            .when(!on_it && (far || unit && distance < 0.0)),
-        "your distance is that of the centre: return that of the first hit"
-            .when(is_sphere && (distance / lit.toward_center().length() - 1.0).abs() < 1e-5),
-        "your direction misses the sphere".when(
-            unit && is_sphere && lit.outside(direction) > slack && lit.off(-direction, distance) > 2e-4,
-        ),
-        "your point is in the plane of the emitter, but outside of the emitter"
-            .when(unit && off <= 2e-4 && lit.outside(direction) > slack),
-        "your direction leads from the light to the point"
-            .when(!on_it && lit.off(-direction, distance) <= 2e-4 && unit),
-        "you divide the radiance by the squared distance: that is already in the density"
-            .when(on_it && !same_radiance && over_distance),
-        (on_it && !same_radiance && by_pdf, "you divide the radiance by the density: the caller does that"),
-        "you multiply the radiance by the cosine at the light: it is in the density"
-            .when(on_it && !same_radiance && by_cosine),
-        (on_it && !same_radiance, "you return another radiance than that of the emitter"),
-        (on_it && same_radiance && !density, "your density is not above 0 and finite"),
+    Err(broken.explained_by(named![
+        yours.direction.is_nan() || yours.distance.is_nan() || yours.pdf.is_nan() => "you return NaN",
+        !unit && !yours.direction.is_nan() => "your direction does not have unit length",
+        !on_it && far => "your point is on the far side of the sphere: the near one hides it",
+        !on_it && squared => "your distance is squared",
+        unit && distance < 0.0 => "your distance is negative: seen from inside, the farther root is the hit",
+        !on_it && (far || unit && distance < 0.0) =>
+            "you exchange the two roots of a sphere: the nearer one is the hit, or seen from inside the farther one",
+        is_sphere && (distance / lit.toward_center().length() - 1.0).abs() < 1e-5 =>
+            "your distance is that of the centre: return that of the first hit",
+        unit && is_sphere && lit.outside(direction) > slack && lit.off(-direction, distance) > 2e-4 =>
+            "your direction misses the sphere",
+        unit && off <= 2e-4 && lit.outside(direction) > slack =>
+            "your point is in the plane of the emitter, but outside of the emitter",
+        !on_it && lit.off(-direction, distance) <= 2e-4 && unit => "your direction leads from the light to the point",
+        on_it && !same_radiance && over_distance =>
+            "you divide the radiance by the squared distance: that is already in the density",
+        on_it && !same_radiance && by_pdf => "you divide the radiance by the density: the caller does that",
+        on_it && !same_radiance && by_cosine =>
+            "you multiply the radiance by the cosine at the light: it is in the density",
+        on_it && !same_radiance => "you return another radiance than that of the emitter",
+        on_it && same_radiance && !density => "your density is not above 0 and finite",
     ]))
 }
 
@@ -183,18 +181,16 @@ pub(super) fn dark_sides_send_no_light(trial: &Trial<'_>) -> CheckResult {
                 let expected = if *is_dark { "None" } else { "a sample" };
                 let broken =
                     Broken::with_texts(query.call("sample_light"), format!("{yours:?}"), expected, source);
-                return Err(broken.explained_by([
-                    (*is_dark && black, "an emitter of radiance 0 sends no light: return None"),
-                    "you sample an emitter for a point in its plane, from which it has no area: return None"
-                        .when(*is_dark && !black && !inside && !lit.is_behind()),
-                    "from inside, a sphere that is not two-sided sends no light"
-                        .when(*is_dark && !black && inside),
-                    "you sample the back of an emitter that is not two-sided"
-                        .when(*is_dark && !black && !inside && !lit.emitter.two_sided),
-                    "front and back are exchanged: the front is the side of first edge × second edge".when(
-                        !black && !inside && !lit.emitter.two_sided && yours.is_some() == lit.is_behind(),
-                    ),
-                    (!*is_dark, "you leave out emitters that send light"),
+                return Err(broken.explained_by(named![
+                    *is_dark && black => "an emitter of radiance 0 sends no light: return None",
+                    *is_dark && !black && !inside && !lit.is_behind() =>
+                        "you sample an emitter for a point in its plane, from which it has no area: return None",
+                    *is_dark && !black && inside => "from inside, a sphere that is not two-sided sends no light",
+                    *is_dark && !black && !inside && !lit.emitter.two_sided =>
+                        "you sample the back of an emitter that is not two-sided",
+                    !black && !inside && !lit.emitter.two_sided && yours.is_some() == lit.is_behind() =>
+                        "front and back are exchanged: the front is the side of first edge × second edge",
+                    !*is_dark => "you leave out emitters that send light",
                 ]));
             }
             // The direction of a point in the plane of the emitter says nothing.

@@ -55,25 +55,19 @@ fn judge(triangle: &Triangle, yours: GramScalars) -> Judged {
     // UV² and UU·VV are rounded before they are subtracted.
     let cancels = near(yours.d, exact.d, 16.0 * U * (exact.uv * exact.uv + exact.uu * exact.vv));
     let root = exact.d.abs().sqrt();
-    unless(products_are_right && d_is_right, broken).formulas([
-        (products(exact.uv, exact.uu, exact.vv), "u·u and v·v look swapped"),
-        "v is the edge from a to c: you take the one from b to c".when(products(
-            exact.uv - exact.uu,
-            exact.vv - 2.0 * exact.uv + exact.uu,
-            exact.uu,
-        )),
-        "u is the edge from a to b: you take the one from c to b".when(products(
-            exact.uv - exact.vv,
-            exact.vv,
-            exact.uu - 2.0 * exact.uv + exact.vv,
-        )),
-        (products(exact.uu, exact.vv, exact.uv), SWAPPED_WITH_UV),
-        (products(exact.vv, exact.uv, exact.uu), SWAPPED_WITH_UV),
-        "the sign of D is wrong: it is UV² - UU·VV = -|u × v|²"
-            .when(products_are_right && near(yours.d, -exact.d, exact.d_slack) && yours.d >= 0.0),
-        "D is -|u × v|², not squared in your answer"
-            .when(products_are_right && near(yours.d, -root, 16.0 * U * root + exact.d_slack.sqrt())),
-        (products_are_right && cancels, "UV² - UU·VV cancels for a thin triangle: compute D as -|u × v|²"),
+    unless(products_are_right && d_is_right, broken).formulas(named![
+        products(exact.uv, exact.uu, exact.vv) => "u·u and v·v look swapped",
+        products(exact.uv - exact.uu, exact.vv - 2.0 * exact.uv + exact.uu, exact.uu) =>
+            "v is the edge from a to c: you take the one from b to c",
+        products(exact.uv - exact.vv, exact.vv, exact.uu - 2.0 * exact.uv + exact.vv) =>
+            "u is the edge from a to b: you take the one from c to b",
+        products(exact.uu, exact.vv, exact.uv) => SWAPPED_WITH_UV,
+        products(exact.vv, exact.uv, exact.uu) => SWAPPED_WITH_UV,
+        products_are_right && near(yours.d, -exact.d, exact.d_slack) && yours.d >= 0.0 =>
+            "the sign of D is wrong: it is UV² - UU·VV = -|u × v|²",
+        products_are_right && near(yours.d, -root, 16.0 * U * root + exact.d_slack.sqrt()) =>
+            "D is -|u × v|², not squared in your answer",
+        products_are_right && cancels => "UV² - UU·VV cancels for a thin triangle: compute D as -|u × v|²",
     ])
 }
 

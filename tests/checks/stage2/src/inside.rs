@@ -249,17 +249,13 @@ pub(super) fn inside_by_areas_gives_barycentric_coordinates(trial: &Trial<'_>) -
         let input = call("inside_by_areas", &[&query.point, &query.triangle]);
         let expected = if *has_area { "coordinates of at least 0" } else { "None" };
         let is_outside = query.point == outside.point;
-        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
-            "you accept points just outside of an edge: test the signs, without a tolerance"
-                .when(is_outside && yours.is_some()),
-            "a triangle without area gives None: 0 / 0 is NaN, so compare so that NaN fails"
-                .when(!has_area && !is_outside && yours.is_some()),
-            "1 - β - γ may be slightly negative, although β + γ is rounded to 1: test it or clamp it to 0"
-                .when(
-                    *has_area
-                        && yours
-                            .is_some_and(|yours| yours.min_element() < 0.0 && yours.min_element() > -1e-6),
-                ),
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by(named![
+            is_outside && yours.is_some() =>
+                "you accept points just outside of an edge: test the signs, without a tolerance",
+            !has_area && !is_outside && yours.is_some() =>
+                "a triangle without area gives None: 0 / 0 is NaN, so compare so that NaN fails",
+            *has_area && yours.is_some_and(|yours| yours.min_element() < 0.0 && yours.min_element() > -1e-6) =>
+                "1 - β - γ may be slightly negative, although β + γ is rounded to 1: test it or clamp it to 0",
         ]))
     });
     all_hold(judged.collect())

@@ -159,30 +159,27 @@ fn refractions(query: &RefractQuery, yours: &Option<Vec3>) -> Vec<(bool, &'stati
     let gives = |v: Option<DVec3>| gives_within(v, 1e-4);
     // Near a right angle the arc sine enlarges a rounding error of 1e-7 to 4e-4. Near the normal each law gives the same.
     let by_angle = if query.direction.reject_from(query.normal).length() < 0.01 { 2e-6 } else { 5e-3 };
-    vec![
-        (gives(swapped), "you exchange n1 and n2: sin θ2 = n1 / n2 · sin θ1"),
-        (gives(Some(query.direction.as_dvec3())), "you return the direction unchanged"),
-        (gives(expected.map(|v| -v)), "your refracted ray is negated"),
-        "you negate the part along the surface: keep its sign"
-            .when(gives(turned(query, |sine, ratio| -ratio * sine))),
-        ANGLE.when(gives_within(
-            turned(query, |sine, ratio| match ratio * sine.min(1.0).asin() {
-                angle if angle > std::f64::consts::FRAC_PI_2 => f64::INFINITY,
-                angle => angle.sin(),
-            }),
-            by_angle,
-        )),
-        (gives_within(turned(query, |sine, ratio| (ratio * sine.min(1.0).asin()).sin()), by_angle), ANGLE),
-        (
-            gives(turned(query, |sine, ratio| {
-                // The sine after normalizing a direction with the cosine √(1 - n1 / n2 sin² θ1).
-                let (along, across) = (ratio * sine, (1.0 - ratio * sine * sine).sqrt());
-                along / along.hypot(across)
-            })),
-            RATIO_NOT_SQUARED,
-        ),
-        (gives(turned(query, |sine, ratio| ratio.sqrt() * sine)), RATIO_NOT_SQUARED),
+    // The direction after a cosine that does not belong to the sine, normalized.
+    let across = |cosine: &dyn Fn(f64, f64) -> f64| {
+        gives(turned(query, |sine, ratio| ratio * sine / (ratio * sine).hypot(cosine(sine, ratio))))
+    };
+    let bounded = |sine: f64, ratio: f64| match ratio * sine.min(1.0).asin() {
+        angle if angle > std::f64::consts::FRAC_PI_2 => f64::INFINITY,
+        angle => angle.sin(),
+    };
+    named![
+        gives(swapped) => "you exchange n1 and n2: sin θ2 = n1 / n2 · sin θ1",
+        gives(Some(query.direction.as_dvec3())) => "you return the direction unchanged",
+        gives(expected.map(|v| -v)) => "your refracted ray is negated",
+        gives(turned(query, |sine, ratio| -ratio * sine)) => "you negate the part along the surface: keep its sign",
+        gives_within(turned(query, bounded), by_angle) => ANGLE,
+        gives_within(turned(query, |sine, ratio| (ratio * sine.min(1.0).asin()).sin()), by_angle) => ANGLE,
+        across(&|sine, ratio| (1.0 - ratio * sine * sine).sqrt()) => RATIO_NOT_SQUARED,
+        gives(turned(query, |sine, ratio| ratio.sqrt() * sine)) => RATIO_NOT_SQUARED,
+        across(&|sine, ratio| (1.0 - ratio * sine).sqrt()) =>
+            "sin θ2 stands where its square belongs: cos θ2 = √(1 - sin² θ2)",
     ]
+    .to_vec()
 }
 
 /// Indices of refraction from 1/2 to 3, and pairs that are equal or almost equal.
@@ -251,10 +248,9 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> CheckRes
         }
         let broken = Broken::new(query.call("refract"), yours, Some(query.direction), "unchanged");
         let along = query.direction == -query.normal;
-        let broken = broken.explained_by([
-            (along, "a ray along the normal keeps its direction, and sin θ1 is 0 there"),
-            "with equal indices every ray goes straight on"
-                .when(query.n1 == query.n2 && !along && yours.is_none()),
+        let broken = broken.explained_by(named![
+            along => "a ray along the normal keeps its direction, and sin θ1 is 0 there",
+            query.n1 == query.n2 && !along && yours.is_none() => "with equal indices every ray goes straight on",
         ]);
         Err(broken.explained_by(mistakes_near_normal(query, yours)))
     })

@@ -118,6 +118,9 @@ fn schlick_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
         total(formula((n1 - n2) / (n1 + n2), right, 5)) => "you do not square R0",
         total(formula(((n1.max(n2) - 1.0) / (n1.max(n2) + 1.0)).powi(2), right, 5)) =>
             "you take the other side for air: R0 is ((n1 - n2) / (n1 + n2))²",
+        total(formula(((1.0 - n2) / (1.0 + n2)).powi(2), right, 5)) =>
+            "you take the side of the ray for air: R0 is ((n1 - n2) / (n1 + n2))²",
+        total(r0 + (1.0 - r0) * right.powi(5)) => "you take cos⁵ θ: it is (1 - cos θ)⁵",
         total(r0) => "you return R0 for every angle: the reflectance rises to 1 at grazing angles",
         r0 => "you return R0 for every angle: the reflectance rises to 1 at grazing angles, and is 1 beyond the critical one",
         total((1.0 - right).powi(5)) => "you leave out R0",

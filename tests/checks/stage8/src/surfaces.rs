@@ -91,23 +91,19 @@ fn judge_points(query: &PatchQuery, yours: Vec3) -> Judged {
     unless(near(right), || {
         Broken::new(describe(query), yours, right.as_vec3(), "Bernstein polynomials in double")
     })
-    .formulas([
-        (near(at([v, u], bernstein)), "you exchange u and v: u runs along the rows, v along the columns"),
-        (near(at([1.0 - u, 1.0 - v], bernstein)), "you exchange t and 1 - t"),
-        (near(at([1.0 - u, v], bernstein)), "you exchange u and 1 - u"),
-        (near(at([u, 1.0 - v], bernstein)), "you exchange v and 1 - v"),
-        "you use one parameter twice, u: u runs along the rows, v along the columns"
-            .when(near(at([u, u], bernstein))),
-        "you use one parameter twice, v: u runs along the rows, v along the columns"
-            .when(near(at([v, v], bernstein))),
-        "you use only the corners: the control points between them have weights, too"
-            .when(near(at([u, v], |t| [1.0 - t, 0.0, 0.0, t]))),
-        "you interpolate twice along a curve: four points need three rounds, 4, 3, 2, 1"
-            .when(near(at([u, v], once))),
-        "your weights do not add up to 1: their factors are 1, 3, 3 and 1"
-            .when(near(at([u, v], without_factors))),
-        "your surface passes through all control points: a Bézier patch passes only through its corners in general"
-            .when(near(at([u, v], interpolating))),
+    .formulas(named![
+        near(at([v, u], bernstein)) => "you exchange u and v: u runs along the rows, v along the columns",
+        near(at([1.0 - u, 1.0 - v], bernstein)) => "you exchange t and 1 - t",
+        near(at([1.0 - u, v], bernstein)) => "you exchange u and 1 - u",
+        near(at([u, 1.0 - v], bernstein)) => "you exchange v and 1 - v",
+        near(at([u, u], bernstein)) => "you use one parameter twice, u: u runs along the rows, v along the columns",
+        near(at([v, v], bernstein)) => "you use one parameter twice, v: u runs along the rows, v along the columns",
+        near(at([u, v], |t| [1.0 - t, 0.0, 0.0, t])) =>
+            "you use only the corners: the control points between them have weights, too",
+        near(at([u, v], once)) => "you interpolate twice along a curve: four points need three rounds, 4, 3, 2, 1",
+        near(at([u, v], without_factors)) => "your weights do not add up to 1: their factors are 1, 3, 3 and 1",
+        near(at([u, v], interpolating)) =>
+            "your surface passes through all control points: a Bézier patch passes only through its corners in general",
     ])
 }
 
