@@ -186,17 +186,15 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
     let chord = Quadratic { a: 1.0, discriminant: squared - away(b), ..*quadratic };
     let q = |root: f64| b + root.copysign(b);
     let by_product = |root: f64| [c / q(root), q(root)];
-    // One root by the product of both, with a wrong c.
-    let by_root_and = |c: f64| gives(yours, quadratic, |root| [c / q(root), q(root) / a], first);
-    // Both roots by the formula, or one of them by the product of both, from a wrong discriminant.
-    let by = |discriminant: f64, c: f64| {
-        let wrong = Quadratic { discriminant, ..*quadratic };
-        of(&wrong, 1.0) || gives(yours, &wrong, |root| [c / q(root), q(root) / a], first)
+    // One root by the product of both. Where the discriminant is wrong, c may be right, and the other way round.
+    let with = |discriminant: f64| Quadratic { discriminant, ..*quadratic };
+    let by_power = |discriminant: f64, c: f64| {
+        gives(yours, &with(discriminant), |root| [c / q(root), q(root) / a], first)
     };
     let right = quadratic.discriminant;
     let added = f.length_squared() + squared;
     // One root with half of the chord in world units, and the other one by the product of both.
-    let by_power = |root: f64| {
+    let by_chord = |root: f64| {
         let away = b / a + (root / a.sqrt()).copysign(b);
         [c / a / away, away]
     };
@@ -207,14 +205,28 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
     };
     // One root by the product of both, in which the power of the point is divided by |d| alone.
     let by_length = |root: f64| [a.sqrt() * c / q(root), q(root) / a];
+    // A wrong discriminant, with both roots by the formula or one of them by the product of both.
+    let discriminants = named![
+        right / a => CHORD,
+        a * (squared - away(b)) => A_IS_ONE,
+        a * (radius - away(b / a)) => "r stands where r² belongs",
+        a * (squared - away(b / a).sqrt()) => UNSQUARED,
+        b * b - a * added => ADDED,
+        a * (squared + away(b / a)) => "by Pythagoras, the square of half the chord is r² minus the squared distance, not plus",
+        4.0 * right => "the square root is doubled: with b = -f·d the discriminant is b² - a c, without a factor 4",
+        a * (squared - away(-b / a)) => "the vector from the centre to the nearest point has a wrong sign: it is o + t_ca d - center",
+        a * (squared - away(b / a / a.sqrt())) => "t_ca counts lengths of direction: multiply it by direction, not by a unit vector",
+    ];
+    let of_discriminants = discriminants
+        .into_iter()
+        .flat_map(|(wrong, text)| [(of(&with(wrong), 1.0), text), (by_power(wrong, c), text)]);
     named![
         of(quadratic, a.sqrt()) =>
             "your t counts world units; it must count lengths of direction (which is no unit vector here)",
         of(quadratic, a) => "direction is not a unit vector here: divide by a = d·d",
         gives(yours, quadratic, by_product, first) => "one of the roots is not divided by a = d·d",
         gives(yours, quadratic, |root| [(b - root * a.sqrt()) / a, (b + root * a.sqrt()) / a], first) => CHORD,
-        gives(yours, quadratic, by_power, first) => CHORD,
-        by(right / a, c) => CHORD,
+        gives(yours, quadratic, by_chord, first) => CHORD,
         gives(yours, quadratic, by_length, first) =>
             "|o - center|² - r² is divided by |d|: the product of both roots has d·d",
         gives(yours, quadratic, |root| [(b * a.sqrt() - root) / a, (b * a.sqrt() + root) / a], first) => CHORD,
@@ -225,24 +237,16 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
         of(&Quadratic::with_radius(query, 0.0), 1.0) => "the radius is left out: c = f·f - r²",
         of(&a_is_one, 1.0) => A_IS_ONE,
         gives(yours, &chord, by_product, first) => A_IS_ONE,
-        by(a * (squared - away(b)), c) => A_IS_ONE,
         gives(yours, &chord, by_length_of_one, first) => A_IS_ONE,
         gives(yours, &a_is_one, |root| [b - root, b + root], |roots| first(roots).filter(|_| b >= 0.0)) =>
             "t_ca < 0 is not a miss: a ray that starts inside still hits the far side\nand: direction is not a unit vector here: you take a = d·d for 1",
         of(&Quadratic::with_radius(query, radius.sqrt()), 1.0) => "r stands where r² belongs",
-        by_root_and(f.length_squared() - radius) => "r stands where r² belongs",
-        by(a * (radius - away(b / a)), c) => "r stands where r² belongs",
-        by_root_and(a * c) => "|o - center|² - r² is not divided by d·d",
-        by(a * (squared - away(b / a).sqrt()), c) => UNSQUARED,
-        by_root_and(added) => ADDED,
-        by(b * b - a * added, c) => ADDED,
-        by(b * b - a * added, added) => ADDED,
-        by(a * (squared + away(b / a)), c) => "half of the chord is a leg: r² minus the square of the distance, not plus",
-        by(4.0 * right, c) => "the root is doubled: 4 a c belongs to b = -2 f·d, and a c to half of it",
-        by(a * (squared - away(-b / a)), c) =>
-            "the vector from the centre to the nearest point has a wrong sign: it is o + t_ca d - center",
-        by(a * (squared - away(b / a / a.sqrt())), c) =>
-            "t_ca counts lengths of direction: multiply it by direction, not by a unit vector",
+        by_power(right, f.length_squared() - radius) => "r stands where r² belongs",
+        by_power(right, a * c) => "|o - center|² - r² is not divided by d·d",
+        by_power(right, added) => ADDED,
+        by_power(b * b - a * added, added) => ADDED,
     ]
-    .to_vec()
+    .into_iter()
+    .chain(of_discriminants)
+    .collect()
 }

@@ -172,17 +172,16 @@ pub(super) fn emission_counts_by_its_weight(trial: &Trial<'_>) -> CheckResult {
             let is_certain = query.pdf == f32::INFINITY;
             let unless_certain = |weight: f64| if is_certain { whole } else { weight * whole };
             let weight = f64::from(own);
-            unless(right, broken).formulas([
-                (near(yours, whole), "all emission counts in full, so light that is sampled counts twice"),
-                (yours == Vec3::ZERO, "no emission counts, so mirrors show no lights"),
-                "own and other are exchanged: own is the density of the ray"
-                    .when(near(yours, f64::from(swapped) * whole)),
-                "light that a diffuse ray finds counts by its weight, and in full if it is not sampled"
-                    .when(near(yours, unless_certain(0.0))),
-                "light of camera rays and mirrors counts in full, because no sample finds it"
-                    .when(near(yours, if is_certain { DVec3::ZERO } else { weight * whole })),
-                "light of an emitter that is not sampled counts in full"
-                    .when(near(yours, if query.light_pdf == 0.0 { DVec3::ZERO } else { weight * whole })),
+            unless(right, broken).formulas(named![
+                near(yours, whole) => "all emission counts in full, so light that is sampled counts twice",
+                yours == Vec3::ZERO => "no emission counts, so mirrors show no lights",
+                near(yours, f64::from(swapped) * whole) => "own and other are exchanged: own is the density of the ray",
+                near(yours, unless_certain(0.0)) =>
+                    "light that a diffuse ray finds counts by its weight, and in full if it is not sampled",
+                near(yours, if is_certain { DVec3::ZERO } else { weight * whole }) =>
+                    "light of camera rays and mirrors counts in full, because no sample finds it",
+                near(yours, if query.light_pdf == 0.0 { DVec3::ZERO } else { weight * whole }) =>
+                    "light of an emitter that is not sampled counts in full",
             ])
         })
     })

@@ -32,12 +32,11 @@ pub(super) fn cosine_directions_stay_above_the_surface(trial: &Trial<'_>) -> Che
                 return Ok(());
             }
             let (input, expected) = (query.call("cosine_direction"), "a unit direction above the surface");
-            Err(Broken::new(input, yours, expected, "the definition").explained_by([
-                (constant, "you return the normal for every u"),
-                "you return NaN: your frame does not exist for this normal, or you normalize 0"
-                    .when(yours.is_nan()),
-                (!unit && !yours.is_nan(), "your direction does not have unit length"),
-                (unit && above < 0.0, "your direction goes below the surface"),
+            Err(Broken::new(input, yours, expected, "the definition").explained_by(named![
+                constant => "you return the normal for every u",
+                yours.is_nan() => "you return NaN: your frame does not exist for this normal, or you normalize 0",
+                !unit && !yours.is_nan() => "your direction does not have unit length",
+                unit && above < 0.0 => "your direction goes below the surface",
             ]))
         })
     })

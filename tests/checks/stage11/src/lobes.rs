@@ -162,12 +162,11 @@ pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> 
             Broken::with_texts(query.call("sample_bsdf"), yours, expected, "the definition")
                 .explained_by([(q < least && near(1.0 / q), text)])
         };
-        unless(reflectance.max_element() == 0.0 || judge_weight(query, &sample), broken).formulas([
-            (near(share), "you multiply by the probability of the choice: divide by it"),
-            (near(1.0 / largest), "you divide by the reflectance, not by the probability of the choice"),
-            "the weight of a diffuse direction has no π: it cancels against the density"
-                .when(near(1.0 / share / PI)),
-            (sample.weight.is_nan(), "you return NaN"),
+        unless(reflectance.max_element() == 0.0 || judge_weight(query, &sample), broken).formulas(named![
+            near(share) => "you multiply by the probability of the choice: divide by it",
+            near(1.0 / largest) => "you divide by the reflectance, not by the probability of the choice",
+            near(1.0 / share / PI) => "the weight of a diffuse direction has no π: it cancels against the density",
+            sample.weight.is_nan() => "you return NaN",
         ])
     })
 }
@@ -366,13 +365,12 @@ pub(super) fn bsdf_pdf_of_other_directions_is_zero(trial: &Trial<'_>) -> CheckRe
         }
         let input = query.call("bsdf_pdf");
         let expected = if reflects { "a density above 0" } else { "0.0" };
-        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
-            (yours.is_nan(), "you return NaN: a black surface has no probabilities"),
-            (!above && yours < 0.0, "your density is negative below the surface"),
-            (!above && yours > 0.0, "a direction below the surface is never sampled: its density is 0"),
-            "a surface without diffuse reflection samples no diffuse direction"
-                .when(above && !reflects && yours > 0.0),
-            (reflects && yours == 0.0, "this direction is sampled: its density is above 0"),
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by(named![
+            yours.is_nan() => "you return NaN: a black surface has no probabilities",
+            !above && yours < 0.0 => "your density is negative below the surface",
+            !above && yours > 0.0 => "a direction below the surface is never sampled: its density is 0",
+            above && !reflects && yours > 0.0 => "a surface without diffuse reflection samples no diffuse direction",
+            reflects && yours == 0.0 => "this direction is sampled: its density is above 0",
         ]))
     })
 }

@@ -1,6 +1,5 @@
 //! Rooms for paths, in double precision: the judge holds the geometry, and `step` gets one surface at a time.
 
-use super::steps::CERTAIN;
 use checks::prelude::*;
 use checks::statistics::pairs;
 use raykata::emitter::{AreaEmitter, EmitterShape};
@@ -233,7 +232,7 @@ pub(super) fn follow(
             direction: direction.as_vec3(),
             weight: Vec3::ONE,
             bounces: 0,
-            pdf: CERTAIN,
+            pdf: f32::INFINITY,
         };
         Path { index, origin: *origin, direction: *direction, state }
     };

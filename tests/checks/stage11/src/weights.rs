@@ -189,18 +189,16 @@ pub(super) fn mis_weights_keep_the_variance_low(trial: &Trial<'_>) -> CheckResul
             let by = |weight: &dyn Fn(&Pair) -> f64| {
                 all(&|pair, weights| (f64::from(weights.0) - weight(pair)).abs() < 1e-3)
             };
-            return Err(broken.explained_by([
-                (weights.iter().any(|(p, q)| p.is_nan() || q.is_nan()), "you return NaN"),
-                "your weights are those of the roots of the densities, which differ too little"
-                    .when(by(&|pair| share(0.5, pair)) || by(&|pair| share(0.25, pair))),
-                "your weights are the mean of 1/2 and a heuristic, so a rare sample counts too much".when(
-                    by(&|pair| 0.25 + 0.5 * share(1.0, pair)) || by(&|pair| 0.25 + 0.5 * share(2.0, pair)),
-                ),
-                (all(&|_, weights| *weights == (0.5, 0.5)), "your weights are 1/2 for all densities"),
-                "the smaller density gets the larger weight: own and other are exchanged"
-                    .when(all(&|pair, weights| (pair.0 > pair.1) == (weights.0 < weights.1))),
-                "each technique counts in full, so light is counted twice"
-                    .when(all(&|_, weights| *weights == (1.0, 1.0))),
+            return Err(broken.explained_by(named![
+                weights.iter().any(|(p, q)| p.is_nan() || q.is_nan()) => "you return NaN",
+                by(&|pair| share(0.5, pair)) || by(&|pair| share(0.25, pair)) =>
+                    "your weights are those of the roots of the densities, which differ too little",
+                by(&|pair| 0.25 + 0.5 * share(1.0, pair)) || by(&|pair| 0.25 + 0.5 * share(2.0, pair)) =>
+                    "your weights are the mean of 1/2 and a heuristic, so a rare sample counts too much",
+                all(&|_, weights| *weights == (0.5, 0.5)) => "your weights are 1/2 for all densities",
+                all(&|pair, weights| (pair.0 > pair.1) == (weights.0 < weights.1)) =>
+                    "the smaller density gets the larger weight: own and other are exchanged",
+                all(&|_, weights| *weights == (1.0, 1.0)) => "each technique counts in full, so light is counted twice",
             ]));
         }
     }

@@ -18,7 +18,7 @@ fn handed_out() -> &'static Path {
     &FOLDER
 }
 
-/// A kit that is handed out again, alone in this folder, for a test that writes into it while others list files.
+/// A kit that is handed out again, alone in this folder.
 fn handed_out_in(around: &str) -> PathBuf {
     let around = Path::new(env!("CARGO_TARGET_TMPDIR")).join(around);
     // The first run has nothing to remove. What cannot be removed makes `handout` fail, because it does not overwrite.
@@ -221,6 +221,7 @@ fn a_student_can_begin() {
     if leaves_out_what_takes_long() {
         return;
     }
+    // Not the one that other tests list, because `render` writes into it.
     let folder = &handed_out_in("begun");
     let target = root().join("target/handout");
     let cargo = |arguments: &[&str]| cargo_in(folder, &target, arguments);
