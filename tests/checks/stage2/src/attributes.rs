@@ -33,10 +33,11 @@ pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> CheckResult
             other_orders
                 .map(|order| (yours == sum(order), "multiply the corners a, b, c by α, β, γ in this order")),
         );
-        mistakes.push((
-            yours == (a + b + c) / 3.0,
-            "you return the average of the corners without their coordinates",
-        ));
+        mistakes.extend(named![
+            yours == (a + b + c) / 3.0 => "you return the average of the corners without their coordinates",
+            yours == expected.clamp(Vec3::ZERO, Vec3::ONE) =>
+                "you limit the value to 0..1: not every value is a colour, so return the weighted sum as it is",
+        ]);
         unless(yours == expected, || Broken::new(input(), yours, expected, "closed form")).formulas(mistakes)
     })
 }
@@ -90,6 +91,8 @@ fn judge_face_normal(triangle: &Triangle, yours: Option<Vec3>) -> Judged {
                         || near(yours.unwrap_or_default())
                         || yours.is_some_and(|n| n.is_nan() || n == Vec3::ZERO)),
             ),
+            "your normal has the right direction, but not length 1: normalize it"
+                .when(yours.is_some_and(|yours| near(yours) && !backwards && !unit(yours))),
         ])
     };
     // Edges that are divided by a coordinate of their own, which may be negative or 0.

@@ -6,7 +6,7 @@ use checks::tree::move_apart;
 type Hit = Option<(u32, f32)>;
 
 /// The answers of wrong searches to a table of primitives.
-fn mistakes(query: &SearchQuery, yours: Hit, tests: u64) -> [(bool, &'static str); 8] {
+fn mistakes(query: &SearchQuery, yours: Hit, tests: u64) -> [(bool, &'static str); 9] {
     let all: Vec<(u32, f32)> = (0..).zip(query.table.primitives.iter().copied()).collect();
     let hits = |entries: &[(u32, f32)]| -> Vec<(u32, f32)> {
         entries.iter().copied().filter(|(_, t)| query.ray.contains(*t)).collect()
@@ -20,6 +20,7 @@ fn mistakes(query: &SearchQuery, yours: Hit, tests: u64) -> [(bool, &'static str
     let is = |hit: Hit| yours == hit;
     let is_tie = is(later) && !is(best(&counting));
     let (without_last, without_first) = (&all[..all.len().saturating_sub(1)], all.get(1..).unwrap_or(&[]));
+    let positive: Vec<(u32, f32)> = all.iter().copied().filter(|(_, t)| *t > 0.0 && t.is_finite()).collect();
     let stopped = tests < all.len() as u64;
     [
         (is_tie, "of two hits at the same t the primitive with the smaller number wins"),
@@ -34,6 +35,7 @@ fn mistakes(query: &SearchQuery, yours: Hit, tests: u64) -> [(bool, &'static str
         "the closest hit is not kept: each hit replaces the one before (do you assign it to another variable?)"
             .when(is(counting.last().copied())),
         (is(farthest), "you keep the farther one of two hits"),
+        (is(best(&positive)), "you search in the range 0..∞ and not in that of the ray: keep t_min and t_max"),
         (is(best(&counting).map(|(_, t)| (0, t))), "you return primitive 0 in any case"),
     ]
 }
@@ -70,7 +72,7 @@ fn query(primitives: Vec<f32>) -> SearchQuery {
 pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> CheckResult {
     let t = prop_oneof![Just(f32::INFINITY), (0..=20i32).prop_map(|t| t as f32 / 2.0 - 1.0)];
     let inputs =
-        (prop::collection::vec(t, 0..12), 0..=4i32, 0..=3i32).prop_map(|(mut primitives, t_min, long)| {
+        (prop::collection::vec(t, 0..12), -2..=4i32, 0..=3i32).prop_map(|(mut primitives, t_min, long)| {
             move_apart(&mut primitives, 0.25);
             let t_max = if long == 0 { f32::INFINITY } else { 8.0 };
             let query = query(primitives);

@@ -66,27 +66,37 @@ const ONE_ORDER: &str = "for a point inside, all three signs are equal, but they
 const PRODUCTS: &str =
     "a product of two sides is also 0 if one of them is 0: compare the signs of all three sides";
 
+const PRODUCT_OF_ALL: &str =
+    "in a product of all three sides two negative ones cancel: compare the signs of all three sides";
+
 /// Known mistakes in inside tests I and II, each with whether it gives this answer.
 fn mistakes(case @ (query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'static str)> {
     // The side opposite of corner a is b c, so the signs of α, β and γ are those of the sides bc, ca and ab.
     let &[bc, ca, ab] = weights;
     let Triangle { a, b, c } = query.triangle;
     let ray = query.ray;
-    let faces = (b - a).as_dvec3().cross((c - a).as_dvec3()).dot(ray.direction.as_dvec3());
+    let normal = (b - a).as_dvec3().cross((c - a).as_dvec3());
+    let faces = normal.dot(ray.direction.as_dvec3());
     // Rounding decides the sign of a coordinate near 0, unless all methods compute it without rounding.
     let slack = if *exact { 0.0 } else { 1e-3 };
     let least = |sides: &[f64]| sides.iter().copied().fold(f64::INFINITY, f64::min);
     let all = |sides: &[f64], slack: f64| {
         least(sides) >= -slack || least(&sides.iter().map(|side| -side).collect::<Vec<_>>()) >= -slack
     };
-    let gives = |sides: &[f64]| if yours { all(sides, slack) } else { !all(sides, -slack) };
+    // Seen edge-on, all sides are 0.
+    let is_edge_on = *exact && faces == 0.0;
+    let gives = |sides: &[f64]| if yours { is_edge_on || all(sides, slack) } else { !all(sides, -slack) };
+    let is_on_a_side = weights.iter().any(|side| side.abs() < slack);
+    let product = |is: bool| is_on_a_side || yours == is;
     let strictly = [bc, ca, ab].iter().all(|&s| s > 0.0);
     let inside = all(&[bc, ca, ab], 0.0);
-    // SignedDistance(p, P - P0) for a plane through P0 = o: o is subtracted twice.
+    // The planes through o with another vector than P - o.
     let [o, p] = [ray.origin, query.point].map(Vec3::as_dvec3);
-    let twice = |from: Vec3, to: Vec3| {
-        let normal = (from.as_dvec3() - o).cross(to.as_dvec3() - o);
-        normal.dot(p - o) - normal.dot(o)
+    let of_planes = |vector: DVec3| {
+        let side = |from: Vec3, to: Vec3| (from.as_dvec3() - o).cross(to.as_dvec3() - o).dot(vector);
+        let sides = [side(a, b), side(b, c), side(c, a)];
+        let size = sides.iter().fold(0.0, |size: f64, side| size.max(side.abs()));
+        sides.iter().any(|side| side.abs() < 1e-5 * size) || yours == all(&sides, 0.0)
     };
     // Test I with normals of unit length, in single precision: NaN makes every comparison false.
     let normalized = [(a, b), (b, c), (c, a)].map(|(from, to)| {
@@ -97,7 +107,7 @@ fn mistakes(case @ (query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'
     let is_line = |from: Vec3, to: Vec3| (from.as_dvec3() - o).cross(to.as_dvec3() - o) == DVec3::ZERO;
     let on_the_line = is_line(a, b) || is_line(b, c) || is_line(c, a);
     // Where rounding decides, each test may give each answer.
-    let Some(right) = clearly_inside(case) else { return vec![(true, ""); 16] };
+    let Some(right) = clearly_inside(case) else { return vec![(true, ""); 20] };
     vec![
         "the ray's origin is on the line of a side: accept its 0, and do not normalize (0/0)"
             .when(yours == right || (on_the_line && !yours && inside)),
@@ -111,9 +121,12 @@ fn mistakes(case @ (query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'
         (yours == strictly, "points on an edge are inside: compare with ≥ and ≤, not with > and <"),
         (yours == (inside && faces <= 0.0), ONE_ORDER),
         (yours == (inside && faces >= 0.0), ONE_ORDER),
-        (yours == (ab * bc >= 0.0 && bc * ca >= 0.0), PRODUCTS),
-        (yours == (bc * ca >= 0.0 && ca * ab >= 0.0), PRODUCTS),
-        (yours == (ca * ab >= 0.0 && ab * bc >= 0.0), PRODUCTS),
+        (product(ab * bc >= 0.0 && bc * ca >= 0.0), PRODUCTS),
+        (product(bc * ca >= 0.0 && ca * ab >= 0.0), PRODUCTS),
+        (product(ca * ab >= 0.0 && ab * bc >= 0.0), PRODUCTS),
+        (product(faces * ab * bc * ca >= 0.0), PRODUCT_OF_ALL),
+        (product(faces * ab * bc * ca <= 0.0), PRODUCT_OF_ALL),
+        (normal.z == 0.0 || yours == inside, "you take z of the cross product, and so look along z: the ray looks along d, so take the dot product with d"),
         (gives(&[bc, ca]), "a side left out, a b: test all three sides"),
         (gives(&[ca, ab]), "a side left out, b c: test all three sides"),
         (gives(&[bc, ab]), "a side left out, c a: test all three sides"),
@@ -121,7 +134,9 @@ fn mistakes(case @ (query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'
         (gives(&[bc, -ca, ab]), "the side c a is turned around: go from a to b, from b to c and from c to a"),
         (gives(&[bc, ca, -ab]), "the side a b is turned around: go from a to b, from b to c and from c to a"),
         "is P0 subtracted twice? the plane goes through P0 = o, so the distance is n·(P - o)"
-            .when(yours == all(&[twice(a, b), twice(b, c), twice(c, a)], 0.0)),
+            // SignedDistance(p, P - P0) for a plane through P0 = o.
+            .when(of_planes(p - 2.0 * o)),
+        (of_planes(p), "the planes go through o, and you do not subtract it from P: the distance is n·(P - o)"),
     ]
 }
 
@@ -159,7 +174,7 @@ const OTHER_CORNERS: &str =
     "your values belong to other corners: α to a, β to b, γ to c (the slide has γ, β and α in this order)";
 
 /// Known mistakes in inside test III, each with whether it gives this answer.
-fn area_mistakes(case @ (_, weights, _): &Case, yours: Option<Vec3>) -> Vec<(bool, &'static str)> {
+fn area_mistakes(case @ (query, weights, _): &Case, yours: Option<Vec3>) -> Vec<(bool, &'static str)> {
     let &[alpha, beta, gamma] = weights;
     let [a, b, c] = weights.map(f64::abs);
     let near = |expected: [f64; 3]| {
@@ -174,9 +189,19 @@ fn area_mistakes(case @ (_, weights, _): &Case, yours: Option<Vec3>) -> Vec<(boo
     };
     let least = alpha.min(beta).min(gamma);
     let sum = a + b + c;
+    let [of_a, of_b, of_c] = [query.triangle.a, query.triangle.b, query.triangle.c].map(Vec3::as_dvec3);
+    let normal = (of_b - of_a).cross(of_c - of_a).length();
     let mut all = vec![
         (is(weights.map(|weight| 0.5 * weight), least), WRONG_SUM),
         (is(weights.map(|weight| 2.0 * weight), least), WRONG_SUM),
+        (
+            is(weights.map(|weight| weight * normal), least),
+            "you divide by |n| once, which leaves areas: divide by n·n",
+        ),
+        (
+            is(*weights, 1.0 - alpha.max(beta).max(gamma)),
+            "a coordinate below 0 passes: test the three for ≥ 0, not for ≤ 1",
+        ),
         (is([a, b, c], 1.0 - a - b), UNSIGNED_AREAS),
         (is([a, b, c], 1.0 - a.max(b).max(c)), UNSIGNED_AREAS),
         (is([a, b, c], 1.0), UNSIGNED_AREAS),

@@ -103,6 +103,18 @@ pub(super) fn mistakes(
     let answer = Answer { query, yours, is_right, tolerance, t_tolerance: tolerance * line.t_per_tolerance };
     let mut all = of_tests(&answer, &line);
     all.extend(of_values(&answer, &line));
+    // One of the three products of a determinant has a wrong sign, for each vector by which it can be written out.
+    let (s, d) = (query.ray.origin - query.triangle.a, query.ray.direction);
+    let (s, minus_d, u, v) = (s.as_dvec3(), -d.as_dvec3(), line.u, line.v);
+    for (value, [p, q, r]) in [[s, u, v], [minus_d, s, v], [minus_d, u, s]].into_iter().enumerate() {
+        let products = [p * q.cross(r), q * r.cross(p), r * p.cross(q)].map(|products| products.to_array());
+        all.extend(products.as_flattened().iter().map(|product| {
+            let mut hit = [line.t, line.beta, line.gamma];
+            hit[value] -= 2.0 * product / line.determinant;
+            let least = hit[1].min(hit[2]).min(1.0 - hit[1] - hit[2]);
+            (answer.is_inside(hit, least), "one product in the numerator of t, β or γ has a wrong sign")
+        }));
+    }
     all
 }
 
@@ -201,6 +213,11 @@ fn of_values(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
         let text = "u·u and v·v are exchanged: β has v·v, and γ has u·u";
         (answer.is_inside([t, beta, gamma], beta.min(gamma).min(1.0 - beta - gamma)), text)
     };
+    // Gram's coordinates of the point at a t that counts world units.
+    let far = (t * length - t) * answer.query.ray.direction.as_dvec3();
+    let (far_u, far_v) = (point_u + far.dot(line.u), point_v + far.dot(line.v));
+    let [far_beta, far_gamma] =
+        [uv * far_v - vv * far_u, uv * far_u - uu * far_v].map(|x| x / (uv * uv - uu * vv));
     let is_in_sum = |hit: &TriangleHit| (0.0..=1.0).contains(&(hit.beta + hit.gamma));
     vec![
         "you use the determinant as the slide prints it; it must be a(fk - gj) + b(gi - ek) + c(ej - fi)"
@@ -226,6 +243,8 @@ fn of_values(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
         (answer.is_inside([-t, beta, gamma], least), "the sign of t is wrong"),
         "your t counts world units; it must count lengths of direction"
             .when(answer.is_inside([t * length, beta, gamma], least)),
+        "your t counts world units; it must count lengths of direction"
+            .when(answer.is_inside([t * length, far_beta, far_gamma], far_beta.min(far_gamma).min(1.0 - far_beta - far_gamma))),
         (answer.is_inside([t, beta.abs() / sum, gamma.abs() / sum], 1.0), UNSIGNED_AREAS),
         (answer.is_inside([t, beta.abs(), gamma.abs()], 1.0 - beta.abs() - gamma.abs()), UNSIGNED_AREAS),
         "your answer is off by the rounding of o + t d or of n·o, far from the origin: subtract o first"

@@ -21,9 +21,15 @@ struct Sums {
 }
 
 fn sums(mesh: &Mesh, vertex: usize) -> Sums {
+    sums_of(mesh, &mesh.triangles, vertex, 3)
+}
+
+/// The same for some triangles, which count for the vertices of their first corners only.
+fn sums_of(mesh: &Mesh, triangles: &[[u32; 3]], vertex: usize, corners_that_count: usize) -> Sums {
     let mut sums = Sums::default();
-    for corners in &mesh.triangles {
-        let Some(place) = corners.iter().position(|&corner| corner as usize == vertex) else { continue };
+    for corners in triangles {
+        let counting = &corners[..corners_that_count];
+        let Some(place) = counting.iter().position(|&corner| corner as usize == vertex) else { continue };
         let at = |turn: usize| mesh.positions[corners[(place + turn) % 3] as usize].as_dvec3();
         let (u, v) = (at(1) - at(0), at(2) - at(0));
         let cross = u.cross(v);
@@ -94,10 +100,23 @@ fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> Judged {
         "a short sum is taken for one that cancels: normalize it, unless it consists of roundings"
             .when(is_open || gives)
     });
+    // With some of the faces. Where they have no sum, any unit vector is possible.
+    let adds = |sums: Sums| {
+        is_open || if sums.plain.length() < 1e-6 { unit && !cancels } else { near(sums.plain.normalize()) }
+    };
+    let is_flat = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize].as_dvec3());
+        (b - a).cross(c - a) == DVec3::ZERO
+    };
+    let until_flat = mesh.triangles.iter().position(is_flat).unwrap_or(mesh.triangles.len());
     unless(right, broken).formulas(
         too_early.into_iter().chain([
             "you weight each face by its area: normalize the face normals before you add them"
                 .when(is_open || is(sums.by_area)),
+            "your sums end at the first triangle without area: it does not count, but those after it do"
+                .when(adds(sums_of(mesh, &mesh.triangles[..until_flat], vertex, 3))),
+            "you add a face to its first corner only: it counts at all three of its corners"
+                .when(adds(sums_of(mesh, &mesh.triangles, vertex, 1))),
             (is_open || is(sums.by_angle), "you weight each face by its angle: each triangle counts once"),
             (is_open || sums.faces.first().is_some_and(|&face| near(face)), ONE_FACE),
             (is_open || sums.faces.last().is_some_and(|&face| near(face)), ONE_FACE),

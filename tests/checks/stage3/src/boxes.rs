@@ -10,6 +10,9 @@ const ONE_AXIS: &str = "you go one radius from the centre along one axis only: g
 
 const CORNERS: &str = "min and max are corners of the triangle in your box: take the smallest and the largest coordinate on each axis";
 
+const MIXED: &str =
+    "one side of your box takes min of two corners and max with the third, or the other way round";
+
 pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
     let sized = (triangle(), nasty::any_scale()).prop_map(|(t, size)| Triangle {
         a: size * t.a,
@@ -35,6 +38,8 @@ pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
             (yours == absolute, "you take coordinates without their signs"),
             (yours == Aabb::new(a, b), CORNERS),
             (yours == Aabb::new(a, c), CORNERS),
+            (yours == Aabb::new(expected.min, a.max(b).min(c)), MIXED),
+            (yours == Aabb::new(a.min(b).max(c), expected.max), MIXED),
         ]);
         let one_side = "your box leaves out a corner on one side: min and max need all three";
         mistakes.extend(pairs.map(|pair| (yours == Aabb::new(expected.min, pair.max), one_side)));

@@ -1,5 +1,6 @@
 //! `build`: whole trees.
 
+use super::cuts::centroids_differ;
 use super::divided::boxes;
 use super::slabs::UNIT_BOX;
 use checks::golden::Table;
@@ -45,6 +46,55 @@ pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<Che
     queries.iter().map(judge).collect()
 }
 
+/// Whether each group of primitives is divided as the student's own `split_surface_area`, which other checks judge, says.
+fn judge_groups(trial: &Trial<'_>, query: &BuildQuery) -> CheckResult {
+    fn below(bvh: &Bvh, node: u32) -> Vec<u32> {
+        match bvh.nodes[node as usize].contents {
+            Contents::Leaf { first, count } => bvh.primitives(first, count).to_vec(),
+            Contents::Inner { left, right } => [below(bvh, left), below(bvh, right)].concat(),
+        }
+    }
+    let bvh = &built(trial, query)?;
+    let all = tree::references(&query.bounds);
+    let groups: Vec<SplitQuery> = (0..bvh.nodes.len() as u32)
+        .map(|node| below(bvh, node).into_iter().map(|id| all[id as usize]).collect())
+        .map(|primitives| SplitQuery { split: Split::SurfaceArea, primitives })
+        .collect();
+    // Equal centroids may be sorted in any order, and then the costs depend on it.
+    let decides = |group: &SplitQuery| group.primitives.len() > 1 && centroids_differ(&group.primitives);
+    let (nodes, groups): (Vec<&Node>, Vec<SplitQuery>) =
+        bvh.nodes.iter().zip(groups).filter(|(_, group)| decides(group)).unzip();
+    let judge = |((node, group), own): ((&&Node, &SplitQuery), SplitAnswer)| {
+        let n = group.primitives.len();
+        let n_left = match node.contents {
+            Contents::Leaf { .. } => None,
+            Contents::Inner { left, .. } => Some(below(bvh, left).len()),
+        };
+        let (expected, rule) = match (own.middle, n_left) {
+            (Some(_), None) => ("a cut", CHEAPER),
+            (None, Some(_)) if n <= query.leaf_size => {
+                ("a leaf", "a group of leaf_size or fewer for which no cut is cheaper becomes a leaf")
+            }
+            (None, Some(left)) if left.abs_diff(n - left) > 1 => {
+                ("two halves", "a larger group for which no cut is cheaper is split by the object median")
+            }
+            _ => return Ok(()),
+        };
+        let yours = n_left.map_or("a leaf".into(), |left| format!("{left} and {}", n - left));
+        let yours = format!(
+            "{n} primitives, for which your split_surface_area gives {:?}, become {yours}",
+            own.middle
+        );
+        Err(Broken::with_texts(query.call("build"), yours, expected, "the definition")
+            .explained_by([(true, rule)]))
+    };
+    let answers = trial.kit.split(&groups);
+    all_hold(nodes.iter().zip(&groups).zip(answers).map(judge).collect())
+}
+
+pub(super) const CHEAPER: &str =
+    "each group of leaf_size or fewer is a leaf: by the heuristic it is still split if that is cheaper";
+
 /// The faults of a tree in the words of a diagnosis.
 fn build_mistakes(fault: &str) -> [(bool, &'static str); 5] {
     let missing = fault.ends_with("in 0 leaves");
@@ -68,7 +118,14 @@ pub(super) fn build_holds_every_primitive_once(trial: &Trial<'_>) -> CheckResult
         split,
         leaf_size,
     });
-    trial.forall(400, inputs, |queries| judge_builds(trial, queries))
+    // Boxes that hide each other, so that a leaf is cheaper than any cut, and whose middle is far from their median.
+    let bounds = (0..7).map(|i| Vec3::splat(2f32.powi(-i))).map(|low| Aabb::new(low, low + 9.0)).collect();
+    let heap = BuildQuery { bounds, split: Split::SurfaceArea, leaf_size: 2 };
+    trial.forall(400, inputs.clone(), |queries| judge_builds(trial, queries))?;
+    let by_area = inputs.prop_map(|query| BuildQuery { split: Split::SurfaceArea, ..query });
+    trial.forall_and(&[heap], 200, by_area, |queries| {
+        queries.iter().map(|query| judge_groups(trial, query)).collect()
+    })
 }
 
 /// Judges builds with every split strategy and two leaf sizes.
@@ -116,6 +173,7 @@ fn judge_depth(trial: &Trial<'_>, bounds: &[Aabb], what: &str) -> CheckResult {
     let most = DEEPEST_SPLIT + bounds.len().next_power_of_two().ilog2() as usize + 1;
     for split in Split::ALL {
         let query = BuildQuery { bounds: bounds.to_vec(), split, leaf_size: 1 };
+        all_hold(judge_builds(trial, std::slice::from_ref(&query)))?;
         let depth = built(trial, &query)?.depth();
         if depth > most {
             let input = format!("build of {what}, {split:?}, leaf_size 1");

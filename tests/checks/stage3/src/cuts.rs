@@ -55,6 +55,11 @@ const AXES: [usize; 3] = [0, 1, 2];
 const ONLY_ONE: &str = "only one axis is tried: the best cut is along another";
 const ONLY_Y: &str = "only one axis is tried, y: the best cut is along another";
 const ONLY_Z: &str = "only one axis is tried, z: the best cut is along another";
+const WITHOUT: [&str; 3] = [
+    "one axis is left out, x: try the cuts along all three",
+    "one axis is left out, y: try the cuts along all three",
+    "one axis is left out, z: try the cuts along all three",
+];
 const ONLY_LONGEST: &str = "only one axis is tried, the longest: the best cut is along another";
 
 /// The fault of a cut, if it has one. A `middle` of 0 is a leaf.
@@ -174,6 +179,25 @@ fn formulas(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> 
                 && f64::from(INTERSECTION_COST) * best <= as_leaf * 1.0001
         }
     };
+    // The cuts along two axes, and the most expensive cut.
+    let mut along = |axes: [usize; 2], text| {
+        let least = tree::least_cost(ordered, &axes, &tree::cut_cost);
+        let is_it = match middle {
+            0 => is_leaf_along(&axes),
+            _ => {
+                tree::cut_cost(&ordered[..middle], &ordered[middle..]) <= least * 1.0001
+                    && tree::leaf_is_cheaper(ordered, least) != Some(true)
+            }
+        };
+        mistakes.push((is_it, text));
+    };
+    [[1, 2], [0, 2], [0, 1]].into_iter().zip(WITHOUT).for_each(|(axes, text)| along(axes, text));
+    let most = -tree::least_cost(ordered, &AXES, &|left, right| -tree::cut_cost(left, right));
+    let is_dearest = match middle {
+        0 => tree::leaf_is_cheaper(ordered, most) != Some(false) || !centroids_differ(ordered),
+        _ => tree::cut_cost(&ordered[..middle], &ordered[middle..]) >= most * 0.9999,
+    };
+    mistakes.push((is_dearest, "you keep the cut of the highest cost: keep the one of the lowest"));
     mistakes.push((without, "TRAVERSAL_COST is left out, so a cut always looks cheaper"));
     mistakes.extend(wrong_costs(ordered, middle));
     // Equal centroids may be sorted in any order, so each rule may give such a cut.
@@ -238,7 +262,7 @@ fn cut_mistakes(
     others.into_iter().chain(of_bins).collect()
 }
 
-fn centroids_differ(primitives: &[PrimitiveRef]) -> bool {
+pub(super) fn centroids_differ(primitives: &[PrimitiveRef]) -> bool {
     (0..3).all(|axis| {
         let mut at: Vec<f32> = primitives.iter().map(|p| p.centroid[axis]).collect();
         at.sort_by(f32::total_cmp);

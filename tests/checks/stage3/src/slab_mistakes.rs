@@ -51,6 +51,10 @@ enum Mistake {
     LeftOut(usize),
     /// The smaller entry and the larger exit.
     Widest,
+    /// The exit in place of an entry at or before `t_min`.
+    ExitFromInside,
+    /// The exit is later by this.
+    Later(f32),
 }
 
 const SORTED: &str = "0 · ∞ is NaN, and a comparison with NaN is false: choose the two planes by the sign of 1/d, and drop NaN";
@@ -60,9 +64,13 @@ const PADDED_BOX: &str =
 
 const LEFT_OUT: &str = "an axis is left out: the ray must be between the planes of all three axes at once";
 
+const LATER: &str =
+    "you move the exit by a fixed length, but its rounding error grows with t: multiply it by 1 + 2 γ₃";
+
 const PADDED_DIRECTION: &str = "you replace a direction near 0 by an epsilon, so the ray bends: 1/d may be infinite, and 0 · ∞ is NaN and dropped";
 
-const MISTAKES: [(Mistake, &str); 22] = named![
+const MISTAKES: [(Mistake, &str); 23] = named![
+    Mistake::ExitFromInside => "you return the exit in place of the entry if the ray starts inside: it enters at t_min",
     Mistake::FromZero => "your range begins at 0: only the part within t_min..t_max counts",
     Mistake::EntryBeforeEnd => "the ends of the range count: an entry exactly at t_max is a hit",
     Mistake::OpenRange => "the ends of the range count: an exit exactly at t_min is a hit, and so is an entry at t_max",
@@ -158,6 +166,7 @@ fn slab(mistake: Mistake, widened: Widened, SlabQuery { ray, bounds, .. }: &Slab
     let (less, more) = (1.0 - 2.0 * gamma(3), 1.0 + 2.0 * gamma(3));
     near = if widened == Widened::Both { (near * less).min(near * more) } else { near };
     far = if widened == Widened::Not { far } else { (far * less).max(far * more) };
+    far = if let Mistake::Later(by) = mistake { far + by } else { far };
     let (at_start, at_end) = (far <= ray.t_min, near >= ray.t_max);
     if matches!(mistake, Mistake::ExitBehindStart | Mistake::OpenRange) && at_start
         || matches!(mistake, Mistake::EntryBeforeEnd | Mistake::OpenRange) && at_end
@@ -174,6 +183,8 @@ fn slab(mistake: Mistake, widened: Widened, SlabQuery { ray, bounds, .. }: &Slab
     if !matches!(mistake, Mistake::EndIgnored | Mistake::RangeIgnored) {
         far = if far > ray.t_max { ray.t_max } else { far };
     }
+    let is_inside = mistake == Mistake::ExitFromInside && near <= ray.t_min;
+    near = if is_inside { near.max(far) } else { near };
     (if is_open { near < far } else { !(near > far) }).then_some(if mistake == Mistake::OfTheLine {
         line
     } else {
@@ -224,6 +235,7 @@ pub(super) fn mistakes(
     let all = (MISTAKES.into_iter())
         .chain(lengths.map(|least| (Mistake::LeastDirection(least), PADDED_DIRECTION)))
         .chain(lengths.map(|pad| (Mistake::Padded(pad), PADDED_BOX)))
+        .chain(lengths.map(|by| (Mistake::Later(by), LATER)))
         .chain([0, 1, 2].map(|axis| (Mistake::LeftOut(axis), LEFT_OUT)));
     // A wrong test may widen the interval or not.
     let variants = |(mistake, text)| {

@@ -113,7 +113,7 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
             let mistakes = vec![(any, "you cut an axis that is not the longest axis")];
             Some(("a cut elsewhere".into(), expected, mistakes))
         };
-        let formulas = |_: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize| {
+        let formulas = |given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize| {
             let all = tree::around(ordered.iter().map(|p| &p.bounds));
             let (axes, n) = (tree::longest_axes(&all), ordered.len());
             let fits = |axis: usize| fits(ordered, middle, &all, axis);
@@ -122,6 +122,12 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
                 is_cut_at(ordered, middle, axis, mean, all.max[axis] - all.min[axis])
             };
             let halves = middle == n / 2 || middle == n.div_ceil(2);
+            let as_given = given.iter().map(|p| p.id).eq(ordered.iter().map(|p| p.id));
+            let is_counted_only = axes.iter().any(|&axis| {
+                let cut = 0.5 * (all.min[axis] + all.max[axis]);
+                let n_left = ordered.iter().filter(|p| p.centroid[axis] < cut).count();
+                (as_given && middle == n_left) || n_left == 0 || n_left == n
+            });
             // A cut elsewhere, by the sides or the centroids of the boxes. If all are on one side of it, any split is right.
             let cut = |key: fn(&PrimitiveRef, usize) -> f32, cut: &dyn Fn(f32, f32) -> f32| {
                 axes.iter().any(|&axis| {
@@ -139,6 +145,7 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
                 (cut(|p, axis| p.bounds.max[axis], &|low, size| low + 0.5 * size), BY_HIGH),
                 "you cut at half of the size of the box: the middle is half of min + max"
                     .when(cut(centroid, &|_, size| 0.5 * size)),
+                (is_counted_only, "you count the primitives below the cut, but leave them in their places: swap them to the front"),
                 (at(1.0 / 3.0), ELSEWHERE),
                 (at(2.0 / 3.0), ELSEWHERE),
                 (at(0.25), ELSEWHERE),

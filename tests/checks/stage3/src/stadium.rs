@@ -1,5 +1,6 @@
 //! A teapot in a stadium: the counted costs of trees and searches.
 
+use super::builds::CHEAPER;
 use super::search_mistakes::order_mistakes;
 use checks::prelude::*;
 use checks::tree;
@@ -81,8 +82,7 @@ pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) ->
     )
     .explained_by([
         (is_a_median, "your tree costs as much as one by object median"),
-        "each group of leaf_size or fewer is a leaf: by the heuristic it is still split if that is cheaper"
-            .when(yours.is_finite() && !divides_few(&bvh)),
+        (yours.is_finite() && !divides_few(&bvh), CHEAPER),
     ]))
 }
 
