@@ -261,10 +261,9 @@ pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> CheckResul
                 ),
             };
             let (input, yours) = (query.call("triangle_in_double"), format!("{:?}", yours.map(|hit| hit.t)));
-            Err(Broken::with_texts(input, yours, expected, "exactly").explained_by([
-                (converted_late, CONVERTED_LATE),
-                "t has only the accuracy of single precision: round the quotient, and nothing before it"
-                    .when(single),
+            Err(Broken::with_texts(input, yours, expected, "exactly").explained_by(named![
+                converted_late => CONVERTED_LATE,
+                single => "t has only the accuracy of single precision: round the quotient, and nothing before it",
             ]))
         };
         all_hold(wrong.iter().map(broken).collect())?;

@@ -78,13 +78,12 @@ pub(super) fn paths_in_a_furnace_count_every_bounce(trial: &Trial<'_>) -> CheckR
             );
             let (yours, right) = (format!("{light:.4}"), format!("{expected:.4}"));
             let broken = Broken::with_texts(what, yours, right, "Le (1 + ρ + … + ρⁿ)");
-            outcomes.push(Err(broken.explained_by([
-                (light.is_nan(), "you return NaN"),
-                "the light of the last surface is missing: collect it before the path ends"
-                    .when(near(sum(depth))),
-                (near(sum(depth + 2)), "your paths have one bounce more than max_depth"),
-                (near(emission.as_dvec3()), "only the first surface counts"),
-                (near(sum(depth + 1) - emission.as_dvec3()), "the light of the first surface is missing"),
+            outcomes.push(Err(broken.explained_by(named![
+                light.is_nan() => "you return NaN",
+                near(sum(depth)) => "the light of the last surface is missing: collect it before the path ends",
+                near(sum(depth + 2)) => "your paths have one bounce more than max_depth",
+                near(emission.as_dvec3()) => "only the first surface counts",
+                near(sum(depth + 1) - emission.as_dvec3()) => "the light of the first surface is missing",
             ])));
         }
     }
@@ -255,13 +254,12 @@ pub(super) fn steps_count_sampled_light_once(trial: &Trial<'_>) -> CheckResult {
     ] {
         let expected = kd * expected;
         channel_has_mean(&format!("a room with {light}"), &found, channel, (expected, 0.0), |mean| {
-            vec![
-                (is(mean, 2.0 * expected), "light counts twice: once by samples and once by chance"),
-                "your light is π times too bright: a diffuse surface sends kd / π on"
-                    .when(is(mean, PI * expected)),
-                (is(mean, expected / kd), "the diffuse reflectance is missing"),
-                (mean == 0.0, "no light arrives"),
-            ]
+            named![
+                is(mean, 2.0 * expected) => "light counts twice: once by samples and once by chance",
+                is(mean, PI * expected) => "your light is π times too bright: a diffuse surface sends kd / π on",
+                is(mean, expected / kd) => "the diffuse reflectance is missing",
+                mean == 0.0 => "no light arrives",
+            ].to_vec()
         })?;
     }
     Ok(())
@@ -292,13 +290,12 @@ pub(super) fn steps_find_light_in_a_mirror(trial: &Trial<'_>) -> CheckResult {
         let expected = direct + weight * in_mirror;
         let of_mirror = weight * in_mirror;
         channel_has_mean("a room with a light and a mirror", &found, channel, (expected, 0.0), |mean| {
-            vec![
-                "light that a mirror reflects is lost: no sample finds it, so it counts in full"
-                    .when(of_mirror > 0.05 * direct && is(mean, direct)),
-                "light counts twice: once by samples and once by chance"
-                    .when(is(mean, 2.0 * direct + of_mirror)),
-                (is(mean, direct + in_mirror) && weight != 1.0, "the weight of the mirror is missing"),
-            ]
+            named![
+                of_mirror > 0.05 * direct && is(mean, direct) =>
+                    "light that a mirror reflects is lost: no sample finds it, so it counts in full",
+                is(mean, 2.0 * direct + of_mirror) => "light counts twice: once by samples and once by chance",
+                is(mean, direct + in_mirror) && weight != 1.0 => "the weight of the mirror is missing",
+            ].to_vec()
         })?;
     }
     Ok(())

@@ -189,12 +189,11 @@ pub(super) fn steps_end_at_the_greatest_depth(trial: &Trial<'_>) -> CheckResult 
         let says = |goes_on: bool| if goes_on { "the path continues" } else { "the path ends" };
         let broken =
             Broken::with_texts(describe(query), says(!goes_on), says(goes_on), "at most max_depth bounces");
-        Err(broken.explained_by([
-            (bounces == max_depth, "one bounce too many: a path with max_depth bounces ends"),
-            (!goes_on, "paths do not end at max_depth"),
-            "one bounce too few: a path with fewer than max_depth bounces continues"
-                .when(bounces + 1 == max_depth),
-            (goes_on, "a path whose weight is 1 continues"),
+        Err(broken.explained_by(named![
+            bounces == max_depth => "one bounce too many: a path with max_depth bounces ends",
+            !goes_on => "paths do not end at max_depth",
+            bounces + 1 == max_depth => "one bounce too few: a path with fewer than max_depth bounces continues",
+            goes_on => "a path whose weight is 1 continues",
         ]))
     })
 }

@@ -175,10 +175,9 @@ fn wrong_numbers(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
         let with_a_box = members.iter().filter(|one| one.low().cmple(one.high()).all());
         yours.0[axis][bin].count as usize == with_a_box.count()
     });
-    mistakes.extend([
-        "centroids outside of the bins are left out: they count in the first or the last bin"
-            .when(inside_only),
-        "a primitive with the empty box is left out: it is counted all the same".when(with_a_box),
+    mistakes.extend(named![
+        inside_only => "centroids outside of the bins are left out: they count in the first or the last bin",
+        with_a_box => "a primitive with the empty box is left out: it is counted all the same",
     ]);
     mistakes
 }

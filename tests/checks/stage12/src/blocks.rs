@@ -123,9 +123,8 @@ fn judge_all(trial: &Trial<'_>, drawn: Vec<Lanes>) -> CheckResult {
             let query = lanes.query().filter(|_| scale != 1.0);
             let again = query.map(|query| trial.kit.may_hit(&[query])[0]);
             let is_right = again.is_some_and(|filtered| judge_hits(&lanes, filtered).is_ok());
-            broken.explained_by([
-                "the bound is right for a direction of length 1 only: the error of t grows as 1 / |d_z|"
-                    .when(is_right),
+            broken.explained_by(named![
+                is_right => "the bound is right for a direction of length 1 only: the error of t grows as 1 / |d_z|",
             ])
         })
     }))
@@ -262,10 +261,9 @@ pub(super) fn may_hit_keeps_lanes_without_a_triangle(trial: &Trial<'_>) -> Check
         let Some(lane) = lost else { return Ok(()) };
         let input = format!("may_hit of {}, lane {lane} with NaN", query.ray.paste());
         let yours = if certain >> lane & 1 == 1 { "certain" } else { "rejected" };
-        Err(Broken::with_texts(input, yours, "possible", "the definition").explained_by([
-            (yours == "rejected", NAN_REJECTED),
-            "a lane with NaN is certain: it holds another shape, whose test must decide"
-                .when(yours == "certain"),
+        Err(Broken::with_texts(input, yours, "possible", "the definition").explained_by(named![
+            yours == "rejected" => NAN_REJECTED,
+            yours == "certain" => "a lane with NaN is certain: it holds another shape, whose test must decide",
         ]))
     };
     all_hold(compare(&queries, masks, judge))?;

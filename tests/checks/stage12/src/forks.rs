@@ -234,10 +234,9 @@ pub(super) fn build_parallel_has_an_eighth_of_the_span(trial: &Trial<'_>) -> Che
     let forked = |index: usize| children.contains(&ranges[index]);
     let in_pieces = |index: usize| own_span(ranges[index].1, (ranges[index].1 / 2 / LEAST_PIECE).min(8));
     let possible = 8 * work_and_span_of(&tree, &ranges, in_pieces, forked).1 <= work;
-    Err(Broken::with_texts(input, yours, expected, "the tree and the log of forks").explained_by([
-        "no node sorts its primitives into bins in pieces: use `forks.each` at large nodes"
-            .when(binning.is_empty() && possible),
-        "too few nodes sort their primitives in pieces, or in too few pieces"
-            .when(!binning.is_empty() && possible),
+    Err(Broken::with_texts(input, yours, expected, "the tree and the log of forks").explained_by(named![
+        binning.is_empty() && possible =>
+            "no node sorts its primitives into bins in pieces: use `forks.each` at large nodes",
+        !binning.is_empty() && possible => "too few nodes sort their primitives in pieces, or in too few pieces",
     ]))
 }

@@ -191,32 +191,27 @@ fn area_mistakes(case @ (query, weights, _): &Case, yours: Option<Vec3>) -> Vec<
     let sum = a + b + c;
     let [of_a, of_b, of_c] = [query.triangle.a, query.triangle.b, query.triangle.c].map(Vec3::as_dvec3);
     let normal = (of_b - of_a).cross(of_c - of_a).length();
-    let mut all = vec![
-        (is(weights.map(|weight| 0.5 * weight), least), WRONG_SUM),
-        (is(weights.map(|weight| 2.0 * weight), least), WRONG_SUM),
-        (
-            is(weights.map(|weight| weight * normal), least),
-            "you divide by |n| once, which leaves areas: divide by n·n",
-        ),
-        (
-            is(*weights, 1.0 - alpha.max(beta).max(gamma)),
+    let mut all = named![
+        is(weights.map(|weight| 0.5 * weight), least) => WRONG_SUM,
+        is(weights.map(|weight| 2.0 * weight), least) => WRONG_SUM,
+        is(weights.map(|weight| weight * normal), least) => "you divide by |n| once, which leaves areas: divide by n·n",
+        is(*weights, 1.0 - alpha.max(beta).max(gamma)) =>
             "a coordinate below 0 passes: test the three for ≥ 0, not for ≤ 1",
-        ),
-        (is([a, b, c], 1.0 - a - b), UNSIGNED_AREAS),
-        (is([a, b, c], 1.0 - a.max(b).max(c)), UNSIGNED_AREAS),
-        (is([a, b, c], 1.0), UNSIGNED_AREAS),
-        (is([a / sum, b / sum, c / sum], 1.0), UNSIGNED_AREAS),
-        (is([a, b, 1.0 - a - b], 1.0 - a - b), UNSIGNED_AREAS),
-        (is([1.0 - b - c, b, c], 1.0 - b - c), UNSIGNED_AREAS),
-        "this is the slide: its areas have no sign, so points outside pass, and its α belongs to corner c"
-            .when(is([c, b, 1.0 - c - b], 1.0 - b - c)),
-        (is(*weights, 1.0), "you return coordinates for a point outside: None if one of them is negative"),
-        "points on an edge are inside: compare with ≥, not with >"
-            .when(is(*weights, if least > 0.0 { 1.0 } else { -1.0 })),
-        (is(*weights, beta.min(gamma)), "one of the three coordinates is not tested: α"),
-        (is(*weights, alpha.min(gamma)), "one of the three coordinates is not tested: β"),
-        (is(*weights, alpha.min(beta)), "one of the three coordinates is not tested: γ"),
-    ];
+        is([a, b, c], 1.0 - a - b) => UNSIGNED_AREAS,
+        is([a, b, c], 1.0 - a.max(b).max(c)) => UNSIGNED_AREAS,
+        is([a, b, c], 1.0) => UNSIGNED_AREAS,
+        is([a / sum, b / sum, c / sum], 1.0) => UNSIGNED_AREAS,
+        is([a, b, 1.0 - a - b], 1.0 - a - b) => UNSIGNED_AREAS,
+        is([1.0 - b - c, b, c], 1.0 - b - c) => UNSIGNED_AREAS,
+        is([c, b, 1.0 - c - b], 1.0 - b - c) =>
+            "this is the slide: its areas have no sign, so points outside pass, and its α belongs to corner c",
+        is(*weights, 1.0) => "you return coordinates for a point outside: None if one of them is negative",
+        is(*weights, if least > 0.0 { 1.0 } else { -1.0 }) =>
+            "points on an edge are inside: compare with ≥, not with >",
+        is(*weights, beta.min(gamma)) => "one of the three coordinates is not tested: α",
+        is(*weights, alpha.min(gamma)) => "one of the three coordinates is not tested: β",
+        is(*weights, alpha.min(beta)) => "one of the three coordinates is not tested: γ",
+    ].to_vec();
     let orders = [
         [gamma, beta, alpha],
         [beta, gamma, alpha],

@@ -78,19 +78,18 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
                 "you pad the box: one radius from the centre is enough, up to rounding".when(is_padded),
             ])
         };
-        unless(right, broken).formulas([
-            "your box has the right size but the wrong place: go one radius from the centre"
-                .when(is(DVec3::splat(-radius), DVec3::splat(radius))),
-            (is(center - 0.5 * radius, center + 0.5 * radius), TOO_SMALL),
-            (is(center - radius / 3f64.sqrt(), center + radius / 3f64.sqrt()), TOO_SMALL),
-            (is(center - radius * DVec3::X, center + radius * DVec3::X), ONE_AXIS),
-            (is(center - radius * DVec3::Y, center + radius * DVec3::Y), ONE_AXIS),
-            (is(center - radius * DVec3::Z, center + radius * DVec3::Z), ONE_AXIS),
-            (is(center, center + radius), "your box begins at the centre: go one radius to each side"),
-            "your box begins at the centre: go one radius to each side of it"
-                .when(is(center, center + 2.0 * radius)),
-            "your box is too large: go one radius from the centre to each side, not the diameter"
-                .when(is(center - 2.0 * radius, center + 2.0 * radius)),
+        unless(right, broken).formulas(named![
+            is(DVec3::splat(-radius), DVec3::splat(radius)) =>
+                "your box has the right size but the wrong place: go one radius from the centre",
+            is(center - 0.5 * radius, center + 0.5 * radius) => TOO_SMALL,
+            is(center - radius / 3f64.sqrt(), center + radius / 3f64.sqrt()) => TOO_SMALL,
+            is(center - radius * DVec3::X, center + radius * DVec3::X) => ONE_AXIS,
+            is(center - radius * DVec3::Y, center + radius * DVec3::Y) => ONE_AXIS,
+            is(center - radius * DVec3::Z, center + radius * DVec3::Z) => ONE_AXIS,
+            is(center, center + radius) => "your box begins at the centre: go one radius to each side",
+            is(center, center + 2.0 * radius) => "your box begins at the centre: go one radius to each side of it",
+            is(center - 2.0 * radius, center + 2.0 * radius) =>
+                "your box is too large: go one radius from the centre to each side, not the diameter",
         ])
     })
 }

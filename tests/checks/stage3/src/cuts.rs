@@ -156,20 +156,17 @@ fn formulas(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> 
     let area = tree::half_area(&bounds);
     let as_leaf = f64::from(INTERSECTION_COST) * area * ordered.len() as f64;
     let mut mistakes = match middle {
-        0 => vec![
-            "the leaf is taken too soon: compare C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) with C_i A(P) n(P)"
-                .when(
-                    2.0 * f64::from(TRAVERSAL_COST) * area + f64::from(INTERSECTION_COST) * best >= as_leaf,
-                ),
-            "not every cut is tried: the one behind the first primitive is left out"
-                .when(is_leaf_without(ordered, [2, 1])),
-            "not every cut is tried: the one before the last primitive is left out"
-                .when(is_leaf_without(ordered, [1, 2])),
-            (is_leaf_along(&[0]), ONLY_ONE),
-            (is_leaf_along(&[1]), ONLY_Y),
-            (is_leaf_along(&[2]), ONLY_Z),
-            (is_leaf_along(&tree::longest_axes(&bounds)), ONLY_LONGEST),
-        ],
+        0 => named![
+            2.0 * f64::from(TRAVERSAL_COST) * area + f64::from(INTERSECTION_COST) * best >= as_leaf =>
+                "the leaf is taken too soon: compare C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) with C_i A(P) n(P)",
+            is_leaf_without(ordered, [2, 1]) =>
+                "not every cut is tried: the one behind the first primitive is left out",
+            is_leaf_without(ordered, [1, 2]) => "not every cut is tried: the one before the last primitive is left out",
+            is_leaf_along(&[0]) => ONLY_ONE,
+            is_leaf_along(&[1]) => ONLY_Y,
+            is_leaf_along(&[2]) => ONLY_Z,
+            is_leaf_along(&tree::longest_axes(&bounds)) => ONLY_LONGEST,
+        ].to_vec(),
         _ => cut_mistakes(given, ordered, middle),
     };
     let without = match middle {
@@ -242,22 +239,16 @@ fn cut_mistakes(
         "you try the cuts between some equal bins only: try each cut"
             .when((yours / binned(n) - 1.0).abs() < 1e-4)
     });
-    let others = [
-        (as_given, "the primitives are not sorted: you cut them as they come"),
-        (is_best_along(0), ONLY_ONE),
-        (is_best_along(1), ONLY_Y),
-        (is_best_along(2), ONLY_Z),
-        (longest.into_iter().any(is_best_along), ONLY_LONGEST),
-        "not every cut is tried: the one behind the first primitive is left out".when(is_least_of(
-            &AXES,
-            right_cost,
-            [2, 1],
-        )),
-        "not every cut is tried: the one before the last primitive is left out".when(is_least_of(
-            &AXES,
-            right_cost,
-            [1, 2],
-        )),
+    let others = named![
+        as_given => "the primitives are not sorted: you cut them as they come",
+        is_best_along(0) => ONLY_ONE,
+        is_best_along(1) => ONLY_Y,
+        is_best_along(2) => ONLY_Z,
+        longest.into_iter().any(is_best_along) => ONLY_LONGEST,
+        is_least_of(&AXES, right_cost, [2, 1]) =>
+            "not every cut is tried: the one behind the first primitive is left out",
+        is_least_of(&AXES, right_cost, [1, 2]) =>
+            "not every cut is tried: the one before the last primitive is left out",
     ];
     others.into_iter().chain(of_bins).collect()
 }

@@ -47,17 +47,16 @@ fn judge_encoded(linear: f32, yours: u8) -> Judged {
     let text = "you round 256 √linear, or a little less, down: round 255 √linear to the nearest byte";
     let factors = [256.0, 255.999, 255.99, 255.9];
     mistakes.extend(factors.map(|factor| (down((factor * exact.sqrt()).min(255.9)), text)));
-    let formulas = [
-        (255.0 * exact, "the square root is missing: the byte is 255 times the root"),
-        (right.sqrt() * 255f64.sqrt(), "you take the root twice: take it once"),
-        (255.0 * exact.cbrt(), "you take the cube root: gamma 2 is the square root"),
-        (255.0 * exact.powf(1.0 / 1.8), "you use gamma 1.8: the lecture uses gamma 2, the square root"),
-        (255.0 * exact.powf(1.0 / 2.4), "you use gamma 2.4: the lecture uses gamma 2, the square root"),
-        (255.0 * exact * exact, "you square: encoding takes the root, decoding squares"),
-        (255.0 * exact.powf(1.0 / 2.2), "you use gamma 2.2: the lecture uses gamma 2, the square root"),
-        "you use the transfer function of sRGB: the lecture uses gamma 2, the square root".when(
-            255.0 * if exact <= 0.003_130_8 { 12.92 * exact } else { 1.055 * exact.powf(1.0 / 2.4) - 0.055 },
-        ),
+    let formulas = named![
+        255.0 * exact => "the square root is missing: the byte is 255 times the root",
+        right.sqrt() * 255f64.sqrt() => "you take the root twice: take it once",
+        255.0 * exact.cbrt() => "you take the cube root: gamma 2 is the square root",
+        255.0 * exact.powf(1.0 / 1.8) => "you use gamma 1.8: the lecture uses gamma 2, the square root",
+        255.0 * exact.powf(1.0 / 2.4) => "you use gamma 2.4: the lecture uses gamma 2, the square root",
+        255.0 * exact * exact => "you square: encoding takes the root, decoding squares",
+        255.0 * exact.powf(1.0 / 2.2) => "you use gamma 2.2: the lecture uses gamma 2, the square root",
+        255.0 * if exact <= 0.003_130_8 { 12.92 * exact } else { 1.055 * exact.powf(1.0 / 2.4) - 0.055 } =>
+            "you use the transfer function of sRGB: the lecture uses gamma 2, the square root",
     ];
     // A wrong formula may be rounded down, or to the nearest byte.
     mistakes.extend(

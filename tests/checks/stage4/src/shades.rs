@@ -328,14 +328,13 @@ fn judge_traced((query, own): &WithOwnTerms, traced: &[usize]) -> CheckResult {
     }
     let describe = |lights: &[usize]| format!("shadow rays to lights {lights:?}");
     Err(Broken::with_texts(query.call("shade"), describe(&sorted), describe(&needed), "counted")
-        .explained_by([
-        (twice, "you trace two rays to one light: trace one and keep the answer"),
-        (vain(&dark), "you trace a ray to a light that is switched off"),
-        (vain(&behind), "you trace a ray to a light that is behind the surface"),
-        "you trace a ray to a light that adds 0 to the surface, for example to a black surface"
-            .when(vain(&black)),
-        "you trace rays to lights that add nothing: behind the surface, switched off, or on a black surface"
-            .when(vain(&behind) || vain(&dark) || vain(&black)),
-        (missed && is_not_asked, "a light that adds to the surface gets no shadow ray"),
-    ]))
+        .explained_by(named![
+            twice => "you trace two rays to one light: trace one and keep the answer",
+            vain(&dark) => "you trace a ray to a light that is switched off",
+            vain(&behind) => "you trace a ray to a light that is behind the surface",
+            vain(&black) => "you trace a ray to a light that adds 0 to the surface, for example to a black surface",
+            vain(&behind) || vain(&dark) || vain(&black) =>
+                "you trace rays to lights that add nothing: behind the surface, switched off, or on a black surface",
+            missed && is_not_asked => "a light that adds to the surface gets no shadow ray",
+        ]))
 }

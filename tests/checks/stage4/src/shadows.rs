@@ -171,9 +171,8 @@ fn judge_effect(query: &ShadowQuery, yours: Option<Ray>) -> CheckResult {
         let single = light.radiance.min_element() == 0.0;
         let expected = "a ray: the light is in front of the surface, and not switched off";
         return Err(Broken::with_texts(query.call("shadow_ray"), "None", expected, "the definition")
-            .explained_by([
-                "you return None for a light that is black in one channel: return None if all are 0"
-                    .when(single),
+            .explained_by(named![
+                single => "you return None for a light that is black in one channel: return None if all are 0",
             ]));
     };
     let yours = format!("a ray along {}", ray.direction);

@@ -31,21 +31,20 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> CheckResult {
         let cosine = cos_theta(query);
         let expected = cosine.max(0.0);
         let broken = || Broken::new(paste_term("diffuse_term", query), yours, expected as f32, "closed form");
-        unless(near(yours, expected), broken).formulas([
-            "you return a negative cosine for a light behind the surface: return at least 0"
-                .when(near(yours, cosine)),
-            (near(yours, cosine.abs()), "you return the absolute value: a light behind the surface gives 0"),
-            (yours == 1.0 || near(yours, 0.0) && cosine <= 0.0, "you return 1: the cosine is missing"),
-            "you return 0 for a light in front of the surface, and a cosine for one behind: is a direction negated?"
-                .when(near(yours, (-cosine).max(0.0))),
-            (yours == 0.0, "you return 0 for a light in front of the surface"),
-            (near(yours, expected.powi(2)), "you square the cosine: the diffuse term is the cosine itself"),
-            (near(yours, expected.powi(3)), "you cube the cosine: the diffuse term is the cosine itself"),
-            (near(yours, expected.sqrt()), "you take the root of the cosine: the diffuse term is the cosine itself"),
-            (near(yours, expected / PI), "you divide by π: the diffuse term of the Phong model is the cosine alone"),
-            (near(yours, 0.5 + 0.5 * cosine), HALF),
-            (near(yours, (0.5 + 0.5 * cosine).powi(2)), HALF),
-            (near(yours, (1.0 - expected.powi(2)).sqrt()), "you return the sine: the diffuse term is the cosine"),
+        unless(near(yours, expected), broken).formulas(named![
+            near(yours, cosine) => "you return a negative cosine for a light behind the surface: return at least 0",
+            near(yours, cosine.abs()) => "you return the absolute value: a light behind the surface gives 0",
+            yours == 1.0 || near(yours, 0.0) && cosine <= 0.0 => "you return 1: the cosine is missing",
+            near(yours, (-cosine).max(0.0)) =>
+                "you return 0 for a light in front of the surface, and a cosine for one behind: is a direction negated?",
+            yours == 0.0 => "you return 0 for a light in front of the surface",
+            near(yours, expected.powi(2)) => "you square the cosine: the diffuse term is the cosine itself",
+            near(yours, expected.powi(3)) => "you cube the cosine: the diffuse term is the cosine itself",
+            near(yours, expected.sqrt()) => "you take the root of the cosine: the diffuse term is the cosine itself",
+            near(yours, expected / PI) => "you divide by π: the diffuse term of the Phong model is the cosine alone",
+            near(yours, 0.5 + 0.5 * cosine) => HALF,
+            near(yours, (0.5 + 0.5 * cosine).powi(2)) => HALF,
+            near(yours, (1.0 - expected.powi(2)).sqrt()) => "you return the sine: the diffuse term is the cosine",
         ])
     };
     let judge = |queries: &[TermQuery]| compare(queries, trial.kit.diffuse_term(queries), judge);
@@ -118,32 +117,31 @@ fn judge_highlight(query: &TermQuery, yours: f32) -> Judged {
         (f64::from(yours) - value).abs() < 5e-4 * (1.0 + exponent) || is_on_edge(query)
     };
     let n_plus = |n: f64, d: f64| near((exponent + n) / d * expected);
-    unless(right, broken).formulas([
-        (raised(exponent.floor()), WHOLE),
-        (raised(exponent.round()), WHOLE),
-        (raised(exponent.ceil()), WHOLE),
-        (raised(0.5 * exponent), "you halve the exponent: the specular term is cosⁿ φ"),
-        (raised(2.0 * exponent), "you double the exponent: the specular term is cosⁿ φ"),
-        (raised(exponent + 1.0), "the exponent is one too large: the specular term is cosⁿ φ"),
-        (raised(exponent - 1.0), "the exponent is one too small: the specular term is cosⁿ φ"),
-        (n_plus(1.0, 1.0), SCALED),
-        (n_plus(2.0, 1.0), SCALED),
-        (n_plus(1.0, 2.0), SCALED),
-        (n_plus(2.0, 2.0), SCALED),
-        (n_plus(1.0, 2.0 * PI), SCALED),
-        (n_plus(2.0, 2.0 * PI), SCALED),
-        (n_plus(8.0, 8.0 * PI), SCALED),
-        (by_angle(1.0), "you raise one minus the angle: raise the cosine of the angle"),
-        "you raise one minus the angle: raise the cosine of the angle".when(by_angle(0.5 * PI)),
-        (near(exponent * cos_phi), "you multiply by the exponent: the cosine is raised to it"),
-        (near(power(half)), BLINN),
-        (near(half.powf(exponent)) || !(half >= 1e-2), BLINN),
-        (near(power(n.dot(l))), "you use θ: φ is the angle between the reflected light and the viewer"),
-        (near(cos_phi), "you leave out the exponent"),
-        (near(power((n.dot(l) * n - l).dot(v))), "you leave out the factor 2 of 2 (n·l) n - l"),
-        (near(expected * n.dot(l)), "you multiply by cos θ: the specular term is cosⁿ φ alone"),
-        "you return 0 where there is a highlight: the reflected light is 2 (n·l) n - l"
-            .when(near(power(-cos_phi))),
+    unless(right, broken).formulas(named![
+        raised(exponent.floor()) => WHOLE,
+        raised(exponent.round()) => WHOLE,
+        raised(exponent.ceil()) => WHOLE,
+        raised(0.5 * exponent) => "you halve the exponent: the specular term is cosⁿ φ",
+        raised(2.0 * exponent) => "you double the exponent: the specular term is cosⁿ φ",
+        raised(exponent + 1.0) => "the exponent is one too large: the specular term is cosⁿ φ",
+        raised(exponent - 1.0) => "the exponent is one too small: the specular term is cosⁿ φ",
+        n_plus(1.0, 1.0) => SCALED,
+        n_plus(2.0, 1.0) => SCALED,
+        n_plus(1.0, 2.0) => SCALED,
+        n_plus(2.0, 2.0) => SCALED,
+        n_plus(1.0, 2.0 * PI) => SCALED,
+        n_plus(2.0, 2.0 * PI) => SCALED,
+        n_plus(8.0, 8.0 * PI) => SCALED,
+        by_angle(1.0) => "you raise one minus the angle: raise the cosine of the angle",
+        by_angle(0.5 * PI) => "you raise one minus the angle: raise the cosine of the angle",
+        near(exponent * cos_phi) => "you multiply by the exponent: the cosine is raised to it",
+        near(power(half)) => BLINN,
+        near(half.powf(exponent)) || !(half >= 1e-2) => BLINN,
+        near(power(n.dot(l))) => "you use θ: φ is the angle between the reflected light and the viewer",
+        near(cos_phi) => "you leave out the exponent",
+        near(power((n.dot(l) * n - l).dot(v))) => "you leave out the factor 2 of 2 (n·l) n - l",
+        near(expected * n.dot(l)) => "you multiply by cos θ: the specular term is cosⁿ φ alone",
+        near(power(-cos_phi)) => "you return 0 where there is a highlight: the reflected light is 2 (n·l) n - l",
     ])
 }
 

@@ -140,19 +140,18 @@ fn exact_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
     // Snell's law without the square of the ratio.
     let bent = 1.0 - n1 / n2 * (1.0 - cos_1 * cos_1);
     let (bent_s, bent_p) = if bent < 0.0 { (1.0, 1.0) } else { of_angle(bent.sqrt()) };
-    vec![
-        (s * s, "you return one polarisation, the one perpendicular to the plane: return the mean of both"),
-        (p * p, "you return one polarisation, the one parallel to the plane: return the mean of both"),
-        (both(s * s, p * p), "you return the sum of both polarisations: return their mean"),
-        (0.5 * (s.abs() + p.abs()), "you do not square the ratios"),
-        (0.5 * (s + p), "you do not square the ratios"),
-        ((s * p).abs(), "you return the geometric mean of both polarisations: return half of their sum"),
-        ((0.5 * (s + p)).clamp(0.0, 1.0), "you do not square the ratios"),
-        "you square the mean of the ratios: return the mean of their squares"
-            .when((0.5 * (s.abs() + p.abs())).powi(2)),
-        "Snell's law has the square of n1 / n2: sin² θ2 = (n1 / n2)² sin² θ1"
-            .when(0.5 * (bent_s * bent_s + bent_p * bent_p)),
-    ]
+    named![
+        s * s => "you return one polarisation, the one perpendicular to the plane: return the mean of both",
+        p * p => "you return one polarisation, the one parallel to the plane: return the mean of both",
+        both(s * s, p * p) => "you return the sum of both polarisations: return their mean",
+        0.5 * (s.abs() + p.abs()) => "you do not square the ratios",
+        0.5 * (s + p) => "you do not square the ratios",
+        (s * p).abs() => "you return the geometric mean of both polarisations: return half of their sum",
+        (0.5 * (s + p)).clamp(0.0, 1.0) => "you do not square the ratios",
+        (0.5 * (s.abs() + p.abs())).powi(2) => "you square the mean of the ratios: return the mean of their squares",
+        0.5 * (bent_s * bent_s + bent_p * bent_p) =>
+            "Snell's law has the square of n1 / n2: sin² θ2 = (n1 / n2)² sin² θ1",
+    ].to_vec()
 }
 
 /// Queries from either side, and beyond the critical angle, for which all known mistakes give different answers.

@@ -91,11 +91,10 @@ pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> CheckResult {
         }
         let middle = *u == Vec2::splat(0.5);
         Err(Broken::new(call("sample_disk", &[u]), yours, "a length of 1 at most", "the definition")
-            .explained_by([
-                "you divide 0 by 0 for the middle of the square: return (0, 0) there"
-                    .when(middle && yours.is_nan()),
-                (yours.is_nan(), "you return NaN"),
-                (!yours.is_nan(), "your point is outside the disk"),
+            .explained_by(named![
+                middle && yours.is_nan() => "you divide 0 by 0 for the middle of the square: return (0, 0) there",
+                yours.is_nan() => "you return NaN",
+                !yours.is_nan() => "your point is outside the disk",
             ]))
     })?;
     // Another check judges the distribution. Here points must only reach all four quarters of the disk.

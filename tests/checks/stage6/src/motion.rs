@@ -50,12 +50,11 @@ fn judge_slot((x, y): (u32, u32), slot: u32, twice: bool) -> Judged {
             (twice, "a block of 4 × 4 cells has this slot twice, and another one is missing: compare the table and its index"),
         ])
     };
-    unless(slot == expected, broken).formulas([
-        (slot == TABLE[x as usize % 4][y as usize % 4], "you exchange rows and columns: y is the row"),
-        (slot == 1 + 4 * (y % 4) + x % 4, "you number the slots in order: use the table"),
-        (slot + 1 == expected, "slots are counted from 1"),
-        "your rows are upside down: row 0 is the first line"
-            .when(slot == TABLE[3 - y as usize % 4][x as usize % 4]),
+    unless(slot == expected, broken).formulas(named![
+        slot == TABLE[x as usize % 4][y as usize % 4] => "you exchange rows and columns: y is the row",
+        slot == 1 + 4 * (y % 4) + x % 4 => "you number the slots in order: use the table",
+        slot + 1 == expected => "slots are counted from 1",
+        slot == TABLE[3 - y as usize % 4][x as usize % 4] => "your rows are upside down: row 0 is the first line",
     ])
 }
 
@@ -238,15 +237,14 @@ fn judge_bounds((start, end): &(Aabb, Aabb), yours: Aabb) -> Judged {
             (!outside, "your box is larger than necessary"),
         ])
     };
-    unless(yours == expected, broken).formulas([
-        (yours == *start, "you return the start box: include the end box"),
-        (yours == *end, "you return the end box: include the start box"),
-        "you return the box at half time: include both ends"
-            .when(yours == Aabb::new(0.5 * (start.min + end.min), 0.5 * (start.max + end.max))),
-        "you return the intersection of both boxes: return the box around them"
-            .when(yours == Aabb::new(start.min.max(end.min), start.max.min(end.max))),
-        "you take min from start and max from end: use both boxes for each"
-            .when(yours == Aabb::new(start.min, end.max)),
-        (yours == moved, "you move the start box: the end box may have another size"),
+    unless(yours == expected, broken).formulas(named![
+        yours == *start => "you return the start box: include the end box",
+        yours == *end => "you return the end box: include the start box",
+        yours == Aabb::new(0.5 * (start.min + end.min), 0.5 * (start.max + end.max)) =>
+            "you return the box at half time: include both ends",
+        yours == Aabb::new(start.min.max(end.min), start.max.min(end.max)) =>
+            "you return the intersection of both boxes: return the box around them",
+        yours == Aabb::new(start.min, end.max) => "you take min from start and max from end: use both boxes for each",
+        yours == moved => "you move the start box: the end box may have another size",
     ])
 }

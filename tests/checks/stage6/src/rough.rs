@@ -25,13 +25,12 @@ pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
             return Err(Broken::new(query.call("sample_phong_lobe"), yours, expected, "roughness above 0")
                 .because("you return ideal for a rough surface"));
         }
-        Err(Broken::new(query.call("sample_phong_lobe"), yours, query.ideal, "roughness 0").explained_by([
-            (yours.is_nan(), "you return NaN: 2 / 0² is infinite"),
-            "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself"
-                .when((yours - query.ideal).length() < 1e-5),
-            (!yours.is_nan(), "you change the direction: with roughness 0 return ideal itself"),
-            "your result is not ideal, and some results are NaN: with roughness 0 return ideal itself"
-                .when(!rough),
+        Err(Broken::new(query.call("sample_phong_lobe"), yours, query.ideal, "roughness 0").explained_by(named![
+            yours.is_nan() => "you return NaN: 2 / 0² is infinite",
+            (yours - query.ideal).length() < 1e-5 =>
+                "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself",
+            !yours.is_nan() => "you change the direction: with roughness 0 return ideal itself",
+            !rough => "your result is not ideal, and some results are NaN: with roughness 0 return ideal itself",
         ]))
     })
 }
@@ -101,20 +100,16 @@ fn mistakes(lobe: &Lobe, roughness: f32) -> Mistakes {
     let n = 2.0 / (r * r) - 2.0;
     let power = |exponent: f64| lobe.is(|u| u.powf(exponent));
     // For roughness 1 the exponent is 0, where some mistakes are the same.
-    vec![
-        (n > 0.0 && power(1.0 / n), "your lobe is too wide: you use u^(1 / n); it is u^(1 / (n + 1))"),
-        (power(1.0 / (n + 2.0)), "your lobe is too narrow: you use u^(1 / (n + 2)); it is u^(1 / (n + 1))"),
-        "your lobe is too narrow: you use n = 2 / roughness²; it is n = 2 / roughness² - 2"
-            .when(power(1.0 / (n + 3.0))),
-        "your lobe is too wide: you do not square roughness; n = 2 / roughness² - 2"
-            .when(r < 1.0 && power(1.0 / (2.0 / r - 1.0))),
-        (power(1.0 / (r + 1.0)), "you use roughness as n: n = 2 / roughness² - 2"),
-        "your cos θ is another power of a random number: it is u^(1 / (n + 1))".when(is_other_power(
-            &lobe.u,
-            &lobe.cosines,
-            1.0 / (n + 1.0),
-        )),
-    ]
+    named![
+        n > 0.0 && power(1.0 / n) => "your lobe is too wide: you use u^(1 / n); it is u^(1 / (n + 1))",
+        power(1.0 / (n + 2.0)) => "your lobe is too narrow: you use u^(1 / (n + 2)); it is u^(1 / (n + 1))",
+        power(1.0 / (n + 3.0)) => "your lobe is too narrow: you use n = 2 / roughness²; it is n = 2 / roughness² - 2",
+        r < 1.0 && power(1.0 / (2.0 / r - 1.0)) =>
+            "your lobe is too wide: you do not square roughness; n = 2 / roughness² - 2",
+        power(1.0 / (r + 1.0)) => "you use roughness as n: n = 2 / roughness² - 2",
+        is_other_power(&lobe.u, &lobe.cosines, 1.0 / (n + 1.0)) =>
+            "your cos θ is another power of a random number: it is u^(1 / (n + 1))",
+    ].to_vec()
 }
 
 pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -> CheckResult {

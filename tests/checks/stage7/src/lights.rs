@@ -76,35 +76,33 @@ fn light_mistakes(case: &LightCase, yours: &LightEffects) -> Vec<(bool, &'static
     let with = |applies, samples, area| changed(applies, LightEffects { samples, area, ..*expected });
     let many = is_area && n > 0;
     let is = |wrong: LightEffects| *yours == wrong;
-    vec![
-        "a point light needs 1 sample: light_samples counts for area lights only"
-            .when(is(with(!is_area, n, false))),
-        "you set shadows for every light: a light without shadows still needs 1 sample, and shadows = light.shadows"
-            .when(is(changed(true, LightEffects { shadows: true, ..*expected }))),
-        "you return the default for a light without shadows: a light without shadows still needs 1 sample, and shadows = light.shadows"
-            .when(is(changed(!light.shadows, nothing))),
-        (is(dark_if(false)), "a light that emits nothing needs nothing: LightEffects::default()"),
-        "a light that emits nothing needs no shadows either: LightEffects::default()"
-            .when(is(if is_lit { *expected } else { LightEffects { shadows: light.shadows, ..nothing } })),
-        "you test the colour only, but a light of intensity 0 is dark, too: a light that emits nothing needs nothing"
-            .when(is(dark_if(light.color == Vec3::ZERO))),
-        "you test the intensity only: a black light emits nothing, so it needs nothing"
-            .when(is(dark_if(light.intensity == 0.0))),
-        "you return the default for a light that is black in one channel: a faint red light still emits, so test whether all channels are 0"
-            .when(is(dark_if(radiance.min_element() == 0.0))),
-        "you return the default for dim lights: a faint red light still emits, so compare with 0"
-            .when(is(dark_if(radiance.max_element() < 1e-2))),
-        (is(with(many, 1, true)), TOO_FEW),
-        (is(with(many, 1, false)), TOO_FEW),
-        (is(with(many, n + 1, true)), "you add a sample: an area light needs quality.light_samples samples"),
-        "with light_samples = 0 an area light needs 1 sample, and area is false"
-            .when(is(with(is_area, n, true))),
-        "you use 0 samples: with light_samples = 0 an area light needs 1 sample, and area is false"
-            .when(is(with(is_area && n == 0, 0, false))),
-        (is(with(is_area && n == 0, 1, true)), "with light_samples = 0 area is false"),
-        "a single sample is drawn at random, too: area is true if light_samples is above 0"
-            .when(is(with(is_area && n == 1, 1, false))),
-    ]
+    named![
+        is(with(!is_area, n, false)) => "a point light needs 1 sample: light_samples counts for area lights only",
+        is(changed(true, LightEffects { shadows: true, ..*expected })) =>
+            "you set shadows for every light: a light without shadows still needs 1 sample, and shadows = light.shadows",
+        is(changed(!light.shadows, nothing)) =>
+            "you return the default for a light without shadows: a light without shadows still needs 1 sample, and shadows = light.shadows",
+        is(dark_if(false)) => "a light that emits nothing needs nothing: LightEffects::default()",
+        is(if is_lit { *expected } else { LightEffects { shadows: light.shadows, ..nothing } }) =>
+            "a light that emits nothing needs no shadows either: LightEffects::default()",
+        is(dark_if(light.color == Vec3::ZERO)) =>
+            "you test the colour only, but a light of intensity 0 is dark, too: a light that emits nothing needs nothing",
+        is(dark_if(light.intensity == 0.0)) =>
+            "you test the intensity only: a black light emits nothing, so it needs nothing",
+        is(dark_if(radiance.min_element() == 0.0)) =>
+            "you return the default for a light that is black in one channel: a faint red light still emits, so test whether all channels are 0",
+        is(dark_if(radiance.max_element() < 1e-2)) =>
+            "you return the default for dim lights: a faint red light still emits, so compare with 0",
+        is(with(many, 1, true)) => TOO_FEW,
+        is(with(many, 1, false)) => TOO_FEW,
+        is(with(many, n + 1, true)) => "you add a sample: an area light needs quality.light_samples samples",
+        is(with(is_area, n, true)) => "with light_samples = 0 an area light needs 1 sample, and area is false",
+        is(with(is_area && n == 0, 0, false)) =>
+            "you use 0 samples: with light_samples = 0 an area light needs 1 sample, and area is false",
+        is(with(is_area && n == 0, 1, true)) => "with light_samples = 0 area is false",
+        is(with(is_area && n == 1, 1, false)) =>
+            "a single sample is drawn at random, too: area is true if light_samples is above 0",
+    ].to_vec()
 }
 
 pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> CheckResult {

@@ -202,24 +202,23 @@ fn material_mistakes(
     let transmission = !lights_differ && yours.transmission != expected.transmission;
     let same_rays = !lights_differ && !mirror && !transmission;
     let mirror_alone = mirror && !transmission && shown;
-    vec![
-        "you list a light that adds nothing: in each channel, its radiance or diffuse and specular are 0"
-            .when(lights_differ && more && yours.lights.len() > expected.lights.len()),
-        "you leave out a light that matters: one channel of diffuse or specular is enough, and so is faint light"
-            .when(lights_differ && fewer && yours.lights.len() < expected.lights.len()),
-        (!shown && (mirror || transmission), "with max_depth 0 a surface spawns no secondary rays"),
-        (mirror_alone && material.coat != 1.0, "a coat, which is not 1, reflects rays"),
-        "with fresnel, a material reflects if its transmission is not 0, and only then"
-            .when(mirror_alone && material.mirror == Vec3::ZERO),
-        "rays are reflected if some channel of mirror is not 0"
-            .when(mirror_alone && material.mirror != Vec3::ZERO),
-        "rays are refracted if some channel of transmission is not 0, for every index of refraction"
-            .when(transmission && through && shown),
-        "glossy is true if roughness is above 0 and the material reflects or refracts rays"
-            .when(same_rays && yours.glossy != expected.glossy),
-        "an image matters if diffuse or ambient, which it multiplies, is not 0: otherwise texture is false"
-            .when(same_rays && yours.texture != expected.texture),
-    ]
+    named![
+        lights_differ && more && yours.lights.len() > expected.lights.len() =>
+            "you list a light that adds nothing: in each channel, its radiance or diffuse and specular are 0",
+        lights_differ && fewer && yours.lights.len() < expected.lights.len() =>
+            "you leave out a light that matters: one channel of diffuse or specular is enough, and so is faint light",
+        !shown && (mirror || transmission) => "with max_depth 0 a surface spawns no secondary rays",
+        mirror_alone && material.coat != 1.0 => "a coat, which is not 1, reflects rays",
+        mirror_alone && material.mirror == Vec3::ZERO =>
+            "with fresnel, a material reflects if its transmission is not 0, and only then",
+        mirror_alone && material.mirror != Vec3::ZERO => "rays are reflected if some channel of mirror is not 0",
+        transmission && through && shown =>
+            "rays are refracted if some channel of transmission is not 0, for every index of refraction",
+        same_rays && yours.glossy != expected.glossy =>
+            "glossy is true if roughness is above 0 and the material reflects or refracts rays",
+        same_rays && yours.texture != expected.texture =>
+            "an image matters if diffuse or ambient, which it multiplies, is not 0: otherwise texture is false",
+    ].to_vec()
 }
 
 fn compare_effects(

@@ -235,10 +235,9 @@ impl Spread {
         ]);
         // A wrong number of bounces shows only where max_depth ends them.
         if self.bounces == max_depth {
-            wrong.extend([
-                (after(max_depth + 1), "you count a bounce too many: there are max_depth bounces"),
-                "you count a bounce too few: there are max_depth bounces"
-                    .when(after(max_depth.saturating_sub(1))),
+            wrong.extend(named![
+                after(max_depth + 1) => "you count a bounce too many: there are max_depth bounces",
+                after(max_depth.saturating_sub(1)) => "you count a bounce too few: there are max_depth bounces",
             ]);
         }
         BoundedScene { what: format!("one pixel, {what}"), query, expected, wrong }

@@ -154,14 +154,13 @@ fn of_hidden_parts(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static s
         *yours == Effects { materials, ..expected.clone() }
     };
     let smooth = yours.smooth_meshes.iter().zip(&expected.smooth_meshes).any(|(one, other)| *one && !*other);
-    vec![
-        "you analyse what is not shown: only shapes that a root reaches are shown, so use scene.shown()"
-            .when(is_same && same_length && only_extra && (extra || smooth)),
-        (one_material(2), ONE_MATERIAL),
-        (one_material(expected.materials.len() - 1), ONE_MATERIAL),
-        "you leave out entries: there is one per material and one per mesh of the scene, in order"
-            .when(!same_length),
-    ]
+    named![
+        is_same && same_length && only_extra && (extra || smooth) =>
+            "you analyse what is not shown: only shapes that a root reaches are shown, so use scene.shown()",
+        one_material(2) => ONE_MATERIAL,
+        one_material(expected.materials.len() - 1) => ONE_MATERIAL,
+        !same_length => "you leave out entries: there is one per material and one per mesh of the scene, in order",
+    ].to_vec()
 }
 
 pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult {

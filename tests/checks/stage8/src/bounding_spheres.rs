@@ -218,19 +218,17 @@ fn formulas(entry: &Entry, yours: Option<f32>) -> Vec<(bool, &'static str)> {
     };
     let ends = roots(&ray, &sphere, radius * radius);
     let length = f64::from(entry.speed) * ray.direction.as_dvec3().length();
-    vec![
-        "your t has another unit, that of the world: it counts lengths of direction"
-            .when(is(entered(ends.map(|ends| ends.map(|end| length * end))))),
-        "you use the radius in place of its square: the distance from the centre is squared, too"
-            .when(is(entered(roots(&ray, &sphere, radius / f64::from(entry.size))))),
-        "direction is not a unit vector here: a = d·d belongs to the discriminant, too"
-            .when(is(entered(roots(&ray, &sphere, radius * radius / (length * length))))),
-        "your sphere is too large: you compare with twice the radius".when(is(entered(roots(
-            &ray,
-            &sphere,
-            4.0 * radius * radius,
-        )))),
+    named![
+        is(entered(ends.map(|ends| ends.map(|end| length * end)))) =>
+            "your t has another unit, that of the world: it counts lengths of direction",
+        is(entered(roots(&ray, &sphere, radius / f64::from(entry.size)))) =>
+            "you use the radius in place of its square: the distance from the centre is squared, too",
+        is(entered(roots(&ray, &sphere, radius * radius / (length * length)))) =>
+            "direction is not a unit vector here: a = d·d belongs to the discriminant, too",
+        is(entered(roots(&ray, &sphere, 4.0 * radius * radius))) =>
+            "your sphere is too large: you compare with twice the radius",
     ]
+    .to_vec()
 }
 
 /// Mistakes that the wrong answer `yours` shows where `right` is right.
@@ -245,26 +243,25 @@ fn observations(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(b
     let direction = ray.direction.as_dvec3();
     let closest = to_center.dot(direction) / direction.length_squared();
     let late = matches!((yours, right), (Some(yours), Some(right)) if yours > right && near(yours.into(), right.into()));
-    vec![
-        "you are late by a rounding error, and a search would skip a hit at this t: return a slightly earlier t"
-            .when(late),
-        "you return 0 for a ray that starts inside: it enters the sphere at t_min"
-            .when(starts_inside && yours == Some(0.0) && ray.t_min != 0.0),
-        "you return where the ray is closest to the centre: it enters the sphere before"
-            .when(yours.is_some_and(|t| near(t.into(), closest.max(ray.t_min.into()))) && right.is_some()),
-        "you return a t before t_min: a ray that starts inside the sphere enters it at t_min"
-            .when(starts_inside && is(0)),
-        "you return where the ray leaves: a ray that starts inside the sphere enters it at t_min"
-            .when(starts_inside && is(1)),
-        "you return None for a ray that starts inside: a ray that starts inside the sphere enters it at t_min"
-            .when(starts_inside && yours.is_none()),
-        "you return an entry for a sphere that lies behind the ray: the ray leaves it before t_min"
-            .when(found && ends.is_some_and(|ends| ends[1] < ray.t_min.into())),
-        "you return an entry for a sphere that lies beyond t_max"
-            .when(found && ends.is_some_and(|ends| ends[0] > ray.t_max.into())),
-        (found && ends.is_none(), "you return an entry for a sphere that lies beside the ray"),
-        (is(1), "your t is later than the entry, which is the nearer root"),
-    ]
+    named![
+        late =>
+            "you are late by a rounding error, and a search would skip a hit at this t: return a slightly earlier t",
+        starts_inside && yours == Some(0.0) && ray.t_min != 0.0 =>
+            "you return 0 for a ray that starts inside: it enters the sphere at t_min",
+        yours.is_some_and(|t| near(t.into(), closest.max(ray.t_min.into()))) && right.is_some() =>
+            "you return where the ray is closest to the centre: it enters the sphere before",
+        starts_inside && is(0) => "you return a t before t_min: a ray that starts inside the sphere enters it at t_min",
+        starts_inside && is(1) =>
+            "you return where the ray leaves: a ray that starts inside the sphere enters it at t_min",
+        starts_inside && yours.is_none() =>
+            "you return None for a ray that starts inside: a ray that starts inside the sphere enters it at t_min",
+        found && ends.is_some_and(|ends| ends[1] < ray.t_min.into()) =>
+            "you return an entry for a sphere that lies behind the ray: the ray leaves it before t_min",
+        found && ends.is_some_and(|ends| ends[0] > ray.t_max.into()) =>
+            "you return an entry for a sphere that lies beyond t_max",
+        found && ends.is_none() => "you return an entry for a sphere that lies beside the ray",
+        is(1) => "your t is later than the entry, which is the nearer root",
+    ].to_vec()
 }
 
 /// With `behind`, some ranges begin behind the origin.

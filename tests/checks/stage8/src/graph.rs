@@ -136,26 +136,25 @@ fn lost_hits(
     let Some(holder) = nodes.next() else { return Vec::new() };
     let above: Vec<&GraphNode> = nodes.collect();
     let is_tested = asked.contains(&right.primitive);
-    vec![
-        "of two hits at the same t you return the larger number: the smaller one wins".when(
-            is_tested && found.is_some_and(|found| found.t == right.t && found.primitive > right.primitive),
-        ),
-        "you skip a volume that begins exactly at the closest hit: it may contain a hit at the same t"
-            .when(!is_tested && found.is_some_and(|found| found.t == right.t)),
-        "you lose a hit at the t of the closest one so far: the smaller number wins"
-            .when(found.is_some_and(|found| found.t == right.t)),
-        "you test the nearest primitive, but you replace it by another one: keep the nearest hit"
-            .when(is_tested && found.is_some()),
-        (is_tested && found.is_none(), "you test the nearest primitive, but you do not return its hit"),
-        "you do not test the own primitives of a node that has children: a node can have both"
-            .when(!is_tested && !holder.children.is_empty()),
-        "you do not test primitives more than one level below the root: visit the children of children, too"
-            .when(!is_tested && above.len() > 1),
-        "you do not visit the children of a node that has primitives of its own: a node can have both"
-            .when(!is_tested && above.iter().any(|node| !node.primitives.is_empty())),
-        "you leave out a nearer hit: you have a hit and do not test a primitive that is nearer"
-            .when(!is_tested && found.is_some()),
-    ]
+    named![
+        is_tested && found.is_some_and(|found| found.t == right.t && found.primitive > right.primitive) =>
+            "of two hits at the same t you return the larger number: the smaller one wins",
+        !is_tested && found.is_some_and(|found| found.t == right.t) =>
+            "you skip a volume that begins exactly at the closest hit: it may contain a hit at the same t",
+        found.is_some_and(|found| found.t == right.t) =>
+            "you lose a hit at the t of the closest one so far: the smaller number wins",
+        is_tested && found.is_some() =>
+            "you test the nearest primitive, but you replace it by another one: keep the nearest hit",
+        is_tested && found.is_none() => "you test the nearest primitive, but you do not return its hit",
+        !is_tested && !holder.children.is_empty() =>
+            "you do not test the own primitives of a node that has children: a node can have both",
+        !is_tested && above.len() > 1 =>
+            "you do not test primitives more than one level below the root: visit the children of children, too",
+        !is_tested && above.iter().any(|node| !node.primitives.is_empty()) =>
+            "you do not visit the children of a node that has primitives of its own: a node can have both",
+        !is_tested && found.is_some() =>
+            "you leave out a nearer hit: you have a hit and do not test a primitive that is nearer",
+    ].to_vec()
 }
 
 pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> CheckResult {
@@ -182,13 +181,12 @@ pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Ch
         });
         let yours = format!("{n_boxes} volumes and the primitives {asked:?}");
         let expected = format!("no volume and the primitives {all:?}");
-        Err(Broken::with_texts(describe(query), yours, expected, "the definition").explained_by([
-            (n_boxes > 0, "you call enter although `volumes` is off"),
-            (is_twice, "you test a primitive twice"),
-            "you leave out a primitive below a node with a hit of its own: its children can be nearer"
-                .when(left_out && below_a_hit && n_boxes == 0),
-            "you leave out a primitive: without `volumes` every primitive is tested"
-                .when(left_out && n_boxes == 0),
+        Err(Broken::with_texts(describe(query), yours, expected, "the definition").explained_by(named![
+            n_boxes > 0 => "you call enter although `volumes` is off",
+            is_twice => "you test a primitive twice",
+            left_out && below_a_hit && n_boxes == 0 =>
+                "you leave out a primitive below a node with a hit of its own: its children can be nearer",
+            left_out && n_boxes == 0 => "you leave out a primitive: without `volumes` every primitive is tested",
         ]))
     };
     all_hold(compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge))

@@ -53,12 +53,10 @@ pub(super) fn normals_of_cuboid(cuboid: &Cuboid, at: DVec3) -> WrongNormals {
     let from_middle = at - 0.5 * (cuboid.min.as_dvec3() + cuboid.max.as_dvec3());
     let farthest = from_middle.abs().max_position();
     let axis = DVec3::AXES[farthest] * from_middle[farthest];
-    vec![
-        "you return the direction from the centre of the box to the hit: that is the normal of a sphere"
-            .when(from_middle),
-        "you return the axis along which the hit is farthest from the centre, which is right for a cube only"
-            .when(axis),
-    ]
+    named![
+        from_middle => "you return the direction from the centre of the box to the hit: that is the normal of a sphere",
+        axis => "you return the axis along which the hit is farthest from the centre, which is right for a cube only",
+    ].to_vec()
 }
 
 /// The real roots of `a t² + 2 b t + c`.
@@ -225,12 +223,11 @@ pub(super) fn of_cone(query: &SolidQuery<Cone>, yours: Option<f32>, _: f64) -> M
 
 pub(super) fn normals_of_cone(cone: &Cone, at: DVec3) -> WrongNormals {
     let (apex, axis) = (cone.apex.as_dvec3(), (cone.base - cone.apex).as_dvec3());
-    vec![
-        "you return the normal of a cylinder, perpendicular to the axis: the side of a cone is inclined"
-            .when((at - apex).reject_from(axis)),
-        "you return the direction from `base` to the hit: that is the normal of a sphere"
-            .when(at - cone.base.as_dvec3()),
-    ]
+    named![
+        (at - apex).reject_from(axis) =>
+            "you return the normal of a cylinder, perpendicular to the axis: the side of a cone is inclined",
+        at - cone.base.as_dvec3() => "you return the direction from `base` to the hit: that is the normal of a sphere",
+    ].to_vec()
 }
 
 pub(super) const OUTSIDE: &str = "you return a point of the plane that lies outside of the shape";
@@ -288,15 +285,14 @@ pub(super) fn of_polygon(query: &SolidQuery<Polygon>, yours: Option<f32>, _: f64
         .zip(edges())
         .map(|(n, (p, _))| n.dot(direction) - n.dot(p + origin))
         .collect();
-    let mut all = vec![
-        (wrong(fan(1)), "you test the first triangle of the fan only"),
-        "you test the first two triangles of the fan only: n corners make n - 2 triangles"
-            .when(wrong((1..3.min(corners.len() - 1)).any(fan))),
-        "you subtract a corner twice: the plane of an edge passes through the ray's origin"
-            .when(wrong(same_sign(&twice))),
-        "you lose upright polygons: drop the axis along which the normal is longest, not always z"
-            .when(wrong(inside) || (yours.is_none() && normal.z.abs() < 0.1 * normal.length())),
-    ];
+    let mut all = named![
+        wrong(fan(1)) => "you test the first triangle of the fan only",
+        wrong((1..3.min(corners.len() - 1)).any(fan)) =>
+            "you test the first two triangles of the fan only: n corners make n - 2 triangles",
+        wrong(same_sign(&twice)) => "you subtract a corner twice: the plane of an edge passes through the ray's origin",
+        wrong(inside) || (yours.is_none() && normal.z.abs() < 0.1 * normal.length()) =>
+            "you lose upright polygons: drop the axis along which the normal is longest, not always z",
+    ].to_vec();
     all.extend(of_flat(ray, yours, t, slope, inside));
     all
 }

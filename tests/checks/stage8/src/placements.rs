@@ -137,11 +137,10 @@ fn judge_refusal(path: &Vec<Affine3A>, yours: Option<Placement>) -> CheckResult 
     let input = format!("placement(&{})", list(path));
     let flat = path.iter().filter(is_finite).any(|one| determinant(one) == 0.0);
     match (yours, has_inverse) {
-        (Some(_), false) => Err(Broken::with_texts(input, "Some", "None", "a transform has no inverse").explained_by([
-            "you accept a path with a singular transform: if one factor has no inverse, the product has none"
-                .when(flat),
-            (!flat, "you accept a transform with NaN or infinite numbers: its inverse is not finite"),
-            (true, "you accept a path with a transform that has no inverse: if one has none, the product has none"),
+        (Some(_), false) => Err(Broken::with_texts(input, "Some", "None", "a transform has no inverse").explained_by(named![
+            flat => "you accept a path with a singular transform: if one factor has no inverse, the product has none",
+            !flat => "you accept a transform with NaN or infinite numbers: its inverse is not finite",
+            true => "you accept a path with a transform that has no inverse: if one has none, the product has none",
         ])),
         (None, true) => {
             let small = path.iter().any(|one| determinant(one).abs() < 1e-2);

@@ -286,15 +286,14 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> CheckResult {
             }
             let direction = normal.normalize_or_zero();
             let faces_viewer = normal.dot(query.ray.direction.as_dvec3()) < 0.0;
-            let mut mistakes = vec![
-                (normal.is_nan(), "your normal is NaN: you normalized a vector of length 0"),
-                (normal == DVec3::ZERO, "your normal is 0, which has no direction"),
-                "you turn the normal to the viewer: it does not depend on where the ray comes from"
-                    .when(turned && faces_viewer && unit),
-                "you return the normal of the other side, from which the corners run clockwise"
-                    .when(turned && unit),
-                (!turned && !unit && beyond(direction) <= 2e-3, "your normal does not have unit length"),
-            ];
+            let mut mistakes = named![
+                normal.is_nan() => "your normal is NaN: you normalized a vector of length 0",
+                normal == DVec3::ZERO => "your normal is 0, which has no direction",
+                turned && faces_viewer && unit =>
+                    "you turn the normal to the viewer: it does not depend on where the ray comes from",
+                turned && unit => "you return the normal of the other side, from which the corners run clockwise",
+                !turned && !unit && beyond(direction) <= 2e-3 => "your normal does not have unit length",
+            ].to_vec();
             // The tolerance covers the error of the hit point over half a unit, the smallest radius.
             let is = |(wrong, text): (DVec3, &'static str)| {
                 ((wrong.normalize_or_zero() - direction).length() < 1e-3, text)

@@ -67,14 +67,13 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
                 return Some((
                     count(times),
                     count(1),
-                    vec![
-                        "a primitive that touches a plane, or lies in it, belongs to both sides"
-                            .when(missing && elsewhere && on_plane),
-                        "a primitive that crosses or touches a plane belongs to both sides"
-                            .when(missing && elsewhere),
-                        (missing && !elsewhere, "you leave out a primitive: no leaf lists it"),
-                        (!missing, "you list a primitive twice in one leaf"),
-                    ],
+                    named![
+                        missing && elsewhere && on_plane =>
+                            "a primitive that touches a plane, or lies in it, belongs to both sides",
+                        missing && elsewhere => "a primitive that crosses or touches a plane belongs to both sides",
+                        missing && !elsewhere => "you leave out a primitive: no leaf lists it",
+                        !missing => "you list a primitive twice in one leaf",
+                    ].to_vec(),
                 ));
             }
             if outside && times > 0 {

@@ -147,13 +147,12 @@ fn first_fault<N: std::fmt::Display>(
                 return Some((
                     describe(times),
                     describe(1),
-                    vec![
-                        (elsewhere && touches, "a primitive that touches a plane belongs to both sides"),
-                        "a primitive that overlaps or touches several cells belongs to all of them"
-                            .when(elsewhere),
-                        (nowhere, "you leave out a primitive: no cell lists it"),
-                        (!missing, "you list a primitive twice in one cell"),
-                    ],
+                    named![
+                        elsewhere && touches => "a primitive that touches a plane belongs to both sides",
+                        elsewhere => "a primitive that overlaps or touches several cells belongs to all of them",
+                        nowhere => "you leave out a primitive: no cell lists it",
+                        !missing => "you list a primitive twice in one cell",
+                    ].to_vec(),
                 ));
             }
             if times > 0 && is_far_off(bounds, &cell.to_box(), one) {
