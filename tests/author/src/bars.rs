@@ -37,7 +37,11 @@ pub fn run(given: &Given) -> Result<bool> {
     }
     let path = root.join(FILE);
     let text = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
-    let new = with_bars(&text, &lines)?;
+    // Replace the lines of the table.
+    let (before, rest) =
+        text.split_once(TABLE).with_context(|| format!("{FILE} has no table {}", TABLE.trim_end()))?;
+    let after = rest.find("\n[").map_or("", |end| &rest[end..]);
+    let new = format!("{before}{TABLE}{lines}{after}");
     match (new == text, given.has("--check")) {
         (true, _) => println!("the bars in {FILE} are those of the reference"),
         (false, true) => {
@@ -49,12 +53,4 @@ pub fn run(given: &Given) -> Result<bool> {
         }
     }
     Ok(true)
-}
-
-/// The text of the rubric with other lines in its table of bars.
-fn with_bars(text: &str, lines: &str) -> Result<String> {
-    let (before, rest) =
-        text.split_once(TABLE).with_context(|| format!("{FILE} has no table {}", TABLE.trim_end()))?;
-    let after = rest.find("\n[").map_or("", |end| &rest[end..]);
-    Ok(format!("{before}{TABLE}{lines}{after}"))
 }

@@ -68,13 +68,15 @@ pub struct Document {
 ///
 /// If a name is unknown, or if its comment follows no number. The error says file and line.
 pub fn documents(root: &Path) -> Result<Vec<Document>> {
-    let mut paths = markdown(root)?;
+    let keeps = |path: &str| !last_part(path).starts_with('.') && !SKIPPED.contains(&last_part(path));
+    let mut paths: Vec<PathBuf> = files_below(root, "", &keeps)?.into_iter().map(PathBuf::from).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "md"));
     paths.sort();
     let values = Values { root, corpus: OnceCell::new(), printed: printed::read_all(root)? };
     let mut documents = Vec::new();
     for path in paths {
-        let present = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
-        let path = path.strip_prefix(root).unwrap_or(&path).to_owned();
+        let file = root.join(&path);
+        let present = fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
         if present.contains(MARK) || present.contains(QUOTE) {
             let name = path.display().to_string();
             let synced = rewrite(&name, &present, |name| values.get(name))?;
@@ -83,14 +85,6 @@ pub fn documents(root: &Path) -> Result<Vec<Document>> {
         }
     }
     Ok(documents)
-}
-
-/// The Markdown files of a folder, in folders that are not hidden.
-fn markdown(folder: &Path) -> Result<Vec<PathBuf>> {
-    let keeps = |path: &str| !last_part(path).starts_with('.') && !SKIPPED.contains(&last_part(path));
-    let mut files = files_below(folder, "", &keeps)?;
-    files.retain(|path| path.ends_with(".md"));
-    Ok(files.into_iter().map(|path| folder.join(path)).collect())
 }
 
 /// Returns the text with each named number or table replaced by its value.

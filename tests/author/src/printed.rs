@@ -84,15 +84,15 @@ pub fn run_all(root: &Path, keep: bool, shard: Option<Shard>) -> Result<Vec<Stri
         if one_line(&now) == one_line(&text) {
             continue;
         }
-        let (yours, expected) = (text.lines().map(one_line), now.lines().map(one_line));
-        let same =
-            yours.clone().zip(expected.clone()).take_while(|(yours, expected)| yours == expected).count();
-        let line = |mut lines: Box<dyn Iterator<Item = String> + '_>| lines.nth(same).unwrap_or_default();
+        let lines = |text: &str| text.lines().map(one_line).collect::<Vec<_>>();
+        let (yours, expected) = (lines(&text), lines(&now));
+        let same = yours.iter().zip(&expected).take_while(|(yours, expected)| yours == expected).count();
+        let line = |lines: Vec<String>| lines.into_iter().nth(same).unwrap_or_default();
         different.push(format!(
             "  {FOLDER}/{name}.txt:{}: yours `{}`, expected `{}`",
             same + 2,
-            line(Box::new(yours)),
-            line(Box::new(expected)),
+            line(yours),
+            line(expected),
         ));
         if !keep {
             let file = root.join(FOLDER).join(format!("{name}.txt"));

@@ -124,6 +124,7 @@ fn roles(root: &Path, n_students: usize, all_honest: bool) -> Result<Vec<Role>> 
 
 /// Writes a submission into the folder of the class and returns its name.
 fn hand_in(root: &Path, class: &Path, number: usize, role: &Role) -> Result<String> {
+    let student = format!("student-{number:04}");
     if let Role::Attack(attack) = role {
         // The files that an attack must not reach lie beside the class.
         let folder = class.with_extension(format!("attack-{number}"));
@@ -133,15 +134,13 @@ fn hand_in(root: &Path, class: &Path, number: usize, role: &Role) -> Result<Stri
         let ending =
             made.extension().filter(|_| made.is_file()).map(|ending| ending.to_string_lossy().into_owned());
         let to = match ending {
-            Some(ending) if name.to_string_lossy().ends_with(".tar.gz") => {
-                format!("student-{number:04}.tar.{ending}")
-            }
-            Some(ending) => format!("student-{number:04}.{ending}"),
-            None => format!("student-{number:04}"),
+            Some(ending) if name.to_string_lossy().ends_with(".tar.gz") => format!("{student}.tar.{ending}"),
+            Some(ending) => format!("{student}.{ending}"),
+            None => student.clone(),
         };
         fs::rename(&made, class.join(to))?;
     } else {
-        let folder = class.join(format!("student-{number:04}/exercises/src"));
+        let folder = class.join(&student).join("exercises/src");
         for (name, text) in texts(root, role)? {
             let file = folder.join(name);
             fs::create_dir_all(&folder)
@@ -149,7 +148,7 @@ fn hand_in(root: &Path, class: &Path, number: usize, role: &Role) -> Result<Stri
                 .with_context(|| format!("cannot write {}", file.display()))?;
         }
     }
-    Ok(format!("student-{number:04}"))
+    Ok(student)
 }
 
 /// Returns the files of an honest submission.

@@ -178,7 +178,7 @@ fn a_run_names_what_went_wrong_and_what_was_changed() {
     assert_eq!(fine[1].complaints, [""; 0]);
     let text = &fine[0].complaints;
     assert!(text.iter().any(|one| one.starts_with("without the syntax check: ")), "{text:?}");
-    let broken = run(&|_, allowed| bail_out(allowed));
+    let broken = run(&|_, allowed| bail!("out of paper with {} rule", allowed.len()));
     let text = &broken[0].complaints;
     assert!(text.iter().any(|one| one.contains("failed: out of paper with 1 rule")), "{text:?}");
     let harmful = run(&|path, _| {
@@ -188,8 +188,4 @@ fn a_run_names_what_went_wrong_and_what_was_changed() {
     let text = &harmful[1].complaints;
     assert!(text.iter().any(|one| one.starts_with("the attack changed ") && one.ends_with("secret.txt")));
     assert!(choose(load(&root()).unwrap(), &["nobody".into()]).is_err());
-}
-
-fn bail_out(allowed: &[String]) -> Result<Graded> {
-    anyhow::bail!("out of paper with {} rule", allowed.len())
 }

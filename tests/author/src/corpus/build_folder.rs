@@ -127,9 +127,10 @@ impl BuildFolder {
     }
 
     /// Builds the program with the texts of some files replaced, and with more files.
-    pub fn build_with(&self, changes: &[(&str, &str)]) -> Result<Built> {
+    pub fn build_with<T: AsRef<str>>(&self, changes: &[(T, T)]) -> Result<Built> {
         // Cargo sees what has changed by the times of the files.
-        let changes: BTreeMap<&str, &str> = changes.iter().copied().collect();
+        let changes: BTreeMap<&str, &str> =
+            changes.iter().map(|(file, text)| (file.as_ref(), text.as_ref())).collect();
         let mut is_changed = copy_folder(&self.root, &self.folder, "src", &changes)?;
         for package in self.product.packages() {
             is_changed |= copy_folder(&self.root, &self.folder, &format!("{package}/src"), &changes)?;
@@ -197,11 +198,8 @@ pub fn cut_manifest(manifest: &str, without: &[&str], members: &[&str]) -> Strin
         }
         match line {
             _ if !keep || line.starts_with("default-members") => {}
-            _ if line.starts_with("members = ") => cut.push_str(&format!("members = {members:?}\n")),
-            _ => {
-                cut.push_str(line);
-                cut.push('\n');
-            }
+            _ if line.starts_with("members = ") => cut += &format!("members = {members:?}\n"),
+            _ => cut += &format!("{line}\n"),
         }
     }
     cut

@@ -167,6 +167,11 @@ impl Entry {
         if self.claim == Claim::Right { "right" } else { "wrong" }
     }
 
+    /// Its name and the file of the corpus in which it stands.
+    pub(super) fn with_file(&self) -> String {
+        format!("{} `{}` in {}", self.kind(), self.name, corpus_file(&self.file))
+    }
+
     /// Returns whether it is a mistake that the checks must name.
     pub fn has_a_known_mistake(&self) -> bool {
         matches!(self.claim, Claim::Wrong { is_unknown: false, .. })
@@ -190,15 +195,8 @@ impl Entry {
     pub fn apply(&self, original: &Original) -> Result<String> {
         let mut replaced = Vec::new();
         for change in &self.changes {
-            replaced.push(change.place(original).with_context(|| {
-                format!(
-                    "{} `{}` in {} does not fit {}",
-                    self.kind(),
-                    self.name,
-                    corpus_file(&self.file),
-                    self.file
-                )
-            })?);
+            let place = change.place(original);
+            replaced.push(place.with_context(|| format!("{} does not fit {}", self.with_file(), self.file))?);
         }
         replaced.sort_by_key(|(range, _)| range.start);
         ensure!(
@@ -269,13 +267,8 @@ impl CorpusFile {
     pub fn parse(name: &str, text: &str) -> Result<CorpusFile> {
         let stage = name.strip_prefix("stage").and_then(|rest| rest.split('_').next()?.parse().ok());
         let stage = stage.with_context(|| format!("{name} is not the name of a file stageN_….rs"))?;
-        let mut reader = Reader {
-            stage,
-            file: format!("solutions/src/{name}.rs"),
-            function: None,
-            draft: None,
-            corpus: CorpusFile::default(),
-        };
+        let file = format!("solutions/src/{name}.rs");
+        let mut reader = Reader { stage, file, ..Reader::default() };
         let lines: Vec<&str> = text.lines().collect();
         for (number, line) in lines.iter().enumerate() {
             reader
@@ -336,6 +329,7 @@ impl CorpusFile {
 }
 
 /// Reads a file of the corpus line by line.
+#[derive(Default)]
 struct Reader {
     stage: u8,
     file: String,
@@ -346,6 +340,7 @@ struct Reader {
     corpus: CorpusFile,
 }
 
+#[derive(Default)]
 struct Draft {
     kind: &'static str,
     name: String,
@@ -377,11 +372,8 @@ impl Reader {
                     kind,
                     name: name.to_owned(),
                     title: title.to_owned(),
-                    breaks: None,
-                    caught_by: None,
-                    says: Vec::new(),
-                    is_unknown: false,
                     changes: vec![Change { function, lines: Vec::new() }],
+                    ..Draft::default()
                 });
                 return Ok(());
             }

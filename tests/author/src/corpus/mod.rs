@@ -28,7 +28,7 @@ use records::{Matrix, Messages};
 use schemata::Form;
 use std::path::Path;
 use std::sync::Arc;
-use verdict::{EntryVerdict, TriedEntry};
+use verdict::{EntryVerdict, TriedEntry, one_line};
 
 /// The folder in which entries and changes of the solutions are built. One run at a time uses it.
 pub(crate) const FOLDER: &str = "target/corpus";
@@ -152,9 +152,7 @@ fn choose(
         }
     }
     let is_said = |entry: &Entry, words: &str| {
-        messages
-            .of(entry)
-            .is_some_and(|message| verdict::one_line(message).contains(&verdict::one_line(words)))
+        messages.of(entry).is_some_and(|message| one_line(message).contains(&one_line(words)))
     };
     let is_wanted = |entry: &Entry| {
         (options.names.is_empty() || options.names.iter().any(|name| is_named(entry, name)))
@@ -259,13 +257,8 @@ fn report(program: &Program, tried: &[TriedEntry], differences: &[String]) {
         };
         let with_verdict = |verdict: EntryVerdict| count(&|one| one.verdict == verdict);
         let otherwise = |one: &TriedEntry| {
-            matches!(
-                one.verdict,
-                EntryVerdict::Unnamed(_)
-                    | EntryVerdict::Misnamed
-                    | EntryVerdict::KilledByAnother
-                    | EntryVerdict::Missed(_)
-            )
+            use EntryVerdict::{KilledByAnother, Misnamed, Missed, Unnamed};
+            matches!(one.verdict, Unnamed(_) | Misnamed | KilledByAnother | Missed(_))
         };
         let right = |one: &TriedEntry| one.entry.claim == Claim::Right;
         println!(

@@ -33,7 +33,7 @@ impl Plan {
     /// Plans for these entries. The reference tries the checks of their stages, to see which functions each reaches.
     pub fn of(program: &Program, matrix: &Matrix, entries: &[Entry], jobs: usize) -> Result<Plan> {
         let stages: BTreeSet<u8> = entries.iter().map(|entry| entry.stage).collect();
-        let checks: Vec<&'static Check> =
+        let mut checks: Vec<&'static Check> =
             stages.iter().flat_map(|stage| all_checks::of_stage(*stage)).collect();
         let mut more = BTreeSet::new();
         for check in &checks {
@@ -49,8 +49,7 @@ impl Plan {
         }
         let with_right: BTreeSet<u8> =
             entries.iter().filter(|entry| entry.claim == Claim::Right).map(|entry| entry.stage).collect();
-        let checks: Vec<&'static Check> =
-            checks.into_iter().filter(|check| with_right.contains(&check.stage)).collect();
+        checks.retain(|check| with_right.contains(&check.stage));
         Ok(Plan { reached: program.reached(&checks, jobs)?, more })
     }
 

@@ -2,7 +2,7 @@
 
 use super::FOLDER;
 use super::build_folder::{BuildFolder, Built, Product};
-use super::entry::{Entry, Original, corpus_file};
+use super::entry::{Entry, Original};
 use super::schemata::{self, Form, Schema};
 use anyhow::{Context, Result, bail};
 use checks::Check;
@@ -122,9 +122,7 @@ impl Program {
             1,
         );
         texts.push((main.to_owned(), text));
-        let changes: Vec<(&str, &str)> =
-            texts.iter().map(|(file, text)| (file.as_str(), text.as_str())).collect();
-        match build_folder.build_with(&changes)? {
+        match build_folder.build_with(texts)? {
             Built::Program(worker) => {
                 fs::hard_link(worker, self.path(0))?;
                 Ok(())
@@ -146,14 +144,7 @@ impl Program {
                 Built::Program(worker) => {
                     fs::copy(worker, self.path(schemata::number(entry)))?;
                 }
-                Built::DoesNotCompile(error) => {
-                    bail!(
-                        "{} `{}` in {} does not compile:\n{error}",
-                        entry.kind(),
-                        entry.name,
-                        corpus_file(&entry.file)
-                    )
-                }
+                Built::DoesNotCompile(error) => bail!("{} does not compile:\n{error}", entry.with_file()),
             }
         }
         Ok(())

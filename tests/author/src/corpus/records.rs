@@ -28,11 +28,6 @@ impl Matrix {
         Matrix(pairs.map(|(entry, checks)| (entry.to_owned(), checks.to_owned())).collect())
     }
 
-    /// Replaces the line of an entry.
-    pub fn set(&mut self, entry: &Entry, failures: &Failures) {
-        self.0.insert(entry.to_string(), row(entry, failures));
-    }
-
     /// Writes the matrix.
     pub fn write(&self, root: &Path) -> Result<()> {
         let lines: String = self.0.iter().map(|(entry, checks)| format!("{entry}: {checks}\n")).collect();
@@ -75,18 +70,10 @@ fn messages_file(stage: u8) -> String {
     format!("{FOLDER}/messages/stage{stage}.txt")
 }
 
-/// The line above the message about a mistake.
-fn heading(name: &str) -> String {
-    format!("=== {name} ===\n")
-}
-
 /// Returns a message without the lines that come from the rubric.
 pub fn without_rubric(message: &str) -> String {
-    let of_rubric = |line: &&str| {
-        ["stage ", "  slides: ", "  again: ", "  print: ", "  stuck: "]
-            .iter()
-            .any(|start| line.starts_with(start))
-    };
+    let starts = ["stage ", "  slides: ", "  again: ", "  print: ", "  stuck: "];
+    let of_rubric = |line: &&str| starts.iter().any(|start| line.starts_with(start));
     message.lines().filter(|line| !of_rubric(line)).map(|line| format!("{line}\n")).collect()
 }
 
@@ -127,8 +114,7 @@ impl Messages {
             let start = format!("wrong/stage{stage}/");
             let of_stage =
                 self.0.iter().filter_map(|(name, message)| Some((name.strip_prefix(&start)?, message)));
-            let text: String =
-                of_stage.map(|(name, message)| format!("{}{message}", heading(name))).collect();
+            let text: String = of_stage.map(|(name, message)| format!("=== {name} ===\n{message}")).collect();
             write(&root.join(messages_file(*stage)), &text)?;
         }
         Ok(())
@@ -158,7 +144,7 @@ pub fn bless(root: &Path, tried: &[TriedEntry], matrix: bool, all: bool) -> Resu
     if matrix {
         let mut matrix = if all { Matrix::default() } else { Matrix::read(root) };
         for one in tried {
-            matrix.set(&one.entry, &one.failures);
+            matrix.0.insert(one.entry.to_string(), row(&one.entry, &one.failures));
         }
         matrix.write(root)?;
     }

@@ -69,15 +69,14 @@ struct Difference {
 impl Difference {
     fn of(original: &Original, text: String) -> Result<Difference> {
         let source = Source::parse(&text)?;
-        let mut difference =
-            Difference { text, source, variants: Vec::new(), inside: String::new(), form: Form::Functions };
-        difference.compare(original);
-        Ok(difference)
-    }
-
-    fn compare(&mut self, original: &Original) {
         let (old, old_text) = (&original.source, &original.text);
-        let (new, new_text) = (&self.source, &self.text);
+        let (new, new_text) = (&source, &text);
+        let uses = |text: &str, hidden: &BTreeSet<&str>| {
+            names(text).iter().any(|name| hidden.contains(name.as_str()))
+        };
+        let has_fixed_body = |text: &str, function: &Function| {
+            function.owner == Owner::Trait || function.is_const || returns_impl(text, function)
+        };
         let mut form = Form::Functions;
         let mut inside: Vec<&str> = Vec::new();
         let mut changed: BTreeSet<usize> = BTreeSet::new();
@@ -101,7 +100,7 @@ impl Difference {
                 continue;
             }
             let is_same_shape = shape(old_text, before) == shape(new_text, function);
-            if before.owner == Owner::Trait || before.is_const || returns_impl(old_text, before) {
+            if has_fixed_body(old_text, before) {
                 form = form.max(Form::Module);
             } else if is_same_shape {
                 changed.insert(index);
@@ -139,11 +138,10 @@ impl Difference {
         }
         // A constant that uses a changed one changes as well.
         loop {
-            let uses = |text: &str| names(text).iter().any(|name| hidden.contains(name.as_str()));
             let value = |item: &&super::source::Item| {
                 item.kind == Kind::Value
                     && item.name.split(' ').nth(1).is_some_and(|name| !hidden.contains(name))
-                    && uses(&new_text[item.text.clone()])
+                    && uses(&new_text[item.text.clone()], &hidden)
             };
             let Some(item) = new.items.iter().find(value) else { break };
             inside.push(&new_text[item.text.clone()]);
@@ -156,17 +154,13 @@ impl Difference {
         for (index, function) in new.functions.iter().enumerate() {
             let text = &new_text[function.head.start..function.body.end];
             let is_inside = function.owner == Owner::File && hidden.contains(function.name.as_str());
-            if !hidden.is_empty()
-                && !is_inside
-                && names(text).iter().any(|name| hidden.contains(name.as_str()))
-            {
-                let is_possible =
-                    function.owner != Owner::Trait && !function.is_const && !returns_impl(new_text, function);
-                if is_possible {
-                    changed.insert(index);
-                } else {
-                    form = form.max(Form::Module);
-                }
+            if hidden.is_empty() || is_inside || !uses(text, &hidden) {
+                continue;
+            }
+            if has_fixed_body(new_text, function) {
+                form = form.max(Form::Module);
+            } else {
+                changed.insert(index);
             }
         }
         // A copy of a module has types of its own, which other files must not see.
@@ -187,9 +181,8 @@ impl Difference {
             let function = &new.functions[index];
             Some((place(&function.name, &function.owner)?, index))
         });
-        let variants = variants.collect();
-        let inside = inside.join("\n");
-        (self.variants, self.inside, self.form) = (variants, inside, form);
+        let (variants, inside) = (variants.collect(), inside.join("\n"));
+        Ok(Difference { text, source, variants, inside, form })
     }
 }
 
@@ -351,18 +344,18 @@ mod tests {
         schema
     }
 
+    fn has(schema: &Schema, text: &str) {
+        assert!(schema.text.contains(text), "{}", schema.text);
+    }
+
     #[test]
     fn a_changed_function_stands_beside_the_unchanged_one() {
         let schema = put("=== one ===\n\nright r: r\n-    x + y + A\n+    y + x + A\n");
         assert_eq!(schema.forms, [Form::Functions]);
         let head = "/// About one.\npub fn one(a0: &(u32, u32)) -> u32 {\n    match crate::chosen(\"stage1_a one\") {\n";
-        assert!(schema.text.contains(head), "{}", schema.text);
-        assert!(schema.text.contains(" => one__right_r(a0),\n        _ => one__unchanged(a0),\n"));
-        assert!(
-            schema
-                .text
-                .contains("pub fn one__right_r(&(x, y): &(u32, u32)) -> u32 {\n\n\n    y + x + A\n}\n")
-        );
+        has(&schema, head);
+        has(&schema, " => one__right_r(a0),\n        _ => one__unchanged(a0),\n");
+        has(&schema, "pub fn one__right_r(&(x, y): &(u32, u32)) -> u32 {\n\n\n    y + x + A\n}\n");
     }
 
     #[test]
@@ -371,19 +364,15 @@ mod tests {
             "=== two ===\n\nright r: r\n-    x[0]\n+    x[0] + 0\n@ S::three\n-        x\n+        x + 0\n",
         );
         assert_eq!(schema.forms, [Form::Functions]);
-        assert!(schema.text.contains("=> two__right_r::<N>(a0),"), "{}", schema.text);
-        assert!(schema.text.contains("=> Self::three__right_r(self, a0),"), "{}", schema.text);
+        has(&schema, "=> two__right_r::<N>(a0),");
+        has(&schema, "=> Self::three__right_r(self, a0),");
     }
 
     #[test]
     fn a_changed_constant_stands_inside_of_the_functions_that_use_it() {
         let schema = put("=== * ===\n\nright r: r\n-const A: u32 = 1;\n+const A: u32 = 2;\n");
         assert_eq!(schema.forms, [Form::Functions]);
-        assert!(
-            schema.text.contains("one__right_r(&(x, y): &(u32, u32)) -> u32 {\nconst A: u32 = 2;\n"),
-            "{}",
-            schema.text
-        );
+        has(&schema, "one__right_r(&(x, y): &(u32, u32)) -> u32 {\nconst A: u32 = 2;\n");
         assert!(!schema.text.contains("two__right_r"));
     }
 
@@ -392,7 +381,7 @@ mod tests {
         let schema = put("=== * ===\n\nright r: r\n-struct S;\n+struct S(u32);\n");
         assert_eq!(schema.forms, [Form::Module]);
         assert_eq!(schema.modules[0].0, "stage1_a__right_r");
-        assert!(schema.text.contains("=> crate::stage1_a__right_r::one(a0),"), "{}", schema.text);
+        has(&schema, "=> crate::stage1_a__right_r::one(a0),");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A source file as its items: where each function stands, what its parts are, and which names it uses.
 
 use anyhow::{Context, Result, anyhow};
-use proc_macro2::{Ident, Span, TokenStream, TokenTree};
+use proc_macro2::{Ident, TokenStream, TokenTree};
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::str::FromStr;
@@ -128,7 +128,7 @@ impl Source {
     }
 
     fn add_impl(&mut self, text: &str, block: &syn::ItemImpl) {
-        let head = bytes(block.impl_token.span).start..bytes(block.brace_token.span.open()).start;
+        let head = block.impl_token.span.byte_range().start..block.brace_token.span.open().byte_range().start;
         let owner = if block.trait_.is_some() { Owner::Trait } else { Owner::Type };
         let name = name_of_type(&block.self_ty);
         for item in &block.items {
@@ -155,19 +155,20 @@ fn name_of_type(of: &syn::Type) -> String {
 type Parts<'a> = (&'a [syn::Attribute], &'a syn::Visibility, &'a syn::Signature, &'a syn::Block);
 
 fn of_function(text: &str, of: Option<&str>, owner: Owner, (attrs, vis, sig, block): Parts<'_>) -> Function {
-    let ident = bytes(sig.ident.span());
-    let body = bytes(block.brace_token.span.open()).start..bytes(block.brace_token.span.close()).end;
+    let ident = sig.ident.span().byte_range();
+    let body = block.brace_token.span.join().byte_range();
     // The head begins with the visibility, which may be empty, or else with the signature.
     let visible = !matches!(vis, syn::Visibility::Inherited);
     let head = if visible { vis.span() } else { sig.span() };
-    let head = bytes(head).start..body.start;
-    let start = attrs.first().map_or(head.start, |attr| bytes(attr.span()).start);
-    let inputs = bytes(sig.paren_token.span.open()).end..bytes(sig.paren_token.span.close()).start;
+    let head = head.byte_range().start..body.start;
+    let start = attrs.first().map_or(head.start, |attr| attr.span().byte_range().start);
+    let inputs =
+        sig.paren_token.span.open().byte_range().end..sig.paren_token.span.close().byte_range().start;
     let mut arguments = Vec::new();
     for pair in sig.inputs.pairs() {
         if let syn::FnArg::Typed(typed) = pair.value() {
-            let end = pair.punct().map_or(inputs.end, |comma| bytes(comma.span).start);
-            arguments.push(bytes(typed.colon_token.span).end..end);
+            let end = pair.punct().map_or(inputs.end, |comma| comma.span.byte_range().start);
+            arguments.push(typed.colon_token.span.byte_range().end..end);
         }
     }
     let generics = sig.generics.params.iter().filter_map(|parameter| match parameter {
@@ -183,7 +184,7 @@ fn of_function(text: &str, of: Option<&str>, owner: Owner, (attrs, vis, sig, blo
         head,
         ident,
         arguments,
-        receiver: sig.receiver().map(|receiver| bytes(receiver.span())),
+        receiver: sig.receiver().map(|receiver| receiver.span().byte_range()),
         inputs,
         generics: generics.collect(),
         body,
@@ -193,14 +194,10 @@ fn of_function(text: &str, of: Option<&str>, owner: Owner, (attrs, vis, sig, blo
     }
 }
 
-fn bytes(span: Span) -> Range<usize> {
-    span.byte_range()
-}
-
 /// A text as its tokens, by which texts are compared: comments and layout do not count.
 pub fn tokens(text: &str) -> String {
     let Ok(tokens) = TokenStream::from_str(text) else { return text.to_owned() };
-    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    let mut tokens = tokens.into_iter().peekable();
     let is_hash = |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == '#');
     let is_doc = |token: &TokenTree| match token {
         TokenTree::Group(group) => {
@@ -209,15 +206,10 @@ pub fn tokens(text: &str) -> String {
         _ => false,
     };
     let mut words = String::new();
-    let mut at = 0;
-    while at < tokens.len() {
-        if is_hash(&tokens[at]) && tokens.get(at + 1).is_some_and(is_doc) {
-            at += 2;
-            continue;
+    while let Some(token) = tokens.next() {
+        if !is_hash(&token) || tokens.next_if(is_doc).is_none() {
+            words += &format!("{token} ");
         }
-        words += &tokens[at].to_string();
-        words.push(' ');
-        at += 1;
     }
     words
 }

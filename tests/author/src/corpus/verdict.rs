@@ -166,12 +166,13 @@ mod tests {
 
     #[test]
     fn fates_follow_from_claims_and_failures() {
-        let claim = Claim::Wrong {
+        let wrong = |says: Vec<String>, is_unknown: bool| Claim::Wrong {
             breaks: String::new(),
             caught_by: "b".into(),
-            says: vec!["far root".into()],
-            is_unknown: false,
+            says,
+            is_unknown,
         };
+        let claim = wrong(vec!["far root".into()], false);
         let entry = |claim: &Claim| Entry {
             stage: 1,
             name: "n".into(),
@@ -191,8 +192,7 @@ mod tests {
             EntryVerdict::Unnamed(vec!["far root".into()])
         );
         assert_eq!(verdict(&claim, &[("b", "the far\n   root")]), EntryVerdict::Killed);
-        let unknown =
-            Claim::Wrong { breaks: String::new(), caught_by: "b".into(), says: vec![], is_unknown: true };
+        let unknown = wrong(Vec::new(), true);
         assert_eq!(verdict(&unknown, &[("b", "  yours 3\n")]), EntryVerdict::Killed);
         assert_eq!(
             verdict(&unknown, &[("b", "  yours 3\n  looks like: the far root\n")]),

@@ -45,11 +45,10 @@ impl Switchable {
         let mut changes = Vec::new();
         for (file, numbers) in files {
             let text = fs::read_to_string(root.join(file)).with_context(|| file.to_owned())?;
-            changes.push((file, with_switches(file, &text, numbers)?));
+            changes.push((file.to_owned(), with_switches(file, &text, numbers)?));
         }
         let library = "solutions/src/lib.rs";
-        changes.push((library, build_folder.original(library)? + SWITCH));
-        let changes: Vec<(&str, &str)> = changes.iter().map(|(file, text)| (*file, text.as_str())).collect();
+        changes.push((library.to_owned(), build_folder.original(library)? + SWITCH));
         let program = match build_folder.build_with(&changes)? {
             Built::Program(program) => program,
             Built::DoesNotCompile(error) => bail!(error),

@@ -251,7 +251,7 @@ impl Guard {
         let program = Program::build(root, &entries)?;
         let plan = Plan::of(&program, &Matrix::read(root), &entries, queue::cores())?;
         let judges = BuildFolder::open(root, "checks", Product::Judge)?;
-        if let Built::DoesNotCompile(error) = judges.build_with(&[])? {
+        if let Built::DoesNotCompile(error) = judges.build_with::<&str>(&[])? {
             bail!("the unchanged judge does not compile:\n{error}");
         }
         Ok(Guard { judges, program, entries, messages: Messages::read(root), plan })
@@ -281,11 +281,11 @@ impl Guard {
                 if lock(&caught).is_some() {
                     break;
                 }
-                if running.is_none() {
-                    running = Some(Judge::start(&judge)?);
-                }
-                let judge = running.as_mut().context("a judge")?;
-                if let Some(why) = self.difference(judge, *trial, check, entry)? {
+                let running = match &mut running {
+                    Some(running) => running,
+                    none => none.insert(Judge::start(&judge)?),
+                };
+                if let Some(why) = self.difference(running, *trial, check, entry)? {
                     *lock(&caught) = Some(why);
                 }
             }
