@@ -206,20 +206,18 @@ impl PlatformTable {
             matches.students.push(format!("{student}: {why}"));
         }
         let taken: BTreeSet<usize> = matches.rows.values().copied().collect();
-        let names = self.naming_columns();
+        // The columns that say who a student is: the first one, if no header is known.
+        let kinds = [Column::Name, Column::FirstName, Column::LastName, Column::Identifier, Column::Login];
+        let mut names: Vec<usize> = kinds.into_iter().flat_map(|kind| self.columns(kind)).collect();
+        if names.is_empty() {
+            names.push(0);
+        }
         for &row in rows.iter().filter(|row| !taken.contains(row)) {
             let cells = names.iter().map(|&column| self.cell(row, column)).filter(|cell| !cell.is_empty());
             let who = cells.take(3).collect::<Vec<_>>().join(", ");
             matches.others.push(format!("{}: {who}: no submission", self.place(row)));
         }
         matches
-    }
-
-    /// The columns that say who a student is: the first one, if no header is known.
-    fn naming_columns(&self) -> Vec<usize> {
-        let kinds = [Column::Name, Column::FirstName, Column::LastName, Column::Identifier, Column::Login];
-        let columns: Vec<usize> = kinds.into_iter().flat_map(|kind| self.columns(kind)).collect();
-        if columns.is_empty() { vec![0] } else { columns }
     }
 
     /// The folded identifiers and the folded names of a row.

@@ -15,6 +15,7 @@ use raykata_cli::queue;
 use raykata_cli::report::bar_of_steps;
 use raykata_cli::verdicts::CheckVerdict;
 use raykata_cli::worker::{CALL_PATIENCE, Worker};
+use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -163,7 +164,8 @@ pub fn scorecard(root: &Path, source: &Source, stage: Option<u8>) -> Result<bool
         }
     }
     for (place, (task, waiting)) in gaps(&graded) {
-        println!("not written yet: {place}\n  {task} ({})", wait_for_it(waiting));
+        let checks = if waiting == 1 { "1 check waits" } else { &format!("{waiting} checks wait") };
+        println!("not written yet: {place}\n  {task} ({checks} for it)");
     }
     let passed = graded.iter().filter(|one| one.passed()).count();
     println!("\n{}\n{passed} passed, {} failed", score(&graded), graded.len() - passed);
@@ -180,7 +182,9 @@ pub fn scorecard(root: &Path, source: &Source, stage: Option<u8>) -> Result<bool
 /// What the grader refuses or stops in the exercises, one line each.
 fn warnings(root: &Path) -> Result<Vec<String>> {
     let files = std::fs::read_dir(root.join("exercises/src"))?.flatten().map(|file| file.path());
-    let mut files: Vec<_> = files.filter(|file| !is_of_kit(file)).collect();
+    // The programs around the exercises are not handed in.
+    let of_kit = ["lib", "worker", "frames"].map(|name| Some(OsStr::new(name)));
+    let mut files: Vec<_> = files.filter(|file| !of_kit.contains(&file.file_stem())).collect();
     files.sort();
     let of_file = |file: &PathBuf| {
         let findings =
@@ -197,18 +201,9 @@ fn warnings(root: &Path) -> Result<Vec<String>> {
     Ok(files.iter().flat_map(of_file).collect())
 }
 
-/// Whether the file belongs to the programs around the exercises, which are not handed in.
-fn is_of_kit(file: &Path) -> bool {
-    file.file_stem().is_some_and(|name| ["lib", "worker", "frames"].iter().any(|known| name == *known))
-}
-
 /// Whether the course asks for this stage.
 fn is_asked_for(stage: u8) -> bool {
     rubric::stages().iter().any(|(number, _)| *number == stage)
-}
-
-fn wait_for_it(checks: usize) -> String {
-    if checks == 1 { "1 check waits for it".into() } else { format!("{checks} checks wait for it") }
 }
 
 /// The gaps, `(place, (task, number of checks that wait for it))`, in the order of the lecture.

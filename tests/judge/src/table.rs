@@ -61,18 +61,15 @@ impl Table {
 mod tests {
     use super::*;
 
-    fn wide() -> Table {
-        Table {
+    #[test]
+    fn what_does_not_fit_follows_below() {
+        let wide = Table {
             title: "numbers <1".into(),
             heads: (0..20).map(|n| format!("head {n}")).collect(),
             rows: vec![("a row".into(), (0..20).map(|n| n.to_string()).collect())],
             notes: vec!["A note.".into()],
-        }
-    }
-
-    #[test]
-    fn what_does_not_fit_follows_below() {
-        let text = wide().text();
+        };
+        let text = wide.text();
         assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
         assert!((0..20).all(|n| text.contains(&format!("head {n}"))), "{text}");
         assert_eq!(text.matches("a row").count(), 3);

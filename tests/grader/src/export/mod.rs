@@ -59,11 +59,6 @@ struct Grading {
     seed: Option<u64>,
 }
 
-fn known_stages(text: &str) -> Result<String, String> {
-    stages_of(text)?;
-    Ok(text.replace(' ', ""))
-}
-
 impl Grading {
     const OPTIONS: &[Opt] = &[
         course::OPTION,
@@ -74,7 +69,7 @@ impl Grading {
     fn read(given: &Given) -> Result<Grading, Misuse> {
         Ok(Grading {
             course: given.path("--course"),
-            stages: given.parsed("--stages", known_stages)?,
+            stages: given.parsed("--stages", |text| stages_of(text).map(|_| text.replace(' ', "")))?,
             seed: given.number("--seed", 0..=u64::MAX)?,
         })
     }

@@ -227,14 +227,11 @@ impl Grader {
         // Code that is allowed by `--allow` may store data in ways that the syntax check does not know.
         let mut may_remember = !self.allowed.is_empty();
         for (name, text) in files.iter().filter(|(name, text)| !self.builder.is_untouched(name, text)) {
-            let reading = match self.reading(text)? {
-                Some(reading) => reading,
-                None => {
-                    let why = "the syntax check failed: the code is nested too deeply".to_owned();
-                    let broke = Finding { rule: "nesting".into(), line: 1, why };
-                    Reading { is_unreadable: false, findings: vec![broke], may_remember: true }
-                }
-            };
+            let reading = self.reading(text)?.unwrap_or_else(|| {
+                let why = "the syntax check failed: the code is nested too deeply".to_owned();
+                let broke = Finding { rule: "nesting".into(), line: 1, why };
+                Reading { is_unreadable: false, findings: vec![broke], may_remember: true }
+            });
             may_remember |= reading.may_remember;
             unreadable.extend(reading.is_unreadable.then(|| name.clone()));
             // Drop the findings of rules that are switched off.

@@ -207,7 +207,12 @@ impl Judge {
             let others = self.missing_proofs(prepared, &proven);
             // Right answers to known inputs, turned or not, can be a table.
             if answered.outcome == Outcome::Passed && !prepared.draws && !others.is_empty() {
-                let message = unproven_message(prepared.check, &others);
+                let message = format!(
+                    "{}  right, but its inputs are known ones, turned or scaled: it counts when one of these checks of the same \
+                     function passes: {}\n",
+                    header(prepared.check),
+                    others.join(", ")
+                );
                 return result(prepared.check, Answered::new(Outcome::Unproven, message));
             }
             result(prepared.check, answered)
@@ -304,7 +309,11 @@ fn hidden(prepared: &PreparedCheck, examined: &Result<checks::CheckResult, KitEr
     match outcome(examined) {
         Outcome::Passed => Answered::new(Outcome::Passed, ""),
         Outcome::Wrong | Outcome::NotWritten => {
-            Answered::new(Outcome::WrongOnHidden, hidden_message(prepared.check))
+            let message = format!(
+                "{}  right on the inputs that you have, wrong on others: look for an answer for special cases\n",
+                header(prepared.check)
+            );
+            Answered::new(Outcome::WrongOnHidden, message)
         }
         other => Answered::new(other, format!("{}\n  on hidden inputs", other.words())),
     }
@@ -372,20 +381,9 @@ fn inputs(seed: u64, drawn: &Arc<Drawn>, reference: &Arc<dyn Kit + Send + Sync>)
     Inputs { drawn: Some(drawn.clone()), one_in, reference: Some(reference.clone()), ..Inputs::default() }
 }
 
-fn hidden_message(check: &Check) -> String {
-    format!(
-        "{}  right on the inputs that you have, wrong on others: look for an answer for special cases\n",
-        rubric::entry(check.stage, check.name).header()
-    )
-}
-
-fn unproven_message(check: &Check, others: &[&str]) -> String {
-    format!(
-        "{}  right, but its inputs are known ones, turned or scaled: it counts when one of these checks of the same \
-         function passes: {}\n",
-        rubric::entry(check.stage, check.name).header(),
-        others.join(", ")
-    )
+/// The first lines of a message about a check.
+fn header(check: &Check) -> String {
+    rubric::entry(check.stage, check.name).header()
 }
 
 fn outcome(examined: &Result<checks::CheckResult, KitError>) -> Outcome {

@@ -5,6 +5,7 @@ use super::judge::{CALL_PATIENCE, Judge};
 use super::result::Session;
 use super::worker_builder::{self, WorkerBuilder};
 use crate::course::{self, HandedIn};
+use crate::files_below::files_below;
 use crate::sandbox::{self, Confinement};
 use all_checks::STAGES;
 use anyhow::{Context, Result, bail};
@@ -14,7 +15,7 @@ use raykata_cli::args::{Given, Misuse, Opt};
 use sha2::{Digest, Sha256};
 use std::fs;
 use std::hash::{BuildHasher, RandomState};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// The options that `grader grade` and `grader grade-one` share.
@@ -71,9 +72,11 @@ impl GradingOptions {
             true => begun.stages.clone(),
             false => begun.graded().into_iter().filter(|stage| !course.leaves_out(*stage)).collect(),
         });
+        let all = STAGES.iter().map(|(number, _)| *number);
+        let of_course = || all.filter(|number| !course.leaves_out(*number)).collect();
         let session = Session {
             kit: kit(root, &self.allow, &builder)?,
-            stages: self.stages.clone().or(begun_stages).unwrap_or_else(stages_of_course),
+            stages: self.stages.clone().or(begun_stages).unwrap_or_else(of_course),
             seed: self.seed.or(begun.map(|session| session.seed)).unwrap_or_else(draw_seed),
             isolation,
             dropped: Vec::new(),
@@ -112,12 +115,6 @@ impl GradingOptions {
     }
 }
 
-/// All stages that the course does not leave out.
-fn stages_of_course() -> Vec<u8> {
-    let all = STAGES.iter().map(|(number, _)| *number);
-    all.filter(|number| !rubric::course().leaves_out(*number)).collect()
-}
-
 /// Draws a random seed from the random keys of the standard library's hash tables.
 pub(crate) fn draw_seed() -> u64 {
     RandomState::new().hash_one("seed")
@@ -130,16 +127,9 @@ fn kit(root: &Path, allow: &[String], builder: &WorkerBuilder) -> Result<String>
     hash.update(allow.join(","));
     // Add all files that decide a grade to the fingerprint.
     let decide = ["tests/checks", "tests/golden", "tests/oracle"];
-    let mut waiting: Vec<PathBuf> =
-        decide.iter().map(|path| root.join(path)).filter(|path| path.exists()).collect();
-    while let Some(path) = waiting.pop() {
-        if path.is_dir() {
-            let mut inside: Vec<PathBuf> =
-                fs::read_dir(&path)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
-            inside.sort();
-            waiting.extend(inside);
-        } else {
-            hash.update(fs::read(&path).with_context(|| path.display().to_string())?);
+    for folder in decide.into_iter().filter(|folder| root.join(folder).exists()) {
+        for path in files_below(root, folder, &|_| true)? {
+            hash.update(fs::read(root.join(&path)).context(path)?);
         }
     }
     Ok(format!("{} ({})", env!("CARGO_PKG_VERSION"), &worker_builder::hex(&hash.finalize())[..12]))

@@ -76,15 +76,16 @@ pub fn note(graded: &Graded) -> Option<String> {
     })
 }
 
+/// The points of each stage.
+fn of_stages(graded: &Graded) -> impl Iterator<Item = String> {
+    let line = |stage| format!("stage {stage}: {}", result::score(graded.of_stage(stage)));
+    graded.stages().into_iter().map(line)
+}
+
 /// The points in one line: those of all stages, of each stage, and of the instructor.
 pub fn in_short(graded: &Graded) -> String {
     let mut parts = vec![graded.trouble.clone(), in_words(graded.score())];
-    parts.extend(
-        graded
-            .stages()
-            .into_iter()
-            .map(|stage| format!("stage {stage}: {}", result::score(graded.of_stage(stage)))),
-    );
+    parts.extend(of_stages(graded));
     parts.extend(note(graded));
     parts.retain(|part| !part.is_empty());
     parts.join("; ")
@@ -100,9 +101,7 @@ pub fn summary(graded: &Graded) -> String {
     if !graded.trouble.is_empty() {
         lines.push(format!("This submission could not be graded: {}", graded.trouble));
     }
-    for stage in graded.stages() {
-        lines.push(format!("stage {stage}: {}", result::score(graded.of_stage(stage))));
-    }
+    lines.extend(of_stages(graded));
     for (stage, n) in failing_on_hidden(graded) {
         let checks = if n == 1 { "1 check fails" } else { &format!("{n} checks fail") };
         lines.push(format!("stage {stage}: {checks} on hidden inputs only"));

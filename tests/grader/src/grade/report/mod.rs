@@ -115,7 +115,11 @@ fn presentable(graded: &Graded) -> Graded {
     let n_more = graded.remarks.len().saturating_sub(REMARKS + 1);
     // If there is only one remark too many, show it instead of a note.
     let n_shown = if n_more == 0 { graded.remarks.len() } else { REMARKS };
-    let mut remarks: Vec<Remark> = graded.remarks[..n_shown].iter().map(presentable_remark).collect();
+    let cleaned = |Remark { file, what }: &Remark| Remark {
+        file: clean_line(file, LINE),
+        what: clean_line(what, LINE),
+    };
+    let mut remarks: Vec<Remark> = graded.remarks[..n_shown].iter().map(cleaned).collect();
     if n_more > 0 {
         let what = format!("{} more remarks are left out", n_more + 1);
         remarks.push(Remark { file: "…".to_owned(), what });
@@ -131,10 +135,6 @@ fn presentable(graded: &Graded) -> Graded {
         handed_in: clean_line(&graded.handed_in, LINE),
         note: graded.note.as_ref().map(|note| Note { text: clean_line(&note.text, MESSAGE), ..*note }),
     }
-}
-
-fn presentable_remark(remark: &Remark) -> Remark {
-    Remark { file: clean_line(&remark.file, LINE), what: clean_line(&remark.what, LINE) }
 }
 
 fn presentable_check(check: &CheckResult) -> CheckResult {

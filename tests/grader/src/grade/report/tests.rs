@@ -177,10 +177,10 @@ fn the_same_results_give_the_same_bytes_in_any_order() -> Result<()> {
 fn points_are_the_same_in_every_format() -> Result<()> {
     let files = files_of(&class())?;
     let back: Class = serde_json::from_str(&files["results.json"])?;
-    let grades = csv::Reader::from_reader(files["grades.csv"].as_bytes());
-    let rows: Vec<csv::StringRecord> = grades.into_records().collect::<Result<_, _>>()?;
-    let cells: Vec<csv::StringRecord> =
-        csv::Reader::from_reader(files["checks.csv"].as_bytes()).into_records().collect::<Result<_, _>>()?;
+    let records = |file: &str| {
+        csv::Reader::from_reader(files[file].as_bytes()).into_records().collect::<Result<Vec<_>, _>>()
+    };
+    let (rows, cells) = (records("grades.csv")?, records("checks.csv")?);
     assert_eq!(rows.len(), back.students.len());
     for (graded, row) in back.students.iter().zip(&rows) {
         let (earned, of) = graded.score().points();
