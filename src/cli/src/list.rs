@@ -60,9 +60,8 @@ pub fn run_hint(given: &Given) -> Result<ExitCode> {
 /// The checks of a stage, or of all stages, with their points, levels and titles.
 pub fn list(stage: Option<u8>) -> String {
     let mut text = String::new();
-    for (number, about) in
-        rubric::stages().into_iter().filter(|(one, _)| stage.is_none_or(|stage| stage == *one))
-    {
+    let chosen = |number: u8| stage.is_none_or(|stage| stage == number);
+    for (number, about) in rubric::stages().into_iter().filter(|(number, _)| chosen(*number)) {
         let _ = writeln!(text, "stage {number} · {}", about.title);
         let how = format!("work in {}, run `cargo test --test stage{number}`", about.file);
         let _ = writeln!(text, "  {}", wrapped(&how, 2));

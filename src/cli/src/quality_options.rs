@@ -203,16 +203,10 @@ fn parse_exposure(text: &str) -> Result<f32, String> {
 const MAX_SIDE: u32 = 65_536;
 
 pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let parsed: Option<(u32, u32)> =
-        text.split_once(['x', '×']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    match parsed {
-        Some((width, height)) if (1..=MAX_SIDE).contains(&width) && (1..=MAX_SIDE).contains(&height) => {
-            Ok((width, height))
-        }
-        _ => {
-            Err("a size is two whole numbers from 1 to 65536 with an x between them, such as 640x360".into())
-        }
-    }
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=MAX_SIDE).contains(side));
+    let size = text.split_once(['x', '×']).and_then(|(width, height)| Some((side(width)?, side(height)?)));
+    let why = "a size is two whole numbers from 1 to 65536 with an x between them, such as 640x360";
+    size.ok_or_else(|| why.into())
 }
 
 #[cfg(test)]

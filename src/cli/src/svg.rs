@@ -222,24 +222,17 @@ impl Drawing {
 
     /// A circle.
     pub fn circle(&mut self, center: Point, radius: f64, pen: Pen) {
-        let [x, y] = center.map(number);
-        let _ = writeln!(
-            self.body,
-            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" fill=\"none\" {}/>",
-            number(radius),
-            pen.attributes()
-        );
+        self.round(center, radius, &format!("fill=\"none\" {}", pen.attributes()));
     }
 
     /// A filled circle.
     pub fn dot(&mut self, center: Point, radius: f64, ink: Ink) {
-        let [x, y] = center.map(number);
-        let _ = writeln!(
-            self.body,
-            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{}\" class=\"f{}\"/>",
-            number(radius),
-            ink.class()
-        );
+        self.round(center, radius, &format!("class=\"f{}\"", ink.class()));
+    }
+
+    fn round(&mut self, [x, y]: Point, radius: f64, attributes: &str) {
+        let [x, y, radius] = [x, y, radius].map(number);
+        let _ = writeln!(self.body, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {attributes}/>");
     }
 
     /// An arc around `center` between two directions in degrees, counterclockwise from the right.

@@ -261,12 +261,11 @@ impl Process {
         self.watchdog.bark_after(patience);
         worker::send(&mut self.to_worker, request)?;
         let longest = if trusted { LONGEST_MESSAGE } else { longest_reply(request) };
+        let refused = |why: &'static str| Err(io::Error::other(why));
         loop {
             match worker::receive_up_to(&mut self.from_worker, longest)? {
                 Reply::Progress { .. } | Reply::Building { .. } if request.frame().is_none() => {
-                    return Err(io::Error::other(
-                        "it reports the progress of a frame, but no frame was requested",
-                    ));
+                    return refused("it reports the progress of a frame, but no frame was requested");
                 }
                 reply @ (Reply::Progress { .. } | Reply::Building { .. }) => {
                     match reply {
@@ -287,13 +286,11 @@ impl Process {
                     Request::RenderInTiles(job) if tile.fits(job.scene.film.width, job.scene.film.height) => {
                         watch.tile(&tile);
                     }
-                    _ => return Err(io::Error::other("it sends pixels that were not requested")),
+                    _ => return refused("it sends pixels that were not requested"),
                 },
                 Reply::Question(question) => match &mut tables {
                     Some(tables) => worker::send(&mut self.to_worker, &tables.answer(&question))?,
-                    None => {
-                        return Err(io::Error::other("it asks a question, but its request has all tables"));
-                    }
+                    None => return refused("it asks a question, but its request has all tables"),
                 },
                 reply => {
                     self.watchdog.rest();

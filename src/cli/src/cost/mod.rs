@@ -201,13 +201,8 @@ pub fn run(given: &Given, package: Option<&str>, numerics: Option<&Numerics<'_>>
         let out = options.out.clone().unwrap_or_else(|| Path::new("out").join("headline"));
         let hierarchy = options.quality.accelerator().unwrap_or(Accelerator::Auto);
         let _lock = Lock::on(&out)?;
-        return headline::run(
-            &bench,
-            hierarchy,
-            options.most,
-            &out,
-            &fingerprint::of_files([&source.program])?,
-        );
+        let code = fingerprint::of_files([&source.program])?;
+        return headline::run(&bench, hierarchy, options.most, &out, &code);
     };
     // Read the scene, in its own size and in that of the measured pictures.
     let mut full = load_scene(file, options.quality.limits)?;

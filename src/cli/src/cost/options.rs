@@ -166,24 +166,18 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
     let units = [("ms", 0.001), ("s", 1.0), ("m", 60.0), ("", 1.0)];
     let number =
         |(unit, scale): (&str, f64)| Some(text.strip_suffix(unit)?.trim().parse::<f64>().ok()? * scale);
-    match units.into_iter().find_map(number) {
-        Some(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
-        _ => Err("a time is a number above 0 with the unit s, ms or m, such as 60s".into()),
-    }
+    let seconds = units.into_iter().find_map(number).filter(|seconds| *seconds > 0.0 && seconds.is_finite());
+    seconds.ok_or_else(|| "a time is a number above 0 with the unit s, ms or m, such as 60s".into())
 }
 
 fn parse_size(text: &str) -> Result<f32, String> {
-    match text.trim().parse::<f32>() {
-        Ok(size) if (0.001..=1000.0).contains(&size) => Ok(size),
-        _ => Err("a size is a number from 0.001 to 1000, such as 0.5".into()),
-    }
+    let size = text.trim().parse().ok().filter(|size| (0.001..=1000.0).contains(size));
+    size.ok_or_else(|| "a size is a number from 0.001 to 1000, such as 0.5".into())
 }
 
 fn parse_error(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(error) if error > 0.0 && error.is_finite() => Ok(error),
-        _ => Err("an error is a number above 0, such as 0.01".into()),
-    }
+    let error = text.parse().ok().filter(|error: &f64| *error > 0.0 && error.is_finite());
+    error.ok_or_else(|| "an error is a number above 0, such as 0.01".into())
 }
 
 #[cfg(test)]

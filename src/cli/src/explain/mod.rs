@@ -191,6 +191,7 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
 
     // Print what the picture saves without each effect.
     let with = &seconds[0];
+    let work = |counts: &Counts| [counts.rays(), counts.random_numbers, counts.texture_reads];
     const COLUMNS: Columns = Columns("  ", &[-16, 13, 15, 13, 15]);
     let heads: [&dyn Display; 5] =
         [&"costs", &"its rays", &"random numbers", &"image reads", &"share of time"];
@@ -200,20 +201,14 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
         // Compare pictures of the same round, because they were rendered within moments of each other.
         let shares = with.iter().zip(without).map(|(with, without)| 100.0 * (1.0 - without / with)).collect();
         let (share, spread) = median_and_spread(shares);
-        let [all, rest] = [&counts[0], &counts[index + 1]];
         let time = spread_of(rounds, &format!("{share:.0} %"), &format!("{spread:.0}"));
-        let saved = [
-            (all.rays(), rest.rays()),
-            (all.random_numbers, rest.random_numbers),
-            (all.texture_reads, rest.texture_reads),
-        ];
-        let [rays, numbers, reads] = saved.map(|(with, without)| signed(with, without));
+        let [all, rest] = [&counts[0], &counts[index + 1]].map(work);
+        let [rays, numbers, reads] = [0, 1, 2].map(|kind| signed(all[kind], rest[kind]));
         println!("{}", COLUMNS.row(&[&format!("  {effect}"), &rays, &numbers, &reads, &time]));
     }
     let (whole, spread) = median_and_spread(with.clone());
     let time = spread_of(rounds, &format!("{whole:.3} s"), &format!("{spread:.3}"));
-    let [rays, numbers, reads] =
-        [counts[0].rays(), counts[0].random_numbers, counts[0].texture_reads].map(Thousands);
+    let [rays, numbers, reads] = work(&counts[0]).map(Thousands);
     println!("{}", COLUMNS.row(&[&"  everything", &rays, &numbers, &reads, &time]));
     let times = match rounds {
         1 => "Times are from one round, so they show no spread.".to_owned(),
