@@ -196,6 +196,7 @@ fn faults(role: &Role, matrix: &Matrix, graded: &Graded) -> Vec<String> {
     let failed = |stage: u8, name: &str| {
         graded.of_stage(stage).any(|check| check.name == name && check.outcome != Outcome::Passed)
     };
+    let ended = |check: &CheckResult| format!("{} is {}", check.name, check.outcome.words());
     match role {
         Role::Attack(attack) => {
             let mut of_attack = graded.clone();
@@ -205,7 +206,7 @@ fn faults(role: &Role, matrix: &Matrix, graded: &Graded) -> Vec<String> {
         Role::Begun(stages) => {
             let right = |check: &&CheckResult| (check.outcome == Outcome::Passed) == (check.stage <= *stages);
             let wrong = graded.checks.iter().find(|check| !right(check));
-            wrong.map(|check| format!("{} is {}", check.name, check.outcome.words())).into_iter().collect()
+            wrong.map(ended).into_iter().collect()
         }
         Role::Entry(entry) => {
             let row = matrix.0.get(&entry.to_string()).map_or("", String::as_str);
@@ -217,11 +218,8 @@ fn faults(role: &Role, matrix: &Matrix, graded: &Graded) -> Vec<String> {
                 let elsewhere = check.stage != entry.stage || entry.claim == Claim::Right;
                 check.outcome != Outcome::Passed && elsewhere
             });
-            missed
-                .map(|name| format!("{name} passes"))
-                .into_iter()
-                .chain(unfair.map(|check| format!("{} is {}", check.name, check.outcome.words())))
-                .collect()
+            let missed = missed.map(|name| format!("{name} passes"));
+            missed.into_iter().chain(unfair.map(ended)).collect()
         }
     }
 }

@@ -130,9 +130,7 @@ pub fn run(given: &Given) -> Result<bool> {
             match &verdict {
                 WeakenVerdict::DoesNotCompile => println!("  does not compile, so another one is drawn\n"),
                 WeakenVerdict::Caught(why) => println!("  caught: {why}\n"),
-                WeakenVerdict::Survived
-                    if reviewed.reason(&change.file, &change.was, &change.becomes).is_some() =>
-                {
+                WeakenVerdict::Survived if reviewed.reason(change).is_some() => {
                     println!("  reviewed as harmless\n")
                 }
                 WeakenVerdict::Survived => println!("  SURVIVED\n"),
@@ -146,8 +144,7 @@ pub fn run(given: &Given) -> Result<bool> {
 }
 
 fn report(tried: &[(&Change, WeakenVerdict)], reviewed: &Reviewed) -> bool {
-    let reason = |change: &Change| reviewed.reason(&change.file, &change.was, &change.becomes);
-    let is_reviewed = |change: &Change| reason(change).is_some();
+    let is_reviewed = |change: &Change| reviewed.reason(change).is_some();
     println!("stage   weakened  caught  reviewed  survived");
     let stages: Vec<u8> = (0..=STAGES.len() as u8).collect();
     for stage in stages.into_iter().map(Some).chain([None]) {
@@ -168,25 +165,23 @@ fn report(tried: &[(&Change, WeakenVerdict)], reviewed: &Reviewed) -> bool {
             count(&|change, verdict| *verdict == WeakenVerdict::Survived && !is_reviewed(change)),
         );
     }
-    let caught: Vec<&Change> = tried
-        .iter()
-        .filter(|(change, verdict)| matches!(verdict, WeakenVerdict::Caught(_)) && is_reviewed(change))
-        .map(|(change, _)| *change)
-        .collect();
-    for change in &caught {
-        let because = reason(change).unwrap_or_default();
-        println!("\ncaught, but {REVIEWED} says that nothing can notice it ({because}): {change}");
+    let (mut caught, mut survivors) = (0, 0);
+    for (change, verdict) in tried {
+        match (verdict, reviewed.reason(change)) {
+            (WeakenVerdict::Caught(_), Some(because)) => {
+                println!("\ncaught, but {REVIEWED} says that nothing can notice it ({because}): {change}");
+                caught += 1;
+            }
+            (WeakenVerdict::Survived, None) => survivors += 1,
+            _ => {}
+        }
     }
-    let survivors = tried
-        .iter()
-        .filter(|(change, verdict)| *verdict == WeakenVerdict::Survived && !is_reviewed(change))
-        .count();
     if survivors > 0 {
         println!(
             "\nfor each survivor add an entry to the corpus that notices it, or its reason to {REVIEWED}"
         );
     }
-    survivors == 0 && caught.is_empty()
+    survivors == 0 && caught == 0
 }
 
 /// All numbers in the order in which they are drawn: one of each stage in turn. Every fourth turns its comparison, if it stands

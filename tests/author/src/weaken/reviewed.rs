@@ -1,5 +1,6 @@
 //! The harmless changes, each reviewed by a person: tests/corpus/harmless.toml.
 
+use super::Change;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use std::path::Path;
@@ -36,11 +37,11 @@ impl Reviewed {
     }
 
     /// Why nothing can notice this change, if it is one of them.
-    pub fn reason(&self, file: &str, was: &str, becomes: &str) -> Option<&str> {
+    pub(super) fn reason(&self, change: &Change) -> Option<&str> {
         let review = self.change.iter().find(|review| {
-            file.ends_with(&format!("/{}", review.file))
-                && review.was.trim() == was
-                && review.becomes.iter().any(|line| line.trim() == becomes)
+            change.file.ends_with(&format!("/{}", review.file))
+                && review.was.trim() == change.was
+                && review.becomes.iter().any(|line| line.trim() == change.becomes)
         });
         review.map(|review| review.because.as_str())
     }

@@ -75,12 +75,8 @@ fn exercises(root: &Path) -> Vec<Function> {
     let texts = exercises::pristine(root).expect("readable solutions");
     let (mut exercises, bundles) = (Vec::new(), bundles(root));
     for (name, text) in texts.iter().filter(|(name, _)| name.starts_with("stage")) {
-        exercises.extend(functions_of(
-            &format!("solutions/src/{name}"),
-            name.trim_end_matches(".rs"),
-            text,
-            &bundles,
-        ));
+        let (file, module) = (format!("solutions/src/{name}"), name.trim_end_matches(".rs"));
+        exercises.extend(functions_of(&file, module, text, &bundles));
     }
     exercises.retain(|function| function.is_exercise);
     exercises
@@ -111,12 +107,8 @@ const PLANTED: [(&str, &str, &str, &str); 2] = [
 fn what_fits_an_exercise_is_recorded() {
     let root = root();
     let (exercises, all) = (exercises(&root), handed_out(&root));
-    assert!(
-        exercises.len() > 100 && all.len() > 1400,
-        "{} exercises, {} functions",
-        exercises.len(),
-        all.len()
-    );
+    let (n_exercises, n_functions) = (exercises.len(), all.len());
+    assert!(n_exercises > 100 && n_functions > 1400, "{n_exercises} exercises, {n_functions} functions");
     let fitting = candidates(&exercises, &all);
     let line =
         |(exercise, function): &(&Function, &Function)| format!("{} in {}", function.path, exercise.path);

@@ -103,11 +103,8 @@ fn fifty_kills_change_no_byte_of_the_reports() {
     const KILLS: u32 = 50;
     let class = class();
     for number in 0..30 {
-        hand_in(
-            class.path(),
-            &format!("student-{number:02}"),
-            &right().replace("0.5", &format!("0.{number:02}")),
-        );
+        let text = right().replace("0.5", &format!("0.{number:02}"));
+        hand_in(class.path(), &format!("student-{number:02}"), &text);
     }
     let outs = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
     let [whole, killed] = [0, 1].map(|index| outs[index].path());

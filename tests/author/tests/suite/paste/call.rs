@@ -73,10 +73,9 @@ fn put_together<'a>(to: &Type, bundles: &Bundles, leaves: &mut impl Iterator<Ite
     match (bundle(to, bundles), to) {
         (Some(_), Type::Reference(to)) => format!("&{}", put_together(&to.elem, bundles, leaves)),
         (Some((place, fields)), _) => {
-            let fields = fields
-                .iter()
-                .map(|(name, ty)| format!("{name}: {}", put_together(ty, bundles, leaves)))
-                .collect::<Vec<_>>();
+            let field =
+                |(name, ty): &(String, Type)| format!("{name}: {}", put_together(ty, bundles, leaves));
+            let fields: Vec<String> = fields.iter().map(field).collect();
             format!("{place}::{} {{ {} }}", base(to), fields.join(", "))
         }
         (None, _) => leaves.next().map_or_else(String::new, |leaf| argument(leaf, to)),
@@ -152,13 +151,8 @@ fn converted(value: &str, from: &Type, to: &Type) -> String {
     match (element(from), element(to)) {
         (Some(from), Some(inner)) => {
             let list = format!("{value}.into_iter().map(|one| {})", converted("one", from, inner));
-            match to {
-                Type::Array(_) => {
-                    format!("{list}.collect::<Vec<_>>().try_into().expect(\"as many\")")
-                }
-                // A slice is borrowed, a list is moved.
-                _ => format!("{list}.collect::<Vec<_>>()"),
-            }
+            let array = if let Type::Array(_) = to { ".try_into().expect(\"as many\")" } else { "" };
+            format!("{list}.collect::<Vec<_>>(){array}")
         }
         _ => value.to_owned(),
     }
