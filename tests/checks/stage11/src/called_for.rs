@@ -212,6 +212,8 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
     const WITH_MAP: Needs = (&[1], &[], true);
     const LIGHTS: &str = "lights of the scene are light, too";
     const BACKGROUND: (Needs, &str) = (NOTHING, "the background is light, too");
+    let mut dark_map = with(map(0.0));
+    dark_map.lights.push(light(one));
     let sky = |what, background| case(what, with(background), WALL, &[BACKGROUND]);
     let mut mirror = scene(&[wall(), (sphere(), Material { mirror: one, ..diffuse(zero) })]);
     mirror.lights.push(light(one));
@@ -245,6 +247,12 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
                 (WITH_MAP, "a map of scale 0 is no light"),
                 ((&[], &[], true), "a map of scale 0 is no light"),
             ],
+        ),
+        case(
+            "a diffuse sphere under a light, in an environment map of scale 0",
+            dark_map,
+            WALL,
+            &[(WITH_MAP, "a map of scale 0 is no light"), (NOTHING, LIGHTS)],
         ),
         case(
             "a diffuse sphere and a mirror under a light",

@@ -19,9 +19,10 @@ pub(super) enum Rounding {
     FloorLast,
     MostBins,
     Again,
+    Mirrored,
 }
 
-pub(super) const ROUNDINGS: [(Rounding, &str); 11] = named![
+pub(super) const ROUNDINGS: [(Rounding, &str); 12] = named![
     Rounding::Nearest => "the bin is rounded to the nearest one: round down",
     Rounding::Up => "the bin is rounded up: round down",
     Rounding::OfCentroid => "the grid is that of twice the centroids: do not halve them",
@@ -31,6 +32,7 @@ pub(super) const ROUNDINGS: [(Rounding, &str); 11] = named![
     Rounding::TwoProducts => "the place is a difference of two products, which rounds otherwise: (c - low) · scale",
     Rounding::NegativeLast => "a bin below 0 becomes the last one: it counts as bin 0",
     Rounding::FloorLast => "a bin below 0 becomes the last one: it counts as bin 0",
+    Rounding::Mirrored => "a bin below 0 loses its sign: it counts as bin 0",
     Rounding::MostBins => "the last bin is that of MAX_BINS: only grid.n_bins are in use",
     Rounding::Again => "beyond the last bin you begin again at bin 0: it counts as the last one",
 ];
@@ -50,6 +52,7 @@ pub(super) fn bin_of(primitive: &PrimitiveBox, grid: &BinGrid, axis: usize, roun
         Rounding::WithoutLow => at * scale,
         Rounding::TwoProducts => at * scale - low * scale,
         Rounding::FloorLast => ((at - low) * scale).floor(),
+        Rounding::Mirrored => ((at - low) * scale).abs(),
         _ => (at - low) * scale,
     };
     let last = if rounding == Rounding::MostBins { MAX_BINS } else { grid.n_bins as usize } - 1;
@@ -161,22 +164,25 @@ fn wrong_numbers(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
     let once = all_bins().all(|(axis, bin)| axis == 0 || yours.0[axis][bin].count == 0);
     let mut mistakes: Vec<_> = ROUNDINGS.map(|(rounding, text)| (gives(rounding), text)).to_vec();
     mistakes.push((once, "the bins of the axes y and z stay empty"));
-    let is_inside = |primitive: &PrimitiveBox, axis: usize| {
-        let place = (primitive.twice_centroid()[axis] - query.grid.low[axis]) * query.grid.scale[axis];
-        (0.0..query.grid.n_bins as f32).contains(&place)
+    let those_from = |first: f32| {
+        let is_inside = |primitive: &PrimitiveBox, axis: usize| {
+            let place = (primitive.twice_centroid()[axis] - query.grid.low[axis]) * query.grid.scale[axis];
+            (first..query.grid.n_bins as f32).contains(&place)
+        };
+        all_bins().all(|(axis, bin)| {
+            let members = members(query, axis, bin, Rounding::Right);
+            let inside = members.iter().filter(|primitive| is_inside(primitive, axis));
+            yours.0[axis][bin].count as usize == inside.count()
+        })
     };
-    let inside_only = all_bins().all(|(axis, bin)| {
-        let members = members(query, axis, bin, Rounding::Right);
-        let inside = members.iter().filter(|primitive| is_inside(primitive, axis));
-        yours.0[axis][bin].count as usize == inside.count()
-    });
     let with_a_box = all_bins().all(|(axis, bin)| {
         let members = members(query, axis, bin, Rounding::Right);
         let with_a_box = members.iter().filter(|one| one.low().cmple(one.high()).all());
         yours.0[axis][bin].count as usize == with_a_box.count()
     });
     mistakes.extend(named![
-        inside_only => "centroids outside of the bins are left out: they count in the first or the last bin",
+        those_from(f32::NEG_INFINITY) => "centroids beyond the last bin are left out: they count in it",
+        those_from(0.0) => "centroids outside of the bins are left out: they count in the first or the last bin",
         with_a_box => "a primitive with the empty box is left out: it is counted all the same",
     ]);
     mistakes

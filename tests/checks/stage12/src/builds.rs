@@ -116,6 +116,7 @@ fn choices(random: &mut Random) -> Vec<Choice> {
         ("two groups of 16 that overlap but for a hundredth", pair(16, 16, 0.995), vec![32], *b"=+===++="),
         // As a leaf 2 · 3; split 0.25 · 3 + 2 · 2.91 + 3, because bins do not separate the nine.
         ("nine equal boxes in a larger one", nine, vec![10], *b"======+="),
+        ("twenty equal boxes", vec![bar(1.0); 20], vec![20], *b"======+="),
         ("eight boxes that are far apart", eight, vec![8], *b"===++==="),
     ]
 }

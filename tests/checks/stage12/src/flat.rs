@@ -3,7 +3,7 @@
 use super::trees::{drawn_tree, drawn_trees};
 use checks::prelude::*;
 use raykata::bvh::{Bvh, Contents};
-use raykata::wide::FlatTree;
+use raykata::wide::{FlatNode, FlatTree};
 
 /// A hierarchy of stage 3 with the nodes of `tree`, numbered in another order: any whose parents precede their children.
 fn scattered(tree: &FlatTree, choices: &[u16]) -> Bvh {
@@ -92,6 +92,15 @@ fn judge(flat: &Flat, yours: &FlatTree) -> CheckResult {
     };
     let is_as_given = yours.nodes.len() == n
         && flat.bvh.nodes.iter().zip(&yours.nodes).all(|(given, yours)| given.bounds == yours.bounds());
+    // The nodes depth first, one by one.
+    let (mut one_by_one, mut waiting) = (Vec::new(), vec![0; n.min(1)]);
+    while let Some(index) = waiting.pop() {
+        let node: &FlatNode = &flat.tree.nodes[index];
+        one_by_one.push((node.bounds(), node.count));
+        waiting
+            .extend([node.first as usize + 1, node.first as usize].into_iter().filter(|_| !node.is_leaf()));
+    }
+    let is_one_by_one = one_by_one.into_iter().eq(yours.nodes.iter().map(|node| (node.bounds(), node.count)));
     let only_boxes_differ = yours.nodes.len() == n
         && yours.nodes.iter().zip(&flat.tree.nodes).all(|(p, q)| (p.first, p.count) == (q.first, q.count));
     let only_order_differs = yours.nodes == flat.tree.nodes;
@@ -100,6 +109,7 @@ fn judge(flat: &Flat, yours: &FlatTree) -> CheckResult {
             "the nodes are in breadth-first order: finish everything below the first child before the second",
         *yours == reordered(&flat.tree, Order::Right) => "the right child comes first: left and right are exchanged",
         *yours == reordered(&flat.tree, Order::SecondSide) => "the nodes below the second child come before those below the first",
+        is_one_by_one => "the second child comes after all below the first: both children lie side by side",
         n == 0 && !yours.nodes.is_empty() => "a hierarchy without nodes gives a tree without nodes",
         is_as_given => "the nodes keep the order of the hierarchy, so children need not be neighbours",
         only_order_differs => "the list of primitives was changed: copy `order` as it is",

@@ -33,11 +33,13 @@ pub(super) fn build_parallel_gives_the_same_tree(trial: &Trial<'_>) -> CheckResu
         }
         judge_tree(boxes, alone)?;
         // The nodes without the indices of children.
-        let kinds = |tree: &FlatTree| -> Vec<(Aabb, u32, u32)> {
-            let first = |node: &FlatNode| if node.is_leaf() { node.first } else { 0 };
+        let kinds = |tree: &FlatTree, of_leaves: bool| -> Vec<(Aabb, u32, u32)> {
+            let first = |node: &FlatNode| if node.is_leaf() == of_leaves { node.first } else { 0 };
             tree.nodes.iter().map(|node| (node.bounds(), node.count, first(node))).collect()
         };
-        let only_indices = kinds(yours) == kinds(alone) && yours.order == alone.order;
+        let [only_indices, only_leaves] = [true, false].map(|of_leaves| {
+            kinds(yours, of_leaves) == kinds(alone, of_leaves) && yours.order == alone.order
+        });
         let n = yours.nodes.len().max(alone.nodes.len());
         let different = (0..n).find(|&i| yours.nodes.get(i) != alone.nodes.get(i));
         let of = |tree: &FlatTree| match different {
@@ -56,6 +58,7 @@ pub(super) fn build_parallel_gives_the_same_tree(trial: &Trial<'_>) -> CheckResu
         let input = format!("build_parallel of {} boxes", boxes.len());
         Err(Broken::with_texts(input, of(yours), of(alone), "your build_binned").explained_by([
             (only_indices, "only the indices of children differ: they shift when the arrays of both sides are joined"),
+            (only_leaves, "only `first` of leaves differs: it is a position in the order, and does not shift with the nodes"),
             "the trees differ only below DEEPEST_SPLIT: both sides of a fork are one level deeper"
                 .when(different.is_some_and(|i| depths(alone).get(i).is_some_and(|depth| *depth > DEEPEST_SPLIT))),
             "the trees differ first below a node that is sorted in pieces: add up the counts and the boxes of all pieces"

@@ -23,7 +23,7 @@ pub(super) fn block_cost_counts_whole_blocks(trial: &Trial<'_>) -> CheckResult {
     // Numbers beside multiples of eight, small and large.
     let numbers =
         prop_oneof![0..=40u32, (1..=22u32, 0..=2u32).prop_map(|(exponent, more)| (1 << exponent) + more - 1)];
-    trial.forall_and(&[1, 8, 9, 16], 200, numbers, |numbers| {
+    trial.forall_and(&[1, 8, 9, 16, (1 << 24) - 7, 1 << 24], 200, numbers, |numbers| {
         let judge = |n: &u32, yours: f32| {
             // Exact: BLOCK_COST times a whole number below 2²⁴.
             let expected = BLOCK_COST * n.div_ceil(BLOCK as u32) as f32;

@@ -218,6 +218,7 @@ enum Rule {
     Primitives,
     PartsOfBlocks,
     NodesAreFree,
+    NodesWithoutArea,
     Greedy,
     /// The left and the right child of a binary node get half of its places each; of an odd number the left one more, or less.
     Halves(bool),
@@ -227,7 +228,7 @@ enum Rule {
     Pairs,
 }
 
-const WRONG_RULES: [(Rule, &str); 13] = named![
+const WRONG_RULES: [(Rule, &str); 14] = named![
     Rule::Greedy =>
         "the inner child with the largest surface area is opened until there are eight: this is not always the cheapest",
     Rule::Most(2) => "a node gets at most two children, not eight",
@@ -239,6 +240,7 @@ const WRONG_RULES: [(Rule, &str); 13] = named![
     Rule::PartsOfBlocks =>
         "a block that is not full costs less than a full one: a leaf pays for whole blocks, block_cost",
     Rule::NodesAreFree => "the cost of a node is left out: visiting it costs something, too",
+    Rule::NodesWithoutArea => "the cost of a node is not multiplied by its area: a ray rarely enters a small one",
     Rule::Halves(false) => HALVES,
     Rule::Halves(true) => HALVES,
     Rule::Exchanged => "both children get each other's places: the left one gets those that were counted for it",
@@ -260,7 +262,11 @@ fn leaf_cost(node: &FlatNode, count: u32, rule: Rule) -> f64 {
 }
 
 fn inner_cost(node: &FlatNode, node_cost: f32, rule: Rule) -> f64 {
-    if rule == Rule::NodesAreFree { 0.0 } else { half_area(&node.bounds()) * f64::from(node_cost) }
+    match rule {
+        Rule::NodesAreFree => 0.0,
+        Rule::NodesWithoutArea => f64::from(node_cost),
+        _ => half_area(&node.bounds()) * f64::from(node_cost),
+    }
 }
 
 /// The numbers of places that the left child of a binary node may get of `n`.

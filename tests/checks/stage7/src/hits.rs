@@ -70,6 +70,7 @@ const DRAWN: RayCounts = RayCounts { primary: 17, shadow: 27, reflection: 30, tr
 const PER_HIT: &str = "you count a shadow ray per hit, or per hit and light: in_front says how many samples lie in front of the surface";
 const PER_SAMPLE: &str =
     "you count hits times light samples: in_front says how many samples lie in front of the surface";
+const PER_ROW: &str = "you count secondary rays once per row: each of its hits spawns them";
 const ROUGH: &str = "you count one ray of each kind per hit of a rough surface: it spawns glossy_samples";
 const SMOOTH: &str = "you count glossy_samples rays per hit of a smooth surface: it spawns one";
 
@@ -116,11 +117,21 @@ fn wrong_counts(HitsQuery { hits, effects, quality }: &HitsQuery) -> Vec<(RayCou
     };
     let any =
         |row: &MaterialHits| (0..row.in_front.len()).filter(casts).map(|light| row.in_front[light]).sum();
+    let per_row = |rays: OfRow<'_>| hits.iter().map(|row| rays(row, &effects.materials[row.material])).sum();
     let last = hits.last().cloned().into_iter().collect::<Vec<_>>();
     let numbered = (0..effects.materials.len()).zip(hits);
     let numbered =
         numbered.map(|(material, row)| MaterialHits { material, ..row.clone() }).collect::<Vec<_>>();
     named![
+        of_shadow(&|row, _| row.in_front.iter().sum()) =>
+            "you add up all of in_front: count the lights that the material lists and that cast shadows",
+        of_shadow(&|row, takes| takes.lights.iter().filter(|light| casts(light)).zip(&row.in_front).map(|(_, n)| n).sum()) =>
+            "you read in_front by the place in the material's list: its places are the numbers of the lights",
+        count(hits, &in_front, &mirror, &|row, takes| if takes.mirror { 0 } else { refracted(row, takes) }) =>
+            "you count no refracted rays of a material that reflects: it may do both",
+        RayCounts { reflection: per_row(&mirror), ..right } => PER_ROW,
+        RayCounts { transmission: per_row(&refracted), ..right } => PER_ROW,
+        RayCounts { reflection: per_row(&mirror), transmission: per_row(&refracted), ..right } => PER_ROW,
         of_shadow(&|row, _| any(row)) => "you count lights that do not matter to the material",
         lights(false, &|row, light| row.in_front[light]) => "you count lights that cast no shadows",
         lights(true, &|row, light| row.hits * samples(light)) => PER_SAMPLE,
@@ -297,6 +308,8 @@ fn judge_samples(query: &(f32, f32), yours: u32) -> Judged {
         "you return one sample too many: if (deviation / error)² is whole, it is the answer"
             .when(is(whole(square.floor() + 1.0))),
         (is(whole(ratio.ceil())), "you do not square deviation / error: the error falls with √n, not with n"),
+        "you round the quotient up before you square it: round the square"
+            .when(is((ratio.ceil().powi(2) as u32).max(1))),
         "you take the root of deviation / error: the error falls with √n, so solve for n by squaring"
             .when(is(whole(ratio.sqrt().ceil()))),
         (is(whole(square.floor())), "you round down, so the error is still too large: round up"),

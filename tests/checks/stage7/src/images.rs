@@ -93,6 +93,8 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> CheckResult
             let number = 3 * column + row;
             color([number % 4, number / 4])
         })),
+        "the rows of your image begin at the wrong place: a row has as many pixels as the image is wide"
+            .when(all(&|[column, row]| color([(3 * row + column) % 4, (3 * row + column) / 4]))),
         "you apply gamma: the pixels are linear light already"
             .when([2.0, 2.2, 0.5, 1.0 / 2.2].into_iter().any(is_power)),
         "you are half a pixel off: the colour of a pixel belongs to its centre"
@@ -122,6 +124,8 @@ enum Reads {
     AlongY,
     UpperLeft,
     Nearest,
+    OneWeightX,
+    OneWeightY,
     Smooth,
     TowardsZero,
     /// The image is repeated before its wrap mode is asked.
@@ -139,9 +143,11 @@ enum Reads {
     UpsideDown,
 }
 
-const MISTAKES: [(Reads, &str); 21] = named![
+const MISTAKES: [(Reads, &str); 23] = named![
     Reads::ExchangedAxes => "you exchange the weights of columns and rows",
     Reads::ExchangedWeights => "you exchange the weights w and 1 - w: the nearer a pixel, the larger its weight",
+    Reads::OneWeightX => "you blend rows by the weight of columns: each axis has its own",
+    Reads::OneWeightY => "you blend columns by the weight of rows: each axis has its own",
     Reads::AlongX => "you interpolate along x only: interpolate between the two rows, too",
     Reads::AlongY => "you interpolate along y only: interpolate between the two columns, too",
     Reads::TowardsZero => "you round towards 0: left of the first pixel's centre x is negative, so use floor",
@@ -186,6 +192,8 @@ impl Reads {
         let (dx, dy) = match self {
             Reads::ExchangedAxes => (dy, dx),
             Reads::ExchangedWeights => (1.0 - dx, 1.0 - dy),
+            Reads::OneWeightX => (dx, dx),
+            Reads::OneWeightY => (dy, dy),
             Reads::AlongX => (dx, 0.0),
             Reads::AlongY => (0.0, dy),
             Reads::UpperLeft => (0.0, 0.0),

@@ -228,6 +228,10 @@ impl Spread {
         let mut wrong: Vec<_> = special.iter().map(|(spread, text)| (spread.counts(), *text)).collect();
         wrong.extend([
             (lit(1), "you count shadow rays of the first hits only: every hit needs them"),
+            (
+                lit(1 + self.hits(self.bounces)),
+                "each bounce adds the hits of the level before: multiply first, then add",
+            ),
             (lit(self.hits(self.bounces)), "you leave out the shadow rays of the last bounce's hits"),
             (after(max_depth), "you leave out min_contribution: only max_depth ends your loop"),
             "you follow one ray per hit: each hit spawns two rays, so their number doubles at each level"
@@ -259,6 +263,8 @@ const NO_COAT: &str = "a coat can reflect all light: its reflection weighs up to
 const LAST_MATERIAL: &str =
     "you use the last material: a hit has one material, so take the maximum over the materials";
 const SUM_OF_RAYS: &str = "you add up the rays of all materials: a hit has one material, so take the maximum";
+const SUM_OF_WEIGHTS: &str = "you add up the weights of reflection and refraction: the larger one counts";
+const NO_WEIGHT: &str = "a weight of 0 ends the bounces, also without min_contribution";
 const SUM_OF_LIGHTS: &str = "you add up the lights of all materials: a hit needs those of its own material";
 
 pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
@@ -269,6 +275,8 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
     let both = Material { mirror: grey, transmission: grey, ..Material::default() };
     let rough = Material { roughness: 0.5, mirror: Vec3::ONE, ..Material::default() };
     let glass = Material { transmission: Vec3::ONE, fresnel: Fresnel::Exact, ..Material::default() };
+    let mut black = query(Material::default(), 1, parameters(5, 0.0));
+    black.effects.materials[1].mirror = true;
     let half = Material { fresnel: Fresnel::Exact, ..both.clone() };
     let coated = Material { coat: 1.5, ..Material::default() };
     // The two materials of a scene: each hit spawns one ray, which is either reflected or refracted.
@@ -294,9 +302,21 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
         ),
         spread(3, [1, 1], 1).scene(
             "half mirror and half glass, max_depth 3",
-            query(both, 1, parameters(3, 0.0)),
+            query(both.clone(), 1, parameters(3, 0.0)),
             counts(1, 15, 7, 7),
             &[],
+        ),
+        spread(3, [1, 1], 1).scene(
+            "half mirror and half glass, max_depth 10, min_contribution 1/10",
+            query(both, 1, parameters(10, 0.1)),
+            counts(1, 15, 7, 7),
+            &[(spread(10, [1, 1], 1), SUM_OF_WEIGHTS), (spread(4, [1, 1], 1), OF_INCOMING)],
+        ),
+        spread(0, [1, 0], 1).scene(
+            "a black mirror, max_depth 5",
+            black,
+            counts(1, 1, 0, 0),
+            &[(spread(5, [1, 0], 1), NO_WEIGHT)],
         ),
         // Reflections weigh 1, 1/4, 1/16, 1/64, 1/256: four of them are at least 1/100, with 4, 16, 64 and 256 rays.
         spread(4, [4, 0], 1).scene(
@@ -354,7 +374,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
          glossy_samples 4, max_depth 100, min_contribution 1/8",
         unequal(Quality { glossy_samples: 4, ..parameters(100, 0.125) }),
         counts(1, 8, 3, 3),
-        &[],
+        &[(Spread { onward: 1, ..spread(3, [1, 1], 3) }, "you count lights that no material lists")],
     );
     judge_pixel(trial, [unequal])
 }

@@ -56,6 +56,8 @@ fn judge_texel(query: &TexelQuery, yours: u32) -> Judged {
     unless(i64::from(yours) == expected, broken).formulas([
         "you return an index of size or more: the last one is size - 1"
             .when(only(Wrap::Clamp, index.clamp(0, size))),
+        "you take a negative index without its sign: Wrap::Clamp continues the border there, so it is 0"
+            .when(only(Wrap::Clamp, index.abs().min(size - 1))),
         (only(Wrap::Repeat, index % size), remainder),
         (only(Wrap::Repeat, index.abs() % size), unsigned),
         // The lowest bits are right for a power of two.

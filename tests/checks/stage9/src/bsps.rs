@@ -112,7 +112,15 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
     let ends = [(1.0, 2.0), (3.0, 4.0), (60.0, 61.0), (62.0, 63.0)].map(|(low, high)| from_to(low, high));
     let around = std::iter::repeat_n(from_to(0.0, 64.0), 8).chain(ends).collect();
     judge_build(trial, "eight long boxes around four short ones", around, 12, 1)?;
-    judge_build(trial, "400 crossing needles", crossing_needles(400), 20, MOST_REFERENCES)
+    judge_build(trial, "400 crossing needles", crossing_needles(400), 20, MOST_REFERENCES)?;
+    // The plane of each square has both of them on one side, and a plane across them has both on both.
+    let square =
+        |z: f32| [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)].map(|(x, y)| vec3(x, y, z)).to_vec();
+    let query = BspQuery { hulls: vec![square(0.0), square(1.0)], leaf_size: 1, max_depth: 12 };
+    let n_nodes = trial.kit.bsp_build(std::slice::from_ref(&query))[0].nodes.len();
+    let broken = Broken::new("build of 2 parallel squares, leaf_size 1", n_nodes, 1, "the number of nodes");
+    let says = "a plane with all primitives on one side divides nothing: make a leaf where no plane leaves fewer on each side";
+    if n_nodes == 1 { Ok(()) } else { Err(broken.because(says)) }
 }
 
 /// Thin triangles in all directions through a sphere: each plane has some of them on both sides.

@@ -216,6 +216,25 @@ pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>
 }
 
 pub(super) fn octree_by_neighbours_visits_no_node_again(trial: &Trial<'_>) -> CheckResult {
+    // Rays that end halfway to their hits visit what they reach.
+    let short = octree_over_spheres().into_iter().map(|query| {
+        let t = checks::tree::closest_of(&query.hits, &query.ray).map_or(f32::INFINITY, |(_, t)| t);
+        CellsQuery { ray: query.ray.with_range(0.0, 0.5 * t), ..query }
+    });
+    OCTREE_BY_NEIGHBOURS.all_visits(trial.kit, &short.collect::<Vec<_>>(), |query, yours| {
+        let parts = parts::of_cells(&query.cells, &query.ray);
+        let beyond =
+            yours.visits.iter().filter(|visit| parts.iter().all(|(node, ..)| node != *visit)).count();
+        let input = format!("octree over 128 spheres, by neighbours\n{}", query.ray.paste());
+        let broken = || {
+            Broken::with_texts(input, format!("{beyond} visits"), "none", "nodes that the ray does not enter")
+        };
+        if beyond == 0 {
+            Ok(())
+        } else {
+            Err(broken().because("the search goes on behind the end of the ray"))
+        }
+    })?;
     OCTREE_BY_NEIGHBOURS.all_visits(trial.kit, &octree_over_spheres(), |query, yours| {
         // A search that returns to the root visits the root once per leaf.
         let returns = yours.visits.iter().filter(|visit| **visit == 0).count();

@@ -27,6 +27,7 @@ fn kind(hull: &[Vec3], size: f64) -> Kind {
     match area {
         0.0 => Kind::Solid,
         _ if area > 1e-6 * size * size && bent <= 1e-12 * size * area => Kind::Polygon,
+        _ if area > 1e-6 * size * size && bent > 1e-2 * size * area => Kind::Solid,
         _ => Kind::Unclear,
     }
 }
@@ -143,11 +144,16 @@ fn gap(query: &BspQuery, yours: &PolygonBsp, size: f64) -> Option<Fault> {
         for point in points(hull) {
             if !is_covered(yours, 0, point, id as u32, room) {
                 let nowhere = !yours.items.contains(&(id as u32));
+                let is_near = is_covered(yours, 0, point, id as u32, size / 1000.0);
                 return Some((
                     format!("no node lists polygon {id} at its point {point}"),
                     "one node".into(),
                     vec![
                         (nowhere, "you leave out a polygon: no node lists it"),
+                        (
+                            is_near,
+                            "a node lists it, but farther from its plane than room: store the room with which you build",
+                        ),
                         "a part of a polygon is lost: a polygon that crosses a plane has a part on each side"
                             .when(!nowhere),
                     ],
@@ -184,7 +190,9 @@ pub(super) fn polygon_bsp_puts_polygons_on_planes(trial: &Trial<'_>) -> CheckRes
         0 => Vec::new(),
         1..=2 => vec![vec3(a.x, a.y, 1.0), vec3(b.x, b.y, 1.0), vec3(c.x, c.y, 1.0)],
         3 => corners(&Aabb::new(a, a + b.abs())),
-        // A parallelogram.
+        // Four corners of any kind, eight in a plane, and a parallelogram.
+        6 => vec![a, b, c, a + vec3(b.y, b.z, b.x)],
+        7 => (0..8).map(|i| (4.0 * Vec2::from_angle(0.785 * i as f32)).round().extend(a.z)).collect(),
         4..=5 => vec![a.round(), b.round(), b.round() + c.round() - a.round(), c.round()],
         _ => vec![a, b, c],
     });
@@ -195,7 +203,15 @@ pub(super) fn polygon_bsp_puts_polygons_on_planes(trial: &Trial<'_>) -> CheckRes
         hulls.iter_mut().flatten().for_each(|corner| *corner *= scale);
         BspQuery { hulls, leaf_size, max_depth }
     });
-    trial.each(140, inputs, <dyn Kit>::polygon_bsp_build, |query, yours| judge_tree(query, &yours))
+    // Squares side by side, each a little farther from the plane of the first one, up to a 1000th.
+    let square = |i: i32| {
+        let at = |x: f32, y: f32| vec3(i as f32 + x, y, 1.0 + 2f32.powi(i - 22));
+        vec![at(0.0, 0.0), at(0.5, 0.0), at(0.5, 0.5), at(0.0, 0.5)]
+    };
+    let steps = BspQuery { hulls: (0..12).map(square).collect(), leaf_size: 1, max_depth: 32 };
+    trial.each_and(&[steps], 140, inputs, <dyn Kit>::polygon_bsp_build, |query, yours| {
+        judge_tree(query, &yours)
+    })
 }
 
 pub(super) fn polygon_bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
