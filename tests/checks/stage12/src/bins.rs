@@ -164,10 +164,10 @@ fn wrong_numbers(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
     let once = all_bins().all(|(axis, bin)| axis == 0 || yours.0[axis][bin].count == 0);
     let mut mistakes: Vec<_> = ROUNDINGS.map(|(rounding, text)| (gives(rounding), text)).to_vec();
     mistakes.push((once, "the bins of the axes y and z stay empty"));
-    let those_from = |first: f32| {
+    let n_bins = query.grid.n_bins as f32;
+    let those = |is_counted: &dyn Fn(f32) -> bool| {
         let is_inside = |primitive: &PrimitiveBox, axis: usize| {
-            let place = (primitive.twice_centroid()[axis] - query.grid.low[axis]) * query.grid.scale[axis];
-            (first..query.grid.n_bins as f32).contains(&place)
+            is_counted((primitive.twice_centroid()[axis] - query.grid.low[axis]) * query.grid.scale[axis])
         };
         all_bins().all(|(axis, bin)| {
             let members = members(query, axis, bin, Rounding::Right);
@@ -181,8 +181,8 @@ fn wrong_numbers(query: &BinsQuery, yours: &Bins) -> Vec<(bool, &'static str)> {
         yours.0[axis][bin].count as usize == with_a_box.count()
     });
     mistakes.extend(named![
-        those_from(f32::NEG_INFINITY) => "centroids beyond the last bin are left out: they count in it",
-        those_from(0.0) => "centroids outside of the bins are left out: they count in the first or the last bin",
+        those(&|place| !(place >= n_bins)) => "centroids beyond the last bin are left out: they count in it",
+        those(&|place| (0.0..n_bins).contains(&place)) => "centroids outside of the bins are left out: they count in the first or the last bin",
         with_a_box => "a primitive with the empty box is left out: it is counted all the same",
     ]);
     mistakes

@@ -85,7 +85,7 @@ const WRONG: [(Rule, &str); 8] = named![
 impl Rule {
     /// The value of a basis function in double precision.
     fn basis(self, knots: &[f32], degree: usize, index: usize, u: f64) -> f64 {
-        let degree = if self == Rule::OneDegreeLess { degree - 1 } else { degree };
+        let degree = if self == Rule::OneDegreeLess { degree.saturating_sub(1) } else { degree };
         self.value(&knots.iter().map(|&knot| f64::from(knot)).collect::<Vec<f64>>(), degree, index, u)
     }
 
