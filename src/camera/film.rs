@@ -134,6 +134,17 @@ impl Film {
         Film { pixels: self.pixels.iter().map(shown).collect(), ..*self }
     }
 
+    /// The mean of each block of `scale` by `scale` pixels. What is left of a block at the right and below is left out.
+    pub fn means(&self, scale: u32) -> Film {
+        let mut means = Film::new(self.width / scale, self.height / scale);
+        for (index, mean) in (0..).zip(&mut means.pixels) {
+            let (x, y) = (index % means.width * scale, index / means.width * scale);
+            let block = (0..scale * scale).map(|i| self.at(x + i % scale, y + i / scale));
+            *mean = block.sum::<Vec3>() / (scale * scale) as f32;
+        }
+        means
+    }
+
     /// The picture in bytes, each component of linear light passed through `encode`, for example
     /// [`encode_srgb`].
     ///

@@ -78,26 +78,16 @@ impl JudgedRay {
     }
 }
 
-/// The rays of a scene with the answers that are right.
-fn judged_rays(scene: &HardScene) -> Vec<JudgedRay> {
-    let mut random = Random::new(1, 21);
-    let rays: Vec<Ray> = (0..n_rays()).map(|_| scene.ray(&mut random)).collect();
-    let brute = Quality { accelerator: Accelerator::BruteForce, leaf_size: 1, ..Quality::default() };
-    let brute = solutions::kit().first_hits(&job(&scene.triangles, brute), &rays);
-    let judged = |(ray, brute): (&Ray, Option<PrimitiveHit>)| JudgedRay {
-        ray: *ray,
-        ties: triangle::tie_set(ray, &scene.triangles),
-        brute,
-    };
-    rays.iter().zip(brute).map(judged).collect()
-}
-
 #[test]
 fn every_search_finds_a_triangle_that_is_exactly_met_first() {
     let mut wrong = Vec::new();
     for scene in hard_scenes() {
-        let judged = judged_rays(&scene);
-        let rays: Vec<Ray> = judged.iter().map(|one| one.ray).collect();
+        let mut random = Random::new(1, 21);
+        let rays: Vec<Ray> = (0..n_rays()).map(|_| scene.ray(&mut random)).collect();
+        let brute = Quality { accelerator: Accelerator::BruteForce, leaf_size: 1, ..Quality::default() };
+        let brute = solutions::kit().first_hits(&job(&scene.triangles, brute), &rays);
+        let judge = |(&ray, brute)| JudgedRay { ray, ties: triangle::tie_set(&ray, &scene.triangles), brute };
+        let judged: Vec<JudgedRay> = rays.iter().zip(brute).map(judge).collect();
         let mut compare = |search: &str, found: Vec<Option<PrimitiveHit>>| {
             let mistakes = judged.iter().zip(found).filter(|(one, found)| !one.is_right(&scene, *found));
             wrong.extend(mistakes.map(|(one, found)| {

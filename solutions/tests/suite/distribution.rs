@@ -4,6 +4,7 @@
 
 use crate::scene::{differing, job, render, rendered, scene};
 use glam::Vec3;
+use raykata::camera::{Lens, Shutter};
 use raykata::kit::RenderJob;
 use raykata::scene::{Accelerator, Sampler, Scene};
 
@@ -98,12 +99,8 @@ fn what_has_no_extent_changes_no_bit() {
         (plain.camera.lens, plain.camera.shutter) = (None, None);
         plain.materials.iter_mut().for_each(|material| material.roughness = 0.0);
         let mut none = plain.clone();
-        let mut narrow = full(4).camera;
-        if let (Some(lens), Some(shutter)) = (&mut narrow.lens, &mut narrow.shutter) {
-            lens.aperture = 0.0;
-            (shutter.open, shutter.close) = (0.0, 0.0);
-        }
-        (none.camera.lens, none.camera.shutter) = (narrow.lens, narrow.shutter);
+        none.camera.lens = full(4).camera.lens.map(|lens| Lens { aperture: 0.0, ..lens });
+        none.camera.shutter = Some(Shutter { open: 0.0, close: 0.0 });
         let (plain, none) = (render(&plain), render(&none));
         assert_eq!(plain.film, none.film, "{sampler:?}");
         assert_eq!(plain.counts, none.counts, "{sampler:?}");
@@ -231,7 +228,7 @@ transform_end = [{ translate = [32, 0, 0] }]
 #[test]
 fn a_shutter_that_does_not_open_shows_the_moment() {
     let mut moving = full(2);
-    moving.camera.shutter = Some(raykata::camera::Shutter { open: 0.5, close: 0.5 });
+    moving.camera.shutter = Some(Shutter { open: 0.5, close: 0.5 });
     let found = render(&moving);
     // Stop the motion: replace each transform by that of time 0.5.
     moving.nodes.iter_mut().for_each(|node| {

@@ -1,7 +1,7 @@
 //! Whole frames of the reference: the picture is the same for every search, no unnecessary ray is traced, and there is no
 //! shadow acne at any size.
 
-use crate::scene::{differing, job, render, rendered, scene};
+use crate::scene::{differing, job, render, render_by, rendered, scene};
 use glam::Vec3;
 use raykata::count::Counts;
 use raykata::kit::{RenderJob, View};
@@ -40,13 +40,11 @@ fn a_frame_up_to_a_stage_calls_no_later_function() {
 #[test]
 fn every_hierarchy_makes_the_picture_of_brute_force() {
     let mut scene = scene(VASES);
-    scene.quality.accelerator = Accelerator::BruteForce;
-    let expected = render(&scene);
-    scene.quality.accelerator = Accelerator::Bvh;
+    let expected = render_by(&scene, Accelerator::BruteForce);
     for split in Split::ALL {
         for leaf_size in [1, 4, 16] {
             (scene.quality.split, scene.quality.leaf_size) = (split, leaf_size);
-            let found = render(&scene);
+            let found = render_by(&scene, Accelerator::Bvh);
             assert_eq!(found.film, expected.film, "{split:?}, leaves of {leaf_size}");
             assert_eq!(rays(&found.counts), rays(&expected.counts));
             assert!(found.counts.primitive_tests * 20 < expected.counts.primitive_tests);

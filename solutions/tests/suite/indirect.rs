@@ -1,7 +1,7 @@
 //! Indirect light in frames: the pictures of scenes whose light is known, both techniques against each other, and what is
 //! traced and looked up.
 
-use crate::scene::{job, render, rendered, scene};
+use crate::scene::{assert_counted, job, render, rendered, scene, traced};
 use glam::{DVec3, Vec3};
 use raykata::film::Film;
 use raykata::kit::{RayKind, RenderJob, Rendering, TracedRay};
@@ -338,14 +338,8 @@ fn the_counts_of_paths_are_those_of_their_rays() {
     scene.quality.samples_per_pixel = 1;
     let job = job(&scene);
     let counts = rendered(&job).counts;
-    let pixels = (0..30).flat_map(|y| (0..40).map(move |x| (x, y)));
-    let paths: Vec<Vec<TracedRay>> = pixels.map(|(x, y)| solutions::kit().trace(&job, x, y)).collect();
-    let of_kind = |kind| paths.iter().flatten().filter(|ray| ray.kind == kind).count() as u64;
-    assert_eq!(counts.primary, of_kind(RayKind::Primary));
-    assert_eq!(counts.shadow, of_kind(RayKind::Shadow));
-    assert_eq!(counts.reflection, of_kind(RayKind::Reflection));
-    assert_eq!(counts.transmission, of_kind(RayKind::Transmission));
-    assert_eq!(counts.indirect, of_kind(RayKind::Indirect));
+    let paths = traced(&job);
+    assert_counted(&counts, &paths, "everything");
     assert!(counts.indirect > 0 && counts.reflection > 0 && counts.transmission > 0 && counts.absorbed > 0);
     for path in &paths {
         // One ray per bounce, and at each hit at most one shadow ray beside those to the two lights.

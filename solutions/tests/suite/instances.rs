@@ -123,7 +123,7 @@ fn no_shape_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
 
 #[test]
 fn a_mirrored_glass_vase_is_glass_inside() {
-    let glass = |mirror: &str| {
+    let glass = |mirror: &str, copies: bool| {
         let mut scene = scene(&format!(
             "[film]\nwidth = 48\nheight = 48\n[camera]\nposition = [0, 1.2, 5]\nlook_at = [0, 0.9, 0]\nvertical_fov = 30\n\
              [environment]\nbackground = [0.3, 0.6, 0.9]\n[materials.glass]\ndiffuse = 0\ntransmission = 1\n\
@@ -131,16 +131,12 @@ fn a_mirrored_glass_vase_is_glass_inside() {
              [[nodes]]\nname = \"cube\"\nmaterial = \"glass\"\nshape = {{ mesh = \"cube\" }}\n\
              [[nodes]]\nchildren = [\"cube\"]\ntransform = [{{ scale = [{mirror}1, 1.6, 1] }}, {{ translate = [0, 0.9, 0] }}]\n"
         ));
-        scene.quality.max_depth = 6;
-        scene
+        (scene.quality.max_depth, scene.quality.copies) = (6, copies);
+        render(&scene)
     };
     // A cube is its own mirror image, so both pictures must be the same, for copies and for instances.
     for copies in [false, true] {
-        let [plain, mirrored] = ["", "-"].map(|mirror| {
-            let mut scene = glass(mirror);
-            scene.quality.copies = copies;
-            render(&scene)
-        });
+        let [plain, mirrored] = ["", "-"].map(|mirror| glass(mirror, copies));
         // A change of sign is exact, so no outline moves.
         assert_eq!(differing(&plain.film, &mirrored.film, 0.01), 0, "copies {copies}");
         // Two refracted rays for each pixel of the cube, 1,124 in all, prove that the pictures are not empty.

@@ -1,7 +1,7 @@
 //! The methods and options that a scene can select: tests of triangles and spheres, planes by coefficients, one-sided
 //! meshes, the search that visits both children, and colours that are encoded with gamma 2.
 
-use crate::scene::{differing, render, scene};
+use crate::scene::{differing, render, render_by, scene};
 use glam::Vec3;
 use raykata::film::Film;
 use raykata::scene::{Accelerator, Scene, SphereMethod, TriangleMethod};
@@ -52,11 +52,9 @@ fn every_method_makes_the_same_picture() {
 
 #[test]
 fn both_children_find_the_same_hits_and_test_more_boxes() {
-    let mut scene = scene(&SHAPES.replace("cube.obj", "vase.ply"));
-    scene.quality.accelerator = Accelerator::Bvh;
-    let expected = render(&scene);
-    scene.quality.accelerator = Accelerator::BvhBothChildren;
-    let found = render(&scene);
+    let scene = scene(&SHAPES.replace("cube.obj", "vase.ply"));
+    let [expected, found] =
+        [Accelerator::Bvh, Accelerator::BvhBothChildren].map(|accelerator| render_by(&scene, accelerator));
     assert_eq!(found.film, expected.film);
     assert!(found.counts.box_tests > expected.counts.box_tests);
     assert!(found.counts.primitive_tests > expected.counts.primitive_tests);
@@ -141,13 +139,11 @@ fn a_one_sided_wall_is_seen_from_its_front_only() {
 #[test]
 fn a_shared_mesh_can_be_one_sided() {
     let shared = |one_sided: bool| {
-        let text = format!(
-            "{}\n[meshes.room]\nfile = \"meshes/room.obj\"\nsmooth = false\none_sided = {one_sided}\n\
+        let mut scene = scene(&format!(
+            "{SHAPES}\n[meshes.room]\nfile = \"meshes/room.obj\"\nsmooth = false\none_sided = {one_sided}\n\
              [[nodes]]\nshape = {{ mesh = \"room\" }}\n\
-             [[nodes]]\nshape = {{ mesh = \"room\" }}\ntransform = [{{ scale = 0.5 }}, {{ translate = [0.2, 0.3, 0.1] }}]\n",
-            SHAPES
-        );
-        let mut scene = scene(&text);
+             [[nodes]]\nshape = {{ mesh = \"room\" }}\ntransform = [{{ scale = 0.5 }}, {{ translate = [0.2, 0.3, 0.1] }}]\n"
+        ));
         let instances = render(&scene).film;
         scene.quality.copies = true;
         (instances, render(&scene).film)

@@ -25,22 +25,19 @@ impl Transport for Longest {
     }
 }
 
-/// Writes the file with calls of the checks.
-fn write() {
-    let longest = Arc::new(Door(Longest::default()));
-    let kit: Arc<dyn Kit + Send + Sync> = longest.clone();
-    let mut checks = all_checks::STAGES.iter().flat_map(|(_, checks)| checks.iter());
-    assert!(checks.all(|check| checks::passes(check, &kit, 0)));
-    let calls = longest.0.0.lock().expect("no panic");
-    let short = calls.iter().filter(|(_, call)| !call.is_empty());
-    let lines = short.map(|(name, call)| format!("(\"{name}\", |kit| format!(\"{{:?}}\", kit.{call})),\n"));
-    std::fs::write(FILE, format!("vec![\n{}]\n", lines.collect::<String>())).expect("a file");
-}
-
 #[test]
 fn printed_calls_can_be_pasted() {
     if std::env::var("INSTA_UPDATE").is_ok_and(|how| how == "always") {
-        write();
+        // Write the file with calls of the checks.
+        let longest = Arc::new(Door(Longest::default()));
+        let kit: Arc<dyn Kit + Send + Sync> = longest.clone();
+        let mut checks = all_checks::STAGES.iter().flat_map(|(_, checks)| checks.iter());
+        assert!(checks.all(|check| checks::passes(check, &kit, 0)));
+        let calls = longest.0.0.lock().expect("no panic");
+        let short = calls.iter().filter(|(_, call)| !call.is_empty());
+        let lines =
+            short.map(|(name, call)| format!("(\"{name}\", |kit| format!(\"{{:?}}\", kit.{call})),\n"));
+        std::fs::write(FILE, format!("vec![\n{}]\n", lines.collect::<String>())).expect("a file");
     }
     #[allow(unused_imports, clippy::useless_vec, clippy::type_complexity, clippy::init_numbered_fields)]
     let pasted: Vec<(&str, fn(&dyn Kit) -> String)> = {

@@ -20,17 +20,6 @@ fn picture(scene: &Scene) -> Film {
     rendered(&RenderJob { seed: 0, threads: 0, ..job(scene) }).film.toned(scene.film.tone)
 }
 
-/// The mean of each block of pixels.
-fn means(film: &Film, scale: u32) -> Film {
-    let mut means = Film::new(film.width / scale, film.height / scale);
-    for (index, mean) in (0..).zip(&mut means.pixels) {
-        let (x, y) = (index % means.width * scale, index / means.width * scale);
-        let block = (0..scale * scale).map(|i| film.at(x + i % scale, y + i / scale));
-        *mean = block.sum::<Vec3>() / (scale * scale) as f32;
-    }
-    means
-}
-
 #[test]
 fn recorded_references_are_the_pictures_of_the_solutions() {
     let writes = std::env::var("INSTA_UPDATE").is_ok_and(|how| how == "always");
@@ -38,7 +27,7 @@ fn recorded_references_are_the_pictures_of_the_solutions() {
         let mut scene = whole(name);
         let file = path(&format!("reference/{name}")).with_extension("png");
         if writes {
-            means(&picture(&scene), RECORDED).write_png(&file, encode_srgb).unwrap();
+            picture(&scene).means(RECORDED).write_png(&file, encode_srgb).unwrap();
             continue;
         }
         // Compare a small picture, which takes little time, with the means of the record.
@@ -48,7 +37,7 @@ fn recorded_references_are_the_pictures_of_the_solutions() {
         let linear = |byte: u8| decode_srgb(f32::from(byte) / 255.0);
         let bytes = record.pixels().map(|pixel| Vec3::from_array(pixel.0.map(linear))).collect();
         let record = Film { width: width / RECORDED, height: height / RECORDED, pixels: bytes };
-        let record = means(&record, COMPARED / RECORDED);
+        let record = record.means(COMPARED / RECORDED);
         (scene.film.width, scene.film.height) = (width / COMPARED, height / COMPARED);
         scene.quality.samples_per_pixel = scene.quality.samples_per_pixel.clamp(16, 36);
         let small = picture(&scene);

@@ -1,8 +1,9 @@
 //! Scenes that tests write as text or take from `scenes`, and frames of them.
 
+use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, Rendering, View};
+use raykata::kit::{RayKind, RenderJob, Rendering, TracedRay, View};
 use raykata::scene::{Accelerator, Scene, load};
 use std::path::{Path, PathBuf};
 
@@ -45,6 +46,24 @@ pub fn render_by(scene: &Scene, accelerator: Accelerator) -> Rendering {
     let mut scene = scene.clone();
     scene.quality.accelerator = accelerator;
     render(&scene)
+}
+
+/// The rays behind each pixel of a frame.
+pub fn traced(job: &RenderJob) -> Vec<Vec<TracedRay>> {
+    let film = job.scene.film;
+    let pixels = (0..film.height).flat_map(|y| (0..film.width).map(move |x| (x, y)));
+    pixels.map(|(x, y)| solutions::kit().trace(job, x, y)).collect()
+}
+
+/// The counts of rays are those of the rays behind all pixels.
+#[track_caller]
+pub fn assert_counted(counts: &Counts, trees: &[Vec<TracedRay>], case: &str) {
+    let of_kind = |kind| trees.iter().flatten().filter(|ray| ray.kind == kind).count() as u64;
+    assert_eq!(counts.primary, of_kind(RayKind::Primary), "{case}");
+    assert_eq!(counts.shadow, of_kind(RayKind::Shadow), "{case}");
+    assert_eq!(counts.reflection, of_kind(RayKind::Reflection), "{case}");
+    assert_eq!(counts.transmission, of_kind(RayKind::Transmission), "{case}");
+    assert_eq!(counts.indirect, of_kind(RayKind::Indirect), "{case}");
 }
 
 /// How many pixels differ by more than `most` in a channel.

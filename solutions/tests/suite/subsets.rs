@@ -5,13 +5,13 @@
 //! Indirect light is the tenth effect. It changes most pixels, so it is judged by other laws, for a set of sets in which every
 //! two effects are present together, absent together, and each without the other.
 
-use crate::scene::{job, path, rendered, scene};
+use crate::scene::{assert_counted, job, path, rendered, scene, traced};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::count::Counts;
 use raykata::effects::Effect;
 use raykata::film::Film;
-use raykata::kit::{RayKind, TracedRay};
+use raykata::kit::{RayKind, Rendering, TracedRay};
 use raykata::mesh::Mesh;
 use raykata::scene::Scene;
 use std::sync::Arc;
@@ -33,8 +33,8 @@ impl Set {
     fn without(self, effect: Effect) -> Set {
         Set(EFFECTS.iter().position(|&other| other == effect).map_or(self.0, |bit| self.0 & !(1 << bit)))
     }
-    fn absent(self) -> impl Iterator<Item = Effect> {
-        EFFECTS.into_iter().filter(move |&effect| !self.has(effect))
+    fn absent(self) -> Vec<Effect> {
+        EFFECTS.into_iter().filter(|&effect| !self.has(effect)).collect()
     }
 }
 
@@ -56,7 +56,7 @@ fn small(mut scene: Scene) -> Scene {
 }
 
 fn only(set: Set) -> Scene {
-    set.absent().fold(small(scene(&text())), |scene, effect| effect.removed_from(&scene))
+    set.absent().into_iter().fold(small(scene(&text())), |scene, effect| effect.removed_from(&scene))
 }
 
 /// A frame of a set, and the rays behind each of its pixels.
@@ -72,11 +72,8 @@ fn frame(set: Set) -> Frame {
 
 fn frame_of(scene: Scene) -> Frame {
     let job = job(&scene);
-    let rendering = rendered(&job);
-    let film = job.scene.film;
-    let pixels = (0..film.height).flat_map(|y| (0..film.width).map(move |x| (x, y)));
-    let trees = pixels.map(|(x, y)| solutions::kit().trace(&job, x, y)).collect();
-    Frame { film: rendering.film, counts: rendering.counts, trees }
+    let Rendering { film, counts, .. } = rendered(&job);
+    Frame { film, counts, trees: traced(&job) }
 }
 
 /// The tree without rays of this kind and all rays below them.
@@ -116,12 +113,7 @@ fn each_set_of_effects_is_seen_to_be_what_it_is() {
         for effect in EFFECTS {
             // The only rough material is a mirror.
             let expected = set.has(effect) && (effect != Effect::Glossy || set.has(Effect::Mirrors));
-            assert_eq!(
-                effects.calls_for(effect),
-                expected,
-                "{effect} in {:?}",
-                set.absent().collect::<Vec<_>>()
-            );
+            assert_eq!(effects.calls_for(effect), expected, "{effect} in {:?}", set.absent());
         }
     }
 }
@@ -141,13 +133,13 @@ fn what_is_left_out_of_the_file_and_what_is_switched_off_are_the_same() {
         let absent =
             |line: &&str| !keys.iter().any(|(effect, key)| !set.has(*effect) && line.starts_with(key));
         let lines: Vec<&str> = text.lines().filter(absent).collect();
-        let others = set.absent().filter(|effect| keys.iter().all(|(other, _)| other != effect));
+        let others = set.absent().into_iter().filter(|effect| keys.iter().all(|(other, _)| other != effect));
         let written =
             others.fold(small(scene(&lines.join("\n"))), |scene, effect| effect.removed_from(&scene));
         // The file of an image that nothing shows is not read.
         let without_images = |scene: Scene| Scene { textures: Vec::new(), ..scene };
         let same = without_images(written) == without_images(only(set));
-        assert!(same, "without {:?}", set.absent().collect::<Vec<_>>());
+        assert!(same, "without {:?}", set.absent());
     }
 }
 
@@ -159,7 +151,7 @@ fn every_effect_adds_its_own_rays_and_changes_only_the_pixels_where_it_acts() {
         counts_are_what_the_rays_add_up_to(set, with);
         for effect in EFFECTS.into_iter().filter(|&effect| set.has(effect)) {
             let without = &frames[set.without(effect).0];
-            let case = || format!("{effect}, without {:?}", set.absent().collect::<Vec<_>>());
+            let case = || format!("{effect}, without {:?}", set.absent());
             assert_eq!(with.counts.primary, without.counts.primary, "{}", case());
             for (pixel, (tree, old)) in with.trees.iter().zip(&without.trees).enumerate() {
                 let (same_rays, acts) = match effect {
@@ -203,11 +195,8 @@ fn counts_are_what_the_rays_add_up_to(set: Set, frame: &Frame) {
     let rays = |wanted: &dyn Fn(&[TracedRay], &TracedRay) -> bool| {
         trees.iter().map(|tree| tree.iter().filter(|ray| wanted(tree, ray)).count() as u64).sum::<u64>()
     };
-    let of_kind = |kind| rays(&|_, ray| ray.kind == kind);
-    assert_eq!(counts.primary, of_kind(RayKind::Primary));
-    assert_eq!(counts.shadow, of_kind(RayKind::Shadow));
-    assert_eq!(counts.reflection, of_kind(RayKind::Reflection));
-    assert_eq!(counts.transmission, of_kind(RayKind::Transmission));
+    let case = format!("without {:?}", set.absent());
+    assert_counted(counts, trees, &case);
     let hits = rays(&|_, ray| ray.kind != RayKind::Shadow && ray.hit.is_some());
     assert_eq!(counts.hits, hits);
 
@@ -226,7 +215,7 @@ fn counts_are_what_the_rays_add_up_to(set: Set, frame: &Frame) {
         + each(Effect::Motion, counts.primary)
         + each(Effect::AreaLights, 2 * 2 * hits)
         + each(Effect::Glossy, 2 * blurred);
-    assert_eq!(counts.random_numbers, numbers, "without {:?}", set.absent().collect::<Vec<_>>());
+    assert_eq!(counts.random_numbers, numbers, "{case}");
 }
 
 /// Sets in which each pair of the nine effects has all four combinations: all sets with at most one effect, and all with at
@@ -249,18 +238,11 @@ fn the_covering_sets_have_every_combination_of_two_effects() {
     }
 }
 
-/// The scene of a set, with indirect light.
-fn with_indirect_light(set: Set) -> Scene {
-    let mut scene = only(set);
-    scene.indirect_light = true;
-    scene
-}
-
 #[test]
 fn indirect_light_changes_no_camera_ray_and_traces_only_what_the_set_needs() {
     for set in covering() {
-        let scene = with_indirect_light(set);
-        let case = || format!("without {:?}", set.absent().collect::<Vec<_>>());
+        let scene = Scene { indirect_light: true, ..only(set) };
+        let case = || format!("without {:?}", set.absent());
         // Taking indirect light out gives the scene of before, and so its rays, counts and pixels.
         assert_eq!(Effect::IndirectLight.removed_from(&scene), only(set));
         let (with, without) = (frame_of(scene.clone()), frame(set));
@@ -271,17 +253,13 @@ fn indirect_light_changes_no_camera_ray_and_traces_only_what_the_set_needs() {
         }
         // A path has one ray per bounce, and no ray of an effect that the set lacks.
         let depth = scene.quality.max_depth;
-        let of_kind = |kind| with.trees.iter().flatten().filter(|ray| ray.kind == kind).count() as u64;
         for path in &with.trees {
             let rays = path.iter().filter(|ray| ray.kind != RayKind::Shadow);
             assert!(rays.enumerate().all(|(bounce, ray)| ray.depth == bounce as u32 && ray.depth <= depth));
         }
         let counts = with.counts;
         assert!(counts.indirect > 0, "{}", case());
-        assert_eq!(counts.indirect, of_kind(RayKind::Indirect), "{}", case());
-        assert_eq!(counts.reflection, of_kind(RayKind::Reflection), "{}", case());
-        assert_eq!(counts.transmission, of_kind(RayKind::Transmission), "{}", case());
-        assert_eq!(counts.shadow, of_kind(RayKind::Shadow), "{}", case());
+        assert_counted(&counts, &with.trees, &case());
         assert!(set.has(Effect::Shadows) || counts.shadow == 0, "{}", case());
         assert!(
             set.has(Effect::Mirrors) || set.has(Effect::Transmission) || counts.reflection == 0,
@@ -321,7 +299,7 @@ fn random_numbers_are_those_of_the_vertices(set: Set, scene: &Scene, frame: &Fra
             numbers += each(Effect::Glossy, 2 * u64::from(is_glossy));
         }
     }
-    let case = format!("without {:?}", set.absent().collect::<Vec<_>>());
+    let case = format!("without {:?}", set.absent());
     assert_eq!(frame.counts.random_numbers, numbers, "{case}");
     assert_eq!(frame.counts.texture_reads, reads, "{case}");
 }

@@ -2,7 +2,6 @@
 //! the gallery.
 
 use anyhow::{Result, ensure};
-use glam::Vec3;
 use raykata::film::{Film, Tone, encode_srgb};
 use raykata::scene::Scene;
 use std::path::Path;
@@ -77,9 +76,8 @@ impl Reference {
 
     /// Compares a picture with this one. `film` is the picture in linear light, and `rgb` as it is shown.
     pub fn difference(&self, tone: Tone, film: &Film, rgb: &[u8]) -> Result<Difference> {
-        // Take the mean of the pixels that one pixel of the reference covers.
-        let means =
-            (self.scale > 1).then(|| means_of_blocks(tone, film, self.scale).to_bytes(encode_srgb).rgb);
+        // Take the mean of the pixels that one pixel of the reference covers, in linear light as it is shown.
+        let means = (self.scale > 1).then(|| film.toned(tone).means(self.scale).to_bytes(encode_srgb).rgb);
         let yours = means.as_deref().unwrap_or(rgb);
         ensure!(yours.len() == self.rgb.len(), "the picture has another size than its reference");
         // Find the pixel that differs most.
@@ -101,21 +99,10 @@ impl Reference {
     }
 }
 
-/// The mean of each block of `scale` by `scale` pixels, in linear light as it is shown.
-fn means_of_blocks(tone: Tone, film: &Film, scale: u32) -> Film {
-    let toned = film.toned(tone);
-    let (width, height) = (film.width / scale, film.height / scale);
-    let block = |index: u32| {
-        let (x, y) = (index % width * scale, index / width * scale);
-        let pixels = (0..scale * scale).map(|i| toned.at(x + i % scale, y + i / scale));
-        pixels.sum::<Vec3>() / (scale * scale) as f32
-    };
-    Film { width, height, pixels: (0..width * height).map(block).collect() }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
     #[test]
     fn the_worst_pixel_is_found_and_small_differences_are_not_counted() {
