@@ -342,7 +342,16 @@ fn missing_line<'a>(quote: &'a str, source: &str) -> Option<&'a str> {
 fn quoted_messages_are_those_of_the_kit() {
     let quotes = quotes();
     assert!(quotes.len() > 20);
-    let rubric = lines_of_rubric();
+    // The lines that messages take from the rubric.
+    let mut rubric = String::new();
+    for (stage, entries) in raykata::rubric::stages() {
+        for (name, entry) in entries.in_order() {
+            rubric += &entry.header();
+            rubric += &format!(
+                "  again: cargo test --test stage{stage} {name}\n  print: cargo run -- try {name}\n  stuck: cargo run -- hint {name}\n"
+            );
+        }
+    }
     for (deck, source, quote) in quotes.iter().filter(|(_, source, _)| source.starts_with("tests/")) {
         // The message about a mistake of the corpus is named by its file and the mistake.
         let (file, mistake) =
@@ -380,18 +389,4 @@ fn only_the_readme_says_how_long_the_first_build_takes() {
     let found: Vec<_> =
         texts.filter(|(text, _)| about(text) > 0).map(|(text, name)| (name, about(&text))).collect();
     assert_eq!(found, [("README.md".to_owned(), 1)]);
-}
-
-/// The lines that messages take from the rubric.
-fn lines_of_rubric() -> String {
-    let mut text = String::new();
-    for (stage, entries) in raykata::rubric::stages() {
-        for (name, entry) in entries.in_order() {
-            text += &entry.header();
-            text += &format!(
-                "  again: cargo test --test stage{stage} {name}\n  print: cargo run -- try {name}\n  stuck: cargo run -- hint {name}\n"
-            );
-        }
-    }
-    text
 }

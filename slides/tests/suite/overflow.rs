@@ -27,14 +27,10 @@ fn overflowing(decks: &[PathBuf]) -> Option<Vec<String>> {
         let name = deck.file_stem().expect("a name").to_string_lossy();
         let page = folder.path().join(format!("{name}.html"));
         let mut node = Command::new("node");
-        node.arg(slides.join("node_modules/@marp-team/marp-cli/marp-cli.js")).args([
-            "--no-stdin",
-            "--template",
-            "bare",
-            "--theme-set",
-        ]);
+        node.arg(slides.join("node_modules/@marp-team/marp-cli/marp-cli.js"));
+        node.args(["--no-stdin", "--template", "bare", "--theme-set"]).arg(slides.join("raykata.css"));
         // Without an option between them, Marp would take the deck for another theme.
-        node.arg(slides.join("raykata.css")).arg("--html").arg(deck).arg("-o").arg(&page);
+        node.arg("--html").arg(deck).arg("-o").arg(&page);
         let built = node.output().expect("node starts, because npm has installed Marp");
         assert!(built.status.success(), "{name}: {}", String::from_utf8_lossy(&built.stderr));
         browser.open(&format!("file://{}", page.display())).expect("a page");

@@ -23,7 +23,6 @@ use raykata_cli::verdicts::{CheckVerdict, Verdict};
 use raykata_cli::worker::Worker;
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -326,7 +325,11 @@ impl Work {
         let worker = Program::worker(Which::Exercises, Need::Frames);
         let mut cargo = cargo_build(&self.studio.root, &[worker])?;
         if quick {
-            without_optimisation(&mut cargo);
+            // Compile the exercises as `cargo test` does: without optimisation, and only what has changed.
+            let profile = profile().unwrap_or("dev".into());
+            for setting in ["opt-level=0", "incremental=true", "codegen-units=64"] {
+                cargo.arg("--config").arg(format!("profile.{profile}.package.exercises.{setting}"));
+            }
         }
         match compile(&self.builds[usize::from(!quick)], cargo, worker)? {
             Some(Compiled::Program(program)) => {
@@ -365,14 +368,6 @@ fn remove_old_copies(folder: &Path) {
         if age.is_some_and(|age| age > DAY) {
             let _ = std::fs::remove_file(file.path());
         }
-    }
-}
-
-/// Lets cargo compile the exercises as `cargo test` does: without optimisation, and only what has changed.
-fn without_optimisation(cargo: &mut Command) {
-    let profile = profile().unwrap_or("dev".into());
-    for setting in ["opt-level=0", "incremental=true", "codegen-units=64"] {
-        cargo.arg("--config").arg(format!("profile.{profile}.package.exercises.{setting}"));
     }
 }
 
