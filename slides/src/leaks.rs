@@ -17,20 +17,15 @@ use std::path::Path;
 /// The number of points on each edge to which rays go.
 const POINTS: u32 = 6;
 
-/// A closed mesh of 5,120 triangles: an icosahedron after four steps of Loop subdivision.
-fn closed_mesh(kit: &dyn Kit) -> Mesh {
+/// Rays from inside a closed mesh to its edges and vertices, which miss all triangles or hit one, in a map of directions.
+pub fn leaks(kit: &dyn Kit, _root: &Path) -> Result<Vec<u8>> {
+    // The mesh has 5,120 triangles: an icosahedron after four steps of Loop subdivision.
     let (corners, triangles) = icosahedron();
     let (positions, triangles) = (corners.map(Vec3::normalize).to_vec(), triangles.to_vec());
     let mut mesh = Mesh { positions, triangles, ..Mesh::default() };
     for _ in 0..4 {
         mesh = kit.loop_subdivide(&[mesh]).remove(0);
     }
-    mesh
-}
-
-/// Rays from inside a closed mesh to its edges and vertices, which miss all triangles or hit one, in a map of directions.
-pub fn leaks(kit: &dyn Kit, _root: &Path) -> Result<Vec<u8>> {
-    let mesh = closed_mesh(kit);
     let origin = vec3(0.11, -0.07, 0.05);
     // Only the triangles around an edge can be hit by a ray to it: those that have one of its ends.
     let mut around: HashMap<u32, Vec<usize>> = HashMap::new();

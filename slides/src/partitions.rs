@@ -17,20 +17,6 @@ struct Node {
     column: usize,
 }
 
-/// The nodes of a flat octree, level by level: of each eight children the four with the smaller z.
-fn flat_nodes(octree: &Octree) -> Vec<Node> {
-    let mut nodes: Vec<Node> = Vec::new();
-    octree.walk(16, |index, cell, depth| {
-        let cell = cell.to_box();
-        if cell.min.z <= octree.bounds.min.z {
-            let column = nodes.iter().filter(|node| node.depth == depth).count();
-            nodes.push(Node { index, cell, depth, column });
-        }
-    });
-    nodes.sort_by_key(|node| node.depth);
-    nodes
-}
-
 /// An octree over boxes in the plane, searched in three ways along the same ray.
 pub fn octree_searches(kit: &dyn Kit) -> Result<String> {
     // The ray stays in the lower half of all cells.
@@ -40,7 +26,16 @@ pub fn octree_searches(kit: &dyn Kit) -> Result<String> {
     let octree = kit.octree_build(&[query]).remove(0);
     let query = [CellsQuery { cells: octree.clone(), ray, hits }];
     let mut drawing = Drawing::new("Three searches of one octree", 1000.0, 550.0);
-    let nodes = flat_nodes(&octree);
+    // The octree is flat: take the nodes level by level, and of each eight children the four with the smaller z.
+    let mut nodes: Vec<Node> = Vec::new();
+    octree.walk(16, |index, cell, depth| {
+        let cell = cell.to_box();
+        if cell.min.z <= octree.bounds.min.z {
+            let column = nodes.iter().filter(|node| node.depth == depth).count();
+            nodes.push(Node { index, cell, depth, column });
+        }
+    });
+    nodes.sort_by_key(|node| node.depth);
     // Draw the cells and the tree level by level in the first panel.
     drawing.step();
     draw_objects(&mut drawing, 14.0);

@@ -102,12 +102,15 @@ pub fn compressed(picture: &image::RgbImage) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A crop of scenes/plain.toml with a sampler and a number of samples, magnified four times.
-fn plain(kit: &dyn Kit, root: &Path, sampler: Sampler, samples: u32, size: [u32; 2]) -> Result<Film> {
+/// Crops of scenes/plain.toml in a row, each with a sampler and a number of samples, magnified four times.
+fn plain(kit: &dyn Kit, root: &Path, size: [u32; 2], parts: &[(Sampler, u32, &str)]) -> Result<Vec<u8>> {
     let mut scene = load(root, "plain.toml")?;
-    scene.quality.sampler = sampler;
-    scene.quality.samples_per_pixel = samples;
-    Ok(magnified(&crop(&shown(kit, &scene)?, CROP, size), 4))
+    let mut films = Vec::new();
+    for &(sampler, samples, text) in parts {
+        (scene.quality.sampler, scene.quality.samples_per_pixel) = (sampler, samples);
+        films.push((magnified(&crop(&shown(kit, &scene)?, CROP, size), 4), text.to_owned()));
+    }
+    panels(&films, films.len() as u32)
 }
 
 /// Where the outline of the knot lies in scenes/plain.toml.
@@ -115,40 +118,28 @@ const CROP: [u32; 2] = [250, 60];
 
 /// The outline of the knot with one sample per pixel and with many.
 pub fn antialias_crops(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let part = |sampler, samples| plain(kit, root, sampler, samples, [130, 100]);
-    panels(
-        &[
-            (part(Sampler::Center, 1)?, "not antialiased".into()),
-            (part(Sampler::Jittered, 64)?, "antialiased".into()),
-        ],
-        2,
-    )
+    let parts = [(Sampler::Center, 1, "not antialiased"), (Sampler::Jittered, 64, "antialiased")];
+    plain(kit, root, [130, 100], &parts)
 }
 
 /// The outline of the knot with three samplers.
 pub fn sampler_strip(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let part = |sampler, name: &str| Ok((plain(kit, root, sampler, 16, [90, 90])?, name.to_owned()));
-    let parts: Result<Vec<_>> = [
-        part(Sampler::Center, "center"),
-        part(Sampler::Random, "random"),
-        part(Sampler::Jittered, "jittered"),
-    ]
-    .into_iter()
-    .collect();
-    panels(&parts?, 3)
+    let parts = [
+        (Sampler::Center, 16, "center"),
+        (Sampler::Random, 16, "random"),
+        (Sampler::Jittered, 16, "jittered"),
+    ];
+    plain(kit, root, [90, 90], &parts)
 }
 
 /// The outline of the knot with a sample at the centre, at a random place, and with several samples.
 pub fn sampling_101(kit: &dyn Kit, root: &Path) -> Result<Vec<u8>> {
-    let part = |sampler, samples| plain(kit, root, sampler, samples, [90, 90]);
-    panels(
-        &[
-            (part(Sampler::Center, 1)?, "centre".into()),
-            (part(Sampler::Random, 1)?, "random".into()),
-            (part(Sampler::Jittered, 16)?, "16 samples, averaged".into()),
-        ],
-        3,
-    )
+    let parts = [
+        (Sampler::Center, 1, "centre"),
+        (Sampler::Random, 1, "random"),
+        (Sampler::Jittered, 16, "16 samples, averaged"),
+    ];
+    plain(kit, root, [90, 90], &parts)
 }
 
 /// The boxes of the hierarchy over a mesh at several levels.
