@@ -38,8 +38,7 @@ pub fn run(n: u64) -> bool {
             .map(|s| (s.name.into(), s.triangles, s.eye)),
     );
     let per_kind = n.div_ceil((meshes.len() * KINDS.len()) as u64);
-    let mut differences = 0;
-    let (mut rays, mut hits) = (0, 0);
+    let mut total = [0; 3];
     for (name, triangles, inside) in meshes {
         let trees = Trees::new(&triangles, inside);
         let threads = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
@@ -52,15 +51,11 @@ pub fn run(n: u64) -> bool {
         });
         let mut sum = [0; 3];
         counts.iter().flatten().for_each(|counts| (0..3).for_each(|i| sum[i] += counts[i]));
-        println!(
-            "{name}: {} triangles, {} rays, {} hits, {} differences",
-            triangles.len(),
-            sum[0],
-            sum[1],
-            sum[2]
-        );
-        (rays, hits, differences) = (rays + sum[0], hits + sum[1], differences + sum[2]);
+        let ([rays, hits, differences], n) = (sum, triangles.len());
+        println!("{name}: {n} triangles, {rays} rays, {hits} hits, {differences} differences");
+        (0..3).for_each(|i| total[i] += sum[i]);
     }
+    let [rays, hits, differences] = total;
     println!("\n{rays} rays ({}), {hits} hits, {differences} differences", KINDS.join(", "));
     differences == 0
 }

@@ -61,7 +61,15 @@ fn main() {
         };
         table.push((name, on_threads(1, || measure(&scene, &library, alone))));
     }
-    print_table(&table);
+    // Print a table for `README.md`, with the date and the processor.
+    let Some((_, first)) = table.first() else { return };
+    println!("\n{}, one thread:\n", date_and_machine());
+    print_row(["scene"].into_iter().chain(first.iter().map(|one| one.name)).map(String::from).collect());
+    print_row(vec!["---".into(); first.len() + 1]);
+    for (scene, speeds) in &table {
+        let cell = |Speed { ratio: [p, d, s], .. }: &Speed| format!("{p:.2}, {d:.2}, {s:.2}");
+        print_row([scene.clone()].into_iter().chain(speeds.iter().map(cell)).collect());
+    }
 }
 
 /// Does work whose parallel parts run on so many threads.
@@ -94,18 +102,6 @@ fn date_and_machine() -> String {
 
 fn print_row(cells: Vec<String>) {
     println!("| {} |", cells.join(" | "));
-}
-
-/// Prints a table for `README.md`, with the date and the processor.
-fn print_table(table: &[(String, Vec<Speed>)]) {
-    let Some((_, first)) = table.first() else { return };
-    println!("\n{}, one thread:\n", date_and_machine());
-    print_row(["scene"].into_iter().chain(first.iter().map(|one| one.name)).map(String::from).collect());
-    print_row(vec!["---".into(); first.len() + 1]);
-    for (scene, speeds) in table {
-        let cell = |Speed { ratio: [p, d, s], .. }: &Speed| format!("{p:.2}, {d:.2}, {s:.2}");
-        print_row([scene.clone()].into_iter().chain(speeds.iter().map(cell)).collect());
-    }
 }
 
 fn fail(message: &str) -> ! {
@@ -163,11 +159,9 @@ fn measure(scene: &Scene, library: &str, alone: bool) -> Vec<Speed> {
         build.as_secs_f64()
     );
     for (name, rays) in ["primary", "diffuse", "shadow"].iter().zip(&rays) {
-        let per_ray = wide.counts(rays, *name == "shadow").map(|count| count as f64 / rays.len() as f64);
-        println!(
-            "  {name}: {:.2} nodes, {:.2} blocks, {:.2} exact tests per ray",
-            per_ray[0], per_ray[1], per_ray[2]
-        );
+        let [nodes, blocks, tests] =
+            wide.counts(rays, *name == "shadow").map(|count| count as f64 / rays.len() as f64);
+        println!("  {name}: {nodes:.2} nodes, {blocks:.2} blocks, {tests:.2} exact tests per ray");
     }
     let mut contestants: Vec<(&'static str, Box<dyn Contestant>, Duration)> =
         vec![("reference", Box::new(wide), build)];
@@ -231,22 +225,17 @@ fn compare(
     );
     let mut ratios = Vec::new();
     for (i, &(name, _, build)) in contestants.iter().enumerate() {
-        let rate = |kind: usize| rays[kind].len() as f64 / median(times[i][kind].clone()) / 1e6;
-        let own = [0, 1, 2].map(|kind: usize| {
+        let rates = [0, 1, 2].map(|kind| rays[kind].len() as f64 / median(times[i][kind].clone()) / 1e6);
+        let ratio = [0, 1, 2].map(|kind: usize| {
             median(times[base][kind].iter().zip(&times[i][kind]).map(|(base, own)| base / own).collect())
         });
+        let ([r0, r1, r2], [q0, q1, q2]) = (rates, ratio);
         println!(
-            "  {name:<16} {:>8.3}   {:>9.3} {:>9.3} {:>9.3}   {:>7.2} {:>7.2} {:>7.2}   {:?}",
+            "  {name:<16} {:>8.3}   {r0:>9.3} {r1:>9.3} {r2:>9.3}   {q0:>7.2} {q1:>7.2} {q2:>7.2}   {:?}",
             build.as_secs_f64(),
-            rate(0),
-            rate(1),
-            rate(2),
-            own[0],
-            own[1],
-            own[2],
             differ[i],
         );
-        ratios.push(Speed { name, ratio: own, microseconds: [0, 1, 2].map(|kind| 1.0 / rate(kind)) });
+        ratios.push(Speed { name, ratio, microseconds: rates.map(|rate| 1.0 / rate) });
     }
     ratios
 }
