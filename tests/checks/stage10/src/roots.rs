@@ -218,7 +218,7 @@ pub(super) fn roots_of_special_numbers_are_finite(trial: &Trial<'_>) -> CheckRes
                 .explained_by(mistakes.iter().copied()))
         };
         let is_nan = yours.is_some_and(|roots| roots.iter().any(|root| root.is_nan()));
-        let nan = (is_nan, "you return NaN: 0 / 0, or the difference of two infinities");
+        let nan = (is_nan, "you return NaN: 0 / 0, ∞ - ∞ or 0 · ∞");
         match yours {
             Some(_) if refused => broken(
                 "None",

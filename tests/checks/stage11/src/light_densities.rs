@@ -328,7 +328,10 @@ pub(super) fn light_pdf_beside_the_light_is_zero(trial: &Trial<'_>) -> CheckResu
                 Broken::with_texts(query.call("light_pdf"), format!("{yours:?}"), expected, "the definition");
             Err(broken.explained_by([
                 (away && yours > 0.0, "this direction leads away from the emitter: the hit is behind `from`"),
-                (!*meets && yours > 0.0, "you do not test whether the direction meets the emitter"),
+                (
+                    !*meets && yours > 0.0,
+                    "you return a density above 0 for a direction that misses the emitter",
+                ),
                 (yours.is_nan(), "you return NaN"),
             ]))
         };

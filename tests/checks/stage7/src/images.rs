@@ -224,8 +224,7 @@ impl Reads {
     }
 }
 
-const ANOTHER_WRAP: &str =
-    "you use another wrap mode than the image: call texel with texture.wrap for all four";
+const ANOTHER_WRAP: &str = "your pixels are those of another wrap mode than that of the image: all four come from texel with texture.wrap";
 
 /// An interval between two pixel centres, in which the colour must change linearly.
 #[derive(Clone, Debug)]
