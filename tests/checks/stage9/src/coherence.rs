@@ -135,11 +135,12 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> CheckResu
                     // A node that every right search opens for this ray.
                     let (needed, _) = tree::needed(single);
                     let is_left = needed.iter().any(|node| !yours_opened.contains(&(*node as u32)));
-                    // Another ray of this packet has a nearer hit.
-                    let others = right[index / 8 * 8..].iter().take(8).flatten();
-                    let is_cut = expected.is_some_and(|(_, t)| others.clone().any(|(_, other)| *other < t));
+                    let is_lost = found.is_none_or(|(_, t)| expected.is_some_and(|(_, best)| t > best));
+                    // Another ray of this packet ends before this hit, or has a nearer one.
+                    let packet = (index / 8 * 8..singles.len()).take(8);
+                    let ends = packet.map(|i| right[i].map_or(singles[i].ray.t_max, |(_, t)| t));
+                    let is_cut = expected.is_some_and(|(_, t)| ends.clone().any(|end| end < t));
                     let mistakes = [
-                        (!is_left && is_cut && found.is_none(), "a hit of one ray shortens the range of the others: each has its own"),
                         "you return a hit outside the range of this ray: each ray has its own range"
                             .when(found.is_some_and(|(_, t)| !single.ray.contains(t))),
                         "you return the hit of another ray: each ray keeps its own"
@@ -148,7 +149,8 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> CheckResu
                         "the packet left a node that this ray enters: skip a node only if no ray of the packet enters it"
                             .when(is_left),
                         "each node that this ray needs is opened, but its nearest primitive is not tested with it, or the hit is lost"
-                            .when(!is_left && found.is_none_or(|(_, t)| expected.is_some_and(|(_, best)| t > best))),
+                            .when(!is_left && is_lost),
+                        (is_cut && is_lost, "a hit of one ray shortens the range of the others: each has its own"),
                     ];
                     let input = format!("{input}; ray {index}: {}", single.ray.paste());
                     let broken = Broken::new(input, found, expected, "brute force, (primitive, t)");
