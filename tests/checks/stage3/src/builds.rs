@@ -112,18 +112,25 @@ pub(super) fn split() -> impl Strategy<Value = Split> + Clone {
     prop::sample::select(Split::ALL.to_vec())
 }
 
-pub(super) fn build_holds_every_primitive_once(trial: &Trial<'_>) -> CheckResult {
-    let inputs = (boxes(40), split(), 1..=5usize).prop_map(|(bounds, split, leaf_size)| BuildQuery {
+fn build_queries() -> impl Strategy<Value = BuildQuery> + Clone {
+    (boxes(40), split(), 1..=5usize).prop_map(|(bounds, split, leaf_size)| BuildQuery {
         bounds,
         split,
         leaf_size,
-    });
+    })
+}
+
+pub(super) fn build_holds_every_primitive_once(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(400, build_queries(), |queries| judge_builds(trial, queries))
+}
+
+/// Judges the groups of trees by the surface area heuristic.
+pub(super) fn judge_by_area(trial: &Trial<'_>) -> CheckResult {
     // Boxes that hide each other, so that a leaf is cheaper than any cut, and whose middle is far from their median.
     let bounds = (0..7).map(|i| Vec3::splat(2f32.powi(-i))).map(|low| Aabb::new(low, low + 9.0)).collect();
     let heap = BuildQuery { bounds, split: Split::SurfaceArea, leaf_size: 2 };
-    trial.forall(400, inputs.clone(), |queries| judge_builds(trial, queries))?;
-    let by_area = inputs.prop_map(|query| BuildQuery { split: Split::SurfaceArea, ..query });
-    trial.forall_and(&[heap], 200, by_area, |queries| {
+    let queries = build_queries().prop_map(|query| BuildQuery { split: Split::SurfaceArea, ..query });
+    trial.forall_and(&[heap], 200, queries, |queries| {
         queries.iter().map(|query| judge_groups(trial, query)).collect()
     })
 }
