@@ -177,22 +177,16 @@ fn formulas(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> 
         }
     };
     // The cuts along two axes, and the most expensive cut.
-    let mut along = |axes: [usize; 2], text| {
+    let yours = tree::cut_cost(&ordered[..middle], &ordered[middle..]);
+    for (axes, text) in [[1, 2], [0, 2], [0, 1]].into_iter().zip(WITHOUT) {
         let least = tree::least_cost(ordered, &axes, &tree::cut_cost);
-        let is_it = match middle {
-            0 => is_leaf_along(&axes),
-            _ => {
-                tree::cut_cost(&ordered[..middle], &ordered[middle..]) <= least * 1.0001
-                    && tree::leaf_is_cheaper(ordered, least) != Some(true)
-            }
-        };
-        mistakes.push((is_it, text));
-    };
-    [[1, 2], [0, 2], [0, 1]].into_iter().zip(WITHOUT).for_each(|(axes, text)| along(axes, text));
+        let is_cut = yours <= least * 1.0001 && tree::leaf_is_cheaper(ordered, least) != Some(true);
+        mistakes.push((if middle == 0 { is_leaf_along(&axes) } else { is_cut }, text));
+    }
     let most = -tree::least_cost(ordered, &AXES, &|left, right| -tree::cut_cost(left, right));
     let is_dearest = match middle {
         0 => tree::leaf_is_cheaper(ordered, most) != Some(false) || !centroids_differ(ordered),
-        _ => tree::cut_cost(&ordered[..middle], &ordered[middle..]) >= most * 0.9999,
+        _ => yours >= most * 0.9999,
     };
     mistakes.push((is_dearest, "you keep the cut of the highest cost: keep the one of the lowest"));
     mistakes.push((without, "TRAVERSAL_COST is left out, so a cut always looks cheaper"));

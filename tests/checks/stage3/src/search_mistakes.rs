@@ -28,9 +28,6 @@ enum Wrong {
     /// If one child has no hit, or one box is missed, nothing is found.
     NothingIfOneHasNone,
     NothingIfOneIsMissed,
-    /// The same for one of the two boxes.
-    NothingIfLeftIsMissed,
-    NothingIfRightIsMissed,
     /// The right child is searched only if the left box is missed.
     LeftIfEntered,
     /// Only one child is searched.
@@ -45,7 +42,7 @@ enum Wrong {
 
 const INSIDE: &str = "a box in which the ray begins is left out: its entry is at t_min, which counts";
 
-const MISTAKES: [(Wrong, &str); 21] = named![
+const MISTAKES: [(Wrong, &str); 19] = named![
     Wrong::AllOfLeaf => "a leaf counts only if all of its primitives are hit: one is enough",
     Wrong::InsideLeftOut(0) => INSIDE,
     Wrong::InsideLeftOut(1) => INSIDE,
@@ -61,8 +58,6 @@ const MISTAKES: [(Wrong, &str); 21] = named![
     Wrong::NearIfAny => "boxes overlap: the search stopped before it had seen the nearer hit, which is in the farther child",
     Wrong::NothingIfOneHasNone => "a subtree was left out: if one child has no hit, the other may still have one",
     Wrong::NothingIfOneIsMissed => "a subtree was left out: if one box is missed, the other may still be met",
-    Wrong::NothingIfLeftIsMissed => "a subtree was left out: if the left box is missed, the right one may still be met",
-    Wrong::NothingIfRightIsMissed => "a subtree was left out: if the right box is missed, the left one may still be met",
     Wrong::LeftIfEntered => "a subtree was left out: the right child, if the ray enters the left box as well",
     Wrong::LeftOnly => "a subtree was left out: the right child",
     Wrong::RightOnly => "a subtree was left out: the left child",
@@ -129,8 +124,6 @@ impl Search<'_> {
             Wrong::NearOnly => self.below(near),
             Wrong::LeftIfAny => self.below(left).or_else(|| self.below(right)),
             Wrong::NearIfAny => self.below(near).or_else(|| self.below(far)),
-            Wrong::NothingIfLeftIsMissed if both.0.is_none() => None,
-            Wrong::NothingIfRightIsMissed if both.1.is_none() => None,
             Wrong::LeftIfEntered => self.below(if both.0.is_some() { left } else { right }),
             Wrong::NothingIfOneIsMissed if both.0.is_none() || both.1.is_none() => None,
             Wrong::NothingIfOneHasNone => {
@@ -195,8 +188,6 @@ pub(super) fn any_mistakes(query: &SearchQuery, yours: bool) -> Vec<(bool, &'sta
         is(Wrong::NearOnly) => "a hit was overlooked: the farther child is left out",
         is(Wrong::FirstOfLeafLeftOut) => "a hit was overlooked: the first primitive of a leaf is left out",
         is(Wrong::NothingIfOneIsMissed) => "a hit was overlooked: if one box is missed, the other may still be met",
-        is(Wrong::NothingIfLeftIsMissed) => "a hit was overlooked: if the left box is missed, the right one may still be met",
-        is(Wrong::NothingIfRightIsMissed) => "a hit was overlooked: if the right box is missed, the left one may still be met",
         is(Wrong::LeftIfEntered) => "a hit was overlooked: the right child is left out if the ray enters the left box",
         is(Wrong::AllOfLeaf) => "a hit was overlooked: one primitive of a leaf is enough",
         is(Wrong::InsideLeftOut(0)) || is(Wrong::InsideLeftOut(1)) =>

@@ -24,6 +24,7 @@ fn kind(hull: &[Vec3], size: f64) -> Kind {
     let doubled: DVec3 = (1..p.len() - 1).map(|i| (p[i] - p[0]).cross(p[i + 1] - p[0])).sum();
     let area = doubled.length();
     let bent = p.iter().map(|corner| (*corner - p[0]).dot(doubled).abs()).fold(0.0, f64::max);
+    // Bent by a hundredth of the size, corners have no plane with any room that is allowed, which is a 1000th.
     match area {
         0.0 => Kind::Solid,
         _ if area > 1e-6 * size * size && bent <= 1e-12 * size * area => Kind::Polygon,
@@ -192,7 +193,9 @@ pub(super) fn polygon_bsp_puts_polygons_on_planes(trial: &Trial<'_>) -> CheckRes
         3 => corners(&Aabb::new(a, a + b.abs())),
         // Four corners of any kind, eight in a plane, and a parallelogram.
         6 => vec![a, b, c, a + vec3(b.y, b.z, b.x)],
-        7 => (0..8).map(|i| (4.0 * Vec2::from_angle(0.785 * i as f32)).round().extend(a.z)).collect(),
+        7 => (0..8)
+            .map(|i| (4.0 * Vec2::from_angle(std::f32::consts::FRAC_PI_4 * i as f32)).round().extend(a.z))
+            .collect(),
         4..=5 => vec![a.round(), b.round(), b.round() + c.round() - a.round(), c.round()],
         _ => vec![a, b, c],
     });
