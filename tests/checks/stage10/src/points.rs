@@ -36,6 +36,7 @@ fn observations(query: &OffsetQuery, origin: Vec3) -> [(bool, &'static str); 5] 
     let start = start(query, origin);
     let along = query.normal.as_dvec3().dot(query.direction.as_dvec3());
     let (height, point) = (start.height(), query.point.as_dvec3());
+    let one_float = 4.0 * U * point.abs().max_element();
     // A power of ten times the size of the point.
     let relative = [point.length(), point.abs().max_element()]
         .into_iter()
@@ -46,7 +47,7 @@ fn observations(query: &OffsetQuery, origin: Vec3) -> [(bool, &'static str); 5] 
         along < 0.0 && start.height() < 0.0 =>
             "the ray starts on the side of the normal, but it goes to the other side: turn the normal to the side of the direction",
         start.height() < 0.0 => "the ray starts on the other side: turn the normal to the side of the direction",
-        height < 4.0 * U * point.abs().max_element() =>
+        height <= 0.0 || height < one_float && start.least() > 2.0 * one_float =>
             "the ray starts on the other side, up to rounding: turn the normal to the side of the direction",
     ]
 }
@@ -144,6 +145,11 @@ pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> C
             (is(v / v.element_sum()), by_length),
             (is(v / v.length_squared()), by_length),
             (is(v), "you return the vector as it is: divide it by its length"),
+            "you divide by the largest coordinate with its sign: take the largest absolute value"
+                .when(match v.max_element() {
+                    largest if largest <= 0.0 => is_none || largest < 0.0,
+                    largest => !is_wrong || largest < v.abs().max_element(),
+                }),
             "you return None for a vector with a coordinate of 0: only the zero vector has no direction"
                 .when(!is_wrong || is_none && has_zero),
             "you return None for a short vector: the squares underflow, so scale by the largest coordinate first"

@@ -149,7 +149,7 @@ fn reasons_of_leak(trial: &Trial<'_>, ray: &Ray, hits: &[Triangle]) -> [(bool, &
         !(volume as f32).is_normal()
     };
     [
-        "t has the wrong sign: rounding may turn it on a needle or edge-on, where digits cancel"
+        "t has the wrong sign: where rounding may turn it, on a needle or edge-on, more digits must decide"
             .when(line.iter().flatten().any(|hit| hit.t <= 0.0)),
         "each triangle that the ray hits is seen edge-on: there t is a quotient of two rounding errors"
             .when(hits.iter().all(edge_on)),

@@ -264,6 +264,13 @@ pub(super) fn fill_bins_takes_special_numbers(trial: &Trial<'_>) -> CheckResult 
         let judge = |query: &BinsQuery, yours: Bins| {
             judge_counts(query, &yours).and_then(|()| judge_boxes(query, &yours))
         };
-        compare_formulas(queries, ask(trial, queries), judge, wrong_numbers)
+        // Where only a box is wrong, no number is.
+        let mistakes = |query: &BinsQuery, yours: &Bins| {
+            let of_boxes = judge_counts(query, yours).is_ok() && judge_boxes(query, yours).is_err();
+            let numbers = wrong_numbers(query, yours).into_iter();
+            let numbers = numbers.map(|(is_it, text)| (is_it && !of_boxes, text));
+            numbers.chain(wrong_boxes(query, yours)).collect::<Vec<_>>()
+        };
+        compare_formulas(queries, ask(trial, queries), judge, mistakes)
     })
 }

@@ -186,6 +186,7 @@ pub(super) fn judge_span(trial: &Trial<'_>, n: usize, share: u64) -> CheckResult
         return Ok(());
     }
     let at = |index: usize| ranges[index].1 > 2000;
+    let is_node = |fork: &Fork| ranges.contains(&(fork.first, fork.count));
     let (_, possible) = work_and_span(&tree, &ranges, at);
     let yours = format!("work {work}, span {span}: a ratio of {:.2}", work as f64 / span as f64);
     let input = format!("build_parallel of {} boxes, with {} forks", tree.order.len(), forks.len());
@@ -198,7 +199,7 @@ pub(super) fn judge_span(trial: &Trial<'_>, n: usize, share: u64) -> CheckResult
     .explained_by([
         (forks.is_empty(), "nothing is forked: join both sides of a large node by `forks.join`"),
         "too few nodes are forked: with forks at all nodes above 2,000 primitives the span is short enough"
-            .when(share * possible <= work),
+            .when(share * possible <= work && forks.iter().all(is_node)),
     ]))
 }
 

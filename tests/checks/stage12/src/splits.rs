@@ -107,14 +107,13 @@ fn right_cost(sides: &[(BoxA, u32); 2]) -> f64 {
     sides.iter().map(|side| area(&side.0) * blocks(side)).sum()
 }
 
-const WRONG_COSTS: [(Cost, &str); 10] = named![
+const WRONG_COSTS: [(Cost, &str); 9] = named![
     |sides| area(&sides[0].0) * blocks(&sides[0]) => "only the left side is counted in the cost",
     |sides| area(&sides[1].0) * blocks(&sides[1]) => "only the right side is counted in the cost",
     |sides| sides.iter().map(|(bounds, n)| area(bounds) * f64::from(n / BLOCK as u32)).sum() =>
         "the number of blocks is rounded down: a block that is not full costs as much as a full one",
     |sides| (area(&sides[0].0) + area(&sides[1].0)) * (blocks(&sides[0]) + blocks(&sides[1])) =>
         "the sum of the areas is multiplied by the sum of the costs: each side has a product of its own",
-    |sides| 1.0 / right_cost(sides) => "the most expensive split is chosen",
     |sides| sides.iter().map(|(bounds, n)| area(bounds) * f64::from(*n)).sum() =>
         "the sides count single primitives: a leaf pays for whole blocks, block_cost",
     |sides| sides.iter().map(|(bounds, _)| area(bounds)).sum() => "the counts are left out of the cost",
@@ -126,6 +125,10 @@ const WRONG_COSTS: [(Cost, &str); 10] = named![
 
 /// Two costs are the same if they differ by less than the rounding errors of sums of 16 areas.
 const SAME: f64 = 1e-5;
+
+fn is_same(yours: f64, expected: f64) -> bool {
+    expected.is_finite() && (yours - expected).abs() <= SAME * expected
+}
 
 /// Whether `yours` is the cheapest of the splits that `may` be chosen, by this cost.
 fn is_cheapest(query: &BinSplitQuery, yours: &BinSplit, cost: Cost, may: impl Fn(&BinSplit) -> bool) -> bool {
@@ -190,7 +193,17 @@ fn mistakes(query: &BinSplitQuery, yours: &Option<BinSplit>) -> Vec<(bool, &'sta
         next.map_or_else(|| of_fewer(&|_| true), |next| is_cheapest(query, &next, right_cost, |_| true)),
         "the bin is the last one of the left side: return the first one of the right side",
     ));
-    mistakes.extend(WRONG_COSTS.map(|(cost, text)| (is_of(cost, &|_| true), text)));
+    mistakes.push((is_of(|sides| 1.0 / right_cost(sides), &|_| true), "the most expensive split is chosen"));
+    // A returned cost that is known shows by which cost the split was chosen.
+    let all = splits(query);
+    let found = yours.as_ref().and_then(|yours| {
+        let found = all.iter().find(|(split, _)| (split.axis, split.bin) == (yours.axis, yours.bin));
+        found.map(|(_, sides)| (f64::from(yours.cost), sides))
+    });
+    let returns = |cost: Cost| found.is_some_and(|(yours, sides)| is_same(yours, cost(sides)));
+    let is_known = returns(right_cost) || WRONG_COSTS.iter().any(|(cost, _)| returns(*cost));
+    let may = |cost: Cost| !is_known || returns(cost);
+    mistakes.extend(WRONG_COSTS.map(|(cost, text)| (may(cost) && is_of(cost, &|_| true), text)));
     mistakes
 }
 
@@ -254,7 +267,7 @@ pub(super) fn cheapest_split_returns_its_cost(trial: &Trial<'_>) -> CheckResult 
                 return if none { Ok(()) } else { Err(broken()) };
             };
             let expected = of(query, &split).map_or(f64::INFINITY, |sides| right_cost(&sides));
-            if expected.is_finite() && (f64::from(split.cost) - expected).abs() <= SAME * expected {
+            if is_same(split.cost.into(), expected) {
                 return Ok(());
             }
             let expected = format!("the cost {expected} of this split");
@@ -263,10 +276,7 @@ pub(super) fn cheapest_split_returns_its_cost(trial: &Trial<'_>) -> CheckResult 
         let formulas = |query: &BinSplitQuery, yours: &Option<BinSplit>| {
             let sides = yours.as_ref().and_then(|split| of(query, split));
             let gives = |factor: f64, cost: Cost| match (yours, &sides) {
-                (Some(split), Some(sides)) => {
-                    let cost = factor * cost(sides);
-                    (f64::from(split.cost) - cost).abs() <= SAME * cost
-                }
+                (Some(split), Some(sides)) => is_same(split.cost.into(), factor * cost(sides)),
                 _ => yours.is_none(),
             };
             let mut mistakes = vec![(

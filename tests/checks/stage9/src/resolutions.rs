@@ -107,6 +107,7 @@ fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
                 }),
                 "you ignore the range of the ray",
             ),
+            (is_none && near == far, "you return None for a ray that touches the cell: the cell is closed"),
             "a ray along a face is between the two planes for every t or for no t: you do not compare its origin with them"
                 .when(parallel && unasked),
             "you return None for a ray along a face, in its plane: the cell is closed"
@@ -115,9 +116,8 @@ fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
                 .when(is_none && parallel),
             "your answer is wrong for a ray along a face: its direction is 0 there, so compare its origin with both planes"
                 .when(parallel),
-            "you leave out the room for rounding: the range of the ray and the faces have ROUNDING as room"
+            "the span lacks the room for rounding: the range of the ray and the faces have ROUNDING as room, at a negative t as well"
                 .when(yours.map_or(expected.0 > expected.1, |span| has_span && is_close(span))),
-            (is_none && near == far, "you return None for a ray that touches the cell: the cell is closed"),
         ];
         let expected = match expected {
             (t, t_end) if t <= t_end && !yours.is_some_and(is_close) => Some(expected),
